@@ -1,0 +1,11 @@
+# omnihil_stems(OUT DIR): the stems of DIR/*.cc, sorted; re-globbed at every build, so a file added is a part added.
+function(omnihil_stems out dir)
+  file(GLOB files CONFIGURE_DEPENDS "${dir}/*.cc")
+  list(SORT files)
+  set(stems "")
+  foreach(file ${files})
+    get_filename_component(stem "${file}" NAME_WE)
+    list(APPEND stems "${stem}")
+  endforeach()
+  set(${out} "${stems}" PARENT_SCOPE)
+endfunction()

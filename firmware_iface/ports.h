@@ -1,0 +1,38 @@
+// The two ports of the loop. Real or simulated on either side: the loop cannot tell.
+//
+//   WheelBus  what the firmware's bridges and encoders hang on: a simulated robot, or a real one
+//   Firmware  what turns radio and sensors into bridge commands: host build, MCU image, board on the desk
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "firmware_iface/robot_io.h"
+
+namespace omnihil {
+
+class WheelBus {
+ public:
+  virtual ~WheelBus() = default;
+  virtual void write(const RobotDrive& drive) = 0;  // held until the next write
+  virtual RobotSensors read() = 0;                  // sampled at the instant of the call
+};
+
+class Firmware {
+ public:
+  virtual ~Firmware() = default;
+  virtual std::string_view name() const = 0;
+  // Id of the radio format whose frames `radio_receive` decodes itself; empty: it takes commands only.
+  virtual std::string_view radio_format() const = 0;
+  virtual std::int64_t control_period_ns() const = 0;
+  virtual void command(const RobotCommand& command, std::int64_t now_ns) = 0;
+  virtual void radio_receive(std::span<const std::uint8_t> frame, std::int64_t now_ns) = 0;
+  // Copies the next waiting frame into `out`; returns its length, 0 when none waits.
+  virtual std::size_t radio_transmit(std::span<std::uint8_t> out) = 0;
+  virtual bool set_gains(const RobotGains& gains) = 0;
+  virtual RobotGains gains() const = 0;
+  virtual RobotDrive tick(const RobotSensors& sensors) = 0;
+  virtual RobotFeedback feedback() const = 0;
+};
+
+}  // namespace omnihil

@@ -1,0 +1,78 @@
+// A packet described once, as a table of fields. Encoder, decoder, checks, documentation, C header and
+// fuzzing all walk this table; a radio format is a handful of such tables in one file under teams/.
+//
+// A field's place is a bit offset and a width in the message's bit order:
+//   kMsbFirst  bit 0 is the most significant bit of byte 0, fields run on across bytes, big-endian
+//   kLsbFirst  bit 0 is the least significant bit of byte 0, fields run upward, little-endian
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace omnihil {
+
+enum class BitOrder : std::uint8_t { kMsbFirst, kLsbFirst };
+
+enum class FieldKind : std::uint8_t {
+  kUint,      // value = raw; lo..hi is the allowed range
+  kConst,     // raw must equal `constant`: sync bytes, protocol version
+  kType,      // packet type code; raw must equal the message's `type`
+  kLength,    // raw must equal the whole packet's length in bytes
+  kFloat32,   // IEEE-754 single in the byte order of the message; must be finite
+  kRanged32,  // value = raw * scale + lo in float32, scale = (hi - lo) / (2^bits - 1): REM's rule
+  kReserved,  // meaning unknown: survives a round trip, never refused
+  kChecksum,  // computed by the format's own rule; the walker leaves it to the codec
+};
+
+struct Field {
+  std::string_view name;  // the team's own name; "cmd[2]" marks element 2 of an array "cmd"
+  int bit = 0;
+  int bits = 0;
+  FieldKind kind = FieldKind::kUint;
+  double lo = 0.0;  // smallest and largest value, in `unit`; equal: not limited
+  double hi = 0.0;
+  std::uint64_t constant = 0;  // kConst only
+  std::string_view unit;       // "m/s", "rad", "" for a plain number
+  std::string_view what;       // one line for the documentation
+};
+
+enum class Direction : std::uint8_t { kToRobot, kFromRobot, kBoth, kToDongle, kFromDongle };
+
+struct Message {
+  std::string_view name;   // the team's own name, as `encode FORMAT NAME` takes it
+  std::uint32_t type = 0;  // the code on the wire
+  int size_bytes = 0;      // of the fields; a text tail comes on top
+  bool text_tail = false;  // free text follows the fields (REM_Log)
+  Direction direction = Direction::kBoth;
+  BitOrder bit_order = BitOrder::kMsbFirst;
+  std::span<const Field> fields;
+  std::string_view what;
+
+  int field_index(std::string_view name) const;  // -1 when there is none
+};
+
+inline constexpr int kMaxFields = 96;
+
+// One field's content: `raw` is what stands on the wire, `number` its meaning in the field's unit.
+struct Value {
+  double number = 0.0;
+  std::uint64_t raw = 0;
+};
+
+// Values of one packet, index by index as in message->fields. Fixed size: no allocation in the loop.
+struct Values {
+  const Message* message = nullptr;
+  std::array<Value, kMaxFields> fields{};
+  std::string_view text;  // the tail of a message with text_tail; points into the decoded buffer
+
+  double number(std::string_view field) const;  // asserts that the field exists
+  bool flag(std::string_view field) const { return number(field) != 0.0; }
+  void set(std::string_view field, double number);
+};
+
+// True when the fields cover size_bytes * 8 bits exactly, without gap or overlap.
+bool is_tiled(const Message& message);
+
+}  // namespace omnihil

@@ -1,0 +1,38 @@
+// Everything fixed about one robot: geometry, masses, wheels, tyres, motors, encoder, supply.
+// Plain numbers in SI; tolerances and sources live in the model file's rows (sim/core/params.h).
+// Wheel i sits at wheel_angle_rad[i] from body x (forward) towards y (left); positive drive direction is
+// the body's counter-clockwise tangent. Drawn in docs/frames-and-wheels.md.
+#pragma once
+#include <array>
+#include <string>
+
+#include "firmware_iface/robot_io.h"
+#include "sim/motor/motor_params.h"
+#include "sim/robot/tyre.h"
+
+namespace omnihil {
+
+struct RobotModel {
+  std::string name;
+  double mass_kg = 0.0;                  // whole robot, wheels included
+  double yaw_inertia_kg_m2 = 0.0;        // whole robot about the vertical through its geometric centre
+  double center_of_mass_height_m = 0.0;  // above the floor
+  double center_of_mass_x_m = 0.0;       // offset of the centre of mass from the geometric centre, body frame
+  double center_of_mass_y_m = 0.0;
+  double wheel_center_radius_m = 0.0;    // R_b: geometric centre to wheel contact
+  double wheel_radius_m = 0.0;
+  double wheel_mass_kg = 0.0;            // one wheel
+  double wheel_inertia_kg_m2 = 0.0;      // one wheel about its axle, without the rotor
+  std::array<double, kWheels> wheel_angle_rad{};
+  int rollers_per_wheel = 0;
+  double gear_ratio = 1.0;               // rotor turns per wheel turn
+  TyreCurve tyre_longitudinal;
+  TyreCurve tyre_lateral;
+  double slip_speed_floor_m_s = 0.0;     // below it slip is taken relative to this speed
+  MotorParams motor;
+  EncoderParams encoder;
+  double bus_voltage_V = 0.0;
+  double control_timeout_s = 0.0;        // the team's own command timeout; 0: the firmware's default
+};
+
+}  // namespace omnihil

@@ -1,0 +1,20 @@
+// The verbs of `omnihil`. One file per verb; CMake collects the file stems, so a file added is a verb added:
+// tools/verbs/NAME.cc defines `void add_verb_NAME(CLI::App&, VerbResult&)`.
+#pragma once
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace omnihil {
+
+// Set by the callback of the verb that ran.
+struct VerbResult {
+  int exit_code = 0;
+};
+
+// Adds every verb, in alphabetical order (generated).
+void add_all_verbs(CLI::App& app, VerbResult& result);
+
+}  // namespace omnihil
