@@ -1,4 +1,8 @@
 // Where the AI host's bytes come from and where the dongle's bytes go. Never blocks.
+//
+//   transport.read(bytes, 4096);                           // what has arrived, in order
+//   if (transport.take_host_closed()) session.host_closed();  // after the last of those bytes
+//   if (transport.host_present()) transport.write(answer, error);
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -19,6 +23,8 @@ class Transport {
   // Takes as many bytes as fit now; returns how many. The rest stays with the caller.
   virtual std::size_t write(std::span<const std::uint8_t> bytes, std::error_code& error) = 0;
   virtual bool host_present() const = 0;  // a client has the port open (as far as the transport can tell)
+  // True once after each time the client went away; everything it had written has been read before.
+  virtual bool take_host_closed() = 0;
 };
 
 }  // namespace omnihil
