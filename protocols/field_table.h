@@ -6,6 +6,7 @@
 //   kLsbFirst  bit 0 is the least significant bit of byte 0, fields run upward, little-endian
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -27,15 +28,18 @@ enum class FieldKind : std::uint8_t {
 };
 
 struct Field {
-  std::string_view name;  // the team's own name; "cmd[2]" marks element 2 of an array "cmd"
+  std::string_view name{};  // the team's own name; "cmd[2]" marks element 2 of an array "cmd"
   int bit = 0;
   int bits = 0;
   FieldKind kind = FieldKind::kUint;
   double lo = 0.0;  // smallest and largest value, in `unit`; equal: not limited
   double hi = 0.0;
   std::uint64_t constant = 0;  // kConst only
-  std::string_view unit;       // "m/s", "rad", "" for a plain number
-  std::string_view what;       // one line for the documentation
+  std::string_view unit{};     // "m/s", "rad", "" for a plain number
+  std::string_view what{};     // one line for the documentation
+  // Part of the frame rather than of the packet's content (HERMES' version, source, checksum): filled in by
+  // encode, checked by decode, not listed among the values a user reads and writes.
+  bool envelope = false;
 };
 
 enum class Direction : std::uint8_t { kToRobot, kFromRobot, kBoth, kToDongle, kFromDongle };
@@ -62,6 +66,8 @@ struct Value {
 };
 
 // Values of one packet, index by index as in message->fields. Fixed size: no allocation in the loop.
+// Encoding goes by `number`; `raw` decides only where it stands for exactly that number (decoded values go
+// back to the very same bits, and integers wider than a double's 53 bits survive).
 struct Values {
   const Message* message = nullptr;
   std::array<Value, kMaxFields> fields{};
@@ -69,10 +75,29 @@ struct Values {
 
   double number(std::string_view field) const;  // asserts that the field exists
   bool flag(std::string_view field) const { return number(field) != 0.0; }
-  void set(std::string_view field, double number);
+  void set(std::string_view field, double number);  // asserts that the field exists; clears `raw`
 };
 
 // True when the fields cover size_bytes * 8 bits exactly, without gap or overlap.
-bool is_tiled(const Message& message);
+constexpr bool is_tiled(const Message& message) {
+  int covered = 0;
+  for (std::size_t i = 0; i < message.fields.size(); ++i) {
+    const Field& a = message.fields[i];
+    if (a.bits < 1 || a.bits > 64 || a.bit < 0 || a.bit + a.bits > 8 * message.size_bytes) return false;
+    for (std::size_t j = 0; j < i; ++j) {
+      const Field& b = message.fields[j];
+      if (a.bit < b.bit + b.bits && b.bit < a.bit + a.bits) return false;
+    }
+    covered += a.bits;
+  }
+  return covered == 8 * message.size_bytes && message.fields.size() <= kMaxFields;
+}
+
+constexpr bool all_tiled(std::span<const Message> messages) {
+  for (const Message& message : messages) {
+    if (!is_tiled(message)) return false;
+  }
+  return true;
+}
 
 }  // namespace omnihil

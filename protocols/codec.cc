@@ -1,0 +1,196 @@
+#include "protocols/codec.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace omnihil {
+namespace {
+
+constexpr std::uint64_t mask(int bits) { return bits >= 64 ? ~0ull : (1ull << bits) - 1; }
+
+// Where bit `bit` of the message stands: the byte, and its place in the byte counted from the lowest.
+struct BitPlace {
+  std::size_t byte;
+  int shift;
+};
+constexpr BitPlace place_of(int bit, BitOrder order) {
+  const int in_byte = bit % 8;
+  return {static_cast<std::size_t>(bit / 8), order == BitOrder::kMsbFirst ? 7 - in_byte : in_byte};
+}
+
+// What a constant, type or length field must hold.
+std::uint64_t required_raw(const Field& field, const Message& message, std::size_t packet_bytes) {
+  if (field.kind == FieldKind::kType) return message.type;
+  if (field.kind == FieldKind::kLength) return packet_bytes;
+  return field.constant;
+}
+
+PacketError contradiction(FieldKind kind) {
+  if (kind == FieldKind::kType) return PacketError::kUnknownType;
+  if (kind == FieldKind::kLength) return PacketError::kLength;
+  return PacketError::kConstant;
+}
+
+bool is_limited(const Field& field) { return field.lo != field.hi; }
+
+PacketError check_decoded(const Field& field, const Message& message, std::size_t packet_bytes,
+                          const Value& value) {
+  switch (field.kind) {
+    case FieldKind::kConst:
+    case FieldKind::kType:
+    case FieldKind::kLength:
+      return value.raw == required_raw(field, message, packet_bytes) ? PacketError::kNone
+                                                                     : contradiction(field.kind);
+    case FieldKind::kFloat32:
+      if (!std::isfinite(value.number)) return PacketError::kNotFinite;
+      [[fallthrough]];
+    case FieldKind::kUint:
+      if (is_limited(field) && (value.number < field.lo || value.number > field.hi))
+        return PacketError::kRange;
+      return PacketError::kNone;
+    case FieldKind::kRanged32:
+    case FieldKind::kReserved:
+    case FieldKind::kChecksum:
+      return PacketError::kNone;
+  }
+  return PacketError::kNone;
+}
+
+PacketError encode_integer(const Field& field, const Value& value, std::uint64_t& raw) {
+  if (!std::isfinite(value.number)) return PacketError::kNotFinite;
+  const double end = std::ldexp(1.0, field.bits);
+  if (value.number < 0.0 || value.number != std::floor(value.number)) return PacketError::kRange;
+  // A wide field's largest values all round to 2^bits as a double; `raw` then still holds the exact one.
+  if (value.raw != 0 && value.raw <= mask(field.bits) && static_cast<double>(value.raw) == value.number) {
+    raw = value.raw;
+  } else if (value.number < end) {
+    raw = static_cast<std::uint64_t>(value.number);
+  } else {
+    return PacketError::kRange;
+  }
+  const bool outside = is_limited(field) && (value.number < field.lo || value.number > field.hi);
+  return outside ? PacketError::kRange : PacketError::kNone;
+}
+
+PacketError encode_float(const Field& field, double number, std::uint64_t& raw) {
+  if (!std::isfinite(number)) return PacketError::kNotFinite;
+  const auto value = static_cast<float>(number);
+  if (!std::isfinite(value)) return PacketError::kRange;
+  if (is_limited(field) && (value < static_cast<float>(field.lo) || value > static_cast<float>(field.hi))) {
+    return PacketError::kRange;
+  }
+  raw = std::bit_cast<std::uint32_t>(value);
+  return PacketError::kNone;
+}
+
+PacketError encode_ranged(const Field& field, const Value& value, std::uint64_t& raw) {
+  if (!std::isfinite(value.number)) return PacketError::kNotFinite;
+  const auto number = static_cast<float>(value.number);
+  const bool inside = number >= static_cast<float>(field.lo) && number <= static_cast<float>(field.hi);
+  if (value.raw != 0 && value.raw <= mask(field.bits) && ranged_value(field, value.raw) == number) {
+    raw = value.raw;  // decoded by this rule: back to the same bits, also where rounding passes the end
+    return PacketError::kNone;
+  }
+  if (!inside) return PacketError::kRange;
+  raw = ranged_raw(field, number);
+  return PacketError::kNone;
+}
+
+PacketError encode_field(const Field& field, const Message& message, std::size_t packet_bytes,
+                         const Value& value, std::uint64_t& raw) {
+  switch (field.kind) {
+    case FieldKind::kConst:
+    case FieldKind::kType:
+    case FieldKind::kLength:
+      raw = required_raw(field, message, packet_bytes);
+      if (raw > mask(field.bits)) return PacketError::kTooLong;
+      return value.number == 0.0 || value.number == static_cast<double>(raw) ? PacketError::kNone
+                                                                             : contradiction(field.kind);
+    case FieldKind::kUint:
+    case FieldKind::kReserved:
+      return encode_integer(field, value, raw);
+    case FieldKind::kFloat32:
+      return encode_float(field, value.number, raw);
+    case FieldKind::kRanged32:
+      return encode_ranged(field, value, raw);
+    case FieldKind::kChecksum:
+      raw = 0;
+      return PacketError::kNone;
+  }
+  return PacketError::kNone;
+}
+
+}  // namespace
+
+std::uint64_t read_bits(std::span<const std::uint8_t> bytes, int bit, int bits, BitOrder order) {
+  std::uint64_t raw = 0;
+  for (int i = 0; i < bits; ++i) {
+    const BitPlace place = place_of(bit + i, order);
+    const std::uint64_t one = (bytes[place.byte] >> place.shift) & 1u;
+    raw |= one << (order == BitOrder::kMsbFirst ? bits - 1 - i : i);
+  }
+  return raw;
+}
+
+void write_bits(std::span<std::uint8_t> bytes, int bit, int bits, BitOrder order, std::uint64_t raw) {
+  for (int i = 0; i < bits; ++i) {
+    const BitPlace place = place_of(bit + i, order);
+    const auto one = static_cast<unsigned>(raw >> (order == BitOrder::kMsbFirst ? bits - 1 - i : i)) & 1u;
+    const unsigned others = bytes[place.byte] & ~(1u << place.shift);
+    bytes[place.byte] = static_cast<std::uint8_t>(others | one << place.shift);
+  }
+}
+
+float ranged_scale(const Field& field) {
+  // scale = (hi - lo) / (2^bits - 1), to 16 decimals, as float32
+  const double scale = (field.hi - field.lo) / static_cast<double>(mask(field.bits));
+  return static_cast<float>(std::nearbyint(scale * 1e16) / 1e16);
+}
+
+float ranged_value(const Field& field, std::uint64_t raw) {
+  // value = raw * scale + lo
+  const float product = static_cast<float>(static_cast<std::uint32_t>(raw)) * ranged_scale(field);
+  return product + static_cast<float>(field.lo);
+}
+
+std::uint64_t ranged_raw(const Field& field, float value) {
+  // raw = trunc((value - lo) / scale)
+  const float distance = value - static_cast<float>(field.lo);
+  const float counts = distance / ranged_scale(field);
+  return static_cast<std::uint64_t>(counts) & mask(field.bits);
+}
+
+double field_number(const Field& field, std::uint64_t raw) {
+  if (field.kind == FieldKind::kRanged32) return ranged_value(field, raw);
+  if (field.kind == FieldKind::kFloat32) return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
+  return static_cast<double>(raw);
+}
+
+FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> bytes,
+                         std::size_t packet_bytes, Values& out) {
+  out.message = &message;
+  for (std::size_t i = 0; i < message.fields.size(); ++i) {
+    const Field& field = message.fields[i];
+    Value& value = out.fields[i];
+    value.raw = read_bits(bytes, field.bit, field.bits, message.bit_order);
+    value.number = field_number(field, value.raw);
+    const PacketError error = check_decoded(field, message, packet_bytes, value);
+    if (error != PacketError::kNone) return {error, field.name};
+  }
+  return {};
+}
+
+FieldFault encode_fields(const Values& values, std::size_t packet_bytes, std::span<std::uint8_t> bytes) {
+  const Message& message = *values.message;
+  for (std::size_t i = 0; i < message.fields.size(); ++i) {
+    const Field& field = message.fields[i];
+    std::uint64_t raw = 0;
+    const PacketError error = encode_field(field, message, packet_bytes, values.fields[i], raw);
+    if (error != PacketError::kNone) return {error, field.name};
+    write_bits(bytes, field.bit, field.bits, message.bit_order, raw);
+  }
+  return {};
+}
+
+}  // namespace omnihil

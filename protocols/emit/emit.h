@@ -1,0 +1,26 @@
+// What is generated from the tables of a format, as text: documentation, a C header, a Wireshark dissector.
+//
+//   std::cout << emit_markdown(*find_radio_format("ulaval-hermes"));
+#pragma once
+#include <string>
+
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+
+// A page for people: carrier, notes, and per packet a picture of its bytes and a table of its fields.
+std::string emit_markdown(const RadioFormat& format);
+
+// Macros alone, for firmware in plain C. With P = the id in capitals, '_' for every other character:
+//   P_MESSAGE_TYPE, P_MESSAGE_BYTES (fields only, without framing),
+//   P_MESSAGE_FIELD_BIT, P_MESSAGE_FIELD_BITS, and P_MESSAGE_FIELD_CONST of a constant field.
+// "cmd[2]" becomes CMD_2. Bit 0 is the lowest bit of byte 0 where P_MESSAGE_LSB_FIRST is 1, else the highest.
+std::string emit_c_header(const RadioFormat& format);
+
+// A dissector in Lua: registers the format as a protocol to be chosen with "Decode As" on UDP and USER DLTs.
+std::string emit_wireshark(const RadioFormat& format);
+
+// "cmd[2]" -> "CMD_2": capitals and digits, one '_' for every run of other characters, none at the end.
+std::string c_macro_name(std::string_view name);
+
+}  // namespace omnihil

@@ -1,0 +1,19 @@
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+
+const Message* RadioFormat::find(std::string_view message_name) const {
+  for (const Message& message : messages) {
+    if (message.name == message_name) return &message;
+  }
+  return nullptr;
+}
+
+const RadioFormat* find_radio_format(std::string_view id) {
+  for (const RadioFormat* format : radio_formats()) {
+    if (format->id == id) return format;
+  }
+  return nullptr;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,185 @@
+// RoboCup ULaval "HERMES" v1: what StrategyAI writes to its base station and what the robots answer.
+//
+//   SPEED_MOVE to robot 3, 1 m/s forward:  version 01, source FE, robot 03, type 02, checksum, 3 floats
+//   on the wire:  COBS of those 17 bytes, then 00
+//
+// Source: RoboCupULaval/RobotMCU 44cc54f (pyhermes/pyhermes/packet_definitions.py and
+// Robot_stm32f4discovery/Src/robocup/hermes/), RoboCupULaval/StrategyAI ccddde1.
+#include <array>
+
+#include "protocols/checksum.h"
+#include "protocols/cobs.h"
+#include "protocols/codec.h"
+#include "protocols/dongles/dongles.h"
+#include "protocols/field_rows.h"
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 5;
+constexpr std::size_t kChecksumAt = 4;
+constexpr std::uint64_t kHostAddress = 0xFE;
+constexpr std::uint64_t kBaseStationAddress = 0x00;
+
+constexpr Field kVersion = enveloped(constant("version", 8, 1, "protocol version"));
+constexpr Field kType = enveloped(type_code("type", 8));
+constexpr Field kSum = enveloped(checksum("checksum", 8, "sum of all other bytes before COBS, modulo 256"));
+
+// Header of a packet to a robot, and of a robot's answer.
+constexpr std::array kToRobot{kVersion, enveloped(constant("source", 8, kHostAddress, "address of the host")),
+                              number("robot", 8, "", "receiving robot"), kType, kSum};
+constexpr std::array kFromRobot{
+    kVersion, number("robot", 8, "", "answering robot"),
+    enveloped(constant("destination", 8, kBaseStationAddress, "address of the base station")), kType, kSum};
+
+constexpr std::array kSpeed{
+    float32("vx", "m/s", "velocity along the robot's x axis"),
+    float32("vy", "m/s", "velocity along the robot's y axis"),
+    float32("vtheta", "rad/s", "yaw rate, anticlockwise seen from above"),
+};
+
+constexpr auto kRequest = in_order(kToRobot);
+constexpr auto kPingResponse = in_order(kFromRobot);
+constexpr auto kSpeedMove = in_order(kToRobot, kSpeed);
+constexpr auto kSetRegister = in_order(
+    kToRobot,
+    std::array{number("register", 8, "", "0 control loop, 1 kick, 2 charge the kicker, 3 dribbler"),
+               number("value", 8, "",
+                      "control loop: 0 open, 1 closed, 2 closed and logged; kick: ms; dribbler: 0-3")});
+constexpr auto kOpenLoop = in_order(kToRobot, std::array{
+                                                  float32("cmd[0]", "", "duty of wheel 1, -1 to 1"),
+                                                  float32("cmd[1]", "", "duty of wheel 2, -1 to 1"),
+                                                  float32("cmd[2]", "", "duty of wheel 3, -1 to 1"),
+                                                  float32("cmd[3]", "", "duty of wheel 4, -1 to 1"),
+                                              });
+constexpr auto kBattery =
+    in_order(kFromRobot, std::array{number("decivolts", 8, "0.1 V", "battery voltage in tenths of a volt")});
+constexpr auto kNumResponse =
+    in_order(kFromRobot, std::array{number("value", 32, "", "packets received since the robot started")});
+constexpr auto kSpeedMoveAdvance =
+    in_order(kToRobot, kSpeed,
+             std::array{number("dribbler", 7, "", "dribbler level 0-3; anything else stops it"),
+                        flag("charge", "charge the kicker's capacitor"),
+                        number("kick_force", 8, "0.1 ms", "time the kicker is on; 0: no kick")});
+
+constexpr Message hermes(std::string_view name, std::uint32_t type, int size_bytes, Direction direction,
+                         std::span<const Field> fields, std::string_view what) {
+  return {name, type, size_bytes, false, direction, BitOrder::kLsbFirst, fields, what};
+}
+
+constexpr Direction kTo = Direction::kToRobot;
+constexpr Direction kFrom = Direction::kFromRobot;
+constexpr std::array kMessages{
+    hermes("PING_REQUEST", 0, 5, kTo, kRequest, "Are you there? Answered by PING_RESPONSE."),
+    hermes("PING_RESPONSE", 1, 5, kFrom, kPingResponse, "Yes."),
+    hermes("SPEED_MOVE", 2, 17, kTo, kSpeedMove, "Body velocity, closed loop."),
+    hermes("SET_REGISTER", 3, 7, kTo, kSetRegister, "Switch the control loop, kick, charge, dribble."),
+    hermes("OPEN_LOOP_COMMAND", 4, 21, kTo, kOpenLoop, "Duty of each motor; acts in the open loop only."),
+    hermes("GET_BATTERIE", 5, 5, kTo, kRequest, "Ask for the battery. Answered by BATTERIE_RESPONSE."),
+    hermes("BATTERIE_RESPONSE", 6, 6, kFrom, kBattery, "Battery voltage."),
+    hermes("GET_NUM_REQUEST", 7, 5, kTo, kRequest, "Ask for the counter. Answered by NUM_REQUEST_RESPONSE."),
+    hermes("NUM_REQUEST_RESPONSE", 8, 9, kFrom, kNumResponse, "Number of packets received."),
+    hermes("SPEED_MOVE_ADVANCE", 9, 19, kTo, kSpeedMoveAdvance,
+           "Body velocity with kicker and dribbler: the only packet StrategyAI sends."),
+};
+static_assert(all_tiled(kMessages));
+
+constexpr std::size_t kLongest = 21;
+constexpr std::size_t kLongestFrame = cobs_max_size(kLongest) + 1;
+
+const Message* message_of_type(std::uint8_t type) {
+  for (const Message& message : kMessages) {
+    if (message.type == type) return &message;
+  }
+  return nullptr;
+}
+
+// Sum of all bytes but the checksum's own.
+std::uint8_t expected_checksum(std::span<const std::uint8_t> packet) {
+  return static_cast<std::uint8_t>(sum8(packet) - packet[kChecksumAt]);
+}
+
+DecodeResult refused(PacketError error, std::string_view field = {}) {
+  DecodeResult result;
+  result.error = error;
+  result.field = field;
+  return result;
+}
+
+// The order of the checks is that of the robot's firmware, so that both name the same cause.
+DecodeResult decode_packet(std::span<const std::uint8_t> packet) {
+  if (packet.size() < kHeaderBytes) return refused(PacketError::kTooShort);
+  if (packet[0] != kVersion.constant) return refused(PacketError::kVersion, "version");
+  const Message* message = message_of_type(packet[3]);
+  if (message == nullptr) return refused(PacketError::kUnknownType, "type");
+  const auto size = static_cast<std::size_t>(message->size_bytes);
+  if (packet.size() < size) return refused(PacketError::kTooShort);
+  if (packet.size() > size) return refused(PacketError::kTooLong);
+  if (packet[kChecksumAt] != expected_checksum(packet)) return refused(PacketError::kChecksum, "checksum");
+  DecodeResult result;
+  const FieldFault fault = decode_fields(*message, packet, size, result.values);
+  result.error = fault.field == "destination" ? PacketError::kAddress : fault.error;
+  result.field = fault.field;
+  return result;
+}
+
+DecodeResult decode(std::span<const std::uint8_t> frame) {
+  if (frame.empty()) return refused(PacketError::kTooShort);
+  if (frame.back() != 0) return refused(PacketError::kFraming);
+  std::array<std::uint8_t, kLongest> packet{};
+  const CobsResult cobs = cobs_decode(frame.first(frame.size() - 1), packet);
+  if (cobs.status == CobsStatus::kBadCode) return refused(PacketError::kFraming);
+  if (cobs.status == CobsStatus::kTooLong) return refused(PacketError::kTooLong);
+  return decode_packet(std::span(packet).first(cobs.size));
+}
+
+RadioFormat::EncodeResult encode(const Values& values, std::vector<std::uint8_t>& out) {
+  std::array<std::uint8_t, kLongest> buffer{};
+  const auto packet = std::span(buffer).first(static_cast<std::size_t>(values.message->size_bytes));
+  const FieldFault fault = encode_fields(values, packet.size(), packet);
+  if (fault.error != PacketError::kNone) return {fault.error, fault.field};
+  packet[kChecksumAt] = expected_checksum(packet);
+  const double given = values.number("checksum");
+  if (given != 0.0 && given != packet[kChecksumAt]) return {PacketError::kChecksum, "checksum"};
+  cobs_encode(packet, out);
+  out.push_back(0);
+  return {};
+}
+
+}  // namespace
+
+extern const RadioFormat kFormat_ulaval_hermes;
+constinit const RadioFormat kFormat_ulaval_hermes{
+    .id = "ulaval-hermes",
+    .title = "RoboCup ULaval HERMES v1",
+    .source =
+        "https://github.com/RoboCupULaval/RobotMCU at 44cc54f, https://github.com/RoboCupULaval/StrategyAI "
+        "at ccddde1",
+    .notes =
+        "- A frame is COBS(header and payload), then one byte 00. After a lost byte the receiver is in step "
+        "again "
+        "at the next 00: one lost byte costs one frame.\n"
+        "- The checksum is the sum of all other bytes before COBS, modulo 256. It sees every change of one "
+        "byte; of "
+        "changes to several bytes, one in 256 passes. The robots' firmware reports a wrong checksum and acts "
+        "on the "
+        "packet all the same; here it is refused.\n"
+        "- Floats are IEEE-754 single, little-endian; any finite number is allowed, NaN and infinity are "
+        "refused.\n"
+        "- The host's address is FEh. Answers go to 00h, the base station's address. 00h is also robot 0: "
+        "the "
+        "robots' firmware takes every packet sent to 00h as meant for itself.\n"
+        "- The firmware looks up the dribbler level before it takes the charge bit away: with charge set the "
+        "dribbler stops.\n"
+        "- StrategyAI sends SPEED_MOVE_ADVANCE alone, one frame per robot in a burst, about 30 bursts a "
+        "second.\n",
+    .carrier = {.kind = Carrier::Kind::kUsbCdc},
+    .max_frame_bytes = static_cast<int>(kLongestFrame),
+    .messages = kMessages,
+    .decode = decode,
+    .encode = encode,
+    .make_link = [](const RadioLinkConfig& config) { return make_hermes_dongle(config); },
+};
+
+}  // namespace omnihil
