@@ -1,9 +1,21 @@
 // The one loop: five hops, one thread, one clock, no I/O. Bytes of the AI host and a duration go in, bytes
 // for the AI host come out; clocks, devices and files belong to the callers (serve, replay, tests).
 //
-//   bytes -> RadioLink -> RobotCommand -> Firmware -> RobotDrive -> Plant -> RobotSensors -> Firmware -> RadioLink -> bytes
+//   bytes -> RadioLink -> RobotCommand -> Firmware -> RobotDrive -> Plant -> RobotSensors -> Firmware ->
+//   RadioLink -> bytes
 //
 // Deterministic: the same configuration and the same (time, bytes) sequence give the same bytes and states.
+//
+//   Session session(config, make_reference_firmware);
+//   while (session.now_ns() < end_ns) session.step(host_bytes, answer);
+//
+// One step from t to t + step_ns, in this order: host bytes into the dongle at t; what has reached robots is
+// handed to their firmware at t; then, at every control instant k * control_period of [t, t + step_ns), robot
+// by robot in the order of their ids: read sensors, tick, write the bridges, radio frames and feedback to
+// the dongle; the plant advances from one control instant to the next and to the end of the step; what has
+// left the dongle by t + step_ns is given to the host. The control grid is absolute: it does not depend on
+// the loop step, so a control period may be longer or shorter than a step.
+// Robots start at rest in a row: robot i of the list at x = 0, y = i * 0.5 m, looking along x (yaw 0).
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -19,12 +31,12 @@
 namespace omnihil {
 
 struct SessionConfig {
-  std::string radio_format;           // id, "ulaval-hermes"
-  std::vector<RobotModel> robots;     // one per robot id, in the same order
-  std::vector<int> robot_ids;         // ascending
+  std::string radio_format;        // id, "ulaval-hermes"
+  std::vector<RobotModel> robots;  // one per robot id, in the same order
+  std::vector<int> robot_ids;      // ascending
   Team team = Team::kBlue;
   PlantOptions plant;
-  std::int64_t step_ns = 1'000'000;   // one loop step
+  std::int64_t step_ns = 1'000'000;            // one loop step
   std::uint64_t epoch_ms = 1'700'000'000'000;  // Unix time at virtual time 0
 };
 
@@ -65,6 +77,8 @@ class Session {
   // appended to `out`. Throws std::runtime_error naming time, robot and signal if a state is not finite.
   void step(std::span<const std::uint8_t> host, std::vector<std::uint8_t>& out);
   void host_closed();
+  // Gain sets that came over the air and that a robot's firmware refused.
+  std::uint64_t gains_refused() const;
 
  private:
   struct Impl;
