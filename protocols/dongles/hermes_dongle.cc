@@ -1,0 +1,265 @@
+// RoboCup ULaval's dongle and the radio ends of its robots.
+//
+//   host -> HermesStream -> queue -> one frame at a time over the air -> robot -> answer -> host
+//
+// Cannot: lose frames on the air, or repeat the radio's mistaking of a new frame for a repetition (the robot
+// acts once on each frame; the second transmission only takes its time).
+#include <cassert>
+
+#include "protocols/dongles/dongles.h"
+#include "protocols/dongles/hermes_air.h"
+#include "protocols/dongles/hermes_robot.h"
+#include "protocols/dongles/hermes_stream.h"
+#include "protocols/dongles/ring.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::size_t kHostBuffer = 16384;  // bytes waiting for the host; more are dropped as overrun
+
+struct Frame {
+  std::array<std::uint8_t, hermes::kPayloadBytes> bytes{};
+  std::uint8_t size = 0;
+  int robot = 0;
+  bool reaches_robot = false;
+  int tries = 0;  // waits for an answer; 0: the type has none
+  std::int64_t arrived_ns = 0;
+  std::span<const std::uint8_t> span() const { return std::span(bytes).first(size); }
+};
+
+struct Robot {
+  bool exists = false;
+  bool has_feedback = false;
+  RobotFeedback feedback{};
+  HermesRobot radio;
+};
+
+class HermesDongle final : public RadioLink {
+ public:
+  HermesDongle(const RadioFormat& format, const RadioLinkConfig& config)
+      : format_(format),
+        config_(config),
+        stream_(static_cast<std::size_t>(format.max_frame_bytes), from_host_) {
+    assert(static_cast<std::size_t>(format.max_frame_bytes) <= hermes::kPayloadBytes);
+    for (const int id : config.robot_ids) {
+      assert(id >= 0 && id < static_cast<int>(robots_.size()));
+      robots_[static_cast<std::size_t>(id)].exists = true;
+    }
+    host_out_.reserve(kHostBuffer);
+  }
+
+  void host_bytes(std::span<const std::uint8_t> bytes, std::int64_t now_ns) override {
+    stream_.feed(bytes,
+                 [&](std::span<const std::uint8_t> frame) { from_host_.count(accept(frame, now_ns)); });
+  }
+
+  void poll(std::int64_t now_ns, RadioSink& sink) override {
+    while (step(now_ns, sink)) {
+    }
+  }
+
+  void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
+    PacketError error = format_.decode(frame).error;
+    if (error == PacketError::kNone &&
+        format_.decode(frame).values.message->direction == Direction::kToRobot) {
+      error = PacketError::kDirection;
+    }
+    if (error == PacketError::kNone) error = take_answer(robot_id, frame, now_ns);
+    if (error != PacketError::kNone) from_robots_.count(error);
+  }
+
+  void robot_feedback(int robot_id, const RobotFeedback& feedback, const RobotGains&, std::int64_t) override {
+    if (robot_id < 0 || robot_id >= static_cast<int>(robots_.size())) return;
+    robots_[static_cast<std::size_t>(robot_id)].has_feedback = true;
+    robots_[static_cast<std::size_t>(robot_id)].feedback = feedback;
+  }
+
+  void take_host_bytes(std::int64_t, std::vector<std::uint8_t>& out) override {
+    out.insert(out.end(), host_out_.begin(), host_out_.end());
+    host_out_.clear();
+  }
+
+  void host_closed(std::int64_t) override {
+    stream_.close();
+    host_out_.clear();
+  }
+
+  const PacketCounts& from_host() const override { return from_host_; }
+  const PacketCounts& from_robots() const override { return from_robots_; }
+
+ private:
+  enum class Phase : std::uint8_t { kIdle, kOnAir, kAcknowledge, kAwait };
+
+  PacketError accept(std::span<const std::uint8_t> bytes, std::int64_t now_ns);
+  PacketError take_answer(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns);
+  bool step(std::int64_t now_ns, RadioSink& sink);
+  void transmit(std::int64_t start_ns);
+  void reach_robot(RadioSink& sink);
+  void finish(std::int64_t at_ns);
+  void end_of_wait();
+  Robot& robot_of(const Frame& frame) { return robots_[static_cast<std::size_t>(frame.robot)]; }
+
+  const RadioFormat& format_;
+  RadioLinkConfig config_;
+  PacketCounts from_host_;
+  PacketCounts from_robots_;
+  HermesStream stream_;
+  std::array<Robot, 256> robots_{};
+  Ring<Frame, hermes::kQueueFrames> queue_;
+  hermes::RepeatRule repeat_rule_;
+
+  Phase phase_ = Phase::kIdle;
+  std::int64_t free_ns_ = 0;      // the channel is free from here on
+  std::int64_t reached_ns_ = 0;   // the frame on the air is at the robot
+  std::int64_t end_ns_ = 0;       // its acknowledgement is over, or was missed
+  std::int64_t deadline_ns_ = 0;  // of the answer
+  int tries_left_ = 0;
+  bool answered_ = false;
+  std::int64_t answer_ns_ = 0;  // the answer is at the dongle
+  std::vector<std::uint8_t> answer_;
+  std::vector<std::uint8_t> host_out_;
+};
+
+// What the dongle takes from the host. A refused frame takes no time on the air.
+PacketError HermesDongle::accept(std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
+  const DecodeResult result = format_.decode(bytes);
+  if (result.error != PacketError::kNone) return result.error;
+  const Message& message = *result.values.message;
+  if (message.direction == Direction::kFromRobot || message.direction == Direction::kFromDongle) {
+    return PacketError::kDirection;
+  }
+  Frame frame;
+  frame.size = static_cast<std::uint8_t>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), frame.bytes.begin());
+  frame.robot = static_cast<int>(result.values.number("robot"));
+  frame.reaches_robot = robot_of(frame).exists;
+  if (HermesRobot::has_answer(message)) frame.tries = message.name == "GET_NUM_REQUEST" ? 1 : 3;
+  frame.arrived_ns = now_ns;
+  if (!queue_.push(frame)) return PacketError::kOverrun;
+  return frame.reaches_robot ? PacketError::kNone : PacketError::kAddress;
+}
+
+// One event of the channel that is due by now. False: nothing more is.
+bool HermesDongle::step(std::int64_t now_ns, RadioSink& sink) {
+  switch (phase_) {
+    case Phase::kIdle: {
+      if (queue_.empty()) return false;
+      const std::int64_t start_ns = std::max(free_ns_, queue_.front().arrived_ns);
+      if (start_ns > now_ns) return false;
+      tries_left_ = queue_.front().tries;
+      answered_ = false;
+      transmit(start_ns);
+      return true;
+    }
+    case Phase::kOnAir:
+      if (reached_ns_ > now_ns) return false;
+      reach_robot(sink);
+      phase_ = Phase::kAcknowledge;
+      return true;
+    case Phase::kAcknowledge:
+      if (end_ns_ > now_ns) return false;
+      if (queue_.front().tries == 0) {
+        finish(end_ns_);
+      } else {
+        deadline_ns_ = end_ns_ + hermes::kAnswerTimeout_ns;
+        phase_ = Phase::kAwait;
+      }
+      return true;
+    case Phase::kAwait:
+      if ((answered_ ? answer_ns_ : deadline_ns_) > now_ns) return false;
+      end_of_wait();
+      return true;
+  }
+  return false;
+}
+
+void HermesDongle::transmit(std::int64_t start_ns) {
+  const Frame& frame = queue_.front();
+  const std::int64_t ack_ns = frame.reaches_robot ? hermes::kAck_ns : hermes::kNoAck_ns;
+  const bool twice = repeat_rule_.sends_twice(frame.robot);
+  reached_ns_ = start_ns + hermes::kFrame_ns;
+  end_ns_ = start_ns + (hermes::kFrame_ns + ack_ns) * (twice ? 2 : 1);
+  phase_ = Phase::kOnAir;
+}
+
+void HermesDongle::reach_robot(RadioSink& sink) {
+  const Frame& frame = queue_.front();
+  if (!frame.reaches_robot) return;
+  Robot& robot = robot_of(frame);
+  const DecodeResult result = format_.decode(frame.span());
+  assert(result.error == PacketError::kNone);
+  Delivery delivery;
+  delivery.robot_id = frame.robot;
+  delivery.message = result.values.message->name;
+  if (config_.firmware_decodes) {
+    delivery.kind = Delivery::Kind::kFrame;
+    delivery.frame = frame.span();
+    sink.deliver(delivery, reached_ns_);
+    return;
+  }
+  if (const std::optional<RobotCommand> command = robot.radio.receive(result.values, reached_ns_)) {
+    delivery.command = *command;
+    sink.deliver(delivery, reached_ns_);
+  }
+  if (frame.tries > 0 && robot.has_feedback && !answered_) {
+    answered_ = true;
+    answer_.clear();
+    answer_ns_ = std::max(end_ns_, reached_ns_ + hermes::kRobotTurnaround_ns) + hermes::kFrame_ns;
+  }
+}
+
+void HermesDongle::end_of_wait() {
+  const Frame& frame = queue_.front();
+  if (!answered_) {
+    if (--tries_left_ == 0) return finish(deadline_ns_);
+    // The dongle sends the request once more, without its repeat rule.
+    reached_ns_ = deadline_ns_ + hermes::kFrame_ns;
+    end_ns_ = reached_ns_ + (frame.reaches_robot ? hermes::kAck_ns : hermes::kNoAck_ns);
+    phase_ = Phase::kOnAir;
+    return;
+  }
+  if (!config_.firmware_decodes) {
+    Robot& robot = robot_of(frame);
+    const DecodeResult request = format_.decode(frame.span());
+    Values values;
+    robot.radio.answer(*request.values.message, format_, frame.robot, robot.feedback, values);
+    const RadioFormat::EncodeResult encoded = format_.encode(values, answer_);
+    assert(encoded.error == PacketError::kNone);
+    static_cast<void>(encoded);
+  }
+  const bool room = host_out_.size() + answer_.size() <= kHostBuffer;
+  from_robots_.count(room ? PacketError::kNone : PacketError::kOverrun);
+  if (room) host_out_.insert(host_out_.end(), answer_.begin(), answer_.end());
+  finish(answer_ns_);
+}
+
+void HermesDongle::finish(std::int64_t at_ns) {
+  queue_.pop();
+  free_ns_ = at_ns;
+  phase_ = Phase::kIdle;
+}
+
+// An answer that the firmware itself sent. The dongle listens only while it waits for one.
+PacketError HermesDongle::take_answer(int robot_id, std::span<const std::uint8_t> frame,
+                                      std::int64_t now_ns) {
+  const bool listening =
+      (phase_ == Phase::kAcknowledge || phase_ == Phase::kAwait || phase_ == Phase::kOnAir) &&
+      queue_.front().tries > 0 && !answered_;
+  if (!listening) return PacketError::kOverrun;
+  if (queue_.front().robot != robot_id) return PacketError::kAddress;
+  answered_ = true;
+  answer_.assign(frame.begin(), frame.end());
+  const bool on_air = phase_ != Phase::kAwait;
+  answer_ns_ = (on_air ? std::max(now_ns, end_ns_) : now_ns) + hermes::kFrame_ns;
+  return PacketError::kNone;
+}
+
+}  // namespace
+
+std::unique_ptr<RadioLink> make_hermes_dongle(const RadioLinkConfig& config) {
+  const RadioFormat* format = find_radio_format("ulaval-hermes");
+  assert(format != nullptr);
+  return std::make_unique<HermesDongle>(*format, config);
+}
+
+}  // namespace omnihil

@@ -1,0 +1,235 @@
+#include "protocols/dongles/rem_robot.h"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "protocols/codec.h"
+
+namespace omnihil::rem {
+namespace {
+
+// The versions differ in which fields they have; one that is not there reads as 0 and is not written.
+double get(const Values& values, std::string_view name) {
+  const int index = values.message->field_index(name);
+  return index < 0 ? 0.0 : values.fields[static_cast<std::size_t>(index)].number;
+}
+bool is_set(const Values& values, std::string_view name) { return get(values, name) != 0.0; }
+
+double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
+
+// Nearest value that the field can carry. A 32-bit field's upper end wraps in float32, hence raw and number.
+Value saturated(const Field& field, double number) {
+  const std::uint64_t all_ones = field.bits >= 64 ? ~0ull : (1ull << field.bits) - 1;
+  if (!std::isfinite(number)) number = 0.0;
+  if (field.kind == FieldKind::kRanged32) {
+    const double top = std::fmin(field.hi, static_cast<double>(ranged_value(field, all_ones)));
+    if (number >= top) return {.number = ranged_value(field, all_ones), .raw = all_ones};
+    return {.number = std::fmax(number, field.lo), .raw = 0};
+  }
+  const double hi = field.lo == field.hi ? static_cast<double>(all_ones) : field.hi;
+  return {.number = std::fmin(std::fmax(std::floor(number), field.lo), hi), .raw = 0};
+}
+
+void put(Values& out, int index, double number) {
+  if (index < 0) return;
+  const auto i = static_cast<std::size_t>(index);
+  out.fields[i] = saturated(out.message->fields[i], number);
+}
+void put(Values& out, std::string_view name, double number) {
+  put(out, out.message->field_index(name), number);
+}
+
+// One row per field of RobotStateInfo: the team's name and where its content comes from.
+struct StateInfoRow {
+  std::string_view name;
+  double (*get)(const RobotState& state);
+};
+#define ROW(name, expression)                                      \
+  StateInfoRow {                                                   \
+    name, [](const RobotState& s) -> double { return expression; } \
+  }
+constexpr StateInfoRow kStateInfo[] = {
+    ROW("xsensAcc1", s.feedback.accel_x_m_s2),
+    ROW("xsensAcc2", s.feedback.accel_y_m_s2),
+    ROW("xsensYaw", s.feedback.yaw_rad),
+    ROW("rateOfTurn", s.feedback.omega_body_rad_s),
+    ROW("wheelSpeed1", s.feedback.omega_wheel_rad_s[0]),
+    ROW("wheelSpeed2", s.feedback.omega_wheel_rad_s[1]),
+    ROW("wheelSpeed3", s.feedback.omega_wheel_rad_s[2]),
+    ROW("wheelSpeed4", s.feedback.omega_wheel_rad_s[3]),
+    ROW("dribbleSpeed", s.feedback.omega_dribbler_rad_s),
+    ROW("filteredDribbleSpeed", s.feedback.omega_dribbler_rad_s),
+    ROW("dribblespeedBeforeGotBall", s.omega_dribbler_before_ball_rad_s),
+    ROW("bodyXIntegral", s.feedback.body_integral[0]),
+    ROW("bodyYIntegral", s.feedback.body_integral[1]),
+    ROW("bodyWIntegral", s.feedback.body_integral[2]),
+    ROW("bodyYawIntegral", s.feedback.body_integral[3]),
+    ROW("wheel1Integral", s.feedback.wheel_integral[0]),
+    ROW("wheel2Integral", s.feedback.wheel_integral[1]),
+    ROW("wheel3Integral", s.feedback.wheel_integral[2]),
+    ROW("wheel4Integral", s.feedback.wheel_integral[3]),
+    ROW("wheelSpeedRef1", s.feedback.omega_wheel_target_rad_s[0]),
+    ROW("wheelSpeedRef2", s.feedback.omega_wheel_target_rad_s[1]),
+    ROW("wheelSpeedRef3", s.feedback.omega_wheel_target_rad_s[2]),
+    ROW("wheelSpeedRef4", s.feedback.omega_wheel_target_rad_s[3]),
+    ROW("wheelController_1", s.feedback.duty_ratio[0]),
+    ROW("wheelController_2", s.feedback.duty_ratio[1]),
+    ROW("wheelController_3", s.feedback.duty_ratio[2]),
+    ROW("wheelController_4", s.feedback.duty_ratio[3]),
+    ROW("bodyController_u", s.feedback.body_output[0]),
+    ROW("bodyController_v", s.feedback.body_output[1]),
+    ROW("bodyController_w", s.feedback.body_output[2]),
+    ROW("bodyController_yaw", s.feedback.body_output[3]),
+    ROW("bodyControllerRef_u", s.feedback.body_target[0]),
+    ROW("bodyControllerRef_v", s.feedback.body_target[1]),
+    ROW("bodyControllerRef_w", s.feedback.body_target[2]),
+    ROW("bodyControllerRef_yaw", s.feedback.body_target[3]),
+    ROW("wheelSpeedDerivativeFiltered1", s.feedback.wheel_accel_rad_s2[0]),
+    ROW("wheelSpeedDerivativeFiltered2", s.feedback.wheel_accel_rad_s2[1]),
+    ROW("wheelSpeedDerivativeFiltered3", s.feedback.wheel_accel_rad_s2[2]),
+    ROW("wheelSpeedDerivativeFiltered4", s.feedback.wheel_accel_rad_s2[3]),
+    ROW("bodyXDerivativeFiltered", s.feedback.body_derivative[0]),
+    ROW("bodyYDerivativeFiltered", s.feedback.body_derivative[1]),
+    ROW("bodyZDerivativeFiltered", s.feedback.body_derivative[2]),
+    ROW("bodyYawDerivativeFiltered", s.feedback.body_derivative[3]),
+};
+#undef ROW
+
+// The gains' names: P, I, D and D2 of body x, y, omega, yaw; P, I, D of the wheels.
+constexpr std::string_view kGainNames[OMNIHIL_LOOPS][4] = {
+    {"PbodyX", "IbodyX", "DbodyX", "DbodyX2"}, {"PbodyY", "IbodyY", "DbodyY", "DbodyY2"},
+    {"PbodyW", "IbodyW", "DbodyW", "DbodyW2"}, {"PbodyYaw", "IbodyYaw", "DbodyYaw", "DbodyYaw2"},
+    {"Pwheels", "Iwheels", "Dwheels", ""},
+};
+
+void set_kick(const Values& values, RobotCommand& command) {
+  const bool chip = is_set(values, "doChip");
+  const bool kick = is_set(values, "doKick");
+  const bool at_yaw = is_set(values, "kickAtYaw") || is_set(values, "kickAtAngle");
+  // The robot looks at chip, kick, kick-at-yaw in this order and does the first one that is set.
+  if (chip) command.kick = OMNIHIL_KICK_CHIP;
+  if (!chip && (kick || at_yaw)) command.kick = OMNIHIL_KICK_STRAIGHT;
+  if (is_set(values, "doForce")) command.kick_when = OMNIHIL_KICK_NOW;
+  if (!chip && !kick && at_yaw) command.kick_when = OMNIHIL_KICK_AT_YAW;
+  if (command.kick != OMNIHIL_KICK_NONE) command.v_kick_m_s = get(values, "kickChipPower");
+}
+
+void set_mode(const Values& values, RobotCommand& command) {
+  command.mode = OMNIHIL_MODE_BODY_VELOCITY;
+  if (is_set(values, "useWheelSpeedRef")) command.mode = OMNIHIL_MODE_WHEEL_SPEED;
+  if (is_set(values, "useWheelPWMRef")) command.mode = OMNIHIL_MODE_WHEEL_DUTY;
+  if (is_set(values, "wheelsOff")) command.mode = OMNIHIL_MODE_COAST;
+}
+
+}  // namespace
+
+RobotCommand to_command(const Values& values) {
+  RobotCommand command{};
+  set_mode(values, command);
+  command.flags = OMNIHIL_COMMAND_FIELD_FRAME;
+  // v = rho (cos theta, sin theta), in the field frame
+  command.v_forward_m_s = get(values, "rho") * std::cos(get(values, "theta"));
+  command.v_left_m_s = get(values, "rho") * std::sin(get(values, "theta"));
+  command.omega_body_rad_s = get(values, "angularVelocity");
+  command.yaw_target_rad = get(values, "yaw") + get(values, "angle");
+  const bool hold_yaw =
+      is_set(values, "useYaw") || is_set(values, "useAbsoluteYaw") || is_set(values, "useAbsoluteAngle");
+  if (hold_yaw) command.flags |= OMNIHIL_COMMAND_YAW_TARGET;
+  command.camera_yaw_rad = get(values, "cameraYaw") + get(values, "cameraAngle");
+  if (is_set(values, "useCameraYaw") || is_set(values, "useCameraAngle"))
+    command.flags |= OMNIHIL_COMMAND_CAMERA_YAW;
+  if (is_set(values, "reboot")) command.flags |= OMNIHIL_COMMAND_REBOOT;
+  command.a_feedforward_m_s2 = get(values, "acceleration_magnitude");
+  command.a_feedforward_angle_rad = get(values, "acceleration_angle");
+  set_kick(values, command);
+  command.dribbler_ratio = is_set(values, "dribblerOn") ? 1.0 : get(values, "dribbler");
+  static constexpr std::string_view kSpeed[] = {"wheelSpeedRef1", "wheelSpeedRef2", "wheelSpeedRef3",
+                                                "wheelSpeedRef4"};
+  static constexpr std::string_view kDuty[] = {"wheelPWM1", "wheelPWM2", "wheelPWM3", "wheelPWM4"};
+  for (std::size_t i = 0; i < OMNIHIL_WHEELS; ++i) {
+    command.omega_wheel_rad_s[i] = get(values, kSpeed[i]);
+    command.duty_ratio[i] = get(values, kDuty[i]);
+  }
+  return command;
+}
+
+RobotGains to_gains(const Values& values, const RobotGains& known) {
+  RobotGains gains = known;
+  for (std::size_t loop = 0; loop < OMNIHIL_LOOPS; ++loop) {
+    double* const parts[] = {&gains.p[loop], &gains.i[loop], &gains.d[loop], &gains.d2[loop]};
+    for (std::size_t part = 0; part < 4; ++part) {
+      const int index = values.message->field_index(kGainNames[loop][part]);
+      if (index >= 0) *parts[part] = values.fields[static_cast<std::size_t>(index)].number;
+    }
+  }
+  return gains;
+}
+
+bool wants_state_info(const Values& values) {
+  return values.message->field_index("sendStateInfo") < 0 || is_set(values, "sendStateInfo");
+}
+
+Telemetry::Telemetry(const RadioFormat& format) : format_(format) {
+  const Message* state_info = format.find("REM_RobotStateInfo");
+  assert(state_info != nullptr);
+  for (const StateInfoRow& row : kStateInfo) state_info_fields_.push_back(state_info->field_index(row.name));
+  const int timestamp = state_info->field_index("timestamp");
+  centiseconds_ = state_info->fields[static_cast<std::size_t>(timestamp)].bits == 40;
+}
+
+void Telemetry::start(const char* message_name, const Header& header, Values& out) const {
+  out = Values{};
+  out.message = format_.find(message_name);
+  assert(out.message != nullptr);
+  put(out, "toPC", 1.0);
+  put(out, "fromRobotId", header.from_robot);
+  put(out, "fromColor", header.team == Team::kBlue ? 1.0 : 0.0);
+  put(out, "fromBS", header.from_base_station ? 1.0 : 0.0);
+  put(out, "messageId", header.message_id % 16);
+  put(out, "timestamp", static_cast<double>(centiseconds_ ? header.time_ms / 10 : header.time_ms));
+}
+
+void Telemetry::robot_feedback(const RobotState& state, const Header& header, Values& out) const {
+  start("REM_RobotFeedback", header, out);
+  const RobotFeedback& f = state.feedback;
+  put(out, "rho", std::hypot(f.v_forward_m_s, f.v_left_m_s));
+  put(out, "theta", wrapped(std::atan2(f.v_left_m_s, f.v_forward_m_s)));
+  put(out, "yaw", wrapped(f.yaw_rad));
+  put(out, "angle", wrapped(f.yaw_rad));
+  // v8 carries volts (15 to 30); v5's four bits hold whole volts above 15 (our choice: its scale is not
+  // public).
+  const bool volts =
+      out.message->fields[static_cast<std::size_t>(out.message->field_index("batteryLevel"))].bits > 4;
+  put(out, "batteryLevel", volts ? f.battery_V : f.battery_V - 15.0);
+  const auto flag = [&](std::string_view name, std::uint32_t bit) {
+    put(out, name, (f.flags & bit) != 0 ? 1.0 : 0.0);
+  };
+  flag("XsensCalibrated", OMNIHIL_FEEDBACK_IMU_READY);
+  flag("ballSensorWorking", OMNIHIL_FEEDBACK_BALL_SENSOR_OK);
+  flag("ballSensorSeesBall", OMNIHIL_FEEDBACK_BALL_SEEN);
+  flag("dribblerSeesBall", OMNIHIL_FEEDBACK_DRIBBLER_SEES_BALL);
+  flag("kickerFault", OMNIHIL_FEEDBACK_KICKER_FAULT);
+  flag("kickerOn", OMNIHIL_FEEDBACK_KICKER_ON);
+  flag("capacitorCharged", OMNIHIL_FEEDBACK_CAPACITOR_CHARGED);
+  put(out, "kickerVoltage", f.capacitor_V);
+  put(out, "ballPos", 0.0);
+}
+
+void Telemetry::robot_state_info(const RobotState& state, const Header& header, Values& out) const {
+  start("REM_RobotStateInfo", header, out);
+  for (std::size_t i = 0; i < state_info_fields_.size(); ++i)
+    put(out, state_info_fields_[i], kStateInfo[i].get(state));
+}
+
+void Telemetry::robot_gains(const RobotState& state, const Header& header, Values& out) const {
+  start("REM_RobotPIDGains", header, out);
+  for (std::size_t loop = 0; loop < OMNIHIL_LOOPS; ++loop) {
+    const double parts[] = {state.gains.p[loop], state.gains.i[loop], state.gains.d[loop],
+                            state.gains.d2[loop]};
+    for (std::size_t part = 0; part < 4; ++part) put(out, kGainNames[loop][part], parts[part]);
+  }
+}
+
+}  // namespace omnihil::rem
