@@ -6,10 +6,21 @@
 //   RobotSensors s = plant.read(0);
 //
 // Bit-reproducible: state is a function of the models, the options and the sequence of calls.
+//
+// One mechanical step: the floor's forces at its start (contact.h); per wheel the winding through the
+// electrical sub-steps with that load held, and its friction (wheel_drive.h); the mechanics with the mean
+// motor torque held (integrate.h over PlanarMechanics or Chassis); wheels that passed zero speed are settled.
+// Sensors: encoder counts of the rotor angle; gyro = yaw rate; accelerometer = the geometric centre's mean
+// acceleration over the last mechanical step, in the level body frame; bus voltage = the model's constant;
+// motor current = mean since the last read() of that robot (read() therefore counts as a call in the sequence
+// above). A robot whose wheels are all held by friction and that slides slower than 1 pm/s stops exactly
+// (planar joint). Cannot represent: contact between robots, walls and ball; battery sag; sensor noise, bias
+// and filtering.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -30,13 +41,14 @@ struct PlantOptions {
   Physics physics = Physics::kSimbody;
   Integrator integrator = Integrator::kRungeKutta4;
   std::int64_t mechanical_step_ns = 1'000'000;
-  std::int64_t electrical_step_ns = 50'000;  // winding and rotor, exact discretisation; divides the mechanical step
+  std::int64_t electrical_step_ns =
+      50'000;  // winding and rotor, exact discretisation; divides the mechanical step
   std::uint64_t seed = 0;
 };
 
 // The true state of one robot: what no sensor on the robot can see. Field frame W, body frame B.
 struct RobotTruth {
-  double x_m = 0, y_m = 0, yaw_rad = 0;                  // geometric centre in W
+  double x_m = 0, y_m = 0, yaw_rad = 0;                            // geometric centre in W
   double v_forward_m_s = 0, v_left_m_s = 0, omega_body_rad_s = 0;  // of the geometric centre, in B
   std::array<double, kWheels> theta_rotor_rad{};
   std::array<double, kWheels> omega_rotor_rad_s{};
@@ -46,12 +58,20 @@ struct RobotTruth {
   std::array<double, kWheels> slip_longitudinal_ratio{};  // eq. (6), completed
   std::array<double, kWheels> force_longitudinal_N{};     // floor on wheel, along the drive direction
   std::array<double, kWheels> force_lateral_N{};
-  std::array<double, kWheels> load_N{};                   // wheel load
+  std::array<double, kWheels> load_N{};  // wheel load
+};
+
+struct PlantFault {
+  std::int64_t now_ns = 0;
+  int robot = 0;
+  std::string_view signal;  // "duty_ratio", "pose", "omega_wheel_rad_s", "motor_current_A", …
+  int index = 0;            // within the signal: wheel, or place in the pose
 };
 
 class Plant {
  public:
-  // Robots with a pose each; throws std::invalid_argument listing every problem of models and options.
+  // Robots in a row, 0.3 m apart along y, at rest; throws std::invalid_argument listing every problem of
+  // models and options.
   Plant(std::span<const RobotModel> robots, const PlantOptions& options);
   ~Plant();
   Plant(Plant&&) noexcept;
@@ -66,6 +86,9 @@ class Plant {
   void advance(std::int64_t duration_ns);  // asserts: a multiple of the mechanical step
   RobotSensors read(int robot) const;
   RobotTruth truth(int robot) const;
+
+  // Set once a state or an input stopped being finite: the plant stands still from then on.
+  const std::optional<PlantFault>& fault() const;
 
   // Whole state as bytes; restoring it and advancing gives the same bits. Same models and options only.
   std::vector<std::uint8_t> save() const;

@@ -19,20 +19,20 @@ struct RobotModel {
   double center_of_mass_height_m = 0.0;  // above the floor
   double center_of_mass_x_m = 0.0;       // offset of the centre of mass from the geometric centre, body frame
   double center_of_mass_y_m = 0.0;
-  double wheel_center_radius_m = 0.0;    // R_b: geometric centre to wheel contact
+  double wheel_center_radius_m = 0.0;  // R_b: geometric centre to wheel contact
   double wheel_radius_m = 0.0;
-  double wheel_mass_kg = 0.0;            // one wheel
-  double wheel_inertia_kg_m2 = 0.0;      // one wheel about its axle, without the rotor
+  double wheel_mass_kg = 0.0;        // one wheel
+  double wheel_inertia_kg_m2 = 0.0;  // one wheel about its axle, without the rotor
   std::array<double, kWheels> wheel_angle_rad{};
   int rollers_per_wheel = 0;
-  double gear_ratio = 1.0;               // rotor turns per wheel turn
+  double gear_ratio = 1.0;  // rotor turns per wheel turn
   TyreCurve tyre_longitudinal;
   TyreCurve tyre_lateral;
-  double slip_speed_floor_m_s = 0.0;     // below it slip is taken relative to this speed
+  double slip_speed_floor_m_s = 0.0;  // below it slip is taken relative to this speed
   MotorParams motor;
   EncoderParams encoder;
   double bus_voltage_V = 0.0;
-  double control_timeout_s = 0.0;        // the team's own command timeout; 0: the firmware's default
+  double control_timeout_s = 0.0;  // the team's own command timeout; 0: the firmware's default
 };
 
 }  // namespace omnihil

@@ -1,0 +1,160 @@
+// Forces of the floor on the four wheels of one robot, for given speeds: slip, tyre curves, wheel loads.
+//
+//   ContactLaw<double> law = contact_law(model);
+//   WheelContacts<double> c = contact_forces(law, wheel_motion(law, body_velocity, omega_wheel_rad_s));
+//   c.force_longitudinal_N[i], c.force_x_N, c.force_y_N, c.moment_z_Nm;
+//
+// Law: force_longitudinal = -grip_longitudinal(slip) N   along the drive direction t_i = (-sin a_i, cos a_i)
+//      force_lateral      = -grip_lateral(slip) N        along the axle, outward, rho_i = (cos a_i, sin a_i)
+//      eq. (4) with S = N. N depends on the sum F of these forces (wheel_load.h) and F on N, both linearly:
+//      F = G N, N = N_rest + K F  =>  (1 - G K) F = G N_rest, a 2x2 system solved exactly; nothing is taken
+//      from the step before, so the law is a function of the speeds alone and the same in every back end.
+//      Where a load would fall below zero, the transfer is scaled down until the lightest wheel carries
+//      nothing.
+// Source: eqs. (4) and (6) and Table I of Bakhshandeh and Sharbafi 2012 as read in tyre.h and slip.h.
+// Combined slip: the two directions do not limit each other (the rollers turn, the ring drives).
+// Cannot represent: a wheel in the air (kSimbodyFree does), bumps of the rollers, contact off the wheel's
+// middle.
+#pragma once
+#include "sim/robot/geometry.h"
+#include "sim/robot/slip.h"
+#include "sim/robot/tyre.h"
+#include "sim/robot/wheel_load.h"
+
+namespace omnihil {
+
+template <typename T>
+struct ContactLaw {
+  WheelGeometry<T> geometry;
+  WheelLoadLaw<T> load;
+  TyreCurve longitudinal;
+  TyreCurve lateral;
+  T slip_speed_floor_m_s{};
+};
+
+template <typename T>
+struct WheelMotion {
+  std::array<T, kWheels> drive_speed_m_s{};   // wheel centre over the floor, along t_i
+  std::array<T, kWheels> roller_speed_m_s{};  // along rho_i
+  std::array<T, kWheels> rim_speed_m_s{};     // R omega_wheel
+};
+
+template <typename T>
+struct WheelContacts {
+  std::array<T, kWheels> slip_longitudinal_ratio{};
+  std::array<T, kWheels> force_longitudinal_N{};
+  std::array<T, kWheels> force_lateral_N{};
+  std::array<T, kWheels> load_N{};
+  T force_x_N{}, force_y_N{};  // sum, body frame
+  T moment_z_Nm{};             // about the geometric centre
+};
+
+inline ContactLaw<double> contact_law(const RobotModel& model) {
+  ContactLaw<double> law;
+  law.geometry = wheel_geometry(model);
+  law.load = wheel_load_law(law.geometry, model.mass_kg, model.center_of_mass_x_m, model.center_of_mass_y_m,
+                            model.center_of_mass_height_m);
+  law.longitudinal = model.tyre_longitudinal;
+  law.lateral = model.tyre_lateral;
+  law.slip_speed_floor_m_s = model.slip_speed_floor_m_s;
+  return law;
+}
+
+// On the level floor.
+template <typename T>
+WheelMotion<T> wheel_motion(const ContactLaw<T>& law, const BodyVelocity<T>& v,
+                            const std::array<T, kWheels>& omega_wheel_rad_s) {
+  WheelMotion<T> m;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    m.drive_speed_m_s[i] = rim_speed_m_s(law.geometry, i, v);
+    m.roller_speed_m_s[i] = roller_speed_m_s(law.geometry, i, v);
+    m.rim_speed_m_s[i] = law.geometry.wheel_radius_m * omega_wheel_rad_s[i];
+  }
+  return m;
+}
+
+// Force over load, signed, per wheel; fills the slips.
+template <typename T>
+struct WheelGrip {
+  std::array<T, kWheels> longitudinal_ratio{};
+  std::array<T, kWheels> lateral_ratio{};
+};
+
+template <typename T>
+WheelGrip<T> wheel_grip(const ContactLaw<T>& law, const WheelMotion<T>& m, WheelContacts<T>& out) {
+  WheelGrip<T> g;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const T slip = slip_ratio(m.drive_speed_m_s[i], m.rim_speed_m_s[i], law.slip_speed_floor_m_s);
+    out.slip_longitudinal_ratio[i] = slip;
+    g.longitudinal_ratio[i] = -grip(law.longitudinal, slip);
+    g.lateral_ratio[i] =
+        -grip(law.lateral, slip_ratio(m.roller_speed_m_s[i], T(0), law.slip_speed_floor_m_s));
+  }
+  return g;
+}
+
+// Forces and their sum for loads that are known.
+template <typename T>
+void apply_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T>& out) {
+  out.force_x_N = out.force_y_N = out.moment_z_Nm = T(0);
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const T f = g.longitudinal_ratio[i] * out.load_N[i];
+    const T s = g.lateral_ratio[i] * out.load_N[i];
+    out.force_longitudinal_N[i] = f;
+    out.force_lateral_N[i] = s;
+    out.force_x_N += -law.geometry.sin_angle[i] * f + law.geometry.cos_angle[i] * s;
+    out.force_y_N += law.geometry.cos_angle[i] * f + law.geometry.sin_angle[i] * s;
+    out.moment_z_Nm += law.geometry.wheel_center_radius_m * f;
+  }
+}
+
+// Loads by the law of wheel_load.h, transfer included.
+template <typename T>
+void find_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T>& out) {
+  // (1 - G K) F = G N_rest
+  T a = T(1), b = T(0), c = T(0), d = T(1), right_x = T(0), right_y = T(0);
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const T gx =
+        -law.geometry.sin_angle[i] * g.longitudinal_ratio[i] + law.geometry.cos_angle[i] * g.lateral_ratio[i];
+    const T gy =
+        law.geometry.cos_angle[i] * g.longitudinal_ratio[i] + law.geometry.sin_angle[i] * g.lateral_ratio[i];
+    a -= gx * law.load.per_force_x_ratio[i];
+    b -= gx * law.load.per_force_y_ratio[i];
+    c -= gy * law.load.per_force_x_ratio[i];
+    d -= gy * law.load.per_force_y_ratio[i];
+    right_x += gx * law.load.at_rest_N[i];
+    right_y += gy * law.load.at_rest_N[i];
+  }
+  const T determinant = a * d - b * c;
+  const T force_x_N = (d * right_x - b * right_y) / determinant;
+  const T force_y_N = (a * right_y - c * right_x) / determinant;
+  T part = T(1);  // of the transfer that the lightest wheel allows
+  std::array<T, kWheels> change_N;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    change_N[i] = law.load.transfer(i, force_x_N, force_y_N);
+    if (law.load.at_rest_N[i] + part * change_N[i] < T(0)) part = -law.load.at_rest_N[i] / change_N[i];
+  }
+  for (std::size_t i = 0; i < kWheels; ++i) out.load_N[i] = law.load.at_rest_N[i] + part * change_N[i];
+}
+
+template <typename T>
+WheelContacts<T> contact_forces(const ContactLaw<T>& law, const WheelMotion<T>& motion) {
+  WheelContacts<T> out;
+  const WheelGrip<T> g = wheel_grip(law, motion, out);
+  find_loads(law, g, out);
+  apply_loads(law, g, out);
+  return out;
+}
+
+// Same with loads that something else knows (springs of the free body).
+template <typename T>
+WheelContacts<T> contact_forces_at(const ContactLaw<T>& law, const WheelMotion<T>& motion,
+                                   const std::array<T, kWheels>& load_N) {
+  WheelContacts<T> out;
+  const WheelGrip<T> g = wheel_grip(law, motion, out);
+  out.load_N = load_N;
+  apply_loads(law, g, out);
+  return out;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,89 @@
+#include "sim/robot/planar.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace omnihil {
+namespace {
+
+// Field-frame speeds (yaw rate, v_x, v_y) as the body sees them.
+BodyVelocity<double> in_body(const double* u, double cos_yaw, double sin_yaw) {
+  return {.v_forward_m_s = cos_yaw * u[1] + sin_yaw * u[2],
+          .v_left_m_s = -sin_yaw * u[1] + cos_yaw * u[2],
+          .omega_body_rad_s = u[0]};
+}
+
+}  // namespace
+
+PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots)
+    : u_(robots.size() * kPlanarLayout.u_per_robot) {
+  for (const RobotModel& m : robots) {
+    Robot r;
+    r.law = contact_law(m);
+    r.body = planar_body(m);
+    r.gear_ratio = m.gear_ratio;
+    r.wheel_viscous_Nm_s_per_rad = m.gear_ratio * m.gear_ratio * m.motor.viscous_friction_Nm_s_per_rad;
+    robots_.push_back(r);
+  }
+}
+
+void PlanarMechanics::set_state(const std::vector<double>& q, const std::vector<double>& u) {
+  std::ranges::copy(u, u_.begin());
+  for (std::size_t n = 0; n < robots_.size(); ++n) {
+    Robot& r = robots_[n];
+    const double* qr = q.data() + n * kPlanarLayout.q_per_robot;
+    const double* ur = u.data() + n * kPlanarLayout.u_per_robot;
+    r.cos_yaw = std::cos(qr[0]);
+    r.sin_yaw = std::sin(qr[0]);
+    r.omega_body_rad_s = ur[0];
+    r.contacts = contact_forces(
+        r.law, wheel_motion<double>(r.law, in_body(ur, r.cos_yaw, r.sin_yaw), {ur[3], ur[4], ur[5], ur[6]}));
+  }
+}
+
+void PlanarMechanics::accelerations(const std::vector<WheelTorques>& torques, std::vector<double>& udot) {
+  for (std::size_t n = 0; n < robots_.size(); ++n) {
+    const Robot& r = robots_[n];
+    const WheelContacts<double>& c = r.contacts;
+    const auto a = body_acceleration(r.body, c.force_x_N, c.force_y_N, c.moment_z_Nm, r.omega_body_rad_s);
+    double* out = udot.data() + n * kPlanarLayout.u_per_robot;
+    out[0] = a.yaw_rad_s2;
+    out[1] = r.cos_yaw * a.x_m_s2 - r.sin_yaw * a.y_m_s2;
+    out[2] = r.sin_yaw * a.x_m_s2 + r.cos_yaw * a.y_m_s2;
+    const double* omega_wheel = u_.data() + n * kPlanarLayout.u_per_robot + kPlanarLayout.wheel_u;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      // J domega/dt = gear tau_rotor - gear^2 b omega - r F
+      const double torque_Nm = r.gear_ratio * torques[n].rotor_Nm[i] -
+                               r.wheel_viscous_Nm_s_per_rad * omega_wheel[i] -
+                               r.law.geometry.wheel_radius_m * c.force_longitudinal_N[i];
+      out[kPlanarLayout.wheel_u + i] = torques[n].locked[i] ? 0.0 : torque_Nm * r.body.inverse_spin_inertia;
+    }
+  }
+}
+
+void PlanarMechanics::position_rates(const std::vector<double>&, const std::vector<double>& u,
+                                     std::vector<double>& qdot) const {
+  std::ranges::copy(u, qdot.begin());
+}
+
+BodyMotion PlanarMechanics::motion(const std::vector<double>& q, const std::vector<double>& u,
+                                   std::size_t robot) const {
+  const double* qr = q.data() + robot * kPlanarLayout.q_per_robot;
+  const double* ur = u.data() + robot * kPlanarLayout.u_per_robot;
+  return {.x_m = qr[1],
+          .y_m = qr[2],
+          .yaw_rad = qr[0],
+          .velocity = in_body(ur, std::cos(qr[0]), std::sin(qr[0]))};
+}
+
+void PlanarMechanics::place(std::vector<double>& q, std::vector<double>& u, std::size_t robot, double x_m,
+                            double y_m, double yaw_rad) const {
+  double* qr = q.data() + robot * kPlanarLayout.q_per_robot;
+  std::fill_n(qr, kPlanarLayout.q_per_robot, 0.0);
+  std::fill_n(u.data() + robot * kPlanarLayout.u_per_robot, kPlanarLayout.u_per_robot, 0.0);
+  qr[0] = yaw_rad;
+  qr[1] = x_m;
+  qr[2] = y_m;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,332 @@
+#include "sim/robot/plant.h"
+
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+#include "sim/motor/encoder.h"
+#include "sim/robot/chassis.h"
+#include "sim/robot/integrate.h"
+#include "sim/robot/planar.h"
+#include "sim/robot/validate.h"
+#include "sim/robot/wheel_drive.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kSpacing_m = 0.3;                        // of the robots' starting row
+constexpr double kStandstill_m_s = 1e-12;                 // below it a robot with held wheels stops exactly
+constexpr std::uint64_t kStateMark = 0x31544e414c504853;  // layout of save(), version 1
+
+// What one robot remembers besides positions and speeds; plain bytes, saved as they are.
+struct RobotMemory {
+  RobotDrive drive{};
+  std::array<DcDriveState, kWheels> winding{};
+  std::array<double, kWheels> motor_torque_Nm{};  // mean of the last step
+  std::array<double, kWheels> current_sum_A{};    // of the steps since the last read
+  std::int64_t current_steps = 0;
+  double accel_x_m_s2 = 0.0, accel_y_m_s2 = 0.0;
+};
+static_assert(std::is_trivially_copyable_v<RobotMemory>);
+
+using Mechanics = std::variant<PlanarMechanics, Chassis>;
+
+Mechanics make_mechanics(const std::vector<RobotModel>& robots, Physics physics) {
+  if (physics == Physics::kPlanar) return PlanarMechanics(robots);
+  return Chassis(robots, physics == Physics::kSimbody ? Chassis::Joint::kPlanar : Chassis::Joint::kFree);
+}
+
+void require_valid(std::span<const RobotModel> robots, const PlantOptions& options) {
+  std::string all;
+  for (const std::string& problem : plant_problems(robots, options))
+    all += (all.empty() ? "" : "\n") + problem;
+  if (!all.empty()) throw std::invalid_argument(all);
+}
+
+template <typename T>
+void append(std::vector<std::uint8_t>& out, const T* items, std::size_t count) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(items);
+  out.insert(out.end(), bytes, bytes + count * sizeof(T));
+}
+
+template <typename T>
+void take(std::span<const std::uint8_t>& in, T* items, std::size_t count) {
+  std::memcpy(static_cast<void*>(items), in.data(), count * sizeof(T));
+  in = in.subspan(count * sizeof(T));
+}
+
+}  // namespace
+
+struct Plant::Impl {
+  Impl(std::span<const RobotModel> robots_, const PlantOptions& options_)
+      : options(options_),
+        models(robots_.begin(), robots_.end()),
+        mechanics(make_mechanics(models, options_.physics)),
+        layout(std::visit([](const auto& m) { return m.layout(); }, mechanics)),
+        q(models.size() * layout.q_per_robot),
+        u(models.size() * layout.u_per_robot),
+        u_before(u.size()),
+        scratch(q.size(), u.size()),
+        memory(models.size()),
+        torques(models.size()),
+        wheel_steps(models.size()) {
+    step_s = static_cast<double>(options.mechanical_step_ns) * 1e-9;
+    substeps = static_cast<int>(options.mechanical_step_ns / options.electrical_step_ns);
+    for (const RobotModel& m : models) {
+      drives.push_back(wheel_drive_law(m, static_cast<double>(options.electrical_step_ns) * 1e-9));
+    }
+    for (std::size_t n = 0; n < models.size(); ++n) place(n, 0.0, kSpacing_m * static_cast<double>(n), 0.0);
+  }
+
+  const double* wheel_angles(std::size_t robot) const {
+    return &q[robot * layout.q_per_robot + layout.wheel_q];
+  }
+  double* wheel_angles(std::size_t robot) { return &q[robot * layout.q_per_robot + layout.wheel_q]; }
+  const double* wheel_speeds_of(std::size_t robot) const {
+    return &u[robot * layout.u_per_robot + layout.wheel_u];
+  }
+  double* wheel_speeds_of(std::size_t robot) { return &u[robot * layout.u_per_robot + layout.wheel_u]; }
+  // Field-frame v_x of a robot in an array of speeds; v_y follows.
+  const double* field_velocity(const std::vector<double>& speeds, std::size_t robot) const {
+    return &speeds[robot * layout.u_per_robot + layout.wheel_u - (free() ? 3 : 2)];
+  }
+  bool free() const { return options.physics == Physics::kSimbodyFree; }
+
+  void place(std::size_t robot, double x_m, double y_m, double yaw_rad) {
+    std::array<double, kWheels> angles;
+    std::copy_n(wheel_angles(robot), kWheels, angles.begin());
+    std::visit([&](const auto& m) { m.place(q, u, robot, x_m, y_m, yaw_rad); }, mechanics);
+    std::copy_n(angles.begin(), kWheels, wheel_angles(robot));  // turning a robot by hand turns no rotor
+    const RobotDrive kept = memory[robot].drive;
+    memory[robot] = RobotMemory{};
+    memory[robot].drive = kept;
+    state_known = false;
+  }
+
+  // Brings the mechanics' floor forces up to date with q and u.
+  template <typename Back>
+  void set_state(Back& back) {
+    if (!state_known) back.set_state(q, u);
+    state_known = true;
+  }
+
+  void begin_wheels(std::size_t n, const WheelContacts<double>& contacts) {
+    const RobotModel& model = models[n];
+    RobotMemory& mem = memory[n];
+    const double* omega_wheel = wheel_speeds_of(n);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const double contact_Nm = model.wheel_radius_m * contacts.force_longitudinal_N[i] / model.gear_ratio;
+      const BridgeInput bridge{mem.drive.mode[i], mem.drive.duty_ratio[i], model.bus_voltage_V};
+      const WheelStep step = begin_wheel_step(drives[n], mem.winding[i], bridge,
+                                              model.gear_ratio * omega_wheel[i], contact_Nm, substeps);
+      wheel_steps[n][i] = step;
+      torques[n].rotor_Nm[i] = step.rotor_Nm;
+      torques[n].locked[i] = step.locked;
+      mem.motor_torque_Nm[i] = step.drive.mean_torque_Nm;
+      mem.current_sum_A[i] += step.drive.mean_current_A;
+    }
+    ++mem.current_steps;
+  }
+
+  template <typename Back>
+  void step(Back& back) {
+    set_state(back);
+    for (std::size_t n = 0; n < models.size(); ++n) begin_wheels(n, back.contacts(n));
+    u_before = u;
+    integrate(options.integrator, back, torques, step_s, q, u, scratch);
+    state_known = false;
+    for (std::size_t n = 0; n < models.size(); ++n) end_robot(back, n);
+    now_ns += options.mechanical_step_ns;
+  }
+
+  template <typename Back>
+  void end_robot(const Back& back, std::size_t n) {
+    const double* before = &u_before[n * layout.u_per_robot + layout.wheel_u];
+    double* after = wheel_speeds_of(n);
+    bool held = true;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      after[i] = end_wheel_step(drives[n], wheel_steps[n][i], before[i], after[i], step_s);
+      held = held && wheel_steps[n][i].locked;
+    }
+    if (held && !free()) come_to_rest(n);
+    const double* v0 = field_velocity(u_before, n);
+    const double* v1 = field_velocity(u, n);
+    const double ax = (v1[0] - v0[0]) / step_s, ay = (v1[1] - v0[1]) / step_s;
+    const double yaw_rad = back.motion(q, u, n).yaw_rad;
+    memory[n].accel_x_m_s2 = std::cos(yaw_rad) * ax + std::sin(yaw_rad) * ay;
+    memory[n].accel_y_m_s2 = -std::sin(yaw_rad) * ax + std::cos(yaw_rad) * ay;
+  }
+
+  // The floor's viscous hold would let the speed fade for ever, into numbers that cost time to compute with.
+  void come_to_rest(std::size_t n) {
+    double* body = &u[n * layout.u_per_robot];
+    const double lever_m = models[n].wheel_center_radius_m;
+    if (std::abs(body[0] * lever_m) < kStandstill_m_s && std::abs(body[1]) < kStandstill_m_s &&
+        std::abs(body[2]) < kStandstill_m_s) {
+      body[0] = body[1] = body[2] = 0.0;
+    }
+  }
+
+  void report(std::size_t robot, std::string_view signal, std::size_t index) {
+    if (!fault) fault = PlantFault{now_ns, static_cast<int>(robot), signal, static_cast<int>(index)};
+  }
+
+  void look_for_fault() {
+    for (std::size_t n = 0; n < models.size() && !fault; ++n) {
+      const auto scan = [&](const double* values, std::size_t count, std::string_view signal) {
+        for (std::size_t i = 0; i < count; ++i) {
+          if (!std::isfinite(values[i])) report(n, signal, i);
+        }
+      };
+      for (std::size_t i = 0; i < kWheels; ++i) {
+        if (!std::isfinite(memory[n].drive.duty_ratio[i])) report(n, "duty_ratio", i);
+        if (!std::isfinite(memory[n].winding[i].current_A)) report(n, "motor_current_A", i);
+      }
+      scan(wheel_speeds_of(n), kWheels, "omega_wheel_rad_s");
+      scan(wheel_angles(n), kWheels, "theta_wheel_rad");
+      scan(&u[n * layout.u_per_robot], layout.wheel_u, "body_velocity");
+      scan(&q[n * layout.q_per_robot], layout.wheel_q, "pose");
+    }
+  }
+
+  PlantOptions options;
+  std::vector<RobotModel> models;
+  Mechanics mechanics;
+  StateLayout layout;
+  double step_s = 0.0;
+  int substeps = 1;
+  std::int64_t now_ns = 0;
+  std::vector<double> q, u, u_before;
+  IntegratorScratch scratch;
+  std::vector<RobotMemory> memory;
+  std::vector<WheelDriveLaw> drives;
+  std::vector<WheelTorques> torques;
+  std::vector<std::array<WheelStep, kWheels>> wheel_steps;
+  bool state_known = false;
+  std::optional<PlantFault> fault;
+};
+
+Plant::Plant(std::span<const RobotModel> robots, const PlantOptions& options) {
+  require_valid(robots, options);
+  impl_ = std::make_unique<Impl>(robots, options);
+}
+Plant::~Plant() = default;
+Plant::Plant(Plant&&) noexcept = default;
+Plant& Plant::operator=(Plant&&) noexcept = default;
+
+int Plant::robot_count() const { return static_cast<int>(impl_->models.size()); }
+const PlantOptions& Plant::options() const { return impl_->options; }
+std::int64_t Plant::now_ns() const { return impl_->now_ns; }
+const std::optional<PlantFault>& Plant::fault() const { return impl_->fault; }
+
+void Plant::set_pose(int robot, double x_m, double y_m, double yaw_rad) {
+  impl_->place(static_cast<std::size_t>(robot), x_m, y_m, yaw_rad);
+}
+
+void Plant::write(int robot, const RobotDrive& drive) {
+  impl_->memory[static_cast<std::size_t>(robot)].drive = drive;
+}
+
+void Plant::advance(std::int64_t duration_ns) {
+  Impl& p = *impl_;
+  if (duration_ns < 0 || duration_ns % p.options.mechanical_step_ns != 0) {
+    throw std::logic_error("Plant::advance: " + std::to_string(duration_ns) +
+                           " ns is not a multiple of the step of " +
+                           std::to_string(p.options.mechanical_step_ns) + " ns");
+  }
+  if (!p.fault) p.look_for_fault();  // what was written since
+  if (p.fault) return;
+  std::visit(
+      [&](auto& back) {
+        for (std::int64_t n = duration_ns / p.options.mechanical_step_ns; n > 0; --n) p.step(back);
+      },
+      p.mechanics);
+  p.look_for_fault();
+}
+
+RobotSensors Plant::read(int robot) const {
+  Impl& p = *impl_;
+  const auto n = static_cast<std::size_t>(robot);
+  const RobotModel& model = p.models[n];
+  RobotMemory& mem = p.memory[n];
+  RobotSensors s{};
+  s.now_us = static_cast<std::uint64_t>(p.now_ns / 1000);
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const double theta_rotor_rad = model.gear_ratio * p.wheel_angles(n)[i];
+    if (std::isfinite(theta_rotor_rad)) s.encoder_counts[i] = encoder_counts(model.encoder, theta_rotor_rad);
+    s.motor_current_A[i] = mem.current_steps > 0
+                               ? mem.current_sum_A[i] / static_cast<double>(mem.current_steps)
+                               : mem.winding[i].current_A;
+    mem.current_sum_A[i] = 0.0;
+  }
+  mem.current_steps = 0;
+  s.bus_voltage_V = model.bus_voltage_V;
+  s.gyro_z_rad_s =
+      std::visit([&](const auto& m) { return m.motion(p.q, p.u, n).velocity.omega_body_rad_s; }, p.mechanics);
+  s.accel_x_m_s2 = mem.accel_x_m_s2;
+  s.accel_y_m_s2 = mem.accel_y_m_s2;
+  return s;
+}
+
+RobotTruth Plant::truth(int robot) const {
+  Impl& p = *impl_;
+  const auto n = static_cast<std::size_t>(robot);
+  RobotTruth t;
+  std::visit(
+      [&](auto& back) {
+        p.set_state(back);
+        const BodyMotion m = back.motion(p.q, p.u, n);
+        t.x_m = m.x_m, t.y_m = m.y_m, t.yaw_rad = m.yaw_rad;
+        t.v_forward_m_s = m.velocity.v_forward_m_s;
+        t.v_left_m_s = m.velocity.v_left_m_s;
+        t.omega_body_rad_s = m.velocity.omega_body_rad_s;
+        const WheelContacts<double>& c = back.contacts(n);
+        t.slip_longitudinal_ratio = c.slip_longitudinal_ratio;
+        t.force_longitudinal_N = c.force_longitudinal_N;
+        t.force_lateral_N = c.force_lateral_N;
+        t.load_N = c.load_N;
+      },
+      p.mechanics);
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    t.omega_wheel_rad_s[i] = p.wheel_speeds_of(n)[i];
+    t.omega_rotor_rad_s[i] = p.models[n].gear_ratio * t.omega_wheel_rad_s[i];
+    t.theta_rotor_rad[i] = p.models[n].gear_ratio * p.wheel_angles(n)[i];
+    t.motor_current_A[i] = p.memory[n].winding[i].current_A;
+    t.motor_torque_Nm[i] = p.memory[n].motor_torque_Nm[i];
+  }
+  return t;
+}
+
+std::vector<std::uint8_t> Plant::save() const {
+  const Impl& p = *impl_;
+  const std::uint64_t head[3] = {kStateMark, plant_fingerprint(p.models, p.options), p.fault ? 1u : 0u};
+  std::vector<std::uint8_t> out;
+  append(out, head, 3);
+  append(out, &p.now_ns, 1);
+  append(out, p.q.data(), p.q.size());
+  append(out, p.u.data(), p.u.size());
+  append(out, p.memory.data(), p.memory.size());
+  return out;
+}
+
+bool Plant::restore(std::span<const std::uint8_t> bytes) {
+  Impl& p = *impl_;
+  const std::size_t size = 4 * sizeof(std::uint64_t) + (p.q.size() + p.u.size()) * sizeof(double) +
+                           p.memory.size() * sizeof(RobotMemory);
+  if (bytes.size() != size) return false;
+  std::uint64_t head[3];
+  take(bytes, head, 3);
+  if (head[0] != kStateMark || head[1] != plant_fingerprint(p.models, p.options)) return false;
+  take(bytes, &p.now_ns, 1);
+  take(bytes, p.q.data(), p.q.size());
+  take(bytes, p.u.data(), p.u.size());
+  take(bytes, p.memory.data(), p.memory.size());
+  p.fault.reset();
+  if (head[2] != 0) p.look_for_fault();
+  p.state_known = false;
+  return true;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,236 @@
+#include "sim/robot/validate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/robot/contact.h"
+#include "sim/robot/planar_law.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// One number of a model: its value, where it may lie.
+struct Field {
+  const char* name;
+  const char* unit;
+  double value;
+  double lowest;
+  bool above;  // lowest itself is not allowed
+  double highest = kInfinity;
+};
+
+std::vector<Field> fields_of(const RobotModel& m) {
+  std::vector<Field> f = {
+      {"mass_kg", "kg", m.mass_kg, 0, true},
+      {"yaw_inertia_kg_m2", "kg m^2", m.yaw_inertia_kg_m2, 0, true},
+      {"center_of_mass_height_m", "m", m.center_of_mass_height_m, 0, false},
+      {"center_of_mass_x_m", "m", m.center_of_mass_x_m, -kInfinity, false},
+      {"center_of_mass_y_m", "m", m.center_of_mass_y_m, -kInfinity, false},
+      {"wheel_center_radius_m", "m", m.wheel_center_radius_m, 0, true},
+      {"wheel_radius_m", "m", m.wheel_radius_m, 0, true},
+      {"wheel_mass_kg", "kg", m.wheel_mass_kg, 0, true},
+      {"wheel_inertia_kg_m2", "kg m^2", m.wheel_inertia_kg_m2, 0, false},
+      {"gear_ratio", "rotor turns per wheel turn", m.gear_ratio, 0, true},
+      {"tyre_longitudinal.extremum_slip", "", m.tyre_longitudinal.extremum_slip, 0, true},
+      {"tyre_longitudinal.extremum_value", "", m.tyre_longitudinal.extremum_value, 0, true},
+      {"tyre_longitudinal.asymptote_slip", "", m.tyre_longitudinal.asymptote_slip,
+       m.tyre_longitudinal.extremum_slip, true},
+      {"tyre_longitudinal.asymptote_value", "", m.tyre_longitudinal.asymptote_value, 0, false},
+      {"tyre_lateral.extremum_slip", "", m.tyre_lateral.extremum_slip, 0, true},
+      {"tyre_lateral.extremum_value", "", m.tyre_lateral.extremum_value, 0, false},
+      {"tyre_lateral.asymptote_slip", "", m.tyre_lateral.asymptote_slip, m.tyre_lateral.extremum_slip, true},
+      {"tyre_lateral.asymptote_value", "", m.tyre_lateral.asymptote_value, 0, false},
+      {"slip_speed_floor_m_s", "m/s", m.slip_speed_floor_m_s, 0, true},
+      {"motor.resistance_ohm", "ohm", m.motor.resistance_ohm, 0, true},
+      {"motor.inductance_H", "H", m.motor.inductance_H, 0, false},
+      {"motor.torque_constant_Nm_per_A", "N m/A", m.motor.torque_constant_Nm_per_A, 0, true},
+      {"motor.rotor_inertia_kg_m2", "kg m^2", m.motor.rotor_inertia_kg_m2, 0, false},
+      {"motor.viscous_friction_Nm_s_per_rad", "N m s/rad", m.motor.viscous_friction_Nm_s_per_rad, 0, false},
+      {"motor.coulomb_friction_Nm", "N m", m.motor.coulomb_friction_Nm, 0, false},
+      {"motor.current_limit_A", "A", m.motor.current_limit_A, 0, false},
+      {"motor.duty_limit_ratio", "", m.motor.duty_limit_ratio, 0, true, 1},
+      {"encoder.counts_per_turn", "counts", static_cast<double>(m.encoder.counts_per_turn), 0, true},
+      {"bus_voltage_V", "V", m.bus_voltage_V, 0, true},
+      {"control_timeout_s", "s", m.control_timeout_s, 0, false},
+  };
+  for (double angle : m.wheel_angle_rad) f.push_back({"wheel_angle_rad", "rad", angle, -kInfinity, false});
+  return f;
+}
+
+std::string range_of(const Field& f) {
+  std::string text = f.lowest == -kInfinity ? "must be finite"
+                     : f.above              ? fmt::format("must be more than {}", f.lowest)
+                                            : fmt::format("must be {} or more", f.lowest);
+  if (f.highest < kInfinity) text += fmt::format(" and at most {}", f.highest);
+  return text;
+}
+
+bool in_range(const Field& f) {
+  return std::isfinite(f.value) && (f.above ? f.value > f.lowest : f.value >= f.lowest) &&
+         f.value <= f.highest;
+}
+
+Eigen::Matrix3d body_mass_matrix(const RobotModel& m) {
+  const double sx = m.mass_kg * m.center_of_mass_x_m, sy = m.mass_kg * m.center_of_mass_y_m;
+  Eigen::Matrix3d mass;
+  mass << m.mass_kg, 0, -sy, 0, m.mass_kg, sx, -sy, sx, m.yaw_inertia_kg_m2;
+  return mass;
+}
+
+// What each number may be and still not fit the others. Only for models whose numbers are in range.
+void check_together(const RobotModel& m, std::vector<std::string>& out) {
+  const WheelGeometry<double> g = wheel_geometry(m);
+  const double wheels_kg = kWheels * m.wheel_mass_kg;
+  if (wheels_kg >= m.mass_kg) {
+    out.push_back(fmt::format(
+        "wheel_mass_kg = {} kg: four wheels weigh {} kg, as much as the whole robot's mass_kg = {} kg",
+        m.wheel_mass_kg, wheels_kg, m.mass_kg));
+  }
+  const double spin = spin_inertia_kg_m2(m);
+  if (spin <= 0)
+    out.push_back("wheel_inertia_kg_m2 and motor.rotor_inertia_kg_m2: one of them must be more than 0");
+  const double offset2 =
+      m.center_of_mass_x_m * m.center_of_mass_x_m + m.center_of_mass_y_m * m.center_of_mass_y_m;
+  const double wheels_yaw =
+      kWheels * (0.5 * spin + m.wheel_mass_kg * m.wheel_center_radius_m * m.wheel_center_radius_m);
+  const double needed = std::max(wheels_yaw, m.mass_kg * offset2);
+  if (m.yaw_inertia_kg_m2 <= needed) {
+    out.push_back(fmt::format(
+        "yaw_inertia_kg_m2 = {} kg m^2: wheels and centre of mass alone make {:.6g} kg m^2; must be more",
+        m.yaw_inertia_kg_m2, needed));
+  }
+  const Eigen::Matrix<double, kWheels, 3> rim = rim_matrix(g);
+  const Eigen::Vector3d scale(1, 1, 1 / g.wheel_center_radius_m);
+  const Eigen::Matrix3d spread = scale.asDiagonal() * (rim.transpose() * rim) * scale.asDiagonal();
+  if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()(0) < 1e-6) {
+    out.push_back("wheel_angle_rad: these wheels cannot drive in every direction (rank of eq. 5 below 3)");
+    return;
+  }
+  const ContactLaw<double> law = contact_law(m);
+  double sum_N = 0;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    sum_N += law.load.at_rest_N[i];
+    if (!(law.load.at_rest_N[i] >= 0)) {
+      out.push_back(
+          fmt::format("center_of_mass_x_m = {} m, center_of_mass_y_m = {} m: wheel {} would carry {:.4g} N; "
+                      "the centre of mass must lie within the wheels",
+                      m.center_of_mass_x_m, m.center_of_mass_y_m, i, law.load.at_rest_N[i]));
+    }
+  }
+  const double weight_N = m.mass_kg * kGravity_m_s2;
+  if (!(std::abs(sum_N - weight_N) <= 1e-9 * weight_N)) {
+    out.push_back(fmt::format("wheel loads sum to {:.12g} N instead of m g = {:.12g} N", sum_N, weight_N));
+  }
+}
+
+// Load transfer is unique while the largest |G K| of contact.h stays below 1: every sign pattern of full
+// grip.
+void check_height(const RobotModel& m, std::vector<std::string>& out) {
+  const ContactLaw<double> law = contact_law(m);
+  double worst = 0;
+  for (unsigned pattern = 0; pattern < 1u << kWheels; ++pattern) {
+    Eigen::Matrix2d gk = Eigen::Matrix2d::Zero();
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const double f = (pattern >> i & 1u ? 1.0 : -1.0) * m.tyre_longitudinal.extremum_value;
+      const Eigen::Vector2d force(-law.geometry.sin_angle[i] * f, law.geometry.cos_angle[i] * f);
+      gk += force * Eigen::RowVector2d(law.load.per_force_x_ratio[i], law.load.per_force_y_ratio[i]);
+    }
+    worst = std::max(worst, gk.norm());
+  }
+  if (worst >= 1) {
+    out.push_back(fmt::format(
+        "center_of_mass_height_m = {} m with tyre_longitudinal.extremum_value = {}: the robot would tip "
+        "over its wheels; height must be below {:.4g} m",
+        m.center_of_mass_height_m, m.tyre_longitudinal.extremum_value, m.center_of_mass_height_m / worst));
+  }
+}
+
+void check_steps(const PlantOptions& o, std::vector<std::string>& out) {
+  if (o.mechanical_step_ns <= 0) {
+    out.push_back(fmt::format("mechanical_step_ns = {}: must be more than 0", o.mechanical_step_ns));
+  }
+  if (o.electrical_step_ns <= 0) {
+    out.push_back(fmt::format("electrical_step_ns = {}: must be more than 0", o.electrical_step_ns));
+  } else if (o.mechanical_step_ns > 0 && o.mechanical_step_ns % o.electrical_step_ns != 0) {
+    out.push_back(fmt::format("electrical_step_ns = {}: must divide mechanical_step_ns = {}",
+                              o.electrical_step_ns, o.mechanical_step_ns));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> robot_problems(const RobotModel& model) {
+  std::vector<std::string> out;
+  for (const Field& f : fields_of(model)) {
+    if (!in_range(f)) out.push_back(fmt::format("{} = {} {}: {}", f.name, f.value, f.unit, range_of(f)));
+  }
+  if (model.encoder.direction != 1 && model.encoder.direction != -1) {
+    out.push_back(fmt::format("encoder.direction = {}: must be 1 or -1", model.encoder.direction));
+  }
+  if (!out.empty()) return out;
+  check_together(model, out);
+  if (out.empty()) check_height(model, out);
+  return out;
+}
+
+double stiffest_contact_rate(const RobotModel& model) {
+  const ContactLaw<double> law = contact_law(model);
+  const double load_N = *std::max_element(law.load.at_rest_N.begin(), law.load.at_rest_N.end());
+  const double slope = std::max(steepest_grip(model.tyre_longitudinal), steepest_grip(model.tyre_lateral));
+  const double damping_N_s_per_m = slope * load_N / model.slip_speed_floor_m_s;
+  const Eigen::Matrix<double, kWheels, 3> rim = rim_matrix(law.geometry);
+  const double r = model.wheel_radius_m;
+  Eigen::Matrix4d mobility = rim * body_mass_matrix(model).inverse() * rim.transpose();
+  mobility += Eigen::Matrix4d::Identity() * (r * r / spin_inertia_kg_m2(model));
+  return damping_N_s_per_m *
+         Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(mobility).eigenvalues()(kWheels - 1);
+}
+
+double explicit_limit(Integrator integrator) {
+  return integrator == Integrator::kRungeKutta4 ? 2.785 : 2.0;  // real axis of the stability region
+}
+
+std::vector<std::string> plant_problems(std::span<const RobotModel> robots, const PlantOptions& options) {
+  std::vector<std::string> out;
+  check_steps(options, out);
+  if (robots.empty()) out.push_back("no robot: at least one is needed");
+  for (std::size_t n = 0; n < robots.size(); ++n) {
+    std::vector<std::string> of_robot = robot_problems(robots[n]);
+    if (of_robot.empty() && options.mechanical_step_ns > 0) {
+      const double rate = stiffest_contact_rate(robots[n]), limit = explicit_limit(options.integrator);
+      const double step_s = static_cast<double>(options.mechanical_step_ns) * 1e-9;
+      if (!(rate * step_s < limit)) {
+        of_robot.push_back(fmt::format(
+            "tyre_longitudinal and slip_speed_floor_m_s are too stiff for mechanical_step_ns = {}: "
+            "the contact settles at {:.4g} 1/s; the step must be below {:.0f} ns",
+            options.mechanical_step_ns, rate, limit / rate * 1e9));
+      }
+    }
+    for (const std::string& problem : of_robot) {
+      out.push_back(fmt::format("robot {} \"{}\": {}", n, robots[n].name, problem));
+    }
+  }
+  return out;
+}
+
+std::uint64_t plant_fingerprint(std::span<const RobotModel> robots, const PlantOptions& options) {
+  std::string text =
+      fmt::format("{} {} {} {} {}", static_cast<int>(options.physics), static_cast<int>(options.integrator),
+                  options.mechanical_step_ns, options.electrical_step_ns, options.seed);
+  for (const RobotModel& m : robots) {
+    text += fmt::format(";{} {} {} {}", m.name, m.encoder.direction, m.encoder.index_offset_counts,
+                        m.rollers_per_wheel);
+    for (const Field& f : fields_of(m)) text += fmt::format(" {}", f.value);
+  }
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return hash;
+}
+
+}  // namespace omnihil
