@@ -181,6 +181,12 @@ FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> b
   return {};
 }
 
+PacketError field_fault(const Field& field, const Message& message, std::size_t packet_bytes,
+                        const Value& value) {
+  std::uint64_t raw = 0;
+  return encode_field(field, message, packet_bytes, value, raw);
+}
+
 FieldFault encode_fields(const Values& values, std::size_t packet_bytes, std::span<std::uint8_t> bytes) {
   const Message& message = *values.message;
   for (std::size_t i = 0; i < message.fields.size(); ++i) {

@@ -41,6 +41,10 @@ double field_number(const Field& field, std::uint64_t raw);
 FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> bytes,
                          std::size_t packet_bytes, Values& out);
 
+// Why this field would not be encoded; kNone when it would.
+PacketError field_fault(const Field& field, const Message& message, std::size_t packet_bytes,
+                        const Value& value);
+
 // Writes every field into `bytes` (at least size_bytes). A constant, type or length left at 0 is filled in;
 // any other value there must be the right one. Checksums are written as 0: the format computes them.
 FieldFault encode_fields(const Values& values, std::size_t packet_bytes, std::span<std::uint8_t> bytes);

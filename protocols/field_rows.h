@@ -18,6 +18,10 @@ constexpr Field number(std::string_view name, int bits, std::string_view unit, s
       .name = name, .bits = bits, .kind = FieldKind::kUint, .lo = lo, .hi = hi, .unit = unit, .what = what};
 }
 constexpr Field flag(std::string_view name, std::string_view what) { return number(name, 1, "", what); }
+// A flag that the team's own programs take and give as true or false; their other flags are 0 and 1.
+constexpr Field boolean(std::string_view name, std::string_view what) {
+  return number(name, 1, "bool", what);
+}
 constexpr Field reserved(std::string_view name, int bits, std::string_view what) {
   return {.name = name, .bits = bits, .kind = FieldKind::kReserved, .what = what};
 }

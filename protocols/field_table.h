@@ -35,7 +35,7 @@ struct Field {
   double lo = 0.0;  // smallest and largest value, in `unit`; equal: not limited
   double hi = 0.0;
   std::uint64_t constant = 0;  // kConst only
-  std::string_view unit{};     // "m/s", "rad", "" for a plain number
+  std::string_view unit{};     // "m/s", "rad", "" for a plain number, "bool" for true and false in JSON
   std::string_view what{};     // one line for the documentation
   // Part of the frame rather than of the packet's content (HERMES' version, source, checksum): filled in by
   // encode, checked by decode, not listed among the values a user reads and writes.

@@ -24,6 +24,12 @@ struct Carrier {
   int bits_per_byte = 10; // 8N1: start + 8 + stop
 };
 
+// How one packet stands among others on the wire.
+enum class Framing : std::uint8_t {
+  kNone,     // packets follow each other; the type gives the length
+  kCobsZero  // COBS, then 00
+};
+
 struct DecodeResult {
   PacketError error = PacketError::kNone;
   std::string_view field;  // the field at fault, where there is one
@@ -36,6 +42,7 @@ struct RadioFormat {
   std::string_view source; // public repository and commit the table was read from
   std::string_view notes;  // framing, float rule, traps: Markdown, for the documentation
   Carrier carrier;
+  Framing framing = Framing::kNone;
   int max_frame_bytes = 0;
   std::span<const Message> messages;
 

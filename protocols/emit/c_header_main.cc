@@ -2,14 +2,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "protocols/dongles/dongles.h"
 #include "protocols/emit/emit.h"
-
-// This tool reads tables and makes no link: it is linked without the dongles.
-namespace omnihil {
-std::unique_ptr<RadioLink> make_hermes_dongle(const RadioLinkConfig&) { return nullptr; }
-std::unique_ptr<RadioLink> make_rem_dongle(const RadioFormat&, const RadioLinkConfig&) { return nullptr; }
-}  // namespace omnihil
 
 int main(int argc, char** argv) {
   if (argc != 3) {

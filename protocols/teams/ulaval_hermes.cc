@@ -60,7 +60,7 @@ constexpr auto kNumResponse =
 constexpr auto kSpeedMoveAdvance =
     in_order(kToRobot, kSpeed,
              std::array{number("dribbler", 7, "", "dribbler level 0-3; anything else stops it"),
-                        flag("charge", "charge the kicker's capacitor"),
+                        boolean("charge", "charge the kicker's capacitor"),
                         number("kick_force", 8, "0.1 ms", "time the kicker is on; 0: no kick")});
 
 constexpr Message hermes(std::string_view name, std::uint32_t type, int size_bytes, Direction direction,
@@ -175,6 +175,7 @@ constinit const RadioFormat kFormat_ulaval_hermes{
         "- StrategyAI sends SPEED_MOVE_ADVANCE alone, one frame per robot in a burst, about 30 bursts a "
         "second.\n",
     .carrier = {.kind = Carrier::Kind::kUsbCdc},
+    .framing = Framing::kCobsZero,
     .max_frame_bytes = static_cast<int>(kLongestFrame),
     .messages = kMessages,
     .decode = decode,

@@ -1,0 +1,196 @@
+#include <cstdio>
+
+#include "protocols/codec.h"
+#include "protocols/emit/emit.h"
+
+namespace omnihil {
+namespace {
+
+// The part of the dissector that is the same for every format. Rows of `packets`:
+//   [type] = {name, size, lsb_first, fields = {{name, first bit, bits, kind, unit, scale, lo}, …}}
+constexpr std::string_view kEngine = R"lua(
+local protocol_fields = {}
+for _, packet in pairs(packets) do
+  for _, row in ipairs(packet.fields) do
+    local filter = PROTOCOL .. "." .. packet.name .. "." .. row[1]:gsub("[^%w_]", "_")
+    local label = row[1] .. (row[5] ~= "" and " (" .. row[5] .. ")" or "")
+    local make = row[4] == "float" and ProtoField.float or row[4] == "ranged" and ProtoField.double
+      or row[3] > 32 and ProtoField.uint64 or ProtoField.uint32
+    row.field = make(filter, label)
+    protocol_fields[#protocol_fields + 1] = row.field
+  end
+end
+proto.fields = protocol_fields
+
+local fault = ProtoExpert.new(PROTOCOL .. ".fault", "Refused packet", expert.group.MALFORMED, expert.severity.ERROR)
+proto.experts = { fault }
+
+-- Content of a field: a number, or a UInt64 above 32 bits.
+local function raw_of(range, row, lsb_first)
+  local first, bits = row[2], row[3]
+  if not lsb_first then return range:bitfield(first, bits) end
+  local value, weight = 0, 1
+  for bit = first, first + bits - 1 do
+    local byte = range(math.floor(bit / 8), 1):uint()
+    value = value + weight * (math.floor(byte / 2 ^ (bit % 8)) % 2)
+    weight = weight * 2
+  end
+  return value
+end
+
+local function add_field(tree, range, row, lsb_first)
+  local first, last = math.floor(row[2] / 8), math.floor((row[2] + row[3] - 1) / 8)
+  local bytes = range(first, last - first + 1)
+  if row[4] == "float" then
+    if lsb_first then tree:add_le(row.field, bytes) else tree:add(row.field, bytes) end
+  elseif row[4] == "ranged" then
+    tree:add(row.field, bytes, raw_of(range, row, lsb_first) * row[6] + row[7])
+  else
+    tree:add(row.field, bytes, raw_of(range, row, lsb_first))
+  end
+end
+
+-- One packet without framing; answers its length, 0 where no packet starts like this.
+local function add_packet(tree, range, pinfo)
+  local packet = range:len() > TYPE_BYTE and packets[range(TYPE_BYTE, 1):uint()]
+  if not packet or range:len() < packet.size then
+    tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
+    return 0
+  end
+  local size = packet.size
+  if packet.text_size_at then
+    size = math.max(size, math.min(range:len(), range(packet.text_size_at, 1):uint()))
+  end
+  local branch = tree:add(proto, range(0, size), packet.name)
+  for _, row in ipairs(packet.fields) do add_field(branch, range, row, packet.lsb_first) end
+  if size > packet.size then branch:add(range(packet.size, size - packet.size), "text: " .. range(packet.size, size - packet.size):string()) end
+  pinfo.cols.info:append(" " .. packet.name)
+  return size
+end
+)lua";
+
+constexpr std::string_view kDissectRaw = R"lua(
+function proto.dissector(buffer, pinfo, tree)
+  pinfo.cols.protocol = PROTOCOL
+  local at = 0
+  while at < buffer:len() do
+    local size = add_packet(tree, buffer(at), pinfo)
+    if size == 0 then return end
+    at = at + size
+  end
+end
+)lua";
+
+constexpr std::string_view kDissectCobs = R"lua(
+-- The bytes behind COBS, nil where the codes do not fit.
+local function uncobs(range)
+  local out, at, length = ByteArray.new(), 0, range:len()
+  out:set_size(length)
+  local count = 0
+  while at < length do
+    local code = range(at, 1):uint()
+    if code == 0 or at + code > length then return nil end
+    for i = at + 1, at + code - 1 do
+      out:set_index(count, range(i, 1):uint())
+      count = count + 1
+    end
+    at = at + code
+    if code < 255 and at < length then
+      out:set_index(count, 0)
+      count = count + 1
+    end
+  end
+  if count == 0 then return nil end
+  return out:subset(0, count)
+end
+
+function proto.dissector(buffer, pinfo, tree)
+  pinfo.cols.protocol = PROTOCOL
+  local first = 0
+  for at = 0, buffer:len() - 1 do
+    if buffer(at, 1):uint() == 0 then
+      local data = at > first and uncobs(buffer(first, at - first))
+      if data then
+        add_packet(tree, data:tvb("without COBS")(), pinfo)
+      else
+        tree:add(proto, buffer(first, at - first + 1)):add_proto_expert_info(fault, "framing")
+      end
+      first = at + 1
+    end
+  end
+end
+)lua";
+
+constexpr std::string_view kRegister = R"lua(
+-- Chosen with "Decode As": a UDP port, or the link type USER 0 of a capture of serial bytes.
+DissectorTable.get("udp.port"):add_for_decode_as(proto)
+DissectorTable.get("wtap_encap"):add(wtap.USER0, proto)
+)lua";
+
+std::string_view kind_text(FieldKind kind) {
+  if (kind == FieldKind::kFloat32) return "float";
+  if (kind == FieldKind::kRanged32) return "ranged";
+  return "number";
+}
+
+std::string field_row(const Field& field) {
+  std::string row = "    { \"" + std::string(field.name) + "\", " + std::to_string(field.bit) + ", " +
+                    std::to_string(field.bits) + ", \"" + std::string(kind_text(field.kind)) + "\", \"" +
+                    std::string(field.unit) + "\"";
+  if (field.kind == FieldKind::kRanged32) {
+    char scale[64];
+    std::snprintf(scale, sizeof scale, ", %.9g, %.9g", static_cast<double>(ranged_scale(field)), field.lo);
+    row += scale;
+  }
+  return row + " },\n";
+}
+
+int byte_of(const Message& message, FieldKind kind) {
+  for (const Field& field : message.fields) {
+    if (field.kind == kind) return field.bit / 8;
+  }
+  return 0;
+}
+
+std::string packet_entry(const Message& message) {
+  char type[16];
+  std::snprintf(type, sizeof type, "0x%02X", message.type);
+  std::string out = "  [" + std::string(type) + "] = { name = \"" + std::string(message.name) +
+                    "\", size = " + std::to_string(message.size_bytes);
+  if (message.bit_order == BitOrder::kLsbFirst) out += ", lsb_first = true";
+  if (message.text_tail) out += ", text_size_at = " + std::to_string(byte_of(message, FieldKind::kLength));
+  out += ", fields = {\n";
+  for (const Field& field : message.fields) out += field_row(field);
+  return out + "  } },\n";
+}
+
+std::string lua_name(std::string_view id) {
+  std::string name(id);
+  for (char& c : name) {
+    if (c == '-') c = '_';
+  }
+  return name;
+}
+
+}  // namespace
+
+std::string emit_wireshark(const RadioFormat& format) {
+  std::string out =
+      "-- Wireshark dissector of " + std::string(format.title) + ". Generated from the packet tables by\n";
+  out += "-- `omnihil formats " + std::string(format.id) + " --wireshark`; do not edit.\n";
+  out += "local PROTOCOL = \"" + lua_name(format.id) + "\"\n";
+  out += "local TYPE_BYTE = " + std::to_string(byte_of(format.messages.front(), FieldKind::kType)) + "\n";
+  out += "local proto = Proto(PROTOCOL, \"" + std::string(format.title) + "\")\n\n";
+  out +=
+      "-- [type] = name, bytes, fields: { name, first bit, bits, kind, unit, scale and lowest value of a "
+      "ranged one }\n";
+  out += "local packets = {\n";
+  for (const Message& message : format.messages) out += packet_entry(message);
+  out += "}\n";
+  out += kEngine;
+  out += format.framing == Framing::kCobsZero ? kDissectCobs : kDissectRaw;
+  out += kRegister;
+  return out;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,39 @@
+#include "tools/format_argument.h"
+
+#include <cstdio>
+#include <vector>
+
+#include "sim/core/params.h"
+
+namespace omnihil {
+namespace {
+
+void complain(const std::string& what, const std::string& word, const std::vector<std::string_view>& names) {
+  const std::string near(nearest_spelling(word, names));
+  std::string all;
+  for (std::string_view name : names) all += "\n  " + std::string(name);
+  std::fprintf(stderr, "omnihil: no %s '%s'%s; there are:%s\n", what.c_str(), word.c_str(),
+               near.empty() ? "" : ("; did you mean '" + near + "'?").c_str(), all.c_str());
+}
+
+}  // namespace
+
+const RadioFormat* format_or_complain(const std::string& id) {
+  const RadioFormat* format = find_radio_format(id);
+  if (format != nullptr) return format;
+  std::vector<std::string_view> names;
+  for (const RadioFormat* known : radio_formats()) names.push_back(known->id);
+  complain("radio format", id, names);
+  return nullptr;
+}
+
+const Message* message_or_complain(const RadioFormat& format, const std::string& name) {
+  const Message* message = format.find(name);
+  if (message != nullptr) return message;
+  std::vector<std::string_view> names;
+  for (const Message& known : format.messages) names.push_back(known.name);
+  complain("packet of " + std::string(format.id), name, names);
+  return nullptr;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,84 @@
+// omnihil decode FORMAT: hex lines of whole wire frames to JSON lines.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+#include "tools/exit_codes.h"
+#include "tools/format_argument.h"
+#include "tools/packet_json.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+constexpr const char* kExample =
+    "Reads one whole frame in hex per line (spaces and ':' between bytes are allowed) and prints one JSON "
+    "line each:\n"
+    "{\"packet\": NAME, \"fields\": {...}}, or {\"error\": CAUSE, \"field\": NAME} for a frame that is "
+    "refused.\n"
+    "Exit code 2 if a line was no hex. Example:\n"
+    "  echo 0301fe03024101010101010480bf0101010100 | omnihil decode ulaval-hermes";
+
+int digit_of(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+// False when a character is no hex digit or one digit is missing.
+bool bytes_from_hex(const std::string& line, std::vector<std::uint8_t>& bytes) {
+  bytes.clear();
+  int high = -1;
+  for (char c : line) {
+    if (high < 0 && (c == ' ' || c == '\t' || c == '\r' || c == ':')) continue;
+    const int digit = digit_of(c);
+    if (digit < 0) return false;
+    if (high < 0) {
+      high = digit;
+    } else {
+      bytes.push_back(static_cast<std::uint8_t>(16 * high + digit));
+      high = -1;
+    }
+  }
+  return high < 0;
+}
+
+std::string json_of(const DecodeResult& result) {
+  if (result.error == PacketError::kNone) return packet_to_json(result.values);
+  std::string out = "{\"error\":\"" + std::string(to_string(result.error)) + "\"";
+  if (!result.field.empty()) out += ",\"field\":\"" + std::string(result.field) + "\"";
+  return out + "}";
+}
+
+int run(const std::string& format_id) {
+  const RadioFormat* format = format_or_complain(format_id);
+  if (format == nullptr) return kExitBadInput;
+  int exit_code = kExitOk;
+  std::string line;
+  std::vector<std::uint8_t> frame;
+  for (int line_number = 1; std::getline(std::cin, line); ++line_number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (bytes_from_hex(line, frame)) {
+      std::cout << json_of(format->decode(frame)) << std::endl;
+    } else {
+      std::cout << "{\"error\":\"not hex\"}" << std::endl;
+      std::fprintf(stderr, "omnihil decode: line %d: not hex: %s\n", line_number, line.c_str());
+      exit_code = kExitBadInput;
+    }
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+void add_verb_decode(CLI::App& app, VerbResult& result) {
+  auto format = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("decode", "radio packets in hex to JSON lines");
+  verb->add_option("FORMAT", *format, "radio format, e.g. ulaval-hermes; see `omnihil formats`")->required();
+  verb->footer(kExample);
+  verb->callback([format, &result] { result.exit_code = run(*format); });
+}
+
+}  // namespace omnihil
