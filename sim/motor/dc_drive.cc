@@ -8,15 +8,6 @@
 namespace omnihil {
 namespace {
 
-// What moves during one call.
-struct Flow {
-  double current_A = 0.0;
-  double omega_rad_s = 0.0;
-  double charge_C = 0.0;     // integral of i
-  double square_A2_s = 0.0;  // integral of i^2
-  double energy_J = 0.0;     // integral of u i
-};
-
 // What is held during one call.
 struct Held {
   const DcDrive& drive;
@@ -24,15 +15,13 @@ struct Held {
   double tau_load_Nm = 0.0;
 };
 
-Flow after(const Held& held, Flow flow, const DcStep& step, double voltage_V) {
-  const double before_C = flow.charge_C;
-  apply(step, flow.current_A, flow.omega_rad_s, voltage_V, held.tau_load_Nm, flow.charge_C, flow.square_A2_s);
-  flow.energy_J += voltage_V * (flow.charge_C - before_C);
+DcFlow after(const Held& held, DcFlow flow, const DcStep& step, double voltage_V) {
+  apply(step, flow, voltage_V, held.tau_load_Nm);
   return flow;
 }
 
 // Any number of sub-steps with the voltage held, in as few exact steps as there are bits.
-Flow after_substeps(const Held& held, Flow flow, double voltage_V, int substeps) {
+DcFlow after_substeps(const Held& held, DcFlow flow, double voltage_V, int substeps) {
   for (int n = kLongerSteps - 1; n >= 0; --n) {
     for (; substeps >= 1 << n; substeps -= 1 << n) {
       flow = after(held, flow, held.drive.longer[static_cast<std::size_t>(n)], voltage_V);
@@ -42,12 +31,13 @@ Flow after_substeps(const Held& held, Flow flow, double voltage_V, int substeps)
 }
 
 // The current stays as it is for a time, by whatever voltage that takes.
-Flow after_hold(const Held& held, Flow flow, double time_s) {
+DcFlow after_hold(const Held& held, DcFlow flow, double time_s) {
   const auto& c = held.drive.constants;
   const double i = flow.current_A;
   const double omega_rad_s2 = (c.torque_constant_Nm_per_A * i - held.tau_load_Nm) / c.inertia_kg_m2;
   const double angle_rad = time_s * (flow.omega_rad_s + 0.5 * omega_rad_s2 * time_s);
   flow.omega_rad_s += omega_rad_s2 * time_s;
+  flow.angle_rad += angle_rad;
   flow.charge_C += i * time_s;
   flow.square_A2_s += i * i * time_s;
   // u i = R i^2 + k i omega
@@ -57,12 +47,12 @@ Flow after_hold(const Held& held, Flow flow, double time_s) {
 
 // Voltage held until the current is exactly `bound_A`, which it must pass within this sub-step. Halving finds
 // the instant to 2^-16 of a sub-step, the rest is a straight line. `left_s`: what is left of the sub-step.
-Flow after_reaching(const Held& held, Flow flow, double voltage_V, double bound_A, double& left_s) {
+DcFlow after_reaching(const Held& held, DcFlow flow, double voltage_V, double bound_A, double& left_s) {
   const auto& c = held.drive.constants;
   const bool from_above = flow.current_A > bound_A;
   left_s = held.drive.step_s;
   for (const DcStep& step : held.drive.shorter) {
-    const Flow trial = after(held, flow, step, voltage_V);
+    const DcFlow trial = after(held, flow, step, voltage_V);
     if (trial.current_A == bound_A || (trial.current_A > bound_A) != from_above) continue;
     flow = trial;
     left_s -= step.step_s;
@@ -78,34 +68,36 @@ Flow after_reaching(const Held& held, Flow flow, double voltage_V, double bound_
   flow.charge_C += mean_A * rest_s;
   flow.square_A2_s += (i * i + i * bound_A + bound_A * bound_A) / 3.0 * rest_s;
   flow.energy_J += voltage_V * mean_A * rest_s;
-  flow.omega_rad_s += (c.torque_constant_Nm_per_A * mean_A - held.tau_load_Nm) / c.inertia_kg_m2 * rest_s;
+  const double omega_rad_s2 = (c.torque_constant_Nm_per_A * mean_A - held.tau_load_Nm) / c.inertia_kg_m2;
+  flow.angle_rad += rest_s * (flow.omega_rad_s + 0.5 * omega_rad_s2 * rest_s);
+  flow.omega_rad_s += omega_rad_s2 * rest_s;
   flow.current_A = bound_A;
   left_s -= rest_s;
   return flow;
 }
 
-Flow after_coasting(const Held& held, const Flow& flow) {
+DcFlow after_coasting(const Held& held, const DcFlow& flow) {
   const auto& c = held.drive.constants;
   const bool conducting = flow.current_A != 0.0 && c.inductance_H > 0.0;
   const double emf_V = c.torque_constant_Nm_per_A * flow.omega_rad_s;
   const bool rectifying = !conducting && std::abs(emf_V) > held.bus_V;
-  Flow start = flow;
+  DcFlow start = flow;
   if (!conducting) start.current_A = 0.0;
   if (!conducting && !rectifying) return after_hold(held, start, held.drive.step_s);
 
   // diodes: u = -sign(i) bus; a current that is about to begin has the sign that brakes
   const double sign = conducting ? std::copysign(1.0, start.current_A) : -std::copysign(1.0, emf_V);
   const double voltage_V = -sign * held.bus_V;
-  const Flow whole = after(held, start, held.drive.longer[0], voltage_V);
+  const DcFlow whole = after(held, start, held.drive.longer[0], voltage_V);
   if (whole.current_A * sign > 0.0) return whole;
   if (!conducting) return after_hold(held, start, held.drive.step_s);
   double left_s = 0.0;
-  const Flow empty = after_reaching(held, start, voltage_V, 0.0, left_s);
+  const DcFlow empty = after_reaching(held, start, voltage_V, 0.0, left_s);
   return after_hold(held, empty, left_s);
 }
 
 // One sub-step under the chopper; see the header.
-Flow after_limited(const Held& held, Flow flow, double voltage_V) {
+DcFlow after_limited(const Held& held, DcFlow flow, double voltage_V) {
   const auto& c = held.drive.constants;
   const double limit_A = held.drive.current_limit_A;
   bool at_limit = false;
@@ -114,7 +106,7 @@ Flow after_limited(const Held& held, Flow flow, double voltage_V) {
     at_limit = std::abs(flow.current_A) > limit_A;
     if (at_limit) flow.current_A = std::copysign(limit_A, flow.current_A);
   }
-  const Flow whole = after(held, flow, held.drive.longer[0], voltage_V);
+  const DcFlow whole = after(held, flow, held.drive.longer[0], voltage_V);
   if (std::abs(whole.current_A) <= limit_A && !at_limit) return whole;
 
   const double sign = std::copysign(1.0, at_limit ? flow.current_A : whole.current_A);
@@ -123,7 +115,7 @@ Flow after_limited(const Held& held, Flow flow, double voltage_V) {
   if (flow.current_A * sign > limit_A) {
     const double off_V =
         -sign * held.bus_V;  // above the limit from before: switched off, the diodes pull it down
-    const Flow off = after(held, flow, held.drive.longer[0], off_V);
+    const DcFlow off = after(held, flow, held.drive.longer[0], off_V);
     if (off.current_A * sign > limit_A) return off;
     flow = after_reaching(held, flow, off_V, bound_A, left_s);
   } else if (flow.current_A != bound_A) {
@@ -137,7 +129,7 @@ Flow after_limited(const Held& held, Flow flow, double voltage_V) {
 }
 
 // True when no current within the call can reach the limit: then the unlimited law is exact.
-bool limit_out_of_reach(const Held& held, const Flow& flow, double voltage_V, double time_s) {
+bool limit_out_of_reach(const Held& held, const DcFlow& flow, double voltage_V, double time_s) {
   const DcDrive& d = held.drive;
   const auto& c = d.constants;
   if (d.current_limit_A <= 0.0) return true;
@@ -190,7 +182,7 @@ DcDriveResult advance_drive(const DcDrive& drive, DcDriveState& state, const DcD
                             int substeps) {
   const Held held{.drive = drive, .bus_V = input.bus_voltage_V, .tau_load_Nm = input.tau_load_Nm};
   const double time_s = drive.step_s * substeps;
-  Flow flow{.current_A = state.current_A, .omega_rad_s = input.omega_rotor_rad_s};
+  DcFlow flow{.current_A = state.current_A, .omega_rad_s = input.omega_rotor_rad_s};
   if (input.mode == OMNIHIL_DRIVE_DUTY) {
     const double limit = drive.duty_limit_ratio;
     const double voltage_V = std::clamp(input.duty_ratio, -limit, limit) * input.bus_voltage_V;
@@ -204,7 +196,7 @@ DcDriveResult advance_drive(const DcDrive& drive, DcDriveState& state, const DcD
   }
   state.current_A = flow.current_A;
 
-  DcDriveResult out{.omega_end_rad_s = flow.omega_rad_s};
+  DcDriveResult out{.omega_end_rad_s = flow.omega_rad_s, .angle_rad = flow.angle_rad};
   if (substeps <= 0) return out;
   out.mean_current_A = flow.charge_C / time_s;
   out.mean_torque_Nm = drive.constants.torque_constant_Nm_per_A * out.mean_current_A;

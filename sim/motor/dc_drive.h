@@ -65,6 +65,7 @@ struct DcDriveResult {
   double heat_J = 0.0;               // R i^2 over the call
   double electrical_energy_J = 0.0;  // u i over the call: taken from the supply
   double omega_end_rad_s = 0.0;      // predicted with the load held
+  double angle_rad = 0.0;            // turned during the call, predicted likewise
 };
 
 // The inertia that turns with the rotor besides it: wheel (and, if rigidly coupled, robot) over gear^2.

@@ -76,6 +76,7 @@ DcStep make_dc_step(const DcDriveConstants<double>& constants, double step_s) {
     out.current_row[at] = static_cast<double>(current(row));
     out.omega_row[at] = static_cast<double>(e.transition(1, row));
     out.charge_row[at] = static_cast<double>(charge(row));
+    out.angle_row[at] = static_cast<double>(e.sum(1, row));
     for (int col = row; col < 4; ++col) {
       out.square_form[n++] = static_cast<double>((row == col ? 1 : 2) * e.square(row, col));
     }
