@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <memory>
 
+#include "firmware_iface/host_firmware.h"
 #include "hil/clock.h"
 #include "hil/pty_transport.h"
 #include "hil/recording_header.h"
@@ -22,6 +25,16 @@ constexpr std::int64_t kStatusEvery_ns = 50'000'000;  // of wall time
 constexpr int kFifoPriority = 50;                     // below the kernel's own threads at 99, above all else
 
 void complain(const std::string& what) { std::fprintf(stderr, "omnihil serve: %s\n", what.c_str()); }
+
+// "2026-03-01T12:34:56Z"
+std::string wall_time_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
 
 LinePace pace_of(const Carrier& carrier, const ServeOptions& options) {
   if (!options.pacing) return {};
@@ -58,6 +71,7 @@ class Bench {
   std::unique_ptr<HostPort> port_;
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<Clock> clock_;
+  std::string model_;  // as the user named it
   LinePace pace_;
   std::int64_t start_ns_ = 0;
   std::vector<std::uint8_t> host_;
@@ -94,11 +108,10 @@ bool Bench::open(RecordingHeader header) {
 
 void Bench::say_ready() const {
   const SessionConfig& config = session_.config();
-  fmt::print("device {} ready: {} ({}), robots {} of {}, team {}, {}, {}\n", options_.device,
+  fmt::print("device {} ready: {} ({}), robots {} of model {}, team {}, {}, {}\n", options_.device,
              config.radio_format, carrier_words(find_radio_format(config.radio_format)->carrier, pace_),
-             fmt::join(config.robot_ids, " "), config.robots[0].name,
-             config.team == Team::kBlue ? "blue" : "yellow", to_string(config.plant.physics),
-             options_.real_time ? "real time" : "free-running");
+             fmt::join(config.robot_ids, " "), model_, config.team == Team::kBlue ? "blue" : "yellow",
+             to_string(config.plant.physics), options_.real_time ? "real time" : "free-running");
   std::fflush(stdout);
 }
 
@@ -111,6 +124,10 @@ ServeStatus Bench::status() const {
   s.from_host = session_.link().from_host();
   s.from_robots = session_.link().from_robots();
   s.gains_refused = session_.gains_refused();
+  for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
+    const auto* host = dynamic_cast<const HostFirmware*>(&session_.firmware(static_cast<int>(i)));
+    if (host != nullptr) s.firmware_faults += host->faults().total();
+  }
   s.port = port_->counts();
   take_clock(clock_->report(), s);
   const RobotTruth truth = session_.plant().truth(0);
@@ -173,6 +190,8 @@ void Bench::finish_recording() {
 }
 
 ServeEnd Bench::run(RecordingHeader header) {
+  model_ = header.robot_model;
+  header.started = wall_time_text();
   if (!open(std::move(header))) return ServeEnd::kIo;
   start_ns_ = monotonic_now_ns();
   if (options_.real_time) {

@@ -101,8 +101,13 @@ std::string final_report(const ServeStatus& s) {
                                  seconds(s.now_ns), s.steps, seconds(s.wall_ns));
   text += packet_line("from the host", s.from_host);
   text += packet_line("from the robots", s.from_robots);
-  if (s.gains_refused > 0)
+  if (s.gains_refused > 0) {
     text += fmt::format("  gains            {} sets refused by the firmware\n", s.gains_refused);
+  }
+  if (s.firmware_faults > 0) {
+    text += fmt::format("  firmware         {} requests that no hardware could take, refused\n",
+                        s.firmware_faults);
+  }
   return text + port_lines(s) + lateness_lines(s);
 }
 

@@ -22,7 +22,8 @@ struct ServeStatus {
   bool host_present = false;
   PacketCounts from_host;
   PacketCounts from_robots;
-  std::uint64_t gains_refused = 0;
+  std::uint64_t gains_refused = 0;    // sets that came over the air
+  std::uint64_t firmware_faults = 0;  // requests of the firmware that no hardware could take
   HostPortCounts port;
   // Of the clock; the histogram itself stays where it is.
   bool real_time = false;

@@ -1,0 +1,142 @@
+// `omnihil serve`: robots behind a virtual radio dongle. Options here, the work in hil/serve.h.
+#include "hil/serve.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "firmware_iface/host_firmware.h"
+#include "hil/model_store.h"
+#include "hil/recording_header.h"
+#include "hil/session_setup.h"
+#include "protocols/radio_format.h"
+#include "tools/exit_codes.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+constexpr const char* kDefaultRadio = "ulaval-hermes";
+
+struct Words {  // as the user gave them
+  std::string robot = "omni_default";
+  std::string radio;
+  std::string robots = "0-5";
+  std::string team = "blue";
+  std::string physics = "simbody";
+  std::string clock = "real";
+  double duration_s = 0.0;
+  double step_ms = 1.0;
+  bool no_pacing = false;
+  std::int64_t baud = 0;
+  SessionSetup setup;
+  ServeOptions options;
+};
+
+void complain(const std::string& lines) { std::fprintf(stderr, "omnihil serve:\n%s\n", lines.c_str()); }
+
+// All problems of the words at once, a line each; empty when `words.setup` can be used.
+std::string understand(Words& words) {
+  std::vector<std::string> problems;
+  SessionSetup& setup = words.setup;
+  const StoredModel stored = load_robot_model(words.robot, {OMNIHIL_SOURCE_MODELS});
+  for (const ModelProblem& problem : stored.problems) problems.push_back(problem.text());
+  setup.model = stored.bundle;
+  setup.radio_format = words.radio;
+  if (setup.radio_format.empty() && stored.model) setup.radio_format = stored.model->radio;
+  if (setup.radio_format.empty()) setup.radio_format = kDefaultRadio;
+  setup.robot_ids = parse_robot_list(words.robots, problems);
+  setup.team = words.team == "blue" ? Team::kBlue : Team::kYellow;
+  setup.plant.physics = *parse_physics(words.physics);
+  setup.step_ns = static_cast<std::int64_t>(words.step_ms * 1e6 + 0.5);
+  words.options.real_time = words.clock == "real";
+  words.options.duration_ns = static_cast<std::int64_t>(words.duration_s * 1e9 + 0.5);
+  words.options.pacing = !words.no_pacing;
+  if (words.baud > 0) words.options.baud = words.baud;
+  if (words.options.strict && !words.options.real_time) {
+    problems.push_back("--strict: of no meaning with --clock free");
+  }
+  if (stored.problems.empty()) {
+    SessionSetup rest = setup;  // a list of robots that was not understood has been named already
+    if (!problems.empty()) rest.robot_ids = {0};
+    try {
+      session_config(rest);
+    } catch (const std::invalid_argument& error) {
+      problems.push_back(error.what());
+    }
+  }
+  std::string text;
+  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
+  return text;
+}
+
+int run(Words& words) {
+  const std::string problems = understand(words);
+  if (!problems.empty()) {
+    complain(problems);
+    return kExitBadInput;
+  }
+  try {
+    const ServeEnd end = serve(session_config(words.setup), make_reference_firmware,
+                               recording_header(words.setup, OMNIHIL_COMMIT), words.options);
+    switch (end) {
+      case ServeEnd::kDone:
+        return kExitOk;
+      case ServeEnd::kIo:
+        return kExitIo;
+      case ServeEnd::kDiverged:
+        return kExitDiverged;
+      case ServeEnd::kLate:
+        return kExitLate;
+    }
+  } catch (const std::invalid_argument& error) {
+    complain(error.what());
+    return kExitBadInput;
+  }
+  return kExitDiverged;
+}
+
+}  // namespace
+
+void add_verb_serve(CLI::App& app, VerbResult& result) {
+  auto words = std::make_shared<Words>();
+  CLI::App* verb = app.add_subcommand(
+      "serve", "robots behind a virtual radio dongle that an AI host opens as a serial port");
+  Words& w = *words;
+  verb->add_option("--robot", w.robot, "robot model: a name or a .toml file")->capture_default_str();
+  verb->add_option("--radio", w.radio, "radio format (default: the robot model's own, else ulaval-hermes)");
+  verb->add_option("--device", w.options.device, "name of the serial device to make")->capture_default_str();
+  verb->add_option("--robots", w.robots, "robot ids: 0-5 or 0,2,7")->capture_default_str();
+  verb->add_option("--team", w.team, "team colour")
+      ->check(CLI::IsMember({"blue", "yellow"}))
+      ->capture_default_str();
+  verb->add_option("--record", w.options.record, "write a recording to this file");
+  verb->add_option("--seed", w.setup.plant.seed, "seed of everything random")->capture_default_str();
+  verb->add_option("--physics", w.physics,
+                   "simbody, planar (closed form, fast) or simbody-free (pitch, roll, lift)")
+      ->check(CLI::IsMember({"simbody", "planar", "simbody-free"}))
+      ->capture_default_str();
+  verb->add_option("--clock", w.clock, "real: real time; free: virtual time as fast as it goes")
+      ->check(CLI::IsMember({"real", "free"}))
+      ->capture_default_str();
+  verb->add_option("--duration", w.duration_s, "end after this much simulated time, in s (default: never)")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--step", w.step_ms, "loop step in ms")
+      ->check(CLI::Range(0.05, 100.0))
+      ->capture_default_str();
+  verb->add_option("--epoch-ms", w.setup.epoch_ms,
+                   "Unix time in ms at simulated time 0, for packets that carry one")
+      ->capture_default_str();
+  verb->add_flag("--no-pacing", w.no_pacing, "do not hold bytes to the carrier's rate");
+  verb->add_option("--baud", w.baud, "hold bytes to this rate (8N1) instead of the carrier's")
+      ->check(CLI::Range(std::int64_t{50}, std::int64_t{100'000'000}));
+  verb->add_flag("--strict", w.options.strict,
+                 "end with exit code 5 when this computer cannot keep up with real time");
+  verb->add_flag("--fifo", w.options.fifo, "real-time scheduling (SCHED_FIFO) and locked memory");
+  verb->add_flag("--quiet", w.options.quiet, "only the ready line and errors");
+  verb->callback([words, &result] { result.exit_code = run(*words); });
+}
+
+}  // namespace omnihil
