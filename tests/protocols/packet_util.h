@@ -1,0 +1,121 @@
+// Hex, JSON and golden packets for the tests of the radio formats.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+
+using Bytes = std::vector<std::uint8_t>;
+
+inline Bytes from_hex(const std::string& hex) {
+  Bytes bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+    bytes.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(i, 2), nullptr, 16)));
+  }
+  return bytes;
+}
+
+inline std::string to_hex(const Bytes& bytes) {
+  std::string hex;
+  for (std::uint8_t byte : bytes) {
+    hex += "0123456789abcdef"[byte >> 4];
+    hex += "0123456789abcdef"[byte & 15];
+  }
+  return hex;
+}
+
+inline void set_from_json(Values& values, const std::string& field, const nlohmann::json& given) {
+  const int index = values.message->field_index(field);
+  ASSERT_GE(index, 0) << values.message->name << " has no field " << field;
+  Value& value = values.fields[static_cast<std::size_t>(index)];
+  value.number = given.is_boolean() ? (given.get<bool>() ? 1.0 : 0.0) : given.get<double>();
+  // Integers above 2^53 do not fit a double.
+  value.raw = given.is_number_unsigned() ? given.get<std::uint64_t>() : 0;
+}
+
+// Values of `message` from the team's own names. `text` must outlive the result.
+inline Values values_from_json(const Message& message, const nlohmann::json& given, std::string& text) {
+  Values values;
+  values.message = &message;
+  for (const auto& [key, value] : given.items()) {
+    if (key == "text") {
+      text = value.get<std::string>();
+      values.text = text;
+    } else if (value.is_array()) {
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        set_from_json(values, key + "[" + std::to_string(i) + "]", value[i]);
+      }
+    } else {
+      set_from_json(values, key, value);
+    }
+  }
+  return values;
+}
+
+struct GoldenPacket {
+  const RadioFormat* format = nullptr;
+  const Message* message = nullptr;
+  nlohmann::json given;
+  Bytes frame;
+};
+
+// Every packet type of every format with values chosen here; the bytes come from a second implementation,
+// written in another language from the formats' descriptions.
+inline std::vector<GoldenPacket> golden_packets() {
+  std::vector<GoldenPacket> packets;
+  std::ifstream file(OMNIHIL_SOURCE_DIR "/tests/protocols/golden/packets.jsonl");
+  for (std::string line; std::getline(file, line);) {
+    const nlohmann::json row = nlohmann::json::parse(line);
+    GoldenPacket packet;
+    packet.format = find_radio_format(row.at("format").get<std::string>());
+    packet.message = packet.format->find(row.at("packet").get<std::string>());
+    packet.given = row.at("in");
+    packet.frame = from_hex(row.at("hex").get<std::string>());
+    packets.push_back(packet);
+  }
+  return packets;
+}
+
+// The folder of reference data, "" when there is none.
+inline std::string shared_folder() {
+  const char* path = std::getenv("OMNIHIL_SHARED");
+  if (path == nullptr || !std::ifstream(std::string(path) + "/vectors/README.md")) return "";
+  return path;
+}
+
+inline nlohmann::json read_json(const std::string& path) {
+  std::ifstream file(path);
+  return nlohmann::json::parse(file);
+}
+
+// decode(encode(decode(frame))) is decode(frame), and the bytes come back; refused frames name a cause.
+// True when the frame was accepted.
+inline bool survives_round_trip(const RadioFormat& format, const Bytes& frame) {
+  const DecodeResult first = format.decode(frame);
+  if (first.error != PacketError::kNone) {
+    EXPECT_NE(to_string(first.error), "?");
+    return false;
+  }
+  Bytes again;
+  const auto encoded = format.encode(first.values, again);
+  EXPECT_EQ(encoded.error, PacketError::kNone) << to_hex(frame) << " field " << encoded.field;
+  EXPECT_EQ(to_hex(again), to_hex(frame));
+  const DecodeResult second = format.decode(again);
+  EXPECT_EQ(second.error, PacketError::kNone);
+  EXPECT_EQ(second.values.message, first.values.message);
+  EXPECT_EQ(second.values.text, first.values.text);
+  for (std::size_t i = 0; i < first.values.message->fields.size(); ++i) {
+    EXPECT_EQ(second.values.fields[i].raw, first.values.fields[i].raw);
+    EXPECT_EQ(second.values.fields[i].number, first.values.fields[i].number);
+  }
+  return true;
+}
+
+}  // namespace omnihil

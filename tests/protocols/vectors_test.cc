@@ -1,0 +1,147 @@
+// Packets made by the teams' own programs, from the folder of reference data.
+#include <cstdio>
+
+#include "tests/protocols/packet_util.h"
+
+namespace omnihil {
+namespace {
+
+using nlohmann::json;
+
+#define SKIP_WITHOUT_SHARED()                 \
+  const std::string shared = shared_folder(); \
+  if (shared.empty()) GTEST_SKIP() << "OMNIHIL_SHARED does not name the folder of reference data"
+
+bool same_float32(double a, double b) { return static_cast<float>(a) == static_cast<float>(b); }
+
+// A decoded field against what the team's decoder says of it.
+void expect_value(const Values& values, const std::string& name, const json& expected) {
+  if (expected.is_array()) {
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      expect_value(values, name + "[" + std::to_string(i) + "]", expected[i]);
+    }
+    return;
+  }
+  const int index = values.message->field_index(name);
+  ASSERT_GE(index, 0) << values.message->name << " has no field " << name;
+  const Value& value = values.fields[static_cast<std::size_t>(index)];
+  if (expected.is_boolean()) {
+    EXPECT_EQ(value.raw != 0, expected.get<bool>()) << name;
+  } else if (expected.is_number_integer()) {
+    EXPECT_EQ(value.raw, expected.get<std::uint64_t>()) << values.message->name << "." << name;
+  } else {
+    EXPECT_TRUE(same_float32(value.number, expected.get<double>()))
+        << values.message->name << "." << name << ": " << value.number << " instead of " << expected;
+  }
+}
+
+void expect_both_ways(const RadioFormat& format, const std::string& packet, const json& given,
+                      const json& decoded, const std::string& hex) {
+  const Message* message = format.find(packet);
+  ASSERT_NE(message, nullptr) << packet;
+  std::string text;
+  Bytes frame;
+  const auto encoded = format.encode(values_from_json(*message, given, text), frame);
+  EXPECT_EQ(encoded.error, PacketError::kNone) << packet << " field " << encoded.field;
+  EXPECT_EQ(to_hex(frame), hex) << packet << " " << given;
+  const DecodeResult result = format.decode(from_hex(hex));
+  ASSERT_EQ(result.error, PacketError::kNone) << packet << " field " << result.field;
+  EXPECT_EQ(result.values.message, message);
+  for (const auto& [name, value] : decoded.items()) expect_value(result.values, name, value);
+}
+
+// All fields that people see are named in the team's own packet, and the reverse.
+void expect_same_names(const Message& message, const json& decoded) {
+  for (const Field& field : message.fields) {
+    const std::string key(field.name.substr(0, field.name.find('[')));
+    EXPECT_EQ(decoded.contains(key), !field.envelope) << message.name << "." << key;
+  }
+}
+
+int check_rem(const std::string& id) {
+  const RadioFormat& format = *find_radio_format(id);
+  const json file = read_json(shared_folder() + "/vectors/" + id + ".json");
+  int rows = 0;
+  EXPECT_EQ(file.at("packets").size(), format.messages.size());
+  for (const auto& [name, packet] : file.at("packets").items()) {
+    const Message* message = format.find(name);
+    if (message == nullptr) {
+      ADD_FAILURE() << name;
+      continue;
+    }
+    EXPECT_EQ(message->type, packet.at("type").get<std::uint32_t>()) << name;
+    EXPECT_EQ(message->size_bytes, packet.at("size").get<int>()) << name;
+    expect_same_names(*message, packet.at("vectors").at(0).at("decoded"));
+    for (const json& row : packet.at("vectors")) {
+      expect_both_ways(format, name, row.at("in"), row.at("decoded"), row.at("hex").get<std::string>());
+      ++rows;
+    }
+  }
+  return rows;
+}
+
+TEST(TeamVectors, RemV8BothWays) {
+  SKIP_WITHOUT_SHARED();
+  const int rows = check_rem("roboteam-rem-v8");
+  EXPECT_EQ(rows, 17 * 12);
+  std::printf("roboteam-rem-v8: %d packets both ways\n", rows);
+}
+
+TEST(TeamVectors, RemV5BothWays) {
+  SKIP_WITHOUT_SHARED();
+  const int rows = check_rem("roboteam-rem-v5");
+  EXPECT_EQ(rows, 16 * 12);
+  std::printf("roboteam-rem-v5: %d packets both ways\n", rows);
+}
+
+TEST(TeamVectors, HermesBothWays) {
+  SKIP_WITHOUT_SHARED();
+  const RadioFormat& format = *find_radio_format("ulaval-hermes");
+  const json file = read_json(shared + "/vectors/ulaval-hermes.json");
+  int rows = 0;
+  for (const json& row : file.at("vectors")) {
+    const std::string packet = row.at("type").get<std::string>();
+    expect_both_ways(format, packet, row.at("in"), row.at("in"), row.at("wire").get<std::string>());
+    expect_same_names(*format.find(packet), row.at("in"));
+    ++rows;
+  }
+  EXPECT_EQ(rows, 93);
+  std::printf("ulaval-hermes: %d packets both ways\n", rows);
+}
+
+TEST(TeamVectors, HermesBadFramesAreRefusedWithTheirCause) {
+  SKIP_WITHOUT_SHARED();
+  const RadioFormat& format = *find_radio_format("ulaval-hermes");
+  const json file = read_json(shared + "/vectors/ulaval-hermes.json");
+  std::map<std::string, PacketError> expected{{"robot_reply_ok", PacketError::kNone},
+                                              {"bad_version", PacketError::kVersion},
+                                              {"other_destination", PacketError::kAddress}};
+  for (const json& row : file.at("negative")) {
+    const std::string name = row.at("name").get<std::string>();
+    ASSERT_TRUE(expected.contains(name)) << name;
+    EXPECT_EQ(format.decode(from_hex(row.at("wire").get<std::string>())).error, expected.at(name)) << name;
+  }
+}
+
+TEST(TeamVectors, TheRealHostsStreamDecodesWithoutOneRefusal) {
+  SKIP_WITHOUT_SHARED();
+  const RadioFormat& format = *find_radio_format("ulaval-hermes");
+  const json file = read_json(shared + "/vectors/ulaval-strategyai-host-stream.json");
+  PacketCounts counts;
+  for (const json& row : file.at("sessions").at("lineup")) {
+    const Bytes frame = from_hex(row.at(1).get<std::string>());
+    const DecodeResult result = format.decode(frame);
+    counts.count(result.error);
+    ASSERT_EQ(result.error, PacketError::kNone) << to_hex(frame);
+    EXPECT_EQ(result.values.message->name, "SPEED_MOVE_ADVANCE");
+    EXPECT_LE(result.values.number("robot"), 5.0);
+    EXPECT_TRUE(survives_round_trip(format, frame));
+  }
+  EXPECT_EQ(counts.good, 1035u);
+  EXPECT_EQ(counts.refused(), 0u);
+  std::printf("host stream: %llu frames good, %llu refused\n", static_cast<unsigned long long>(counts.good),
+              static_cast<unsigned long long>(counts.refused()));
+}
+
+}  // namespace
+}  // namespace omnihil
