@@ -59,9 +59,9 @@ class HermesDongle final : public RadioLink {
   }
 
   void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
-    PacketError error = format_.decode(frame).error;
-    if (error == PacketError::kNone &&
-        format_.decode(frame).values.message->direction == Direction::kToRobot) {
+    const DecodeResult result = format_.decode(frame);
+    PacketError error = result.error;
+    if (error == PacketError::kNone && result.values.message->direction == Direction::kToRobot) {
       error = PacketError::kDirection;
     }
     if (error == PacketError::kNone) error = take_answer(robot_id, frame, now_ns);
@@ -242,10 +242,9 @@ void HermesDongle::finish(std::int64_t at_ns) {
 // An answer that the firmware itself sent. The dongle listens only while it waits for one.
 PacketError HermesDongle::take_answer(int robot_id, std::span<const std::uint8_t> frame,
                                       std::int64_t now_ns) {
-  const bool listening =
-      (phase_ == Phase::kAcknowledge || phase_ == Phase::kAwait || phase_ == Phase::kOnAir) &&
-      queue_.front().tries > 0 && !answered_;
-  if (!listening) return PacketError::kOverrun;
+  if (phase_ == Phase::kIdle || queue_.front().tries == 0 || answered_) return PacketError::kOverrun;
+  const bool first_on_its_way = phase_ == Phase::kOnAir && tries_left_ == queue_.front().tries;
+  if (first_on_its_way) return PacketError::kOverrun;
   if (queue_.front().robot != robot_id) return PacketError::kAddress;
   answered_ = true;
   answer_.assign(frame.begin(), frame.end());
