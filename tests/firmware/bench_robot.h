@@ -4,7 +4,7 @@
 //   winding   L di/dt = u - R i - k omega            body   (M + A^T A J/r^2) dv/dt = A^T tau_wheel / r
 //   rotor     tau = k i - friction                   wheel  omega = A v / r
 //
-// Explicit Euler at 10 us; A is the matrix of eq. (5) in its corrected form, M = diag(m, m, I).
+// Explicit Euler at 25 us, a tenth of the winding's time constant; A is the matrix of eq. (5) in its corrected form, M = diag(m, m, I).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -94,7 +94,7 @@ class BenchRobot {
   }
 
   void advance_1ms(const RobotDrive& drive) {
-    for (int n = 0; n < 100; ++n) step(drive, 1e-5);
+    for (int n = 0; n < 40; ++n) step(drive, 25e-6);
     now_us_ += 1000;
   }
 
