@@ -73,6 +73,11 @@ std::vector<ModelConflict> model_conflicts(const ParameterTable& table, std::uin
   std::vector<ModelConflict> out;
   Checks c(table, out);
   if (rig != kRigLinearAxis) check_encoder(c);
+  if (rig == kRigAxis) {
+    c.need(c["load.inertia_kg_m2"] > 0.0 || c["motor.rotor_inertia_kg_m2"] > 0.0, "load.inertia_kg_m2",
+           "there is nothing to move",
+           "needed: a rotor_inertia_kg_m2 in [motor] or an inertia_kg_m2 in [load]");
+  }
   if (rig == kRigRobot) {
     check_tyre(c, "tyre.longitudinal");
     check_tyre(c, "tyre.lateral");

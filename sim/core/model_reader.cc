@@ -1,6 +1,7 @@
 #include "sim/core/model_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,6 +87,7 @@ void ModelReader::read_section(const std::string& section, const toml::table& ta
     } else if (is_model_section(path)) {
       wrong(node, path, fmt::format("is {}, but this name is a section", kind_of(node)),
             fmt::format("write [{}] and its keys below it", path));
+      spoil(path);
     } else {
       unknown_key(section, key, node);
     }
@@ -111,25 +113,32 @@ void ModelReader::read_effects(const toml::table& table) {
   }
 }
 
+// What stands under a name that is wrong is not missing as well.
+void ModelReader::spoil(std::string_view path) {
+  for (const ParameterRow& row : model_rows()) {
+    if (row.section == path || parameter_path(row) == path) spoilt_[&row] = true;
+  }
+}
+
 void ModelReader::unknown_key(const std::string& section, const toml::key& key, const toml::node& node) {
   const std::string name(key.str());
-  std::string allowed = hint(name, names_in(section));
-  if (allowed.empty()) {
-    for (const ParameterRow& row : model_rows()) {  // right key, wrong section
-      if (row.key != name) continue;
-      allowed = row.section.empty() ? "it belongs at the top of the file"
-                                    : fmt::format("it belongs in [{}]", row.section);
-      break;
-    }
+  const std::vector<std::string_view> names = names_in(section);
+  const std::string_view near = nearest_spelling(name, names);
+  std::string allowed;
+  if (!near.empty()) {
+    spoil(join(section, near));
+    allowed = fmt::format("did you mean \"{}\"?", near);
   }
-  if (allowed.empty()) {
-    allowed = "allowed here: ";
-    for (const std::string_view candidate : names_in(section)) {
-      allowed += (allowed.back() == ' ' ? "" : ", ") + std::string(candidate);
-    }
+  for (const ParameterRow& row : model_rows()) {  // right key, wrong section
+    if (!allowed.empty()) break;
+    if (row.key != name) continue;
+    allowed = row.section.empty() ? "it belongs at the top of the file"
+                                  : fmt::format("it belongs in [{}]", row.section);
   }
+  if (allowed.empty()) allowed = fmt::format("allowed here: {}", fmt::join(names, ", "));
+  const bool is_section = node.is_table() && !node.as_table()->is_inline();
   problems_.push_back(problem_at(document_, key.source(), join(section, name), "",
-                                 node.is_table() ? "unknown section" : "unknown key", allowed));
+                                 is_section ? "unknown section" : "unknown key", allowed));
 }
 
 void ModelReader::read_value(const ParameterRow& row, const toml::key& key, const toml::node& node) {

@@ -37,6 +37,7 @@ class ModelReader {
   bool read_text(const ParameterRow& row, const toml::node& node, Parameter& out);
   void read_tolerance(const ParameterRow& row, const toml::node& node, Parameter& out);
   void unknown_key(const std::string& section, const toml::key& key, const toml::node& node);
+  void spoil(std::string_view path);
   void wrong(const toml::node& node, const std::string& key, std::string what, std::string allowed);
 
   const ModelDocument& document_;
