@@ -75,7 +75,8 @@ Masses split_masses(const RobotModel& m, const WheelGeometry<double>& g, Chassis
 // Applies what the robots' plain memory holds; no state of its own.
 class FloorAndMotors : public SimTK::Force::Custom::Implementation {
  public:
-  FloorAndMotors(const std::vector<Robot>& robots, bool gravity) : robots_(robots), gravity_(gravity) {}
+  FloorAndMotors(const std::vector<Robot>& robots, const StepPart& part_of_step, bool gravity)
+      : robots_(robots), part_of_step_(part_of_step), gravity_(gravity) {}
   void calcForce(const SimTK::State& state, SimTK::Vector_<SpatialVec>& body_forces, SimTK::Vector_<Vec3>&,
                  SimTK::Vector& mobility_forces) const override {
     for (const Robot& r : robots_) {
@@ -91,10 +92,11 @@ class FloorAndMotors : public SimTK::Force::Custom::Implementation {
         const Vec3 moment_W = p_WheelContact % f_W;
         if (gravity_) f_W[2] -= r.weight_wheel_N;
         body_forces[wheel.getMobilizedBodyIndex()] += SpatialVec(moment_W, f_W);
-        double torque_Nm =
-            r.gear_ratio * r.torques.rotor_Nm[i] - r.wheel_viscous_Nm_s_per_rad * wheel.getOneU(state, 0);
+        const double omega_wheel_rad_s = wheel.getOneU(state, 0);
+        double torque_Nm = r.gear_ratio * r.torques[i].at(part_of_step_, r.gear_ratio * omega_wheel_rad_s) -
+                           r.wheel_viscous_Nm_s_per_rad * omega_wheel_rad_s;
         // static friction answers the floor
-        if (r.torques.locked[i])
+        if (r.torques[i].locked)
           torque_Nm = r.law.geometry.wheel_radius_m * r.contacts.force_longitudinal_N[i];
         mobility_forces[wheel.getFirstUIndex(state)] += torque_Nm;
       }
@@ -105,6 +107,7 @@ class FloorAndMotors : public SimTK::Force::Custom::Implementation {
 
  private:
   const std::vector<Robot>& robots_;
+  const StepPart& part_of_step_;
   const bool gravity_;
 };
 
@@ -115,7 +118,7 @@ struct Chassis::Impl {
     system.setUseUniformBackground(true);
     robots.reserve(models.size());
     for (const RobotModel& m : models) add(m);
-    SimTK::Force::Custom(forces, new FloorAndMotors(robots, joint == Joint::kFree));
+    SimTK::Force::Custom(forces, new FloorAndMotors(robots, part_of_step, joint == Joint::kFree));
     system.realizeTopology();
     state = system.getDefaultState();
     system.realizeModel(state);
@@ -188,6 +191,7 @@ struct Chassis::Impl {
   SimTK::GeneralForceSubsystem forces;
   Joint joint;
   std::vector<Robot> robots;
+  StepPart part_of_step = StepPart::kHeld;
   SimTK::State state;
 };
 
@@ -213,9 +217,11 @@ const WheelContacts<double>& Chassis::contacts(std::size_t robot) const {
   return impl_->robots[robot].contacts;
 }
 
-void Chassis::accelerations(const std::vector<WheelTorques>& torques, std::vector<double>& udot) {
+void Chassis::accelerations(const std::vector<WheelTorques>& torques, StepPart part,
+                            std::vector<double>& udot) {
   Impl& c = *impl_;
   for (std::size_t n = 0; n < c.robots.size(); ++n) c.robots[n].torques = torques[n];
+  c.part_of_step = part;
   c.state.invalidateAllCacheAtOrAbove(SimTK::Stage::Dynamics);
   c.system.realize(c.state, SimTK::Stage::Acceleration);
   const SimTK::Vector& result = c.state.getUDot();
@@ -223,7 +229,7 @@ void Chassis::accelerations(const std::vector<WheelTorques>& torques, std::vecto
   const StateLayout& l = layout();
   for (std::size_t n = 0; n < c.robots.size(); ++n) {
     for (std::size_t i = 0; i < kWheels; ++i) {
-      if (torques[n].locked[i]) udot[n * l.u_per_robot + l.wheel_u + i] = 0.0;  // rounding would creep
+      if (torques[n][i].locked) udot[n * l.u_per_robot + l.wheel_u + i] = 0.0;  // rounding would creep
     }
   }
 }

@@ -39,7 +39,7 @@ class Chassis {
   const StateLayout& layout() const;
   void set_state(const std::vector<double>& q, const std::vector<double>& u);
   const WheelContacts<double>& contacts(std::size_t robot) const;
-  void accelerations(const std::vector<WheelTorques>& torques, std::vector<double>& udot);
+  void accelerations(const std::vector<WheelTorques>& torques, StepPart part, std::vector<double>& udot);
   void position_rates(const std::vector<double>& q, const std::vector<double>& u,
                       std::vector<double>& qdot) const;
   void normalise(std::vector<double>& q) const;

@@ -6,7 +6,8 @@
 //   known integrate(Integrator::kRungeKutta4, back, torques, step_s, q, u, scratch);
 //
 // Law: semi-implicit Euler, u += h f(q, u), q += h N(q) u (order 1, one evaluation), and the classical
-//      Runge-Kutta method of order 4 on (q, u) (four evaluations). Torques are held over the step.
+//      Runge-Kutta method of order 4 on (q, u) (four evaluations). The first sees the mean torques of
+//      the step, the second their course (mechanics.h).
 // Expects back.set_state(q, u) to have been called for the step's start.
 // Both are explicit: stable only while the stiffest contact mode is slow against the step; validate.h refuses
 // models for which it is not.
@@ -28,7 +29,7 @@ struct IntegratorScratch {
 template <typename Back>
 void step_semi_implicit_euler(Back& back, const std::vector<WheelTorques>& torques, double h,
                               std::vector<double>& q, std::vector<double>& u, IntegratorScratch& s) {
-  back.accelerations(torques, s.udot);
+  back.accelerations(torques, StepPart::kHeld, s.udot);
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += h * s.udot[i];
   back.position_rates(q, u, s.qdot);
   for (std::size_t i = 0; i < q.size(); ++i) q[i] += h * s.qdot[i];
@@ -38,11 +39,12 @@ template <typename Back>
 void step_runge_kutta_4(Back& back, const std::vector<WheelTorques>& torques, double h,
                         std::vector<double>& q, std::vector<double>& u, IntegratorScratch& s) {
   constexpr double kWeight[4] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+  constexpr StepPart kPart[4] = {StepPart::kStart, StepPart::kMiddle, StepPart::kMiddle, StepPart::kEnd};
   constexpr double kNext[4] = {0.5, 0.5, 1.0, 0.0};
   for (double& x : s.q_sum) x = 0.0;
   for (double& x : s.u_sum) x = 0.0;
   for (int stage = 0; stage < 4; ++stage) {
-    back.accelerations(torques, s.udot);
+    back.accelerations(torques, kPart[stage], s.udot);
     if (stage == 0)
       back.position_rates(q, u, s.qdot);
     else

@@ -41,7 +41,8 @@ void PlanarMechanics::set_state(const std::vector<double>& q, const std::vector<
   }
 }
 
-void PlanarMechanics::accelerations(const std::vector<WheelTorques>& torques, std::vector<double>& udot) {
+void PlanarMechanics::accelerations(const std::vector<WheelTorques>& torques, StepPart part,
+                                    std::vector<double>& udot) {
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     const Robot& r = robots_[n];
     const WheelContacts<double>& c = r.contacts;
@@ -53,10 +54,10 @@ void PlanarMechanics::accelerations(const std::vector<WheelTorques>& torques, st
     const double* omega_wheel = u_.data() + n * kPlanarLayout.u_per_robot + kPlanarLayout.wheel_u;
     for (std::size_t i = 0; i < kWheels; ++i) {
       // J domega/dt = gear tau_rotor - gear^2 b omega - r F
-      const double torque_Nm = r.gear_ratio * torques[n].rotor_Nm[i] -
+      const double torque_Nm = r.gear_ratio * torques[n][i].at(part, r.gear_ratio * omega_wheel[i]) -
                                r.wheel_viscous_Nm_s_per_rad * omega_wheel[i] -
                                r.law.geometry.wheel_radius_m * c.force_longitudinal_N[i];
-      out[kPlanarLayout.wheel_u + i] = torques[n].locked[i] ? 0.0 : torque_Nm * r.body.inverse_spin_inertia;
+      out[kPlanarLayout.wheel_u + i] = torques[n][i].locked ? 0.0 : torque_Nm * r.body.inverse_spin_inertia;
     }
   }
 }

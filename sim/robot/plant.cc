@@ -75,7 +75,7 @@ struct Plant::Impl {
     step_s = static_cast<double>(options.mechanical_step_ns) * 1e-9;
     substeps = static_cast<int>(options.mechanical_step_ns / options.electrical_step_ns);
     for (const RobotModel& m : models) {
-      drives.push_back(wheel_drive_law(m, static_cast<double>(options.electrical_step_ns) * 1e-9));
+      drives.push_back(wheel_drive_law(m, static_cast<double>(options.electrical_step_ns) * 1e-9, substeps));
     }
     for (std::size_t n = 0; n < models.size(); ++n) place(n, 0.0, kSpacing_m * static_cast<double>(n), 0.0);
   }
@@ -119,15 +119,11 @@ struct Plant::Impl {
     for (std::size_t i = 0; i < kWheels; ++i) {
       const double contact_Nm = model.wheel_radius_m * contacts.force_longitudinal_N[i] / model.gear_ratio;
       const BridgeInput bridge{mem.drive.mode[i], mem.drive.duty_ratio[i], model.bus_voltage_V};
-      const WheelStep step = begin_wheel_step(drives[n], mem.winding[i], bridge,
-                                              model.gear_ratio * omega_wheel[i], contact_Nm, substeps);
+      const WheelStep step =
+          begin_wheel_step(drives[n], mem.winding[i], bridge, model.gear_ratio * omega_wheel[i], contact_Nm);
       wheel_steps[n][i] = step;
-      torques[n].rotor_Nm[i] = step.rotor_Nm;
-      torques[n].locked[i] = step.locked;
-      mem.motor_torque_Nm[i] = step.drive.mean_torque_Nm;
-      mem.current_sum_A[i] += step.drive.mean_current_A;
+      torques[n][i] = step.torque;
     }
-    ++mem.current_steps;
   }
 
   template <typename Back>
@@ -147,9 +143,13 @@ struct Plant::Impl {
     double* after = wheel_speeds_of(n);
     bool held = true;
     for (std::size_t i = 0; i < kWheels; ++i) {
-      after[i] = end_wheel_step(drives[n], wheel_steps[n][i], before[i], after[i], step_s);
-      held = held && wheel_steps[n][i].locked;
+      WheelStep& step = wheel_steps[n][i];
+      after[i] = end_wheel_step(drives[n], memory[n].winding[i], step, before[i], after[i]);
+      memory[n].motor_torque_Nm[i] = step.drive.mean_torque_Nm;
+      memory[n].current_sum_A[i] += step.drive.mean_current_A;
+      held = held && step.torque.locked;
     }
+    ++memory[n].current_steps;
     if (held && !free()) come_to_rest(n);
     const double* v0 = field_velocity(u_before, n);
     const double* v1 = field_velocity(u, n);

@@ -57,8 +57,8 @@ TEST_P(Agreement, PlanarIsSimbodyWithin1e9OverTenSecondsOfHardDriving) {
 
 INSTANTIATE_TEST_SUITE_P(Both, Agreement,
                          testing::Values(Integrator::kSemiImplicitEuler, Integrator::kRungeKutta4),
-                         [](const auto& info) {
-                           return info.param == Integrator::kRungeKutta4 ? "RungeKutta4"
+                         [](const auto& test) {
+                           return test.param == Integrator::kRungeKutta4 ? "RungeKutta4"
                                                                          : "SemiImplicitEuler";
                          });
 
