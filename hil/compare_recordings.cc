@@ -10,7 +10,7 @@
 namespace omnihil {
 
 std::string Difference::text() const {
-  std::string out = fmt::format("{:.6f} s, ", static_cast<double>(now_ns) * 1e-9);
+  std::string out = fmt::format("{:.6f} s, ", static_cast<double>(now_ns) / 1e9);
   out += robot_id >= 0 ? fmt::format("robot {}: ", robot_id) : std::string("dongle: ");
   out += fmt::format("{}: recorded {}, replayed {}", what, recorded, replayed);
   if (!unit.empty() && unit != "1") out += " " + unit;

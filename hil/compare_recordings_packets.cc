@@ -134,7 +134,7 @@ class PacketComparer {
     append_number(text, value);
     return text;
   }
-  static std::string seconds(std::int64_t now_ns) { return number_text(static_cast<double>(now_ns) * 1e-9); }
+  static std::string seconds(std::int64_t now_ns) { return number_text(static_cast<double>(now_ns) / 1e9); }
 
   const RadioFormat& format_;
   const Tolerances& tolerances_;

@@ -1,0 +1,91 @@
+#include "hil/dataset_model.h"
+
+#include <array>
+#include <string_view>
+
+#include "hil/recording_text.h"
+
+namespace omnihil {
+namespace {
+
+struct Key {
+  std::string_view section;
+  std::string_view key;
+};
+// In the order of the format's own example.
+constexpr std::array kKeys{
+    Key{"motor", "resistance_ohm"},
+    Key{"motor", "inductance_H"},
+    Key{"motor", "torque_constant_Nm_per_A"},
+    Key{"motor", "pole_pairs"},
+    Key{"motor", "slots"},
+    Key{"motor", "rotor_inertia_kg_m2"},
+    Key{"motor", "viscous_friction_Nm_s_per_rad"},
+    Key{"gear", "ratio"},
+    Key{"supply", "voltage_V"},
+    Key{"robot", "mass_kg"},
+    Key{"robot", "yaw_inertia_kg_m2"},
+    Key{"robot", "center_of_mass_height_m"},
+    Key{"robot", "wheel_center_radius_m"},
+    Key{"robot", "wheel_radius_m"},
+    Key{"robot", "wheel_inertia_kg_m2"},
+    Key{"robot", "wheel_angle_deg"},
+    Key{"robot", "rollers_per_wheel"},
+    Key{"effects.coulomb_friction", "torque_Nm"},
+};
+
+std::string values_text(const Parameter& parameter) {
+  std::string text;
+  for (const double value : parameter.values) {
+    if (!text.empty()) text += ", ";
+    append_number(text, value);
+  }
+  return parameter.values.size() == 1 ? text : "[" + text + "]";
+}
+
+std::string line(std::string_view key, const Parameter& parameter) {
+  std::string text = std::string(key) + " = ";
+  if (!parameter.tolerance && parameter.source.empty()) return text + values_text(parameter) + "\n";
+  text += "{ value = " + values_text(parameter);
+  if (parameter.tolerance) {
+    text += ", tolerance = ";
+    append_number(text, *parameter.tolerance);
+  }
+  if (!parameter.source.empty()) text += ", source = " + toml_text(parameter.source);
+  return text + " }\n";
+}
+
+}  // namespace
+
+std::string toml_text(const std::string& text) {
+  constexpr std::string_view kHex = "0123456789abcdef";
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += std::string("\\") + c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      out += std::string("\\u00") + kHex[static_cast<unsigned char>(c) >> 4] +
+             kHex[static_cast<unsigned char>(c) & 15];
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+std::string dataset_model_text(const ModelFile& model) {
+  std::string text = "format = \"omnihil-model/1\"\nrig = \"robot\"\n";
+  if (!model.name.empty()) text += "name = " + toml_text(model.name) + "\n";
+  if (!model.source.empty()) text += "source = " + toml_text(model.source) + "\n";
+  std::string_view section;
+  for (const Key& key : kKeys) {
+    const Parameter* parameter = model.parameters.find(std::string(key.section) + "." + std::string(key.key));
+    if (parameter == nullptr || parameter->values.empty()) continue;
+    if (key.section != section) text += "\n[" + std::string(key.section) + "]\n";
+    section = key.section;
+    text += line(key.key, *parameter);
+  }
+  return text;
+}
+
+}  // namespace omnihil

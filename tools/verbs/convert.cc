@@ -1,0 +1,101 @@
+// `omnihil convert`: a recording as a dataset for fits, as one CSV, or as a stream to play.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hil/dataset_export.h"
+#include "hil/dataset_files.h"
+#include "hil/recording_reader.h"
+#include "hil/session_setup.h"
+#include "hil/stream_file.h"
+#include "tools/exit_codes.h"
+#include "tools/guarded.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+struct ConvertWords {
+  std::string recording;
+  std::string to = "dataset";
+  std::string out;
+  int robot = -1;
+  double camera_Hz = 60.0;
+};
+
+std::optional<int> chosen_robot(const ConvertWords& words, const RecordingHeader& header) {
+  if (words.robot < 0) return std::nullopt;
+  const auto& ids = header.robot_ids;
+  if (std::find(ids.begin(), ids.end(), words.robot) == ids.end()) {
+    throw std::invalid_argument(
+        fmt::format("--robot: found {}, allowed: {}", words.robot, fmt::join(ids, ", ")));
+  }
+  return words.robot;
+}
+
+void to_dataset(const ConvertWords& words, const Recording& recording) {
+  const ModelReading reading = read_bundle(session_setup(recording.header).model);
+  if (!reading.model) {
+    std::string text;
+    for (const ModelProblem& problem : reading.problems) text += (text.empty() ? "" : "\n") + problem.text();
+    throw std::invalid_argument(text);
+  }
+  const DatasetOptions options{.robot = chosen_robot(words, recording.header), .camera_Hz = words.camera_Hz};
+  NewFolder folder(words.out);
+  const DatasetExport made = make_dataset(recording, *reading.model, options);
+  for (const DatasetFile& file : made.files) folder.write(file.name, file.text);
+  folder.finish();
+  fmt::print("{}: {} rows in {} runs\n", words.out, made.rows, made.files.size() - 2);
+  for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
+}
+
+int run_convert(const ConvertWords& words) {
+  const Recording recording = load_recording(std::filesystem::path(words.recording));
+  if (words.to == "dataset") {
+    to_dataset(words, recording);
+  } else if (words.to == "csv") {
+    write_new_file(words.out, wide_csv(recording, chosen_robot(words, recording.header)));
+    fmt::print("{}: written\n", words.out);
+  } else {
+    const HostStream stream = stream_of(recording);
+    if (stream.chunks.empty()) throw std::invalid_argument("the recording has no bytes of a host");
+    write_new_file(words.out, to_text(stream, "what a host wrote to " + recording.header.radio_format));
+    fmt::print("{}: {} writes, {} bytes\n", words.out, stream.chunks.size(), stream.byte_count());
+  }
+  if (recording.last_line_cut) fmt::print("note: the recording was cut off; its last line was left out\n");
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_verb_convert(CLI::App& app, VerbResult& result) {
+  auto words = std::make_shared<ConvertWords>();
+  CLI::App* verb =
+      app.add_subcommand("convert", "a recording as a dataset, as one CSV, or as a stream to play");
+  verb->add_option("RECORDING", words->recording, "file that serve --record wrote")->required();
+  verb->add_option("--to", words->to,
+                   "dataset: a folder with dataset.toml, model.toml and one CSV per run; csv; stream")
+      ->check(CLI::IsMember({"dataset", "csv", "stream"}))
+      ->required();
+  verb->add_option("--out", words->out,
+                   "folder (dataset) or file to make; what is there is never overwritten")
+      ->required();
+  verb->add_option("--robot", words->robot, "one robot only (default: all)")->check(CLI::Range(0, 255));
+  verb->add_option("--camera-hz", words->camera_Hz, "rate of the vision columns of a dataset")
+      ->check(CLI::Range(0.1, 10000.0))
+      ->capture_default_str();
+  verb->footer(
+      "A dataset of several robots has a run each, the last held out; of one robot, the last third of its "
+      "time is\n"
+      "held out. Nothing is left half written. For a measurement, record every tick (serve --sample-every "
+      "1).");
+  verb->callback(
+      [words, &result] { result.exit_code = guarded("convert", [&] { return run_convert(*words); }); });
+}
+
+}  // namespace omnihil

@@ -1,0 +1,101 @@
+// `omnihil replay`: the recorded host's bytes through the loop again; says whether the same bytes come back.
+#include "hil/replay.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "hil/compare_recordings.h"
+#include "hil/recording_header.h"
+#include "hil/recording_reader.h"
+#include "hil/recording_writer.h"
+#include "hil/replay_report.h"
+#include "hil/replay_run.h"
+#include "tools/exit_codes.h"
+#include "tools/guarded.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+struct ReplayWords {
+  std::string recording;
+  std::string out;
+  std::string physics;
+  bool sha256_only = false;
+};
+
+std::unique_ptr<RecordingWriter> open_out(const ReplayWords& words, const Recording& recording,
+                                          const ReplayOptions& options) {
+  if (words.out.empty()) return nullptr;
+  std::error_code error;
+  if (std::filesystem::equivalent(words.out, words.recording, error)) {
+    throw std::invalid_argument("--out " + words.out + ": is the recording itself");
+  }
+  RecordingHeader header = replay_header(recording.header, options);
+  header.commit = OMNIHIL_COMMIT;
+  auto writer = RecordingWriter::open(words.out, std::move(header), error);
+  if (!writer) throw std::system_error(error, words.out);
+  return writer;
+}
+
+// True when the bytes are those of the recording.
+bool say_bytes(const Recording& recording, const Recording& answer) {
+  const auto difference = first_byte_difference(recording, answer);
+  std::size_t bytes = 0;
+  for (const TimedBytes& chunk : dongle_bytes_of(answer)) bytes += chunk.bytes.size();
+  if (difference) {
+    fmt::print("bytes      differ: {}\n", difference->text());
+  } else {
+    fmt::print("bytes      identical: {} bytes of the dongle, with their times\n", bytes);
+  }
+  return !difference;
+}
+
+int run_replay(const ReplayWords& words) {
+  const Recording recording = load_recording(std::filesystem::path(words.recording));
+  ReplayOptions options{.physics = parse_physics(words.physics), .observer = nullptr};
+  const auto writer = open_out(words, recording, options);
+  options.observer = writer.get();
+  const ReplayRun run = run_again(recording, options);
+  if (writer) {
+    writer->finish({.now_ns = run.answer.end_ns, .wall_s = run.wall_s, .counters = {}});
+    if (writer->error()) throw std::system_error(writer->error(), words.out);
+  }
+  if (words.sha256_only) {
+    fmt::print("{}\n", run.sha256);
+    return first_byte_difference(recording, run.answer) && !options.physics ? kExitDiffers : kExitOk;
+  }
+  fmt::print("recording  {}\n", recording_line(recording));
+  fmt::print("replayed   {}\n", replay_line(recording, run));
+  const bool same = say_bytes(recording, run.answer);
+  fmt::print("sha256     {}\n", run.sha256);
+  return same || options.physics ? kExitOk : kExitDiffers;
+}
+
+}  // namespace
+
+void add_verb_replay(CLI::App& app, VerbResult& result) {
+  auto words = std::make_shared<ReplayWords>();
+  CLI::App* verb =
+      app.add_subcommand("replay", "runs a recording again; says whether the same bytes come back");
+  verb->add_option("RECORDING", words->recording, "file that serve --record wrote")->required();
+  verb->add_option("--out", words->out, "write the new run to this file, as a recording");
+  verb->add_option("--physics", words->physics,
+                   "instead of the recorded one: simbody, planar or simbody-free")
+      ->check(CLI::IsMember({"simbody", "planar", "simbody-free"}));
+  verb->add_flag("--sha256", words->sha256_only,
+                 "print only the SHA-256 of all outputs: bytes with their times, every tick's values");
+  verb->footer(
+      "The host's bytes are fed at the virtual times at which they came; models are taken from the "
+      "recording.\n"
+      "Exit code 1: the dongle's bytes are not those of the recording (not with --physics). Tolerances: see "
+      "check.");
+  verb->callback(
+      [words, &result] { result.exit_code = guarded("replay", [&] { return run_replay(*words); }); });
+}
+
+}  // namespace omnihil
