@@ -31,6 +31,7 @@ struct Words {  // as the user gave them
   double step_ms = 1.0;
   bool no_pacing = false;
   std::int64_t baud = 0;
+  int sample_every = 10;
   SessionSetup setup;
   ServeOptions options;
 };
@@ -79,8 +80,10 @@ int run(Words& words) {
     return kExitBadInput;
   }
   try {
-    const ServeEnd end = serve(session_config(words.setup), make_reference_firmware,
-                               recording_header(words.setup, OMNIHIL_COMMIT), words.options);
+    RecordingHeader header = recording_header(words.setup, OMNIHIL_COMMIT);
+    header.sample_every = words.sample_every;
+    const ServeEnd end =
+        serve(session_config(words.setup), make_reference_firmware, std::move(header), words.options);
     switch (end) {
       case ServeEnd::kDone:
         return kExitOk;
@@ -113,6 +116,10 @@ void add_verb_serve(CLI::App& app, VerbResult& result) {
       ->check(CLI::IsMember({"blue", "yellow"}))
       ->capture_default_str();
   verb->add_option("--record", w.options.record, "write a recording to this file");
+  verb->add_option("--sample-every", w.sample_every,
+                   "of each robot's control ticks, record every Nth (bytes are all recorded)")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   verb->add_option("--seed", w.setup.plant.seed, "seed of everything random")->capture_default_str();
   verb->add_option("--physics", w.physics,
                    "simbody, planar (closed form, fast) or simbody-free (pitch, roll, lift)")
