@@ -21,11 +21,19 @@ static void note_acceleration(motion_reference* motion, const float before[BODY_
   motion->body_accel[BODY_OMEGA] = (omega_rad_s - before[BODY_OMEGA]) / dt_s;
 }
 
+static void set_wheels(motion_reference* motion, const float wheels[OMNIHIL_WHEELS], float dt_s) {
+  for (int w = 0; w < OMNIHIL_WHEELS; ++w) {
+    motion->wheel_accel_rad_s2[w] = (wheels[w] - motion->omega_wheel_rad_s[w]) / dt_s;
+    motion->omega_wheel_rad_s[w] = wheels[w];
+  }
+}
+
 void motion_start(motion_reference* motion, const wheel_geometry* geometry,
                   const float omega_wheel_rad_s[OMNIHIL_WHEELS]) {
   for (int w = 0; w < OMNIHIL_WHEELS; ++w) motion->omega_wheel_rad_s[w] = omega_wheel_rad_s[w];
   wheels_to_body(geometry, omega_wheel_rad_s, motion->body);
   for (int axis = 0; axis < BODY_AXES; ++axis) motion->body_accel[axis] = 0.0f;
+  for (int w = 0; w < OMNIHIL_WHEELS; ++w) motion->wheel_accel_rad_s2[w] = 0.0f;
 }
 
 void motion_toward_body(motion_reference* motion, const wheel_geometry* geometry,
@@ -47,7 +55,8 @@ void motion_toward_body(motion_reference* motion, const wheel_geometry* geometry
   motion->body[BODY_X] = share < 1.0f ? before[BODY_X] + share * gap_x : goal[BODY_X];
   motion->body[BODY_Y] = share < 1.0f ? before[BODY_Y] + share * gap_y : goal[BODY_Y];
   motion->body[BODY_OMEGA] = toward(before[BODY_OMEGA], goal[BODY_OMEGA], kYawAccelLimit_rad_s2 * dt_s);
-  body_to_wheels(geometry, motion->body, motion->omega_wheel_rad_s);
+  body_to_wheels(geometry, motion->body, wheels);
+  set_wheels(motion, wheels, dt_s);
   note_acceleration(motion, before, dt_s);
 }
 
@@ -56,10 +65,12 @@ void motion_toward_wheels(motion_reference* motion, const wheel_geometry* geomet
   float before[BODY_AXES] = {motion->body[BODY_X], motion->body[BODY_Y], motion->body[BODY_OMEGA]};
   float limit_rad_s = motion->wheel_limit_rad_s;
   float step_rad_s = kAccelLimit_m_s2 / geometry->wheel_radius_m * dt_s;
+  float wheels[OMNIHIL_WHEELS];
   for (int w = 0; w < OMNIHIL_WHEELS; ++w) {
     float goal_rad_s = fmaxf(-limit_rad_s, fminf(limit_rad_s, target_rad_s[w]));
-    motion->omega_wheel_rad_s[w] = toward(motion->omega_wheel_rad_s[w], goal_rad_s, step_rad_s);
+    wheels[w] = toward(motion->omega_wheel_rad_s[w], goal_rad_s, step_rad_s);
   }
+  set_wheels(motion, wheels, dt_s);
   wheels_to_body(geometry, motion->omega_wheel_rad_s, motion->body);
   note_acceleration(motion, before, dt_s);
 }

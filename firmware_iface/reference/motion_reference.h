@@ -5,7 +5,8 @@
  * Where wheels would be too fast all four are slowed by one factor, so the robot keeps its direction.
  * The acceleration of the reference is handed on for the feed-forward. It is the inertial one,
  * a = d(v)/dt + omega x v: a robot that drives a circle at constant body velocity still needs force.
- * Numbers: guesses (+- 50 %) from robots of the league, which reach 3 to 6 m/s^2 on carpet.
+ * The wheels' own acceleration stands beside it: a robot that keeps its course while it turns needs that
+ * alone. Numbers: guesses (+- 50 %) from robots of the league, which reach 3 to 6 m/s^2 on carpet.
  */
 #ifndef OMNIHIL_REFERENCE_MOTION_REFERENCE_H
 #define OMNIHIL_REFERENCE_MOTION_REFERENCE_H
@@ -19,6 +20,7 @@ typedef struct motion_reference {
   float body[BODY_AXES];       /* m/s, m/s, rad/s */
   float body_accel[BODY_AXES]; /* inertial, in the body frame: m/s^2, m/s^2, rad/s^2 */
   float omega_wheel_rad_s[OMNIHIL_WHEELS];
+  float wheel_accel_rad_s2[OMNIHIL_WHEELS];
   float wheel_limit_rad_s;
 } motion_reference;
 

@@ -107,10 +107,13 @@ static void close_loops(reference_state* state, float dt_s) {
       wheel_loop_reset(&state->loop[w]);
       continue; /* stays in coast */
     }
+    /* tau = r F / gear + J_free d(omega_rotor)/dt */
+    float torque_rotor_Nm = torque_wheel_Nm[w] / tuning->gear_ratio +
+                            tuning->inertia_free_kg_m2 * motion->wheel_accel_rad_s2[w] * tuning->gear_ratio;
     const wheel_loop_input input = {.omega_ref_rad_s = motion->omega_wheel_rad_s[w] * tuning->gear_ratio,
                                     .omega_rad_s = encoder->omega_rotor_rad_s,
                                     .accel_rad_s2 = encoder->accel_rotor_rad_s2,
-                                    .torque_feedforward_Nm = torque_wheel_Nm[w] / tuning->gear_ratio,
+                                    .torque_feedforward_Nm = torque_rotor_Nm,
                                     .bus_V = state->bus_V,
                                     .dt_s = dt_s};
     state->drive.mode[w] = OMNIHIL_DRIVE_DUTY;

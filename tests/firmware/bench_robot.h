@@ -4,7 +4,8 @@
 //   winding   L di/dt = u - R i - k omega            body   (M + A^T A J/r^2) dv/dt = A^T tau_wheel / r
 //   rotor     tau = k i - friction                   wheel  omega = A v / r
 //
-// Explicit Euler at 25 us, a tenth of the winding's time constant; A is the matrix of eq. (5) in its corrected form, M = diag(m, m, I).
+// Explicit Euler at 25 us, a tenth of the winding's time constant; A is the matrix of eq. (5) in its
+// corrected form, M = diag(m, m, I).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -90,6 +91,7 @@ class BenchRobot {
     }
     s.bus_voltage_V = bus_V;
     s.gyro_z_rad_s = body[2];
+    s.ball_seen = ball_seen;
     return s;
   }
 
@@ -104,6 +106,7 @@ class BenchRobot {
   double yaw_rad = 0;
   std::array<double, kWheels> theta_rotor_rad{}, omega_rotor_rad_s{}, current_A{};
   bool lifted = false;
+  bool ball_seen = false;
   bool blocked = false;  // somebody holds the robot
   std::int64_t first_count = 0;
 

@@ -217,11 +217,12 @@ TEST_P(BothRobots, CopiedStateGoesOnAlike) {
   EXPECT_EQ(copy->save(), bench.firmware->save());
 }
 
+// Six steps per electrical turn need a slow filter, so the loop is slow, too: but it gets there.
 TEST_P(BothRobots, CoarseEncoderStillDrives) {
   BenchRobotParams hall = params();
   hall.config.encoder_counts_per_rotor_turn = 48;  // Hall sensors only
   Bench bench(hall);
-  bench.run_with(body_command(1, 0, 0), 3000);
+  bench.run_with(body_command(1, 0, 0), 8000);
   double mean_m_s = 0;
   for (int n = 0; n < 1000; ++n) {
     bench.run_with(body_command(1, 0, 0), 1);
