@@ -3,8 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <regex>
-#include <sstream>
+#include <nlohmann/json.hpp>
 
 #include "tests/links/links_harness.h"
 
@@ -16,17 +15,13 @@ struct TimedFrame {
   Bytes bytes;
 };
 
-// The rows of the recording: [seconds, "hex"].
-std::vector<TimedFrame> read_stream(const std::string& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  const std::string all = text.str();
-  static const std::regex row(R"rx(\[\s*([0-9.eE+-]+)\s*,\s*"([0-9a-f]+)"\s*\])rx");
+// The rows of the recording: [seconds since the first frame, "hex"].
+std::vector<TimedFrame> read_stream(std::istream& file) {
   std::vector<TimedFrame> frames;
-  for (std::sregex_iterator it(all.begin(), all.end(), row), end; it != end; ++it) {
-    TimedFrame frame{std::llround(std::stod((*it)[1]) * 1e9), {}};
-    const std::string hex = (*it)[2];
+  const nlohmann::json recording = nlohmann::json::parse(file);
+  for (const nlohmann::json& row : recording.at("sessions").at("lineup")) {
+    TimedFrame frame{std::llround(row.at(0).get<double>() * 1e9), {}};
+    const auto hex = row.at(1).get<std::string>();
     for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
       frame.bytes.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(i, 2), nullptr, 16)));
     }
@@ -40,8 +35,9 @@ TEST(HostStreamTest, EveryFrameOfTheRealHostReachesItsRobotInOrderAndInTime) {
   if (shared == nullptr)
     GTEST_SKIP() << "OMNIHIL_SHARED is not set: the recorded stream of a real host is not here";
   const std::string path = std::string(shared) + "/vectors/ulaval-strategyai-host-stream.json";
-  if (!std::ifstream(path)) GTEST_SKIP() << path << " does not exist";
-  const std::vector<TimedFrame> frames = read_stream(path);
+  std::ifstream file(path);
+  if (!file) GTEST_SKIP() << path << " does not exist";
+  const std::vector<TimedFrame> frames = read_stream(file);
   ASSERT_EQ(frames.size(), 1035u);
 
   Bench bench("ulaval-hermes", {.robot_ids = {0, 1, 2, 3, 4, 5}, .team = Team::kBlue});
