@@ -1,0 +1,62 @@
+// Rig "axis": one drive on a bench, fed with a record of what it was asked, giving what its sensors see.
+//
+//   AxisInput in{.kind = CommandKind::kDuty, .time_s = t, .command = duty};
+//   std::vector<AxisSample<double>> out = run_axis<double>(params, effects, in);    // one per sample of `in`
+//
+// Signals and their meaning are those of the measurement format (docs/effects/README.md): the command of
+// sample k is held until sample k + 1; motor_current is the mean over the period that ends at its sample;
+// position, velocity and load_torque belong to the output shaft. Samples need not be evenly spaced. Sensor
+// effects act per sample; timing effects look back at a record of the true motion every half millisecond, so
+// a measurement's age has an exact derivative. Encoder counts come unrounded (sensor_chain.h rounds them).
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim/drive/drive_sim.h"
+
+namespace omnihil {
+
+struct AxisInput {
+  CommandKind kind = CommandKind::kDuty;
+  std::vector<double> time_s;                  // increasing
+  std::vector<double> command;                 // of `kind`, one per sample
+  std::vector<std::uint8_t> enable;            // empty: always on
+  std::vector<double> bus_voltage_V;           // measured at the bridge; empty: the model's supply
+  std::vector<double> imposed_velocity_rad_s;  // of the output; empty: free
+  std::vector<double> load_torque_Nm;          // on the output, known; empty: none
+  double initial_position_rad = 0.0;           // of the output
+  double initial_velocity_rad_s = 0.0;
+  double encoder_counts_per_turn = 0.0;  // of the encoder's shaft; 0: the rig gives angles
+  bool encoder_on_output = false;
+  std::optional<std::uint64_t> noise_seed;  // for effects that draw random numbers; none: expected values
+};
+
+struct AxisOptions {
+  double step_s = 50e-6;  // at most; each sample period is parted into equal sub-steps
+};
+
+template <typename T>
+struct AxisSample {
+  double time_s = 0.0;
+  // as measured (through sensor and timing effects)
+  T position_rad = T(0);
+  T velocity_rad_s = T(0);
+  T encoder_counts = T(0);  // unrounded
+  T motor_current_A = T(0);
+  T bus_voltage_V = T(0);
+  T winding_rise_K = T(0);  // over ambient
+  T load_torque_Nm = T(0);
+  // true
+  T motor_voltage_V = T(0);  // mean over the period that ends at this sample
+  T theta_rotor_rad = T(0);
+  T omega_rotor_rad_s = T(0);
+  T bus_current_A = T(0);
+  bool held = false;
+};
+
+template <typename T>
+std::vector<AxisSample<T>> run_axis(const DriveParams<T>& params, const EffectSet<T>& effects,
+                                    const AxisInput& input, const AxisOptions& options = {});
+
+}  // namespace omnihil

@@ -1,0 +1,68 @@
+// The true motion of the recent past, for measurements that are older than their stamp.
+//
+//   record.push({.time_s = t, .theta_rad = th, .omega_rad_s = w, .charge_C = q});
+//   MotionPoint<Jet> p = record.at(t - age);      // derivative with respect to the age included
+//
+// Angle by cubic Hermite interpolation (its slope is the speed), the others linearly. Before the first point
+// the axis was at rest there.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "sim/core/scalar.h"
+
+namespace omnihil {
+
+template <typename T>
+struct MotionPoint {
+  double time_s = 0.0;
+  T theta_rad = T(0);
+  T omega_rad_s = T(0);
+  T charge_C = T(0);  // integral of the current
+};
+
+template <typename T>
+class MotionRecord {
+ public:
+  explicit MotionRecord(double span_s) : span_s_(span_s) {}
+
+  void push(const MotionPoint<T>& p) {
+    points_.push_back(p);
+    // Forget what is too old, in large portions so that it costs nothing.
+    if (points_.size() > 4096) {
+      std::size_t keep = 0;
+      while (keep + 2 < points_.size() && points_[keep + 1].time_s < p.time_s - span_s_) ++keep;
+      points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(keep));
+    }
+  }
+
+  MotionPoint<T> at(const T& time_s) const {
+    const double t = value_of(time_s);
+    const MotionPoint<T>& first = points_.front();
+    if (t <= first.time_s) {
+      MotionPoint<T> rest = first;
+      rest.theta_rad += (time_s - first.time_s) * first.omega_rad_s;
+      return rest;
+    }
+    std::size_t i = points_.size() - 1;
+    while (i > 0 && points_[i].time_s > t) --i;
+    if (i + 1 == points_.size()) --i;
+    const MotionPoint<T>&a = points_[i], &b = points_[i + 1];
+    const double h = b.time_s - a.time_s;
+    const T s = (time_s - a.time_s) / h, r = 1.0 - s;
+    MotionPoint<T> p;
+    p.time_s = t;
+    // Hermite: (1 + 2 s)(1 - s)^2 th_a + s (1 - s)^2 h w_a + s^2 (3 - 2 s) th_b - s^2 (1 - s) h w_b
+    p.theta_rad = a.theta_rad + (b.theta_rad - a.theta_rad) * s * s * (3.0 - 2.0 * s) +
+                  s * r * r * h * a.omega_rad_s - s * s * r * h * b.omega_rad_s;
+    p.omega_rad_s = a.omega_rad_s + (b.omega_rad_s - a.omega_rad_s) * s;
+    p.charge_C = a.charge_C + (b.charge_C - a.charge_C) * s;
+    return p;
+  }
+
+ private:
+  double span_s_;
+  std::vector<MotionPoint<T>> points_;
+};
+
+}  // namespace omnihil

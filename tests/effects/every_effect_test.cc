@@ -1,0 +1,264 @@
+// What must hold for every effect there is, whoever wrote it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "sim/core/model_rows.h"
+#include "sim/drive/axis_model.h"
+#include "tests/effects/bench.h"
+#include "tests/effects/port_cases.h"
+
+namespace omnihil::test {
+namespace {
+
+constexpr std::uint64_t kDraws = 200;
+
+bool is_base_parameter(std::string_view path) {
+  const auto paths = drive_param_paths();
+  return path == "robot.mass_kg" || std::any_of(paths.begin(), paths.end(), [&](const DriveParamPath& p) {
+           return p.path == path || p.linear_path == path;
+         });
+}
+
+TEST_P(EveryEffect, SaysWhatItIsAndWhatItCannotDo) {
+  EXPECT_FALSE(info().title.empty());
+  EXPECT_FALSE(info().equation.empty());
+  EXPECT_FALSE(info().source.empty());
+  EXPECT_FALSE(info().cannot.empty());
+  EXPECT_FALSE(info().reveals.empty());
+  EXPECT_FALSE(info().visible.empty());
+  EXPECT_NE(info().rigs, 0u);
+  if (info().min_visible != nullptr) {
+    const double coarse =
+        info().min_visible({.counts_per_turn = 100, .current_sigma_A = 1, .voltage_sigma_V = 1});
+    const double fine = info().min_visible({});
+    EXPECT_GT(fine, 0.0);
+    EXPECT_GE(coarse, fine) << "worse sensors show less";
+  }
+}
+
+TEST_P(EveryEffect, HasTwinsThatExistAndNotItself) {
+  for (const std::string_view twin : info().twins) {
+    if (twin.empty()) continue;
+    EXPECT_NE(twin, info().id);
+    const auto names = effect_names();
+    const bool effect = std::find(names.begin(), names.end(), twin) != names.end();
+    EXPECT_TRUE(effect || is_base_parameter(twin)) << twin << " is neither an effect nor a base parameter";
+  }
+}
+
+TEST_P(EveryEffect, HasBoundsAroundNeutralAndTypical) {
+  ASSERT_FALSE(info().params.empty());
+  EXPECT_EQ(std::count_if(info().params.begin(), info().params.end(),
+                          [](const EffectParam& p) { return p.role == ParamRole::kStrength; }) > 0,
+            true);
+  for (const EffectParam& row : info().params) {
+    EXPECT_LT(row.lower, row.upper) << row.name;
+    EXPECT_TRUE(row.typical >= row.lower && row.typical <= row.upper) << row.name;
+    EXPECT_GE(row.prior_scale, 0.0) << row.name;
+    EXPECT_FALSE(row.what.empty()) << row.name;
+    EXPECT_FALSE(row.how.empty()) << row.name;
+    EXPECT_FALSE(row.unit.empty()) << row.name << ": \"1\" for a ratio";
+    if (row.role == ParamRole::kShape) {
+      EXPECT_TRUE(std::isnan(row.neutral)) << row.name << ": a shape has no neutral value (kNoNeutral)";
+    } else {
+      EXPECT_TRUE(row.neutral >= row.lower && row.neutral <= row.upper) << row.name;
+      EXPECT_GT(row.prior_scale, 0.0) << row.name << ": finite density at neutral";
+      EXPECT_NE(row.typical, row.neutral) << row.name << ": a visible size";
+    }
+  }
+}
+
+TEST_P(EveryEffect, StaysFiniteAtItsBounds) {
+  for (std::size_t i = 0; i < info().params.size(); ++i) {
+    for (const double bound : {info().params[i].lower, info().params[i].upper}) {
+      std::vector<double> params = typical_use(entry()).values;
+      params[i] = bound;
+      for_each_place<double>(entry(), [&](auto function, auto port) {
+        for (std::uint64_t n = 0; n < 20; ++n) {
+          for (const auto& c : changes(applied<double>(entry(), function, port, params, n))) {
+            EXPECT_TRUE(std::isfinite(c.value)) << info().params[i].name << " = " << bound;
+          }
+        }
+      });
+    }
+  }
+}
+
+TEST_P(EveryEffect, ChangesNothingAtNeutralBitForBit) {
+  const std::vector<EffectUse> uses{neutral_use(entry())};
+  EXPECT_TRUE(EffectSet<double>(uses).none());
+  const AxisInput in = excite(Excitation::kSteps, 0.8, 1.0);
+  const auto without = run_axis(small_drive(), nothing(), in);
+  const auto neutral = run_axis(small_drive(), EffectSet<double>(uses), in);
+  ASSERT_EQ(without.size(), neutral.size());
+  for (std::size_t n = 0; n < without.size(); ++n) {
+    for (const auto signal : {&AxisSample<double>::position_rad, &AxisSample<double>::velocity_rad_s,
+                              &AxisSample<double>::motor_current_A, &AxisSample<double>::bus_voltage_V}) {
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(without[n].*signal),
+                std::bit_cast<std::uint64_t>(neutral[n].*signal))
+          << "sample " << n;
+    }
+  }
+}
+
+// The skipped call would have changed nothing either: so derivatives at neutral belong to the same model.
+TEST_P(EveryEffect, HasALawThatChangesNothingAtNeutral) {
+  const std::vector<double> params = neutral_use(entry()).values;
+  for_each_place<double>(entry(), [&](auto function, auto port) {
+    for (std::uint64_t n = 0; n < kDraws; ++n) {
+      auto before = port;
+      CommandHistory history;
+      fill(before, Draw{n}, 1.0, history);
+      const auto was = changes(before);
+      const auto is = changes(applied<double>(entry(), function, port, params, n));
+      for (std::size_t i = 0; i < was.size(); ++i) {
+        if (place_of(port) == Place::kWinding && i == 5) continue;  // a temperature that others read
+        EXPECT_NEAR(is[i].value, was[i].value, 1e-12 * (1.0 + std::abs(was[i].value))) << "change " << i;
+      }
+    }
+  });
+}
+
+TEST_P(EveryEffect, HasDerivativesThatAgreeWithDifferences) {
+  const std::vector<double> at = typical_use(entry()).values;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const double step =
+        1e-6 * std::max(std::abs(at[i]), 1e-3 * (info().params[i].upper - info().params[i].lower));
+    std::vector<double> up = at, down = at;
+    up[i] += step;
+    down[i] -= step;
+    const auto jets = as_jets(at, static_cast<int>(i));
+    std::size_t checked = 0, kinks = 0;
+    const auto compare = [&](const auto& mid, const auto& more, const auto& less, const auto& jet) {
+      for (std::size_t c = 0; c < mid.size(); ++c) {
+        const double forward = (more[c].value - mid[c].value) / step,
+                     back = (mid[c].value - less[c].value) / step;
+        const double scale =
+            std::max({std::abs(forward), std::abs(back), std::abs(mid[c].value) * 1e-4 / step * 1e-6});
+        if (std::abs(forward - back) > 1e-3 * scale + 1e-9) {
+          ++kinks;
+          continue;
+        }
+        ++checked;
+        EXPECT_NEAR(jet[c].value.v[0], 0.5 * (forward + back), 1e-4 * scale + 1e-9)
+            << info().params[i].name << ", change " << c;
+        EXPECT_NEAR(jet[c].value.a, mid[c].value, 1e-12 * (1.0 + std::abs(mid[c].value)));
+      }
+    };
+    for_each_place<double>(entry(), [&](auto function, auto port) {
+      for_each_place<Jet>(entry(), [&](auto jet_function, auto jet_port) {
+        if (place_of(port) != place_of(jet_port)) return;
+        for (std::uint64_t n = 0; n < kDraws; ++n) {
+          compare(changes(applied<double>(entry(), function, port, at, n)),
+                  changes(applied<double>(entry(), function, port, up, n)),
+                  changes(applied<double>(entry(), function, port, down, n)),
+                  changes(applied<Jet>(entry(), jet_function, jet_port, jets, n)));
+        }
+      });
+    });
+    EXPECT_GT(checked, 10 * kinks) << info().params[i].name << ": hardly any point has a derivative";
+  }
+}
+
+TEST_P(EveryEffect, IsOddIfItClaimsSo) {
+  if ((info().claims & kOdd) == 0) return;
+  const std::vector<double> params = typical_use(entry()).values;
+  for_each_place<double>(entry(), [&](auto function, auto port) {
+    for (std::uint64_t n = 0; n < kDraws; ++n) {
+      const auto forward = changes(applied<double>(entry(), function, port, params, n, 1.0));
+      const auto back = changes(applied<double>(entry(), function, port, params, n, -1.0));
+      for (std::size_t i = 0; i < forward.size(); ++i) {
+        const double expected = forward[i].odd ? -forward[i].value : forward[i].value;
+        EXPECT_NEAR(back[i].value, expected, 1e-12 * (1.0 + std::abs(expected))) << "change " << i;
+      }
+    }
+  });
+}
+
+// Power that one call adds; positive adds energy.
+double added_power(const TorquePort<double>& p) { return p.tau_Nm * p.omega_rotor_rad_s; }
+double added_power(const BodyPort<double>& p) {
+  return p.force_x_N * p.v_forward_m_s + p.force_y_N * p.v_left_m_s + p.torque_z_Nm * p.omega_body_rad_s;
+}
+double added_power(const ContactPort<double>& p) {
+  return p.force_longitudinal_N * p.v_longitudinal_m_s + p.force_lateral_N * p.v_lateral_m_s;
+}
+template <typename Port>
+double added_power(const Port&) {
+  return 0.0;
+}
+
+TEST_P(EveryEffect, NeverAddsPowerIfItClaimsToDissipate) {
+  if ((info().claims & kDissipative) == 0 || !info().states.empty()) return;
+  const std::vector<double> params = typical_use(entry()).values;
+  for_each_place<double>(entry(), [&](auto function, auto port) {
+    for (std::uint64_t n = 0; n < kDraws; ++n) {
+      auto before = port;
+      CommandHistory history;
+      fill(before, Draw{n}, 1.0, history);
+      const auto after = applied<double>(entry(), function, port, params, n);
+      EXPECT_LE(added_power(after), 1e-15);
+      if constexpr (requires { after.voltage_V; }) {
+        EXPECT_LE((after.voltage_V - before.voltage_V) * after.current_A, 1e-15);
+      }
+      if constexpr (requires { after.friction_positive_Nm; }) {
+        EXPECT_GE(after.friction_positive_Nm, 0.0);
+        EXPECT_GE(after.friction_negative_Nm, 0.0);
+        EXPECT_GE(after.viscous_positive_Nm_s_per_rad, 0.0);
+        EXPECT_GE(after.viscous_negative_Nm_s_per_rad, 0.0);
+      }
+      if constexpr (requires { after.friction_wheel_Nm; }) {
+        EXPECT_GE(after.friction_wheel_Nm, 0.0);
+      }
+      if constexpr (requires { after.bus_current_A; }) {
+        EXPECT_LE((after.bus_voltage_V - before.bus_voltage_V) * after.bus_current_A, 1e-15);
+      }
+      if constexpr (requires { after.resistance_ohm; }) {
+        EXPECT_GE(after.resistance_ohm, before.resistance_ohm);
+        EXPECT_EQ(after.torque_constant_Nm_per_A, after.back_emf_V_s_per_rad);
+      }
+    }
+  });
+}
+
+// Left to coast, the energy of the mechanism only falls; effects with states may give back what they stored.
+TEST_P(EveryEffect, LetsACoastingRotorLoseEnergyIfItClaimsToDissipate) {
+  if ((info().claims & kDissipative) == 0 || (info().rigs & kOnAxis) == 0) return;
+  AxisInput in = held(CommandKind::kDuty, 0.0, 0.5);
+  in.initial_velocity_rad_s = 200.0;
+  const auto samples = run_axis(small_drive(), with({typical_use(entry())}), in);
+  const double most = info().states.empty() ? 0.0 : 0.05;
+  for (std::size_t n = 1; n < samples.size(); ++n) {
+    EXPECT_LE(std::abs(samples[n].omega_rotor_rad_s), std::abs(samples[n - 1].omega_rotor_rad_s) + most);
+  }
+  EXPECT_LT(std::abs(samples.back().omega_rotor_rad_s), 200.0);
+}
+
+TEST_P(EveryEffect, DoesNoWorkOverATurnIfItClaimsToBeConservative) {
+  if ((info().claims & kConservative) == 0) return;
+  const std::vector<double> params = typical_use(entry()).values;
+  const auto function = entry().simulate.torque;
+  ASSERT_NE(function, nullptr);
+  const int kParts = 4800;  // a multiple of every order in use
+  double work = 0.0, size = 0.0;
+  for (int n = 0; n < kParts; ++n) {
+    TorquePort<double> port;
+    port.omega_rotor_rad_s = 1.0;
+    port.theta_rotor_rad = port.theta_output_rad = n * 2.0 * 3.14159265358979323846 / kParts;
+    function(entry().context, params.data(), nullptr, port);
+    work += port.tau_Nm / kParts;
+    size += std::abs(port.tau_Nm) / kParts;
+  }
+  EXPECT_GT(size, 0.0);
+  EXPECT_LT(std::abs(work), 1e-9 * size);
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, EveryEffect,
+                         ::testing::ValuesIn(all_effects().begin(), all_effects().end()),
+                         [](const auto& p) { return std::string(p.param->info->id); });
+
+}  // namespace
+}  // namespace omnihil::test
