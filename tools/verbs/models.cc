@@ -1,0 +1,129 @@
+// omnihil models [NAME|PATH] [--check FILE…]: lists, explains or checks model files.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hil/model_store.h"
+#include "sim/core/model_figures.h"
+#include "tools/exit_codes.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+const std::vector<std::string> kFolders = {OMNIHIL_SOURCE_MODELS};
+
+struct Arguments {
+  std::string model;
+  std::vector<std::string> check;
+};
+
+void print_problems(const StoredModel& stored) {
+  for (const ModelProblem& problem : stored.problems) std::fprintf(stderr, "%s\n", problem.text().c_str());
+}
+
+int list() {
+  for (const ModelListing& listed : list_models(kFolders)) {
+    const StoredModel stored = load_model(listed.path, {});
+    const std::string what = stored.model ? stored.model->name
+                                          : fmt::format("unusable: {} (omnihil models --check {})",
+                                                        stored.problems.size(), listed.path);
+    const char* rig = stored.model ? stored.model->rig.c_str() : "?";
+    std::printf("%-22s %-6s %s\n", listed.name.c_str(), rig, what.c_str());
+  }
+  std::printf("\n`omnihil models NAME` explains one. A path works wherever a name does.\n");
+  return kExitOk;
+}
+
+std::string number(double value) { return fmt::format("{:.6g}", value); }
+
+std::string value_text(const Parameter& p) {
+  if (p.row->kind == ParameterKind::kText) return fmt::format("\"{}\"", p.text);
+  if (p.row->kind == ParameterKind::kTruth) return p.value() != 0.0 ? "true" : "false";
+  std::string out;
+  for (const double v : p.values) out += (out.empty() ? "" : ", ") + number(v);
+  if (p.row->unit != "1") out += fmt::format(" {}", p.row->unit);
+  return out;
+}
+
+std::string origin_text(const Parameter& p) {
+  if (p.origin == Origin::kDefault) return "default";
+  std::string out = p.source;
+  if (p.origin == Origin::kMotorFile) out += out.empty() ? "motor file" : " (motor file)";
+  return out;
+}
+
+void print_parameters(const ModelFile& model) {
+  std::string_view section;
+  for (const Parameter& p : model.parameters.parameters) {
+    if (p.row->section.empty()) continue;
+    if (p.row->section != section) {
+      section = p.row->section;
+      std::printf("\n[%s]\n", std::string(section).c_str());
+    }
+    const std::string known = p.row->kind == ParameterKind::kText || p.origin == Origin::kDefault ? ""
+                              : p.tolerance ? fmt::format("+-{:g} %", 100.0 * *p.tolerance)
+                                            : "exact";
+    std::printf("  %-30s %-26s %-8s %s\n", std::string(p.row->key).c_str(), value_text(p).c_str(),
+                known.c_str(), origin_text(p).c_str());
+    std::printf("  %-30s %s\n", "", std::string(p.row->what).c_str());
+  }
+}
+
+int explain(const std::string& path_or_name) {
+  const StoredModel stored = load_model(path_or_name, kFolders);
+  print_problems(stored);
+  if (!stored.model) return kExitBadInput;
+  const ModelFile& model = *stored.model;
+  std::printf("%s: %s\n", stored.bundle.name.c_str(), model.name.empty() ? "(no name)" : model.name.c_str());
+  std::printf("  file    %s\n", stored.bundle.robot_file.c_str());
+  std::printf("  rig     %s%s\n", model.rig.c_str(), model.linear ? ", linear" : "");
+  if (!model.source.empty()) std::printf("  source  %s\n", model.source.c_str());
+  if (!model.motor_file.empty()) {
+    std::printf("  motor   %s, from %s\n", model.motor_name.c_str(), model.motor_file.c_str());
+  }
+  print_parameters(model);
+  const std::vector<ModelFigure> figures = model_figures(model);
+  if (!figures.empty()) std::printf("\nWhat follows from these numbers\n");
+  for (const ModelFigure& f : figures) {
+    std::printf("  %-32s %10.4g %-7s %s\n", f.name.c_str(), f.value, f.unit.c_str(), f.formula.c_str());
+  }
+  for (const std::string& note : stored.notes) std::printf("\nnote: %s\n", note.c_str());
+  return kExitOk;
+}
+
+int check(const std::vector<std::string>& files) {
+  std::size_t problems = 0;
+  for (const std::string& file : files) {
+    const StoredModel stored = load_model(file, kFolders);
+    print_problems(stored);
+    problems += stored.problems.size();
+    if (stored.model) std::printf("%s: good (%s)\n", file.c_str(), stored.model->rig.c_str());
+    for (const std::string& note : stored.notes) std::printf("note: %s\n", note.c_str());
+  }
+  if (problems == 0) return kExitOk;
+  std::fprintf(stderr, "%zu problem%s\n", problems, problems == 1 ? "" : "s");
+  return kExitBadInput;
+}
+
+}  // namespace
+
+void add_verb_models(CLI::App& app, VerbResult& result) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("models", "list robots and motors, explain one, or check model files");
+  verb->add_option("MODEL", arguments->model, "explain this model: every number, its tolerance and source");
+  verb->add_option("--check", arguments->check, "check these files; all problems with line and column")
+      ->excludes(verb->get_option("MODEL"));
+  verb->footer("A name is looked for in $OMNIHIL_MODELS, then among the models that come with the program.");
+  verb->callback([arguments, &result] {
+    result.exit_code = !arguments->check.empty()   ? check(arguments->check)
+                       : !arguments->model.empty() ? explain(arguments->model)
+                                                   : list();
+  });
+}
+
+}  // namespace omnihil
