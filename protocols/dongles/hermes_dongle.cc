@@ -42,8 +42,7 @@ class HermesDongle final : public RadioLink {
         stream_(static_cast<std::size_t>(format.max_frame_bytes), from_host_) {
     assert(static_cast<std::size_t>(format.max_frame_bytes) <= hermes::kPayloadBytes);
     for (const int id : config.robot_ids) {
-      assert(id >= 0 && id < static_cast<int>(robots_.size()));
-      robots_[static_cast<std::size_t>(id)].exists = true;
+      robots_.at(static_cast<std::size_t>(id)).exists = true;  // ids beyond are the caller's mistake
     }
     host_out_.reserve(kHostBuffer);
   }

@@ -9,7 +9,7 @@
 
 #include "protocols/dongles/dongles.h"
 #include "protocols/dongles/rem_air.h"
-#include "protocols/dongles/rem_robot.h"
+#include "protocols/dongles/rem_radio_end.h"
 #include "protocols/dongles/rem_stream.h"
 #include "protocols/dongles/ring.h"
 
@@ -23,7 +23,7 @@ constexpr std::size_t kHostBuffer = 65536;  // bytes waiting for the host; more 
 constexpr std::size_t kInFlight = 64;       // air packets and answers under way
 constexpr std::int64_t kHeartbeat_ns = 1'000'000'000;
 
-// What the base station holds for one robot, and what the robot's radio end remembers.
+// What the base station holds for one robot.
 struct Robot {
   bool exists = false;
   bool has_command = false;
@@ -31,14 +31,7 @@ struct Robot {
   Packet command;
   Packet kill;
   Ring<Packet, rem::kQueue> queue;
-
-  bool has_feedback = false;
-  bool sends_state_info = false;
-  bool gains_asked = false;
-  std::uint8_t command_id = 0;  // messageId of the latest command, given back in RobotFeedback
-  std::uint8_t next_id = 0;
-  Ring<std::uint8_t, 16> acks;  // sequence numbers to acknowledge
-  rem::RobotState state;
+  rem::RadioEnd radio;
 
   bool idle() const { return !has_command && !has_kill && queue.empty(); }
 };
@@ -54,11 +47,14 @@ class RemDongle final : public RadioLink {
       : format_(format),
         config_(config),
         telemetry_(format),
+        answer_sizes_(format),
+        header_bytes_(static_cast<std::size_t>(format.find("REM_Packet")->size_bytes)),
         stream_(format, from_host_),
         channel_(config.team) {
     for (const int id : config.robot_ids) {
-      assert(id >= 0 && id < rem::kIds);
-      robots_[static_cast<std::size_t>(id)].exists = true;
+      Robot& robot = robots_.at(static_cast<std::size_t>(id));  // ids beyond are the caller's mistake
+      robot.exists = true;
+      robot.radio = rem::RadioEnd(id);
     }
     host_out_.reserve(kHostBuffer);
   }
@@ -99,12 +95,7 @@ class RemDongle final : public RadioLink {
   void robot_feedback(int robot_id, const RobotFeedback& feedback, const RobotGains& gains,
                       std::int64_t) override {
     if (robot_id < 0 || robot_id >= rem::kIds) return;
-    Robot& robot = robots_[static_cast<std::size_t>(robot_id)];
-    robot.has_feedback = true;
-    robot.state.feedback = feedback;
-    robot.state.gains = gains;
-    const bool has_ball = (feedback.flags & OMNIHIL_FEEDBACK_DRIBBLER_SEES_BALL) != 0;
-    if (!has_ball) robot.state.omega_dribbler_before_ball_rad_s = feedback.omega_dribbler_rad_s;
+    robots_[static_cast<std::size_t>(robot_id)].radio.set_state(feedback, gains);
   }
 
   void take_host_bytes(std::int64_t now_ns, std::vector<std::uint8_t>& out) override {
@@ -134,23 +125,20 @@ class RemDongle final : public RadioLink {
   bool all_idle() const;
   void send_slot(int id, std::int64_t slot_ns);
   void deliver(const AirPacket& air, RadioSink& sink);
-  void deliver_packet(int id, std::span<const std::uint8_t> bytes, const Values& values, std::int64_t now_ns,
-                      RadioSink& sink);
   bool answer_if_due(const Answer& answer, std::int64_t now_ns);
   void report_refusal(std::int64_t now_ns);
   void heartbeat(std::int64_t now_ns);
   void log_line(std::string_view text, std::int64_t now_ns);
   bool send_values(const Values& values);
   bool to_host(std::span<const std::uint8_t> bytes);
-  rem::Header header(int id, std::uint8_t message_id, std::int64_t now_ns) const;
-
-  std::size_t size_of(const char* name) const {
-    return static_cast<std::size_t>(format_.find(name)->size_bytes);
-  }
+  rem::Header header(int id, std::int64_t now_ns) const;
+  rem::Header own_header(std::int64_t now_ns) const;
 
   const RadioFormat& format_;
   RadioLinkConfig config_;
   rem::Telemetry telemetry_;
+  rem::AnswerSizes answer_sizes_;
+  std::size_t header_bytes_;
   PacketCounts from_host_;
   PacketCounts from_robots_;
   RemStream stream_;
@@ -225,10 +213,7 @@ PacketError RemDongle::base_station_packet(const Values& values, std::int64_t no
     return values.message->text_tail || values.message->name == "REM_Packet" ? PacketError::kNone
                                                                              : PacketError::kAddress;
   }
-  rem::Header from = header(0, 0, now_ns);
-  from.from_base_station = true;
-  telemetry_.start("REM_BasestationConfiguration", from, scratch_);
-  scratch_.set("fromColor", 0.0);
+  telemetry_.start("REM_BasestationConfiguration", own_header(now_ns), scratch_);
   scratch_.set("channel", channel_ == Team::kBlue ? 1.0 : 0.0);
   return send_values(scratch_) ? PacketError::kNone : PacketError::kOverrun;
 }
@@ -275,111 +260,52 @@ void RemDongle::send_slot(int id, std::int64_t slot_ns) {
 }
 
 void RemDongle::deliver(const AirPacket& air, RadioSink& sink) {
-  std::size_t at = 0;
-  while (at < air.size) {
-    // The packets were cut out of the host's stream with these very lengths.
-    const std::size_t header_bytes = size_of("REM_Packet");
-    const std::size_t size = air.bytes[at + header_bytes - 1];
-    const auto bytes = std::span(air.bytes).subspan(at, size);
+  rem::RadioEnd& radio = robots_[static_cast<std::size_t>(air.robot)].radio;
+  // The packets were cut out of the host's stream by the length that the header's last byte gives.
+  for (std::size_t at = 0; at < air.size; at += air.bytes[at + header_bytes_ - 1]) {
+    const auto bytes = std::span(air.bytes).subspan(at, air.bytes[at + header_bytes_ - 1]);
+    const DecodeResult result = format_.decode(bytes);
+    assert(result.error == PacketError::kNone);
     if (config_.firmware_decodes) {
-      const Message* message = nullptr;
-      for (const Message& m : format_.messages) message = m.type == bytes[0] ? &m : message;
       Delivery delivery;
       delivery.kind = Delivery::Kind::kFrame;
       delivery.robot_id = air.robot;
       delivery.frame = bytes;
-      delivery.message = message->name;
+      delivery.message = result.values.message->name;
       sink.deliver(delivery, air.arrives_ns);
-    } else {
-      const DecodeResult result = format_.decode(bytes);
-      assert(result.error == PacketError::kNone);
-      deliver_packet(air.robot, bytes, result.values, air.arrives_ns, sink);
+    } else if (const std::optional<Delivery> delivery = radio.receive(result.values)) {
+      sink.deliver(*delivery, air.arrives_ns);
     }
-    at += size;
   }
-  const bool answers = !config_.firmware_decodes && robots_[static_cast<std::size_t>(air.robot)].has_feedback;
-  if (answers && !answers_.push({.robot = air.robot, .asked_ns = air.arrives_ns})) {
+  if (config_.firmware_decodes || !radio.has_state()) return;
+  if (!answers_.push({.robot = air.robot, .asked_ns = air.arrives_ns}))
     from_robots_.count(PacketError::kOverrun);
-  }
-}
-
-void RemDongle::deliver_packet(int id, std::span<const std::uint8_t>, const Values& values,
-                               std::int64_t now_ns, RadioSink& sink) {
-  Robot& robot = robots_[static_cast<std::size_t>(id)];
-  const std::string_view name = values.message->name;
-  Delivery delivery;
-  delivery.robot_id = id;
-  delivery.message = name;
-  if (name == "REM_RobotCommand" || name == "REM_RobotCommandTesting") {
-    robot.sends_state_info = rem::wants_state_info(values);
-    robot.command_id = static_cast<std::uint8_t>(values.number("messageId"));
-    const int only_answer = values.message->field_index("feedback");
-    if (only_answer >= 0 && values.fields[static_cast<std::size_t>(only_answer)].number != 0.0) return;
-    delivery.command = rem::to_command(values);
-    sink.deliver(delivery, now_ns);
-  } else if (name == "REM_RobotKillCommand") {
-    sink.deliver(delivery, now_ns);  // all zero: coast
-  } else if (name == "REM_RobotSetPIDGains") {
-    delivery.kind = Delivery::Kind::kGains;
-    delivery.gains = rem::to_gains(values, robot.state.gains);
-    sink.deliver(delivery, now_ns);
-  } else if (name == "REM_RobotGetPIDGains") {
-    robot.gains_asked = true;
-  } else if (name == "REM_RobotAssuredPacket") {
-    if (!robot.acks.push(static_cast<std::uint8_t>(values.number("sequenceNumber")))) {
-      from_robots_.count(PacketError::kOverrun);
-    }
-  }
 }
 
 // --- to the host -----------------------------------------------------------------------------------------
 
-rem::Header RemDongle::header(int id, std::uint8_t message_id, std::int64_t now_ns) const {
+rem::Header RemDongle::header(int id, std::int64_t now_ns) const {
   return {.from_robot = id,
           .team = config_.team,
-          .message_id = message_id,
           .time_ms = config_.epoch_ms + static_cast<std::uint64_t>(now_ns / 1'000'000)};
 }
 
-// One answer is one air packet: feedback always, then what was asked for, as far as 127 bytes go. What was
-// asked for once goes before the state info, which comes again with the next answer.
+rem::Header RemDongle::own_header(std::int64_t now_ns) const {
+  rem::Header own = header(0, now_ns);
+  own.team = Team::kYellow;  // the base station has no colour; its bit stays 0
+  own.from_base_station = true;
+  return own;
+}
+
 bool RemDongle::answer_if_due(const Answer& answer, std::int64_t now_ns) {
-  Robot& robot = robots_[static_cast<std::size_t>(answer.robot)];
-  std::size_t size = size_of("REM_RobotFeedback");
-  const bool gains = robot.gains_asked;
-  if (gains) size += size_of("REM_RobotPIDGains");
-  std::size_t acks = 0;
-  while (acks < robot.acks.size() && size + size_of("REM_RobotAssuredAck") <= rem::kAirBytes) {
-    size += size_of("REM_RobotAssuredAck");
-    ++acks;
-  }
-  const bool state_info = robot.sends_state_info && size + size_of("REM_RobotStateInfo") <= rem::kAirBytes;
-  if (state_info) size += size_of("REM_RobotStateInfo");
-  const std::int64_t after_ns = rem::kTurnaround_ns + rem::air_time_ns(size);
+  rem::RadioEnd& radio = robots_[static_cast<std::size_t>(answer.robot)].radio;
+  const rem::AnswerPlan plan = radio.plan(answer_sizes_);
+  const std::int64_t after_ns = rem::kTurnaround_ns + rem::air_time_ns(plan.bytes);
   const std::int64_t due_ns = answer.asked_ns + std::min(after_ns, rem::kAnswerWindow_ns);
   if (due_ns > now_ns) return false;
-
-  const auto send = [&] {
-    from_robots_.count(send_values(scratch_) ? PacketError::kNone : PacketError::kOverrun);
-  };
-  const auto next = [&] { return header(answer.robot, robot.next_id++, due_ns); };
-  telemetry_.robot_feedback(robot.state, header(answer.robot, robot.command_id, due_ns), scratch_);
-  send();
-  if (state_info) {
-    telemetry_.robot_state_info(robot.state, next(), scratch_);
-    send();
-  }
-  if (gains) {
-    telemetry_.robot_gains(robot.state, next(), scratch_);
-    send();
-    robot.gains_asked = false;
-  }
-  for (; acks > 0; --acks) {
-    telemetry_.start("REM_RobotAssuredAck", next(), scratch_);
-    scratch_.set("sequenceNumber", robot.acks.front());
-    robot.acks.pop();
-    send();
-  }
+  radio.answer(plan, telemetry_, header(answer.robot, due_ns), scratch_, [this](const Values& packet) {
+    from_robots_.count(send_values(packet) ? PacketError::kNone : PacketError::kOverrun);
+  });
   ++answered_;
   return true;
 }
@@ -408,10 +334,7 @@ void RemDongle::heartbeat(std::int64_t now_ns) {
 
 // The base station's own words reach the host as REM_Log packets.
 void RemDongle::log_line(std::string_view text, std::int64_t now_ns) {
-  rem::Header from = header(0, 0, now_ns);
-  from.from_base_station = true;
-  telemetry_.start("REM_Log", from, scratch_);
-  scratch_.set("fromColor", 0.0);
+  telemetry_.start("REM_Log", own_header(now_ns), scratch_);
   scratch_.text = text;
   send_values(scratch_);
 }
