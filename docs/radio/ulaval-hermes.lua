@@ -1,0 +1,197 @@
+-- Wireshark dissector of RoboCup ULaval HERMES v1. Generated from the packet tables by
+-- `omnihil formats ulaval-hermes --wireshark`; do not edit.
+local PROTOCOL = "ulaval_hermes"
+local TYPE_BYTE = 3
+local proto = Proto(PROTOCOL, "RoboCup ULaval HERMES v1")
+
+-- [type] = name, bytes, fields: { name, first bit, bits, kind, unit, scale and lowest value of a ranged one }
+local packets = {
+  [0x00] = { name = "PING_REQUEST", size = 5, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "source", 8, 8, "number", "" },
+    { "robot", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+  } },
+  [0x01] = { name = "PING_RESPONSE", size = 5, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "robot", 8, 8, "number", "" },
+    { "destination", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+  } },
+  [0x02] = { name = "SPEED_MOVE", size = 17, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "source", 8, 8, "number", "" },
+    { "robot", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+    { "vx", 40, 32, "float", "m/s" },
+    { "vy", 72, 32, "float", "m/s" },
+    { "vtheta", 104, 32, "float", "rad/s" },
+  } },
+  [0x03] = { name = "SET_REGISTER", size = 7, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "source", 8, 8, "number", "" },
+    { "robot", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+    { "register", 40, 8, "number", "" },
+    { "value", 48, 8, "number", "" },
+  } },
+  [0x04] = { name = "OPEN_LOOP_COMMAND", size = 21, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "source", 8, 8, "number", "" },
+    { "robot", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+    { "cmd[0]", 40, 32, "float", "" },
+    { "cmd[1]", 72, 32, "float", "" },
+    { "cmd[2]", 104, 32, "float", "" },
+    { "cmd[3]", 136, 32, "float", "" },
+  } },
+  [0x05] = { name = "GET_BATTERIE", size = 5, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "source", 8, 8, "number", "" },
+    { "robot", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+  } },
+  [0x06] = { name = "BATTERIE_RESPONSE", size = 6, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "robot", 8, 8, "number", "" },
+    { "destination", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+    { "decivolts", 40, 8, "number", "0.1 V" },
+  } },
+  [0x07] = { name = "GET_NUM_REQUEST", size = 5, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "source", 8, 8, "number", "" },
+    { "robot", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+  } },
+  [0x08] = { name = "NUM_REQUEST_RESPONSE", size = 9, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "robot", 8, 8, "number", "" },
+    { "destination", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+    { "value", 40, 32, "number", "" },
+  } },
+  [0x09] = { name = "SPEED_MOVE_ADVANCE", size = 19, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "" },
+    { "source", 8, 8, "number", "" },
+    { "robot", 16, 8, "number", "" },
+    { "type", 24, 8, "number", "" },
+    { "checksum", 32, 8, "number", "" },
+    { "vx", 40, 32, "float", "m/s" },
+    { "vy", 72, 32, "float", "m/s" },
+    { "vtheta", 104, 32, "float", "rad/s" },
+    { "dribbler", 136, 7, "number", "" },
+    { "charge", 143, 1, "number", "bool" },
+    { "kick_force", 144, 8, "number", "0.1 ms" },
+  } },
+}
+
+local protocol_fields = {}
+for _, packet in pairs(packets) do
+  for _, row in ipairs(packet.fields) do
+    local filter = PROTOCOL .. "." .. packet.name .. "." .. row[1]:gsub("[^%w_]", "_")
+    local label = row[1] .. (row[5] ~= "" and " (" .. row[5] .. ")" or "")
+    local make = row[4] == "float" and ProtoField.float or row[4] == "ranged" and ProtoField.double
+      or row[3] > 32 and ProtoField.uint64 or ProtoField.uint32
+    row.field = make(filter, label)
+    protocol_fields[#protocol_fields + 1] = row.field
+  end
+end
+proto.fields = protocol_fields
+
+local fault = ProtoExpert.new(PROTOCOL .. ".fault", "Refused packet", expert.group.MALFORMED, expert.severity.ERROR)
+proto.experts = { fault }
+
+-- Content of a field: a number, or a UInt64 above 32 bits.
+local function raw_of(range, row, lsb_first)
+  local first, bits = row[2], row[3]
+  if not lsb_first then return range:bitfield(first, bits) end
+  local value, weight = 0, 1
+  for bit = first, first + bits - 1 do
+    local byte = range(math.floor(bit / 8), 1):uint()
+    value = value + weight * (math.floor(byte / 2 ^ (bit % 8)) % 2)
+    weight = weight * 2
+  end
+  return value
+end
+
+local function add_field(tree, range, row, lsb_first)
+  local first, last = math.floor(row[2] / 8), math.floor((row[2] + row[3] - 1) / 8)
+  local bytes = range(first, last - first + 1)
+  if row[4] == "float" then
+    if lsb_first then tree:add_le(row.field, bytes) else tree:add(row.field, bytes) end
+  elseif row[4] == "ranged" then
+    tree:add(row.field, bytes, raw_of(range, row, lsb_first) * row[6] + row[7])
+  else
+    tree:add(row.field, bytes, raw_of(range, row, lsb_first))
+  end
+end
+
+-- One packet without framing; answers its length, 0 where no packet starts like this.
+local function add_packet(tree, range, pinfo)
+  local packet = range:len() > TYPE_BYTE and packets[range(TYPE_BYTE, 1):uint()]
+  if not packet or range:len() < packet.size then
+    tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
+    return 0
+  end
+  local size = packet.size
+  if packet.text_size_at then
+    size = math.max(size, math.min(range:len(), range(packet.text_size_at, 1):uint()))
+  end
+  local branch = tree:add(proto, range(0, size), packet.name)
+  for _, row in ipairs(packet.fields) do add_field(branch, range, row, packet.lsb_first) end
+  if size > packet.size then branch:add(range(packet.size, size - packet.size), "text: " .. range(packet.size, size - packet.size):string()) end
+  pinfo.cols.info:append(" " .. packet.name)
+  return size
+end
+
+-- The bytes behind COBS, nil where the codes do not fit.
+local function uncobs(range)
+  local out, at, length = ByteArray.new(), 0, range:len()
+  out:set_size(length)
+  local count = 0
+  while at < length do
+    local code = range(at, 1):uint()
+    if code == 0 or at + code > length then return nil end
+    for i = at + 1, at + code - 1 do
+      out:set_index(count, range(i, 1):uint())
+      count = count + 1
+    end
+    at = at + code
+    if code < 255 and at < length then
+      out:set_index(count, 0)
+      count = count + 1
+    end
+  end
+  if count == 0 then return nil end
+  return out:subset(0, count)
+end
+
+function proto.dissector(buffer, pinfo, tree)
+  pinfo.cols.protocol = PROTOCOL
+  local first = 0
+  for at = 0, buffer:len() - 1 do
+    if buffer(at, 1):uint() == 0 then
+      local data = at > first and uncobs(buffer(first, at - first))
+      if data then
+        add_packet(tree, data:tvb("without COBS")(), pinfo)
+      else
+        tree:add(proto, buffer(first, at - first + 1)):add_proto_expert_info(fault, "framing")
+      end
+      first = at + 1
+    end
+  end
+end
+
+-- Chosen with "Decode As": a UDP port, or the link type USER 0 of a capture of serial bytes.
+DissectorTable.get("udp.port"):add_for_decode_as(proto)
+DissectorTable.get("wtap_encap"):add(wtap.USER0, proto)

@@ -1,0 +1,254 @@
+// The verbs encode, decode and formats, as a user runs them.
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "protocols/emit/emit.h"
+#include "tests/protocols/packet_util.h"
+
+namespace omnihil {
+namespace {
+
+using nlohmann::json;
+
+struct Output {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+class Verbs : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(OMNIHIL_PROGRAM)) GTEST_SKIP() << "the program omnihil is not built";
+    std::string pattern = (std::filesystem::temp_directory_path() / "omnihil-verbs-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override {
+    if (!folder_.empty()) std::filesystem::remove_all(folder_);
+  }
+
+  Output run(const std::string& arguments, const std::string& input) const {
+    std::ofstream(folder_ / "in", std::ios::binary) << input;
+    const std::string command = std::string("'") + OMNIHIL_PROGRAM + "' " + arguments + " < '" +
+                                (folder_ / "in").string() + "' > '" + (folder_ / "out").string() + "' 2> '" +
+                                (folder_ / "err").string() + "'";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(folder_ / "out"), text_of(folder_ / "err")};
+  }
+
+  std::filesystem::path folder_;
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(Verbs, EncodeGivesTheBytesOfEveryGoldenPacket) {
+  for (const RadioFormat* format : radio_formats()) {
+    for (const Message& message : format->messages) {
+      std::string input;
+      std::string expected;
+      for (const GoldenPacket& packet : golden_packets()) {
+        if (packet.message != &message) continue;
+        input += packet.given.dump() + "\n";
+        expected += to_hex(packet.frame) + "\n";
+      }
+      const Output result = run("encode " + std::string(format->id) + " " + std::string(message.name), input);
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_EQ(result.out, expected) << message.name;
+      EXPECT_EQ(result.err, "");
+    }
+  }
+}
+
+TEST_F(Verbs, DecodeGivesPacketAndFieldsOfEveryGoldenPacket) {
+  for (const RadioFormat* format : radio_formats()) {
+    std::string input;
+    std::vector<GoldenPacket> packets;
+    for (const GoldenPacket& packet : golden_packets()) {
+      if (packet.format != format) continue;
+      input += to_hex(packet.frame) + "\n";
+      packets.push_back(packet);
+    }
+    const Output result = run("decode " + std::string(format->id), input);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const auto lines = lines_of(result.out);
+    ASSERT_EQ(lines.size(), packets.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const json line = json::parse(lines[i]);
+      EXPECT_EQ(line.at("packet"), packets[i].message->name);
+      for (const auto& [name, value] : packets[i].given.items()) {
+        const json& field = line.at("fields").at(name);
+        if (value.is_boolean() || value.is_number_integer() || value.is_string()) {
+          EXPECT_EQ(field, value) << lines[i];
+        } else {
+          EXPECT_EQ(field.is_array(), value.is_array()) << name;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Verbs, WhatDecodePrintsEncodeTakes) {
+  const RadioFormat& format = *find_radio_format("ulaval-hermes");
+  for (const GoldenPacket& packet : golden_packets()) {
+    if (packet.format != &format) continue;
+    const Output decoded = run("decode ulaval-hermes", to_hex(packet.frame) + "\n");
+    const json fields = json::parse(decoded.out).at("fields");
+    const Output encoded =
+        run("encode ulaval-hermes " + std::string(packet.message->name), fields.dump() + "\n");
+    EXPECT_EQ(encoded.out, to_hex(packet.frame) + "\n") << decoded.out;
+  }
+}
+
+TEST_F(Verbs, DecodePrintsFloatsWithTheFewestDigitsOfAFloat32) {
+  const Output result =
+      run("encode ulaval-hermes SPEED_MOVE", "{\"robot\":1,\"vx\":0.1,\"vy\":-0.0,\"vtheta\":3}\n");
+  const Output decoded = run("decode ulaval-hermes", result.out);
+  EXPECT_EQ(decoded.out,
+            "{\"packet\":\"SPEED_MOVE\",\"fields\":{\"robot\":1,\"vx\":0.1,\"vy\":-0.0,\"vtheta\":3.0}}\n");
+}
+
+TEST_F(Verbs, EncodeNamesEveryProblemOfABadLineAndStillPrintsTheGoodOnes) {
+  const Output result = run("encode roboteam-rem-v8 REM_RobotCommand",
+                            "{\"rho\": 1}\n"
+                            "{\"rho\": 40, \"tohRobotId\": 3, \"doKick\": \"yes\", \"toRobotId\": 16}\n"
+                            "not json\n"
+                            "\n"
+                            "[1, 2]\n"
+                            "{\"rho\": 2, \"remVersion\": 5}\n"
+                            "{\"rho\": 3}\n");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(lines_of(result.out).size(), 2u);
+  for (const char* problem :
+       {"line 2: field 'rho': 40 is not allowed; allowed: 0 to 30 m/s",
+        "line 2: field 'tohRobotId': REM_RobotCommand has no such field; did you mean 'toRobotId'?",
+        "line 2: field 'doKick': \"yes\" is not allowed; allowed: a whole number, 0 to 1",
+        "line 2: field 'toRobotId': 16 is not allowed; allowed: a whole number, 0 to 15",
+        "line 3: not JSON: not json", "line 5: not a JSON object: [1,2]",
+        "line 6: field 'remVersion': 5 is not allowed; allowed: 8"}) {
+    EXPECT_NE(result.err.find(problem), std::string::npos) << problem << "\n" << result.err;
+  }
+  EXPECT_EQ(lines_of(result.err).size(), 7u) << result.err;
+}
+
+TEST_F(Verbs, EncodeRefusesNumbersThatNoFloat32Holds) {
+  const Output result = run("encode ulaval-hermes SPEED_MOVE",
+                            "{\"vx\": 1e300}\n{\"vx\": 1e999}\n{\"vx\": NaN}\n{\"vx\": null}\n");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(lines_of(result.err).size(), 4u) << result.err;
+  EXPECT_NE(result.err.find("line 1: field 'vx': 1e+300 is not allowed; allowed: any finite float32 m/s"),
+            std::string::npos)
+      << result.err;
+}
+
+TEST_F(Verbs, EncodeTellsOfAFieldThatMayNotBeLeftOut) {
+  const Output result = run("encode roboteam-rem-v8 REM_RobotFeedback", "{}\n");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("field 'batteryLevel': missing; allowed: 15 to 30 V"), std::string::npos)
+      << result.err;
+}
+
+TEST_F(Verbs, EncodeTakesArraysOfTheRightLengthOnly) {
+  const Output result = run("encode ulaval-hermes OPEN_LOOP_COMMAND", "{\"cmd\": [1, 2, 3]}\n{\"cmd\": 1}\n");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("line 1: field 'cmd': [1,2,3] is not allowed; allowed: an array of 4 numbers"),
+            std::string::npos)
+      << result.err;
+  EXPECT_NE(result.err.find("line 2: field 'cmd'"), std::string::npos) << result.err;
+}
+
+TEST_F(Verbs, DecodeNamesCauseAndFieldOfARefusedFrame) {
+  const Output result =
+      run("decode roboteam-rem-v8",
+          "2180 \n21000050000000000000 0b\n210000800000000000000c\n21:00:00:80:00:00:00:00:00:00:0B\n");
+  EXPECT_EQ(result.exit_code, 0);
+  const auto lines = lines_of(result.out);
+  ASSERT_EQ(lines.size(), 4u) << result.out;
+  EXPECT_EQ(lines[0], "{\"error\":\"too short\"}");
+  EXPECT_EQ(lines[1], "{\"error\":\"version\",\"field\":\"remVersion\"}");
+  EXPECT_EQ(lines[2], "{\"error\":\"length\",\"field\":\"payloadSize\"}");
+  EXPECT_EQ(json::parse(lines[3]).at("packet"), "REM_Packet");
+}
+
+TEST_F(Verbs, DecodeTellsOfALineThatIsNoHex) {
+  const Output result = run("decode ulaval-hermes", "0301fe0102ff00\nxyz\n030\n");
+  EXPECT_EQ(result.exit_code, 2);
+  const auto lines = lines_of(result.out);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(json::parse(lines[0]).at("packet"), "PING_REQUEST");
+  EXPECT_EQ(lines[1], "{\"error\":\"not hex\"}");
+  EXPECT_EQ(lines[2], "{\"error\":\"not hex\"}");
+  EXPECT_NE(result.err.find("line 2: not hex"), std::string::npos);
+}
+
+TEST_F(Verbs, UnknownFormatsAndPacketsAreExplained) {
+  for (const std::string arguments :
+       {"encode ulaval-hermez PING_REQUEST", "decode ulaval-hermez", "formats ulaval-hermez"}) {
+    const Output result = run(arguments, "");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.err.find("did you mean 'ulaval-hermes'?"), std::string::npos) << result.err;
+  }
+  const Output result = run("encode ulaval-hermes SPEEDMOVE", "");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("did you mean 'SPEED_MOVE'?"), std::string::npos) << result.err;
+}
+
+TEST_F(Verbs, FormatsListsAllAndPrintsWhatWasAskedFor) {
+  const Output list = run("formats", "");
+  EXPECT_EQ(list.exit_code, 0);
+  for (const RadioFormat* format : radio_formats()) {
+    const std::string id(format->id);
+    EXPECT_NE(list.out.find(id), std::string::npos);
+    EXPECT_EQ(run("formats " + id, "").out, emit_markdown(*format));
+    EXPECT_EQ(run("formats " + id + " --wireshark", "").out, emit_wireshark(*format));
+    EXPECT_EQ(run("formats " + id + " --c-header", "").out, emit_c_header(*format));
+  }
+  EXPECT_EQ(run("formats --wireshark", "").exit_code, 2);
+}
+
+TEST_F(Verbs, EncodeAndDecodeAgreeWithTheTeamsVectors) {
+  const std::string shared = shared_folder();
+  if (shared.empty()) GTEST_SKIP() << "OMNIHIL_SHARED does not name the folder of reference data";
+  const json file = read_json(shared + "/vectors/roboteam-rem-v8.json");
+  for (const auto& [name, packet] : file.at("packets").items()) {
+    std::string given;
+    std::string hex;
+    for (const json& row : packet.at("vectors")) {
+      given += row.at("in").dump() + "\n";
+      hex += row.at("hex").get<std::string>() + "\n";
+    }
+    EXPECT_EQ(run("encode roboteam-rem-v8 " + name, given).out, hex) << name;
+    const auto lines = lines_of(run("decode roboteam-rem-v8", hex).out);
+    ASSERT_EQ(lines.size(), packet.at("vectors").size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const json fields = json::parse(lines[i]).at("fields");
+      const json& expected = packet.at("vectors")[i].at("decoded");
+      ASSERT_EQ(fields.size(), expected.size());
+      for (const auto& [field, value] : expected.items()) {
+        EXPECT_EQ(fields.at(field).get<float>(), value.get<float>()) << name << "." << field;
+        if (value.is_number_integer()) {
+          EXPECT_EQ(fields.at(field), value) << name << "." << field;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace omnihil
