@@ -99,8 +99,8 @@ bool HermesRobot::answer(const Message& request, const RadioFormat& format, int 
   assert(out.message != nullptr);
   out.set("robot", robot_id);
   if (battery) {
-    // decivolts = trunc(10 V); the first addend keeps 24.6 V from becoming 245
-    const double decivolts = std::floor(1e-9 + feedback.battery_V * 10.0);
+    // decivolts = trunc(10 V)
+    const double decivolts = std::floor(feedback.battery_V * 10.0);
     out.set("decivolts", std::isfinite(decivolts) ? std::clamp(decivolts, 0.0, 255.0) : 0.0);
   } else if (!ping) {
     out.set("value", received_);

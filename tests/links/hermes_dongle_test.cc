@@ -85,7 +85,7 @@ TEST(HermesDongleTest, QueueHoldsWhatTheDonglesRingHoldsAndCountsTheRestAsOverru
 
 TEST(HermesDongleTest, BatteryIsAnsweredInDecivolts) {
   Bench bench = make_bench({2});
-  bench.robots[2].battery_V = 24.6;
+  bench.robots[2].battery_V = 24.69;  // truncated
   bench.run_to(1 * kMs);
   bench.write(bench.encode("GET_BATTERIE", {{"robot", 2}}));
   bench.run_to(1 * kMs + 5 * kMs);
@@ -167,6 +167,19 @@ TEST(HermesDongleTest, FirmwaresOwnAnswerGoesToTheHostAndALateOneDoesNot) {
   EXPECT_EQ(bench.to_host, answer);
   EXPECT_EQ(bench.link->from_robots().good, 1u);
   EXPECT_EQ(bench.link->from_robots().bad[static_cast<std::size_t>(PacketError::kOverrun)], 1u);
+}
+
+TEST(HermesDongleTest, AnswerBeforeItsRequestOrFromAnotherRobotIsNotTaken) {
+  Bench bench = make_bench({4, 5}, true);
+  bench.write(bench.encode("PING_REQUEST", {{"robot", 4}}));
+  bench.run_to(kFrame - 1 * kUs);
+  bench.link->robot_frame(4, bench.encode("PING_RESPONSE", {{"robot", 4}}), bench.now_ns);
+  bench.run_to(1 * kMs);
+  bench.link->robot_frame(5, bench.encode("PING_RESPONSE", {{"robot", 5}}), bench.now_ns);
+  bench.run_to(30 * kMs);
+  EXPECT_TRUE(bench.to_host.empty());
+  EXPECT_EQ(bench.link->from_robots().bad[static_cast<std::size_t>(PacketError::kOverrun)], 1u);
+  EXPECT_EQ(bench.link->from_robots().bad[static_cast<std::size_t>(PacketError::kAddress)], 1u);
 }
 
 TEST(HermesDongleTest, BadAnswersOfFirmwareAreCountedByCauseAndNotPassedOn) {
