@@ -146,7 +146,7 @@ void check_height(const RobotModel& m, std::vector<std::string>& out) {
   if (worst >= 1) {
     out.push_back(fmt::format(
         "center_of_mass_height_m = {} m with tyre_longitudinal.extremum_value = {}: the robot would tip "
-        "over its wheels; height must be below {:.4g} m",
+        "over its wheels, which only the free body can show; on the plane height must be below {:.4g} m",
         m.center_of_mass_height_m, m.tyre_longitudinal.extremum_value, m.center_of_mass_height_m / worst));
   }
 }
@@ -175,7 +175,6 @@ std::vector<std::string> robot_problems(const RobotModel& model) {
   }
   if (!out.empty()) return out;
   check_together(model, out);
-  if (out.empty()) check_height(model, out);
   return out;
 }
 
@@ -202,6 +201,7 @@ std::vector<std::string> plant_problems(std::span<const RobotModel> robots, cons
   if (robots.empty()) out.push_back("no robot: at least one is needed");
   for (std::size_t n = 0; n < robots.size(); ++n) {
     std::vector<std::string> of_robot = robot_problems(robots[n]);
+    if (of_robot.empty() && options.physics != Physics::kSimbodyFree) check_height(robots[n], of_robot);
     if (of_robot.empty() && options.mechanical_step_ns > 0) {
       const double rate = stiffest_contact_rate(robots[n]), limit = explicit_limit(options.integrator);
       const double step_s = static_cast<double>(options.mechanical_step_ns) * 1e-9;
