@@ -8,19 +8,19 @@ namespace omnihil {
 
 enum class PacketError : std::uint8_t {
   kNone,
-  kTooShort,        // fewer bytes than the smallest packet or than its type needs
-  kTooLong,         // more bytes than the type has
-  kFraming,         // COBS code past the end, delimiter inside, no delimiter within the longest frame
-  kChecksum,        // sum or CRC does not match
-  kVersion,         // protocol version of another dialect
-  kUnknownType,     // no message with this code
-  kLength,          // length field contradicts the type or the bytes
-  kConstant,        // a sync or constant field has another value
-  kRange,           // a field's value is outside what the table allows
-  kNotFinite,       // NaN or infinity in a float field
-  kAddress,         // names a robot that is not there, or the other team's
-  kDirection,       // a packet that only a robot may send, from the host (or the reverse)
-  kOverrun,         // dropped because a queue or buffer was full
+  kTooShort,     // fewer bytes than the smallest packet or than its type needs
+  kTooLong,      // more bytes than the type has
+  kFraming,      // COBS code past the end, delimiter inside, no delimiter within the longest frame
+  kChecksum,     // sum or CRC does not match
+  kVersion,      // protocol version of another dialect
+  kUnknownType,  // no message with this code
+  kLength,       // length field contradicts the type or the bytes
+  kConstant,     // a sync or constant field has another value
+  kRange,        // a field's value is outside what the table allows
+  kNotFinite,    // NaN or infinity in a float field
+  kAddress,      // names a robot that is not there, or the other team's
+  kDirection,    // a packet that only a robot may send, from the host (or the reverse)
+  kOverrun,      // dropped because a queue or buffer was full
   kCount
 };
 

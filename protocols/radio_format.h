@@ -20,8 +20,8 @@ struct RadioLinkConfig;
 // How bytes travel between the AI host and the dongle.
 struct Carrier {
   enum class Kind : std::uint8_t { kUsbCdc, kUart, kUdp } kind = Kind::kUsbCdc;
-  int baud = 0;           // kUart only; USB CDC ignores the rate a host sets
-  int bits_per_byte = 10; // 8N1: start + 8 + stop
+  int baud = 0;            // kUart only; USB CDC ignores the rate a host sets
+  int bits_per_byte = 10;  // 8N1: start + 8 + stop
 };
 
 // How one packet stands among others on the wire.
@@ -37,10 +37,10 @@ struct DecodeResult {
 };
 
 struct RadioFormat {
-  std::string_view id;     // "ulaval-hermes"
-  std::string_view title;  // "RoboCup ULaval HERMES v1"
-  std::string_view source; // public repository and commit the table was read from
-  std::string_view notes;  // framing, float rule, traps: Markdown, for the documentation
+  std::string_view id;      // "ulaval-hermes"
+  std::string_view title;   // "RoboCup ULaval HERMES v1"
+  std::string_view source;  // public repository and commit the table was read from
+  std::string_view notes;   // framing, float rule, traps: Markdown, for the documentation
   Carrier carrier;
   Framing framing = Framing::kNone;
   int max_frame_bytes = 0;

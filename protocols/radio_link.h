@@ -28,8 +28,8 @@ struct RadioLinkConfig {
   // True: frames are handed to the firmware as bytes and the firmware answers with frames.
   // False: the link decodes commands and writes telemetry from RobotFeedback itself.
   bool firmware_decodes = false;
-  std::uint64_t epoch_ms = 0;  // Unix time at virtual time 0, for formats that stamp their packets
-  double wheel_radius_m = 0.0; // for formats that carry rim speeds instead of wheel speeds
+  std::uint64_t epoch_ms = 0;   // Unix time at virtual time 0, for formats that stamp their packets
+  double wheel_radius_m = 0.0;  // for formats that carry rim speeds instead of wheel speeds
 };
 
 // One thing that reached one robot. Exactly one of the three is meant, by `kind`.

@@ -83,7 +83,8 @@ struct Reader {
     }
     if (message.text_tail) names.push_back(kTextKey);
     const std::string_view near = nearest_spelling(key, names);
-    out.problems.push_back("field " + in_quotes(key) + ": " + std::string(message.name) + " has no such field" +
+    out.problems.push_back("field " + in_quotes(key) + ": " + std::string(message.name) +
+                           " has no such field" +
                            (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
   }
 
@@ -160,7 +161,7 @@ std::string value_text(const Field& field, const Value& value) {
 std::string allowed_text(const Field& field, const Message& message) {
   const std::string unit = field.unit.empty() ? "" : " " + std::string(field.unit);
   const bool limited = field.lo != field.hi;
-  const std::string limits = short_number(field.lo) + " to " + short_number(field.hi) + unit;
+  std::string limits = short_number(field.lo) + " to " + short_number(field.hi) + unit;
   switch (field.kind) {
     case FieldKind::kUint:
     case FieldKind::kReserved:

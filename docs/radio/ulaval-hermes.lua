@@ -149,7 +149,10 @@ local function add_packet(tree, range, pinfo)
   end
   local branch = tree:add(proto, range(0, size), packet.name)
   for _, row in ipairs(packet.fields) do add_field(branch, range, row, packet.lsb_first) end
-  if size > packet.size then branch:add(range(packet.size, size - packet.size), "text: " .. range(packet.size, size - packet.size):string()) end
+  if size > packet.size then
+    local text = range(packet.size, size - packet.size)
+    branch:add(text, "text: " .. text:string())
+  end
   pinfo.cols.info:append(" " .. packet.name)
   return size
 end
