@@ -3,13 +3,30 @@
 #include <math.h>
 
 static const float kAccelLimit_m_s2 = 4.0f;
+static const float kGrip =
+    0.55f; /* friction coefficient to plan with; omni wheels on carpet have 0.6 to 0.8 */
+static const float kQuarterGravity_m_s2 = 9.81f / 4.0f;
 static const float kYawAccelLimit_rad_s2 = 60.0f;
 /* Beyond any robot; brings numbers like 3e38 down before they are multiplied. Keeps the direction. */
 static const float kSpeedOfNoRobot_m_s = 100.0f;
 
-static float toward(float from, float to, float step) {
-  float gap = to - from;
-  return fabsf(gap) <= step ? to : from + copysignf(step, gap);
+static float step_share(float gap, float step) { return gap > step ? step / gap : 1.0f; }
+
+/* The share of this change per `dt_s` that the tyres can transmit: 1, or what brings the hardest-worked wheel
+ * to its limit. Forces per mass; the radius of gyration is that of a disc of the wheels' radius, R_b^2 / 2.
+ */
+static float grip_share(const wheel_geometry* geometry, const float change[BODY_AXES], float dt_s) {
+  float center_m = geometry->rim_per_body[0][BODY_OMEGA];
+  float hardest = 0.0f;
+  for (int w = 0; w < OMNIHIL_WHEELS; ++w) {
+    float force_per_mass =
+        geometry->body_per_rim[BODY_X][w] * change[BODY_X] +
+        geometry->body_per_rim[BODY_Y][w] * change[BODY_Y] +
+        geometry->body_per_rim[BODY_OMEGA][w] * 0.5f * center_m * center_m * change[BODY_OMEGA];
+    hardest = fmaxf(hardest, fabsf(force_per_mass));
+  }
+  float limit = kGrip * kQuarterGravity_m_s2 * dt_s;
+  return hardest > limit ? limit / hardest : 1.0f;
 }
 
 static void note_acceleration(motion_reference* motion, const float before[BODY_AXES], float dt_s) {
@@ -48,13 +65,15 @@ void motion_toward_body(motion_reference* motion, const wheel_geometry* geometry
   scale_to_limit(wheels, motion->wheel_limit_rad_s);
   wheels_to_body(geometry, wheels, goal);
 
-  float gap_x = goal[BODY_X] - before[BODY_X], gap_y = goal[BODY_Y] - before[BODY_Y];
-  float gap_m_s = sqrtf(gap_x * gap_x + gap_y * gap_y);
-  float step_m_s = kAccelLimit_m_s2 * dt_s;
-  float share = gap_m_s > step_m_s ? step_m_s / gap_m_s : 1.0f;
-  motion->body[BODY_X] = share < 1.0f ? before[BODY_X] + share * gap_x : goal[BODY_X];
-  motion->body[BODY_Y] = share < 1.0f ? before[BODY_Y] + share * gap_y : goal[BODY_Y];
-  motion->body[BODY_OMEGA] = toward(before[BODY_OMEGA], goal[BODY_OMEGA], kYawAccelLimit_rad_s2 * dt_s);
+  float change[BODY_AXES];
+  for (int axis = 0; axis < BODY_AXES; ++axis) change[axis] = goal[axis] - before[axis];
+  float gap_m_s = sqrtf(change[BODY_X] * change[BODY_X] + change[BODY_Y] * change[BODY_Y]);
+  float share = step_share(gap_m_s, kAccelLimit_m_s2 * dt_s);
+  change[BODY_X] *= share;
+  change[BODY_Y] *= share;
+  change[BODY_OMEGA] *= step_share(fabsf(change[BODY_OMEGA]), kYawAccelLimit_rad_s2 * dt_s);
+  share = grip_share(geometry, change, dt_s);
+  for (int axis = 0; axis < BODY_AXES; ++axis) motion->body[axis] = before[axis] + share * change[axis];
   body_to_wheels(geometry, motion->body, wheels);
   set_wheels(motion, wheels, dt_s);
   note_acceleration(motion, before, dt_s);
@@ -65,11 +84,15 @@ void motion_toward_wheels(motion_reference* motion, const wheel_geometry* geomet
   float before[BODY_AXES] = {motion->body[BODY_X], motion->body[BODY_Y], motion->body[BODY_OMEGA]};
   float limit_rad_s = motion->wheel_limit_rad_s;
   float step_rad_s = kAccelLimit_m_s2 / geometry->wheel_radius_m * dt_s;
-  float wheels[OMNIHIL_WHEELS];
+  float wheels[OMNIHIL_WHEELS], body_change[BODY_AXES];
   for (int w = 0; w < OMNIHIL_WHEELS; ++w) {
     float goal_rad_s = fmaxf(-limit_rad_s, fminf(limit_rad_s, target_rad_s[w]));
-    wheels[w] = toward(motion->omega_wheel_rad_s[w], goal_rad_s, step_rad_s);
+    float gap_rad_s = goal_rad_s - motion->omega_wheel_rad_s[w];
+    wheels[w] = gap_rad_s * step_share(fabsf(gap_rad_s), step_rad_s);
   }
+  wheels_to_body(geometry, wheels, body_change);
+  float share = grip_share(geometry, body_change, dt_s);
+  for (int w = 0; w < OMNIHIL_WHEELS; ++w) wheels[w] = motion->omega_wheel_rad_s[w] + share * wheels[w];
   set_wheels(motion, wheels, dt_s);
   wheels_to_body(geometry, motion->omega_wheel_rad_s, motion->body);
   note_acceleration(motion, before, dt_s);

@@ -12,7 +12,7 @@ bool timed_out(const Bench& bench) {
   return (bench.firmware->feedback().flags & OMNIHIL_FEEDBACK_COMMAND_TIMEOUT) != 0;
 }
 
-// 1 m/s at 4 m/s^2: 0.25 s of braking, then the wheels must be seen standing.
+// 1 m/s at 3 to 4 m/s^2: 0.25 to 0.33 s of braking, then the wheels must be seen standing.
 TEST(CommandTimeout, RobotStandsHalfASecondAfterTheTimeoutAndThenCoasts) {
   for (const double timeout_s : {0.0, 0.1, 0.5}) {
     BenchRobotParams params = geared_robot();
@@ -30,7 +30,8 @@ TEST(CommandTimeout, RobotStandsHalfASecondAfterTheTimeoutAndThenCoasts) {
     bench.run(1);
     EXPECT_TRUE(timed_out(bench)) << timeout_s;
     bench.run(100);
-    EXPECT_NEAR(bench.robot.body[0], 1.0 - 4.0 * 0.100, 0.05) << timeout_s;
+    EXPECT_LT(bench.robot.body[0], 0.75) << timeout_s;  // braking, at 3 to 4 m/s^2
+    EXPECT_GT(bench.robot.body[0], 0.55) << timeout_s;
     bench.run(400);
     EXPECT_TRUE(bench.coasting()) << timeout_s;
     EXPECT_NEAR(bench.robot.body[0], 0.0, 0.03) << timeout_s;
