@@ -20,7 +20,8 @@ check_sanitizers() {
 }
 check_fuzz() {
   cmake --preset fuzz >/dev/null && ninja -C build/fuzz fuzz_packets &&
-    build/fuzz/tests/fuzz_packets -max_total_time="${OMNIHIL_FUZZ_S:-60}" -print_final_stats=1 tests/fuzz/corpus
+    mkdir -p build/fuzz/found &&
+    build/fuzz/tests/fuzz_packets -max_total_time="${OMNIHIL_FUZZ_S:-60}" -print_final_stats=1 build/fuzz/found tests/fuzz/corpus
 }
 
 for step in "${steps[@]}"; do
