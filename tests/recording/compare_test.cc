@@ -217,13 +217,13 @@ TEST(Compare, ColumnsOfOtherVersionsAreListedAndLeftOut) {
   EXPECT_EQ(result.not_compared, std::vector<std::string>{"duty_of_old"});
 }
 
-TEST(Compare, RobotWithAnotherMotorIsRefused) {
+TEST(Compare, OnePercentOfTheMotorsTorqueConstantIsSeen) {
   Recording recorded = real::record(real::setup(real::kHermes), 400);
-  std::string& motor = recorded.header.included_models.at(0).text;
-  const std::string key = "torque_constant_Nm_per_A = { value = 0.0255";
-  const std::size_t at = motor.find(key);
+  std::string& model = recorded.header.robot_model_text;
+  const std::string key = "torque_constant_Nm_per_A = { value = 0.0255,";
+  const std::size_t at = model.find(key);
   ASSERT_NE(at, std::string::npos);
-  motor.replace(at, key.size(), "torque_constant_Nm_per_A = { value = 0.0242");  // 5 % less
+  model.replace(at, key.size(), "torque_constant_Nm_per_A = { value = 0.02525,");
   EXPECT_FALSE(compare(recorded, run_again(recorded, {}).answer).agrees());
 }
 
