@@ -109,6 +109,12 @@ void report_conflicts(const Merged& all, const ParameterTable& table, std::vecto
   }
 }
 
+// "robots/ours.toml" -> "ours"
+std::string stem_of(const std::string& file) {
+  const std::string name = file.substr(file.find_last_of('/') + 1);
+  return name.substr(0, name.rfind(".toml"));
+}
+
 ModelFile model_of(const Merged& all, ParameterTable table) {
   const ModelReader& reader = all.main.reader;
   ModelFile model;
@@ -132,7 +138,7 @@ ModelFile model_of(const Merged& all, ParameterTable table) {
   }
   model.parameters = std::move(table);
   RobotModel robot = robot_model_of(model.parameters);
-  robot.name = model.name;
+  robot.name = model.name.empty() ? stem_of(all.main.document.file) : model.name;
   robot.motor.name = model.motor_name;
   model.motor = robot.motor;
   if (all.rig == kRigRobot) model.robot = std::move(robot);

@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 #include <set>
 
 #include "hil/model_store.h"
+#include "sim/core/model_keys.h"
 #include "sim/core/model_rows.h"
 
 namespace omnihil {
@@ -149,6 +151,24 @@ TEST(ModelRows, EveryRowExplainsItselfAndItsDefaultIsAllowed) {
       EXPECT_TRUE(within_bounds(row, *row.otherwise)) << row.key;
     }
   }
+}
+
+TEST(ModelRows, DocumentationCarriesThemAll) {
+  std::ifstream in(OMNIHIL_SOURCE_DIR "/docs/model-files.md");
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const std::string mark = "<!-- keys -->\n";
+  const auto at = text.find(mark);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(text.substr(at + mark.size()), model_keys_markdown())
+      << "put the output of `omnihil models --keys` under the mark in docs/model-files.md";
+}
+
+TEST(ModelFile, WithoutANameIsCalledAfterItsFile) {
+  std::string text = kRobot;
+  text.erase(text.find("name = \"a robot\"\n"), std::string("name = \"a robot\"\n").size());
+  const ModelReading read = read_model(text, "somewhere/ours.toml", motor_text);
+  ASSERT_TRUE(read.model.has_value());
+  EXPECT_EQ(read.model->robot->name, "ours");
 }
 
 TEST(ModelStore, BundleReadsBackWithoutAnyFile) {

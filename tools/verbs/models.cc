@@ -1,4 +1,4 @@
-// omnihil models [NAME|PATH] [--check FILE…]: lists, explains or checks model files.
+// omnihil models [NAME|PATH] [--check FILE…] [--keys]: lists, explains or checks model files.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,8 @@
 
 #include "hil/model_store.h"
 #include "sim/core/model_figures.h"
+#include "sim/core/model_keys.h"
+#include "sim/robot/validate.h"
 #include "tools/exit_codes.h"
 #include "tools/verbs/verbs.h"
 
@@ -20,6 +22,7 @@ const std::vector<std::string> kFolders = {OMNIHIL_SOURCE_MODELS};
 struct Arguments {
   std::string model;
   std::vector<std::string> check;
+  bool keys = false;
 };
 
 void print_problems(const StoredModel& stored) {
@@ -96,18 +99,33 @@ int explain(const std::string& path_or_name) {
   return kExitOk;
 }
 
+// What a bench at its usual settings would refuse: too light a wheel for its steps, a wheel without load.
+std::vector<std::string> plant_problems_of(const StoredModel& stored) {
+  if (!stored.model || !stored.model->robot) return {};
+  return plant_problems({&*stored.model->robot, 1}, PlantOptions{});
+}
+
 int check(const std::vector<std::string>& files) {
   std::size_t problems = 0;
   for (const std::string& file : files) {
     const StoredModel stored = load_model(file, kFolders);
     print_problems(stored);
-    problems += stored.problems.size();
-    if (stored.model) std::printf("%s: good (%s)\n", file.c_str(), stored.model->rig.c_str());
+    const std::vector<std::string> refused = plant_problems_of(stored);
+    for (const std::string& problem : refused)
+      std::fprintf(stderr, "%s: %s\n", file.c_str(), problem.c_str());
+    problems += stored.problems.size() + refused.size();
+    if (stored.model && refused.empty())
+      std::printf("%s: good (%s)\n", file.c_str(), stored.model->rig.c_str());
     for (const std::string& note : stored.notes) std::printf("note: %s\n", note.c_str());
   }
   if (problems == 0) return kExitOk;
   std::fprintf(stderr, "%zu problem%s\n", problems, problems == 1 ? "" : "s");
   return kExitBadInput;
+}
+
+int print_keys() {
+  std::fputs(model_keys_markdown().c_str(), stdout);
+  return kExitOk;
 }
 
 }  // namespace
@@ -116,11 +134,16 @@ void add_verb_models(CLI::App& app, VerbResult& result) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("models", "list robots and motors, explain one, or check model files");
   verb->add_option("MODEL", arguments->model, "explain this model: every number, its tolerance and source");
-  verb->add_option("--check", arguments->check, "check these files; all problems with line and column")
-      ->excludes(verb->get_option("MODEL"));
+  CLI::Option* files =
+      verb->add_option("--check", arguments->check, "check these files; all problems with line and column")
+          ->type_name("FILE")
+          ->excludes(verb->get_option("MODEL"));
+  verb->add_flag("--keys", arguments->keys, "print every key a model file may have (Markdown)")
+      ->excludes(files);
   verb->footer("A name is looked for in $OMNIHIL_MODELS, then among the models that come with the program.");
   verb->callback([arguments, &result] {
-    result.exit_code = !arguments->check.empty()   ? check(arguments->check)
+    result.exit_code = arguments->keys             ? print_keys()
+                       : !arguments->check.empty() ? check(arguments->check)
                        : !arguments->model.empty() ? explain(arguments->model)
                                                    : list();
   });
