@@ -212,6 +212,7 @@ TEST(SessionTest, NamesEveryProblemOfItsConfigurationAtOnce) {
   SessionConfig config = session_config(setup_of("omni_default", "ulaval-hermes", {0}));
   config.radio_format = "ulaval-hermess";
   config.robot_ids = {3, 3, 16};
+  config.plant.mechanical_step_ns = kMs;
   config.step_ns = 1'500'000;
   Probes probes;
   const std::string problems = problems_of(config, probes.maker(10 * kMs));
@@ -222,9 +223,10 @@ TEST(SessionTest, NamesEveryProblemOfItsConfigurationAtOnce) {
 }
 
 TEST(SessionTest, RefusesAControlPeriodThatIsNoMultipleOfTheMechanicalStep) {
+  SessionConfig config = session_config(setup_of("omni_default", "ulaval-hermes", {0}));
+  config.plant.mechanical_step_ns = kMs;
   Probes probes;
-  const std::string problems =
-      problems_of(session_config(setup_of("omni_default", "ulaval-hermes", {0})), probes.maker(1'250'000));
+  const std::string problems = problems_of(config, probes.maker(1'250'000));
   EXPECT_NE(problems.find("control period 1250000 ns"), std::string::npos) << problems;
 }
 
