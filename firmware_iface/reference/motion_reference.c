@@ -29,13 +29,15 @@ static float grip_share(const wheel_geometry* geometry, const float change[BODY_
   return hardest > limit ? limit / hardest : 1.0f;
 }
 
-static void note_acceleration(motion_reference* motion, const float before[BODY_AXES], float dt_s) {
+static void note_acceleration(motion_reference* motion, float dt_s) {
   const float* body = motion->body;
+  float* last = motion->body_last;
   float omega_rad_s = body[BODY_OMEGA];
   /* a = d(v)/dt + omega x v */
-  motion->body_accel[BODY_X] = (body[BODY_X] - before[BODY_X]) / dt_s - omega_rad_s * body[BODY_Y];
-  motion->body_accel[BODY_Y] = (body[BODY_Y] - before[BODY_Y]) / dt_s + omega_rad_s * body[BODY_X];
-  motion->body_accel[BODY_OMEGA] = (omega_rad_s - before[BODY_OMEGA]) / dt_s;
+  motion->body_accel[BODY_X] = (body[BODY_X] - last[BODY_X]) / dt_s - omega_rad_s * body[BODY_Y];
+  motion->body_accel[BODY_Y] = (body[BODY_Y] - last[BODY_Y]) / dt_s + omega_rad_s * body[BODY_X];
+  motion->body_accel[BODY_OMEGA] = (omega_rad_s - last[BODY_OMEGA]) / dt_s;
+  for (int axis = 0; axis < BODY_AXES; ++axis) last[axis] = body[axis];
 }
 
 static void set_wheels(motion_reference* motion, const float wheels[OMNIHIL_WHEELS], float dt_s) {
@@ -49,7 +51,10 @@ void motion_start(motion_reference* motion, const wheel_geometry* geometry,
                   const float omega_wheel_rad_s[OMNIHIL_WHEELS]) {
   for (int w = 0; w < OMNIHIL_WHEELS; ++w) motion->omega_wheel_rad_s[w] = omega_wheel_rad_s[w];
   wheels_to_body(geometry, omega_wheel_rad_s, motion->body);
-  for (int axis = 0; axis < BODY_AXES; ++axis) motion->body_accel[axis] = 0.0f;
+  for (int axis = 0; axis < BODY_AXES; ++axis) {
+    motion->body_last[axis] = motion->body[axis];
+    motion->body_accel[axis] = 0.0f;
+  }
   for (int w = 0; w < OMNIHIL_WHEELS; ++w) motion->wheel_accel_rad_s2[w] = 0.0f;
 }
 
@@ -76,12 +81,11 @@ void motion_toward_body(motion_reference* motion, const wheel_geometry* geometry
   for (int axis = 0; axis < BODY_AXES; ++axis) motion->body[axis] = before[axis] + share * change[axis];
   body_to_wheels(geometry, motion->body, wheels);
   set_wheels(motion, wheels, dt_s);
-  note_acceleration(motion, before, dt_s);
+  note_acceleration(motion, dt_s);
 }
 
 void motion_toward_wheels(motion_reference* motion, const wheel_geometry* geometry,
                           const float target_rad_s[OMNIHIL_WHEELS], float dt_s) {
-  float before[BODY_AXES] = {motion->body[BODY_X], motion->body[BODY_Y], motion->body[BODY_OMEGA]};
   float limit_rad_s = motion->wheel_limit_rad_s;
   float step_rad_s = kAccelLimit_m_s2 / geometry->wheel_radius_m * dt_s;
   float wheels[OMNIHIL_WHEELS], body_change[BODY_AXES];
@@ -95,7 +99,7 @@ void motion_toward_wheels(motion_reference* motion, const wheel_geometry* geomet
   for (int w = 0; w < OMNIHIL_WHEELS; ++w) wheels[w] = motion->omega_wheel_rad_s[w] + share * wheels[w];
   set_wheels(motion, wheels, dt_s);
   wheels_to_body(geometry, motion->omega_wheel_rad_s, motion->body);
-  note_acceleration(motion, before, dt_s);
+  note_acceleration(motion, dt_s);
 }
 
 void motion_turn_under(motion_reference* motion, float angle_rad) {

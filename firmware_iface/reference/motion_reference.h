@@ -21,6 +21,7 @@ extern "C" {
 
 typedef struct motion_reference {
   float body[BODY_AXES];       /* m/s, m/s, rad/s */
+  float body_last[BODY_AXES];  /* one step ago, before motion_turn_under() */
   float body_accel[BODY_AXES]; /* inertial, in the body frame: m/s^2, m/s^2, rad/s^2 */
   float omega_wheel_rad_s[OMNIHIL_WHEELS];
   float wheel_accel_rad_s2[OMNIHIL_WHEELS];

@@ -81,13 +81,13 @@ TEST(CommandModes, FieldFrameVelocityKeepsItsDirectionWhileTheRobotTurns) {
     const double c = std::cos(bench.robot.yaw_rad), s = std::sin(bench.robot.yaw_rad);
     const double x = c * bench.robot.body[0] - s * bench.robot.body[1];
     const double y = s * bench.robot.body[0] + c * bench.robot.body[1];
-    ASSERT_NEAR(x, 0.5, 0.06) << n;
-    ASSERT_NEAR(y, 0.5, 0.06) << n;
+    ASSERT_NEAR(x, 0.5, 0.03) << n;
+    ASSERT_NEAR(y, 0.5, 0.03) << n;
     mean_x += x / 1571;
     mean_y += y / 1571;
   }
-  EXPECT_NEAR(mean_x, 0.5, 0.03);
-  EXPECT_NEAR(mean_y, 0.5, 0.03);
+  EXPECT_NEAR(mean_x, 0.5, 0.01);
+  EXPECT_NEAR(mean_y, 0.5, 0.01);
 }
 
 TEST(CommandModes, YawTargetIsReachedTheShortWayAndHeld) {
