@@ -40,7 +40,7 @@ enum class Integrator : std::uint8_t { kSemiImplicitEuler, kRungeKutta4 };
 struct PlantOptions {
   Physics physics = Physics::kSimbody;
   Integrator integrator = Integrator::kRungeKutta4;
-  std::int64_t mechanical_step_ns = 1'000'000;
+  std::int64_t mechanical_step_ns = 500'000;  // docs/robot-model.md has cost and error of others
   std::int64_t electrical_step_ns =
       50'000;  // winding and rotor, exact discretisation; divides the mechanical step
   std::uint64_t seed = 0;
