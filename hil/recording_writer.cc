@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "hil/recording_header.h"
@@ -27,6 +28,15 @@ int write_all(int fd, std::string_view text) {
   return 0;
 }
 
+// "2026-01-02T03:04:05Z"
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  char text[32];
+  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
 }  // namespace
 
 std::unique_ptr<RecordingWriter> RecordingWriter::open(const std::filesystem::path& path,
@@ -38,6 +48,7 @@ std::unique_ptr<RecordingWriter> RecordingWriter::open(const std::filesystem::pa
     error = std::error_code(errno, std::generic_category());
     return nullptr;
   }
+  if (header.started.empty()) header.started = utc_now();
   std::unique_ptr<RecordingWriter> writer(
       new RecordingWriter(fd, path, with_sample_columns(std::move(header)), {}));
   writer->flush();

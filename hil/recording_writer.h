@@ -8,7 +8,8 @@
 //
 // A write that fails (disk full, device gone) ends the recording, not the run: it is reported once through
 // `report` and kept in error(). A killed run is readable up to the last simulated second at least.
-// Cost: about 6 µs per `s` line: 0.4 % of a core for six robots at 1 kHz with every 10th tick, 4 % with every one.
+// Cost: about 6 µs per `s` line: 0.4 % of a core for six robots at 1 kHz with every 10th tick, 4 % with every
+// one.
 #pragma once
 #include <functional>
 #include <memory>
@@ -25,7 +26,8 @@ class RecordingWriter : public SessionObserver {
  public:
   using Report = std::function<void(const std::string&)>;
 
-  // Writes the header at once. header.columns and units are filled in here. Null and `error` on failure.
+  // Writes the header at once; columns, units and an empty `started` are filled in. Null and `error` on
+  // failure.
   static std::unique_ptr<RecordingWriter> open(const std::filesystem::path& path, RecordingHeader header,
                                                std::error_code& error, Report report = {});
   ~RecordingWriter() override;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <csignal>
+#include <ctime>
 #include <limits>
 
 #include "hil/recording_memory.h"
@@ -189,6 +190,17 @@ TEST(RecordingWriter, FullDiskAtTheFirstLineIsAnErrorOfOpening) {
   std::error_code error;
   EXPECT_FALSE(RecordingWriter::open("/dev/full", fake::header(), error));
   EXPECT_EQ(error, std::errc::no_space_on_device);
+}
+
+TEST(RecordingWriter, SaysWhenTheRunStarted) {
+  const fake::TempFolder folder;
+  RecordingHeader header = fake::header();
+  header.started.clear();
+  const std::string started = load_recording(write_run(folder, header, 1)).header.started;
+  std::tm parts{};
+  const char* end = ::strptime(started.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  ASSERT_NE(end, nullptr) << started;
+  EXPECT_EQ(*end, '\0') << started;
 }
 
 TEST(RecordingWriter, NamesThePathThatCannotBeOpened) {
