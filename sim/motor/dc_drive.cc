@@ -143,6 +143,21 @@ bool limit_out_of_reach(const Held& held, const DcFlow& flow, double voltage_V, 
   return std::abs(flow.current_A) <= d.current_limit_A && largest_V <= c.resistance_ohm * d.current_limit_A;
 }
 
+// True when the current is at the limit and the duty asks for more throughout the call: then holding it is
+// exact.
+bool stays_at_limit(const Held& held, const DcFlow& flow, double voltage_V, double time_s) {
+  const auto& c = held.drive.constants;
+  if (std::abs(flow.current_A) != held.drive.current_limit_A) return false;
+  const double sign = std::copysign(1.0, flow.current_A);
+  const double start_V = c.resistance_ohm * flow.current_A + c.torque_constant_Nm_per_A * flow.omega_rad_s;
+  const double end_V = start_V + c.torque_constant_Nm_per_A * time_s *
+                                     (c.torque_constant_Nm_per_A * flow.current_A - held.tau_load_Nm) /
+                                     c.inertia_kg_m2;
+  // the voltage that holds it changes evenly: both ends decide
+  return (voltage_V - start_V) * sign > 0.0 && (voltage_V - end_V) * sign > 0.0 &&
+         std::abs(start_V) <= held.bus_V && std::abs(end_V) <= held.bus_V;
+}
+
 }  // namespace
 
 DcDrive make_dc_drive(const MotorParams& motor, double extra_inertia_rotor_side_kg_m2, double step_s) {
@@ -188,6 +203,8 @@ DcDriveResult advance_drive(const DcDrive& drive, DcDriveState& state, const DcD
     const double voltage_V = std::clamp(input.duty_ratio, -limit, limit) * input.bus_voltage_V;
     if (limit_out_of_reach(held, flow, voltage_V, time_s)) {
       flow = after_substeps(held, flow, voltage_V, substeps);
+    } else if (stays_at_limit(held, flow, voltage_V, time_s)) {
+      flow = after_hold(held, flow, time_s);
     } else {
       for (int n = 0; n < substeps; ++n) flow = after_limited(held, flow, voltage_V);
     }

@@ -123,6 +123,23 @@ TEST(CurrentLimit, LeavesTheDriveAloneWhereItIsNotReached) {
   }
 }
 
+TEST(CurrentLimit, ManySubstepsAtOnceEqualThemOneByOne) {
+  for (const double inductance_H : {0.56e-3, 0.0}) {
+    MotorParams m = plain_motor();
+    m.inductance_H = inductance_H;
+    m.current_limit_A = 4.0;
+    Spin at_once{make_dc_drive(m, 0.0, kSubstep_s)}, one_by_one{at_once.drive};
+    for (int ms = 0; ms < 400; ++ms) {
+      const double asked = ms / 60 % 2 == 0 ? 1.0 : -0.7;
+      at_once.run(duty(asked, 12.0), 20);
+      for (int n = 0; n < 20; ++n) one_by_one.run(duty(asked, 12.0), 1);
+      ASSERT_NEAR(at_once.omega_rad_s, one_by_one.omega_rad_s, 1e-9) << "at " << ms << " ms";
+      ASSERT_NEAR(at_once.state.current_A, one_by_one.state.current_A, 1e-10);
+      ASSERT_NEAR(at_once.heat_J, one_by_one.heat_J, 1e-10);
+    }
+  }
+}
+
 TEST(CurrentLimit, SpeedRisesEvenlyWhileItHolds) {
   MotorParams m = plain_motor();
   m.current_limit_A = 2.0;

@@ -11,13 +11,13 @@
 namespace omnihil {
 namespace {
 
-struct Run {
+struct Outcome {
   int exit_code = -1;
   std::string text;  // both streams
 };
 
-Run omnihil_models(const std::string& arguments) {
-  Run run;
+Outcome omnihil_models(const std::string& arguments) {
+  Outcome run;
   const std::string command = std::string(OMNIHIL_PROGRAM) + " models " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return run;
@@ -37,7 +37,7 @@ class ModelsVerb : public ::testing::Test {
 };
 
 TEST_F(ModelsVerb, ListsRobotsAndMotors) {
-  const Run run = omnihil_models("");
+  const Outcome run = omnihil_models("");
   EXPECT_EQ(run.exit_code, kExitOk);
   for (const char* name : {"omni_default", "roboteam_2024", "ulaval_delta", "maxon_ec45_flat_30w"}) {
     EXPECT_NE(run.text.find(name), std::string::npos) << name;
@@ -45,7 +45,7 @@ TEST_F(ModelsVerb, ListsRobotsAndMotors) {
 }
 
 TEST_F(ModelsVerb, ExplainsWithUnitToleranceAndSource) {
-  const Run run = omnihil_models("maxon_ec45_flat_30w");
+  const Outcome run = omnihil_models("maxon_ec45_flat_30w");
   EXPECT_EQ(run.exit_code, kExitOk);
   for (const char* words : {"1.2 ohm", "+-10 %", "Maxon data sheet 200142", "stall torque", "0.255 N m"}) {
     EXPECT_NE(run.text.find(words), std::string::npos) << words << " in\n" << run.text;
@@ -54,7 +54,7 @@ TEST_F(ModelsVerb, ExplainsWithUnitToleranceAndSource) {
 
 TEST_F(ModelsVerb, ChecksAllFilesAndNamesEveryProblem) {
   const std::string bad = OMNIHIL_SOURCE_DIR "/tests/motor/bad_models/";
-  const Run run =
+  const Outcome run =
       omnihil_models("--check omni_default " + bad + "many_at_once.toml " + bad + "no_direction.toml");
   EXPECT_EQ(run.exit_code, kExitBadInput);
   EXPECT_NE(run.text.find("omni_default: good"), std::string::npos);
