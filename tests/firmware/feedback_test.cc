@@ -45,6 +45,21 @@ TEST(Feedback, SensorsAreNotReadyBeforeTheFirstTick) {
   EXPECT_EQ(feedback.flags, static_cast<std::uint32_t>(OMNIHIL_FEEDBACK_COMMAND_TIMEOUT));
 }
 
+// A board whose tick comes late must still see the true speed: counts over the time that really passed.
+TEST(Feedback, SpeedIsRightWhenTicksComeLate) {
+  Bench bench(geared_robot());
+  RobotSensors sensors{};
+  sensors.bus_voltage_V = 24.0;
+  for (int n = 0; n < 200; ++n) {
+    const int period_us = n % 2 == 0 ? 1000 : 3000;
+    sensors.now_us += static_cast<std::uint64_t>(period_us);
+    for (auto& counts : sensors.encoder_counts) counts += 30 * period_us / 1000;
+    bench.firmware->tick(sensors);
+  }
+  const double expected = 2 * std::numbers::pi * 30'000 / bench.config.encoder_counts_per_rotor_turn / 3.0;
+  EXPECT_NEAR(bench.firmware->feedback().omega_wheel_rad_s[2], expected, 1e-3 * expected);
+}
+
 TEST(Feedback, YawIsTheIntegralOfTheGyroBetweenMinusAndPlusPi) {
   Bench bench(geared_robot());
   bench.run_with(body_command(0, 0, 5), 2000);

@@ -164,6 +164,14 @@ TEST(HermesEffects, OpenLoopActsOnlyAfterRegisterZeroOpensTheLoop) {
   }
 }
 
+TEST(HermesEffects, OpeningTheLoopBeforeAnyDutyCameLetsTheWheelsRunFree) {
+  Radio radio;
+  radio.run_with_frame(to_robot(kRobot, kSpeedMove, floats({1, 0, 0})), 200);
+  radio.set_register(0, 0);
+  radio.tick();
+  EXPECT_TRUE(radio.coasting());
+}
+
 TEST(HermesEffects, SpeedPacketsDoNotMoveAnOpenLoopRobot) {
   Radio radio;
   radio.set_register(0, 0);
