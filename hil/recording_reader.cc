@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 
 #include "hil/recording_header.h"
@@ -22,6 +23,26 @@ std::string listed(const std::vector<int>& ids) {
   std::string text;
   for (const int id : ids) text += (text.empty() ? "" : ", ") + std::to_string(id);
   return text;
+}
+
+// Of {"end":{"now_ns":…,"wall_s":…,"counters":{…}}}; nothing when a part is missing or of another kind.
+std::optional<RecordingEnd> end_of(const nlohmann::ordered_json& json) {
+  if (!json.is_object() || !json.contains("end") || !json["end"].is_object()) return std::nullopt;
+  const auto& end = json["end"];
+  for (const char* key : {"now_ns", "wall_s", "counters"}) {
+    if (!end.contains(key)) return std::nullopt;
+  }
+  if (!end["now_ns"].is_number_unsigned() || !end["wall_s"].is_number() || !end["counters"].is_object()) {
+    return std::nullopt;
+  }
+  RecordingEnd read;
+  read.now_ns = end["now_ns"].get<std::int64_t>();
+  read.wall_s = end["wall_s"].get<double>();
+  for (const auto& [name, count] : end["counters"].items()) {
+    if (!count.is_number_unsigned()) return std::nullopt;
+    read.counters.emplace_back(name, count.get<std::uint64_t>());
+  }
+  return read;
 }
 
 }  // namespace
@@ -140,24 +161,18 @@ bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) 
 
 void RecordingReader::parse_end(std::string_view text) {
   const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
-  try {
-    const auto& end = json.at("end");
-    RecordingEnd read{.now_ns = end.at("now_ns").get<std::int64_t>(),
-                      .wall_s = end.at("wall_s").get<double>(),
-                      .counters = {}};
-    for (const auto& [name, count] : end.at("counters").items()) {
-      read.counters.emplace_back(name, count.get<std::uint64_t>());
-    }
-    if (read.now_ns < last_ns_) {
-      problem("end: now_ns: found " + std::to_string(read.now_ns) + ", allowed: " + std::to_string(last_ns_) +
-              " or later");
-    }
-    end_ = std::move(read);
-    complete_ = true;
-  } catch (const nlohmann::ordered_json::exception&) {
+  const std::optional<RecordingEnd> read = end_of(json);
+  if (!read) {
     problem("end line: found " + in_quotes(text) +
             ", allowed: {\"end\":{\"now_ns\":…,\"wall_s\":…,\"counters\":{…}}}");
+    return;
   }
+  if (read->now_ns < last_ns_) {
+    problem("end: now_ns: found " + std::to_string(read->now_ns) + ", allowed: " + std::to_string(last_ns_) +
+            " or later");
+  }
+  end_ = *read;
+  complete_ = true;
 }
 
 bool RecordingReader::parse_time(std::string_view& rest, RecordedChunk& chunk) {

@@ -84,6 +84,8 @@ const Broken kBroken[] = {
     {"UnknownEvent", 4, "closed", "opened", "run.omnirec:5: event", "'opened'", "'closed'"},
     {"EndBeforeLastChunk", 5, "4000000", "1", "run.omnirec:6: end", "1", "3000000 or later"},
     {"EndWithoutTime", 5, "now_ns", "now", "run.omnirec:6: end line", "now", "now_ns"},
+    {"EndTimeIsNotWhole", 5, "4000000", "4e300", "run.omnirec:6: end line", "4e300", "now_ns"},
+    {"EndCounterIsNegative", 5, "\"good\":1", "\"good\":-1", "run.omnirec:6: end line", "end", "counters"},
     {"LineAfterTheEnd", 4, "! 3000000 closed", R"(# {"end":{"now_ns":3000000,"wall_s":0,"counters":{}}})",
      "run.omnirec:6: after the end line", "end", "nothing"},
 };
@@ -156,6 +158,27 @@ TEST(RecordingReader, TakesARunCutAtAnyByteAfterTheHeader) {
     EXPECT_EQ(recording.last_line_cut, whole[cut - 1] != '\n') << "cut at " << cut;
     EXPECT_FALSE(recording.complete) << "cut at " << cut;
   }
+}
+
+// Whatever one byte becomes, the file is taken or refused with a place; nothing else happens.
+TEST(RecordingReader, AnyDamagedByteIsTakenOrRefusedWithItsPlace) {
+  const std::string whole = joined(sound());
+  int refused = 0;
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    for (const char other : {'\0', '\n', ' ', '"', '-', '9', 'e', '{', '}', ',', '\x80'}) {
+      std::string damaged = whole;
+      damaged[at] = other;
+      try {
+        load(damaged);
+      } catch (const BadRecording& error) {
+        ++refused;
+        ASSERT_FALSE(error.problems().empty());
+        for (const std::string& problem : error.problems())
+          ASSERT_EQ(problem.rfind("run.omnirec:", 0), 0U) << problem;
+      }
+    }
+  }
+  EXPECT_GT(refused, static_cast<int>(whole.size()));
 }
 
 TEST(RecordingReader, RefusesARunCutInsideTheHeader) {
