@@ -55,6 +55,7 @@ struct BridgePort {
   T current_A = T(0);           // at the start of the sub-step
   T back_emf_V = T(0);          // mid, of the base model
   T temperature_rise_K = T(0);  // of the winding; needs = "winding_heating"
+  T resistance_ohm = T(0);      // of the winding, as effects left it
   T pwm_frequency_Hz = T(0);    // 0: unknown
   double dt_s = 0.0;
   // changes
