@@ -1,0 +1,64 @@
+// Compliance of shaft, belt or gear: rotor and output are two masses with a spring between.
+#include "sim/core/effect_entry.h"
+
+namespace omnihil {
+namespace {
+
+struct ShaftCompliance {
+  enum Param { kCompliance, kDamping };
+  static constexpr EffectParam kParams[] = {
+      {.name = "compliance_rad_per_Nm",
+       .unit = "rad/(N m)",
+       .typical = 0.2,  // first mode of some 60 Hz with a load of 2e-5 kg m2 (estimate: 20 to 200 Hz)
+       .lower = 0,
+       .upper = 100,
+       .prior_scale = 0.5,
+       .what = "twist per torque, at the output",
+       .how = "hold the rotor, load the output with a known torque, read the twist; or the resonance"},
+      {.name = "damping_Nm_s_per_rad",
+       .unit = "N m s/rad",
+       .role = ParamRole::kShape,
+       .neutral = kNoNeutral,
+       .typical = 0.0005,  // five per cent of critical with the above: guess, a factor of 3 either way
+       .lower = 0,
+       .upper = 100,
+       .prior_scale = 0.001,
+       .what = "torque per rate of twist, at the output",
+       .how = "decay of the ringing after a step"},
+  };
+  static constexpr EffectInfo kInfo{
+      .id = "shaft_compliance",
+      .title = "Shaft compliance",
+      .equation = "tau_shaft = twist / c + d twist', twist = theta_rotor / N - theta_out",
+      .source = "Meirovitch, Fundamentals of Vibrations, 2001, ch. 5 (two masses, one spring)",
+      .cannot = "further modes, stiffness that grows with torque, hysteresis of belts",
+      .place = Place::kShaft,
+      .twins = {"backlash"},
+      .reveals =
+          "chirp or sharp steps: resonance of the speed at (1/2 pi) sqrt((1/J_out + N^2/J_rotor) / c), "
+          "at the same frequency for every amplitude",
+      .visible = "a compliance whose mode lies below a third of the sampling rate",
+      .min_visible =
+          [](const SensorSet& s) {
+            // c = 1 / (J (2 pi f)^2) with f a third of the rate, J = 6.3e-6 kg m2 (both masses in parallel)
+            const double omega_rad_s = 6.283185307179586 * s.rate_Hz / 3.0;
+            return 1.0 / (6.3e-6 * omega_rad_s * omega_rad_s);
+          },
+      .claims = kOdd,
+      .params = kParams,
+      .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.35, .to_s = 0.6},
+  };
+
+  template <typename T>
+  static void apply(const T* p, T*, ShaftPort<T>& port) {
+    // springs in a row: compliances add up
+    port.compliance_rad_per_Nm += p[kCompliance];
+    if (!is_exactly(p[kCompliance], 0.0)) port.damping_Nm_s_per_rad += p[kDamping];
+  }
+};
+
+}  // namespace
+
+OMNIHIL_EFFECT(shaft_compliance, ShaftCompliance)
+
+}  // namespace omnihil
