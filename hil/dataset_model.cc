@@ -81,6 +81,8 @@ std::string dataset_model_text(const ModelFile& model) {
   for (const Key& key : kKeys) {
     const Parameter* parameter = model.parameters.find(std::string(key.section) + "." + std::string(key.key));
     if (parameter == nullptr || parameter->values.empty()) continue;
+    const bool is_count = parameter->row->kind == ParameterKind::kWholeNumber;
+    if (is_count && parameter->value() == 0.0) continue;  // 0 poles, slots or rollers: not known
     if (key.section != section) text += "\n[" + std::string(key.section) + "]\n";
     section = key.section;
     text += line(key.key, *parameter);

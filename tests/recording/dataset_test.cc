@@ -162,6 +162,14 @@ TEST(Dataset, ModelReadsBackWithTheSameNumbers) {
             wrote.parameters.find("robot.mass_kg")->source);
 }
 
+TEST(Dataset, ModelLeavesOutCountsThatAreNotKnown) {
+  ModelFile unknown = model();
+  unknown.parameters.find("robot.rollers_per_wheel")->values = {0.0};
+  EXPECT_EQ(dataset_model_text(unknown).find("rollers_per_wheel"), std::string::npos);
+  unknown.parameters.find("robot.rollers_per_wheel")->values = {15.0};
+  EXPECT_NE(dataset_model_text(unknown).find("rollers_per_wheel = 15\n"), std::string::npos);
+}
+
 TEST(Dataset, HoldsOutTheLastRobotOrTheLastThird) {
   const toml::table many = toml::parse(file(make_dataset(recorded(), model(), {}), "dataset.toml"));
   EXPECT_EQ(many["runs"][0]["use"].value<std::string>(), "fit");
