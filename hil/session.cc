@@ -69,11 +69,7 @@ struct Session::Impl : RadioSink {
     sample.drive = robot.tick(sample.sensors);
     sample.feedback = robot.feedback();
     sample.truth = plant.truth(static_cast<int>(i));
-    const std::string broken = first_non_finite(sample);
-    if (!broken.empty()) {
-      throw std::runtime_error(fmt::format("at {:.6f} s robot {}: {} is not finite; the run ends here",
-                                           static_cast<double>(now_ns) * 1e-9, id, broken));
-    }
+    if (const std::string broken = first_non_finite(sample); !broken.empty()) give_up(now_ns, id, broken);
     plant.write(static_cast<int>(i), sample.drive);
     for (int frames = 0; frames < kMaxFramesPerTick; ++frames) {
       const std::size_t n = robot.radio_transmit(frame);
@@ -82,6 +78,11 @@ struct Session::Impl : RadioSink {
     }
     link->robot_feedback(id, sample.feedback, robot.gains(), now_ns);
     if (observer) observer->robot_tick(now_ns, sample);
+  }
+
+  [[noreturn]] static void give_up(std::int64_t at_ns, int id, const std::string& signal) {
+    throw std::runtime_error(fmt::format("at {:.6f} s robot {}: {} is not finite; the run ends here",
+                                         static_cast<double>(at_ns) * 1e-9, id, signal));
   }
 
   void run_until(std::int64_t end_ns) {
@@ -95,6 +96,10 @@ struct Session::Impl : RadioSink {
         until_ns = std::min(until_ns, next_tick_ns[i]);
       }
       plant.advance(until_ns - now_ns);
+      if (const auto& fault = plant.fault()) {
+        give_up(fault->now_ns, config.robot_ids[static_cast<std::size_t>(fault->robot)],
+                fmt::format("{}[{}]", fault->signal, fault->index));
+      }
       now_ns = until_ns;
     }
   }

@@ -108,16 +108,6 @@ std::vector<std::string> firmware_problems(const SessionConfig& config,
 
 std::string first_non_finite(const RobotSample& sample) {
   FiniteScan scan;
-  const RobotTruth& truth = sample.truth;
-  scan.check("truth x_m", truth.x_m);
-  scan.check("truth y_m", truth.y_m);
-  scan.check("truth yaw_rad", truth.yaw_rad);
-  scan.check("truth v_forward_m_s", truth.v_forward_m_s);
-  scan.check("truth v_left_m_s", truth.v_left_m_s);
-  scan.check("truth omega_body_rad_s", truth.omega_body_rad_s);
-  scan.check_all("truth omega_rotor_rad_s", truth.omega_rotor_rad_s);
-  scan.check_all("truth motor_current_A", truth.motor_current_A);
-  scan.check_all("truth load_N", truth.load_N);
   scan.check_all("sensors motor_current_A", sample.sensors.motor_current_A);
   scan.check("sensors bus_voltage_V", sample.sensors.bus_voltage_V);
   scan.check("sensors gyro_z_rad_s", sample.sensors.gyro_z_rad_s);

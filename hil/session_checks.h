@@ -18,7 +18,8 @@ std::vector<std::string> session_problems(const SessionConfig& config);
 std::vector<std::string> firmware_problems(const SessionConfig& config,
                                            std::span<const std::unique_ptr<Firmware>> firmware);
 
-// Name of the first signal of a control tick that is not finite; empty: all are.
+// Name of the first signal of a control tick that is not finite; empty: all are. (The true state is watched
+// by the plant: Plant::fault.)
 std::string first_non_finite(const RobotSample& sample);
 
 // Throws std::invalid_argument with all problems as one text, if there are any.

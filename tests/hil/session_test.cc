@@ -181,7 +181,7 @@ TEST(SessionTest, ObserverSeesEventsInTheOrderOfTheHops) {
   EXPECT_NE(log.text.find("tick 10000 0\ntick 10000 1\n"), std::string::npos) << log.text;
 }
 
-TEST(SessionTest, AStateThatIsNotFiniteEndsTheRunNamingTimeRobotAndSignal) {
+TEST(SessionTest, AValueThatIsNotFiniteEndsTheRunNamingTimeRobotAndSignal) {
   const SessionSetup setup = setup_of("omni_default", "ulaval-hermes", {0, 5});
   Probes probes;
   Session session(session_config(setup), probes.maker(10 * kMs));
