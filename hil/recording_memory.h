@@ -5,7 +5,7 @@
 //   …
 //   Recording answer = memory.take(session.now_ns());
 //
-// About 700 bytes per kept sample: 0.4 MB per simulated second for six robots at 1 kHz, every 10th kept.
+// About 670 bytes per kept sample: 0.4 MB per simulated second for six robots at 1 kHz, every 10th kept.
 #pragma once
 #include "hil/recording.h"
 #include "hil/recording_decimation.h"

@@ -147,6 +147,7 @@ bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) 
             " values, allowed: " + std::to_string(header_.columns.size()) + ", one per column of the header");
     return false;
   }
+  chunk.sample.reserve(found);
   for (const std::string& column : header_.columns) {
     const std::string_view text = next_word(rest);
     double value = 0.0;
