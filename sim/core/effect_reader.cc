@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sim/core/effect_registry.h"
+#include "sim/core/expression.h"
 
 namespace omnihil {
 namespace {
@@ -169,7 +170,9 @@ std::vector<EffectUse> read_effects(const ModelDocument& document, const EffectC
   for (const auto& [key, node] : *effects->as_table()) {
     const std::string id(key.str());
     const EffectEntry* entry = find_effect(id);
-    if (entry == nullptr) {
+    if (id == "expression") {
+      read_expressions(document, node, context.linear, uses, problems);
+    } else if (entry == nullptr) {
       reader.add(key.source(), "effects." + id, "", "there is no such effect", unknown_effect_hint(id));
     } else if (const toml::table* table = node.as_table()) {
       uses.push_back(reader.read(*entry, *table));
@@ -187,6 +190,9 @@ std::string add_override(std::string_view text, const EffectContext& context, st
   const std::size_t dot = path.find('.');
   const std::string_view id = path.substr(0, dot);
   const EffectEntry* entry = find_effect(id);
+  if (id == "expression" && std::count(path.begin(), path.end(), '.') == 2) {
+    return override_expression(text, uses);
+  }
   if (entry == nullptr) return fmt::format("{}: there is no such effect; {}", id, unknown_effect_hint(id));
   const bool whole = equals == std::string_view::npos && dot == std::string_view::npos;
   if (!whole && (equals == std::string_view::npos || dot == std::string_view::npos)) {
@@ -227,6 +233,10 @@ std::string add_override(std::string_view text, const EffectContext& context, st
 std::string write_effects(std::span<const EffectUse> uses, bool linear) {
   std::string out;
   for (const EffectUse& use : uses) {
+    if (expression_of(use) != nullptr) {
+      out += write_expression(use);
+      continue;
+    }
     out += fmt::format("\n[effects.{}]\n", use.entry->info->id);
     for (std::size_t i = 0; i < use.values.size(); ++i) {
       const EffectParam& row = use.entry->info->params[i];
