@@ -2,13 +2,15 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "tools/exit_codes.h"
+#include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"omnihil: the test bench for the low level of an omni-directional soccer robot"};
-  app.set_version_flag("--version", OMNIHIL_VERSION " (" OMNIHIL_COMMIT ")");
+  app.set_version_flag("--version", std::string(OMNIHIL_VERSION " (") + omnihil::program_commit() + ")");
   app.require_subcommand(1);
   app.footer(omnihil::kExitCodeHelp);
   omnihil::VerbResult result;

@@ -15,6 +15,7 @@
 #include "hil/replay_run.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
+#include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -52,14 +53,16 @@ Tolerances choose_tolerances(const CheckWords& words, const Recording& recording
     }
   }
   if (!problems.empty()) throw BadRecording(problems);
-  const bool same_program = recording.header.commit == OMNIHIL_COMMIT && recording.header.commit != "unknown";
+  const bool same_program =
+      recording.header.commit == program_commit() && recording.header.commit != "unknown";
   const bool same_physics = words.physics.empty();
   tolerances.exact = words.exact || (words.tolerances.empty() && same_program && same_physics);
   reason = words.exact                 ? "exact, as asked"
            : !words.tolerances.empty() ? "as given, over the defaults"
            : tolerances.exact          ? "exact: recorded by this same commit"
-           : !same_physics             ? "defaults: other physics than recorded"
-                           : "defaults: recorded by another commit than this one, " OMNIHIL_COMMIT;
+           : !same_physics
+               ? "defaults: other physics than recorded"
+               : std::string("defaults: recorded by another commit than this one, ") + program_commit();
   return tolerances;
 }
 

@@ -16,6 +16,7 @@
 #include "hil/replay_run.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
+#include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -36,7 +37,7 @@ std::unique_ptr<RecordingWriter> open_out(const ReplayWords& words, const Record
     throw std::invalid_argument("--out " + words.out + ": is the recording itself");
   }
   RecordingHeader header = replay_header(recording.header, options);
-  header.commit = OMNIHIL_COMMIT;
+  header.commit = program_commit();
   auto writer = RecordingWriter::open(words.out, std::move(header), error);
   if (!writer) throw std::system_error(error, words.out);
   return writer;

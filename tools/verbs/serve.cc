@@ -13,6 +13,7 @@
 #include "hil/session_setup.h"
 #include "protocols/radio_format.h"
 #include "tools/exit_codes.h"
+#include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -80,7 +81,7 @@ int run(Words& words) {
     return kExitBadInput;
   }
   try {
-    RecordingHeader header = recording_header(words.setup, OMNIHIL_COMMIT);
+    RecordingHeader header = recording_header(words.setup, program_commit());
     header.sample_every = words.sample_every;
     const ServeEnd end =
         serve(session_config(words.setup), make_reference_firmware, std::move(header), words.options);
