@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/effects/bench.h"
+
+namespace omnihil::test {
+namespace {
+
+// Torque at a held speed and current.
+double torque_at(double angle_rad, double speed_rad_s, double current_A) {
+  DriveParams<double> p = small_drive();
+  p.viscous_friction_Nm_s_per_rad = 0.0;
+  AxisInput in = held(CommandKind::kMotorCurrent, current_A, 0.05);
+  in.imposed_velocity_rad_s.assign(in.time_s.size(), speed_rad_s);
+  return -run_axis(p, with({use_of("commutation_misalignment", {angle_rad})}), in).back().load_torque_Nm;
+}
+
+TEST(CommutationMisalignment, GivesTheCosineAtStall) {
+  EXPECT_NEAR(torque_at(0.2, 0.0, 3.0), 0.0255 * 3.0 * std::cos(0.2), 1e-12);
+  EXPECT_NEAR(torque_at(-0.2, 0.0, 3.0), 0.0255 * 3.0 * std::cos(0.2), 1e-12);
+}
+
+// k (cos d + sin d sin(atan q)), q = p L w i / (R i + k w): 8 * 5.6e-4 * 200 * 2 / (2.4 + 5.1)
+TEST(CommutationMisalignment, MakesUpForTheLagOfTheCurrentOneWay) {
+  const double q = 8 * 5.6e-4 * 200.0 * 2.0 / (1.2 * 2.0 + 0.0255 * 200.0);
+  const double lag = std::sin(std::atan(q));
+  EXPECT_NEAR(torque_at(0.2, 200.0, 2.0), 0.051 * (std::cos(0.2) + std::sin(0.2) * lag), 1e-12);
+  EXPECT_NEAR(torque_at(0.2, -200.0, -2.0), -0.051 * (std::cos(0.2) - std::sin(0.2) * lag), 1e-12);
+}
+
+TEST(CommutationMisalignment, VanishesAtSmallAngles) {
+  EXPECT_NEAR(torque_at(1e-9, 200.0, 2.0), 0.051, 1e-10);
+}
+
+TEST(CommutationMisalignment, IsMirroredWithItsAngle) {
+  const AxisInput in = excite(Excitation::kSteps, 0.7, 1.0), back = excite(Excitation::kSteps, -0.7, 1.0);
+  const auto a = run_axis(small_drive(), with({use_of("commutation_misalignment", {0.2})}), in);
+  const auto b = run_axis(small_drive(), with({use_of("commutation_misalignment", {-0.2})}), back);
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    EXPECT_NEAR(a[n].omega_rotor_rad_s, -b[n].omega_rotor_rad_s, 1e-9);
+  }
+}
+
+// Signature: free speed up both ways while torque per ampere at rest is down.
+TEST(CommutationMisalignment, ShowsAsMoreSpeedAndLessTorquePerAmpere) {
+  DriveParams<double> p = small_drive();
+  p.viscous_friction_Nm_s_per_rad = 0.0;
+  for (const double duty : {0.5, -0.5}) {
+    const auto out =
+        run_axis(p, with({use_of("commutation_misalignment", {0.2})}), held(CommandKind::kDuty, duty, 3.0));
+    EXPECT_NEAR(out.back().omega_rotor_rad_s, 12.0 * duty / (0.0255 * std::cos(0.2)), 1e-6);
+  }
+  EXPECT_LT(torque_at(0.2, 0.0, 1.0), 0.0255);
+}
+
+// Signature: under load the directions part; forwards, where commutation is early, an ampere gives more.
+TEST(CommutationMisalignment, ShowsAsADifferenceOfDirectionsUnderLoad) {
+  const auto current = [](double angle, double sign) {
+    AxisInput in = held(CommandKind::kDuty, 0.8 * sign, 3.0);
+    in.load_torque_Nm.assign(in.time_s.size(), -0.05 * sign);
+    const auto out = run_axis(small_drive(), with({use_of("commutation_misalignment", {angle})}), in).back();
+    return std::abs(out.motor_current_A);
+  };
+  EXPECT_GT(current(0.2, -1.0), current(0.2, 1.0) * 1.04);
+  EXPECT_NEAR(current(0.2, -1.0), current(-0.2, 1.0), 1e-9);
+}
+
+}  // namespace
+}  // namespace omnihil::test
