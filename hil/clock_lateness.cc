@@ -14,8 +14,8 @@ int LatenessHistogram::bucket(std::uint64_t ns) {
 
 std::int64_t LatenessHistogram::upper_edge_ns(int bucket) {
   const int shift = std::max(0, (bucket >> kSubBits) - 1);
-  const auto mantissa = static_cast<std::int64_t>(bucket - (shift << kSubBits));
-  return ((mantissa + 1) << shift) - 1;
+  const auto mantissa = static_cast<std::uint64_t>(bucket - (shift << kSubBits));
+  return static_cast<std::int64_t>(((mantissa + 1) << shift) - 1);  // the last one is 2^63 - 1
 }
 
 void LatenessHistogram::add(std::int64_t late_ns) {
