@@ -35,6 +35,13 @@ struct Robot {
   WheelContacts<double> contacts;
   std::array<Vec3, kWheels> f_wheel_W;
   WheelTorques torques;
+  const FloorEffects* effects = nullptr;
+  FloorForces more;
+  Vec3 f_body_W;  // of effects, level
+
+  double radius_m(std::size_t i) const {
+    return effects != nullptr ? more.wheel_radius_m[i] : law.geometry.wheel_radius_m;
+  }
 };
 
 struct Masses {
@@ -85,8 +92,12 @@ class FloorAndMotors : public SimTK::Force::Custom::Implementation {
         const Vec3 weight(0, 0, -r.weight_chassis_N);
         body_forces[r.chassis.getMobilizedBodyIndex()] += SpatialVec(arm_W % weight, weight);
       }
-      const Vec3 p_WheelContact(0, 0, -r.law.geometry.wheel_radius_m);
+      if (r.effects != nullptr) {
+        const Vec3 moment(0, 0, r.more.body_moment_z_Nm);
+        body_forces[r.chassis.getMobilizedBodyIndex()] += SpatialVec(moment, r.f_body_W);
+      }
       for (std::size_t i = 0; i < kWheels; ++i) {
+        const Vec3 p_WheelContact(0, 0, -r.radius_m(i));
         const MobilizedBody& wheel = r.wheel[i];
         Vec3 f_W = r.f_wheel_W[i];
         const Vec3 moment_W = p_WheelContact % f_W;
@@ -96,8 +107,7 @@ class FloorAndMotors : public SimTK::Force::Custom::Implementation {
         double torque_Nm = r.gear_ratio * r.torques[i].at(part_of_step_, r.gear_ratio * omega_wheel_rad_s) -
                            r.wheel_viscous_Nm_s_per_rad * omega_wheel_rad_s;
         // static friction answers the floor
-        if (r.torques[i].locked)
-          torque_Nm = r.law.geometry.wheel_radius_m * r.contacts.force_longitudinal_N[i];
+        if (r.torques[i].locked) torque_Nm = r.radius_m(i) * r.contacts.force_longitudinal_N[i];
         mobility_forces[wheel.getFirstUIndex(state)] += torque_Nm;
       }
     }
@@ -114,10 +124,12 @@ class FloorAndMotors : public SimTK::Force::Custom::Implementation {
 }  // namespace
 
 struct Chassis::Impl {
-  Impl(const std::vector<RobotModel>& models, Joint joint_) : matter(system), forces(system), joint(joint_) {
+  Impl(const std::vector<RobotModel>& models, Joint joint_, const std::vector<const FloorEffects*>& effects)
+      : matter(system), forces(system), joint(joint_) {
     system.setUseUniformBackground(true);
     robots.reserve(models.size());
     for (const RobotModel& m : models) add(m);
+    for (std::size_t n = 0; n < effects.size(); ++n) robots[n].effects = effects[n];
     SimTK::Force::Custom(forces, new FloorAndMotors(robots, part_of_step, joint == Joint::kFree));
     system.realizeTopology();
     state = system.getDefaultState();
@@ -177,13 +189,36 @@ struct Chassis::Impl {
         load_N[i] = depth_m > 0 ? std::max(0.0, r.floor_N_per_m * depth_m - r.floor_N_s_per_m * v_W[2]) : 0.0;
       }
     }
-    r.contacts =
-        joint == Joint::kPlanar ? contact_forces(r.law, motion) : contact_forces_at(r.law, motion, load_N);
+    if (r.effects != nullptr) {
+      find_effects(r, motion, joint == Joint::kPlanar ? nullptr : &load_N);
+    } else {
+      r.contacts =
+          joint == Joint::kPlanar ? contact_forces(r.law, motion) : contact_forces_at(r.law, motion, load_N);
+    }
     for (std::size_t i = 0; i < kWheels; ++i) {
       r.f_wheel_W[i] =
           r.contacts.force_longitudinal_N[i] * drive_W[i] + r.contacts.force_lateral_N[i] * outward_W[i];
       if (joint == Joint::kFree) r.f_wheel_W[i][2] = load_N[i];
     }
+  }
+
+  // The same with effects, in the level body frame.
+  void find_effects(Robot& r, const WheelMotion<double>& motion,
+                    const std::array<double, kWheels>* load_N) const {
+    FloorState at;
+    const Vec3& v_W = r.chassis.getBodyOriginVelocity(state);
+    const Rotation& r_WB = r.chassis.getBodyRotation(state);
+    at.yaw_rad = joint == Joint::kPlanar ? r.chassis.getOneQ(state, 0) : std::atan2(r_WB[1][0], r_WB[0][0]);
+    const double c = std::cos(at.yaw_rad), s = std::sin(at.yaw_rad);
+    at.velocity = {c * v_W[0] + s * v_W[1], -s * v_W[0] + c * v_W[1],
+                   r.chassis.getBodyAngularVelocity(state)[2]};
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      at.omega_wheel_rad_s[i] = r.wheel[i].getOneU(state, 0);
+      at.theta_wheel_rad[i] = r.wheel[i].getOneQ(state, 0);
+    }
+    r.contacts = r.effects->contacts(r.law, motion, at, load_N, r.more);
+    const double x = r.more.body_force_x_N, y = r.more.body_force_y_N;
+    r.f_body_W = Vec3(c * x - s * y, s * x + c * y, 0);
   }
 
   SimTK::MultibodySystem system;
@@ -195,8 +230,9 @@ struct Chassis::Impl {
   SimTK::State state;
 };
 
-Chassis::Chassis(const std::vector<RobotModel>& robots, Joint joint)
-    : impl_(std::make_unique<Impl>(robots, joint)) {}
+Chassis::Chassis(const std::vector<RobotModel>& robots, Joint joint,
+                 const std::vector<const FloorEffects*>& effects)
+    : impl_(std::make_unique<Impl>(robots, joint, effects)) {}
 Chassis::~Chassis() = default;
 Chassis::Chassis(Chassis&&) noexcept = default;
 Chassis& Chassis::operator=(Chassis&&) noexcept = default;
@@ -216,6 +252,8 @@ void Chassis::set_state(const std::vector<double>& q, const std::vector<double>&
 const WheelContacts<double>& Chassis::contacts(std::size_t robot) const {
   return impl_->robots[robot].contacts;
 }
+
+const FloorForces& Chassis::floor_forces(std::size_t robot) const { return impl_->robots[robot].more; }
 
 void Chassis::accelerations(const std::vector<WheelTorques>& torques, StepPart part,
                             std::vector<double>& udot) {

@@ -24,6 +24,7 @@
 #include <memory>
 #include <vector>
 
+#include "sim/robot/floor_effects.h"
 #include "sim/robot/mechanics.h"
 
 namespace omnihil {
@@ -34,7 +35,9 @@ inline constexpr double kFloorDamping = 0.5;
 class Chassis {
  public:
   enum class Joint { kPlanar, kFree };
-  Chassis(const std::vector<RobotModel>& robots, Joint joint);
+  // effects: one per robot, null where a robot has none; kept, not owned. Empty: none at all.
+  Chassis(const std::vector<RobotModel>& robots, Joint joint,
+          const std::vector<const FloorEffects*>& effects = {});
   ~Chassis();
   Chassis(Chassis&&) noexcept;
   Chassis& operator=(Chassis&&) noexcept;
@@ -42,6 +45,7 @@ class Chassis {
   const StateLayout& layout() const;
   void set_state(const std::vector<double>& q, const std::vector<double>& u);
   const WheelContacts<double>& contacts(std::size_t robot) const;
+  const FloorForces& floor_forces(std::size_t robot) const;  // of a robot with effects only
   void accelerations(const std::vector<WheelTorques>& torques, StepPart part, std::vector<double>& udot);
   void position_rates(const std::vector<double>& q, const std::vector<double>& u,
                       std::vector<double>& qdot) const;

@@ -108,11 +108,12 @@ void apply_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<
   }
 }
 
-// Loads by the law of wheel_load.h, transfer included.
+// Loads by the law of wheel_load.h, transfer included; with a further horizontal force of the floor, if any.
 template <typename T>
-void find_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T>& out) {
-  // (1 - G K) F = G N_rest
-  T a = T(1), b = T(0), c = T(0), d = T(1), right_x = T(0), right_y = T(0);
+void find_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T>& out,
+                const T& added_x_N = T(0), const T& added_y_N = T(0)) {
+  // (1 - G K) F = G N_rest + F_added
+  T a = T(1), b = T(0), c = T(0), d = T(1), right_x = added_x_N, right_y = added_y_N;
   for (std::size_t i = 0; i < kWheels; ++i) {
     const T gx =
         -law.geometry.sin_angle[i] * g.longitudinal_ratio[i] + law.geometry.cos_angle[i] * g.lateral_ratio[i];

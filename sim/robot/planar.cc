@@ -15,7 +15,8 @@ BodyVelocity<double> in_body(const double* u, double cos_yaw, double sin_yaw) {
 
 }  // namespace
 
-PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots)
+PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots,
+                                 const std::vector<const FloorEffects*>& effects)
     : u_(robots.size() * kPlanarLayout.u_per_robot) {
   for (const RobotModel& m : robots) {
     Robot r;
@@ -23,6 +24,7 @@ PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots)
     r.body = planar_body(m);
     r.gear_ratio = m.gear_ratio;
     r.wheel_viscous_Nm_s_per_rad = m.gear_ratio * m.gear_ratio * m.motor.viscous_friction_Nm_s_per_rad;
+    if (!effects.empty()) r.effects = effects[robots_.size()];
     robots_.push_back(r);
   }
 }
@@ -36,8 +38,15 @@ void PlanarMechanics::set_state(const std::vector<double>& q, const std::vector<
     r.cos_yaw = std::cos(qr[0]);
     r.sin_yaw = std::sin(qr[0]);
     r.omega_body_rad_s = ur[0];
-    r.contacts = contact_forces(
-        r.law, wheel_motion<double>(r.law, in_body(ur, r.cos_yaw, r.sin_yaw), {ur[3], ur[4], ur[5], ur[6]}));
+    const BodyVelocity<double> velocity = in_body(ur, r.cos_yaw, r.sin_yaw);
+    const std::array<double, kWheels> omega_wheel{ur[3], ur[4], ur[5], ur[6]};
+    const WheelMotion<double> motion = wheel_motion(r.law, velocity, omega_wheel);
+    if (r.effects == nullptr) {
+      r.contacts = contact_forces(r.law, motion);
+      continue;
+    }
+    const FloorState state{qr[0], velocity, omega_wheel, {qr[3], qr[4], qr[5], qr[6]}};
+    r.contacts = r.effects->contacts(r.law, motion, state, nullptr, r.more);
   }
 }
 
@@ -46,17 +55,23 @@ void PlanarMechanics::accelerations(const std::vector<WheelTorques>& torques, St
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     const Robot& r = robots_[n];
     const WheelContacts<double>& c = r.contacts;
-    const auto a = body_acceleration(r.body, c.force_x_N, c.force_y_N, c.moment_z_Nm, r.omega_body_rad_s);
+    const bool more = r.effects != nullptr;
+    const auto a =
+        more ? body_acceleration(r.body, c.force_x_N + r.more.body_force_x_N,
+                                 c.force_y_N + r.more.body_force_y_N, c.moment_z_Nm + r.more.body_moment_z_Nm,
+                                 r.omega_body_rad_s)
+             : body_acceleration(r.body, c.force_x_N, c.force_y_N, c.moment_z_Nm, r.omega_body_rad_s);
     double* out = udot.data() + n * kPlanarLayout.u_per_robot;
     out[0] = a.yaw_rad_s2;
     out[1] = r.cos_yaw * a.x_m_s2 - r.sin_yaw * a.y_m_s2;
     out[2] = r.sin_yaw * a.x_m_s2 + r.cos_yaw * a.y_m_s2;
     const double* omega_wheel = u_.data() + n * kPlanarLayout.u_per_robot + kPlanarLayout.wheel_u;
     for (std::size_t i = 0; i < kWheels; ++i) {
+      const double radius_m = more ? r.more.wheel_radius_m[i] : r.law.geometry.wheel_radius_m;
       // J domega/dt = gear tau_rotor - gear^2 b omega - r F
       const double torque_Nm = r.gear_ratio * torques[n][i].at(part, r.gear_ratio * omega_wheel[i]) -
                                r.wheel_viscous_Nm_s_per_rad * omega_wheel[i] -
-                               r.law.geometry.wheel_radius_m * c.force_longitudinal_N[i];
+                               radius_m * c.force_longitudinal_N[i];
       out[kPlanarLayout.wheel_u + i] = torques[n][i].locked ? 0.0 : torque_Nm * r.body.inverse_spin_inertia;
     }
   }

@@ -6,6 +6,7 @@
 #pragma once
 #include <vector>
 
+#include "sim/robot/floor_effects.h"
 #include "sim/robot/mechanics.h"
 #include "sim/robot/planar_law.h"
 
@@ -13,11 +14,15 @@ namespace omnihil {
 
 class PlanarMechanics {
  public:
-  explicit PlanarMechanics(const std::vector<RobotModel>& robots);
+  // effects: one per robot, null where a robot has none; kept, not owned. Empty: none at all.
+  explicit PlanarMechanics(const std::vector<RobotModel>& robots,
+                           const std::vector<const FloorEffects*>& effects = {});
 
   const StateLayout& layout() const { return kPlanarLayout; }
   void set_state(const std::vector<double>& q, const std::vector<double>& u);
   const WheelContacts<double>& contacts(std::size_t robot) const { return robots_[robot].contacts; }
+  // Of a robot with effects only.
+  const FloorForces& floor_forces(std::size_t robot) const { return robots_[robot].more; }
   void accelerations(const std::vector<WheelTorques>& torques, StepPart part, std::vector<double>& udot);
   void position_rates(const std::vector<double>& q, const std::vector<double>& u,
                       std::vector<double>& qdot) const;
@@ -37,6 +42,8 @@ class PlanarMechanics {
     double cos_yaw = 1.0, sin_yaw = 0.0;      // of the current state
     double omega_body_rad_s = 0.0;
     WheelContacts<double> contacts;
+    const FloorEffects* effects = nullptr;
+    FloorForces more;
   };
   std::vector<Robot> robots_;
   std::vector<double> u_;  // current state

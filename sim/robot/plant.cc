@@ -10,6 +10,8 @@
 #include "sim/robot/chassis.h"
 #include "sim/robot/integrate.h"
 #include "sim/robot/planar.h"
+#include "sim/robot/robot_effects.h"
+#include "sim/robot/robot_sensing.h"
 #include "sim/robot/validate.h"
 #include "sim/robot/wheel_drive.h"
 
@@ -17,6 +19,7 @@ namespace omnihil {
 namespace {
 
 constexpr double kSpacing_m = 0.3;                        // of the robots' starting row
+constexpr double kDribblerFull_rad_s = 1000.0;            // at ratio 1; guess, +-50 %
 constexpr double kStandstill_m_s = 1e-12;                 // below it a robot with held wheels stops exactly
 constexpr std::uint64_t kStateMark = 0x31544e414c504853;  // layout of save(), version 1
 
@@ -33,9 +36,11 @@ static_assert(std::is_trivially_copyable_v<RobotMemory>);
 
 using Mechanics = std::variant<PlanarMechanics, Chassis>;
 
-Mechanics make_mechanics(const std::vector<RobotModel>& robots, Physics physics) {
-  if (physics == Physics::kPlanar) return PlanarMechanics(robots);
-  return Chassis(robots, physics == Physics::kSimbody ? Chassis::Joint::kPlanar : Chassis::Joint::kFree);
+Mechanics make_mechanics(const std::vector<RobotModel>& robots, Physics physics,
+                         const std::vector<const FloorEffects*>& effects) {
+  if (physics == Physics::kPlanar) return PlanarMechanics(robots, effects);
+  return Chassis(robots, physics == Physics::kSimbody ? Chassis::Joint::kPlanar : Chassis::Joint::kFree,
+                 effects);
 }
 
 void require_valid(std::span<const RobotModel> robots, const PlantOptions& options) {
@@ -63,7 +68,8 @@ struct Plant::Impl {
   Impl(std::span<const RobotModel> robots_, const PlantOptions& options_)
       : options(options_),
         models(robots_.begin(), robots_.end()),
-        mechanics(make_mechanics(models, options_.physics)),
+        effects(make_effects(models, options_)),
+        mechanics(make_mechanics(models, options_.physics, floors_of(effects))),
         layout(std::visit([](const auto& m) { return m.layout(); }, mechanics)),
         q(models.size() * layout.q_per_robot),
         u(models.size() * layout.u_per_robot),
@@ -76,6 +82,11 @@ struct Plant::Impl {
     substeps = static_cast<int>(options.mechanical_step_ns / options.electrical_step_ns);
     for (const RobotModel& m : models) {
       drives.push_back(wheel_drive_law(m, static_cast<double>(options.electrical_step_ns) * 1e-9, substeps));
+    }
+    effect_memory.resize(models.size());
+    histories.resize(models.size());
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (effects[n] && effects[n]->looks_back()) histories[n] = RobotHistory(kLongestAge_s, step_s);
     }
     for (std::size_t n = 0; n < models.size(); ++n) place(n, 0.0, kSpacing_m * static_cast<double>(n), 0.0);
   }
@@ -103,6 +114,46 @@ struct Plant::Impl {
     memory[robot] = RobotMemory{};
     memory[robot].drive = kept;
     state_known = false;
+    if (effects[robot]) {
+      effect_memory[robot] = effects[robot]->initial_memory();
+      RobotEffectMemory& mem = effect_memory[robot];
+      mem.seen_s = mem.read_s = now_s();
+      for (std::size_t i = 0; i < kWheels; ++i) mem.seen_theta_rotor_rad[i] = theta_rotor_rad(robot, i);
+      histories[robot].clear();
+      remember(robot);
+    }
+  }
+
+  double now_s() const { return static_cast<double>(now_ns) * 1e-9; }
+  double theta_rotor_rad(std::size_t robot, std::size_t wheel) const {
+    return models[robot].gear_ratio * wheel_angles(robot)[wheel];
+  }
+
+  // What sensors could see now.
+  RobotInstant instant(std::size_t n) const {
+    RobotInstant p;
+    const BodyMotion m = std::visit([&](const auto& back) { return back.motion(q, u, n); }, mechanics);
+    p.time_s = now_s();
+    p.x_m = m.x_m, p.y_m = m.y_m, p.yaw_rad = m.yaw_rad;
+    p.gyro_rad_s = m.velocity.omega_body_rad_s;
+    p.accel_x_m_s2 = memory[n].accel_x_m_s2;
+    p.accel_y_m_s2 = memory[n].accel_y_m_s2;
+    p.bus_voltage_V = effect_memory[n].bus_voltage_V;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      p.theta_rotor_rad[i] = theta_rotor_rad(n, i);
+      p.omega_rotor_rad_s[i] = models[n].gear_ratio * wheel_speeds_of(n)[i];
+    }
+    p.charge_C = effect_memory[n].charge_C;
+    return p;
+  }
+  void remember(std::size_t n) {
+    if (effects[n]->looks_back()) histories[n].push(instant(n));
+  }
+
+  Sensing sensing(std::size_t n) const {
+    Sensing at{instant(n), now_ns, options.seed, n, {}};
+    for (std::size_t i = 0; i < kWheels; ++i) at.current_A[i] = memory[n].winding[i].current_A;
+    return at;
   }
 
   // Brings the mechanics' floor forces up to date with q and u.
@@ -126,15 +177,45 @@ struct Plant::Impl {
     }
   }
 
+  void begin_wheels_with_effects(std::size_t n, const WheelContacts<double>& contacts,
+                                 const FloorForces& more) {
+    const RobotModel& model = models[n];
+    const RobotMemory& mem = memory[n];
+    const double* omega_wheel = wheel_speeds_of(n);
+    std::array<WheelDriveInput, kWheels> inputs;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      WheelDriveInput& in = inputs[i];
+      in.bridge = {mem.drive.mode[i], mem.drive.duty_ratio[i], model.bus_voltage_V};
+      in.omega_rotor_rad_s = model.gear_ratio * omega_wheel[i];
+      in.theta_rotor_rad = theta_rotor_rad(n, i);
+      in.contact_Nm = more.wheel_radius_m[i] * contacts.force_longitudinal_N[i] / model.gear_ratio;
+      in.friction_rotor_Nm = more.friction_wheel_Nm[i] / model.gear_ratio;
+    }
+    effects[n]->begin_step(drives[n], effect_memory[n], inputs, wheel_steps[n]);
+    for (std::size_t i = 0; i < kWheels; ++i) torques[n][i] = wheel_steps[n][i].torque;
+  }
+
   template <typename Back>
   void step(Back& back) {
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (effects[n]) effects[n]->floor.dribbler_rad_s = memory[n].drive.dribbler_ratio * kDribblerFull_rad_s;
+    }
     set_state(back);
-    for (std::size_t n = 0; n < models.size(); ++n) begin_wheels(n, back.contacts(n));
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (effects[n]) {
+        begin_wheels_with_effects(n, back.contacts(n), back.floor_forces(n));
+      } else {
+        begin_wheels(n, back.contacts(n));
+      }
+    }
     u_before = u;
     integrate(options.integrator, back, torques, step_s, q, u, scratch);
     state_known = false;
     for (std::size_t n = 0; n < models.size(); ++n) end_robot(back, n);
     now_ns += options.mechanical_step_ns;
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (effects[n]) remember(n);
+    }
   }
 
   template <typename Back>
@@ -144,7 +225,12 @@ struct Plant::Impl {
     bool held = true;
     for (std::size_t i = 0; i < kWheels; ++i) {
       WheelStep& step = wheel_steps[n][i];
-      after[i] = end_wheel_step(drives[n], memory[n].winding[i], step, before[i], after[i]);
+      if (effects[n]) {
+        after[i] = effects[n]->end_wheel(drives[n], effect_memory[n], i, step, before[i], after[i]);
+        memory[n].winding[i].current_A = effect_memory[n].drive[i].current_A;
+      } else {
+        after[i] = end_wheel_step(drives[n], memory[n].winding[i], step, before[i], after[i]);
+      }
       memory[n].motor_torque_Nm[i] = step.drive.mean_torque_Nm;
       memory[n].current_sum_A[i] += step.drive.mean_current_A;
       held = held && step.torque.locked;
@@ -193,6 +279,7 @@ struct Plant::Impl {
 
   PlantOptions options;
   std::vector<RobotModel> models;
+  AllEffects effects;  // before the mechanics, which points into it
   Mechanics mechanics;
   StateLayout layout;
   double step_s = 0.0;
@@ -201,6 +288,8 @@ struct Plant::Impl {
   std::vector<double> q, u, u_before;
   IntegratorScratch scratch;
   std::vector<RobotMemory> memory;
+  std::vector<RobotEffectMemory> effect_memory;
+  std::vector<RobotHistory> histories;
   std::vector<WheelDriveLaw> drives;
   std::vector<WheelTorques> torques;
   std::vector<std::array<WheelStep, kWheels>> wheel_steps;
@@ -209,8 +298,9 @@ struct Plant::Impl {
 };
 
 Plant::Plant(std::span<const RobotModel> robots, const PlantOptions& options) {
-  require_valid(robots, options);
-  impl_ = std::make_unique<Impl>(robots, options);
+  const std::vector<RobotModel> models = models_with_effects(robots);
+  require_valid(models, options);
+  impl_ = std::make_unique<Impl>(models, options);
 }
 Plant::~Plant() = default;
 Plant::Plant(Plant&&) noexcept = default;
@@ -250,6 +340,9 @@ RobotSensors Plant::read(int robot) const {
   Impl& p = *impl_;
   const auto n = static_cast<std::size_t>(robot);
   const RobotModel& model = p.models[n];
+  if (p.effects[n]) {
+    return read_sensors(*p.effects[n], p.effect_memory[n], p.histories[n], model, p.sensing(n));
+  }
   RobotMemory& mem = p.memory[n];
   RobotSensors s{};
   s.now_us = static_cast<std::uint64_t>(p.now_ns / 1000);
@@ -299,6 +392,15 @@ RobotTruth Plant::truth(int robot) const {
   return t;
 }
 
+VisionPose Plant::vision(int robot) const {
+  Impl& p = *impl_;
+  const auto n = static_cast<std::size_t>(robot);
+  const BodyMotion m = std::visit([&](const auto& back) { return back.motion(p.q, p.u, n); }, p.mechanics);
+  if (!p.effects[n] || !p.effects[n]->looks_back()) return {m.x_m, m.y_m, m.yaw_rad};
+  const RobotInstant seen = seen_by_camera(*p.effects[n], p.effect_memory[n], p.histories[n], p.sensing(n));
+  return {seen.x_m, seen.y_m, seen.yaw_rad};
+}
+
 std::vector<std::uint8_t> Plant::save() const {
   const Impl& p = *impl_;
   const std::uint64_t head[3] = {kStateMark, plant_fingerprint(p.models, p.options), p.fault ? 1u : 0u};
@@ -308,13 +410,24 @@ std::vector<std::uint8_t> Plant::save() const {
   append(out, p.q.data(), p.q.size());
   append(out, p.u.data(), p.u.size());
   append(out, p.memory.data(), p.memory.size());
+  for (std::size_t n = 0; n < p.models.size(); ++n) {
+    if (!p.effects[n]) continue;
+    append(out, &p.effect_memory[n], 1);
+    append(out, &p.histories[n].count(), 1);
+    append(out, p.histories[n].points().data(), p.histories[n].points().size());
+  }
   return out;
 }
 
 bool Plant::restore(std::span<const std::uint8_t> bytes) {
   Impl& p = *impl_;
-  const std::size_t size = 4 * sizeof(std::uint64_t) + (p.q.size() + p.u.size()) * sizeof(double) +
-                           p.memory.size() * sizeof(RobotMemory);
+  std::size_t size = 4 * sizeof(std::uint64_t) + (p.q.size() + p.u.size()) * sizeof(double) +
+                     p.memory.size() * sizeof(RobotMemory);
+  for (std::size_t n = 0; n < p.models.size(); ++n) {
+    if (!p.effects[n]) continue;
+    size += sizeof(RobotEffectMemory) + sizeof(std::uint64_t) +
+            p.histories[n].points().size() * sizeof(RobotInstant);
+  }
   if (bytes.size() != size) return false;
   std::uint64_t head[3];
   take(bytes, head, 3);
@@ -323,6 +436,12 @@ bool Plant::restore(std::span<const std::uint8_t> bytes) {
   take(bytes, p.q.data(), p.q.size());
   take(bytes, p.u.data(), p.u.size());
   take(bytes, p.memory.data(), p.memory.size());
+  for (std::size_t n = 0; n < p.models.size(); ++n) {
+    if (!p.effects[n]) continue;
+    take(bytes, &p.effect_memory[n], 1);
+    take(bytes, &p.histories[n].count(), 1);
+    take(bytes, p.histories[n].points().data(), p.histories[n].points().size());
+  }
   p.fault.reset();
   if (head[2] != 0) p.look_for_fault();
   p.state_known = false;

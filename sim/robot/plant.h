@@ -6,6 +6,8 @@
 //   RobotSensors s = plant.read(0);
 //
 // Bit-reproducible: state is a function of the models, the options and the sequence of calls.
+// Effects of a model (RobotModel::effects) act where robot_effects.h and floor_effects.h say; without any,
+// every number is what it would be had they never been written.
 //
 // One mechanical step: the floor's forces at its start (contact.h); per wheel the winding through the
 // electrical sub-steps with that load held, and its friction (wheel_drive.h); the mechanics with the mean
@@ -14,8 +16,8 @@
 // acceleration over the last mechanical step, in the level body frame; bus voltage = the model's constant;
 // motor current = mean since the last read() of that robot (read() therefore counts as a call in the sequence
 // above). A robot whose wheels are all held by friction and that slides slower than 1 pm/s stops exactly
-// (planar joint). Cannot represent: contact between robots, walls and ball; battery sag; sensor noise, bias
-// and filtering.
+// (planar joint). Cannot represent: contact between robots, walls and ball; sensor noise, bias
+// and filtering; battery sag without the effect of that name.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -61,6 +63,11 @@ struct RobotTruth {
   std::array<double, kWheels> load_N{};  // wheel load
 };
 
+// What a camera sees of one robot: pose of the geometric centre in W, as old as effects of timing make it.
+struct VisionPose {
+  double x_m = 0, y_m = 0, yaw_rad = 0;
+};
+
 struct PlantFault {
   std::int64_t now_ns = 0;
   int robot = 0;
@@ -86,6 +93,7 @@ class Plant {
   void advance(std::int64_t duration_ns);  // asserts: a multiple of the mechanical step
   RobotSensors read(int robot) const;
   RobotTruth truth(int robot) const;
+  VisionPose vision(int robot) const;
 
   // Set once a state or an input stopped being finite: the plant stands still from then on.
   const std::optional<PlantFault>& fault() const;

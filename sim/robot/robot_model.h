@@ -4,13 +4,17 @@
 // the body's counter-clockwise tangent. Drawn in docs/frames-and-wheels.md.
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "firmware_iface/robot_io.h"
 #include "sim/motor/motor_params.h"
 #include "sim/robot/tyre.h"
 
 namespace omnihil {
+
+struct EffectUse;  // sim/core/effect_set.h
 
 struct RobotModel {
   std::string name;
@@ -33,6 +37,8 @@ struct RobotModel {
   EncoderParams encoder;
   double bus_voltage_V = 0.0;
   double control_timeout_s = 0.0;  // the team's own command timeout; 0: the firmware's default
+  // On top of the base model above (Coulomb friction is part of that); null: none.
+  std::shared_ptr<const std::vector<EffectUse>> effects;
 };
 
 }  // namespace omnihil

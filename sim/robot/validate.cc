@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/core/effect_reader.h"
 #include "sim/robot/contact.h"
 #include "sim/robot/planar_law.h"
 
@@ -227,6 +228,7 @@ std::uint64_t plant_fingerprint(std::span<const RobotModel> robots, const PlantO
     text += fmt::format(";{} {} {} {}", m.name, m.encoder.direction, m.encoder.index_offset_counts,
                         m.rollers_per_wheel);
     for (const Field& f : fields_of(m)) text += fmt::format(" {}", f.value);
+    if (m.effects != nullptr) text += write_effects(*m.effects, false);
   }
   std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;

@@ -1,0 +1,252 @@
+#include "sim/robot/robot_effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace omnihil {
+
+static_assert(std::is_trivially_copyable_v<RobotEffectMemory>);
+
+DriveParams<double> wheel_drive_params(const RobotModel& model) {
+  DriveParams<double> p;
+  p.resistance_ohm = model.motor.resistance_ohm;
+  p.inductance_H = model.motor.inductance_H;
+  p.torque_constant_Nm_per_A = model.motor.torque_constant_Nm_per_A;
+  p.rotor_inertia_kg_m2 = model.motor.rotor_inertia_kg_m2;
+  p.viscous_friction_Nm_s_per_rad = model.motor.viscous_friction_Nm_s_per_rad;
+  p.coulomb_friction_Nm = model.motor.coulomb_friction_Nm;
+  p.current_limit_A = model.motor.current_limit_A;
+  p.duty_limit_ratio = model.motor.duty_limit_ratio;
+  p.gear_ratio = model.gear_ratio;
+  p.load_inertia_kg_m2 = model.wheel_inertia_kg_m2;
+  p.supply_voltage_V = model.bus_voltage_V;
+  p.pole_pairs = model.motor.pole_pairs;
+  return p;
+}
+
+struct RobotEffects::Link {
+  double friction_rotor_Nm = 0.0;            // told: rolling resistance
+  mutable double friction_Nm = 0.0;          // learnt: whole level, the larger direction
+  mutable double inverse_limit_per_A = 0.0;  // learnt: of the current
+};
+struct RobotEffects::Links {
+  std::array<Link, kWheels> wheel;
+};
+
+// Last in the chains of bridge and torque, by its name. It changes nothing but the friction.
+struct RobotEffects::LinkEffect {
+  static constexpr EffectParam kParams[] = {{.name = "on",
+                                             .unit = "1",
+                                             .typical = 1,
+                                             .upper = 1,
+                                             .what = "always on",
+                                             .how = "never seen by users"}};
+  static constexpr EffectInfo kInfo{.id = "~wheel",
+                                    .title = "Link between drive and plant",
+                                    .equation = "level += rolling resistance",
+                                    .source = "rolling_resistance.cc",
+                                    .cannot = "",
+                                    .place = Place::kTorque,
+                                    .reveals = "",
+                                    .visible = "",
+                                    .params = kParams};
+
+  static void bridge(const void* context, const double*, double*, BridgePort<double>& port) {
+    static_cast<const Link*>(context)->inverse_limit_per_A = port.inverse_current_limit_per_A;
+  }
+  static void torque(const void* context, const double*, double*, TorquePort<double>& port) {
+    const Link& link = *static_cast<const Link*>(context);
+    port.add_friction(link.friction_rotor_Nm);
+    link.friction_Nm = std::max(port.friction_positive_Nm, port.friction_negative_Nm);
+  }
+};
+
+RobotEffects::RobotEffects(const RobotModel& model, double electrical_step_s, int substeps, double step_s)
+    : floor(nullptr, model, step_s),
+      set_(std::make_shared<EffectSet<double>>(*model.effects)),
+      links_(std::make_shared<Links>()),
+      substeps_(substeps),
+      bus_voltage_V_(model.bus_voltage_V) {
+  floor = FloorEffects(set_, model, step_s);
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    auto entry = std::make_shared<EffectEntry>();
+    entry->info = &LinkEffect::kInfo;
+    entry->simulate.bridge = LinkEffect::bridge;
+    entry->simulate.torque = LinkEffect::torque;
+    entry->context = &links_->wheel[i];
+    std::vector<EffectUse> uses = *model.effects;
+    uses.push_back({.entry = entry.get(), .values = {1.0}, .tolerances = {}, .name = {}, .owner = {}});
+    drives_.emplace_back(wheel_drive_params(model), EffectSet<double>(uses), electrical_step_s);
+  }
+}
+
+std::vector<RobotModel> models_with_effects(std::span<const RobotModel> robots) {
+  std::vector<RobotModel> models(robots.begin(), robots.end());
+  for (RobotModel& m : models) {
+    if (m.effects == nullptr) continue;
+    const EffectSet<double> set(*m.effects);
+    if (set.none()) {
+      m.effects = nullptr;
+    } else {
+      m = robot_with_effects(m, set);
+    }
+  }
+  return models;
+}
+
+AllEffects make_effects(const std::vector<RobotModel>& models, const PlantOptions& o) {
+  AllEffects all(models.size());
+  for (std::size_t n = 0; n < models.size(); ++n) {
+    if (models[n].effects == nullptr) continue;
+    all[n] = std::make_unique<RobotEffects>(models[n], static_cast<double>(o.electrical_step_ns) * 1e-9,
+                                            static_cast<int>(o.mechanical_step_ns / o.electrical_step_ns),
+                                            static_cast<double>(o.mechanical_step_ns) * 1e-9);
+  }
+  return all;
+}
+
+std::vector<const FloorEffects*> floors_of(const AllEffects& all) {
+  std::vector<const FloorEffects*> floors;
+  for (const auto& e : all) floors.push_back(e ? &e->floor : nullptr);
+  return floors;
+}
+
+RobotEffectMemory RobotEffects::initial_memory() const {
+  RobotEffectMemory memory;
+  for (std::size_t i = 0; i < kWheels; ++i) memory.drive[i] = drives_[i].initial_state();
+  memory.timing = memory.drive[0].effects;
+  memory.bus_voltage_V = bus_voltage_V_;
+  return memory;
+}
+
+// ------------------------------------------------------------------------------------------ four drives
+
+void RobotEffects::advance(RobotEffectMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
+                           std::array<DriveResult<double>, kWheels>& results) const {
+  std::array<DriveInput<double>, kWheels> in;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    in[i].kind = CommandKind::kDuty;
+    in[i].enabled = inputs[i].bridge.mode == OMNIHIL_DRIVE_DUTY;
+    in[i].setpoint = inputs[i].bridge.duty_ratio;
+    in[i].tau_outside_Nm = -inputs[i].contact_Nm;
+    in[i].wheel = static_cast<int>(i);
+  }
+  if (set_->supply.empty()) {
+    for (std::size_t i = 0; i < kWheels; ++i)
+      results[i] = drives_[i].advance(memory.drive[i], in[i], substeps_);
+    return;
+  }
+  std::array<double, kWheels> bus_A{};
+  const double share = 1.0 / substeps_;
+  for (int n = 0; n < substeps_; ++n) {
+    // what each takes from the bus at the sub-step's start: duty times current
+    double sum_A = 0.0;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const double limit = drives_[i].params().duty_limit_ratio;
+      bus_A[i] = in[i].enabled ? std::clamp(in[i].setpoint, -limit, limit) * memory.drive[i].current_A : 0.0;
+      sum_A += bus_A[i];
+    }
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      in[i].other_bus_current_A = sum_A - bus_A[i];
+      const DriveResult<double> r = drives_[i].advance(memory.drive[i], in[i], 1);
+      DriveResult<double>& sum = results[i];
+      sum.held = r.held && (n == 0 || sum.held);
+      sum.mean_current_A += share * r.mean_current_A;
+      sum.mean_shaft_torque_Nm += share * r.mean_shaft_torque_Nm;
+      sum.bus_voltage_V = r.bus_voltage_V;
+    }
+  }
+}
+
+namespace {
+
+// Course of the torque through the step for the mechanics, which takes viscous friction of its own.
+WheelTorque torque_course(const WheelDriveLaw& law, const DriveResult<double>& r, double start_A,
+                          const DriveState<double>& end, const WheelDriveInput& in, double inertia_kg_m2) {
+  const auto& motor = law.turning.constants;
+  const double k = motor.torque_constant_Nm_per_A;
+  const double rest_Nm = r.mean_shaft_torque_Nm - k * r.mean_current_A;
+  const double mean_Nm = r.mean_shaft_torque_Nm;
+  const double end_Nm = k * end.current_A + rest_Nm;
+  // without inductance the current before the step says nothing: a straight line through mean and end
+  const double start_Nm = motor.inductance_H > 0.0 ? k * start_A + rest_Nm : 2.0 * mean_Nm - end_Nm;
+  const double middle_Nm = (6.0 * mean_Nm - start_Nm - end_Nm) / 4.0;  // Simpson's rule
+  // first half of the parabola through the three: (5 start + 8 middle - end) / 24
+  const double half_Nm = (5.0 * start_Nm + 8.0 * middle_Nm - end_Nm) / 24.0 - 0.5 * in.contact_Nm;
+  const double start_rad_s = in.omega_rotor_rad_s;
+  WheelTorque course;
+  course.omega_rad_s = {start_rad_s, start_rad_s + half_Nm * law.step_s / inertia_kg_m2,
+                        end.omega_rotor_rad_s, start_rad_s};
+  course.torque_Nm = {start_Nm, middle_Nm, end_Nm, mean_Nm};
+  // the mechanics takes b omega off again
+  for (std::size_t part = 0; part < 4; ++part) {
+    course.torque_Nm[part] += law.viscous_Nm_s_per_rad * course.omega_rad_s[part];
+  }
+  return course;
+}
+
+double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+
+}  // namespace
+
+void RobotEffects::begin_step(const WheelDriveLaw& law, RobotEffectMemory& memory,
+                              const std::array<WheelDriveInput, kWheels>& inputs,
+                              std::array<WheelStep, kWheels>& steps) {
+  std::array<double, kWheels> start_A;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    DriveState<double>& state = memory.drive[i];
+    start_A[i] = state.current_A;
+    state.omega_rotor_rad_s = inputs[i].omega_rotor_rad_s;
+    state.theta_rotor_rad = inputs[i].theta_rotor_rad;
+    links_->wheel[i].friction_rotor_Nm = inputs[i].friction_rotor_Nm;
+  }
+  std::array<DriveResult<double>, kWheels> results{};
+  advance(memory, inputs, results);
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const DriveState<double>& end = memory.drive[i];
+    const DriveResult<double>& r = results[i];
+    WheelStep step;
+    step.direction = sign(inputs[i].omega_rotor_rad_s);
+    step.drive.mean_current_A = r.mean_current_A;
+    step.drive.mean_torque_Nm = law.turning.constants.torque_constant_Nm_per_A * r.mean_current_A;
+    step.drive.omega_end_rad_s = end.omega_rotor_rad_s;
+    if (r.held) {
+      step.torque.locked = true;
+    } else {
+      step.torque = torque_course(law, r, start_A[i], end, inputs[i], drives_[i].inertia_kg_m2());
+      const double used = std::abs(end.current_A) * links_->wheel[i].inverse_limit_per_A;
+      if (inputs[i].bridge.mode == OMNIHIL_DRIVE_DUTY && used < 1.0 - 1e-9) {
+        step.torque.slope_Nm_s_per_rad =
+            law.turning.constants.torque_constant_Nm_per_A * law.mean_answer_A_s_per_rad;
+      }
+    }
+    steps[i] = step;
+  }
+  memory.bus_voltage_V = results[0].bus_voltage_V;
+}
+
+double RobotEffects::end_wheel(const WheelDriveLaw& law, RobotEffectMemory& memory, std::size_t wheel,
+                               WheelStep& step, double omega_wheel_before_rad_s,
+                               double omega_wheel_after_rad_s) const {
+  DriveState<double>& state = memory.drive[wheel];
+  if (!step.torque.locked && step.torque.slope_Nm_s_per_rad > 0.0) {
+    const double departed_rad_s = law.gear_ratio * omega_wheel_after_rad_s - step.drive.omega_end_rad_s;
+    state.current_A -= law.end_answer_A_s_per_rad * departed_rad_s;
+    const double mean_A = -law.mean_answer_A_s_per_rad * 0.5 * departed_rad_s;
+    step.drive.mean_current_A += mean_A;
+    step.drive.mean_torque_Nm += law.turning.constants.torque_constant_Nm_per_A * mean_A;
+  }
+  memory.charge_C[wheel] += step.drive.mean_current_A * law.step_s;
+  const double friction_Nm = links_->wheel[wheel].friction_Nm;
+  if (step.torque.locked || friction_Nm == 0.0) return omega_wheel_after_rad_s;
+  const double foreseen_rad_s = step.drive.omega_end_rad_s;
+  if (foreseen_rad_s == 0.0) return 0.0;  // friction stopped it within the step
+  if (foreseen_rad_s * omega_wheel_after_rad_s >= 0.0) return omega_wheel_after_rad_s;
+  // net torque before zero |net|; past zero |net| - 2 tau_c, never against the motion
+  const double net_Nm = std::abs(omega_wheel_after_rad_s - omega_wheel_before_rad_s) / law.step_s *
+                        law.spin_inertia_kg_m2 / law.gear_ratio;
+  return omega_wheel_after_rad_s * std::max(0.0, 1.0 - 2.0 * friction_Nm / net_Nm);
+}
+
+}  // namespace omnihil

@@ -1,0 +1,78 @@
+#include "sim/robot/robot_sensing.h"
+
+#include <cmath>
+
+#include "sim/core/random.h"
+#include "sim/motor/encoder.h"
+
+namespace omnihil {
+namespace {
+
+NoiseKey noise_key(std::string_view stream, std::size_t which, const Sensing& at) {
+  return {at.seed, stream_of(stream) + which, static_cast<std::uint64_t>(at.now_ns)};
+}
+
+// How much older than its stamp a measurement of now is.
+double age_s(const RobotEffects& effects, RobotEffectMemory& memory, Stamped what, const Sensing& at) {
+  TimingPort<double> port;
+  const NoiseKey key = noise_key("timing", at.robot, at);
+  port.what = what;
+  port.time_s = at.now.time_s;
+  port.dt_s = at.now.time_s - memory.read_s;
+  port.noise = &key;
+  effects.set().timing.apply(effects.set().values(), memory.timing.data(), port);
+  return port.age_s;
+}
+
+double encoder_angle_rad(const RobotEffects& effects, RobotEffectMemory& memory, const RobotModel& model,
+                         std::size_t i, const RobotInstant& seen, const Sensing& at) {
+  const EffectSet<double>& set = effects.set();
+  SensorPort<double> port;
+  const NoiseKey key = noise_key("sensor", kWheels * at.robot + i, at);
+  port.theta_rotor_rad = port.encoder_angle_rad = seen.theta_rotor_rad[i];
+  port.omega_rotor_rad_s = port.measured_speed_rad_s = seen.omega_rotor_rad_s[i];
+  port.travel_rad = std::abs(seen.theta_rotor_rad[i] - memory.seen_theta_rotor_rad[i]);
+  port.counts_per_turn = model.encoder.counts_per_turn;
+  port.time_s = at.now.time_s;
+  port.dt_s = at.now.time_s - memory.read_s;
+  port.noise = &key;
+  set.sensor.apply(set.values(), memory.drive[i].effects.data(), port);
+  return port.encoder_angle_rad;
+}
+
+}  // namespace
+
+RobotSensors read_sensors(const RobotEffects& effects, RobotEffectMemory& memory, const RobotHistory& history,
+                          const RobotModel& model, const Sensing& at) {
+  RobotInstant seen = at.now;
+  if (effects.looks_back()) {
+    seen = history.at(at.now.time_s - age_s(effects, memory, Stamped::kDriveSensors, at));
+  }
+  RobotSensors s{};
+  s.now_us = static_cast<std::uint64_t>(at.now_ns / 1000);
+  const double span_s = seen.time_s - memory.seen_s;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const double theta_rad = encoder_angle_rad(effects, memory, model, i, seen, at);
+    if (std::isfinite(theta_rad)) s.encoder_counts[i] = encoder_counts(model.encoder, theta_rad);
+    // mean since what the last read showed
+    s.motor_current_A[i] =
+        span_s > 0.0 ? (seen.charge_C[i] - memory.seen_charge_C[i]) / span_s : at.current_A[i];
+    memory.seen_theta_rotor_rad[i] = seen.theta_rotor_rad[i];
+    memory.seen_charge_C[i] = seen.charge_C[i];
+  }
+  memory.seen_s = seen.time_s;
+  memory.read_s = at.now.time_s;
+  s.bus_voltage_V = seen.bus_voltage_V;
+  s.gyro_z_rad_s = seen.gyro_rad_s;
+  s.accel_x_m_s2 = seen.accel_x_m_s2;
+  s.accel_y_m_s2 = seen.accel_y_m_s2;
+  return s;
+}
+
+RobotInstant seen_by_camera(const RobotEffects& effects, RobotEffectMemory& memory,
+                            const RobotHistory& history, const Sensing& at) {
+  if (!effects.looks_back()) return at.now;
+  return history.at(at.now.time_s - age_s(effects, memory, Stamped::kVision, at));
+}
+
+}  // namespace omnihil
