@@ -13,6 +13,8 @@ StopSignals::StopSignals() {
     action.sa_handler = kSignals[i] == SIGPIPE ? SIG_IGN : omnihil_on_stop_signal;
     ::sigemptyset(&action.sa_mask);
     ::sigaction(kSignals[i], &action, &before_[i]);
+    // Started under nohup: the terminal's end is not ours.
+    if (kSignals[i] == SIGHUP && before_[i].sa_handler == SIG_IGN) ::sigaction(SIGHUP, &before_[i], nullptr);
   }
 }
 

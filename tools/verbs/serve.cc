@@ -60,6 +60,10 @@ std::string understand(Words& words) {
   if (words.options.strict && !words.options.real_time) {
     problems.push_back("--strict: of no meaning with --clock free");
   }
+  if (words.no_pacing && words.baud > 0) problems.push_back("--no-pacing and --baud contradict each other");
+  if (!words.options.quiet) {
+    for (const std::string& note : stored.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  }
   if (stored.problems.empty()) {
     SessionSetup rest = setup;  // a list of robots that was not understood has been named already
     if (!problems.empty()) rest.robot_ids = {0};
