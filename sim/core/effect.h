@@ -88,8 +88,10 @@ struct SensorSet {
 
 // Which picture shows the effect best: y over x of a simulated axis, with the effect and without.
 struct EffectPlot {
-  std::string_view excitation = "steps";  // sim/drive/excitation.h
-  std::string_view x = "time";            // signals of AxisSample
+  // sim/drive/excitation.h; "turn": the bench turns the shaft once; "locked": it holds it while the duty
+  // creeps
+  std::string_view excitation = "steps";
+  std::string_view x = "time";  // signals of AxisSample
   std::string_view y = "velocity";
   double from_s = 0.0;
   double to_s = 2.0;

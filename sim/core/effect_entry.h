@@ -30,6 +30,8 @@ struct ApplyFunctions {
   ApplyFunction<T, BodyPort<T>> body = nullptr;
   ApplyFunction<T, SensorPort<T>> sensor = nullptr;
   ApplyFunction<T, TimingPort<T>> timing = nullptr;
+  // Numbers that follow from the parameters and need computing once only; null: none.
+  void (*prepare)(const T* params, T* derived) = nullptr;
 };
 
 struct EffectEntry {
@@ -37,6 +39,7 @@ struct EffectEntry {
   ApplyFunctions<double> simulate;
   ApplyFunctions<Jet> differentiate;
   const void* context = nullptr;
+  int derived = 0;  // how many numbers `prepare` writes; a law finds them behind its parameters
 
   template <typename T>
   const ApplyFunctions<T>& functions() const {
@@ -57,6 +60,27 @@ constexpr ApplyFunction<T, Port> apply_function() {
   }
 }
 
+// An effect may have `static constexpr int kDerived = n;` and
+// `template <typename T> static void prepare(const T* p, T* derived)`: what it writes stands behind the
+// parameters.
+template <typename Effect>
+constexpr int derived_count() {
+  if constexpr (requires { Effect::kDerived; }) {
+    return Effect::kDerived;
+  } else {
+    return 0;
+  }
+}
+
+template <typename Effect, typename T>
+constexpr auto prepare_function() -> void (*)(const T*, T*) {
+  if constexpr (requires { Effect::kDerived; }) {
+    return [](const T* p, T* derived) { Effect::prepare(p, derived); };
+  } else {
+    return nullptr;
+  }
+}
+
 template <typename Effect, typename T>
 constexpr ApplyFunctions<T> apply_functions() {
   return {.command = apply_function<Effect, T, CommandPort<T>>(),
@@ -68,15 +92,16 @@ constexpr ApplyFunctions<T> apply_functions() {
           .contact = apply_function<Effect, T, ContactPort<T>>(),
           .body = apply_function<Effect, T, BodyPort<T>>(),
           .sensor = apply_function<Effect, T, SensorPort<T>>(),
-          .timing = apply_function<Effect, T, TimingPort<T>>()};
+          .timing = apply_function<Effect, T, TimingPort<T>>(),
+          .prepare = prepare_function<Effect, T>()};
 }
 
-#define OMNIHIL_EFFECT(stem, Type)                                                     \
-  const EffectEntry& effect_##stem() {                                                 \
-    static_assert(Type::kInfo.id == #stem, "an effect's id is the stem of its file");  \
-    static constexpr EffectEntry kEntry{&Type::kInfo, apply_functions<Type, double>(), \
-                                        apply_functions<Type, Jet>(), nullptr};        \
-    return kEntry;                                                                     \
+#define OMNIHIL_EFFECT(stem, Type)                                                                     \
+  const EffectEntry& effect_##stem() {                                                                 \
+    static_assert(Type::kInfo.id == #stem, "an effect's id is the stem of its file");                  \
+    static constexpr EffectEntry kEntry{&Type::kInfo, apply_functions<Type, double>(),                 \
+                                        apply_functions<Type, Jet>(), nullptr, derived_count<Type>()}; \
+    return kEntry;                                                                                     \
   }
 
 }  // namespace omnihil

@@ -42,6 +42,14 @@ EffectUse typical_use(const EffectEntry& entry, const DriveParams<double>* drive
 bool is_neutral(const EffectUse& use) { return absent<double>(*use.entry->info, use.values); }
 
 template <typename T>
+std::vector<T> law_params(const EffectEntry& entry, std::span<const T> values) {
+  std::vector<T> params(values.begin(), values.end());
+  params.resize(values.size() + static_cast<std::size_t>(entry.derived));
+  if (entry.derived > 0) entry.functions<T>().prepare(params.data(), params.data() + values.size());
+  return params;
+}
+
+template <typename T>
 EffectSet<T>::EffectSet(std::span<const EffectUse> uses) {
   std::vector<T> values;
   for (const EffectUse& use : uses) {
@@ -59,6 +67,7 @@ EffectSet<T>::EffectSet(std::span<const EffectUse> uses, std::span<const T> valu
   std::vector<Active> active;
   std::size_t first = 0;
   for (const EffectUse& use : uses) {
+    if (use.owner != nullptr) owners_.push_back(use.owner);
     const auto own = values.subspan(first, use.entry->info->params.size());
     first += own.size();
     const bool wanted = std::any_of(uses.begin(), uses.end(), [&](const EffectUse& other) {
@@ -92,7 +101,8 @@ template <typename T>
 void EffectSet<T>::add(const EffectEntry& entry, std::span<const T> values) {
   const int first_param = static_cast<int>(values_.size());
   const int first_state = static_cast<int>(initial_states_.size());
-  values_.insert(values_.end(), values.begin(), values.end());
+  const std::vector<T> params = law_params(entry, values);
+  values_.insert(values_.end(), params.begin(), params.end());
   for (const EffectState& state : entry.info->states) initial_states_.push_back(T(state.initial));
   assert(initial_states_.size() <= kMaxEffectStates);
   const auto link = [&](auto function, auto& chain) {
@@ -107,6 +117,8 @@ void EffectSet<T>::add(const EffectEntry& entry, std::span<const T> values) {
              link(f.timing, timing);
 }
 
+template std::vector<double> law_params(const EffectEntry&, std::span<const double>);
+template std::vector<Jet> law_params(const EffectEntry&, std::span<const Jet>);
 template class EffectSet<double>;
 template class EffectSet<Jet>;
 

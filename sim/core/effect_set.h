@@ -30,6 +30,9 @@ EffectUse neutral_use(const EffectEntry& entry, const DriveParams<double>* drive
 // With every strength at its typical, visible size.
 EffectUse typical_use(const EffectEntry& entry, const DriveParams<double>* drive = nullptr);
 bool is_neutral(const EffectUse& use);
+// Parameters as a law takes them: with what it derives from them behind.
+template <typename T>
+std::vector<T> law_params(const EffectEntry& entry, std::span<const T> values);
 
 inline constexpr int kMaxEffectStates = 32;
 
@@ -81,6 +84,7 @@ class EffectSet {
 
   std::vector<T> values_;
   std::vector<T> initial_states_;
+  std::vector<std::shared_ptr<const void>> owners_;  // of effects made at run time
   int active_ = 0;
   int active_in_drive_ = 0;
 };

@@ -115,8 +115,13 @@ class AxisRun {
     sum.held = sum.held && r.held;
   }
 
+  // What the encoder's shaft does, at the rotor.
   MotionPoint<T> now() const {
-    return {state_.now_s, state_.theta_rotor_rad, state_.omega_rotor_rad_s, charge_C_};
+    if (!input_.encoder_on_output || !state_.has_output) {
+      return {state_.now_s, state_.theta_rotor_rad, state_.omega_rotor_rad_s, charge_C_};
+    }
+    const T& gear = sim_.params().gear_ratio;
+    return {state_.now_s, state_.theta_output_rad * gear, state_.omega_output_rad_s * gear, charge_C_};
   }
   void remember() {
     if (looks_back_) record_.push(now());

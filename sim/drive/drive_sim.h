@@ -12,6 +12,8 @@
 // sub-step, and electrical energy = heat + magnetic + mechanical to rounding. Effects see speed and angle of
 // the sub-step's middle (extrapolated), so smooth laws keep second order; effects with states say their own
 // order. Enable off: all switches open, the current dies into the bus through the diodes and stays zero.
+// With an effect on the shaft, rotor and output are two masses (shaft_step.h); outside torque and gravity act
+// on the output, friction and the torque effects on the rotor, and an imposed speed is the output's.
 // Cannot: PWM ripple (averaged voltage), commutation, more than one supply.
 //
 // With no effect the same equations run with everything precomputed. To a multibody model: write its speed
@@ -33,6 +35,10 @@ struct DriveState {
   T current_A = T(0);
   T omega_rotor_rad_s = T(0);
   T theta_rotor_rad = T(0);
+  // Of their own only where an effect acts on the shaft; they start where the rotor is.
+  T theta_output_rad = T(0);
+  T omega_output_rad_s = T(0);
+  bool has_output = false;
   T omega_change_rad_s = T(0);  // over the sub-step before, to look ahead to the next one's middle
   T heat_W = T(0);              // R i^2 of the sub-step before
   T temperature_rise_K = T(0);  // of the winding over ambient; stays zero unless an effect models it
@@ -82,22 +88,30 @@ class DriveSim {
   const EffectSet<T>& effects() const { return effects_; }
   double step_s() const { return step_s_; }
   T inertia_kg_m2() const { return inertia_kg_m2_; }
+  // An effect acts on the shaft, and there is a mass on either side of it.
+  bool two_masses() const { return two_masses_; }
 
  private:
+  struct Call;   // what stays the same over a call
   struct Step;   // of one sub-step: what is known of it so far
   struct Plain;  // the base model's sub-step as one linear map
   DriveResult<T> advance_plain(DriveState<T>& state, const DriveInput<T>& input, int substeps) const;
-  void step(DriveState<T>& state, const DriveInput<T>& input, double imposed_start_rad_s,
-            double imposed_end_rad_s, DriveResult<T>& sums) const;
-  void command(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
-  void supply(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
+  void step(DriveState<T>& state, const DriveInput<T>& input, const Call& call, Step& s,
+            DriveResult<T>& sums) const;
+  void command(DriveState<T>& state, const DriveInput<T>& input, const Call& call, Step& s) const;
+  void supply(DriveState<T>& state, const DriveInput<T>& input, const Call& call, Step& s) const;
   void winding(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
-  void bridge(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
+  void bridge(DriveState<T>& state, const DriveInput<T>& input, const Call& call, Step& s) const;
+  void release(const DriveState<T>& state, Step& s) const;
   void torque(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
-  void solve(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
+  void solve(const DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
+  void limit_current(const DriveState<T>& state, Step& s) const;
   void hold_current(const DriveState<T>& state, const T& end_current_A, const T& mean_current_A,
                     Step& s) const;
   void turn(const DriveState<T>& state, Step& s) const;
+  void turn_by_bench(Step& s) const;
+  void join_shaft(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
+  void turn_output(DriveState<T>& state, Step& s) const;
   bool plain(const DriveInput<T>& input) const;
 
   DriveParams<T> params_;
@@ -105,7 +119,10 @@ class DriveSim {
   double step_s_ = 0.0;
   T inertia_kg_m2_ = T(0);
   T inverse_gear_ = T(1);
+  bool two_masses_ = false;
   WindingStep<T> winding_;  // of the base model
+  T inductance_over_step_ = T(0);
+  T base_inverse_limit_per_A_ = T(0);
 };
 
 }  // namespace omnihil

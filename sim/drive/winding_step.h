@@ -1,7 +1,7 @@
 // One sub-step of the winding: exact for resistance, inductance, constants and voltage held over it, with the
 // mean current as a linear function of the mean speed so that winding and rotor are solved together.
 //
-//   WindingStep<double> w = make_winding_step(1.2, 5.6e-4, 50e-6);
+//   WindingStep<double> w = make_winding_step(1.2, 5.6e-4, 5.6e-4 / 50e-6);
 //   w.mean_current(u, emf_offset, i0)  and  -w.gain * k * mean_omega  add up to the mean current
 //
 // Law: L di/dt = u - e0 - k omega - R i.  With everything but i held:
@@ -36,18 +36,26 @@ struct WindingStep {
   }
 };
 
+// `inductance_over_step` is L / h.
 template <typename T>
-WindingStep<T> make_winding_step(const T& resistance_ohm, const T& inductance_H, double step_s) {
+WindingStep<T> make_winding_step(const T& resistance_ohm, const T& inductance_H,
+                                 const T& inductance_over_step) {
   using std::exp;
   WindingStep<T> s;
   s.resistance_ohm = resistance_ohm;
   s.conductance_per_ohm = 1.0 / resistance_ohm;
   s.inductance_H = inductance_H;
   if (value_of(inductance_H) > 0.0) {
-    const T turns = resistance_ohm * step_s / inductance_H;
-    s.decay = exp(-turns);
-    // (1 - e) / x, by its series where the difference would cancel
-    s.mean_decay = value_of(turns) < 1e-4 ? T(1.0) - turns * (0.5 - turns / 6.0) : (1.0 - s.decay) / turns;
+    const T time_constants = inductance_over_step * s.conductance_per_ohm;  // L / (R h)
+    if (value_of(time_constants) > 1e4) {
+      // (1 - e) / x, x = R h / L, by its series where the difference would cancel
+      const T x = 1.0 / time_constants;
+      s.decay = exp(-x);
+      s.mean_decay = 1.0 - x * (0.5 - x / 6.0);
+    } else {
+      s.decay = exp(-1.0 / time_constants);
+      s.mean_decay = (1.0 - s.decay) * time_constants;
+    }
   }
   s.gain = (1.0 - s.mean_decay) * s.conductance_per_ohm;
   return s;

@@ -30,7 +30,7 @@ struct ActuatorDelay {
       .min_visible = [](const SensorSet& s) { return 0.1 / s.rate_Hz; },
       .claims = kOdd,
       .params = kParams,
-      .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.0, .to_s = 0.6},
+      .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.35, .to_s = 0.6},
   };
 
   template <typename T>

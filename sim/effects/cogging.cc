@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "sim/core/effect_entry.h"
+#include "sim/core/fast_sin.h"
 #include "sim/drive/drive_params.h"
 
 namespace omnihil {
@@ -25,8 +26,9 @@ namespace {
   }
 
 struct Cogging {
-  enum Param { kAmplitude, kOrder, kPhase, kFirstHarmonic };
   static constexpr int kHarmonics = 24;
+  enum Param { kAmplitude, kOrder, kPhase, kFirstHarmonic, kHighest = kFirstHarmonic + 2 * (kHarmonics - 1) };
+  static constexpr int kDerived = 1;  // the highest harmonic in use
 
   // Order of a turn: least common multiple of poles and slots (Hanselman 2003, ch. 8).
   static double order_of(const DriveParams<double>& drive) {
@@ -106,19 +108,26 @@ struct Cogging {
           },
       .claims = kConservative,
       .params = kParams,
-      .plot = {.excitation = "creep", .x = "rotor_angle", .y = "velocity", .from_s = 2.0, .to_s = 4.0},
+      .plot = {.excitation = "turn", .x = "rotor_angle", .y = "load_torque", .from_s = 0.0, .to_s = 4.0},
   };
 
   template <typename T>
+  static void prepare(const T* p, T* highest) {
+    int k = kHarmonics;
+    while (k > 1 && is_exactly(p[kFirstHarmonic + 2 * (k - 2)], 0.0)) --k;
+    *highest = T(k);
+  }
+
+  template <typename T>
   static void apply(const T* p, T*, TorquePort<T>& port) {
-    using std::sin;
     // tau += A sin(n theta + p)
     const T angle = p[kOrder] * port.theta_rotor_rad;
-    port.tau_Nm += p[kAmplitude] * sin(angle + p[kPhase]);
+    port.tau_Nm += p[kAmplitude] * sin_of(angle + p[kPhase]);
     // tau += A_k sin(k n theta + p_k)
-    for (int k = 2; k <= kHarmonics; ++k) {
+    const double highest = value_of(p[kHighest]);
+    for (int k = 2; k <= highest; ++k) {
       const T* h = p + kFirstHarmonic + 2 * (k - 2);
-      if (!is_exactly(h[0], 0.0)) port.tau_Nm += h[0] * sin(double(k) * angle + h[1]);
+      if (!is_exactly(h[0], 0.0)) port.tau_Nm += h[0] * sin_of(double(k) * angle + h[1]);
     }
   }
 };

@@ -27,16 +27,16 @@ struct DeadTime {
        .lower = 0.001,
        .upper = 10,
        .prior_scale = 0.3,
-       .what = "current at which 76 % of it is there: half the ripple current within a PWM period",
+       .what = "current at which 71 % of it is there: half the ripple current within a PWM period",
        .how = "as voltage_V: curvature of the line near zero current"},
   };
   static constexpr EffectInfo kInfo{
       .id = "dead_time",
       .title = "Dead time and device drop",
-      .equation = "u -= V_d tanh(i / i_w)",
+      .equation = "u -= V_d i / sqrt(i^2 + i_w^2)",
       .source =
           "Murai, Watanabe, Iwasaki, IEEE Trans. Ind. Appl. 23(4), 1987 (mean loss V_bus t_d f_pwm against "
-          "the current); tanh: our smoothing over the ripple current",
+          "the current); root: our smoothing over the ripple current",
       .cannot =
           "the distortion within an electrical turn (sixth order), change with bus voltage or PWM frequency",
       .place = Place::kBridge,
@@ -51,14 +51,15 @@ struct DeadTime {
           },
       .claims = kDissipative | kOdd,
       .params = kParams,
-      .plot = {.excitation = "creep", .x = "duty", .y = "motor_current", .from_s = 0.0, .to_s = 8.0},
+      .plot = {.excitation = "locked", .x = "duty", .y = "motor_current", .from_s = 0.0, .to_s = 16.0},
   };
 
   template <typename T>
   static void apply(const T* p, T*, BridgePort<T>& port) {
-    using std::tanh;
-    // u -= V_d tanh(i / i_w)
-    port.voltage_V -= p[kVoltage] * tanh(port.current_A / p[kWidth]);
+    using std::sqrt;
+    // u -= V_d i / sqrt(i^2 + i_w^2)
+    const T& i = port.current_A;
+    port.voltage_V -= p[kVoltage] * i / sqrt(i * i + p[kWidth] * p[kWidth]);
   }
 };
 

@@ -11,7 +11,7 @@ namespace {
 double torque_at(const EffectUse& use, double theta_rad) {
   TorquePort<double> port;
   port.theta_rotor_rad = theta_rad;
-  use.entry->simulate.torque(nullptr, use.values.data(), nullptr, port);
+  use.entry->simulate.torque(nullptr, law_params<double>(*use.entry, use.values).data(), nullptr, port);
   return port.tau_Nm;
 }
 

@@ -216,7 +216,7 @@ TEST_P(EveryEffect, NeverAddsPowerIfItClaimsToDissipate) {
       if constexpr (requires { after.bus_current_A; }) {
         EXPECT_LE((after.bus_voltage_V - before.bus_voltage_V) * after.bus_current_A, 1e-15);
       }
-      if constexpr (requires { after.resistance_ohm; }) {
+      if constexpr (requires { after.torque_constant_Nm_per_A; }) {
         EXPECT_GE(after.resistance_ohm, before.resistance_ohm);
         EXPECT_EQ(after.torque_constant_Nm_per_A, after.back_emf_V_s_per_rad);
       }
@@ -239,7 +239,7 @@ TEST_P(EveryEffect, LetsACoastingRotorLoseEnergyIfItClaimsToDissipate) {
 
 TEST_P(EveryEffect, DoesNoWorkOverATurnIfItClaimsToBeConservative) {
   if ((info().claims & kConservative) == 0) return;
-  const std::vector<double> params = typical_use(entry()).values;
+  const auto params = law_params<double>(entry(), typical_use(entry()).values);
   const auto function = entry().simulate.torque;
   ASSERT_NE(function, nullptr);
   const int kParts = 4800;  // a multiple of every order in use

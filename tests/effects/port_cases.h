@@ -254,7 +254,7 @@ Port applied(const EffectEntry& entry, Function function, Port port, std::span<c
   fill(port, Draw{seed}, sign, history);
   std::vector<T> states;
   for (const EffectState& s : entry.info->states) states.push_back(T(s.initial));
-  function(entry.context, params.data(), states.data(), port);
+  function(entry.context, law_params(entry, params).data(), states.data(), port);
   if constexpr (requires { port.history; }) port.history = nullptr;
   return port;
 }

@@ -1,0 +1,88 @@
+// omnihil sim MODEL --excite NAME|FILE … --out DATASET: a virtual bench for one drive.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "hil/dataset_files.h"
+#include "tools/axis_bench.h"
+#include "tools/exit_codes.h"
+#include "tools/guarded.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+struct Arguments {
+  BenchOptions bench;
+  std::string out;
+};
+
+// Time of the first sample that is not finite, or nothing.
+bool diverged(const AxisBench& bench) {
+  for (const AxisBenchRun& run : bench.runs) {
+    for (const AxisSample<double>& s : run.samples) {
+      if (std::isfinite(s.omega_rotor_rad_s) && std::isfinite(s.theta_rotor_rad) &&
+          std::isfinite(s.motor_current_A)) {
+        continue;
+      }
+      std::fprintf(stderr,
+                   "omnihil sim: run %s: the state is not finite at %.6f s (speed %g rad/s, current %g A)\n",
+                   run.name.c_str(), s.time_s, s.omega_rotor_rad_s, s.motor_current_A);
+      return true;
+    }
+  }
+  return false;
+}
+
+int run(const Arguments& arguments) {
+  std::vector<std::string> faults;
+  const std::optional<AxisBench> bench = make_bench(arguments.bench, faults);
+  for (const std::string& fault : faults) std::fprintf(stderr, "omnihil sim: %s\n", fault.c_str());
+  if (!bench) return kExitBadInput;
+  if (diverged(*bench)) return kExitDiverged;
+  NewFolder folder(arguments.out);
+  folder.write("dataset.toml", dataset_text(*bench));
+  folder.write("model.toml", axis_model_text(bench->model));
+  std::size_t rows = 0;
+  for (const AxisBenchRun& r : bench->runs) {
+    folder.write(r.name + ".csv", run_csv(*bench, r));
+    rows += r.samples.size();
+  }
+  folder.finish();
+  std::printf("%s: %zu runs, %zu rows\n", arguments.out.c_str(), bench->runs.size(), rows);
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_verb_sim(CLI::App& app, VerbResult& result) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("sim", "a virtual bench: drive a model, write a dataset");
+  verb->add_option("MODEL", a->bench.model,
+                   "model of an axis, or of a motor or robot (then one wheel's drive), by name or path")
+      ->required();
+  verb->add_option(
+          "--excite", a->bench.excitations,
+          "steps, ramp, chirp, prbs, creep, or a CSV file of time and command; several give several runs")
+      ->required();
+  verb->add_option("--out", a->out, "new folder of the dataset")->required();
+  verb->add_option("--with", a->bench.with,
+                   "add an effect: ID.parameter=value, or ID for its typical size; several allowed");
+  verb->add_option("--drive", a->bench.drive,
+                   "what is asked: duty, motor_voltage, motor_current, motor_torque, position_target");
+  verb->add_option("--amplitude", a->bench.amplitude, "of what is asked, in its unit")->capture_default_str();
+  verb->add_option("--duration", a->bench.duration_s, "of a run, s")->capture_default_str();
+  verb->add_option("--rate", a->bench.rate_Hz, "samples per second")->capture_default_str();
+  verb->add_option("--step", a->bench.step_s, "electrical sub-step, s")->capture_default_str();
+  verb->add_option("--seed", a->bench.seed, "of noise and of the excitations' pattern")
+      ->capture_default_str();
+  verb->add_option("--noise", a->bench.noise_scale, "of the sensors, times the usual; 0: none")
+      ->capture_default_str();
+  verb->callback([a, &result] { result.exit_code = guarded("sim", [&] { return run(*a); }); });
+}
+
+}  // namespace omnihil
