@@ -24,6 +24,8 @@ namespace omnihil {
 struct AveragedDrive {
   PhaseCircuit circuit;
   Inverter inverter;
+  double gap_ratio = 0.0;       // dead time over period
+  double ripple_per_V_A = 0.0;  // of a pair, at d (1 - d) = 1: 1 / (L_ll f)
 };
 
 AveragedDrive make_averaged_drive(const PhaseMotor<double>& motor, const Inverter& inverter, double step_s,

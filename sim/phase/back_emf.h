@@ -9,6 +9,7 @@
 // The three sines sum to zero; the trapezoids do not: what they have in common shifts the star point and
 // drives no current.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -18,31 +19,39 @@
 namespace omnihil {
 
 namespace back_emf_detail {
-// x in turns, 0 <= x < 1; `slope` is 2 pi / r.
+// x in turns, -0.75 < x < 1.25; `slope` is 2 pi / r. Without a branch: sectors come in no order over many
+// motors.
 inline double trapezoid(double x, double slope) {
-  // t / (2 pi): 0 at 0, 1/4 at 1/4, 0 at 1/2, -1/4 at 3/4
-  const double quarter = x < 0.25 ? x : (x < 0.75 ? 0.5 - x : x - 1.0);
-  const double level = quarter * slope;
-  return level > 1.0 ? -1.0 : (level < -1.0 ? 1.0 : -level);
+  // -t / (2 pi) = |z - 1/2| - 1/4, z = x + 1/4 wrapped to 0 .. 1; the inner minimum is that wrapping
+  const double away = std::abs(x - 0.25);
+  const double level = (std::min(away, std::abs(1.0 - away)) - 0.25) * slope;
+  return std::max(-1.0, std::min(1.0, level));
 }
 }  // namespace back_emf_detail
 
-inline std::array<double, 3> back_emf_shape(const BackEmf& e, double theta_elec_rad) {
-  if (e.shape == BackEmfShape::kSine) {
-    const double s = std::sin(theta_elec_rad), c = std::cos(theta_elec_rad);
-    // -sin(x - 120) = sin x / 2 + cos x sqrt(3) / 2
-    const double half_root3_c = 0.5 * std::numbers::sqrt3 * c;
-    return {-s, 0.5 * s + half_root3_c, 0.5 * s - half_root3_c};
-  }
+// 2 pi / r of a trapezoid.
+inline double trapezoid_slope(const BackEmf& e) {
+  return 4.0 * std::numbers::pi / (std::numbers::pi - e.flat_top_rad);
+}
+
+inline std::array<double, 3> sine_shape(double theta_elec_rad) {
+  const double s = std::sin(theta_elec_rad), c = std::cos(theta_elec_rad);
+  // -sin(x - 120) = sin x / 2 + cos x sqrt(3) / 2
+  const double half_root3_c = 0.5 * std::numbers::sqrt3 * c;
+  return {-s, 0.5 * s + half_root3_c, 0.5 * s - half_root3_c};
+}
+
+inline std::array<double, 3> trapezoid_shape(double theta_elec_rad, double slope) {
   const double turns = theta_elec_rad * (0.5 / std::numbers::pi);
   double a = turns - static_cast<double>(static_cast<long long>(turns));
   if (a < 0.0) a += 1.0;
-  double b = a - 1.0 / 3.0, c = a - 2.0 / 3.0;
-  if (b < 0.0) b += 1.0;
-  if (c < 0.0) c += 1.0;
-  const double slope = 4.0 * std::numbers::pi / (std::numbers::pi - e.flat_top_rad);
   using back_emf_detail::trapezoid;
-  return {trapezoid(a, slope), trapezoid(b, slope), trapezoid(c, slope)};
+  return {trapezoid(a, slope), trapezoid(a - 1.0 / 3.0, slope), trapezoid(a - 2.0 / 3.0, slope)};
+}
+
+inline std::array<double, 3> back_emf_shape(const BackEmf& e, double theta_elec_rad) {
+  return e.shape == BackEmfShape::kSine ? sine_shape(theta_elec_rad)
+                                        : trapezoid_shape(theta_elec_rad, trapezoid_slope(e));
 }
 
 }  // namespace omnihil

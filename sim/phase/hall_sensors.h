@@ -16,7 +16,6 @@
 // Cannot: hysteresis of the switches, rise times, a magnet ring of its own with uneven poles.
 #pragma once
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <numbers>
 
@@ -26,7 +25,7 @@ namespace omnihil {
 
 struct HallParams {
   double mounting_error_rad = 0.0;            // electrical, all three: the board is turned
-  std::array<double, 3> sensor_offset_rad{};  // electrical, each
+  std::array<double, 3> sensor_offset_rad{};  // electrical, each; within +-60 degrees
   double glitch_probability = 0.0;            // per sample
 };
 
@@ -37,13 +36,16 @@ struct HallKey {
 };
 
 inline int hall_code(const HallParams& p, double theta_elec_rad) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
+  constexpr double kTurnsPerRad = 0.5 / std::numbers::pi;
+  const double turns = (theta_elec_rad - p.mounting_error_rad) * kTurnsPerRad - 210.0 / 360.0;
+  const double part = turns - static_cast<double>(static_cast<std::int64_t>(turns));
+  const double first = part < 0.0 ? part + 1.0 : part;
   int code = 0;
   for (int x = 0; x < 3; ++x) {
-    const double angle_rad = theta_elec_rad - p.mounting_error_rad -
-                             p.sensor_offset_rad[static_cast<std::size_t>(x)] - x * (kTurn / 3.0);
-    const double turns = angle_rad / kTurn - 210.0 / 360.0;
-    if (turns - std::floor(turns) < 0.5) code |= 1 << x;
+    // between -0.84 and 1.17 turns; in half turns, shifted to be positive: high where the whole part is even
+    const double u =
+        first - p.sensor_offset_rad[static_cast<std::size_t>(x)] * kTurnsPerRad - x * (1.0 / 3.0);
+    code |= (~static_cast<int>(2.0 * u + 4.0) & 1) << x;
   }
   return code;
 }

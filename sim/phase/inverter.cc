@@ -6,21 +6,6 @@
 
 namespace omnihil {
 
-BridgeCommand block_command(int high_phase, int low_phase, double duty_ratio, PwmMode mode) {
-  BridgeCommand c{};
-  LegCommand& high = c[static_cast<std::size_t>(high_phase)];
-  LegCommand& low = c[static_cast<std::size_t>(low_phase)];
-  high = {LegState::kHigh, mode == PwmMode::kComplementary ? LegState::kLow : LegState::kOff, duty_ratio};
-  low = {LegState::kLow, mode == PwmMode::kFastDecay ? LegState::kOff : LegState::kLow, duty_ratio};
-  return c;
-}
-
-BridgeCommand sine_command(const std::array<double, 3>& duty_ratio) {
-  BridgeCommand c{};
-  for (std::size_t x = 0; x < 3; ++x) c[x] = {LegState::kHigh, LegState::kLow, duty_ratio[x]};
-  return c;
-}
-
 std::vector<std::string> problems_of(const Inverter& inverter) {
   std::vector<std::string> problems;
   const double f = inverter.pwm_frequency_Hz;

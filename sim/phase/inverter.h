@@ -22,6 +22,7 @@
 // constant); switching takes no time and costs no energy; a diode beside a conducting switch carries nothing.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -48,9 +49,24 @@ using BridgeCommand = std::array<LegCommand, 3>;
 enum class PwmMode : std::uint8_t { kComplementary, kHighSideChop, kFastDecay };
 
 // Two legs in one of the modes above, the third floating. Phases 0, 1, 2.
-BridgeCommand block_command(int high_phase, int low_phase, double duty_ratio, PwmMode mode);
+inline BridgeCommand block_command(int high_phase, int low_phase, double duty_ratio, PwmMode mode) {
+  BridgeCommand c{};
+  LegCommand& high = c[static_cast<std::size_t>(high_phase)];
+  LegCommand& low = c[static_cast<std::size_t>(low_phase)];
+  high.on = LegState::kHigh;
+  high.off = mode == PwmMode::kComplementary ? LegState::kLow : LegState::kOff;
+  low.on = LegState::kLow;
+  low.off = mode == PwmMode::kFastDecay ? LegState::kOff : LegState::kLow;
+  high.duty_ratio = low.duty_ratio = duty_ratio;
+  return c;
+}
+
 // Three complementary legs, as a FOC drives them.
-BridgeCommand sine_command(const std::array<double, 3>& duty_ratio);
+inline BridgeCommand sine_command(const std::array<double, 3>& duty_ratio) {
+  BridgeCommand c{};
+  for (std::size_t x = 0; x < 3; ++x) c[x] = {LegState::kHigh, LegState::kLow, duty_ratio[x]};
+  return c;
+}
 
 // What a conducting leg is to the circuit: a source behind R_on. volt = bus_share * V_bus - drop.
 struct LegSource {
@@ -69,15 +85,9 @@ struct Leg {
 
 inline Leg leg_of(const Inverter& inverter, LegState state, double bus_V) {
   const double drop_V = inverter.diode_forward_V;
-  switch (state) {
-    case LegState::kHigh:
-      return {{bus_V, 1.0, 0.0}, {bus_V, 1.0, 0.0}, true};
-    case LegState::kLow:
-      return {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, true};
-    case LegState::kOff:
-      break;
-  }
-  return {{-drop_V, 0.0, drop_V}, {bus_V + drop_V, 1.0, -drop_V}, false};
+  if (state == LegState::kOff) return {{-drop_V, 0.0, drop_V}, {bus_V + drop_V, 1.0, -drop_V}, false};
+  const double share = state == LegState::kHigh ? 1.0 : 0.0, volt_V = share * bus_V;
+  return {{volt_V, share, 0.0}, {volt_V, share, 0.0}, true};
 }
 
 // Mean phase voltage that the dead time takes from a complementary leg carrying a positive current well above

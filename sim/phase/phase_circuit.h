@@ -13,7 +13,8 @@
 // With V, K and the speed of mid step held, every current is one exponential of time constant L / (R + R_on)
 // and its mean is linear in that speed; so winding and rotor (implicit midpoint) are solved together, in
 // closed form. Energy closes to rounding; second order in the step, by K and theta alone. Where a diode's
-// current reaches zero the step is parted at that instant (closed form, one refinement).
+// current reaches zero the step is parted at that instant (closed form; the speed of mid step
+// is reckoned again for the shorter part).
 // A diode's start of conduction is looked for at each step's start.
 // Source: Krause et al. (2002), ch. 15; Pillay and Krishnan 1989 for floating phase and star point.
 // Cannot: salient rotors (L is the mean of d and q), saturation, mutual coupling that depends on the angle,
@@ -35,12 +36,23 @@ struct PhaseCircuit {
   double time_constant_s = 0.0;
   double conductance_per_ohm = 0.0;  // 1 / (R + R_on)
   double decay = 0.0;                // exp(-step / time constant)
+  double mean_decay = 0.0;           // (1 - decay) time constant / step
   double pole_pairs = 0.0;
   double back_emf_V_s_per_rad = 0.0;  // p lambda: peak of one phase
   double inertia_kg_m2 = 0.0;
   double viscous_Nm_s_per_rad = 0.0;
-  BackEmf shape;
+  bool sine = true;              // shape of the back-EMF
+  double trapezoid_slope = 0.0;  // of a trapezoid's ramp
 };
+
+// K_x = p lambda f(theta_elec - x), V s/rad.
+inline std::array<double, 3> phase_constants(const PhaseCircuit& c, double theta_rotor_rad) {
+  const double theta_elec_rad = c.pole_pairs * theta_rotor_rad;
+  const double k = c.back_emf_V_s_per_rad;
+  const std::array<double, 3> f =
+      c.sine ? sine_shape(theta_elec_rad) : trapezoid_shape(theta_elec_rad, c.trapezoid_slope);
+  return {k * f[0], k * f[1], k * f[2]};
+}
 
 struct PhaseState {
   std::array<double, 3> current_A{};  // into the motor; they sum to zero

@@ -173,15 +173,15 @@ void expect_agreement(const char* name, const PhaseMotor<double>& m, PwmMode mod
   fs::remove_all(folder);
 }
 
-TEST(Ngspice, TrapezoidComplementaryWithDeadTimeStartUpAndStep) {
+TEST(Ngspice, SlowTrapezoidComplementaryWithDeadTimeStartUpAndStep) {
   expect_agreement("complementary", trapezoid_motor(), PwmMode::kComplementary);
 }
 
-TEST(Ngspice, SineHighSideChopStartUpAndStep) {
+TEST(Ngspice, SlowSineHighSideChopStartUpAndStep) {
   expect_agreement("chop", sine_motor(), PwmMode::kHighSideChop);
 }
 
-TEST(Ngspice, TrapezoidFastDecayStartUpAndStep) {
+TEST(Ngspice, SlowTrapezoidFastDecayStartUpAndStep) {
   expect_agreement("fast_decay", trapezoid_motor(), PwmMode::kFastDecay);
 }
 
