@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "sim/core/model_checks.h"
+#include "sim/core/model_effects.h"
 #include "sim/core/model_reader.h"
 #include "sim/core/model_rows.h"
 
@@ -167,6 +168,8 @@ ModelReading read_model(std::string_view text, const std::string& shown_name,
 
   ParameterTable table = table_of(all);
   if (reading.problems.empty()) report_conflicts(all, table, reading.problems);
+  const ModelDocument* motor_document = motor != nullptr ? &motor->document : nullptr;
+  if (all.rig == kRigRobot) read_robot_effects(main.document, motor_document, nullptr, reading.problems);
   const auto place = [&](const ModelProblem& a) {
     return std::tuple(a.file != shown_name, a.line, a.column);
   };
@@ -175,7 +178,13 @@ ModelReading read_model(std::string_view text, const std::string& shown_name,
   if (!reading.problems.empty()) return reading;
 
   reading.model = model_of(all, std::move(table));
-  for (const ModelEffect& effect : reading.model->effects) {
+  if (reading.model->robot) {
+    RobotModel& robot = *reading.model->robot;
+    auto uses = read_robot_effects(main.document, motor_document, &robot, reading.problems);
+    if (!uses.empty()) robot.effects = std::make_shared<const std::vector<EffectUse>>(std::move(uses));
+  }
+  for (ModelEffect& effect : reading.model->effects) {
+    effect.simulated = effect.simulated || (all.rig == kRigRobot && acts_on_robot(effect.id));
     if (effect.simulated) continue;
     reading.notes.push_back(
         fmt::format("{}: effects.{} is kept but has no influence on the simulation", shown_name, effect.id));

@@ -7,7 +7,8 @@
 //
 // A number is bare (known exactly) or { value = 1.2, tolerance = 0.1, source = "data sheet" }; tolerance is
 // the relative 1-sigma. Keys, units and bounds: model_rows.h. Keys of the robot's file override the motor
-// file's. [effects.NAME] tables are checked by name and kept; of them the base model uses coulomb_friction.
+// file's. [effects.NAME] tables become the robot's effects; coulomb_friction is a number of its base model.
+// An axis reads its effects itself (sim/drive/axis_model.h).
 #pragma once
 #include <functional>
 #include <optional>

@@ -6,8 +6,10 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "firmware_iface/host_firmware.h"
+#include "hil/effect_overrides.h"
 #include "hil/model_store.h"
 #include "hil/recording_header.h"
 #include "hil/session_setup.h"
@@ -33,6 +35,7 @@ struct Words {  // as the user gave them
   bool no_pacing = false;
   std::int64_t baud = 0;
   int sample_every = 10;
+  std::vector<std::string> with;
   SessionSetup setup;
   ServeOptions options;
 };
@@ -46,6 +49,7 @@ std::string understand(Words& words) {
   const StoredModel stored = load_robot_model(words.robot, {OMNIHIL_SOURCE_MODELS});
   for (const ModelProblem& problem : stored.problems) problems.push_back(problem.text());
   setup.model = stored.bundle;
+  if (stored.problems.empty()) add_effects(setup.model, words.with, problems);
   setup.radio_format = words.radio;
   if (setup.radio_format.empty() && stored.model) setup.radio_format = stored.model->radio;
   if (setup.radio_format.empty()) setup.radio_format = kDefaultRadio;
@@ -114,6 +118,9 @@ void add_verb_serve(CLI::App& app, VerbResult& result) {
       "serve", "robots behind a virtual radio dongle that an AI host opens as a serial port");
   Words& w = *words;
   verb->add_option("--robot", w.robot, "robot model: a name or a .toml file")->capture_default_str();
+  verb->add_option("--with", w.with,
+                   "add an effect to every robot: ID.parameter=value, or ID for its typical size; several "
+                   "allowed");
   verb->add_option("--radio", w.radio, "radio format (default: the robot model's own, else ulaval-hermes)");
   verb->add_option("--device", w.options.device, "name of the serial device to make")->capture_default_str();
   verb->add_option("--robots", w.robots, "robot ids: 0-5 or 0,2,7")->capture_default_str();
