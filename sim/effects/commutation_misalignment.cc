@@ -25,19 +25,19 @@ struct CommutationMisalignment {
       .id = "commutation_misalignment",
       .title = "Commutation misalignment",
       .equation =
-          "k_emf -> k cos(d), k_torque -> k (cos(d) + sin(d) q / sqrt(1 + q^2)), q = p L omega |i| / (R |i| "
-          "+ k "
-          "|omega|)",
+          "k_emf -> k cos(d), k_torque -> k (cos(d) + sin(d) q), q = p L omega |i| / (R |i| + k |omega| + p "
+          "L "
+          "|omega i|)",
       .source =
           "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003, ch. 10 (cosine); second term "
           "ours: "
-          "the current lags by atan(q), so commutating early makes up for it",
+          "the current lags its sector by about q, and commutating early makes up for it",
       .cannot =
           "each Hall sensor's own error (a ripple), the current that circulates without load, field "
           "weakening of "
-          "a voltage-driven sinusoidal drive. Against a switched six-step bridge at 0.2 rad: torque within "
-          "1.5 %, "
-          "no-load speed within 2 %. The second term does not keep the energy balance",
+          "a voltage-driven sinusoidal drive. Against the switched six-step drive at 0.2 rad: torque within "
+          "2 % "
+          "of its own change-free value. The second term does not keep the energy balance",
       .place = Place::kWinding,
       .twins = {"motor.torque_constant_Nm_per_A", "friction_asymmetry"},
       .reveals =
@@ -58,16 +58,14 @@ struct CommutationMisalignment {
   template <typename T>
   static void apply(const T* p, T*, WindingPort<T>& port) {
     using std::abs;
-    using std::sqrt;
     const T current = abs(port.current_A), speed = abs(port.omega_rotor_rad_s);
-    const T driving_V = port.resistance_ohm * current + port.back_emf_V_s_per_rad * speed;
-    // Lag of the current within its sector: tan(lag) = p L omega |i| / u
+    // q = p L omega |i| / (R |i| + k |omega| + p L |omega i|): share of the reactive voltage
+    const T reactive_V = double(port.pole_pairs) * port.inductance_H * speed * current;
+    const T all_V = port.resistance_ohm * current + port.back_emf_V_s_per_rad * speed + reactive_V;
     T lag = T(0);
-    if (value_of(driving_V) > 0.0) {
-      lag = double(port.pole_pairs) * port.inductance_H * port.omega_rotor_rad_s * current / driving_V;
-    }
+    if (value_of(all_V) > 0.0) lag = sign_of(port.omega_rotor_rad_s) * reactive_V / all_V;
     const T cosine = cos_of(p[kAngle]);
-    port.torque_constant_Nm_per_A *= cosine + sin_of(p[kAngle]) * lag / sqrt(1.0 + lag * lag);
+    port.torque_constant_Nm_per_A *= cosine + sin_of(p[kAngle]) * lag;
     port.back_emf_V_s_per_rad *= cosine;
   }
 };
