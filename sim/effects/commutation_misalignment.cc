@@ -35,9 +35,8 @@ struct CommutationMisalignment {
       .cannot =
           "each Hall sensor's own error (a ripple), the current that circulates without load, field "
           "weakening of "
-          "a voltage-driven sinusoidal drive. Against the switched six-step drive at 0.2 rad: torque within "
-          "2 % "
-          "of its own change-free value. The second term does not keep the energy balance",
+          "a voltage-driven sinusoidal drive. The ratio of torques with and without it is within 0.02 of the "
+          "switched six-step drive's, up to 0.2 rad. The second term does not keep the energy balance",
       .place = Place::kWinding,
       .twins = {"motor.torque_constant_Nm_per_A", "friction_asymmetry"},
       .reveals =
