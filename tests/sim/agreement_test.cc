@@ -10,7 +10,7 @@
 #include "sim/core/model_file.h"
 #include "sim/robot/chassis.h"
 #include "sim/robot/planar_law.h"
-#include "tests/sim/sample_robot.h"
+#include "tests/effects/robot_bench.h"
 
 namespace omnihil {
 namespace {
@@ -102,6 +102,34 @@ TEST_P(Agreement, PlanarIsSimbodyWithin1e9OverTenSecondsOfHardDriving) {
     EXPECT_GT(largest_slip[n], robots[n].tyre_longitudinal.extremum_slip)
         << robots[n].name << ": no wheel slipped";
   }
+}
+
+// The same with effects in every place a robot has.
+TEST_P(Agreement, PlanarIsSimbodyWithin1e9WithEffectsToo) {
+  const std::vector<std::string> effects{"battery_sag",     "stribeck_friction",
+                                         "cogging",         "torque_ripple",
+                                         "winding_heating", "dead_time",
+                                         "motor_mismatch",  "wheel_slip",
+                                         "roller_ripple",   "rolling_resistance",
+                                         "payload",         "center_of_mass_offset",
+                                         "floor_tilt",      "wheel_radius_mismatch",
+                                         "dribbler_drag",   "lateral_roller_friction"};
+  const std::vector<RobotModel> robots{test::robot_with(sample_robot(), effects), symmetric_robot(),
+                                       test::robot_with(symmetric_robot(), effects)};
+  PlantOptions options = planar_options(kStep_ns, GetParam());
+  Plant planar(robots, options);
+  options.physics = Physics::kSimbody;
+  Plant simbody(robots, options);
+  double worst = 0.0, fastest_m_s = 0.0;
+  for (int ms = 0; ms < 3'000; ms += 10) {
+    drive_all(planar, ms * 1e-3);
+    drive_all(simbody, ms * 1e-3);
+    worst = std::max(worst, largest_difference(planar, simbody));
+    const RobotTruth t = planar.truth(0);
+    fastest_m_s = std::max(fastest_m_s, std::hypot(t.v_forward_m_s, t.v_left_m_s));
+  }
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_GT(fastest_m_s, 1.0) << "the drive was not hard";
 }
 
 // Random but repeatable numbers between -1 and 1.
