@@ -11,7 +11,7 @@
 
 #include "sim/motor/encoder.h"
 #include "sim/robot/validate.h"
-#include "tests/sim/sample_robot.h"
+#include "tests/effects/robot_bench.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -155,6 +155,25 @@ TEST(Plant, ThePlanarPathAllocatesNothingPerStep) {
   for (int n = 0; n < 3; ++n) {
     (void)plant.read(n);
     (void)plant.truth(n);
+  }
+  EXPECT_EQ(allocations.load() - before, 0);
+}
+
+TEST(Plant, ThePlanarPathWithEffectsAllocatesNothingPerStep) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers bring their own allocator";
+#endif
+  Plant plant =
+      test::floor_with(sample_robot(), {"battery_sag", "cogging", "lugre_friction", "winding_heating",
+                                        "actuator_delay", "wheel_slip", "floor_tilt", "sampling_delay",
+                                        "encoder_missed_counts", "vision_delay"});
+  drive_wildly(plant, 0.01);
+  const long before = allocations.load();
+  for (int ms = 0; ms < 200; ++ms) {
+    plant.write(0, wild_drive(0, ms * 1e-3));
+    plant.advance(1'000'000);
+    (void)plant.read(0);
+    (void)plant.vision(0);
   }
   EXPECT_EQ(allocations.load() - before, 0);
 }
