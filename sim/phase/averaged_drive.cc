@@ -79,7 +79,7 @@ void advance_averaged(const AveragedDrive& drive, PhaseState& state, const Bridg
                       const PhaseInput& input, PhaseFlow& flow) {
   const double bus_V = input.bus_voltage_V;
   double chopped = -1.0;  // the duty a chopped pair acts with
-  if (is_chopped(command[0]) | is_chopped(command[1]) | is_chopped(command[2]))
+  if (is_chopped(command[0]) || is_chopped(command[1]) || is_chopped(command[2]))
     chopped = chopped_duty(drive, state, command, bus_V);
   const auto leg = [&](std::size_t x) {
     const LegCommand& c = command[x];

@@ -134,8 +134,8 @@ void extinguish(PhaseState& s, std::size_t x) {
 bool advance_pair(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs, const Three& constant,
                   const PhaseInput& in, const Part& p, PhaseFlow& flow) {
   const Three& i = s.current_A;
-  const bool a = !legs[0].always & (i[0] == 0.0), b = !legs[1].always & (i[1] == 0.0);
-  const bool third = !legs[2].always & (i[2] == 0.0);
+  const bool a = !legs[0].always && i[0] == 0.0, b = !legs[1].always && i[1] == 0.0;
+  const bool third = !legs[2].always && i[2] == 0.0;
   if (a + b + third != 1) return false;
   const std::size_t f = a ? 0 : (b ? 1 : 2), h = a ? 1 : 0, l = third ? 1 : 2;
   const LegSource& from = i[h] < 0.0 ? legs[h].backward : legs[h].forward;
@@ -156,7 +156,7 @@ bool advance_pair(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>
   }
   const double settled_A = (drive_V - emf * omega_mid) * c.conductance_per_ohm, d = current_A - settled_A;
   const double end_A = settled_A + d * p.decay;
-  if (!(legs[h].always & legs[l].always) && end_A * current_A < 0.0) return false;
+  if (!(legs[h].always && legs[l].always) && end_A * current_A < 0.0) return false;
   const double mean_A = settled_A + d * p.mean_decay, charge_C = mean_A * p.h_s;
   const double ring_s = p.mean_decay * p.h_s, impulse_Nm_s = 2.0 * emf * charge_C;
   const double bus_C = (from.bus_share - to.bus_share) * charge_C;

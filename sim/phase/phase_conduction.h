@@ -95,7 +95,7 @@ inline Conduction conduction_of(const Three& current_A, const std::array<Leg, 3>
   c.count = 0;
   each_phase([&](auto x) {
     const double i = current_A[x];
-    const bool conducts = legs[x].always | (i != 0.0);
+    const bool conducts = legs[x].always || i != 0.0;
     c.source[x] = i < 0.0 ? &legs[x].backward : &legs[x].forward;
     c.on[x] = static_cast<double>(conducts);
     c.volt_V[x] = c.on[x] * c.source[x]->volt_V;
