@@ -6,6 +6,7 @@ import math
 import statistics
 import struct
 import sys
+import time
 
 import serial
 
@@ -82,8 +83,10 @@ def robot_command(robot, message_id, rho_m_s, theta_rad, omega_rad_s):
 
 def read_packet(port):
     """A robot's next packet: its type code and its bits. Packets follow each other without any framing."""
+    end_s = time.monotonic() + DEADLINE_S
     head = port.read(11)
     while len(head) == 11 and head[0] == LOG:
+        assert time.monotonic() < end_s, "the base station talks, the robot does not"
         port.read(head[10] - 11)
         head = port.read(11)
     assert len(head) == 11, f"no packet within {port.timeout} s (got {head.hex()})"
