@@ -108,7 +108,9 @@ def goes_on_when_the_client_stops_reading():
         commands = [rem_client.robot_command(robot, 0, 0.1, 0.0, 0.0) for robot in range(6)]
         keep_writing(bench, fd, b"".join(commands))
         report = bench.finish()
-        assert report.code == 0 and report.steps == 3500 and report.refused == 0, report.text
+        # A flooding client that is descheduled in the middle of a packet for longer than the dongle waits for the
+        # rest loses that packet, so refused ones may occur; none of them is acted on.
+        assert report.code == 0 and report.steps == 3500 and report.good > 1000, report.text
         assert report.number(r"host not reading (\d+) answers") > 100, report.text
 
 

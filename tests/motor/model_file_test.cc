@@ -104,9 +104,12 @@ TEST(ModelFile, DefaultsAreSaidToBeDefaults) {
 }
 
 TEST(ModelFile, EffectsThatAreNotSimulatedAreKeptAndSaid) {
-  const ModelReading read = read_model(kRobot, "r.toml", motor_text);
+  EXPECT_TRUE(read_model(kRobot, "r.toml", motor_text).notes.empty());  // cogging acts in a robot
+  const std::string with_play = std::string(kRobot) + "[effects.backlash]\ngap_rad = 0.003\n";
+  const ModelReading read = read_model(with_play, "r.toml", motor_text);
+  ASSERT_TRUE(read.model.has_value());
   ASSERT_EQ(read.notes.size(), 1u);
-  EXPECT_NE(read.notes[0].find("effects.cogging"), std::string::npos);
+  EXPECT_NE(read.notes[0].find("effects.backlash"), std::string::npos);
 }
 
 TEST(ModelFile, NumbersCanBeSetByPathWithinTheirBounds) {
