@@ -7,10 +7,10 @@
 // Law: tau = (x -+ gap / 2) / c + d x' in contact, 0 in the play; x = theta_rotor / N - theta_out.
 //   implicit midpoint: mean tau = K (x + h mean x' / 2 - side) + D mean x',  A = K h / 2 + D
 //   output: mean w_out = w_out + h / (2 J_out) (mean tau + tau_outside), put into the line above
-// Source: Nordin, Gutman, Automatica 38(10), 2002 (dead zone model; no pulling contact). Second order, and
-// energy kept to rounding where there is no damping.
-// A stiff shaft cannot be resolved: to c is added h^2 / (4 J), J both masses in parallel (5e-5 s and 6e-6 kg
-// m2: 1e-4 rad/(N m)), and where that dominates damping makes contact without bounce.
+// Source: Nordin, Gutman, Automatica 38(10), 2002 (dead zone model; no pulling contact). Second order;
+// without damping energy is kept, the share below aside. A stiff shaft cannot be resolved: to c is added h^2
+// / (4 J), J both masses in parallel (5e-5 s and 6e-6 kg m2: 1e-4 rad/(N m)), and where that dominates
+// damping makes contact without bounce.
 #pragma once
 #include "sim/core/effect_ports.h"
 #include "sim/core/scalar.h"
@@ -40,13 +40,13 @@ ShaftStep<T> make_shaft_step(const ShaftPort<T>& port, const ShaftOutput<T>& out
   const double side = sign_of(x_mid);
   const bool play = value_of(half) > 0.0;
   if (play && side * value_of(x_mid) <= value_of(half)) return {};
-  // K = 1 / (c + h^2 / (4 J)), D = d + (4 J / h) (its share)^2
+  // K = 1 / (c + h^2 / (4 J)), D = d + (4 J / h) (its share)^4
   const T inertia =
       out.rotor_inertia_kg_m2 * out.inertia_kg_m2 / (out.rotor_inertia_kg_m2 + out.inertia_kg_m2);
   const T least = h_s * h_s / (4.0 * inertia);
   const T stiffness = 1.0 / (port.compliance_rad_per_Nm + least);
   const T share = least * stiffness;
-  const T damping = port.damping_Nm_s_per_rad + 4.0 * inertia / h_s * share * share;
+  const T damping = port.damping_Nm_s_per_rad + 4.0 * inertia / h_s * (share * share) * (share * share);
   const T pressed = stiffness * (x_mid - side * half) + damping * port.twist_rate_rad_s;
   if (play && side * value_of(pressed) <= 0.0) return {};  // flanks do not pull
   // mean tau = B + A (mean omega_rotor / N - mean w_out)

@@ -9,7 +9,7 @@ struct ShaftCompliance {
   static constexpr EffectParam kParams[] = {
       {.name = "compliance_rad_per_Nm",
        .unit = "rad/(N m)",
-       .typical = 0.2,  // first mode of some 60 Hz with a load of 2e-5 kg m2 (estimate: 20 to 200 Hz)
+       .typical = 0.2,  // first mode of 140 Hz with 9e-6 and 2e-5 kg m2 (estimate: 20 to 200 Hz)
        .lower = 0,
        .upper = 100,
        .prior_scale = 0.5,
@@ -19,7 +19,7 @@ struct ShaftCompliance {
        .unit = "N m s/rad",
        .role = ParamRole::kShape,
        .neutral = kNoNeutral,
-       .typical = 0.0005,  // five per cent of critical with the above: guess, a factor of 3 either way
+       .typical = 0.0005,  // 4 % of critical with the above: guess, a factor of 3 either way
        .lower = 0,
        .upper = 100,
        .prior_scale = 0.001,
