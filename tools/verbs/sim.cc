@@ -11,6 +11,7 @@
 #include "tools/axis_bench.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
+#include "tools/robot_bench.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -18,6 +19,7 @@ namespace {
 
 struct Arguments {
   BenchOptions bench;
+  std::string rig = "axis";
   std::string out;
 };
 
@@ -38,7 +40,24 @@ bool diverged(const AxisBench& bench) {
   return false;
 }
 
+int run_robot(const Arguments& arguments) {
+  std::vector<std::string> faults;
+  const std::optional<RobotBench> bench = make_robot_bench(arguments.bench, faults);
+  for (const std::string& fault : faults) std::fprintf(stderr, "omnihil sim: %s\n", fault.c_str());
+  if (!bench) return kExitBadInput;
+  if (!bench->diverged.empty()) {
+    std::fprintf(stderr, "omnihil sim: %s\n", bench->diverged.c_str());
+    return kExitDiverged;
+  }
+  NewFolder folder(arguments.out);
+  for (const DatasetFile& file : bench->files) folder.write(file.name, file.text);
+  folder.finish();
+  std::printf("%s: %zu runs, %zu rows\n", arguments.out.c_str(), bench->runs, bench->rows);
+  return kExitOk;
+}
+
 int run(const Arguments& arguments) {
+  if (arguments.rig == "robot") return run_robot(arguments);
   std::vector<std::string> faults;
   const std::optional<AxisBench> bench = make_bench(arguments.bench, faults);
   for (const std::string& fault : faults) std::fprintf(stderr, "omnihil sim: %s\n", fault.c_str());
@@ -69,6 +88,9 @@ void add_verb_sim(CLI::App& app, VerbResult& result) {
           "--excite", a->bench.excitations,
           "steps, ramp, chirp, prbs, creep, or a CSV file of time and command; several give several runs")
       ->required();
+  verb->add_option("--rig", a->rig, "axis: one drive; robot: the whole robot on the floor")
+      ->check(CLI::IsMember({"axis", "robot"}))
+      ->capture_default_str();
   verb->add_option("--out", a->out, "new folder of the dataset")->required();
   verb->add_option("--with", a->bench.with,
                    "add an effect: ID.parameter=value, or ID for its typical size; several allowed");

@@ -1,0 +1,57 @@
+// `omnihil sim ROBOT --rig robot` and `--with` for robots, through the program.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/tools/cli.h"
+
+namespace omnihil {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class SimRobotVerb : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    fs::remove_all(out_);
+  }
+  void TearDown() override { fs::remove_all(out_); }
+  fs::path out_ = fs::temp_directory_path() / ("omnihil_sim_robot_" + std::to_string(::getpid()));
+};
+
+TEST_F(SimRobotVerb, WritesADatasetOfTheRigRobotThatIsTheSameEveryTime) {
+  const std::string how = "sim omni_default --rig robot --excite steps --duration 1 --with floor_tilt --out ";
+  const Ran ran = run_omnihil(how + shell(out_ / "a"));
+  ASSERT_EQ(ran.exit_code, 0) << ran.text;
+  ASSERT_EQ(run_omnihil(how + shell(out_ / "b")).exit_code, 0);
+  for (const char* file : {"dataset.toml", "model.toml", "steps.csv", "steps_holdout.csv"}) {
+    EXPECT_FALSE(text_of(out_ / "a" / file).empty()) << file;
+    EXPECT_EQ(text_of(out_ / "a" / file), text_of(out_ / "b" / file)) << file;
+  }
+  EXPECT_NE(text_of(out_ / "a" / "dataset.toml").find("rig = \"robot\""), std::string::npos);
+  // the model is the nominal one: what was added is for the data to show
+  EXPECT_EQ(text_of(out_ / "a" / "model.toml").find("floor_tilt"), std::string::npos);
+}
+
+TEST_F(SimRobotVerb, NamesEveryFaultAtOnce) {
+  const Ran ran = run_omnihil(
+      "sim omni_default --rig robot --excite wobble --rate 333 --with floor_tlt --with backlash --out " +
+      shell(out_));
+  EXPECT_EQ(ran.exit_code, 2);
+  for (const char* word : {"wobble", "--rate", "did you mean \"floor_tilt\"", "backlash"}) {
+    EXPECT_TRUE(ran.says(word)) << word << " in " << ran.text;
+  }
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+}  // namespace
+}  // namespace omnihil
