@@ -88,8 +88,7 @@ struct SensorSet {
 
 // Which picture shows the effect best: y over x of a simulated axis, with the effect and without.
 struct EffectPlot {
-  // sim/drive/excitation.h; "turn": the bench turns the shaft once; "locked": it holds it while the duty
-  // creeps
+  // sim/drive/excitation.h; or "turn", "locked", "stall", "servo" (sim/drive/effect_picture.cc)
   std::string_view excitation = "steps";
   std::string_view x = "time";  // signals of AxisSample
   std::string_view y = "velocity";

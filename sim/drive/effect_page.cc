@@ -86,7 +86,8 @@ DriveParams<double> demonstration_drive() {
   p.load_inertia_kg_m2 = 2e-5;
   p.supply_voltage_V = 12.0;
   p.pole_pairs = 8;
-  p.slots = 12;  // guess: a common choice with 16 poles
+  p.servo_kp_duty_per_rad = 2.0;  // a choice: some 0.1 s to settle
+  p.slots = 12;                   // guess: a common choice with 16 poles
   return p;
 }
 

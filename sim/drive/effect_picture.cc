@@ -18,32 +18,37 @@ namespace {
 
 constexpr double kWidth = 640, kHeight = 320, kLeft = 70, kRight = 15, kTop = 30, kBottom = 45;  // pixels
 constexpr double kRate_Hz = 1000.0;
-constexpr double kAmplitude = 0.8;  // duty
+constexpr double kStallDuty = 0.5;  // 5 A and 30 W in the demonstration drive
 constexpr std::size_t kMostPoints = 500;
 
 struct Curve {
   std::vector<double> x, y;
 };
 
-// "turn": the bench turns the shaft once over the time shown, no current; otherwise an excitation of the
-// duty.
+// "turn": the bench turns the shaft once over the time shown, no current. "locked": the bench holds the
+// shaft, the duty creeps. "stall": it holds it at a constant duty. "servo": steps of a position target.
+// Otherwise an excitation of the duty, the shaft free.
 AxisInput record_for(const EffectPlot& plot) {
   AxisInput in;
+  in.noise_seed = 1;  // for effects that draw numbers
+  const bool turn = plot.excitation == "turn", locked = plot.excitation == "locked",
+             stall = plot.excitation == "stall";
+  const bool servo = plot.excitation == "servo";
+  const auto named = find_excitation(plot.excitation);
+  assert(named || turn || locked || stall || servo);
+  const Excitation kind = locked ? Excitation::kCreep : named.value_or(Excitation::kSteps);
+  const double scale = turn ? 0.0 : (stall ? kStallDuty : 1.0);
   const auto count = static_cast<std::size_t>(plot.to_s * kRate_Hz) + 1;
-  const bool locked = plot.excitation == "locked";
-  const auto kind = locked ? Excitation::kCreep : find_excitation(plot.excitation);
-  assert(kind || plot.excitation == "turn");
   const double length_s = std::max(plot.to_s, 1.0);
   for (std::size_t n = 0; n < count; ++n) {
     const double t = static_cast<double>(n) / kRate_Hz;
     in.time_s.push_back(t);
-    const double scale = kind == Excitation::kCreep ? 1.0 : kAmplitude;
-    in.command.push_back(kind ? scale * excitation_at(*kind, t, {.duration_s = length_s}) : 0.0);
+    in.command.push_back(scale * (stall ? 1.0 : excitation_at(kind, t, {.duration_s = length_s})));
   }
-  if (locked) in.imposed_velocity_rad_s.assign(count, 0.0);
-  if (!kind) {
-    in.kind = CommandKind::kMotorCurrent;
-    in.imposed_velocity_rad_s.assign(count, 2.0 * std::numbers::pi / (plot.to_s - plot.from_s));
+  if (turn) in.kind = CommandKind::kMotorCurrent;
+  if (servo) in.kind = CommandKind::kPositionTarget;
+  if (turn || locked || stall) {
+    in.imposed_velocity_rad_s.assign(count, turn ? 2.0 * std::numbers::pi / (plot.to_s - plot.from_s) : 0.0);
   }
   return in;
 }

@@ -45,7 +45,7 @@ struct TargetSpeedLimit {
       .claims = kOdd,
       .params = kParams,
       .states = kStates,
-      .plot = {.excitation = "steps", .x = "time", .y = "position", .from_s = 0.0, .to_s = 2.0},
+      .plot = {.excitation = "servo", .x = "time", .y = "position", .from_s = 0.0, .to_s = 2.0},
   };
 
   template <typename T>

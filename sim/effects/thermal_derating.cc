@@ -54,7 +54,7 @@ struct ThermalDerating {
       .claims = kOdd,
       .params = kParams,
       .needs = "winding_heating",
-      .plot = {.excitation = "steps", .x = "time", .y = "motor_current", .from_s = 0.0, .to_s = 20.0},
+      .plot = {.excitation = "stall", .x = "time", .y = "motor_current", .from_s = 0.0, .to_s = 20.0},
   };
 
   template <typename T>

@@ -163,7 +163,7 @@ std::vector<Changed<T>> changes(const BodyPort<T>& p) {
 
 template <typename T>
 void fill(SensorPort<T>& p, const Draw& draw, double sign, CommandHistory&) {
-  p.theta_rotor_rad = p.encoder_angle_rad = T(draw(-100, 100));
+  p.theta_rotor_rad = p.encoder_angle_rad = T(draw(-3, 3));
   p.omega_rotor_rad_s = p.measured_speed_rad_s = T(sign * draw(-300, 300));
   p.travel_rad = T(draw(0, 0.3));
   p.counts_per_turn = T(4096);
