@@ -4,12 +4,12 @@
 namespace omnihil {
 
 enum ExitCode : int {
-  kExitOk = 0,         // did what was asked; for check and compare: agrees
-  kExitDiffers = 1,    // check, compare: differs, the first difference is named
-  kExitBadInput = 2,   // unusable arguments, model, recording or packet; nothing was written
-  kExitIo = 3,         // a device or file could not be opened, read or written
-  kExitDiverged = 4,   // the simulated state stopped being finite, or a fault inside the program
-  kExitLate = 5,       // real time was asked for with --strict and the host could not keep up
+  kExitOk = 0,             // did what was asked; for check and compare: agrees
+  kExitDiffers = 1,        // check, compare: differs, the first difference is named
+  kExitBadInput = 2,       // unusable arguments, model, recording or packet; nothing was written
+  kExitIo = 3,             // a device or file could not be opened, read or written
+  kExitDiverged = 4,       // the simulated state stopped being finite, or a fault inside the program
+  kExitLate = 5,           // real time was asked for with --strict and the host could not keep up
   kExitInterrupted = 130,  // Ctrl-C where it ends the work early; serve ends with 0
 };
 

@@ -19,9 +19,9 @@ struct MotorParams {
 };
 
 struct EncoderParams {
-  int counts_per_turn = 0;     // after quadrature, per rotor turn
-  int direction = 1;           // +1 or -1: sign of counts for positive rotation
-  int index_offset_counts = 0; // position of the index pulse within a turn
+  int counts_per_turn = 0;      // after quadrature, per rotor turn
+  int direction = 1;            // +1 or -1: sign of counts for positive rotation
+  int index_offset_counts = 0;  // position of the index pulse within a turn
 };
 
 }  // namespace omnihil
