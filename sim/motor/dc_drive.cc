@@ -158,6 +158,15 @@ bool stays_at_limit(const Held& held, const DcFlow& flow, double voltage_V, doub
          std::abs(start_V) <= held.bus_V && std::abs(end_V) <= held.bus_V;
 }
 
+// True when the bridge is off, no current flows and none begins within the call.
+bool stays_without_current(const Held& held, const DcFlow& flow, double time_s) {
+  const auto& c = held.drive.constants;
+  const double end_rad_s = flow.omega_rad_s - held.tau_load_Nm / c.inertia_kg_m2 * time_s;
+  // the speed changes evenly: both ends decide
+  return flow.current_A == 0.0 && std::abs(c.torque_constant_Nm_per_A * flow.omega_rad_s) <= held.bus_V &&
+         std::abs(c.torque_constant_Nm_per_A * end_rad_s) <= held.bus_V;
+}
+
 }  // namespace
 
 DcDrive make_dc_drive(const MotorParams& motor, double extra_inertia_rotor_side_kg_m2, double step_s) {
@@ -208,6 +217,8 @@ DcDriveResult advance_drive(const DcDrive& drive, DcDriveState& state, const DcD
     } else {
       for (int n = 0; n < substeps; ++n) flow = after_limited(held, flow, voltage_V);
     }
+  } else if (stays_without_current(held, flow, time_s)) {
+    flow = after_hold(held, flow, time_s);
   } else {
     for (int n = 0; n < substeps; ++n) flow = after_coasting(held, flow);
   }
