@@ -9,9 +9,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <vector>
 
+#include "bench/cpu_time.h"
 #include "sim/core/effect_registry.h"
 #include "sim/drive/drive_sim.h"
 #include "sim/motor/dc_drive.h"
@@ -22,12 +22,6 @@ namespace {
 constexpr int kMotors = 48;
 constexpr int kSubsteps = 20;
 constexpr double kStep_s = 50e-6;
-
-double thread_cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // Maxon EC 45 flat 30 W, data sheet 200142, with a load of twice its rotor's inertia.
 DriveParams<double> drive() {

@@ -9,21 +9,15 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <vector>
 
+#include "bench/cpu_time.h"
 #include "firmware_iface/host_firmware.h"
 #include "hil/session_setup.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
 namespace {
-
-double thread_cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // What an AI host would write at this millisecond.
 void host_writes(long ms, const std::vector<int>& robots, std::vector<std::uint8_t>& bytes) {

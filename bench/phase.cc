@@ -10,10 +10,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <numbers>
 #include <vector>
 
+#include "bench/cpu_time.h"
 #include "sim/phase/averaged_drive.h"
 #include "sim/phase/dq_motor.h"
 #include "sim/phase/hall_sensors.h"
@@ -23,12 +23,6 @@ namespace omnihil {
 namespace {
 
 constexpr int kMotors = 48;
-
-double thread_cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 PhaseMotor<double> motor(BackEmfShape shape) {
   MotorParams sheet;

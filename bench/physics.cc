@@ -10,12 +10,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include "bench/cpu_time.h"
 #include "sim/core/model_file.h"
 #include "sim/robot/plant.h"
 
@@ -48,12 +48,6 @@ constexpr Setting kSettings[] = {
     {"Simbody free, RK4, 0.5 ms", Physics::kSimbodyFree, kRk4, 500'000},
     {"Simbody free, RK4, 0.25 ms", Physics::kSimbodyFree, kRk4, 250'000},
 };
-
-double thread_cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 std::string text_of(const std::string& file) {
   std::ifstream in(file);
