@@ -2,6 +2,9 @@
 
 #include <numbers>
 #include <type_traits>
+#include <vector>
+
+#include "sim/core/effect_registry.h"
 
 namespace omnihil {
 namespace {
@@ -180,52 +183,6 @@ constexpr ParameterRow kRows[] = {
      "friction force that holds still below it", "smallest force that moves the axis"},
 };
 
-constexpr std::string_view kEffects[] = {"back_emf_missing",
-                                         "coulomb_friction",
-                                         "stribeck_friction",
-                                         "lugre_friction",
-                                         "friction_asymmetry",
-                                         "load_dependent_friction",
-                                         "gear_efficiency",
-                                         "quadratic_drag",
-                                         "cogging",
-                                         "torque_ripple",
-                                         "winding_heating",
-                                         "magnet_weakening",
-                                         "saturation",
-                                         "dead_time",
-                                         "pwm_dead_band",
-                                         "battery_sag",
-                                         "current_limit",
-                                         "duty_limit",
-                                         "target_speed_limit",
-                                         "actuator_delay",
-                                         "winding_inductance",
-                                         "backlash",
-                                         "shaft_compliance",
-                                         "encoder_eccentricity",
-                                         "encoder_missed_counts",
-                                         "sampling_delay",
-                                         "sample_jitter",
-                                         "hall_speed_estimator",
-                                         "commutation_misalignment",
-                                         "gravity_load",
-                                         "imbalance",
-                                         "constant_load",
-                                         "thermal_derating",
-                                         "wheel_slip",
-                                         "lateral_roller_friction",
-                                         "roller_ripple",
-                                         "rolling_resistance",
-                                         "center_of_mass_offset",
-                                         "payload",
-                                         "floor_tilt",
-                                         "wheel_radius_mismatch",
-                                         "motor_mismatch",
-                                         "dribbler_drag",
-                                         "vision_delay",
-                                         "expression"};
-
 }  // namespace
 
 std::span<const ParameterRow> model_rows() { return kRows; }
@@ -249,7 +206,14 @@ bool is_model_section(std::string_view section) {
   return false;
 }
 
-std::span<const std::string_view> effect_names() { return kEffects; }
+std::span<const std::string_view> effect_names() {
+  static const std::vector<std::string_view> kNames = [] {
+    std::vector<std::string_view> names;
+    for (const EffectEntry* entry : all_effects()) names.push_back(entry->info->id);
+    return names;
+  }();
+  return kNames;
+}
 
 std::string rig_names(std::uint32_t rigs) {
   std::string names;
