@@ -1,0 +1,41 @@
+// Reads a measurement folder (format "omnihil-dataset/1") and its nominal model, whole, or says all that is
+// wrong with it.
+//
+//   DatasetReading r = read_dataset("bench/wheel3");            // a folder or its dataset.toml
+//   for (const ModelProblem& p : r.problems) std::cerr << p.text() << "\n";
+//   if (r.dataset) diagnose(*r.dataset, *r.nominal, {});
+//
+// Refused with file, line, column (of a CSV: row and name of the column), what was found and what is allowed:
+// an unknown channel, unit or key, time going backwards, a cell that is no number, a file without rows, no
+// fit run, no drive input, no motion signal. Nothing is dropped silently: what is left out is counted in
+// Dataset::notes. No file of a run can lie outside its folder's tree unless the path says so.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/core/model_file.h"
+#include "sim/identify/candidate.h"
+#include "sim/identify/dataset.h"
+
+namespace omnihil {
+
+struct DatasetReading {
+  std::optional<Dataset> dataset;  // both or none
+  std::optional<Candidate> nominal;
+  std::string model_text;  // of the nominal model, as read
+  std::vector<ModelProblem> problems;
+};
+
+// `model`: path of another model to take in place of the dataset's own; empty: its own.
+DatasetReading read_dataset(const std::string& path, const std::string& model = "");
+
+// A model for a dataset, alone.
+struct CandidateReading {
+  std::optional<Candidate> candidate;
+  std::string text;
+  std::vector<ModelProblem> problems;
+};
+CandidateReading read_candidate(const std::string& model_path);
+
+}  // namespace omnihil

@@ -1,0 +1,88 @@
+// What a model says the sensors would have shown: the model run on the measured inputs, through the same
+// sensor chain as the measurement (counts, means over a period, filters, delays), signal by signal.
+//
+//   std::unique_ptr<Predictor> p = make_predictor(dataset, nominal, {});
+//   Prediction y = p->predict(candidate, run);                           // y.values[s][i]
+//   Prediction d = p->predict_with_derivatives(candidate, unknowns, run); // and d.derivatives[s](i, u)
+//   residual = p->compared(run)[s].measured[i] - y.values[s][i];
+//
+// How an axis is run (Method), chosen per dataset by what it gives, the same for measurement, model and null:
+//   kForward  free run from the first measured state: drives by duty, voltage or position target. Laws that
+//             depend on the angle are given the measured angle, so that a small error of speed does not turn
+//             into a wrong phase of cogging ("slaved angle"; not with a servo, whose loop holds the angle).
+//   kInverse  the measured, low-pass filtered motion is imposed and the drive input that it takes is compared
+//             with the one that was given, filtered alike: drives by torque or current, benches that impose
+//             the speed, and runs of kind "steady".
+// A rig "robot" is run forward in a body that follows the measured pose slowly enough not to hide an error.
+// Pure functions of their arguments: predictions may run on several threads at once.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/identify/candidate.h"
+#include "sim/identify/dataset.h"
+
+namespace omnihil {
+
+enum class Method : std::uint8_t { kForward, kInverse };
+
+// One signal of one run, measured: what a prediction is held against.
+struct ComparedSignal {
+  std::string name;  // "velocity"; "motor_torque" where the method is inverse
+  std::string unit;
+  std::vector<double> time_s;
+  std::vector<double> measured;  // NaN: not measured, or left out (said in `left_out`)
+  double noise_sigma = 0.0;      // per sample, after the chain's own filters: stated, or estimated
+  bool noise_is_stated = false;
+  double quantum = 0.0;  // of a counting sensor, in the signal's unit; 0: none
+  std::string left_out;  // how many samples were left out and why; empty: none
+};
+
+// What the motion was like at each compared sample: the axes on which errors are sorted into regimes.
+// Measured where it was measured, else the model's. NaN where neither is known.
+struct RegimeTrack {
+  std::string
+      name;  // "speed", "abs_current", "rotor_angle", "output_angle", "acceleration", "time",
+             // "direction", "time_since_step", "temperature", "bus_voltage", "position", "command_age"
+  std::string unit;
+  std::vector<double> value;  // on the clock of the compared signals of the run
+};
+
+struct Prediction {
+  std::vector<std::vector<double>> values;   // [signal][sample]
+  std::vector<Eigen::MatrixXd> derivatives;  // [signal](sample, unknown); empty unless asked for
+  bool finite = true;                        // false: the run diverged; values after that are NaN
+};
+
+struct PredictOptions {
+  double step_s = 100e-6;  // electrical sub-step, at most
+  bool slave_angle = true;
+};
+
+class Predictor {
+ public:
+  virtual ~Predictor() = default;
+  virtual Method method() const = 0;
+  virtual int run_count() const = 0;
+  virtual const Run& run(int run) const = 0;
+  virtual const std::vector<ComparedSignal>& compared(int run) const = 0;
+  // All signals of a run share one clock: compared(run)[s].time_s are equal.
+  virtual std::vector<RegimeTrack> regimes(const Candidate& candidate, int run) const = 0;
+  virtual Prediction predict(const Candidate& candidate, int run) const = 0;
+  virtual Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                              int run) const = 0;
+  // A predictor of the same dataset whose measurement is what `truth` would have given: the null. Noise of
+  // the compared signals' size, through the same sensors, drawn from `seed`.
+  virtual std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const = 0;
+  // Can this effect act on this rig and drive input at all; "" or why not ("needs a measured current").
+  virtual std::string applies(const EffectEntry& entry) const = 0;
+};
+
+std::unique_ptr<Predictor> make_predictor(const Dataset& dataset, const Candidate& nominal,
+                                          const PredictOptions& options);
+
+}  // namespace omnihil
