@@ -7,6 +7,7 @@
 
 #include "hil/dataset_model.h"
 #include "hil/recording_text.h"
+#include "sim/core/model_writer.h"
 
 namespace omnihil {
 namespace {

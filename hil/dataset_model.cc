@@ -3,7 +3,8 @@
 #include <array>
 #include <string_view>
 
-#include "hil/recording_text.h"
+#include "sim/core/effect_reader.h"
+#include "sim/core/model_writer.h"
 
 namespace omnihil {
 namespace {
@@ -34,44 +35,7 @@ constexpr std::array kKeys{
     Key{"effects.coulomb_friction", "torque_Nm"},
 };
 
-std::string values_text(const Parameter& parameter) {
-  std::string text;
-  for (const double value : parameter.values) {
-    if (!text.empty()) text += ", ";
-    append_number(text, value);
-  }
-  return parameter.values.size() == 1 ? text : "[" + text + "]";
-}
-
-std::string line(std::string_view key, const Parameter& parameter) {
-  std::string text = std::string(key) + " = ";
-  if (!parameter.tolerance && parameter.source.empty()) return text + values_text(parameter) + "\n";
-  text += "{ value = " + values_text(parameter);
-  if (parameter.tolerance) {
-    text += ", tolerance = ";
-    append_number(text, *parameter.tolerance);
-  }
-  if (!parameter.source.empty()) text += ", source = " + toml_text(parameter.source);
-  return text + " }\n";
-}
-
 }  // namespace
-
-std::string toml_text(const std::string& text) {
-  constexpr std::string_view kHex = "0123456789abcdef";
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += std::string("\\") + c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      out += std::string("\\u00") + kHex[static_cast<unsigned char>(c) >> 4] +
-             kHex[static_cast<unsigned char>(c) & 15];
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
-}
 
 std::string dataset_model_text(const ModelFile& model) {
   std::string text = "format = \"omnihil-model/1\"\nrig = \"robot\"\n";
@@ -85,9 +49,10 @@ std::string dataset_model_text(const ModelFile& model) {
     if (is_count && parameter->value() == 0.0) continue;  // 0 poles, slots or rollers: not known
     if (key.section != section) text += "\n[" + std::string(key.section) + "]\n";
     section = key.section;
-    text += line(key.key, *parameter);
+    text += parameter_line(key.key, *parameter);
   }
-  return text;
+  const bool more = model.robot && model.robot->effects != nullptr;
+  return more ? text + write_effects(*model.robot->effects, false) : text;
 }
 
 }  // namespace omnihil

@@ -3,8 +3,8 @@
 //
 //   std::string text = dataset_model_text(*read_bundle(bundle).model);
 //
-// Only the keys that the dataset format names are written: tyres, encoder and firmware stay out (the
-// encoder's resolution is in dataset.toml).
+// Only the keys that the dataset format names are written, and the model's effects: tyres, encoder and
+// firmware stay out (the encoder's resolution is in dataset.toml).
 #pragma once
 #include <string>
 
@@ -13,8 +13,5 @@
 namespace omnihil {
 
 std::string dataset_model_text(const ModelFile& model);
-
-// A TOML basic string with its quotes.
-std::string toml_text(const std::string& text);
 
 }  // namespace omnihil

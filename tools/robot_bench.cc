@@ -11,7 +11,7 @@
 #include "hil/dataset_model.h"
 #include "hil/effect_overrides.h"
 #include "hil/recording_text.h"
-#include "sim/core/effect_reader.h"
+#include "sim/core/model_writer.h"
 #include "sim/core/random.h"
 #include "sim/drive/excitation.h"
 #include "sim/drive/sensor_chain.h"
@@ -252,10 +252,8 @@ std::optional<RobotBench> make_robot_bench(const BenchOptions& options, std::vec
   const std::vector<Run> runs = runs_of(options, robot, faults);
   if (!faults.empty()) return std::nullopt;
   RobotBench bench;
-  std::string model_text = dataset_model_text(*stored.model);
-  if (stored.model->robot->effects != nullptr)
-    model_text += write_effects(*stored.model->robot->effects, false);
-  bench.files = {{"dataset.toml", dataset_text(options, robot, runs)}, {"model.toml", model_text}};
+  bench.files = {{"dataset.toml", dataset_text(options, robot, runs)},
+                 {"model.toml", dataset_model_text(*stored.model)}};
   for (const Run& run : runs) {
     bench.files.push_back({run.name + ".csv", run_csv(options, robot, run, bench.diverged)});
     bench.rows += run.duty.size();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/core/effect_reader.h"
+#include "sim/core/model_writer.h"
 #include "sim/drive/axis_signal.h"
 #include "sim/drive/sensor_chain.h"
 
@@ -18,22 +19,13 @@ std::string channel(std::string_view signal, std::string_view column, double sig
                      : fmt::format("{} = {{ column = \"{}\" }}\n", signal, column);
 }
 
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out + "\"";
-}
-
 }  // namespace
 
 std::string dataset_text(const AxisBench& bench) {
   const CommandKind kind = bench.runs.front().input.kind;
   std::string out = fmt::format(
       "format = \"omnihil-dataset/1\"\ntitle = {}\nrig = \"axis\"\nmodel = \"model.toml\"\n\n[channels]\n",
-      quoted(bench.title));
+      toml_text(bench.title));
   out += channel("time", "time_s", 0.0);
   out += channel(command_name(kind), command_name(kind), 0.0);
   if (bench.model.has_electrics) {
@@ -50,8 +42,8 @@ std::string dataset_text(const AxisBench& bench) {
   }
   if (bench.has_temperature) out += channel("winding_temperature", "winding_degC", bench.noise.winding_K);
   for (const AxisBenchRun& run : bench.runs) {
-    out += fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\nexcitation = {}\n", quoted(run.name + ".csv"),
-                       run.use, quoted(run.excitation));
+    out += fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\nexcitation = {}\n", toml_text(run.name + ".csv"),
+                       run.use, toml_text(run.excitation));
   }
   return out;
 }
@@ -88,13 +80,13 @@ std::string run_csv(const AxisBench& bench, const AxisBenchRun& run) {
 std::string axis_model_text(const AxisModel& model) {
   std::string out = "format = \"omnihil-model/1\"\nrig = \"axis\"\n";
   if (model.drive.linear) out += "linear = true\n";
-  if (!model.file.name.empty()) out += fmt::format("name = {}\n", quoted(model.file.name));
+  if (!model.file.name.empty()) out += fmt::format("name = {}\n", toml_text(model.file.name));
   const auto number = [&](std::string_view key, double value, const Parameter* given) {
     if (given == nullptr || (!given->tolerance && given->source.empty()))
       return fmt::format("{} = {}\n", key, value);
     std::string text = fmt::format("{} = {{ value = {}", key, value);
     if (given->tolerance) text += fmt::format(", tolerance = {}", *given->tolerance);
-    if (!given->source.empty()) text += fmt::format(", source = {}", quoted(given->source));
+    if (!given->source.empty()) text += fmt::format(", source = {}", toml_text(given->source));
     return text + " }\n";
   };
   const DriveParams<double> otherwise;
