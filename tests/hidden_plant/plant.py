@@ -1,0 +1,99 @@
+"""The compiled hidden plants, called from Python: parameters by name, columns back as arrays of doubles."""
+import array
+import ctypes
+import os
+import pathlib
+import subprocess
+
+HERE = pathlib.Path(__file__).resolve().parent
+RAW = ("command", "bus", "current", "angle", "speed", "out_angle", "out_speed", "winding_K")
+SEEN = ("counts", "bus", "current", "speed", "angle")
+SUMS = ("in_J", "lost_J", "stored_J")
+
+
+def library_path():
+    """The library CMake built (HIDDEN_PLANT_LIBRARY), else one compiled here beside the caller's cache."""
+    if "HIDDEN_PLANT_LIBRARY" in os.environ:
+        return pathlib.Path(os.environ["HIDDEN_PLANT_LIBRARY"])
+    built = pathlib.Path(os.environ.get("TMPDIR", "/tmp")) / f"hidden_plant_{os.getuid()}.so"
+    sources = sorted(HERE.glob("*.c"))
+    newest = max(path.stat().st_mtime for path in [*sources, *HERE.glob("*.h")])
+    if not built.exists() or built.stat().st_mtime < newest:
+        fresh = built.with_suffix(f".{os.getpid()}")
+        subprocess.run(["cc", "-std=c11", "-D_GNU_SOURCE", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-o", str(fresh),
+                        *map(str, sources), "-lm"], check=True)
+        fresh.replace(built)
+    return built
+
+
+_lib = ctypes.CDLL(str(library_path()))
+
+
+def _doubles(n):
+    return array.array("d", bytes(8 * n))
+
+
+def _pointer(values):
+    return (ctypes.c_double * len(values)).from_buffer(values)
+
+
+class Plant:
+    """One of the plants in the library; `name` is the prefix of its functions."""
+
+    def __init__(self, name):
+        name_of = getattr(_lib, f"{name}_param_name")
+        value_of = getattr(_lib, f"{name}_param_value")
+        name_of.restype = ctypes.c_char_p
+        value_of.restype = ctypes.c_double
+        count = getattr(_lib, f"{name}_param_count")()
+        self.defaults = {name_of(k).decode(): value_of(k) for k in range(count)}
+
+    def pack(self, params):
+        unknown = set(params) - set(self.defaults)
+        if unknown:
+            raise KeyError(f"no such plant parameter: {sorted(unknown)}")
+        return _pointer(array.array("d", [float(params.get(k, v)) for k, v in self.defaults.items()]))
+
+
+class Columns(dict):
+    """Named columns, all of one length."""
+
+    @classmethod
+    def split(cls, flat, names):
+        return cls({name: flat[k::len(names)] for k, name in enumerate(names)})
+
+
+AXIS = Plant("axis")
+
+
+def run_axis(params, asked):
+    """Simulates one record. Returns (raw table, sums); raise when the state stopped being finite."""
+    n = len(asked)
+    raw, sums = _doubles(n * len(RAW)), _doubles(len(SUMS))
+    failed = _lib.axis_run(AXIS.pack(params), _pointer(array.array("d", asked)), n, _pointer(raw), _pointer(sums))
+    if failed:
+        raise ArithmeticError("the hidden axis stopped being finite")
+    return raw, dict(zip(SUMS, sums))
+
+
+def sense_axis(params, raw, seed):
+    """What the sensors of the axis show of a raw table."""
+    n = len(raw) // len(RAW)
+    seen = _doubles(n * len(SEEN))
+    _lib.axis_sense(AXIS.pack(params), _pointer(raw), n, ctypes.c_double(seed), _pointer(seen))
+    return Columns.split(seen, SEEN)
+
+
+def raw_columns(raw):
+    return Columns.split(raw, RAW)
+
+
+def inner_products(rows):
+    """Matrix of the inner products of equally long series."""
+    m, n = len(rows), len(rows[0])
+    flat = array.array("d")
+    for row in rows:
+        flat.extend(row)
+    out = _doubles(m * m)
+    _lib.inner_products(_pointer(flat), m, n, _pointer(out))
+    return [list(out[k * m:(k + 1) * m]) for k in range(m)]

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""The hidden axis against formulas a reader can check: energy, steady speed, time constants, step size, determinism."""
+import math
+import unittest
+
+import plant
+
+# A drive without friction: everything in closed form.
+BARE = dict(resistance_ohm=1.0, inductance_H=0.2e-3, flux_Vs=0.03, rotor_kgm2=1e-5, load_kgm2=4e-5, viscous_Nms=0.0, dry_Nm=0.0,
+            supply_V=20.0)
+
+
+def speeds(params, asked):
+    raw, sums = plant.run_axis(params, asked)
+    return plant.raw_columns(raw), sums
+
+
+class AxisPlantTest(unittest.TestCase):
+    def test_energy_in_is_lost_or_stored(self):
+        wave = [0.6 * math.sin(2 * math.pi * 3 * k * 1e-3) for k in range(5000)]
+        _, sums = speeds(dict(BARE, viscous_Nms=1e-5, dry_Nm=4e-3), wave)
+        self.assertGreater(sums["in_J"], 1)
+        self.assertAlmostEqual(sums["in_J"], sums["lost_J"] + sums["stored_J"], delta=1e-6 * sums["in_J"])
+
+    def test_energy_balance_holds_over_a_compliant_shaft(self):
+        wave = [0.4 if (k // 150) % 2 else -0.4 for k in range(4050)] + [0.0] * 3000  # ends at rest, shaft relaxed
+        _, sums = speeds(dict(BARE, viscous_Nms=1e-5, shaft_Nm_per_rad=20, gear=3, load_kgm2=2e-4), wave)
+        self.assertAlmostEqual(sums["in_J"], sums["lost_J"] + sums["stored_J"], delta=1e-5 * sums["in_J"])
+
+    def test_steady_speed_is_voltage_less_friction(self):
+        # k i = b w + c and u = R i + k w give w = (k u / R - c) / (k^2 / R + b).
+        b, c, u, k, r = 2e-5, 3e-3, 10.0, BARE["flux_Vs"], BARE["resistance_ohm"]
+        columns, _ = speeds(dict(BARE, viscous_Nms=b, dry_Nm=c), [0.5] * 3000)
+        self.assertAlmostEqual(columns["speed"][-1], (k * u / r - c) / (k * k / r + b), delta=1e-6)
+        self.assertAlmostEqual(columns["current"][-1], (b * columns["speed"][-1] + c) / k, delta=1e-6)
+
+    def test_step_answer_has_the_two_poles_of_winding_and_rotor(self):
+        # L J s^2 + R J s + k^2 = 0; the slow pole is left alone after a few milliseconds.
+        j, r, ell, k = 5e-5, BARE["resistance_ohm"], BARE["inductance_H"], BARE["flux_Vs"]
+        slow = (-r + math.sqrt(r * r - 4 * ell * k * k / j)) / (2 * ell)
+        columns, _ = speeds(BARE, [0.5] * 400)
+        end = 10 / k
+        ratio = (end - columns["speed"][80]) / (end - columns["speed"][40])
+        self.assertAlmostEqual(math.log(ratio) / 0.040, slow, delta=1e-4 * abs(slow))
+
+    def test_dry_friction_holds_until_the_torque_exceeds_it(self):
+        # k u / R = 4 mNm at a duty of 4e-3 * 1 / (0.03 * 20) = 0.00667
+        for duty, moves in ((0.0066, False), (0.0068, True)):
+            columns, _ = speeds(dict(BARE, dry_Nm=4e-3), [duty] * 500)
+            self.assertEqual(columns["angle"][-1] != 0, moves)
+
+    def test_coasting_down_under_dry_friction_is_a_straight_line_to_an_exact_stop(self):
+        params = dict(BARE, dry_Nm=20e-3, coast_band=0.5)  # no drive below half duty: the winding is open
+        columns, _ = speeds(params, [0.8] * 300 + [0.0] * 4000)
+        w = columns["speed"]
+        self.assertAlmostEqual((w[1200] - w[400]) / 0.8, -20e-3 / 5e-5, delta=0.01)
+        self.assertEqual(w[-1], 0.0)
+
+    def test_half_the_step_changes_nothing_that_can_be_seen(self):
+        wave = [0.5 * math.sin(2 * math.pi * (0.5 + k * 1e-3) * k * 1e-3) for k in range(6000)]
+        for hidden in ({}, {"bristles": 1, "breakaway_ratio": 0.8, "bristle_Nm_per_rad": 3}, {"current_cap_A": 5},
+                       {"play_rad": 0.01, "shaft_Nm_per_rad": 40, "shaft_damping_Nms": 0.01, "gear": 3, "load_kgm2": 4e-4},
+                       {"edge_V": 0.4}, {"cog_Nm": 2e-3}):
+            params = {**BARE, "dry_Nm": 3e-3, "viscous_Nms": 1e-5, **hidden}
+            coarse, _ = speeds(params, wave)
+            fine, _ = speeds(dict(params, step_s=12.5e-6), wave)
+            rms = math.sqrt(sum((a - b) ** 2 for a, b in zip(coarse["speed"], fine["speed"])) / len(wave))
+            self.assertLess(rms, 0.05, hidden)  # rad/s; one count a sample is 1.5
+
+    def test_same_seed_same_record(self):
+        params = dict(BARE, dry_Nm=4e-3, sample_jitter_s=1e-4, lost_per_count=1e-3, seed=5)
+        records = []
+        for _ in range(2):
+            raw, _ = plant.run_axis(params, [0.3] * 800)
+            records.append({k: list(v) for k, v in plant.sense_axis(params, raw, 9).items()})
+        self.assertEqual(records[0], records[1])
+        raw, _ = plant.run_axis(dict(params, seed=6), [0.3] * 800)
+        self.assertNotEqual(records[0]["speed"], list(plant.sense_axis(params, raw, 9)["speed"]))
+
+
+class AxisSensorTest(unittest.TestCase):
+    def test_counts_are_the_floor_of_the_angle(self):
+        raw, _ = plant.run_axis(BARE, [0.3] * 500)
+        angle, counts = plant.raw_columns(raw)["angle"], plant.sense_axis(BARE, raw, 1)["counts"]
+        self.assertEqual([math.floor(a / (2 * math.pi / 4096)) for a in angle], list(counts))
+
+    def test_late_samples_show_the_past(self):
+        now, _ = speeds(BARE, [0.3] * 500)
+        late, _ = speeds(dict(BARE, late_sample_s=0.003), [0.3] * 500)
+        for k in (10, 100, 400):
+            self.assertAlmostEqual(late["angle"][k], now["angle"][k - 3], delta=1e-9)
+
+    def test_lost_counts_are_as_many_as_asked(self):
+        params = dict(BARE, lost_per_count=0.01)
+        raw, _ = plant.run_axis(params, [0.5] * 2000)
+        true = plant.raw_columns(raw)["angle"][-1] / (2 * math.pi / 4096)
+        lost = true - plant.sense_axis(params, raw, 1)["counts"][-1]
+        self.assertAlmostEqual(lost / true, 0.01, delta=4 * math.sqrt(0.01 / true))
+
+    def test_current_noise_has_the_size_asked_for(self):
+        raw, _ = plant.run_axis(BARE, [0.0] * 4000)
+        seen = plant.sense_axis(dict(BARE, current_noise_A=0.05), raw, 3)["current"]
+        rms = math.sqrt(sum(x * x for x in seen) / len(seen))
+        self.assertAlmostEqual(rms, 0.05, delta=0.05 * 4 / math.sqrt(2 * 4000))
+
+
+if __name__ == "__main__":
+    unittest.main()
