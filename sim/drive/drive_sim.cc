@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/drive/bench_turn.h"
 #include "sim/drive/shaft_step.h"
 
 namespace omnihil {
@@ -18,7 +19,8 @@ T clamped(const T& x, const T& limit) {
 bool same(double a, double b) { return a == b; }
 bool same(const Jet& a, const Jet& b) { return a.a == b.a && a.v == b.v; }
 
-// One sub-step is one piece of code; its parts are for readers.
+// One sub-step is one piece of code; its parts are for readers. A part that were called for real would need
+// the sub-step's numbers in memory (measured: 15 of 80 ns); what is seldom and large takes values instead.
 #define INLINE [[gnu::always_inline]] inline
 
 }  // namespace
@@ -37,8 +39,7 @@ struct DriveSim<T>::Step {
   T asked, duty_limit;  // asked: duty, V, A or N m
   T bus_voltage, inverse_bus;
   T voltage, inverse_limit;
-  const WindingStep<T>* winding = nullptr;
-  WindingStep<T> own_winding;
+  WindingStep<T> winding;
   T k, k_emf, emf_offset;
   T current;          // mean, where not electric
   T applied_torque;   // of torque controlled drives
@@ -49,7 +50,6 @@ struct DriveSim<T>::Step {
   bool imposed = false, held = false;
   T tau_load;  // gravity and outside, at the rotor
   T through_shaft;
-  ShaftOutput<T> output;
   ShaftStep<T> shaft;
 };
 
@@ -70,8 +70,10 @@ void DriveSim<T>::set_step(double step_s) {
   assert(step_s > 0.0);
   step_s_ = step_s;
   inductance_over_step_ = params_.inductance_H / step_s;
+  if (value_of(params_.inductance_H) > 0.0) step_over_inductance_ = step_s / params_.inductance_H;
   if (value_of(params_.resistance_ohm) > 0.0) {
-    winding_ = make_winding_step(params_.resistance_ohm, params_.inductance_H, inductance_over_step_);
+    winding_ = make_winding_step(params_.resistance_ohm, params_.inductance_H, inductance_over_step_,
+                                 step_over_inductance_);
   }
 }
 
@@ -130,7 +132,7 @@ INLINE void DriveSim<T>::supply(DriveState<T>& state, const DriveInput<T>& input
 // Before the bridge, because the bridge looks at the back-EMF; the bridge changes nothing the winding reads.
 template <typename T>
 INLINE void DriveSim<T>::winding(DriveState<T>& state, const DriveInput<T>& input, Step& s) const {
-  s.winding = &winding_;
+  s.winding = winding_;
   s.k = s.k_emf = params_.torque_constant_Nm_per_A;
   s.emf_offset = T(0);
   if (effects_.winding.empty()) return;
@@ -153,9 +155,12 @@ INLINE void DriveSim<T>::winding(DriveState<T>& state, const DriveInput<T>& inpu
   s.emf_offset = port.back_emf_offset_V;
   const bool same_inductance = same(port.inductance_H, params_.inductance_H);
   if (same_inductance && same(port.resistance_ohm, params_.resistance_ohm)) return;
-  const T over_step = same_inductance ? inductance_over_step_ : T(port.inductance_H / step_s_);
-  s.own_winding = make_winding_step(port.resistance_ohm, port.inductance_H, over_step);
-  s.winding = &s.own_winding;
+  T over_step = inductance_over_step_, inverse = step_over_inductance_;
+  if (!same_inductance) {
+    over_step = port.inductance_H / step_s_;
+    inverse = step_s_ / port.inductance_H;
+  }
+  s.winding = make_winding_step(port.resistance_ohm, port.inductance_H, over_step, inverse);
 }
 
 template <typename T>
@@ -177,7 +182,7 @@ INLINE void DriveSim<T>::bridge(DriveState<T>& state, const DriveInput<T>& input
     port.current_A = state.current_A;
     port.back_emf_V = s.k_emf * s.omega_mid + s.emf_offset;
     port.temperature_rise_K = state.temperature_rise_K;
-    port.resistance_ohm = s.winding->resistance_ohm;
+    port.resistance_ohm = s.winding.resistance_ohm;
     port.pwm_frequency_Hz = params_.pwm_frequency_Hz;
     port.dt_s = step_s_;
     port.voltage_V = s.voltage;
@@ -193,12 +198,13 @@ INLINE void DriveSim<T>::bridge(DriveState<T>& state, const DriveInput<T>& input
   } else if (input.kind == CommandKind::kMotorTorque) {
     s.applied_torque = s.asked;
   }
-  if (!input.enabled) release(state, s);
+  if (!input.enabled) [[unlikely]]
+    release(state, s);
 }
 
 // All switches off: the current dies against the bus, then nothing flows below the bus voltage.
 template <typename T>
-void DriveSim<T>::release(const DriveState<T>& state, Step& s) const {
+INLINE void DriveSim<T>::release(const DriveState<T>& state, Step& s) const {
   s.applied_torque = s.current = T(0);
   if (!s.electric) return;
   const T emf = s.k_emf * s.omega_mid + s.emf_offset;
@@ -237,7 +243,7 @@ INLINE void DriveSim<T>::torque(DriveState<T>& state, const DriveInput<T>& input
   }
   if (s.electric) {
     const T net = s.voltage - s.emf_offset - s.k_emf * s.omega_mid;
-    port.tau_motor_Nm = s.k * s.winding->mean_current(net, state.current_A);
+    port.tau_motor_Nm = s.k * s.winding.mean_current(net, state.current_A);
   } else {
     port.tau_motor_Nm = s.applied_torque + s.k * s.current;
   }
@@ -257,7 +263,7 @@ INLINE void DriveSim<T>::torque(DriveState<T>& state, const DriveInput<T>& input
 
 // Takes the load off the rotor and joins it to the output instead.
 template <typename T>
-void DriveSim<T>::join_shaft(DriveState<T>& state, const DriveInput<T>& input, Step& s) const {
+INLINE void DriveSim<T>::join_shaft(DriveState<T>& state, const DriveInput<T>& input, Step& s) const {
   const T rotor_speed = state.omega_rotor_rad_s * inverse_gear_;
   ShaftPort<T> port;
   port.twist_rad = state.theta_rotor_rad * inverse_gear_ - state.theta_output_rad;
@@ -265,13 +271,14 @@ void DriveSim<T>::join_shaft(DriveState<T>& state, const DriveInput<T>& input, S
   port.gear_ratio = params_.gear_ratio;
   port.dt_s = step_s_;
   effects_.shaft.apply(effects_.values(), state.effects.data(), port);
-  s.output.rotor_inertia_kg_m2 = params_.rotor_inertia_kg_m2 * params_.gear_ratio * params_.gear_ratio;
-  s.output.inertia_kg_m2 = params_.load_inertia_kg_m2;
-  s.output.omega_rad_s = state.omega_output_rad_s;
-  s.output.torque_Nm = s.tau_load * params_.gear_ratio;
-  s.output.imposed = input.speed_is_imposed;
-  s.output.imposed_mean_rad_s = T(0.5 * (s.imposed_start + s.imposed_end)) * inverse_gear_;
-  s.shaft = make_shaft_step(port, s.output, step_s_);
+  ShaftOutput<T> output;
+  output.rotor_inertia_kg_m2 = params_.rotor_inertia_kg_m2 * params_.gear_ratio * params_.gear_ratio;
+  output.inertia_kg_m2 = params_.load_inertia_kg_m2;
+  output.omega_rad_s = state.omega_output_rad_s;
+  output.torque_Nm = s.tau_load * params_.gear_ratio;
+  output.imposed = input.speed_is_imposed;
+  output.imposed_mean_rad_s = T(0.5 * (s.imposed_start + s.imposed_end)) * inverse_gear_;
+  s.shaft = make_shaft_step(port, output, step_s_);
   // rotor: -tau_shaft / N, a torque and a damping
   s.load.inertia_kg_m2 = params_.rotor_inertia_kg_m2;
   s.load.torque_Nm -= s.tau_load + s.shaft.torque_Nm * inverse_gear_;
@@ -282,16 +289,17 @@ void DriveSim<T>::join_shaft(DriveState<T>& state, const DriveInput<T>& input, S
 
 // The output, after the rotor.
 template <typename T>
-void DriveSim<T>::turn_output(DriveState<T>& state, Step& s) const {
+INLINE void DriveSim<T>::turn_output(DriveState<T>& state, const DriveInput<T>& input, Step& s) const {
   const T torque = s.shaft.torque_Nm + s.shaft.damping_Nm_s_per_rad * s.mean_omega * inverse_gear_;
-  const T before = s.output.imposed ? T(s.imposed_start * inverse_gear_) : state.omega_output_rad_s;
+  const T& inertia = params_.load_inertia_kg_m2;
+  const T before = input.speed_is_imposed ? T(s.imposed_start * inverse_gear_) : state.omega_output_rad_s;
   // J_out dw/dt = tau_shaft + tau_load N; where the speed is imposed that is what the bench must add
-  if (s.output.imposed) {
+  if (input.speed_is_imposed) {
     state.omega_output_rad_s = s.imposed_end * inverse_gear_;
-    const T needed = s.output.inertia_kg_m2 * (state.omega_output_rad_s - before) / step_s_;
+    const T needed = inertia * (state.omega_output_rad_s - before) / step_s_;
     s.outside = s.tau_outside + (needed - torque) * inverse_gear_ - s.tau_load;
   } else {
-    state.omega_output_rad_s = before + step_s_ * (torque + s.output.torque_Nm) / s.output.inertia_kg_m2;
+    state.omega_output_rad_s = before + step_s_ * (torque + s.tau_load * params_.gear_ratio) / inertia;
   }
   state.theta_output_rad += 0.5 * step_s_ * (before + state.omega_output_rad_s);
   s.through_shaft = torque * inverse_gear_;
@@ -302,7 +310,15 @@ void DriveSim<T>::turn_output(DriveState<T>& state, Step& s) const {
 // The rotor with all torques in s.load.
 template <typename T>
 INLINE void DriveSim<T>::turn(const DriveState<T>& state, Step& s) const {
-  if (s.imposed) return turn_by_bench(s);
+  if (s.imposed) [[unlikely]] {
+    const BenchTurn<T> bench =
+        turn_by_bench(s.imposed_start, s.imposed_end, step_s_, inertia_kg_m2_, s.tau_outside, s.load);
+    s.omega_end = T(s.imposed_end);
+    s.mean_omega = T(0.5 * (s.imposed_start + s.imposed_end));
+    s.outside = bench.outside_Nm;
+    s.held = bench.held;
+    return;
+  }
   const RotorStep<T> r = advance_rotor(state.omega_rotor_rad_s, step_s_, s.load);
   s.mean_omega = r.mean_omega_rad_s;
   s.omega_end = r.omega_end_rad_s;
@@ -310,33 +326,10 @@ INLINE void DriveSim<T>::turn(const DriveState<T>& state, Step& s) const {
   s.outside = s.tau_outside;
 }
 
-// The bench's speed, and the torque it takes.
-template <typename T>
-void DriveSim<T>::turn_by_bench(Step& s) const {
-  s.omega_end = T(s.imposed_end);
-  s.mean_omega = T(0.5 * (s.imposed_start + s.imposed_end));
-  const double direction = sign_of(s.mean_omega);
-  // tau_outside = J domega/dt - (sum of the others), friction at rest taking what it can
-  T inside = s.load.torque_Nm - s.tau_outside;
-  if (direction > 0.0) {
-    inside -= s.load.friction_positive_Nm + s.load.damping_positive_Nm_s_per_rad * s.mean_omega;
-  } else if (direction < 0.0) {
-    inside += s.load.friction_negative_Nm - s.load.damping_negative_Nm_s_per_rad * s.mean_omega;
-  } else if (inside > s.load.friction_positive_Nm) {
-    inside -= s.load.friction_positive_Nm;
-  } else if (inside < -s.load.friction_negative_Nm) {
-    inside += s.load.friction_negative_Nm;
-  } else {
-    inside = T(0);
-    s.held = true;
-  }
-  s.outside = inertia_kg_m2_ * ((s.imposed_end - s.imposed_start) / step_s_) - inside;
-}
-
 // Solves with the mean current given instead of the voltage.
 template <typename T>
-void DriveSim<T>::hold_current(const DriveState<T>& state, const T& end_current_A, const T& mean_current_A,
-                               Step& s) const {
+INLINE void DriveSim<T>::hold_current(const DriveState<T>& state, const T& end_current_A,
+                                      const T& mean_current_A, Step& s) const {
   const T without_winding = s.load.torque_Nm;
   s.load.torque_Nm += s.k * mean_current_A;
   turn(state, s);
@@ -347,8 +340,9 @@ void DriveSim<T>::hold_current(const DriveState<T>& state, const T& end_current_
 
 template <typename T>
 INLINE void DriveSim<T>::solve(const DriveState<T>& state, const DriveInput<T>& input, Step& s) const {
-  if (!s.electric) return hold_current(state, s.current, s.current, s);
-  const WindingStep<T>& w = *s.winding;
+  if (!s.electric) [[unlikely]]
+    return hold_current(state, s.current, s.current, s);
+  const WindingStep<T>& w = s.winding;
   const T& i0 = state.current_A;
   const T free_voltage = s.voltage - s.emf_offset;
   const RotorLoad<T> without_winding = s.load;
@@ -364,7 +358,8 @@ INLINE void DriveSim<T>::solve(const DriveState<T>& state, const DriveInput<T>& 
   const double i1 = value_of(s.end_current);
   const bool dies = !input.enabled && value_of(i0) * i1 < 0.0;
   const bool limited = input.enabled && std::abs(i1) * value_of(s.inverse_limit) > 1.0;
-  if (!dies && !limited) return;
+  if (!dies && !limited) [[likely]]
+    return;
   s.load = without_winding;
   if (limited) return limit_current(state, s);
   // Reaches zero after i_0 / (i_0 - i_1) of the sub-step, near enough on a straight line, and stays there.
@@ -373,16 +368,16 @@ INLINE void DriveSim<T>::solve(const DriveState<T>& state, const DriveInput<T>& 
 
 // A chopper turns the bridge down as far as the current needs, if the bus can oppose it at all.
 template <typename T>
-void DriveSim<T>::limit_current(const DriveState<T>& state, Step& s) const {
+INLINE void DriveSim<T>::limit_current(const DriveState<T>& state, Step& s) const {
   const T limit = 1.0 / s.inverse_limit;
   const T end = sign_of(s.end_current) * limit;
   const T mean = 0.5 * (clamped(state.current_A, limit) + end);
-  const T needed = s.winding->resistance_ohm * end + s.k_emf * s.mean_omega + s.emf_offset;
+  const T needed = s.winding.resistance_ohm * end + s.k_emf * s.mean_omega + s.emf_offset;
   if (std::abs(value_of(needed)) > value_of(s.bus_voltage)) return;
   hold_current(state, end, mean, s);
   // u = R i + back-EMF + L di/dt
-  s.voltage = s.winding->resistance_ohm * mean + s.k_emf * s.mean_omega + s.emf_offset +
-              s.winding->inductance_H * (end - state.current_A) / step_s_;
+  s.voltage = s.winding.resistance_ohm * mean + s.k_emf * s.mean_omega + s.emf_offset +
+              s.winding.inductance_H * (end - state.current_A) / step_s_;
 }
 
 template <typename T>
@@ -405,22 +400,23 @@ INLINE void DriveSim<T>::step(DriveState<T>& state, const DriveInput<T>& input, 
   winding(state, input, s);
   bridge(state, input, call, s);
   torque(state, input, s);
-  if (two_masses_) join_shaft(state, input, s);
+  if (two_masses_) [[unlikely]]
+    join_shaft(state, input, s);
   solve(state, input, s);
-  if (two_masses_) turn_output(state, s);
+  if (two_masses_) [[unlikely]]
+    turn_output(state, input, s);
 
   const T& i0 = state.current_A;
   if (s.electric) {
     const T power = s.voltage * s.mean_current;
     // heat = (u - back-EMF) i - change of L i^2 / 2, as mean power
-    state.heat_W =
-        power - (s.emf_offset + s.k_emf * s.mean_omega) * s.mean_current -
-        0.5 * s.winding->inductance_H * (s.end_current * s.end_current - i0 * i0) * (1.0 / step_s_);
+    state.heat_W = power - (s.emf_offset + s.k_emf * s.mean_omega) * s.mean_current -
+                   0.5 * s.winding.inductance_H * (s.end_current * s.end_current - i0 * i0) * (1.0 / step_s_);
     sums.electrical_energy_J += power;
     sums.mean_bus_current_A += power * s.inverse_bus;
     sums.mean_voltage_V += s.voltage;
   } else {
-    state.heat_W = s.winding->resistance_ohm * s.mean_current * s.mean_current;
+    state.heat_W = s.winding.resistance_ohm * s.mean_current * s.mean_current;
   }
   sums.mean_current_A += s.mean_current;
   sums.heat_J += state.heat_W;
@@ -451,7 +447,8 @@ DriveResult<T> DriveSim<T>::advance(DriveState<T>& state, const DriveInput<T>& i
   if (value_of(call.bus_voltage) > 0.0) call.inverse_bus = 1.0 / call.bus_voltage;
   DriveResult<T> sums;
   sums.held = true;
-  Step s;
+  Step s;  // lent to nobody: its numbers stay in registers
+  s.bus_voltage = call.bus_voltage;
   const T omega_first = input.speed_is_imposed ? T(input.imposed_start_rad_s) : state.omega_rotor_rad_s;
   const double slope = (input.imposed_end_rad_s - input.imposed_start_rad_s) / substeps;
   for (int n = 0; n < substeps; ++n) {

@@ -109,9 +109,8 @@ class DriveSim {
   void hold_current(const DriveState<T>& state, const T& end_current_A, const T& mean_current_A,
                     Step& s) const;
   void turn(const DriveState<T>& state, Step& s) const;
-  void turn_by_bench(Step& s) const;
   void join_shaft(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
-  void turn_output(DriveState<T>& state, Step& s) const;
+  void turn_output(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
   bool plain(const DriveInput<T>& input) const;
 
   DriveParams<T> params_;
@@ -121,7 +120,7 @@ class DriveSim {
   T inverse_gear_ = T(1);
   bool two_masses_ = false;
   WindingStep<T> winding_;  // of the base model
-  T inductance_over_step_ = T(0);
+  T inductance_over_step_ = T(0), step_over_inductance_ = T(0);
   T base_inverse_limit_per_A_ = T(0);
 };
 

@@ -32,7 +32,7 @@ struct RotorStep {
 
 // From rest, over h: holds or starts.
 template <typename T>
-RotorStep<T> start_rotor(const T& h_s, const RotorLoad<T>& load) {
+[[gnu::noinline]] RotorStep<T> start_rotor(T h_s, RotorLoad<T> load) {
   const double tau = value_of(load.torque_Nm);
   RotorStep<T> r;
   if (tau <= value_of(load.friction_positive_Nm) && tau >= -value_of(load.friction_negative_Nm)) {
@@ -50,9 +50,11 @@ RotorStep<T> start_rotor(const T& h_s, const RotorLoad<T>& load) {
 }
 
 template <typename T>
-RotorStep<T> advance_rotor(const T& omega_rad_s, double h_s, const RotorLoad<T>& load) {
+[[gnu::always_inline]] inline RotorStep<T> advance_rotor(const T& omega_rad_s, double h_s,
+                                                         const RotorLoad<T>& load) {
   const double w0 = value_of(omega_rad_s);
-  if (w0 == 0.0) return start_rotor(T(h_s), load);
+  if (w0 == 0.0) [[unlikely]]
+    return start_rotor(T(h_s), load);
   const bool positive = w0 > 0.0;
   const T drive_Nm =
       positive ? load.torque_Nm - load.friction_positive_Nm : load.torque_Nm + load.friction_negative_Nm;
@@ -65,7 +67,8 @@ RotorStep<T> advance_rotor(const T& omega_rad_s, double h_s, const RotorLoad<T>&
   const double w1 = value_of(r.omega_end_rad_s);
   const bool crosses = positive ? w1 < 0.0 : w1 > 0.0;
   const bool dry = value_of(load.friction_positive_Nm) > 0.0 || value_of(load.friction_negative_Nm) > 0.0;
-  if (!crosses || !dry) return r;
+  if (!crosses || !dry) [[likely]]
+    return r;
   // Stops after t = h w_0 / (w_0 - w_1), having turned by w_0 t / 2.
   const T stop_s = h_s * omega_rad_s / (omega_rad_s - r.omega_end_rad_s);
   const T rest_s = h_s - stop_s;

@@ -36,26 +36,26 @@ struct WindingStep {
   }
 };
 
-// `inductance_over_step` is L / h.
+// `inductance_over_step` is L / h, `step_over_inductance` h / L (not looked at without inductance).
 template <typename T>
-WindingStep<T> make_winding_step(const T& resistance_ohm, const T& inductance_H,
-                                 const T& inductance_over_step) {
+[[gnu::always_inline]] inline WindingStep<T> make_winding_step(const T& resistance_ohm, const T& inductance_H,
+                                                               const T& inductance_over_step,
+                                                               const T& step_over_inductance) {
   using std::exp;
   WindingStep<T> s;
   s.resistance_ohm = resistance_ohm;
   s.conductance_per_ohm = 1.0 / resistance_ohm;
   s.inductance_H = inductance_H;
+  const T time_constants = inductance_over_step * s.conductance_per_ohm;  // L / (R h)
   if (value_of(inductance_H) > 0.0) {
-    const T time_constants = inductance_over_step * s.conductance_per_ohm;  // L / (R h)
-    if (value_of(time_constants) > 1e4) {
-      // (1 - e) / x, x = R h / L, by its series where the difference would cancel
-      const T x = 1.0 / time_constants;
-      s.decay = exp(-x);
-      s.mean_decay = 1.0 - x * (0.5 - x / 6.0);
-    } else {
-      s.decay = exp(-1.0 / time_constants);
-      s.mean_decay = (1.0 - s.decay) * time_constants;
-    }
+    // e = exp(-R h / L), straight from R: in a warming winding everything after waits for it
+    const T x = resistance_ohm * step_over_inductance;
+    s.decay = exp(-x);
+    // (1 - e) / x, by its series where the difference would cancel
+    s.mean_decay = value_of(x) < 1e-4 ? T(1.0 - x * (0.5 - x / 6.0)) : T((1.0 - s.decay) * time_constants);
+  } else {
+    // phi -> L / (R h) for L -> 0: zero, but not its derivative
+    s.mean_decay = time_constants;
   }
   s.gain = (1.0 - s.mean_decay) * s.conductance_per_ohm;
   return s;

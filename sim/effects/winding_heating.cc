@@ -99,9 +99,11 @@ struct WindingHeating {
   static void apply(const T* p, T* x, WindingPort<T>& port) {
     const double h = port.dt_s;
     // (C_w / h + 1 / R_w) T_w' = C_w / h T_w + P + T_h / R_w
+    // The quotient apart from what waits for the heat: the winding's sub-step waits for all of this.
     const T per_step = h / p[kCapacity];
-    x[kWinding] = (p[kResistance] * (x[kWinding] + per_step * port.heat_W) + per_step * x[kHousing]) /
-                  (p[kResistance] + per_step);
+    const T inverse = 1.0 / (p[kResistance] + per_step);
+    const T kept = p[kResistance] * inverse, from_housing = per_step * inverse;
+    x[kWinding] = kept * (x[kWinding] + per_step * port.heat_W) + from_housing * x[kHousing];
     if (!is_exactly(p[kHousingResistance], 0.0)) {
       // (C_h / h + 1 / R_w + 1 / R_h) T_h' = C_h / h T_h + T_w / R_w, multiplied by R_h R_w
       const T stored = p[kResistance] * p[kHousingCapacity] / h;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/effects/bench.h"
@@ -175,6 +176,36 @@ TEST(DriveSim, LetsTheCurrentDieWhenReleasedAndThenCoasts) {
   const double speed = state.omega_rotor_rad_s;
   sim.advance(state, off, 2000);
   EXPECT_EQ(state.omega_rotor_rad_s, speed);
+}
+
+// d/dL at L = 0 of speed, angle and drawn energy against 2 d(L) - d(2 L), d the difference over L.
+TEST(DriveSim, HasTheDerivativeOfAnInductanceOfZero) {
+  for (const bool effects : {false, true}) {
+    const std::vector<EffectUse> uses =
+        effects ? std::vector<EffectUse>{use_of("winding_heating", {0.004, 4.0, 3.0})}
+                : std::vector<EffectUse>{};
+    const auto run = [&](auto inductance) {
+      using T = decltype(inductance);
+      DriveParams<T> p = drive_params_as<T>(small_drive());
+      p.inductance_H = inductance;
+      const DriveSim<T> sim(p, EffectSet<T>(uses), 50e-6);
+      auto state = sim.initial_state();
+      T energy = T(0);
+      for (const double value : {0.6, -0.2, 0.4}) {
+        energy += sim.advance(state, {.kind = CommandKind::kDuty, .setpoint = value}, 20).electrical_energy_J;
+      }
+      return std::array<T, 3>{state.omega_rotor_rad_s, state.theta_rotor_rad, energy};
+    };
+    const double small = 1e-9;
+    const auto at = run(0.0), once = run(small), twice = run(2.0 * small);
+    const auto jet = run(Jet(0.0, 0));
+    for (std::size_t n = 0; n < at.size(); ++n) {
+      const double expected = 2.0 * (once[n] - at[n]) / small - (twice[n] - at[n]) / (2.0 * small);
+      EXPECT_NE(expected, 0.0);
+      EXPECT_NEAR(jet[n].v[0], expected, 1e-4 * std::abs(expected)) << n;
+      EXPECT_NEAR(jet[n].a, at[n], 1e-12 * std::abs(at[n]));
+    }
+  }
 }
 
 }  // namespace
