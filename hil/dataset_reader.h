@@ -8,7 +8,8 @@
 // Refused with file, line, column (of a CSV: row and name of the column), what was found and what is allowed:
 // an unknown channel, unit or key, time going backwards, a cell that is no number, a file without rows, no
 // fit run, no drive input, no motion signal. Nothing is dropped silently: what is left out is counted in
-// Dataset::notes. No file of a run can lie outside its folder's tree unless the path says so.
+// Dataset::notes. A file of a run lies inside the dataset's folder. Where a run has two drive inputs, the one
+// listed first in [channels] is taken and the other left out.
 #pragma once
 #include <optional>
 #include <string>

@@ -5,30 +5,15 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <system_error>
+
+#include "hil/text_file.h"
 
 namespace omnihil {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The whole file, or why not in `error`.
-std::string read_file(const fs::path& path, std::string& error) {
-  std::error_code code;
-  if (fs::is_directory(path, code)) {
-    error = "is a folder, not a file";
-    return "";
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) {
-    const bool there = fs::exists(path, code);
-    error = !there ? "no such file" : fs::file_size(path, code) == 0 ? "is empty" : "cannot be read";
-  }
-  return text.str();
-}
 
 bool is_path(const std::string& path_or_name) {
   return path_or_name.find('/') != std::string::npos || path_or_name.ends_with(".toml");
@@ -83,7 +68,7 @@ StoredModel load_model(const std::string& path_or_name, const std::vector<std::s
   out.bundle.name = path.stem().string();
   out.bundle.robot_file = path.string();
   std::string error;
-  out.bundle.robot_text = read_file(path, error);
+  out.bundle.robot_text = read_text_file(path, error);
   if (!error.empty()) {
     ModelProblem problem;
     problem.file = path.string();
@@ -94,7 +79,7 @@ StoredModel load_model(const std::string& path_or_name, const std::vector<std::s
   const auto load_motor = [&](const std::string& file) {
     const fs::path motor_path = (path.parent_path() / file).lexically_normal();
     MotorFileText motor{.shown_name = motor_path.string(), .text = "", .error = ""};
-    motor.text = read_file(motor_path, motor.error);
+    motor.text = read_text_file(motor_path, motor.error);
     if (!motor.error.empty()) motor.error = fmt::format("{}: {}", motor_path.string(), motor.error);
     out.bundle.motor_file = file;
     out.bundle.motor_text = motor.text;
