@@ -1,11 +1,8 @@
 // read_candidate: a model file as the thing a comparison, fit or diagnosis works on.
-#include <algorithm>
 #include <filesystem>
 
 #include "hil/dataset_reader.h"
 #include "hil/text_file.h"
-#include "sim/core/effect_reader.h"
-#include "sim/core/effect_registry.h"
 #include "sim/core/model_document.h"
 #include "sim/drive/axis_model.h"
 
@@ -29,30 +26,6 @@ bool says_robot(const std::string& text, const std::string& path) {
   return document && document->table["rig"].value_or(std::string()) == "robot";
 }
 
-// Coulomb friction is a number of a robot's base model; as a candidate's effect it can be fitted like any.
-EffectUse coulomb_use(const Parameter& torque) {
-  EffectUse use = neutral_use(*find_effect("coulomb_friction"));
-  use.values.front() = torque.value();
-  use.tolerances.assign(use.values.size(), std::nullopt);
-  use.tolerances.front() = torque.tolerance;
-  return use;
-}
-
-void read_robot(const std::string& text, const std::string& path, CandidateReading& out) {
-  ModelReading reading = read_model(text, path, motor_loader(path));
-  out.problems = std::move(reading.problems);
-  if (!reading.model) return;
-  Candidate candidate{.file = std::move(*reading.model), .effects = {}};
-  if (candidate.file.robot->effects) candidate.effects = *candidate.file.robot->effects;
-  const Parameter* coulomb = candidate.file.parameters.find("effects.coulomb_friction.torque_Nm");
-  if (coulomb != nullptr && coulomb->origin != Origin::kDefault)
-    candidate.effects.push_back(coulomb_use(*coulomb));
-  std::stable_sort(
-      candidate.effects.begin(), candidate.effects.end(),
-      [](const EffectUse& a, const EffectUse& b) { return a.entry->info->id < b.entry->info->id; });
-  out.candidate = std::move(candidate);
-}
-
 }  // namespace
 
 CandidateReading read_candidate(const std::string& model_path) {
@@ -67,14 +40,15 @@ CandidateReading read_candidate(const std::string& model_path) {
     return out;
   }
   if (says_robot(out.text, model_path)) {
-    read_robot(out.text, model_path, out);
+    ModelReading reading = read_model(out.text, model_path, motor_loader(model_path));
+    out.problems = std::move(reading.problems);
+    if (reading.model) out.candidate = candidate_of(*reading.model);
     return out;
   }
   AxisReading reading = read_axis_model(out.text, model_path, motor_loader(model_path));
   out.problems = std::move(reading.problems);
   if (reading.model)
-    out.candidate =
-        Candidate{.file = std::move(reading.model->file), .effects = std::move(reading.model->effects)};
+    out.candidate = candidate_of(std::move(reading.model->file), std::move(reading.model->effects));
   return out;
 }
 

@@ -94,31 +94,44 @@ class DatasetReader {
     return dataset_.linear ? kRigLinearAxis : kRigAxis;
   }
 
-  // Numbers a run knows: paths of the model's parameters, within their bounds.
+  // Numbers a run knows: paths of the model's parameters or of its effects', within their bounds.
   void check_known() {
-    std::vector<std::string> paths;
-    for (const ParameterRow& row : model_rows()) {
-      if ((row.rigs & rig_bit()) != 0 && row.kind != ParameterKind::kText && !row.section.empty())
-        paths.push_back(parameter_path(row));
-    }
-    const std::vector<std::string_view> names(paths.begin(), paths.end());
+    Candidate trial = *out_.nominal;
     for (std::size_t r = 0; r < plan_.runs.size(); ++r) {
       for (const KnownNumber& known : plan_.runs[r].known) {
         const std::string key = fmt::format("runs[{}].known.{}", r + 1, known.path);
-        const std::size_t dot = known.path.rfind('.');
-        const ParameterRow* row = dot == std::string::npos
-                                      ? nullptr
-                                      : find_model_row(known.path.substr(0, dot), known.path.substr(dot + 1));
-        if (row == nullptr || (row->rigs & rig_bit()) == 0 || row->kind == ParameterKind::kText) {
-          const std::string_view near = nearest_spelling(known.path, names);
+        const ParameterRow* row = model_row_at(known.path);
+        if (value_at(trial, known.path)) {
+          const std::string fault = set_value(trial, known.path, known.value);
+          if (!fault.empty()) problem(known.at, key, known.written, "is out of range", fault);
+        } else if (row == nullptr) {
           problem(known.at, key, known.written, "the model has no such parameter",
-                  near.empty() ? "`omnihil models --keys` lists them"
-                               : fmt::format("did you mean \"{}\"?", near));
+                  parameter_hint(known.path));
         } else if (!within_bounds(*row, known.value)) {
           problem(known.at, key, known.written, "is out of range", "allowed: " + allowed_range(*row));
         }
       }
     }
+  }
+
+  // Of a number of this rig that a model may have, given or not; else null.
+  const ParameterRow* model_row_at(const std::string& path) const {
+    const std::size_t dot = path.rfind('.');
+    if (dot == std::string::npos) return nullptr;
+    const ParameterRow* row = find_model_row(path.substr(0, dot), path.substr(dot + 1));
+    return row != nullptr && (row->rigs & rig_bit()) != 0 && row->kind != ParameterKind::kText ? row
+                                                                                               : nullptr;
+  }
+
+  std::string parameter_hint(const std::string& path) const {
+    std::vector<std::string> paths;
+    for (const ParameterRow& row : model_rows()) {
+      const std::string known = parameter_path(row);
+      if (model_row_at(known) != nullptr) paths.push_back(known);
+    }
+    const std::vector<std::string_view> names(paths.begin(), paths.end());
+    const std::string_view near = nearest_spelling(path, names);
+    return near.empty() ? "`omnihil models --keys` lists them" : fmt::format("did you mean \"{}\"?", near);
   }
 
   void settle_units() {

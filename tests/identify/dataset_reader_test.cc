@@ -118,7 +118,7 @@ TEST_F(DatasetReaderTest, KnownNumbersOfARunAreHeldAgainstTheModel) {
   EXPECT_EQ(d.runs[1].known[1], (std::pair<std::string, double>("load.inertia_kg_m2", 6.1e-5)));
   folder.change("gear.ratio = 3", "gear.ration = -3");
   EXPECT_TRUE(says(refused(),
-                   "dataset.toml:15:55: runs[2].known.gear.ration = -3: the model has no such "
+                   "dataset.toml:15:56: runs[2].known.gear.ration = -3: the model has no such "
                    "parameter; did you mean \"gear.ratio\"?"))
       << refused();
 }
