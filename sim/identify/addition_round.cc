@@ -1,0 +1,207 @@
+#include "sim/identify/addition_round.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "sim/identify/contest.h"
+#include "sim/identify/order_spectrum.h"
+#include "sim/identify/parallel.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::size_t kMostRefits = 6;
+constexpr double kLeastShare = 0.002;       // of the residual's energy, to be worth a refit
+constexpr double kLeastRegimeShare = 0.05;  // of that of one regime
+constexpr double kNotSeen = 1.0;            // typical size gains less than chance
+
+DataScale scale_of(const Search& search, const Fitted& parent, const LinearBase& base) {
+  DataScale scale;
+  const Evidence& fit = (*search.uses)[0];
+  const auto top = [&](const char* name) {
+    double most = 0.0;
+    for (const double v : fit.track(parent.fit.model, name)) {
+      if (std::isfinite(v)) most = std::max(most, std::abs(v));
+    }
+    return most;
+  };
+  scale.top_speed_rad_s = top("speed");
+  scale.top_current_A = top("abs_current");
+  for (const int run : fit.runs()) {
+    scale.duration_s = std::max(scale.duration_s, search.predictor->run(run).duration_s());
+  }
+  for (const OrderPeak& p : strong_orders(*search.predictor, fit, parent.fit.model, base.residual(), 4)) {
+    scale.orders.push_back(p.order);
+  }
+  return scale;
+}
+
+// Signals weigh the same however well the model explains each: by what it leaves now.
+Eigen::VectorXd scales_now(const Search& search, const Fitted& parent) {
+  Eigen::VectorXd scale = (*search.uses)[0].mean_square(parent.residual[0]).cwiseSqrt();
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    scale[k] = std::max(scale[k], search.kinds->noise_sigma[static_cast<std::size_t>(k)]);
+  }
+  return scale;
+}
+
+std::vector<const EffectEntry*> not_yet(const Search& search, const Candidate& model) {
+  std::vector<const EffectEntry*> out;
+  for (const EffectEntry* e : search.applicable) {
+    const bool has = std::any_of(model.effects.begin(), model.effects.end(),
+                                 [&](const EffectUse& u) { return u.entry->info->id == e->info->id; });
+    if (!has) out.push_back(e);
+  }
+  return out;
+}
+
+// Which of the screened are refitted: the largest shares, and whoever is largest in a regime.
+std::vector<std::size_t> nominees(const std::vector<Screened>& screened) {
+  std::vector<std::size_t> order, out;
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const Screened& s = screened[i];
+    const bool above_chance = s.tried && s.gain > 2.0 * s.null_gain;
+    if (above_chance && (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare))
+      order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return screened[a].share > screened[b].share; });
+  for (const std::size_t i : order) {
+    if (out.size() < kMostRefits - 1) out.push_back(i);
+  }
+  const auto corner = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return screened[a].best_regime_share < screened[b].best_regime_share;
+  });
+  if (corner != order.end() && std::find(out.begin(), out.end(), *corner) == out.end())
+    out.push_back(*corner);
+  return out;
+}
+
+double chance_of(const std::vector<Screened>& screened) {
+  double most = 0.0;
+  for (const Screened& s : screened) most = std::max(most, s.null_gain);
+  return most;
+}
+
+void refit_nominees(const Search& search, const Fitted& parent, const std::vector<std::size_t>& chosen,
+                    Round& round) {
+  round.contenders.resize(chosen.size());
+  std::atomic<int> done{0};
+  std::atomic<bool> stopped{false};
+  parallel_for(search.jobs, static_cast<int>(chosen.size()), [&](int n) {
+    Contender& c = round.contenders[static_cast<std::size_t>(n)];
+    c.screened = round.screened[chosen[static_cast<std::size_t>(n)]];
+    if (stopped) return;
+    RefitSetup setup{.predictor = search.predictor,
+                     .uses = search.uses,
+                     .nominal = search.nominal,
+                     .seed = search.seed,
+                     .stop = [&] { return stopped.load(); }};
+    c.fitted = refit(setup, parent, c.screened);
+    const double over_chance = c.screened.gain / std::max(round.chance_gain, 1e-300);
+    c.judgement = judge(search.judging, parent, c.fitted, c.screened.name, over_chance);
+    const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
+    if (search.progress && !search.progress("refitting " + c.screened.name, share)) stopped = true;
+  });
+  round.stopped = stopped;
+}
+
+std::string unseen(const Screened& s, double chance) {
+  if (!s.tried) return "not tried";
+  if (s.kept < 0.01 && s.typical_gain <= kNotSeen * chance && !s.imitated_by.empty()) {
+    return fmt::format("not visible in these data: {} imitates it", s.imitated_by);
+  }
+  if (s.typical_gain <= kNotSeen * chance) {
+    return "not visible in these data: at its typical size its signal is below what the sensors' noise gives";
+  }
+  return "";
+}
+
+RankedEffect ranked(const Screened& s, double chance) {
+  RankedEffect r;
+  r.effect = s.name;
+  r.score = s.share;
+  r.why = unseen(s, chance);
+  if (r.why.empty()) {
+    r.why = s.share > kLeastShare
+                ? fmt::format("could take {:.1f} % of the error energy; others take more", 100.0 * s.share)
+                : "would take less of the error energy than matters";
+  }
+  return r;
+}
+
+void make_ranking(const Search& search, const Fitted& parent, Round& round) {
+  std::vector<std::string> refitted;
+  for (const Contender& c : round.contenders) {
+    RankedEffect r = ranked(c.screened, round.chance_gain);
+    r.refitted = true;
+    r.accepted = c.judgement.accepted;
+    r.why = c.judgement.why;
+    r.probability = c.probability;
+    r.parameters = parameters_of(c.fitted.fit, c.screened.name);
+    const auto ratio = [&](std::size_t u) {
+      const Evidence& evidence = (*search.uses)[u];
+      if (evidence.empty() || !c.fitted.finite) return 1.0;
+      return pooled_error(evidence, *search.kinds, c.fitted.residual[u]) /
+             std::max(pooled_error(evidence, *search.kinds, parent.residual[u]), 1e-300);
+    };
+    r.fit_error_ratio = ratio(0);
+    r.holdout_error_ratio = ratio(1);
+    r.extrapolation_error_ratio = ratio(2);
+    refitted.push_back(c.screened.name);
+    round.ranking.push_back(std::move(r));
+  }
+  std::vector<RankedEffect> others;
+  for (const Screened& s : round.screened) {
+    if (std::find(refitted.begin(), refitted.end(), s.name) == refitted.end()) {
+      others.push_back(ranked(s, round.chance_gain));
+    }
+  }
+  std::stable_sort(others.begin(), others.end(),
+                   [](const RankedEffect& a, const RankedEffect& b) { return a.score > b.score; });
+  round.ranking.insert(round.ranking.end(), others.begin(), others.end());
+}
+
+}  // namespace
+
+std::vector<ParameterEstimate> parameters_of(const FitResult& fit, const std::string& effect) {
+  std::vector<ParameterEstimate> out;
+  for (const ParameterEstimate& p : fit.parameters) {
+    if (!p.path.starts_with(effect + ".")) continue;
+    out.push_back(p);
+    out.back().path = p.path.substr(effect.size() + 1);
+  }
+  return out;
+}
+
+Round addition_round(const Search& search, const Fitted& parent) {
+  Round round;
+  const Evidence& fit = (*search.uses)[0];
+  const LinearBase base(fit, parent.fit.model, unknowns_with_priors(parent.fit.model, *search.nominal),
+                        scales_now(search, parent), search.jobs);
+  if (!base.usable()) return round;
+  ScreeningTask task;
+  task.evidence = &fit;
+  task.model = &parent.fit.model;
+  task.base = &base;
+  for (const Eigen::VectorXd& n : search.null->fit_noise)
+    task.noise.push_back(n.cwiseProduct(base.weights()));
+  task.regimes = regime_masks(fit, parent.fit.model);
+  task.scale = scale_of(search, parent, base);
+  round.orders = task.scale.orders;
+  task.jobs = search.jobs;
+  task.progress = [&](double share) { return !search.progress || search.progress("screening", 0.5 * share); };
+  round.screened = screen(task, not_yet(search, parent.fit.model));
+  for (Screened& s : screen_extensions(task)) round.screened.push_back(std::move(s));
+  round.chance_gain = chance_of(round.screened);
+  round.stopped = search.progress && !search.progress("screening", 0.5);
+  if (!round.stopped) refit_nominees(search, parent, nominees(round.screened), round);
+  settle(search, parent, round);
+  make_ranking(search, parent, round);
+  return round;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,106 @@
+#include "sim/identify/contest.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace omnihil {
+namespace {
+
+constexpr double kSameGain = 0.03;  // of the best one's gain: within it two gains are one
+constexpr double kTwinGain = 0.06;  // so near, an effect may be meant instead, if it is known to be confused
+constexpr double kTwinSignal = 0.98;  // cosine of signals that no refit can part
+constexpr double kNothing = 0.01;     // gain below which a draw goes to "none"
+constexpr std::size_t kMostTwins = 3;
+
+int numbers(const Contender& c) {
+  int count = 0;
+  for (const ParameterEstimate& p : c.fitted.fit.parameters) {
+    if (p.path.starts_with(c.screened.name + ".")) ++count;
+  }
+  return count;
+}
+
+// What decides: held-out runs and fit runs alike; without held-out runs the latter.
+double gain_of(const Contender& c, bool has_holdout) {
+  const double fit = 1.0 - c.judgement.fit.ratio;
+  return has_holdout ? 0.5 * (fit + 1.0 - c.judgement.holdout.ratio) : fit;
+}
+
+bool listed_twins(const EffectInfo& a, const EffectInfo& b) {
+  return std::find(a.twins.begin(), a.twins.end(), b.id) != a.twins.end() ||
+         std::find(b.twins.begin(), b.twins.end(), a.id) != b.twins.end();
+}
+
+void give_probabilities(const Search& search, const Fitted& parent, Round& round) {
+  const std::size_t use = (*search.uses)[1].empty() ? 0 : 1;
+  const BlockBootstrap* bootstrap = search.judging.bootstrap[use];
+  if (bootstrap == nullptr || bootstrap->empty() || round.contenders.empty()) return;
+  std::vector<Eigen::VectorXd> draws;
+  for (const Contender& c : round.contenders) {
+    draws.push_back(c.fitted.finite ? bootstrap->ratios(parent.residual[use], c.fitted.residual[use])
+                                    : Eigen::VectorXd());
+  }
+  const Eigen::Index count = bootstrap->ratios(parent.residual[use], parent.residual[use]).size();
+  for (Eigen::Index d = 0; d < count; ++d) {
+    double best = 1.0;
+    for (const Eigen::VectorXd& r : draws) best = r.size() > 0 ? std::min(best, r[d]) : best;
+    if (1.0 - best < kNothing) continue;
+    std::vector<double> votes(draws.size(), 0.0);
+    double all = 0.0;
+    for (std::size_t c = 0; c < draws.size(); ++c) {
+      if (draws[c].size() == 0 || draws[c][d] > best + kSameGain * (1.0 - best)) continue;
+      votes[c] = 1.0;
+      all += 1.0;
+    }
+    for (std::size_t c = 0; c < votes.size(); ++c) {
+      // What failed the judgement may still be the truth, badly seen; its vote counts a fifth, the rest is
+      // "none".
+      const double worth = round.contenders[c].judgement.accepted ? 1.0 : 0.2;
+      round.contenders[c].probability += worth * votes[c] / all / static_cast<double>(count);
+    }
+  }
+}
+
+}  // namespace
+
+double likeness(const Screened& a, const Screened& b) {
+  if (a.signal.size() == 0 || a.signal.size() != b.signal.size()) return 0.0;
+  const double sizes = a.signal.norm() * b.signal.norm();
+  return sizes > 0.0 ? std::abs(a.signal.dot(b.signal)) / sizes : 0.0;
+}
+
+void settle(const Search& search, const Fitted& parent, Round& round) {
+  const bool has_holdout = !(*search.uses)[1].empty();
+  give_probabilities(search, parent, round);
+  std::stable_sort(round.contenders.begin(), round.contenders.end(),
+                   [&](const Contender& a, const Contender& b) {
+                     if (a.judgement.accepted != b.judgement.accepted) return a.judgement.accepted;
+                     return gain_of(a, has_holdout) > gain_of(b, has_holdout);
+                   });
+  if (round.contenders.empty() || !round.contenders.front().judgement.accepted) return;
+  const Contender& best = round.contenders.front();
+  const double most = gain_of(best, has_holdout);
+  std::vector<std::size_t> equals{0};
+  for (std::size_t c = 1; c < round.contenders.size(); ++c) {
+    const Contender& other = round.contenders[c];
+    if (!other.judgement.accepted || other.screened.extends) continue;
+    const double lost = (most - gain_of(other, has_holdout)) / most;
+    const bool confused = listed_twins(*best.screened.entry->info, *other.screened.entry->info);
+    const bool alike = likeness(best.screened, other.screened) > kTwinSignal;
+    if (lost < kSameGain || (lost < kTwinGain && (confused || alike))) equals.push_back(c);
+  }
+  if (equals.size() > kMostTwins) equals.resize(kMostTwins);
+  // Of equals the one with the fewest numbers comes first; the best where that is a draw.
+  const std::size_t first =
+      *std::min_element(equals.begin(), equals.end(), [&](std::size_t a, std::size_t b) {
+        return numbers(round.contenders[a]) < numbers(round.contenders[b]);
+      });
+  std::rotate(round.contenders.begin(), round.contenders.begin() + static_cast<std::ptrdiff_t>(first),
+              round.contenders.begin() + static_cast<std::ptrdiff_t>(first) + 1);
+  round.chosen = 0;
+  for (const std::size_t e : equals) {
+    if (e != first) round.twins.push_back(static_cast<int>(e < first ? e + 1 : e));
+  }
+}
+
+}  // namespace omnihil

@@ -1,0 +1,182 @@
+#include "sim/identify/judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/core/random.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kDraws = 200;
+// What an addition must take away from the held-out error energy that is above the sensors' floor, and of the
+// whole of it. Real recordings never reach the floor: without this every effect would stay.
+constexpr double kMatters = 0.02;
+constexpr double kMattersOfAll = 0.006;
+constexpr double kChanceMargin = 2.0;  // gain over the most that the null's replicates gave
+constexpr double kExtrapolationLoss = 0.03;
+constexpr double kPushedOut_sigmas = 3.5;     // of a base parameter's tolerance
+constexpr double kDriftAllowed_sigmas = 0.7;  // further out than it was before
+
+double at_share(Eigen::VectorXd values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<Eigen::Index>(share * static_cast<double>(values.size() - 1))];
+}
+
+// A base parameter that the addition pushes out of its tolerance; empty: none.
+std::string pushed_out(const FitResult& parent, const FitResult& child) {
+  for (const ParameterEstimate& p : child.parameters) {
+    if (p.prior_sigma <= 0.0 || std::abs(p.drift_sigmas) < kPushedOut_sigmas) continue;
+    const auto before = std::find_if(parent.parameters.begin(), parent.parameters.end(),
+                                     [&](const ParameterEstimate& q) { return q.path == p.path; });
+    if (before == parent.parameters.end()) continue;  // of the effect itself
+    if (std::abs(p.drift_sigmas) > std::abs(before->drift_sigmas) + kDriftAllowed_sigmas) {
+      return fmt::format("it pushes {} out of its tolerance ({:+.1f} sigma, before {:+.1f})", p.path,
+                         p.drift_sigmas, before->drift_sigmas);
+    }
+  }
+  return "";
+}
+
+std::string unphysical(const FitResult& child, const std::string& name) {
+  for (const ParameterEstimate& p : child.parameters) {
+    if (!p.path.starts_with(name + ".") || !p.unphysical) continue;
+    return fmt::format("{} = {:.4g} {} is not physical", p.path, p.value, p.unit);
+  }
+  return "";
+}
+
+}  // namespace
+
+Fitted fitted(const Uses& uses, FitResult fit, int jobs) {
+  Fitted out{.fit = std::move(fit), .residual = {}, .finite = true};
+  for (std::size_t u = 0; u < kUses; ++u) {
+    if (uses[u].empty()) continue;
+    out.residual[u] = uses[u].residual(out.fit.model, jobs);
+    if (out.residual[u].size() != uses[u].size()) out.finite = false;
+  }
+  return out;
+}
+
+BlockBootstrap::BlockBootstrap(const Evidence& evidence, std::uint64_t seed) : evidence_(&evidence) {
+  const int blocks = evidence.blocks();
+  if (blocks == 0) return;
+  counts_ = Eigen::MatrixXd::Zero(kDraws, blocks);
+  for (int d = 0; d < kDraws; ++d) {
+    for (int b = 0; b < blocks; ++b) {
+      const std::uint64_t counter = static_cast<std::uint64_t>(d) * 1000003u + static_cast<std::uint64_t>(b);
+      const int drawn = static_cast<int>(uniform(seed, stream_of("bootstrap"), counter) * blocks);
+      counts_(d, std::min(drawn, blocks - 1)) += 1.0;
+    }
+  }
+}
+
+Eigen::VectorXd BlockBootstrap::ratios(const Eigen::VectorXd& reference,
+                                       const Eigen::VectorXd& residual) const {
+  const Eigen::MatrixXd before = counts_ * evidence_->block_sums(reference);
+  const Eigen::MatrixXd after = counts_ * evidence_->block_sums(residual);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(counts_.rows());
+  double signals = 0.0;
+  for (Eigen::Index k = 0; k < before.cols(); ++k) {
+    if (evidence_->samples()[k] <= 0.0 || before.col(k).sum() <= 0.0) continue;
+    signals += 1.0;
+    for (Eigen::Index d = 0; d < out.size(); ++d) {
+      out[d] += before(d, k) > 0.0 ? after(d, k) / before(d, k) : 1.0;
+    }
+  }
+  return signals > 0.0 ? Eigen::VectorXd(out / signals) : Eigen::VectorXd::Ones(counts_.rows());
+}
+
+UseGain BlockBootstrap::gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual) const {
+  const Eigen::VectorXd draws = ratios(reference, residual);
+  return {.ratio = energy_ratio(*evidence_, reference, residual),
+          .best = at_share(draws, 0.05),
+          .worst = at_share(draws, 0.95)};
+}
+
+double energy_ratio(const Evidence& evidence, const Eigen::VectorXd& reference,
+                    const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd before = evidence.mean_square(reference), after = evidence.mean_square(residual);
+  double sum = 0.0, signals = 0.0;
+  for (Eigen::Index k = 0; k < before.size(); ++k) {
+    if (before[k] <= 0.0) continue;
+    sum += after[k] / before[k];
+    signals += 1.0;
+  }
+  return signals > 0.0 ? sum / signals : 1.0;
+}
+
+double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd square = evidence.mean_square(residual);
+  double sum = 0.0, signals = 0.0;
+  for (int k = 0; k < kinds.count(); ++k) {
+    const double sigma = kinds.noise_sigma[static_cast<std::size_t>(k)];
+    if (evidence.samples()[k] <= 0.0 || sigma <= 0.0) continue;
+    sum += square[k] / (sigma * sigma);
+    signals += 1.0;
+  }
+  return signals > 0.0 ? std::sqrt(sum / signals) : 0.0;
+}
+
+double floor_share(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual) {
+  if (evidence.empty()) return 1.0;
+  const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(residual);
+  double sum = 0.0, signals = 0.0;
+  for (Eigen::Index k = 0; k < square.size(); ++k) {
+    if (square[k] <= 0.0) continue;
+    sum += std::min(1.0, floor[k] / square[k]);
+    signals += 1.0;
+  }
+  return signals > 0.0 ? sum / signals : 1.0;
+}
+
+Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted& child,
+                const std::string& name, double gain_over_chance) {
+  Judgement out;
+  if (!child.finite) {
+    out.why = "the model with it does not stay finite";
+    return out;
+  }
+  std::array<UseGain*, kUses> gains{&out.fit, &out.holdout, &out.extrapolation};
+  for (std::size_t u = 0; u < kUses; ++u) {
+    if ((*context.uses)[u].empty()) continue;
+    *gains[u] = context.bootstrap[u]->gain(parent.residual[u], child.residual[u]);
+  }
+  const Use decides = (*context.uses)[1].empty() ? Use::kFit : Use::kHoldout;
+  const std::size_t d = static_cast<std::size_t>(decides);
+  const UseGain& held = *gains[d];
+  const double above_floor = 1.0 - floor_share((*context.uses)[d], *context.null, parent.residual[d]);
+  const double needed = std::max(kMatters * above_floor, kMattersOfAll);
+  if (gain_over_chance < kChanceMargin) {
+    out.why =
+        fmt::format("its gain is {:.1f} times what chance gives in the simulated null", gain_over_chance);
+  } else if (1.0 - out.fit.ratio < kMattersOfAll) {
+    out.why = fmt::format("it lowers the error energy of the fit runs by {:.1f} % only",
+                          100.0 * (1.0 - out.fit.ratio));
+  } else if (1.0 - held.ratio < needed) {
+    out.why =
+        held.ratio > 1.0
+            ? fmt::format(
+                  "it lowers the error that it was fitted to, and raises the {} error energy by {:.1f} %",
+                  decides == Use::kHoldout ? "held-out" : "fit", 100.0 * (held.ratio - 1.0))
+            : fmt::format("it takes {:.1f} % of the held-out error energy; {:.1f} % would matter",
+                          100.0 * (1.0 - held.ratio), 100.0 * needed);
+  } else if (held.worst > 1.0) {
+    out.why = "its gain comes from a few moments of the held-out runs alone";
+  } else if (out.extrapolation.ratio > 1.0 + kExtrapolationLoss && out.extrapolation.best > 1.0) {
+    out.why = fmt::format("it raises the error energy of the extrapolation runs by {:.0f} %",
+                          100.0 * (out.extrapolation.ratio - 1.0));
+  } else if (out.why = unphysical(child.fit, name); !out.why.empty()) {
+    return out;
+  } else if (out.why = pushed_out(parent.fit, child.fit); !out.why.empty()) {
+    return out;
+  } else {
+    out.accepted = true;
+    out.why = fmt::format("held-out error energy falls by {:.1f} %", 100.0 * (1.0 - held.ratio));
+  }
+  return out;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,49 @@
+#include "sim/identify/null_model.h"
+
+#include <cmath>
+
+#include "sim/core/random.h"
+#include "sim/identify/parallel.h"
+
+namespace omnihil {
+
+Eigen::VectorXd NullModel::floor(Use use) const {
+  const Eigen::MatrixXd& m = mean_square[static_cast<std::size_t>(use)];
+  return m.rows() > 0 ? Eigen::VectorXd(m.colwise().mean())
+                      : Eigen::VectorXd(Eigen::VectorXd::Zero(m.cols()));
+}
+
+Eigen::VectorXd NullModel::spread(Use use) const {
+  const Eigen::MatrixXd& m = mean_square[static_cast<std::size_t>(use)];
+  if (m.rows() < 2) return Eigen::VectorXd::Zero(m.cols());
+  const Eigen::RowVectorXd mean = m.colwise().mean();
+  const Eigen::MatrixXd off = m.rowwise() - mean;
+  return (off.array().square().colwise().sum() / static_cast<double>(m.rows() - 1)).sqrt().transpose();
+}
+
+NullModel simulate_null(const Predictor& predictor, const Candidate& truth,
+                        const std::array<Evidence, kUses>& uses, std::uint64_t seed, int replicates,
+                        int jobs) {
+  NullModel null;
+  null.fit_noise.resize(static_cast<std::size_t>(replicates));
+  std::array<Eigen::VectorXd, kUses> model;
+  for (std::size_t u = 0; u < kUses; ++u) {
+    if (!uses[u].empty()) model[u] = uses[u].predicted(truth, jobs);
+    null.mean_square[u] = Eigen::MatrixXd::Zero(replicates, uses[u].samples().size());
+  }
+  parallel_for(jobs, replicates, [&](int k) {
+    const std::unique_ptr<Predictor> world =
+        predictor.simulated(truth, random_bits(seed, stream_of("null"), static_cast<std::uint64_t>(k)));
+    for (std::size_t u = 0; u < kUses; ++u) {
+      if (uses[u].empty() || model[u].size() != uses[u].size()) continue;
+      Eigen::VectorXd noise = uses[u].measured_by(*world) - model[u];
+      noise = noise.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
+      null.mean_square[u].row(k) = uses[u].mean_square(noise).transpose();
+      if (u == static_cast<std::size_t>(Use::kFit))
+        null.fit_noise[static_cast<std::size_t>(k)] = std::move(noise);
+    }
+  });
+  return null;
+}
+
+}  // namespace omnihil

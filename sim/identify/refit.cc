@@ -1,0 +1,99 @@
+#include "sim/identify/refit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/core/effect_registry.h"
+
+namespace omnihil {
+namespace {
+
+// Numbers of a candidate by path; what `start` does not name stays.
+void start_at(std::vector<Unknown>& unknowns, const std::vector<Unknown>& paths,
+              const std::vector<double>& values) {
+  for (std::size_t i = 0; i < paths.size() && i < values.size(); ++i) {
+    for (Unknown& u : unknowns) {
+      if (u.path == paths[i].path) u.start = std::clamp(values[i], u.lower, u.upper);
+    }
+  }
+}
+
+Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::vector<Unknown>& unknowns,
+                int starts) {
+  std::vector<double> values;
+  for (const Unknown& u : unknowns) values.push_back(u.start);
+  FitOptions options;
+  options.jobs = setup.jobs;
+  options.max_iterations = setup.max_iterations;
+  options.starts = starts;
+  options.seed = setup.seed;
+  options.quick = setup.quick;
+  options.profile = !setup.quick;
+  options.stop = setup.stop;
+  const Candidate start = with_values(candidate, unknowns, values);
+  return fitted(*setup.uses, fit(*setup.predictor, start, unknowns, options), setup.jobs);
+}
+
+// The effect a tenth as strong: near neutral, yet with a direction for its shapes.
+EffectUse near_neutral(const EffectUse& use) {
+  EffectUse out = use;
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    const EffectParam& row = use.entry->info->params[i];
+    if (row.role != ParamRole::kShape) out.values[i] = row.neutral + 0.1 * (use.values[i] - row.neutral);
+  }
+  return out;
+}
+
+double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& child) {
+  if (!child.finite) return 1e300;
+  return energy_ratio((*setup.uses)[0], parent.residual[0], child.residual[0]);
+}
+
+}  // namespace
+
+std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Candidate& nominal) {
+  std::vector<Unknown> unknowns = unknowns_of(candidate);
+  const std::vector<Unknown> believed = unknowns_of(nominal);
+  for (Unknown& u : unknowns) {
+    const auto from =
+        std::find_if(believed.begin(), believed.end(), [&](const Unknown& b) { return b.path == u.path; });
+    if (from == believed.end()) continue;
+    u.prior_mean = from->prior_mean;
+    u.prior_sigma = from->prior_sigma;
+    u.scale = from->scale;
+    u.lower = from->lower;
+    u.upper = from->upper;
+    u.start = std::clamp(u.start, u.lower, u.upper);
+  }
+  return unknowns;
+}
+
+Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effect) {
+  const Candidate with = with_use(parent.fit.model, effect.start);
+  std::vector<Unknown> unknowns = unknowns_with_priors(with, *setup.nominal);
+  start_at(unknowns, effect.base_unknowns, effect.base_start);
+  Fitted best = fit_from(setup, with, unknowns, 1);
+  const double expected = 1.0 - 0.5 * effect.share;
+  double ratio = fit_ratio(setup, parent, best);
+  if (ratio > expected && !(setup.stop && setup.stop())) {
+    const Candidate weak = with_use(parent.fit.model, near_neutral(effect.start));
+    Fitted second = fit_from(setup, weak, unknowns_with_priors(weak, *setup.nominal), 1);
+    const double second_ratio = fit_ratio(setup, parent, second);
+    if (second_ratio < ratio) {
+      best = std::move(second);
+      ratio = second_ratio;
+    }
+  }
+  if (ratio > 1.0) {
+    // The parent, with the effect neutral, is a member of the larger family.
+    FitResult same = parent.fit;
+    best = {.fit = std::move(same), .residual = parent.residual, .finite = parent.finite};
+  }
+  return best;
+}
+
+Fitted refit_as_it_is(const RefitSetup& setup, const Candidate& model, int starts) {
+  return fit_from(setup, model, unknowns_with_priors(model, *setup.nominal), starts);
+}
+
+}  // namespace omnihil

@@ -1,0 +1,73 @@
+#include "sim/identify/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace omnihil {
+namespace {
+
+constexpr double kStructure = 0.10;    // of the null's energy
+constexpr double kUnexplained = 0.20;  // of what the baseline left above the null
+constexpr double kSpreads = 5.0;       // of the null's replicates
+
+// Excess of each signal's energy over the null's.
+Eigen::VectorXd excess_of(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(residual);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(square.size());
+  for (Eigen::Index k = 0; k < out.size(); ++k) {
+    if (floor[k] > 0.0) out[k] = square[k] / floor[k] - 1.0;
+  }
+  return out;
+}
+
+}  // namespace
+
+Leftover leftover_of(const Uses& uses, const SignalKinds& kinds, const NullModel& null,
+                     const Fitted& baseline, const Fitted& last) {
+  Leftover out;
+  const std::size_t u = uses[1].empty() ? 0 : 1;
+  if (!last.finite || !baseline.finite) return out;
+  const Eigen::VectorXd before = excess_of(uses[u], null, baseline.residual[u]);
+  const Eigen::VectorXd after = excess_of(uses[u], null, last.residual[u]);
+  Eigen::Index worst = 0;
+  out.excess = after.maxCoeff(&worst);
+  out.excess_before = before[worst];
+  out.signal = kinds.name[static_cast<std::size_t>(worst)];
+  const double floor = null.floor(uses[u].use())[worst];
+  out.spread = floor > 0.0 ? null.spread(uses[u].use())[worst] / floor : 0.0;
+  double sum = 0.0, signals = 0.0;
+  for (Eigen::Index k = 0; k < after.size(); ++k) {
+    if (before[k] < 0.02) continue;
+    sum += std::clamp(after[k] / before[k], 0.0, 1.0);
+    signals += 1.0;
+  }
+  out.unexplained = signals > 0.0 ? sum / signals : 0.0;
+  return out;
+}
+
+bool structure_remains(const Leftover& rest, bool effects_added) {
+  const bool above_chance = rest.excess > kSpreads * rest.spread;
+  if (!above_chance || rest.excess < kStructure) return false;
+  return !effects_added || rest.unexplained > kUnexplained;
+}
+
+std::string leftover_sentence(const Leftover& rest, bool effects_added) {
+  const std::string size = fmt::format(
+      "the error energy of {} is {:.0f} % above what the sensors' noise alone would leave "
+      "(simulated; its replicates scatter by {:.1f} %)",
+      rest.signal, 100.0 * rest.excess, 100.0 * rest.spread);
+  if (structure_remains(rest, effects_added)) {
+    return "Structure remains that no known effect explains: " + size + ".";
+  }
+  if (effects_added) {
+    return fmt::format(
+        "Nothing more that matters can be learned from these data: {}; {:.0f} % of what the base "
+        "model left is explained.",
+        size, 100.0 * (1.0 - rest.unexplained));
+  }
+  return "Nothing that matters is missing as far as these data show: " + size + ".";
+}
+
+}  // namespace omnihil

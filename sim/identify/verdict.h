@@ -1,0 +1,33 @@
+// What is left when no effect earns its place any more: nothing, or structure; and what that means.
+//
+//   Leftover rest = leftover_of(uses, null, baseline, last);
+//   Verdict v = verdict_of(rest, effects_added);
+//
+// Structure remains where the error energy that no addition took is above the simulated null by more than its
+// replicates scatter AND by a size that matters. Both are said in words. Limits (our choice, held by the
+// hidden-effect tests): kStructure above the floor; of what was there at first, kUnexplained of it.
+#pragma once
+#include <string>
+
+#include "sim/identify/diagnosis.h"
+#include "sim/identify/judge.h"
+
+namespace omnihil {
+
+struct Leftover {
+  double excess = 0.0;           // error energy over the null's, less 1: of the signal where it is largest
+  double excess_before = 0.0;    // the same of the refitted baseline
+  double spread = 0.0;           // of the null's replicates, relative, that signal
+  double relative_error = 0.0;   // root mean square over the standard deviation of the signal, that signal
+  double unexplained = 0.0;      // share of the baseline's excess that is left, mean over the signals
+  double autocorrelation = 1.0;  // samples that say one thing: of that signal's residual over the null's
+  std::string signal;
+};
+
+Leftover leftover_of(const Uses& uses, const SignalKinds& kinds, const NullModel& null,
+                     const Fitted& baseline, const Fitted& last);
+
+bool structure_remains(const Leftover& rest, bool effects_added);
+std::string leftover_sentence(const Leftover& rest, bool effects_added);
+
+}  // namespace omnihil
