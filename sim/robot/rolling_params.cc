@@ -1,0 +1,113 @@
+#include "sim/robot/rolling_params.h"
+
+#include <numbers>
+
+#include "sim/drive/axis_model.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::string_view kOwnPaths[] = {
+    "robot.mass_kg",
+    "robot.yaw_inertia_kg_m2",
+    "robot.center_of_mass_x_m",
+    "robot.center_of_mass_y_m",
+    "robot.center_of_mass_height_m",
+    "robot.wheel_center_radius_m",
+    "robot.wheel_radius_m",
+    "robot.wheel_inertia_kg_m2",
+    "robot.slip_speed_floor_m_s",
+    "tyre.longitudinal.extremum_slip",
+    "tyre.longitudinal.extremum_value",
+    "tyre.longitudinal.asymptote_slip",
+    "tyre.longitudinal.asymptote_value",
+    "tyre.lateral.extremum_slip",
+    "tyre.lateral.extremum_value",
+    "tyre.lateral.asymptote_slip",
+    "tyre.lateral.asymptote_value",
+};
+
+// In the order of kOwnPaths.
+template <typename T>
+std::array<T*, std::size(kOwnPaths)> own_numbers(RollingParams<T>& p) {
+  return {&p.mass_kg,
+          &p.yaw_inertia_kg_m2,
+          &p.center_of_mass_x_m,
+          &p.center_of_mass_y_m,
+          &p.center_of_mass_height_m,
+          &p.wheel_center_radius_m,
+          &p.wheel_radius_m,
+          &p.drive.load_inertia_kg_m2,
+          &p.slip_speed_floor_m_s,
+          &p.longitudinal.extremum_slip,
+          &p.longitudinal.extremum_value,
+          &p.longitudinal.asymptote_slip,
+          &p.longitudinal.asymptote_value,
+          &p.lateral.extremum_slip,
+          &p.lateral.extremum_value,
+          &p.lateral.asymptote_slip,
+          &p.lateral.asymptote_value};
+}
+
+bool given(const ParameterTable& table, std::string_view section) {
+  for (const Parameter& p : table.parameters) {
+    if (p.row->section == section && p.origin != Origin::kDefault && !p.values.empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+template <typename T>
+T* rolling_number(RollingParams<T>& p, std::string_view path) {
+  const auto own = own_numbers(p);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (kOwnPaths[i] == path) return own[i];
+  }
+  for (const DriveParamPath& at : drive_param_paths()) {
+    if (at.path != path) continue;
+    if constexpr (std::is_same_v<T, double>) {
+      return &(p.drive.*at.value);
+    } else {
+      return &(p.drive.*at.jet);
+    }
+  }
+  return nullptr;
+}
+
+RollingParams<double> rolling_params(const ParameterTable& table) {
+  RollingParams<double> p;
+  p.drive = drive_params_of(table);
+  p.drive.coulomb_friction_Nm = 0.0;  // the effect of that name
+  const auto own = own_numbers(p);
+  for (std::size_t i = 0; i < own.size(); ++i) *own[i] = table.value_or(kOwnPaths[i], *own[i]);
+  if (const Parameter* angles = table.find("robot.wheel_angle_deg"); angles != nullptr) {
+    for (std::size_t i = 0; i < kWheels && i < angles->values.size(); ++i) {
+      p.wheel_angle_rad[i] = angles->values[i] * std::numbers::pi / 180.0;
+    }
+  }
+  p.has_tyre = given(table, "tyre.longitudinal");
+  p.has_lateral_tyre = given(table, "tyre.lateral");
+  return p;
+}
+
+template <typename T>
+RollingParams<T> rolling_params_as(const RollingParams<double>& p) {
+  RollingParams<T> q;
+  q.drive = drive_params_as<T>(p.drive);
+  q.wheel_angle_rad = p.wheel_angle_rad;
+  q.has_tyre = p.has_tyre;
+  q.has_lateral_tyre = p.has_lateral_tyre;
+  RollingParams<double> from = p;
+  const auto source = own_numbers(from);
+  const auto target = own_numbers(q);
+  for (std::size_t i = 0; i < source.size(); ++i) *target[i] = T(*source[i]);
+  return q;
+}
+
+template double* rolling_number(RollingParams<double>&, std::string_view);
+template Jet* rolling_number(RollingParams<Jet>&, std::string_view);
+template RollingParams<double> rolling_params_as(const RollingParams<double>&);
+template RollingParams<Jet> rolling_params_as(const RollingParams<double>&);
+
+}  // namespace omnihil

@@ -1,0 +1,519 @@
+#include "sim/robot/rolling_robot.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace omnihil {
+namespace {
+
+constexpr double kRollingStiffness_N_s_per_m = 1e6;  // of a wheel that rolls: 1 N slides 1 um/s
+constexpr int kIterations = 40;
+constexpr int kDampedAfter = 12;
+constexpr double kSolved_m_s = 1e-13;
+
+template <typename T>
+T absolute(const T& x) {
+  return value_of(x) < 0.0 ? T(-x) : x;
+}
+
+// tyre.h, over the share x of the extremum's slip.
+template <typename T>
+struct TyreShape {
+  T peak = T(0), last = T(0);  // friction coefficients
+  T last_part = T(1);          // the asymptote's slip over the extremum's
+
+  TyreShape<double> values() const { return {value_of(peak), value_of(last), value_of(last_part)}; }
+  T coefficient(const T& x) const {
+    if (value_of(x) <= 1.0) return peak * x * (1.5 - 0.5 * x * x);
+    if (value_of(x) >= value_of(last_part)) return last;
+    const T y = (x - 1.0) / (last_part - 1.0);
+    return peak + (last - peak) * y * y * (3.0 - 2.0 * y);
+  }
+  double coefficient_slope(double x) const {
+    const double p = value_of(peak), l = value_of(last), part = value_of(last_part);
+    if (x <= 1.0) return p * 1.5 * (1.0 - x * x);
+    if (x >= part) return 0.0;
+    const double y = (x - 1.0) / (part - 1.0);
+    return (l - p) * 6.0 * y * (1.0 - y) / (part - 1.0);
+  }
+};
+
+// Floor force over slip speed of one wheel, and its slope: rolling, or the tyre's curve.
+template <typename T>
+struct Grip {
+  bool rolls = true;
+  T load_N = T(0);
+  T full_grip_m_s = T(0);  // slip speed at the curve's extremum
+  TyreShape<T> shape;
+
+  double force(double slip_m_s) const {
+    if (rolls) return kRollingStiffness_N_s_per_m * slip_m_s;
+    const double x = std::abs(slip_m_s) / value_of(full_grip_m_s);
+    return std::copysign(value_of(load_N) * shape.values().coefficient(x), slip_m_s);
+  }
+  double slope(double slip_m_s) const {
+    if (rolls) return kRollingStiffness_N_s_per_m;
+    const double scale = value_of(full_grip_m_s);
+    return value_of(load_N) * shape.values().coefficient_slope(std::abs(slip_m_s) / scale) / scale;
+  }
+  // With what the curve's numbers carry. A wheel that rolls, with an unknown compliance of value zero behind
+  // it:  s = F / K + v_c f^-1(F / N)
+  T force_of(const T& slip_m_s) const {
+    if (!rolls) {
+      const T x = absolute(slip_m_s) / full_grip_m_s;
+      const T size = load_N * shape.coefficient(x);
+      return value_of(slip_m_s) < 0.0 ? T(-size) : size;
+    }
+    if (is_exactly(full_grip_m_s, 0.0)) return kRollingStiffness_N_s_per_m * slip_m_s;
+    const double force_N = kRollingStiffness_N_s_per_m * value_of(slip_m_s);
+    const double used = force_N / (value_of(shape.peak) * value_of(load_N) + 1e-300);
+    // x (3 - x^2) / 2 = y  =>  x = 2 sin(asin(y) / 3)
+    const double share = 2.0 * std::sin(std::asin(std::clamp(used, -1.0, 1.0)) / 3.0);
+    return kRollingStiffness_N_s_per_m * (slip_m_s - share * full_grip_m_s);
+  }
+};
+
+// Dry friction takes `level` off the size of y, down to standstill.
+template <typename T>
+T shrunk(const T& y, const T& level_up, const T& level_down) {
+  if (value_of(y) > value_of(level_up)) return y - level_up;
+  if (value_of(y) < -value_of(level_down)) return y + level_down;
+  return T(0);
+}
+
+}  // namespace
+
+// What the plant takes out of a drive's chain of torques: its friction, to be solved with the floor's force.
+template <typename T>
+struct RollingRobot<T>::Link {
+  T friction_positive_Nm = T(0), friction_negative_Nm = T(0);
+  T inverse_limit_per_A = T(0);
+};
+
+// Last in the chains of bridge and torque, by its name.
+template <typename T>
+struct RollingRobot<T>::LinkEffect {
+  static constexpr EffectParam kParams[] = {{.name = "on",
+                                             .unit = "1",
+                                             .typical = 1,
+                                             .upper = 1,
+                                             .what = "always on",
+                                             .how = "never seen by users"}};
+  static constexpr EffectInfo kInfo{.id = "~wheel",
+                                    .title = "Link between drive and body",
+                                    .equation = "",
+                                    .source = "rolling_robot.h",
+                                    .cannot = "",
+                                    .place = Place::kTorque,
+                                    .reveals = "",
+                                    .visible = "",
+                                    .params = kParams};
+  static Link& link(const void* context) { return *static_cast<Link*>(const_cast<void*>(context)); }
+  static void bridge(const void* context, const T*, T*, BridgePort<T>& port) {
+    link(context).inverse_limit_per_A = port.inverse_current_limit_per_A;
+  }
+  static void torque(const void* context, const T*, T*, TorquePort<T>& port) {
+    link(context).friction_positive_Nm = port.friction_positive_Nm;
+    link(context).friction_negative_Nm = port.friction_negative_Nm;
+    port.friction_positive_Nm = port.friction_negative_Nm = T(0);
+  }
+};
+
+template <typename T>
+struct RollingRobot<T>::Wheel {
+  DriveResult<T> drive;
+  T omega_start = T(0), omega_foreseen = T(0);
+  T effective_inertia = T(0), slope = T(0), end_answer = T(0), mean_answer = T(0);
+  T lever_m = T(0);  // radius over gear
+  T friction_up_Nm = T(0), friction_down_Nm = T(0);
+  T added_torque_Nm = T(0);  // at the rotor, by forces of effects along the drive direction
+  T lateral_N = T(0);
+  T hub_free_m_s = T(0);  // rim speed of the body without this step's floor forces
+  Grip<T> grip;
+};
+
+template <typename T>
+struct RollingRobot<T>::Step {
+  double h = 0.0;
+  std::array<Wheel, kWheels> wheel;
+  Vector3 force;  // of effects and of turning, on the body
+  T cos_half = T(1), sin_half = T(0);
+  Vector3 turned, free;                       // velocity carried into the end's frame; the same with `force`
+  Eigen::Matrix<T, kWheels, kWheels> answer;  // h G M^-1 G': rim speeds per floor force
+  std::array<T, kWheels> force_N, omega_end, friction_Nm;
+
+  // By half a step's turn, into the frame of the step's end.
+  Vector3 half_turned(const Vector3& v) const {
+    return Vector3(cos_half * v(0) + sin_half * v(1), cos_half * v(1) - sin_half * v(0), v(2));
+  }
+};
+
+template <typename T>
+RollingRobot<T>::RollingRobot(const RollingParams<T>& params, std::span<const EffectUse> uses,
+                              std::span<const T> values)
+    : p_(params), effects_(uses, values) {
+  make_body();
+  link_entries_.resize(kWheels);
+  std::vector<T> with_link(values.begin(), values.end());
+  with_link.push_back(T(1));
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    links_.push_back(std::make_unique<Link>());
+    EffectEntry& entry = link_entries_[i];
+    entry.info = &LinkEffect::kInfo;
+    if constexpr (std::is_same_v<T, double>) {
+      entry.simulate.bridge = LinkEffect::bridge;
+      entry.simulate.torque = LinkEffect::torque;
+    } else {
+      entry.differentiate.bridge = LinkEffect::bridge;
+      entry.differentiate.torque = LinkEffect::torque;
+    }
+    entry.context = links_[i].get();
+    std::vector<EffectUse> all(uses.begin(), uses.end());
+    all.push_back({.entry = &entry, .values = {1.0}, .tolerances = {}, .name = {}, .owner = {}});
+    drives_.emplace_back(p_.drive, EffectSet<T>(all, with_link), 1e-3);
+  }
+}
+
+template <typename T>
+RollingRobot<T>::~RollingRobot() = default;
+
+// Masses, with what body effects make of them.
+template <typename T>
+void RollingRobot<T>::make_body() {
+  if (!effects_.body.empty()) {
+    BodyPort<T> port;
+    port.mass_kg = p_.mass_kg;
+    port.yaw_inertia_kg_m2 = p_.yaw_inertia_kg_m2;
+    port.center_of_mass_x_m = p_.center_of_mass_x_m;
+    port.center_of_mass_y_m = p_.center_of_mass_y_m;
+    std::array<T, kMaxEffectStates> states{};
+    std::copy(effects_.initial_states().begin(), effects_.initial_states().end(), states.begin());
+    effects_.body.apply(effects_.values(), states.data(), port);
+    p_.mass_kg = port.mass_kg;
+    p_.yaw_inertia_kg_m2 = port.yaw_inertia_kg_m2;
+    p_.center_of_mass_x_m = port.center_of_mass_x_m;
+    p_.center_of_mass_y_m = port.center_of_mass_y_m;
+  }
+  WheelGeometry<T> g;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    g.cos_angle[i] = T(std::cos(p_.wheel_angle_rad[i]));
+    g.sin_angle[i] = T(std::sin(p_.wheel_angle_rad[i]));
+  }
+  g.wheel_center_radius_m = p_.wheel_center_radius_m;
+  g.wheel_radius_m = p_.wheel_radius_m;
+  load_ =
+      wheel_load_law(g, p_.mass_kg, p_.center_of_mass_x_m, p_.center_of_mass_y_m, p_.center_of_mass_height_m);
+  const T sx = p_.mass_kg * p_.center_of_mass_x_m, sy = p_.mass_kg * p_.center_of_mass_y_m;
+  Eigen::Matrix<T, 3, 3> mass;  // planar_law.h
+  mass << p_.mass_kg, T(0), -sy, T(0), p_.mass_kg, sx, -sy, sx, p_.yaw_inertia_kg_m2;
+  inverse_mass_ = mass.inverse();
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    rim_[i] = Vector3(-g.sin_angle[i], g.cos_angle[i], p_.wheel_center_radius_m);
+    rim_answer_[i] = inverse_mass_ * rim_[i];
+  }
+}
+
+template <typename T>
+RollingState<T> RollingRobot<T>::start(const BodyVelocity<double>& v,
+                                       const std::array<double, kWheels>& theta_rotor_rad) const {
+  RollingState<T> x;
+  x.velocity = {T(v.v_forward_m_s), T(v.v_left_m_s), T(v.omega_body_rad_s)};
+  x.bus_voltage_V = p_.drive.supply_voltage_V;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    x.drive[i] = drives_[i].initial_state();
+    x.theta_rotor_rad[i] = T(theta_rotor_rad[i]);
+    x.drive[i].theta_rotor_rad = x.theta_rotor_rad[i];
+    const T rim_m_s = rim_[i](0) * x.velocity[0] + rim_[i](1) * x.velocity[1] + rim_[i](2) * x.velocity[2];
+    x.drive[i].omega_rotor_rad_s = rim_m_s * p_.drive.gear_ratio / p_.wheel_radius_m;
+  }
+  return x;
+}
+
+template <typename T>
+void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput& in, double step_s) {
+  if (step_s != step_s_) {
+    for (DriveSim<T>& d : drives_) d.set_step(step_s);
+    step_s_ = step_s;
+  }
+  Step s;
+  s.h = step_s;
+  ask_floor(x, in, s);
+  ask_body(x, in, s);
+  drives(x, in, s);
+  foresee(x, s);
+  solve(x, s);
+  finish(x, in, s);
+}
+
+// ----------------------------------------------------------------------------- what acts, over one step
+
+template <typename T>
+void RollingRobot<T>::ask_floor(const RollingState<T>& x, const RollingInput& in, Step& s) const {
+  std::array<T, kMaxEffectStates> states;
+  const T gear = p_.drive.gear_ratio;
+  s.force = Vector3(T(0), T(0), T(0));
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    Wheel& w = s.wheel[i];
+    const T lateral_m_s = rim_[i](1) * x.velocity[0] - rim_[i](0) * x.velocity[1];
+    const T hub_m_s = rim_[i](0) * x.velocity[0] + rim_[i](1) * x.velocity[1] + rim_[i](2) * x.velocity[2];
+    ContactPort<T> port;
+    port.wheel = static_cast<int>(i);
+    port.omega_wheel_rad_s = x.omega_rotor_rad_s(i) / gear;
+    port.theta_wheel_rad =
+        (in.theta_rotor_rad != nullptr ? T((*in.theta_rotor_rad)[i]) : x.theta_rotor_rad[i]) / gear;
+    port.v_longitudinal_m_s = hub_m_s;
+    port.v_lateral_m_s = lateral_m_s;
+    port.load_N = load_.at_rest_N[i] + load_.transfer(i, x.floor_x_N, x.floor_y_N);
+    if (value_of(port.load_N) < 0.0) port.load_N = T(0);
+    port.dt_s = s.h;
+    port.wheel_radius_m = p_.wheel_radius_m;
+    if (!effects_.contact.empty()) {
+      std::copy(effects_.initial_states().begin(), effects_.initial_states().end(), states.begin());
+      effects_.contact.apply(effects_.values(), states.data(), port);
+    }
+    w.lever_m = port.wheel_radius_m / gear;
+    w.lateral_N = port.force_lateral_N;
+    w.added_torque_Nm = -w.lever_m * port.force_longitudinal_N;
+    w.friction_up_Nm = w.friction_down_Nm = port.friction_wheel_Nm / gear;
+    set_grip(x, i, hub_m_s, port, w);
+    if (p_.has_lateral_tyre) {
+      T scale = absolute(lateral_m_s);
+      if (value_of(p_.slip_speed_floor_m_s) > value_of(scale)) scale = p_.slip_speed_floor_m_s;
+      w.lateral_N -= grip(p_.lateral, T(lateral_m_s / scale)) * port.load_N;
+    }
+    s.force(0) += rim_[i](1) * w.lateral_N;
+    s.force(1) -= rim_[i](0) * w.lateral_N;
+  }
+}
+
+template <typename T>
+void RollingRobot<T>::set_grip(const RollingState<T>& x, std::size_t i, const T& hub_m_s,
+                               const ContactPort<T>& port, Wheel& w) const {
+  Grip<T>& g = w.grip;
+  g.rolls = !p_.has_tyre && value_of(port.slip_speed_m_s) == 0.0;
+  g.load_N = port.load_N;
+  g.full_grip_m_s = port.slip_speed_m_s;
+  g.shape.peak = p_.longitudinal.extremum_value;
+  g.shape.last = p_.longitudinal.asymptote_value;
+  g.shape.last_part = p_.longitudinal.asymptote_slip / p_.longitudinal.extremum_slip;
+  if (p_.has_tyre) {
+    const T rim_m_s = absolute(T(w.lever_m * x.omega_rotor_rad_s(i)));
+    T scale = absolute(hub_m_s);
+    if (value_of(rim_m_s) > value_of(scale)) scale = rim_m_s;
+    if (value_of(p_.slip_speed_floor_m_s) > value_of(scale)) scale = p_.slip_speed_floor_m_s;
+    g.full_grip_m_s += p_.longitudinal.extremum_slip * scale;
+  }
+  const double asked = value_of(port.grip_coefficient);
+  if (asked > 0.0 && (!p_.has_tyre || asked < value_of(g.shape.peak))) {
+    g.shape.last *= port.grip_coefficient / g.shape.peak;
+    g.shape.peak = port.grip_coefficient;
+  }
+}
+
+template <typename T>
+void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput& in, Step& s) const {
+  const T turn2 = x.velocity[2] * x.velocity[2];
+  s.force(0) += p_.mass_kg * turn2 * p_.center_of_mass_x_m;
+  s.force(1) += p_.mass_kg * turn2 * p_.center_of_mass_y_m;
+  if (effects_.body.empty()) return;
+  BodyPort<T> port;
+  port.v_forward_m_s = x.velocity[0];
+  port.v_left_m_s = x.velocity[1];
+  port.omega_body_rad_s = x.velocity[2];
+  port.yaw_rad = T(in.yaw_rad);
+  port.dribbler_rad_s = T(in.dribbler_rad_s);
+  port.dt_s = s.h;
+  port.mass_kg = p_.mass_kg;
+  port.yaw_inertia_kg_m2 = p_.yaw_inertia_kg_m2;
+  port.center_of_mass_x_m = p_.center_of_mass_x_m;
+  port.center_of_mass_y_m = p_.center_of_mass_y_m;
+  std::array<T, kMaxEffectStates> states;
+  std::copy(effects_.initial_states().begin(), effects_.initial_states().end(), states.begin());
+  effects_.body.apply(effects_.values(), states.data(), port);
+  s.force(0) += port.force_x_N;
+  s.force(1) += port.force_y_N;
+  s.force(2) += port.torque_z_Nm;
+}
+
+// Four drives, each against the floor's force and the friction of the step before.
+template <typename T>
+void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput& in, Step& s) {
+  std::array<T, kWheels> bus_A;
+  T all_A = T(0);
+  const bool shared = !in.bus_is_measured && !effects_.supply.empty();
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const T& limit = p_.drive.duty_limit_ratio;
+    T duty = T(in.duty_ratio[i]);
+    if (value_of(absolute(duty)) > value_of(limit)) duty = value_of(duty) < 0.0 ? T(-limit) : limit;
+    bus_A[i] = shared && in.enabled[i] ? T(duty * x.drive[i].current_A) : T(0);
+    all_A += bus_A[i];
+  }
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    Wheel& w = s.wheel[i];
+    DriveState<T>& state = x.drive[i];
+    if (in.theta_rotor_rad != nullptr) state.theta_rotor_rad = T((*in.theta_rotor_rad)[i]);
+    w.omega_start = state.omega_rotor_rad_s;
+    DriveInput<T> drive;
+    drive.kind = CommandKind::kDuty;
+    drive.enabled = in.enabled[i];
+    drive.setpoint = in.duty_ratio[i];
+    drive.bus_voltage_V = in.bus_voltage_V;
+    drive.bus_is_measured = in.bus_is_measured;
+    drive.other_bus_current_A = all_A - bus_A[i];
+    drive.tau_outside_Nm = w.added_torque_Nm - w.lever_m * x.force_N[i] - x.friction_Nm[i];
+    drive.wheel = static_cast<int>(i);
+    w.drive = drives_[i].advance(state, drive, 1);
+    const Link& link = *links_[i];
+    w.friction_up_Nm += link.friction_positive_Nm;
+    w.friction_down_Nm += link.friction_negative_Nm;
+    w.omega_foreseen = state.omega_rotor_rad_s;
+    // the winding answers another speed by less current, if a voltage is held: wheel_drive.h
+    const double used = std::abs(value_of(state.current_A)) * value_of(link.inverse_limit_per_A);
+    w.slope = p_.drive.viscous_friction_Nm_s_per_rad;
+    if (in.enabled[i] && used < 1.0 - 1e-9) {
+      const T settled = p_.drive.torque_constant_Nm_per_A / p_.drive.resistance_ohm;
+      w.mean_answer = w.end_answer = settled;
+      if (value_of(p_.drive.inductance_H) > 0.0) {
+        using std::exp;
+        const T time = s.h * p_.drive.resistance_ohm / p_.drive.inductance_H;
+        const T rest = 1.0 - (1.0 - exp(-time)) / time;
+        w.end_answer = settled * rest;
+        w.mean_answer = settled * (1.0 - 2.0 * rest / time);
+      }
+      w.slope += p_.drive.torque_constant_Nm_per_A * w.mean_answer;
+    }
+    w.effective_inertia = inertia_at_rotor(p_.drive) + 0.5 * s.h * w.slope;
+  }
+}
+
+// ----------------------------------------------------------------------------- what comes of it
+
+template <typename T>
+void RollingRobot<T>::foresee(const RollingState<T>& x, Step& s) const {
+  using std::cos;
+  using std::sin;
+  const T half = 0.5 * s.h * x.velocity[2];
+  s.cos_half = cos(half);
+  s.sin_half = sin(half);
+  s.turned = s.half_turned(s.half_turned(Vector3(x.velocity[0], x.velocity[1], x.velocity[2])));
+  s.free = s.turned + s.half_turned(inverse_mass_ * s.force) * T(s.h);
+  for (std::size_t j = 0; j < kWheels; ++j) {
+    const Vector3 moved = s.half_turned(rim_answer_[j]) * T(s.h);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      s.answer(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rim_[i].dot(moved);
+    }
+  }
+  for (std::size_t i = 0; i < kWheels; ++i) s.wheel[i].hub_free_m_s = rim_[i].dot(s.free);
+}
+
+template <typename T>
+void RollingRobot<T>::solve(RollingState<T>& x, Step& s) {
+  using Vector4 = Eigen::Vector4d;
+  Eigen::Matrix4d answer, jacobian;
+  Vector4 slip, hub, rotor, quick, up, down;
+  for (Eigen::Index i = 0; i < kWheels; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Wheel& w = s.wheel[n];
+    quick(i) = s.h / value_of(w.effective_inertia);  // rotor speed per torque
+    up(i) = quick(i) * value_of(w.friction_up_Nm);
+    down(i) = quick(i) * value_of(w.friction_down_Nm);
+    hub(i) = value_of(w.hub_free_m_s);
+    rotor(i) = value_of(w.omega_foreseen) +
+               quick(i) * (value_of(w.lever_m) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]));
+    slip(i) = x.slip_m_s[n];
+    for (Eigen::Index j = 0; j < kWheels; ++j) answer(i, j) = value_of(s.answer(i, j));
+  }
+  // s - (hub + A F) + lever omega+ = 0,  F = -f(s)
+  for (int round = 0;; ++round) {
+    Vector4 force, slope, residual, turns;
+    for (Eigen::Index i = 0; i < kWheels; ++i) {
+      const Wheel& w = s.wheel[static_cast<std::size_t>(i)];
+      force(i) = -w.grip.force(slip(i));
+      slope(i) = w.grip.slope(slip(i));
+      const double omega = shrunk(rotor(i) - quick(i) * value_of(w.lever_m) * force(i), up(i), down(i));
+      turns(i) = omega != 0.0 ? 1.0 : 0.0;
+      residual(i) = slip(i) - hub(i) + value_of(w.lever_m) * omega;
+    }
+    residual -= answer * force;
+    for (Eigen::Index i = 0; i < kWheels; ++i) {
+      const double lever = value_of(s.wheel[static_cast<std::size_t>(i)].lever_m);
+      for (Eigen::Index j = 0; j < kWheels; ++j) jacobian(i, j) = answer(i, j) * slope(j);
+      jacobian(i, i) += 1.0 + turns(i) * lever * lever * quick(i) * slope(i);
+    }
+    Vector4 change = jacobian.partialPivLu().solve(residual);
+    const bool solved = change.cwiseAbs().maxCoeff() <= kSolved_m_s;
+    if (solved || round == kIterations) {
+      if (!solved) unsolved_ += 1.0;
+      break;
+    }
+    if (round >= kDampedAfter) change *= 0.5;
+    slip -= change;
+  }
+  // Once more on T, from the solution: exact derivatives.
+  Eigen::Matrix<T, kWheels, 1> residual;
+  const Eigen::PartialPivLU<Eigen::Matrix4d> lu(jacobian);
+  const auto omega_end = [&](std::size_t n, const T& force_N, T* friction_Nm) {
+    const Wheel& w = s.wheel[n];
+    const T quickness = s.h / w.effective_inertia;
+    const T y = w.omega_foreseen - quickness * (w.lever_m * (force_N - x.force_N[n]) - x.friction_Nm[n]);
+    const T omega = shrunk(y, T(quickness * w.friction_up_Nm), T(quickness * w.friction_down_Nm));
+    if (friction_Nm != nullptr) *friction_Nm = (y - omega) / quickness;
+    return omega;
+  };
+  std::array<T, kWheels> force;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    force[i] = -s.wheel[i].grip.force_of(T(slip(static_cast<Eigen::Index>(i))));
+  }
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    T r = T(slip(row)) - s.wheel[i].hub_free_m_s + s.wheel[i].lever_m * omega_end(i, force[i], nullptr);
+    for (std::size_t j = 0; j < kWheels; ++j) r -= s.answer(row, static_cast<Eigen::Index>(j)) * force[j];
+    residual(row) = r;
+  }
+  const Eigen::Matrix4d inverse = lu.inverse();
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    T exact = T(slip(row));
+    for (Eigen::Index j = 0; j < kWheels; ++j) exact -= inverse(row, j) * residual(j);
+    x.slip_m_s[i] = value_of(exact);
+    s.force_N[i] = -s.wheel[i].grip.force_of(exact);
+  }
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    s.omega_end[i] = omega_end(i, s.force_N[i], &s.friction_Nm[i]);
+  }
+}
+
+template <typename T>
+void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput& in, Step& s) const {
+  Vector3 pushed(T(0), T(0), T(0));
+  T floor_x = T(0), floor_y = T(0);
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const Wheel& w = s.wheel[i];
+    DriveState<T>& state = x.drive[i];
+    pushed += rim_answer_[i] * s.force_N[i];
+    floor_x += rim_[i](0) * s.force_N[i] + rim_[i](1) * w.lateral_N;
+    floor_y += rim_[i](1) * s.force_N[i] - rim_[i](0) * w.lateral_N;
+    const T departed = s.omega_end[i] - w.omega_foreseen;
+    state.current_A -= w.end_answer * departed;
+    x.charge_C[i] += s.h * (w.drive.mean_current_A - 0.5 * w.mean_answer * departed);
+    x.theta_rotor_rad[i] += 0.5 * s.h * (w.omega_start + s.omega_end[i]);
+    state.omega_rotor_rad_s = s.omega_end[i];
+    state.omega_change_rad_s = s.omega_end[i] - w.omega_start;
+    state.theta_rotor_rad = x.theta_rotor_rad[i];
+    x.force_N[i] = s.force_N[i];
+    x.friction_Nm[i] = s.friction_Nm[i];
+  }
+  const Vector3 end = s.free + s.half_turned(pushed) * T(s.h);
+  x.accel_x_m_s2 = (end(0) - s.turned(0)) / s.h;
+  x.accel_y_m_s2 = (end(1) - s.turned(1)) / s.h;
+  for (std::size_t i = 0; i < 3; ++i) x.velocity[i] = end(static_cast<Eigen::Index>(i));
+  x.floor_x_N = floor_x;
+  x.floor_y_N = floor_y;
+  x.bus_voltage_V = in.bus_is_measured ? T(in.bus_voltage_V) : s.wheel[0].drive.bus_voltage_V;
+}
+
+template class RollingRobot<double>;
+template class RollingRobot<Jet>;
+
+}  // namespace omnihil

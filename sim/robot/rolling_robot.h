@@ -1,0 +1,115 @@
+// One robot on wheels that roll or slip, solved implicitly: what fits run, on double and with derivatives.
+//
+//   RollingRobot<double> robot(params, effects);
+//   RollingState<double> x = robot.start({.v_forward_m_s = 1.0}, theta_rotor_rad);
+//   robot.advance(x, {.duty_ratio = {…}, .bus_voltage_V = 22.2, .bus_is_measured = true}, 1e-3);
+//   x.velocity, x.omega_rotor_rad_s(i), x.theta_rotor_rad[i], x.charge_C[i]
+//
+// The same laws as the plant's (plant.h): drives of drive_sim.h with all their effects, masses of
+// planar_law.h, loads of wheel_load.h, tyres of tyre.h, Coulomb friction that really holds. What differs is
+// how a step is solved. The plant is explicit, so its tyre must be soft against its step; here floor forces
+// and friction are found together with the speeds at the step's end, so that a stiff tyre, and in the limit a
+// wheel that rolls without slip, costs nothing:
+//     rotor   omega+ = shrink(omega_f - h/J_e (lever (F - F_0) - phi_0),  h c / J_e),  lever = r / N
+//     body    v+     = v_f + h M^-1 G' F          in the turning frame, by its mean direction over the step
+//     floor   F_i    = -f(s_i),  s_i = (G v+)_i - lever omega+_i
+//   omega_f: the rotor's end speed by DriveSim with the step before's floor force and friction; J_e: inertia
+//   plus half a step of the winding's answer to another speed (wheel_drive.h); c: friction level; four
+//   unknown slips, Newton's method on the values, and one more Newton step on the scalar with derivatives,
+//   which makes them exact (implicit function theorem).
+//   Without a tyre f is a line so steep that 1 N slides 1 um/s: rolling. With wheel_slip, or a tyre, f is the
+//   tyre's curve over s / (scale + v_c), scale = extremum slip times max(|v|, |rim|, floor) for a tyre, 0
+//   without.
+// Order 2 in the step where wheels roll; tested against the plant with a tyre, and against itself at small
+// steps. A force that an effect adds along the wheel's drive direction (roller_ripple) turns the wheel only:
+// on a wheel that rolls, a force at the point of contact does no work.
+// Cannot represent: what the planar plant cannot, and play or compliance between rotor and wheel.
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "sim/drive/drive_sim.h"
+#include "sim/robot/geometry.h"
+#include "sim/robot/rolling_params.h"
+#include "sim/robot/wheel_load.h"
+
+namespace omnihil {
+
+// Held over one call.
+struct RollingInput {
+  std::array<double, kWheels> duty_ratio{};
+  std::array<bool, kWheels> enabled{true, true, true, true};
+  double bus_voltage_V = 0.0;    // used when bus_is_measured
+  bool bus_is_measured = false;  // at the bridge: then nothing sags it again
+  double yaw_rad = 0.0;          // for forces that know the field's directions
+  double dribbler_rad_s = 0.0;
+  // Angles that the laws of the angle shall see instead of the model's own; null: its own.
+  const std::array<double, kWheels>* theta_rotor_rad = nullptr;
+};
+
+template <typename T>
+struct RollingState {
+  std::array<T, 3> velocity{};  // v_forward, v_left, omega_body of the geometric centre, body frame
+  std::array<DriveState<T>, kWheels> drive{};
+  std::array<T, kWheels> theta_rotor_rad{};    // turned since the start, plus where it started
+  std::array<T, kWheels> charge_C{};           // integral of the motor current
+  T accel_x_m_s2 = T(0), accel_y_m_s2 = T(0);  // of the geometric centre, mean over the last step
+  T bus_voltage_V = T(0);
+  // of the step before, where the next one's solution begins
+  std::array<T, kWheels> force_N{}, friction_Nm{};
+  std::array<double, kWheels> slip_m_s{};
+  T floor_x_N = T(0), floor_y_N = T(0);
+
+  const T& omega_rotor_rad_s(std::size_t i) const { return drive[i].omega_rotor_rad_s; }
+};
+
+template <typename T>
+class RollingRobot {
+ public:
+  // values: of all uses one after another, as EffectSet takes them.
+  RollingRobot(const RollingParams<T>& params, std::span<const EffectUse> uses, std::span<const T> values);
+  ~RollingRobot();
+  RollingRobot(const RollingRobot&) = delete;
+  RollingRobot& operator=(const RollingRobot&) = delete;
+
+  // Wheels roll with the body.
+  RollingState<T> start(const BodyVelocity<double>& velocity,
+                        const std::array<double, kWheels>& theta_rotor_rad) const;
+  // One step; how long it may be is the caller's business (tests: 1 ms is within the sensors' noise).
+  void advance(RollingState<T>& state, const RollingInput& input, double step_s);
+
+  const EffectSet<T>& effects() const { return effects_; }
+  double steps_unsolved() const { return unsolved_; }  // in which Newton's method ran out of iterations
+
+ private:
+  struct Link;
+  struct LinkEffect;
+  struct Wheel;
+  struct Step;
+  using Vector3 = Eigen::Matrix<T, 3, 1>;
+
+  void make_body();
+  void drives(RollingState<T>& x, const RollingInput& in, Step& s);
+  void ask_floor(const RollingState<T>& x, const RollingInput& in, Step& s) const;
+  void set_grip(const RollingState<T>& x, std::size_t wheel, const T& hub_m_s, const ContactPort<T>& port,
+                Wheel& w) const;
+  void ask_body(const RollingState<T>& x, const RollingInput& in, Step& s) const;
+  void foresee(const RollingState<T>& x, Step& s) const;
+  void solve(RollingState<T>& x, Step& s);
+  void finish(RollingState<T>& x, const RollingInput& in, Step& s) const;
+
+  RollingParams<T> p_;
+  EffectSet<T> effects_;
+  std::vector<std::unique_ptr<Link>> links_;
+  std::vector<EffectEntry> link_entries_;
+  std::vector<DriveSim<T>> drives_;
+  WheelLoadLaw<T> load_;
+  std::array<Vector3, kWheels> rim_;         // rows of G
+  std::array<Vector3, kWheels> rim_answer_;  // M^-1 G'
+  Eigen::Matrix<T, 3, 3> inverse_mass_;
+  double step_s_ = 0.0;
+  double unsolved_ = 0.0;
+};
+
+}  // namespace omnihil
