@@ -31,6 +31,8 @@ class AxisRun {
     state_.omega_rotor_rad_s = speed * params.gear_ratio;
     last_.bus_voltage_V =
         input.bus_voltage_V.empty() ? params.supply_voltage_V : T(input.bus_voltage_V.front());
+    last_supply_V_ = params.supply_voltage_V;
+    slave(0);
     remember();
     previous_ = instant(T(state_.now_s));
     if (looks_back_) previous_ = instant(T(state_.now_s) - age(0));
@@ -38,6 +40,8 @@ class AxisRun {
 
   // From sample k to sample k + 1.
   void advance(std::size_t k) {
+    restart(k);
+    slave(k);
     const double period_s = input_.time_s[k + 1] - input_.time_s[k];
     const int steps = std::max(1, static_cast<int>(std::ceil(period_s / step_s_ - 1e-6)));
     const double h = period_s / steps;
@@ -57,6 +61,7 @@ class AxisRun {
       remember();
     }
     last_ = sum;
+    last_supply_V_ = supply(period_s);
   }
 
   AxisSample<T> sample(std::size_t k) {
@@ -73,11 +78,12 @@ class AxisRun {
                        (input_.encoder_counts_per_turn / (2.0 * std::numbers::pi));
     s.motor_current_A = dt > 0.0 ? (seen.charge_C - previous_.charge_C) / dt : state_.current_A;
     s.bus_voltage_V = last_.bus_voltage_V;
+    s.supply_voltage_V = last_supply_V_;
     s.bus_current_A = last_.mean_bus_current_A;
     s.motor_voltage_V = last_.mean_voltage_V;
     s.load_torque_Nm = last_.mean_outside_torque_Nm * p.gear_ratio;
     s.winding_rise_K = state_.temperature_rise_K;
-    s.theta_rotor_rad = state_.theta_rotor_rad;
+    s.theta_rotor_rad = state_.theta_rotor_rad + travel_ahead_rad_;
     s.omega_rotor_rad_s = state_.omega_rotor_rad_s;
     s.held = last_.held;
     previous_ = seen;
@@ -115,13 +121,44 @@ class AxisRun {
     sum.held = sum.held && r.held;
   }
 
+  // The angle that laws see becomes the measured one; what it is moved by is kept beside it.
+  void slave(std::size_t k) {
+    if (input_.measured_position_rad.empty() || !std::isfinite(input_.measured_position_rad[k])) return;
+    const T shift = input_.measured_position_rad[k] * sim_.params().gear_ratio - state_.theta_rotor_rad;
+    state_.theta_rotor_rad += shift;
+    if (state_.has_output) state_.theta_output_rad += shift / sim_.params().gear_ratio;
+    travel_ahead_rad_ -= shift;
+  }
+
+  void restart(std::size_t k) {
+    if (input_.restart_velocity_rad_s.empty() || !std::isfinite(input_.restart_velocity_rad_s[k])) return;
+    const auto& p = sim_.params();
+    state_.omega_rotor_rad_s = input_.restart_velocity_rad_s[k] * p.gear_ratio;
+    state_.omega_change_rad_s = state_.current_A = T(0);
+    if (!state_.has_output) return;
+    state_.omega_output_rad_s = T(input_.restart_velocity_rad_s[k]);
+    state_.theta_output_rad = state_.theta_rotor_rad / p.gear_ratio;
+  }
+
+  // What the model's supply gives at the mean current of the period.
+  T supply(double period_s) {
+    if (input_.bus_voltage_V.empty()) return last_.bus_voltage_V;
+    SupplyPort<T> port;
+    port.bus_current_A = last_.mean_bus_current_A;
+    port.dt_s = period_s;
+    port.bus_voltage_V = sim_.params().supply_voltage_V;
+    sim_.effects().supply.apply(sim_.effects().values(), state_.effects.data(), port);
+    return port.bus_voltage_V;
+  }
+
   // What the encoder's shaft does, at the rotor.
   MotionPoint<T> now() const {
     if (!input_.encoder_on_output || !state_.has_output) {
-      return {state_.now_s, state_.theta_rotor_rad, state_.omega_rotor_rad_s, charge_C_};
+      return {state_.now_s, state_.theta_rotor_rad + travel_ahead_rad_, state_.omega_rotor_rad_s, charge_C_};
     }
     const T& gear = sim_.params().gear_ratio;
-    return {state_.now_s, state_.theta_output_rad * gear, state_.omega_output_rad_s * gear, charge_C_};
+    return {state_.now_s, state_.theta_output_rad * gear + travel_ahead_rad_,
+            state_.omega_output_rad_s * gear, charge_C_};
   }
   void remember() {
     if (looks_back_) record_.push(now());
@@ -144,7 +181,8 @@ class AxisRun {
   SensorPort<T> sense(std::size_t k, double dt, const MotionPoint<T>& seen) {
     SensorPort<T> port;
     NoiseKey key = noise_key(k, "sensor");
-    port.theta_rotor_rad = port.encoder_angle_rad = seen.theta_rad;
+    port.theta_rotor_rad = seen.theta_rad - travel_ahead_rad_;
+    port.encoder_angle_rad = seen.theta_rad;
     port.omega_rotor_rad_s = port.measured_speed_rad_s = seen.omega_rad_s;
     if (input_.encoder_on_output) port.encoder_turns_per_rotor_turn = 1.0 / sim_.params().gear_ratio;
     if (sim_.effects().sensor.empty()) return port;
@@ -172,6 +210,8 @@ class AxisRun {
   DriveResult<T> last_;
   MotionPoint<T> previous_;
   T charge_C_ = T(0);
+  T last_supply_V_ = T(0);
+  T travel_ahead_rad_ = T(0);  // the model's own travel, ahead of the slaved angle
 };
 
 }  // namespace

@@ -30,6 +30,13 @@ struct AxisInput {
   double encoder_counts_per_turn = 0.0;  // of the encoder's shaft; 0: the rig gives angles
   bool encoder_on_output = false;
   std::optional<std::uint64_t> noise_seed;  // for effects that draw random numbers; none: expected values
+  // Slaved angle: at each sample where it is finite, the angle that laws look at is set to this measured one
+  // (output shaft). Counts, position and speed come from the model's own travel, which is not touched: a
+  // small error of speed does not become a wrong phase of cogging. Derivatives take the measured angle as
+  // given.
+  std::vector<double> measured_position_rad;  // empty: the model's own angle
+  std::vector<double>
+      restart_velocity_rad_s;  // of the output: where finite, the run starts anew; may be empty
 };
 
 struct AxisOptions {
@@ -45,7 +52,8 @@ struct AxisSample {
   T encoder_counts = T(0);  // unrounded
   T motor_current_A = T(0);
   T bus_voltage_V = T(0);
-  T winding_rise_K = T(0);  // over ambient
+  T supply_voltage_V = T(0);  // as the model's supply would give it, also where the bus was measured
+  T winding_rise_K = T(0);    // over ambient
   T load_torque_Nm = T(0);
   // true
   T motor_voltage_V = T(0);  // mean over the period that ends at this sample

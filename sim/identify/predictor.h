@@ -13,8 +13,12 @@
 //   kInverse  the measured, low-pass filtered motion is imposed and the drive input that it takes is compared
 //             with the one that was given, filtered alike: drives by torque or current, benches that impose
 //             the speed, and runs of kind "steady".
-// A rig "robot" is run forward in a body that follows the measured pose slowly enough not to hide an error.
-// Pure functions of their arguments: predictions may run on several threads at once.
+// Where the bus voltage is measured it is the drive's input, and its drop about the run's mean is compared as
+// well (the level drifts with the battery). A run of an axis starts at its first row with a drive input;
+// after a gap of more than ten periods it starts anew from the measured speed. An axis that is driven by duty
+// or voltage at points of kind "steady" compares the input that each point needs. A rig "robot" is run
+// forward in a body that follows the measured pose slowly enough not to hide an error. Pure functions of
+// their arguments: predictions may run on several threads at once.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -39,7 +43,10 @@ struct ComparedSignal {
   double noise_sigma = 0.0;      // per sample, after the chain's own filters: stated, or estimated
   bool noise_is_stated = false;
   double quantum = 0.0;  // of a counting sensor, in the signal's unit; 0: none
-  std::string left_out;  // how many samples were left out and why; empty: none
+  // The noise of differenced counts or positions is blue: successive errors cancel. See whitened().
+  double whitening_s = 0.0;     // 0: the noise is white as it is
+  double whitened_sigma = 0.0;  // of whitened(), per sample; noise_sigma where whitening_s is 0
+  std::string left_out;         // how many samples were left out and why; empty: none
 };
 
 // What the motion was like at each compared sample: the axes on which errors are sorted into regimes.
@@ -81,6 +88,15 @@ class Predictor {
   // Can this effect act on this rig and drive input at all; "" or why not ("needs a measured current").
   virtual std::string applies(const EffectEntry& entry) const = 0;
 };
+
+// Residuals (or derivatives of predictions) of one signal, filtered so that its sensor noise is white: what a
+// fit and every score weigh. A speed v_i = (x_i - x_{i-1}) / dt_i from a position with white noise is
+// integrated with a leak, y_i = exp(-dt_i / tau) y_{i-1} + r_i dt_i: the position's residual above 1 / (2 pi
+// tau), so that low-frequency errors of speed keep their full weight and the counts' rounding cancels. The
+// result has sigma `whitened_sigma`. Other signals are returned as they are. A missing sample (NaN) stays
+// missing and is passed over; it does not reset the integral.
+void whiten(const ComparedSignal& signal, Eigen::Ref<Eigen::MatrixXd> columns);
+std::vector<double> whitened(const ComparedSignal& signal, std::vector<double> residual);
 
 std::unique_ptr<Predictor> make_predictor(const Dataset& dataset, const Candidate& nominal,
                                           const PredictOptions& options);

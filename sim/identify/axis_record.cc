@@ -1,0 +1,127 @@
+#include "sim/identify/axis_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sim/drive/axis_signal.h"
+#include "sim/identify/axis_setup.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Rows from `first` on, missing ones held at the last value; before the first value, at that one.
+std::vector<double> held(const std::vector<double>* column, std::size_t first) {
+  std::vector<double> out;
+  if (column == nullptr) return out;
+  const auto known = std::find_if(column->begin(), column->end(), [](double v) { return std::isfinite(v); });
+  if (known == column->end()) return out;
+  double last = *known;
+  for (std::size_t i = 0; i < column->size(); ++i) {
+    if (std::isfinite((*column)[i])) last = (*column)[i];
+    if (i >= first) out.push_back(last);
+  }
+  return out;
+}
+
+std::vector<double> as_measured(const std::vector<double>* column, std::size_t first) {
+  if (column == nullptr) return {};
+  std::vector<double> out(column->begin() + static_cast<std::ptrdiff_t>(first), column->end());
+  if (std::none_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); })) out.clear();
+  return out;
+}
+
+double median_period(const std::vector<double>& time_s) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
+  if (steps.empty()) return 0.0;
+  const auto mid = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), mid, steps.end());
+  return *mid;
+}
+
+// Straight line through (t, x) by least squares: its slope.
+double slope(const std::vector<double>& t, const std::vector<double>& x, std::size_t from, std::size_t to) {
+  double n = 0.0, st = 0.0, sx = 0.0, stt = 0.0, stx = 0.0;
+  for (std::size_t i = from; i < to; ++i) {
+    if (!std::isfinite(x[i])) continue;
+    const double ti = t[i] - t[from];
+    n += 1.0, st += ti, sx += x[i], stt += ti * ti, stx += ti * x[i];
+  }
+  const double d = n * stt - st * st;
+  return n >= 2.0 && d > 0.0 ? (n * stx - st * sx) / d : kMissing;
+}
+
+}  // namespace
+
+bool AxisRecord::gap_before(std::size_t k) const {
+  constexpr double kGapPeriods = 10.0;
+  return k > 0 && time_s[k] - time_s[k - 1] > kGapPeriods * period_s;
+}
+
+std::vector<double> AxisRecord::angle() const {
+  constexpr double kLeastCountsPerRotorTurn = 200.0;
+  if (!position.empty()) return position;
+  const double per_rotor_turn = counts_per_output_rad * 2.0 * std::numbers::pi / gear_ratio;
+  if (counts.empty() || per_rotor_turn < kLeastCountsPerRotorTurn) return {};
+  std::vector<double> out(counts);
+  for (double& v : out) v /= counts_per_output_rad;
+  return out;
+}
+
+double AxisRecord::speed_near(std::size_t k) const {
+  constexpr std::size_t kSamples = 5;    // of a measured speed: their median
+  constexpr double kSlopeSpan_s = 0.01;  // of positions
+  // Counts before a speed that a drive reports: such a speed may be stale.
+  const std::vector<double>& way = counts.empty() ? position : counts;
+  const double per_rad = counts.empty() ? 1.0 : counts_per_output_rad;
+  std::vector<double> near;
+  for (std::size_t i = k; i < size() && i < k + kSamples && !velocity.empty(); ++i) {
+    if (std::isfinite(velocity[i])) near.push_back(velocity[i]);
+  }
+  const bool at_rest_by_counts = !counts.empty() && k + 20 < size() && counts[k] == counts[k + 20];
+  if (at_rest_by_counts) return 0.0;
+  if (!near.empty() && std::isfinite(velocity[k])) {
+    std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2), near.end());
+    return near[near.size() / 2];
+  }
+  if (way.empty()) return kMissing;
+  std::size_t end = k;
+  while (end < size() && (end < k + 4 || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
+  return slope(time_s, way, k, end) / per_rad;
+}
+
+AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, const Run& run) {
+  AxisRecord r;
+  r.gear_ratio = drive_of(nominal).gear_ratio;
+  const std::vector<double>* command = run.signal(command_name(axis_command_kind(dataset)));
+  if (command == nullptr) return r;
+  const auto first =
+      std::find_if(command->begin(), command->end(), [](double v) { return std::isfinite(v); });
+  if (first == command->end()) return r;
+  r.first_row = static_cast<std::size_t>(first - command->begin());
+  r.time_s = as_measured(&run.time_s, r.first_row);
+  r.period_s = median_period(r.time_s);
+  r.command = held(command, r.first_row);
+  r.enable = held(run.signal("enable"), r.first_row);
+  r.bus_V = held(run.signal("bus_voltage"), r.first_row);
+  r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
+  r.velocity = as_measured(run.signal("velocity"), r.first_row);
+  r.position = as_measured(run.signal("position"), r.first_row);
+  r.counts = as_measured(run.signal("encoder"), r.first_row);
+  r.current = as_measured(run.signal("motor_current"), r.first_row);
+  r.temperature = as_measured(run.signal("winding_temperature"), r.first_row);
+  if (const Channel* encoder = dataset.channel("encoder");
+      encoder != nullptr && encoder->counts_per_rev > 0.0) {
+    const double per_shaft_rad = encoder->counts_per_rev / (2.0 * std::numbers::pi);
+    r.counts_per_output_rad = encoder->on_output ? per_shaft_rad : per_shaft_rad * r.gear_ratio;
+  } else {
+    r.counts.clear();
+  }
+  return r;
+}
+
+}  // namespace omnihil
