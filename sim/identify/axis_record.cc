@@ -1,5 +1,6 @@
 #include "sim/identify/axis_record.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -43,16 +44,33 @@ double median_period(const std::vector<double>& time_s) {
   return *mid;
 }
 
-// Straight line through (t, x) by least squares: its slope.
-double slope(const std::vector<double>& t, const std::vector<double>& x, std::size_t from, std::size_t to) {
-  double n = 0.0, st = 0.0, sx = 0.0, stt = 0.0, stx = 0.0;
+// Speed at the first of the positions x(t), by a parabola through them (least squares). Zero where that is
+// within three of its standard errors and a tenth of the speed gained over the span: most records start at
+// rest.
+double first_slope(const std::vector<double>& t, const std::vector<double>& x, std::size_t from,
+                   std::size_t to) {
+  std::vector<Eigen::Vector3d> rows;
+  std::vector<double> values;
   for (std::size_t i = from; i < to; ++i) {
     if (!std::isfinite(x[i])) continue;
     const double ti = t[i] - t[from];
-    n += 1.0, st += ti, sx += x[i], stt += ti * ti, stx += ti * x[i];
+    rows.push_back({1.0, ti, ti * ti});
+    values.push_back(x[i] - x[from]);
   }
-  const double d = n * stt - st * st;
-  return n >= 2.0 && d > 0.0 ? (n * stx - st * sx) / d : kMissing;
+  if (rows.size() < 4 || !std::isfinite(x[from])) return kMissing;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    normal += rows[i] * rows[i].transpose();
+    right += rows[i] * values[i];
+  }
+  const Eigen::Matrix3d inverse = normal.inverse();
+  const Eigen::Vector3d fit = inverse * right;
+  double square = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) square += std::pow(values[i] - rows[i].dot(fit), 2);
+  const double error = std::sqrt(square / static_cast<double>(rows.size() - 3) * inverse(1, 1));
+  const double gained = 2.0 * std::abs(fit[2]) * rows.back()[1];
+  return std::abs(fit[1]) > 3.0 * error + 0.1 * gained ? fit[1] : 0.0;
 }
 
 }  // namespace
@@ -90,8 +108,8 @@ double AxisRecord::speed_near(std::size_t k) const {
   }
   if (way.empty()) return kMissing;
   std::size_t end = k;
-  while (end < size() && (end < k + 4 || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
-  return slope(time_s, way, k, end) / per_rad;
+  while (end < size() && (end < k + 8 || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
+  return first_slope(time_s, way, k, end) / per_rad;
 }
 
 AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, const Run& run) {

@@ -96,7 +96,7 @@ class ForwardSetup {
     c.whitened_sigma = c.noise_sigma;
     std::size_t after_gap = 0;
     for (std::size_t k = 1; k < r_.size(); ++k) {
-      if (r_.gap_before(k) && finite(c.measured[k])) c.measured[k] = kMissing, ++after_gap;
+      if (r_.gap_before(k)) c.measured[k] = kMissing, ++after_gap;
     }
     if (after_gap > 0) c.left_out = fmt::format("{} samples of {} right after a gap", after_gap, c.name);
     s_.compared.push_back(std::move(c));

@@ -260,7 +260,7 @@ class AxisPredictor : public Predictor {
       const auto draw = [&](std::size_t k) { return gaussian(seed, stream, k); };
       const std::vector<double> pattern = signal.measured;
       if (signal.whitening_s > 0.0) {
-        differenced_noise(s, signal, p.values[c], draw);
+        differenced_noise(s, signal, p.values[c], uniform(seed, stream, 1u << 30), draw);
       } else if (s.method == Method::kInverse && !s.steady && !s.filter.sections.empty()) {
         add_band_noise(s, signal, p.values[c], draw);
       } else {
@@ -285,7 +285,7 @@ class AxisPredictor : public Predictor {
 
   template <typename Draw>
   static void differenced_noise(const AxisSetup& s, const ComparedSignal& signal, std::vector<double>& v,
-                                Draw draw) {
+                                double start, Draw draw) {
     // the position behind the speed, read through a rounding sensor, and differenced again
     const auto& t = s.input.time_s;
     const double dt = t.size() > 1 ? (t.back() - t.front()) / static_cast<double>(t.size() - 1) : 1.0;
@@ -299,7 +299,7 @@ class AxisPredictor : public Predictor {
         x[k] = x[from] + v[k] * (t[k] - t[from]);
       else if (k > 0)
         x[k] = x[k - 1];
-      const double noisy = x[k] + rest * draw(k) + 0.37 * q;  // counts do not start on an edge
+      const double noisy = x[k] + rest * draw(k) + start * q;  // counts do not start on an edge
       seen[k] = q > 0.0 ? std::floor(noisy / q) * q : noisy;
       if (from < k) v[k] = (seen[k] - seen[from]) / (t[k] - t[from]);
     }
