@@ -7,6 +7,7 @@ all effects, so that the first N cases of a class are spread as widely as N allo
 import dataclasses
 import hashlib
 
+import robot_effects
 from axis_effects import BY_ID, EFFECTS
 from share import spread_share
 
@@ -75,6 +76,11 @@ def _loop_effects(count):
     return [(ids[(7 * k) % len(ids)],) for k in range(count)]
 
 
+def _robot_share(case):
+    import axis_case
+    return spread_share(axis_case.source("share", *case.key), case.index // len(robot_effects.EFFECTS))
+
+
 @dataclasses.dataclass(frozen=True)
 class Class:
     title: str
@@ -84,6 +90,11 @@ class Class:
 
 def classes():
     import axis_case
+    import faults
+    import outside
+    import robot_case
+    strange, broken = outside.names(), list(faults.KINDS)
+    bots = [e.id for e in robot_effects.EFFECTS]
     return {
         "single": Class("one hidden effect, recommended excitation", _around(8, 0),
                         lambda c, f: _single(c, f, _shares(c))),
@@ -97,6 +108,13 @@ def classes():
                       lambda c, f: _single(c, f, 0.5, closed_loop=True)),
         "loop-control": Class("closed-loop record, no hidden effect", [()] * 12,
                               lambda c, f: axis_case.make_control_case(f, c.key, closed_loop=True)),
+        "outside": Class("something no list of effects has", [(strange[k % len(strange)],) for k in range(50)],
+                         lambda c, f: outside.make_case(f, c.key, c.what[0])),
+        "fault": Class("broken record", [(broken[k % len(broken)],) for k in range(42)],
+                       lambda c, f: faults.make_case(f, c.key, c.what[0])),
+        "robot": Class("robot, one hidden effect", [(bots[k % len(bots)],) for k in range(5 * len(bots))],
+                       lambda c, f: robot_case.make_case(f, c.key, c.what, _robot_share(c))),
+        "robot-control": Class("robot, no hidden effect", [()] * 24, lambda c, f: robot_case.make_case(f, c.key, (), 0)),
     }
 
 

@@ -91,8 +91,7 @@ def to_the_top(rng, n, dt):
     """Ramps to full duty and back, both ways."""
     period_s = rng.uniform(5, 9)
     top = rng.uniform(0.97, 1.0)
-    return [top * math.sin(2 * math.pi * k * dt / period_s) if rng is None else
-            top * max(-1.0, min(1.0, 1.15 * math.asin(math.sin(2 * math.pi * k * dt / period_s)) * 2 / math.pi))
+    return [top * max(-1.0, min(1.0, 1.15 * math.asin(math.sin(2 * math.pi * k * dt / period_s)) * 2 / math.pi))
             for k in range(n)]
 
 

@@ -8,6 +8,8 @@ import subprocess
 HERE = pathlib.Path(__file__).resolve().parent
 RAW = ("command", "bus", "current", "angle", "speed", "out_angle", "out_speed", "winding_K")
 SEEN = ("counts", "bus", "current", "speed", "angle")
+BOT = ("bus", *(f"current_{k}" for k in range(1, 5)), *(f"counts_{k}" for k in range(1, 5)), "gyro", "ax", "ay",
+       "cam_x", "cam_y", "cam_turn", "x", "y", "turn")
 SUMS = ("in_J", "lost_J", "stored_J")
 
 
@@ -64,6 +66,7 @@ class Columns(dict):
 
 
 AXIS = Plant("axis")
+ROBOT = Plant("robot")
 
 
 def run_axis(params, asked):
@@ -86,6 +89,15 @@ def sense_axis(params, raw, seed):
 
 def raw_columns(raw):
     return Columns.split(raw, RAW)
+
+
+def run_robot(params, asked):
+    """`asked`: rows of four duties and the dribbler's speed. Returns the columns of BOT; NaN where a camera cell is empty."""
+    n = len(asked)
+    flat, out = array.array("d", [x for row in asked for x in row]), _doubles(n * len(BOT))
+    if _lib.robot_run(ROBOT.pack(params), _pointer(flat), n, _pointer(out)):
+        raise ArithmeticError("the hidden robot stopped being finite")
+    return Columns.split(out, BOT)
 
 
 def inner_products(rows):
