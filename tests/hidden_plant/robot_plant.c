@@ -87,7 +87,7 @@ static void share_load(Robot *r, double fx, double fy) {
     r->load[k] = largest(0, plane[0] + p->base_m * (plane[1] * r->cos_a[k] + plane[2] * r->sin_a[k]));
 }
 
-static double winding(Robot *r, int k, double duty, double h) {
+static double winding(Robot *r, int k, double duty) {
   const RobotParams *p = r->p;
   const double emf = r->flux[k] * r->rim[k] * p->gear, i = r->amps[k];
   double u = duty * r->bus;
@@ -137,7 +137,7 @@ static void step(Robot *r, const double *duty, double dribbler, double h) {
     fx += -r->sin_a[k] * f + r->cos_a[k] * g;
     fy += r->cos_a[k] * f + r->sin_a[k] * g;
     moment += p->base_m * f;
-    const double amps = winding(r, k, duty[k], h), motor = motor_torque(r, k, amps);
+    const double amps = winding(r, k, duty[k]), motor = motor_torque(r, k, amps);
     bus_A += duty[k] * amps;
     double dry =
         p->gear * (p->dry_Nm + p->loaded_ratio * fabs(r->flux[k] * amps)) + p->rolling * load * r->radius[k];
