@@ -1,9 +1,9 @@
 #include "sim/identify/predictor.h"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "sim/identify/predictor_axis.h"
+#include "sim/identify/predictor_robot.h"
 
 namespace omnihil {
 
@@ -38,9 +38,8 @@ std::vector<double> whitened(const ComparedSignal& signal, std::vector<double> r
 
 std::unique_ptr<Predictor> make_predictor(const Dataset& dataset, const Candidate& nominal,
                                           const PredictOptions& options) {
-  if (dataset.rig == Rig::kAxis) return make_axis_predictor(dataset, nominal, options);
-  throw std::invalid_argument(
-      "a dataset of rig \"robot\" cannot be held against a model yet; allowed: \"axis\"");
+  return dataset.rig == Rig::kAxis ? make_axis_predictor(dataset, nominal, options)
+                                   : make_robot_predictor(dataset, nominal, options);
 }
 
 }  // namespace omnihil
