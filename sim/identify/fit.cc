@@ -164,9 +164,11 @@ FitResult fit(const Predictor& predictor, const Candidate& candidate, const std:
     const FitPoint same = problem.at(best.x, false);
     if (d.cost <= same.cost()) best = std::move(d);
   }
-  // Never above where it started.
+  // Never above where it started; a model whose effects start at neutral is its parent there.
   const FitPoint start = problem.at(given, false), end = problem.at(best.x, false);
-  if (start.finite && !(end.cost() <= start.cost())) best.x = given;
+  const bool nested = std::any_of(candidate.effects.begin(), candidate.effects.end(), is_neutral);
+  const bool above = nested && problem.noise_cost(best.x) > problem.noise_cost(given);
+  if (start.finite && (above || !(end.cost() <= start.cost()))) best.x = given;
   result.stopped = stopped();
   result.converged = best.converged;
   const FitPoint point = problem.at(best.x, true);

@@ -42,7 +42,7 @@ struct FitOptions {
   std::uint64_t seed = 1;
   bool profile = false;        // walk along flat directions instead of trusting the covariance
   bool quick = false;          // rough covariance only: for rankings
-  std::function<bool()> stop;  // true: give up early with what is known
+  std::function<bool()> stop{};  // true: give up early with what is known
 };
 
 struct FitResult {

@@ -40,20 +40,26 @@ double data_variance(const Directions& d, Eigen::Index i, double scale) {
   return variance * scale * scale;
 }
 
-// Members of the weakest direction that unknown i has a good part in.
-std::vector<std::string> partners(const Directions& d, Eigen::Index i, const std::vector<Unknown>& unknowns) {
-  constexpr double kPart = 0.2;
-  for (Eigen::Index e = 0; e < d.strength.size(); ++e) {
-    if (std::abs(d.members(i, e)) < kPart) continue;
-    std::vector<std::string> out;
-    const double largest = d.members.col(e).cwiseAbs().maxCoeff();
-    for (Eigen::Index j = 0; j < d.members.rows(); ++j) {
-      if (j != i && std::abs(d.members(j, e)) > 0.3 * largest)
-        out.push_back(unknowns[static_cast<std::size_t>(j)].path);
-    }
-    return out;
+// Whom each unknown trades against: correlations of the data's own covariance, made finite by a prior a
+// hundred times wider than the real one; strongest first.
+std::vector<std::string> partners(const Eigen::MatrixXd& information, const Eigen::VectorXd& scale,
+                                  Eigen::Index i, const std::vector<Unknown>& unknowns) {
+  constexpr double kWeak = 1e-4, kCorrelated = 0.5;
+  constexpr std::size_t kMost = 3;
+  Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  scaled.diagonal().array() += kWeak;
+  const Eigen::MatrixXd covariance =
+      scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+  std::vector<std::pair<double, std::string>> found;
+  for (Eigen::Index j = 0; j < scaled.rows(); ++j) {
+    const double c = covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
+    if (j != i && std::abs(c) > kCorrelated)
+      found.emplace_back(-std::abs(c), unknowns[static_cast<std::size_t>(j)].path);
   }
-  return {};
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> out;
+  for (std::size_t n = 0; n < found.size() && n < kMost; ++n) out.push_back(found[n].second);
+  return out;
 }
 
 bool at(double x, double bound, double scale) {
@@ -160,7 +166,7 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
     p.unphysical = p.at_bound && u.lower == 0.0 && at(x[i], 0.0, u.scale) && pressed;
     const double belief = u.prior_sigma > 0.0 ? u.prior_sigma : std::max(std::abs(x[i]), u.scale);
     p.identifiable = p.data_sigma < belief;
-    if (!p.identifiable) p.trades_with = partners(data, i, unknowns);
+    if (!p.identifiable) p.trades_with = partners(point.information, scale, i, unknowns);
     p.sentence = sentence_of(u, p, point.gradient[i]);
     if (!p.sentence.empty()) result.findings.push_back(p.path + ": " + p.sentence);
     result.parameters.push_back(std::move(p));

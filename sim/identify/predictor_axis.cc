@@ -52,7 +52,8 @@ Seeded seeded(const Candidate& c, const Run& run, std::span<const Unknown> unkno
 
 bool needs_short_steps(const Candidate& c) {
   return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
-    return use.entry->info->place == Place::kShaft || use.entry->info->id == "lugre_friction";
+    const bool stiff = use.entry->info->place == Place::kShaft || use.entry->info->id == "lugre_friction";
+    return stiff && !is_neutral(use);  // at neutral it is its parent, to the last digit
   });
 }
 
