@@ -39,10 +39,11 @@ void add_samples(const ComparedSignal& signal, const std::vector<double>& model,
   }
   sums.stated = sums.stated && signal.noise_is_stated;
   sums.diverged = sums.diverged || !finite;
-  if (signal.noise_sigma <= 0.0) return;
-  for (const double r : residual) {
+  const double sigma = signal.whitened_sigma > 0.0 ? signal.whitened_sigma : signal.noise_sigma;
+  if (sigma <= 0.0) return;
+  for (const double r : whitened(signal, std::move(residual))) {
     if (!std::isfinite(r)) continue;
-    sums.sigmas_square += r * r / (signal.noise_sigma * signal.noise_sigma);
+    sums.sigmas_square += r * r / (sigma * sigma);
     ++sums.whitened;
   }
 }
