@@ -47,7 +47,7 @@ struct RegimeError {
   std::string unit;  // of the axis
   Use use = Use::kFit;
   std::vector<RegimeBin> bins;
-  double explained_fraction = 0.0;  // of the residual's energy, by its mean per bin, chance subtracted
+  double explained_fraction = 0.0;  // of the residual's variance, by its mean per bin, chance subtracted
 };
 struct WorstRegime {
   std::string signal;

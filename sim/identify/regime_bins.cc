@@ -7,8 +7,8 @@
 namespace omnihil {
 namespace {
 
-constexpr int kWidths = 12;  // bins of equal width over the axis
-constexpr int kShares = 12;  // parted further where the samples crowd
+constexpr int kWidths = 24;  // bins of equal width over the axis
+constexpr int kShares = 24;  // parted further where the samples crowd
 constexpr int kAngleBins = 48;
 constexpr double kLeastShare = 1e-3;  // of the samples, per bin
 constexpr std::size_t kLeastSamples = 5;
@@ -92,10 +92,11 @@ RegimeError regime_error(std::string_view axis, const RegimeSamples& samples) {
   const std::size_t bins = edges.size() - 1;
   std::vector<std::vector<BlockSum>> blocks(bins, std::vector<BlockSum>(kBlocks));
   std::vector<double> energy(bins), count(bins);
-  double total = 0.0;
+  double total = 0.0, sum = 0.0;
   for (std::size_t i = 0; i < samples.residual.size(); ++i) {
     const double r = samples.residual[i];
     total += r * r;
+    sum += r;
     if (!std::isfinite(place[i])) continue;
     const auto bin = static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(std::upper_bound(edges.begin(), edges.end(), place[i]) - edges.begin() - 1,
@@ -107,18 +108,19 @@ RegimeError regime_error(std::string_view axis, const RegimeSamples& samples) {
     block.count += 1.0;
   }
   const auto n = static_cast<double>(samples.residual.size());
-  const double rms = std::sqrt(total / n);
+  const double rms = std::sqrt(total / n), mean = sum / n;
+  const double about_mean = total - n * mean * mean;
   double explained = 0.0;
   for (std::size_t b = 0; b < bins; ++b) {
     RegimeBin bin{.from = edges[b], .to = edges[b + 1]};
     bin.energy_share = total > 0.0 ? energy[b] / total : 0.0;
     bin.time_share = count[b] / n;
     mean_of(blocks[b], rms, bin);
-    // what the bin's mean explains, less what a mean of noise would
-    explained += count[b] * (bin.mean * bin.mean - bin.sigma * bin.sigma);
+    // what the bin's mean explains beyond the mean of all, less what a mean of noise would
+    explained += count[b] * ((bin.mean - mean) * (bin.mean - mean) - bin.sigma * bin.sigma);
     if (count[b] > 0.0) out.bins.push_back(bin);
   }
-  out.explained_fraction = total > 0.0 ? std::clamp(explained / total, 0.0, 1.0) : 0.0;
+  out.explained_fraction = about_mean > 0.0 ? std::clamp(explained / about_mean, 0.0, 1.0) : 0.0;
   return out;
 }
 

@@ -3,7 +3,7 @@
 //   RegimeSamples s{.residual = …, .axis = …, .block = …};
 //   RegimeError r = regime_error("speed", s);       // bins, with the mean residual and its standard error
 //
-// Bins: twelve of equal width, parted further at the twelfths of the samples, so that both sparse ends and
+// Bins: 24 of equal width, parted further at the 24ths of the samples, so that both sparse ends and
 // crowded places are resolved; none with less than a thousandth of the samples. Angles are taken modulo a
 // turn, in 48 bins. The standard error of a bin's mean comes from blocks of successive samples, since
 // residuals are autocorrelated: var = sum_k (S_k - m n_k)^2 / (sum n_k)^2 * K / (K - 1), S_k, n_k sum and
