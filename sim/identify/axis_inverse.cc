@@ -66,6 +66,12 @@ std::vector<double> at_interval_end(const std::vector<double>& x) {
   return out;
 }
 
+// Values at instants, straight between them: the mean from each sample to the next.
+std::vector<double> interval_means(std::vector<double> x) {
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) x[k] = 0.5 * (x[k] + x[k + 1]);
+  return x;
+}
+
 double band_noise(const std::vector<double>& raw, const std::vector<double>& low, double cutoff_Hz,
                   double rate_Hz) {
   // white above the cutoff, so as strong below: sigma^2 in band = sigma^2 above * fc / (f_N - fc)
@@ -175,9 +181,9 @@ void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& 
   in.time_s = even_clock(r);
   const auto linear = [&](const std::vector<double>& x) { return resampled(r, x, in.time_s, false); };
   const auto steps = [&](const std::vector<double>& x) { return resampled(r, x, in.time_s, true); };
-  in.command = steps(r.command);
-  for (const double e : steps(r.enable)) in.enable.push_back(e != 0.0 ? 1 : 0);
   const bool by_torque = kind == CommandKind::kMotorTorque || kind == CommandKind::kMotorCurrent;
+  in.command = by_torque ? interval_means(linear(r.command)) : steps(r.command);
+  for (const double e : steps(r.enable)) in.enable.push_back(e != 0.0 ? 1 : 0);
   if (!by_torque) in.bus_voltage_V = steps(r.bus_V);
   const bool bench_torque = s.bench_turns && !r.load_torque_Nm.empty();
   if (!bench_torque) in.load_torque_Nm = steps(r.load_torque_Nm);

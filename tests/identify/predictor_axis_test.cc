@@ -223,13 +223,16 @@ TEST(AxisPredictor, ATorqueDrivenMotionNeedsTheTorqueThatMadeIt) {
                 {.signal = "position", .column = "", .unit = "m"}};
   AxisInput in;
   in.kind = CommandKind::kMotorTorque;
+  std::vector<double> sampled;
   for (int k = 0; k < 3000; ++k) {
     in.time_s.push_back(1e-3 * k);
-    in.command.push_back(40.0 * std::sin(2.0 * std::numbers::pi * 2.0 * 1e-3 * k));
+    const auto force_N = [](double t) { return 40.0 * std::sin(2.0 * std::numbers::pi * 2.0 * t); };
+    sampled.push_back(force_N(1e-3 * k));
+    in.command.push_back(force_N(1e-3 * (k + 0.5)));  // what acts until the next sample, on average
   }
   omnihil::Run run = run_of("f.csv");
   run.time_s = in.time_s;
-  run.signals["motor_torque"] = in.command;
+  run.signals["motor_torque"] = sampled;
   for (const auto& s : run_axis<double>(drive_of(truth), {}, in))
     run.signals["position"].push_back(s.position_rad);
   d.runs = {run};
