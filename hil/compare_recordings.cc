@@ -19,7 +19,7 @@ std::string Difference::text() const {
   return out + ")";
 }
 
-std::uint64_t Comparison::values() const {
+std::uint64_t RecordingComparison::values() const {
   std::uint64_t sum = 0;
   for (const SignalSummary& signal : signals) sum += signal.values;
   return sum;
@@ -84,9 +84,9 @@ std::optional<Difference> first_byte_difference(const Recording& recorded, const
   return std::nullopt;
 }
 
-Comparison compare_recordings(const Recording& recorded, const Recording& replayed, const RadioFormat& format,
-                              const Tolerances& tolerances) {
-  Comparison result;
+RecordingComparison compare_recordings(const Recording& recorded, const Recording& replayed,
+                                       const RadioFormat& format, const Tolerances& tolerances) {
+  RecordingComparison result;
   DifferenceNotes notes(result);
   compare_packets(recorded, replayed, format, tolerances, result, notes);
   const std::optional<Difference> bytes = first_byte_difference(recorded, replayed);

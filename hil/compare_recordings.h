@@ -1,6 +1,6 @@
 // Says where two runs differ: packets of the dongle field by field, samples column by column.
 //
-//   Comparison c = compare_recordings(recorded, replayed, format, tolerances);
+//   RecordingComparison c = compare_recordings(recorded, replayed, format, tolerances);
 //   if (!c.agrees()) print(c.first->text());
 //     // "3.020 s, robot 2: true_v_forward_m_s: recorded 0.98, replayed 1.02 m/s (tolerance 0.005)"
 //
@@ -39,7 +39,7 @@ struct SignalSummary {
   int largest_robot = -1;
 };
 
-struct Comparison {
+struct RecordingComparison {
   std::optional<Difference> first;  // the earliest beyond its tolerance
   std::vector<SignalSummary> signals;
   std::vector<std::string> not_compared;  // columns of the recording that are unknown here
@@ -53,8 +53,8 @@ struct Comparison {
   std::uint64_t values() const;
 };
 
-Comparison compare_recordings(const Recording& recorded, const Recording& replayed, const RadioFormat& format,
-                              const Tolerances& tolerances);
+RecordingComparison compare_recordings(const Recording& recorded, const Recording& replayed,
+                                       const RadioFormat& format, const Tolerances& tolerances);
 
 // The dongle's bytes with their times, chunks of one time joined: what "identical bytes back" compares.
 struct TimedBytes {

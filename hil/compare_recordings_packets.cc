@@ -41,7 +41,7 @@ int robot_of(const Values& values) {
 
 class PacketComparer {
  public:
-  PacketComparer(const RadioFormat& format, const Tolerances& tolerances, Comparison& result,
+  PacketComparer(const RadioFormat& format, const Tolerances& tolerances, RecordingComparison& result,
                  DifferenceNotes& notes)
       : format_(format), tolerances_(tolerances), result_(result), notes_(notes) {}
 
@@ -143,7 +143,7 @@ class PacketComparer {
 
   const RadioFormat& format_;
   const Tolerances& tolerances_;
-  Comparison& result_;
+  RecordingComparison& result_;
   DifferenceNotes& notes_;
   std::map<std::string, std::vector<FieldRule>> rules_;
 };
@@ -151,7 +151,7 @@ class PacketComparer {
 }  // namespace
 
 void compare_packets(const Recording& recorded, const Recording& replayed, const RadioFormat& format,
-                     const Tolerances& tolerances, Comparison& result, DifferenceNotes& notes) {
+                     const Tolerances& tolerances, RecordingComparison& result, DifferenceNotes& notes) {
   const std::vector<Packet> a = packets_of(recorded, format);
   const std::vector<Packet> b = packets_of(replayed, format);
   PacketComparer comparer(format, tolerances, result, notes);

@@ -8,7 +8,7 @@ namespace omnihil {
 
 class DifferenceNotes {
  public:
-  explicit DifferenceNotes(Comparison& result) : result_(result) {}
+  explicit DifferenceNotes(RecordingComparison& result) : result_(result) {}
 
   // The place of a signal in result.signals; made at the first call.
   std::size_t signal(const std::string& name, std::string_view unit, double tolerance);
@@ -17,13 +17,13 @@ class DifferenceNotes {
   void differs(Difference difference);
 
  private:
-  Comparison& result_;
+  RecordingComparison& result_;
   std::map<std::string, std::size_t, std::less<>> index_;
 };
 
 void compare_samples(const Recording& recorded, const Recording& replayed, const Tolerances& tolerances,
-                     Comparison& result, DifferenceNotes& notes);
+                     RecordingComparison& result, DifferenceNotes& notes);
 void compare_packets(const Recording& recorded, const Recording& replayed, const RadioFormat& format,
-                     const Tolerances& tolerances, Comparison& result, DifferenceNotes& notes);
+                     const Tolerances& tolerances, RecordingComparison& result, DifferenceNotes& notes);
 
 }  // namespace omnihil

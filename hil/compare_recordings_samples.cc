@@ -34,7 +34,8 @@ bool is_angle(const std::string& name) {
 }
 
 std::vector<Column> common_columns(const RecordingHeader& recorded, const RecordingHeader& replayed,
-                                   const Tolerances& tolerances, Comparison& result, DifferenceNotes& notes) {
+                                   const Tolerances& tolerances, RecordingComparison& result,
+                                   DifferenceNotes& notes) {
   std::vector<Column> columns;
   for (std::size_t i = 0; i < recorded.columns.size(); ++i) {
     const std::string& name = recorded.columns[i];
@@ -72,7 +73,7 @@ std::string place_text(const RecordedChunk* sample) {
 }  // namespace
 
 void compare_samples(const Recording& recorded, const Recording& replayed, const Tolerances& tolerances,
-                     Comparison& result, DifferenceNotes& notes) {
+                     RecordingComparison& result, DifferenceNotes& notes) {
   const auto a = samples_of(recorded);
   const auto b = samples_of(replayed);
   const auto columns = common_columns(recorded.header, replayed.header, tolerances, result, notes);

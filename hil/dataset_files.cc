@@ -77,13 +77,18 @@ void NewFolder::finish() {
 }
 
 void write_new_file(const fs::path& path, std::string_view text) {
-  const fs::path target = clean(path);
   std::error_code error;
-  if (fs::exists(fs::symlink_status(target, error))) {
+  if (fs::exists(fs::symlink_status(clean(path), error))) {
     throw FileExists(path.string() + ": exists; nothing was written");
   }
+  replace_file(path, text);
+}
+
+void replace_file(const fs::path& path, std::string_view text) {
+  const fs::path target = clean(path);
   const fs::path folder = make_beside(target);
   const fs::path making = folder / "file";
+  std::error_code error;
   try {
     write_file(making, text);
     fs::rename(making, target);
@@ -92,6 +97,18 @@ void write_new_file(const fs::path& path, std::string_view text) {
     throw;
   }
   fs::remove_all(folder, error);
+}
+
+void replace_file_keeping_old(const fs::path& path, std::string_view text) {
+  const fs::path target = clean(path);
+  fs::path old = target;
+  old += ".1";
+  std::error_code error;
+  if (fs::exists(target, error)) {
+    fs::copy_file(target, old, fs::copy_options::overwrite_existing, error);
+    if (error) fail(error.value(), old);
+  }
+  replace_file(path, text);
 }
 
 }  // namespace omnihil

@@ -36,4 +36,10 @@ class NewFolder {
 // One file, the same way. Refuses to replace one that is there.
 void write_new_file(const std::filesystem::path& path, std::string_view text);
 
+// One file that may be there already: it is replaced at once, or not at all.
+void replace_file(const std::filesystem::path& path, std::string_view text);
+
+// The same; what was there is kept as PATH.1 (PATH.1 of before is lost).
+void replace_file_keeping_old(const std::filesystem::path& path, std::string_view text);
+
 }  // namespace omnihil

@@ -38,7 +38,7 @@ std::string replay_line(const Recording& recording, const ReplayRun& run) {
   return text;
 }
 
-std::string comparison_table(const Comparison& comparison) {
+std::string comparison_table(const RecordingComparison& comparison) {
   std::string text = fmt::format("{:<36} {:>9} {:>13} {:>10} {:<6} {}\n", "signal", "values", "largest diff",
                                  "tolerance", "unit", "where");
   for (const SignalSummary& signal : comparison.signals) {

@@ -12,6 +12,6 @@ std::string recording_line(const Recording& recording);
 // Firmware, wall time, packets of the host.
 std::string replay_line(const Recording& recording, const ReplayRun& run);
 // One row per signal: values compared, largest difference and where, tolerance.
-std::string comparison_table(const Comparison& comparison);
+std::string comparison_table(const RecordingComparison& comparison);
 
 }  // namespace omnihil

@@ -28,7 +28,7 @@ Tolerances exact() {
   return tolerances;
 }
 
-Comparison compare(const Recording& a, const Recording& b, const Tolerances& tolerances = {}) {
+RecordingComparison compare(const Recording& a, const Recording& b, const Tolerances& tolerances = {}) {
   return compare_recordings(a, b, *find_radio_format(a.header.radio_format), tolerances);
 }
 
@@ -49,7 +49,7 @@ RecordedChunk& nth(Recording& recording, Kind kind, int n) {
 
 TEST(Compare, RunAgreesWithItselfInEveryBit) {
   for (const Recording* recording : {&hermes(), &rem()}) {
-    const Comparison result = compare(*recording, *recording, exact());
+    const RecordingComparison result = compare(*recording, *recording, exact());
     EXPECT_TRUE(result.agrees());
     EXPECT_TRUE(result.bytes_identical);
     EXPECT_TRUE(result.samples_identical);
@@ -67,7 +67,7 @@ TEST(Compare, OneBitOfOneValueIsFoundAndNamed) {
     double& value = chunk.sample[column(planted, which.name)];
     const double before = value;
     value = std::nextafter(value, 1e9);
-    const Comparison result = compare(planted, hermes(), exact());
+    const RecordingComparison result = compare(planted, hermes(), exact());
     ASSERT_FALSE(result.agrees()) << which.name;
     EXPECT_EQ(result.first->what, which.name);
     EXPECT_EQ(result.first->now_ns, chunk.now_ns);
@@ -85,7 +85,7 @@ TEST(Compare, DifferenceBeyondToleranceIsFoundAndWithinItIsNot) {
   nth(planted, Kind::kSample, 9).sample[column(planted, "true_v_left_m_s")] += 0.0049;
   EXPECT_TRUE(compare(planted, hermes()).agrees());
   nth(planted, Kind::kSample, 9).sample[column(planted, "true_v_left_m_s")] += 0.0002;
-  const Comparison result = compare(planted, hermes());
+  const RecordingComparison result = compare(planted, hermes());
   ASSERT_FALSE(result.agrees());
   EXPECT_EQ(result.first->what, "true_v_left_m_s");
   EXPECT_EQ(result.first->unit, "m/s");
@@ -103,7 +103,7 @@ TEST(Compare, EveryBitOfTheDonglesBytesIsSeen) {
     ASSERT_EQ(chunk.bytes.size(), 8U);  // BATTERIE_RESPONSE: six bytes in COBS, and the delimiter
     chunk.bytes[bit / 8] = static_cast<std::uint8_t>(chunk.bytes[bit / 8] ^ (1U << (bit % 8)));
     for (const Tolerances& tolerances : {exact(), Tolerances{}}) {
-      const Comparison result = compare(planted, hermes(), tolerances);
+      const RecordingComparison result = compare(planted, hermes(), tolerances);
       ASSERT_FALSE(result.agrees()) << "bit " << bit;
       EXPECT_FALSE(result.bytes_identical);
       EXPECT_EQ(result.first->now_ns, chunk.now_ns) << "bit " << bit;
@@ -128,7 +128,7 @@ TEST(Compare, PacketFieldIsNamedWithRobotAndBothValues) {
   const double before = find_radio_format("ulaval-hermes")->decode(chunk.bytes).values.number("decivolts");
   const double robot = find_radio_format("ulaval-hermes")->decode(chunk.bytes).values.number("robot");
   plant_voltage(chunk, 3);
-  const Comparison result = compare(planted, hermes());
+  const RecordingComparison result = compare(planted, hermes());
   ASSERT_FALSE(result.agrees());
   EXPECT_EQ(result.first->what, "packet BATTERIE_RESPONSE field decivolts");
   EXPECT_EQ(result.first->robot_id, static_cast<int>(robot));
@@ -148,12 +148,12 @@ TEST(Compare, MissingPacketAndPacketTooManyAreNamed) {
   const std::int64_t at_ns = nth(fewer, Kind::kDongleBytes, 2).now_ns;
   std::erase_if(fewer.chunks,
                 [&](const RecordedChunk& c) { return c.kind == Kind::kDongleBytes && c.now_ns >= at_ns; });
-  const Comparison more = compare(fewer, hermes());
+  const RecordingComparison more = compare(fewer, hermes());
   ASSERT_FALSE(more.agrees());
   EXPECT_EQ(more.first->what, "packet");
   EXPECT_EQ(more.first->recorded, "none");
   EXPECT_EQ(more.first->now_ns, at_ns);
-  const Comparison less = compare(hermes(), fewer);
+  const RecordingComparison less = compare(hermes(), fewer);
   ASSERT_FALSE(less.agrees());
   EXPECT_EQ(less.first->replayed, "none");
 }
@@ -161,7 +161,7 @@ TEST(Compare, MissingPacketAndPacketTooManyAreNamed) {
 TEST(Compare, LatePacketIsNamed) {
   Recording late = hermes();
   nth(late, Kind::kDongleBytes, 1).now_ns += 2'000'000;
-  const Comparison result = compare(late, hermes());
+  const RecordingComparison result = compare(late, hermes());
   ASSERT_FALSE(result.agrees());
   EXPECT_EQ(result.first->what, "time of packet BATTERIE_RESPONSE");
   Tolerances loose;
@@ -174,7 +174,7 @@ TEST(Compare, MissingSampleIsNamed) {
   fewer.chunks.erase(std::find_if(fewer.chunks.begin(), fewer.chunks.end(), [](const RecordedChunk& c) {
     return c.kind == Kind::kSample && c.robot_id == 3;
   }));
-  const Comparison result = compare(fewer, hermes());
+  const RecordingComparison result = compare(fewer, hermes());
   ASSERT_FALSE(result.agrees());
   EXPECT_EQ(result.first->what, "sample");
 }
@@ -198,7 +198,7 @@ TEST(Compare, SummaryHasTheLargestDifferenceOfEachSignal) {
   Recording planted = hermes();
   RecordedChunk& chunk = nth(planted, Kind::kSample, 12);
   chunk.sample[column(planted, "true_load_N_3")] += 0.5;
-  const Comparison result = compare(planted, hermes());
+  const RecordingComparison result = compare(planted, hermes());
   const auto at = std::find_if(result.signals.begin(), result.signals.end(),
                                [](const SignalSummary& s) { return s.name == "true_load_N"; });
   ASSERT_NE(at, result.signals.end());
@@ -212,7 +212,7 @@ TEST(Compare, SummaryHasTheLargestDifferenceOfEachSignal) {
 TEST(Compare, ColumnsOfOtherVersionsAreListedAndLeftOut) {
   Recording old = hermes();
   old.header.columns[0] = "duty_of_old";
-  const Comparison result = compare(old, hermes(), exact());
+  const RecordingComparison result = compare(old, hermes(), exact());
   EXPECT_TRUE(result.agrees());
   EXPECT_EQ(result.not_compared, std::vector<std::string>{"duty_of_old"});
 }
@@ -230,7 +230,7 @@ TEST(Compare, OnePercentOfTheMotorsTorqueConstantIsSeen) {
 TEST(Compare, PhysicsOfTheClosedFormAgreesWithSimbody) {
   const Recording recorded = real::record(real::setup(real::kHermesSimbody), 200);
   const ReplayRun planar = run_again(recorded, {.physics = Physics::kPlanar, .observer = nullptr});
-  const Comparison result = compare(recorded, planar.answer);
+  const RecordingComparison result = compare(recorded, planar.answer);
   EXPECT_TRUE(result.agrees()) << result.first->text();
 }
 

@@ -122,7 +122,7 @@ TEST(Replay, RunCutAtAnyLineAgreesAsFarAsItGoes) {
     // The line end itself and half of the next line.
     const Recording cut = real::from_text(whole.substr(0, end + (line % 2 == 0 ? 0 : 9)));
     if (cut.complete) continue;
-    const Comparison comparison = compare_recordings(cut, run_again(cut, {}).answer, format, exact);
+    const RecordingComparison comparison = compare_recordings(cut, run_again(cut, {}).answer, format, exact);
     EXPECT_TRUE(comparison.agrees()) << "cut after line " << line + 2 << ": " << comparison.first->text();
   }
 }

@@ -66,7 +66,7 @@ Tolerances choose_tolerances(const CheckWords& words, const Recording& recording
   return tolerances;
 }
 
-int verdict(const Comparison& comparison) {
+int verdict(const RecordingComparison& comparison) {
   for (const std::string& column : comparison.not_compared) {
     fmt::print("not compared: column '{}', which this program does not have\n", column);
   }
@@ -92,7 +92,7 @@ int run_check(const CheckWords& words) {
   std::string reason;
   const Tolerances tolerances = choose_tolerances(words, recording, format, reason);
   const ReplayRun run = run_again(recording, {.physics = parse_physics(words.physics), .observer = nullptr});
-  const Comparison comparison = compare_recordings(recording, run.answer, *format, tolerances);
+  const RecordingComparison comparison = compare_recordings(recording, run.answer, *format, tolerances);
   fmt::print("recording  {}\n", recording_line(recording));
   fmt::print("replayed   {}\n", replay_line(recording, run));
   fmt::print("tolerances {}\n", reason);
