@@ -177,7 +177,8 @@ std::vector<ParameterEstimate> parameters_of(const FitResult& fit, const std::st
   return out;
 }
 
-Round addition_round(const Search& search, const Fitted& parent) {
+Round screening_round(const Search& search, const Fitted& parent,
+                      const std::vector<const EffectEntry*>& effects) {
   Round round;
   const Evidence& fit = (*search.uses)[0];
   const LinearBase base(fit, parent.fit.model, unknowns_with_priors(parent.fit.model, *search.nominal),
@@ -191,12 +192,17 @@ Round addition_round(const Search& search, const Fitted& parent) {
     task.noise.push_back(n.cwiseProduct(base.weights()));
   task.regimes = regime_masks(fit, parent.fit.model);
   task.scale = scale_of(search, parent, base);
-  round.orders = task.scale.orders;
   task.jobs = search.jobs;
   task.progress = [&](double share) { return !search.progress || search.progress("screening", 0.5 * share); };
-  round.screened = screen(task, not_yet(search, parent.fit.model));
+  round.orders = task.scale.orders;
+  round.screened = screen(task, effects);
   for (Screened& s : screen_extensions(task)) round.screened.push_back(std::move(s));
   round.chance_gain = chance_of(round.screened);
+  return round;
+}
+
+Round addition_round(const Search& search, const Fitted& parent) {
+  Round round = screening_round(search, parent, not_yet(search, parent.fit.model));
   round.stopped = search.progress && !search.progress("screening", 0.5);
   if (!round.stopped) refit_nominees(search, parent, nominees(round.screened), round);
   settle(search, parent, round);

@@ -52,6 +52,10 @@ struct Round {
 
 Round addition_round(const Search& search, const Fitted& parent);
 
+// The screening alone: what these effects would gain, and what chance would.
+Round screening_round(const Search& search, const Fitted& parent,
+                      const std::vector<const EffectEntry*>& effects);
+
 // Estimates of the parameters of one effect.
 std::vector<ParameterEstimate> parameters_of(const FitResult& fit, const std::string& effect);
 

@@ -2,21 +2,18 @@
 
 #include <algorithm>
 #include <atomic>
-#include <memory>
+#include <functional>
 #include <mutex>
 
-#include "sim/core/effect_registry.h"
-#include "sim/identify/addition_round.h"
 #include "sim/identify/diagnose_summary.h"
 #include "sim/identify/diagnosis.h"
 #include "sim/identify/next_experiment.h"
 #include "sim/identify/unknown_structure.h"
 #include "sim/identify/verdict.h"
+#include "sim/identify/workbench.h"
 
 namespace omnihil {
 namespace {
-
-constexpr int kReplicates = 12;
 
 // Shares of the work, in order; rounds take what is between.
 constexpr double kAfterBaseline = 0.12;
@@ -29,17 +26,14 @@ class Diagnosing {
       : dataset_(dataset),
         nominal_(nominal),
         options_(options),
-        predictor_(make_predictor(dataset, nominal, {})),
-        kinds_(signal_kinds(*predictor_)),
-        uses_{Evidence(*predictor_, kinds_, Use::kFit), Evidence(*predictor_, kinds_, Use::kHoldout),
-              Evidence(*predictor_, kinds_, Use::kExtrapolation)} {
+        bench_(dataset, nominal, {.seed = options.seed, .jobs = options.jobs}) {
     out_.dataset = dataset.name;
     out_.seed = options.seed;
   }
 
   Diagnosis run() {
     out_.findings = check_data(dataset_, nominal_);
-    out_.nominal_comparison = compare(*predictor_, nominal_);
+    out_.nominal_comparison = compare(bench_.predictor(), nominal_);
     add_step("nominal", {}, out_.nominal_comparison);
     if (!baseline()) return finish_early();
     simulate();
@@ -60,54 +54,25 @@ class Diagnosing {
     return !stopped_;
   }
 
-  RefitSetup setup(bool quick) {
-    RefitSetup s;
-    s.predictor = predictor_.get();
-    s.uses = &uses_;
-    s.nominal = &nominal_;
-    s.seed = options_.seed;
-    s.jobs = options_.jobs;
-    s.quick = quick;
-    s.stop = [this] { return stopped_.load(); };
-    return s;
-  }
-
   // Base parameters before anything else: their tolerances are priors.
   bool baseline() {
     if (!say("refitting the base parameters", 0.02)) return false;
-    RefitSetup s = setup(false);
-    s.max_iterations = 30;
-    baseline_ = refit_as_it_is(s, nominal_, 1);
-    out_.baseline = baseline_.fit;
-    out_.baseline_comparison = compare(*predictor_, baseline_.fit.model);
-    add_step("base parameters refitted", baseline_, out_.baseline_comparison);
-    current_ = baseline_;
-    return say("base parameters refitted", kAfterBaseline) && baseline_.finite && !uses_[0].empty();
+    const bool usable = bench_.fit_base(stop());
+    out_.baseline = bench_.base().fit;
+    out_.baseline_comparison = compare(bench_.predictor(), bench_.base().fit.model);
+    add_step("base parameters refitted", bench_.base(), out_.baseline_comparison);
+    current_ = bench_.base();
+    return say("base parameters refitted", kAfterBaseline) && usable;
   }
 
   void simulate() {
-    null_ = simulate_null(*predictor_, baseline_.fit.model, uses_, options_.seed, kReplicates, options_.jobs);
-    for (std::size_t u = 0; u < kUses; ++u) bootstrap_.emplace_back(uses_[u], options_.seed + u);
-    search_.dataset = &dataset_;
-    search_.predictor = predictor_.get();
-    search_.nominal = &nominal_;
-    search_.kinds = &kinds_;
-    search_.uses = &uses_;
-    search_.null = &null_;
-    search_.judging = {
-        .uses = &uses_, .null = &null_, .bootstrap = {&bootstrap_[0], &bootstrap_[1], &bootstrap_[2]}};
-    search_.seed = options_.seed;
-    search_.jobs = options_.jobs;
-    for (const EffectEntry* e : all_effects()) {
-      if (e->info->id == "expression") continue;  // the user's own, and what unknown structure is written in
-      const std::string why_not = predictor_->applies(*e);
-      if (why_not.empty()) {
-        search_.applicable.push_back(e);
-      } else {
-        out_.not_visible.push_back(fmt::format("{}: {}", e->info->id, why_not));
-      }
-    }
+    bench_.simulate();
+    search_ = bench_.search(out_.not_visible);
     say("simulated null", kAfterNull);
+  }
+
+  std::function<bool()> stop() {
+    return [this] { return stopped_.load(); };
   }
 
   // A fault of the data that would be taken for physics.
@@ -146,7 +111,7 @@ class Diagnosing {
     const Contender& best = round.contenders[static_cast<std::size_t>(round.chosen)];
     current_ = best.fitted;
     if (!best.screened.extends) out_.effects.push_back(best.screened.name);
-    add_step(best.screened.name, current_, compare(*predictor_, current_.fit.model));
+    add_step(best.screened.name, current_, compare(bench_.predictor(), current_.fit.model));
     note_twins(round, out_);
   }
 
@@ -155,8 +120,8 @@ class Diagnosing {
     for (std::size_t n = 0; out_.effects.size() > 1 && n < out_.effects.size() && !stopped_;) {
       const std::string name = out_.effects[n];
       say("is " + name + " still needed", kAfterRounds);
-      RefitSetup s = setup(true);
-      const Fitted less = refit_as_it_is(s, without_effect(current_.fit.model, name), 1);
+      const Fitted less =
+          refit_as_it_is(bench_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
       const Judgement needed = judge(search_.judging, less, current_, name, 1e9);
       if (needed.accepted || !less.finite || n + 1 == out_.effects.size()) {
         ++n;
@@ -164,23 +129,22 @@ class Diagnosing {
       }
       current_ = less;
       out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(n));
-      add_step("removed " + name, current_, compare(*predictor_, current_.fit.model));
+      add_step("removed " + name, current_, compare(bench_.predictor(), current_.fit.model));
     }
   }
 
   void conclude() {
     say("last fit", 0.88);
-    RefitSetup s = setup(false);
-    s.max_iterations = 30;
     const bool added = !out_.effects.empty();
     if (added && !stopped_) {
-      Fitted last = refit_as_it_is(s, current_.fit.model, 1);
-      if (last.finite && energy_ratio(uses_[0], current_.residual[0], last.residual[0]) < 1.01)
+      Fitted last = refit_as_it_is(bench_.setup(false, stop()), current_.fit.model, 1);
+      if (last.finite && energy_ratio(bench_.uses()[0], current_.residual[0], last.residual[0]) < 1.01)
         current_ = last;
     }
     out_.final_fit = current_.fit;
-    out_.final_comparison = added ? compare(*predictor_, current_.fit.model) : out_.baseline_comparison;
-    const Leftover rest = leftover_of(uses_, kinds_, null_, baseline_, current_);
+    out_.final_comparison =
+        added ? compare(bench_.predictor(), current_.fit.model) : out_.baseline_comparison;
+    const Leftover rest = leftover_of(bench_.uses(), bench_.kinds(), bench_.null(), bench_.base(), current_);
     const bool remains = misleading() || structure_remains(rest, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
@@ -198,7 +162,7 @@ class Diagnosing {
 
   Diagnosis finish_early() {
     out_.complete = false;
-    out_.final_fit = baseline_.fit;
+    out_.final_fit = out_.baseline;
     out_.final_comparison = out_.baseline_comparison;
     return std::move(out_);
   }
@@ -211,13 +175,9 @@ class Diagnosing {
   const Dataset& dataset_;
   const Candidate& nominal_;
   const DiagnoseOptions& options_;
-  std::unique_ptr<Predictor> predictor_;
-  SignalKinds kinds_;
-  Uses uses_;
-  NullModel null_;
-  std::vector<BlockBootstrap> bootstrap_;
+  Workbench bench_;
   Search search_;
-  Fitted baseline_, current_;
+  Fitted current_;
   Diagnosis out_;
   double order_ = 0.0;  // strongest of the residual's, per rotor turn
   double furthest_ = 0.0;

@@ -1,0 +1,73 @@
+#include "sim/identify/workbench.h"
+
+#include <fmt/format.h>
+
+#include "sim/core/effect_registry.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kReplicates = 12;
+constexpr int kThoroughIterations = 30;
+constexpr int kQuickIterations = 12;
+
+}  // namespace
+
+Workbench::Workbench(const Dataset& dataset, const Candidate& nominal, const WorkbenchOptions& options)
+    : dataset_(dataset),
+      nominal_(nominal),
+      options_(options),
+      predictor_(make_predictor(dataset, nominal, {})),
+      kinds_(signal_kinds(*predictor_)),
+      uses_{Evidence(*predictor_, kinds_, Use::kFit), Evidence(*predictor_, kinds_, Use::kHoldout),
+            Evidence(*predictor_, kinds_, Use::kExtrapolation)} {}
+
+RefitSetup Workbench::setup(bool quick, const std::function<bool()>& stop) const {
+  RefitSetup s;
+  s.predictor = predictor_.get();
+  s.uses = &uses_;
+  s.nominal = &nominal_;
+  s.seed = options_.seed;
+  s.jobs = options_.jobs;
+  s.quick = quick;
+  s.max_iterations = quick ? kQuickIterations : kThoroughIterations;
+  s.stop = stop;
+  return s;
+}
+
+bool Workbench::fit_base(const std::function<bool()>& stop) {
+  base_ = refit_as_it_is(setup(false, stop), nominal_, 1);
+  return base_.finite && !uses_[0].empty();
+}
+
+void Workbench::simulate() {
+  null_ = simulate_null(*predictor_, base_.fit.model, uses_, options_.seed, kReplicates, options_.jobs);
+  bootstrap_.clear();
+  for (std::size_t u = 0; u < kUses; ++u) bootstrap_.emplace_back(uses_[u], options_.seed + u);
+}
+
+Search Workbench::search(std::vector<std::string>& not_applicable) const {
+  Search search;
+  search.dataset = &dataset_;
+  search.predictor = predictor_.get();
+  search.nominal = &nominal_;
+  search.kinds = &kinds_;
+  search.uses = &uses_;
+  search.null = &null_;
+  search.judging = {
+      .uses = &uses_, .null = &null_, .bootstrap = {&bootstrap_[0], &bootstrap_[1], &bootstrap_[2]}};
+  search.seed = options_.seed;
+  search.jobs = options_.jobs;
+  for (const EffectEntry* e : all_effects()) {
+    if (e->info->id == "expression") continue;  // the user's own, and what unknown structure is written in
+    const std::string why_not = predictor_->applies(*e);
+    if (why_not.empty()) {
+      search.applicable.push_back(e);
+    } else {
+      not_applicable.push_back(fmt::format("{}: {}", e->info->id, why_not));
+    }
+  }
+  return search;
+}
+
+}  // namespace omnihil

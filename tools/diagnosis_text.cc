@@ -1,0 +1,133 @@
+#include "tools/diagnosis_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace omnihil {
+namespace {
+
+constexpr std::size_t kRankingLines = 8;
+
+std::vector<std::string> signals_of(const Comparison& comparison) {
+  std::vector<std::string> names;
+  for (const SignalError& e : comparison.errors) {
+    if (std::find(names.begin(), names.end(), e.signal) == names.end()) names.push_back(e.signal);
+  }
+  return names;
+}
+
+const char* use_word(Use use) { return use == Use::kHoldout ? "held out" : use_name(use).data(); }
+
+std::string findings_text(const Diagnosis& d) {
+  static constexpr const char* kGrades[] = {"note", "doubt", "FAULT"};
+  std::string out;
+  for (const DataFinding& f : d.findings) {
+    out += fmt::format("  {:5}  {}\n", kGrades[static_cast<int>(f.grade)], f.sentence);
+  }
+  return out.empty() ? "" : "Data\n" + out + "\n";
+}
+
+std::string verdict_text(const Diagnosis& d) {
+  std::string out = fmt::format("Verdict: {}", verdict_name(d.verdict));
+  if (!d.effects.empty()) out += fmt::format(": {}", fmt::join(d.effects, ", "));
+  out += "\n";
+  if (!d.complete) out += "  Interrupted: this is what was known by then.\n";
+  if (!d.unknown.sentence.empty()) out += "  " + d.unknown.sentence + "\n";
+  for (const IndistinguishableSet& set : d.indistinguishable) out += "  " + set.sentence + "\n";
+  return out + "\n";
+}
+
+std::string ladder_text(const Diagnosis& d) {
+  std::string out = "Error, step by step\n";
+  for (const LadderStep& step : d.ladder) {
+    out += "  " + step.added + "\n";
+    std::string errors = errors_text(step.comparison);
+    for (std::size_t at = 0; at < errors.size();) {
+      const std::size_t end = errors.find('\n', at);
+      out += "  " + errors.substr(at, end - at + 1);
+      at = end + 1;
+    }
+  }
+  return out + "\n";
+}
+
+std::string ranking_text(const Diagnosis& d) {
+  if (d.ranking.empty()) return "";
+  std::string out = "First ranking\n";
+  for (std::size_t i = 0; i < d.ranking.size() && i < kRankingLines; ++i) {
+    const RankedEffect& r = d.ranking[i];
+    out += fmt::format("  {:3.0f} %  {:26}  held-out error x {:.3f}  {}\n", 100.0 * r.probability, r.effect,
+                       r.holdout_error_ratio, r.why);
+  }
+  return out + "\n";
+}
+
+std::string where_text(const Diagnosis& d) {
+  if (d.where.empty()) return "";
+  std::string out =
+      d.verdict == Verdict::kUnknown ? "Where the rest lives\n" : "Where the base model's error lives\n";
+  for (const Where& w : d.where) {
+    out += fmt::format("  {} against {}: {:.0f} %{}\n", w.signal, w.against, 100.0 * w.explained_fraction,
+                       w.order > 0.0 ? fmt::format(", order {:g} stands out", w.order) : "");
+  }
+  return out + "\n";
+}
+
+}  // namespace
+
+std::string errors_text(const Comparison& comparison) {
+  std::string out;
+  for (const std::string& signal : signals_of(comparison)) {
+    std::string line;
+    for (const SignalError& e : comparison.errors) {
+      if (e.signal != signal) continue;
+      if (line.empty()) line = fmt::format("  {:20} {:6}", signal, e.unit);
+      line += fmt::format("  {} {:.4g} ({:.2f} %)", use_word(e.use), e.rmse, e.nrmse_percent);
+    }
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string errors_change_text(const Comparison& before, const Comparison& after) {
+  std::string out;
+  for (const std::string& signal : signals_of(before)) {
+    std::string line;
+    for (const SignalError& e : before.errors) {
+      const SignalError* now = after.error(e.use, signal);
+      if (e.signal != signal || now == nullptr) continue;
+      if (line.empty()) line = fmt::format("  {:20} {:6}", signal, e.unit);
+      line += fmt::format("  {} {:.4g} -> {:.4g}", use_word(e.use), e.rmse, now->rmse);
+    }
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string parameters_text(const std::vector<ParameterEstimate>& parameters) {
+  std::string out;
+  for (const ParameterEstimate& p : parameters) {
+    out += fmt::format("  {:40} {:.5g} +- {:.2g} {}", p.path, p.value, p.sigma, p.unit);
+    if (p.prior_sigma > 0.0 && p.prior_mean != 0.0) {
+      out += fmt::format("  ({:+.1f} % of the file's, {:+.1f} sigma)", 100.0 * (p.value / p.prior_mean - 1.0),
+                         p.drift_sigmas);
+    }
+    out += p.sentence.empty() ? "\n" : "  " + p.sentence + "\n";
+  }
+  return out;
+}
+
+std::string diagnosis_text(const Diagnosis& d) {
+  std::string out = findings_text(d) + verdict_text(d) + ladder_text(d) + ranking_text(d) + where_text(d);
+  out += "Parameters of the last model\n" + parameters_text(d.final_fit.parameters) + "\n";
+  if (!d.unknown.expression_toml.empty()) {
+    out += "A formula for what is left, to paste into the model\n" + d.unknown.expression_toml + "\n";
+  }
+  if (!d.next_experiment.what.empty()) out += "Next: " + d.next_experiment.what + "\n";
+  return out;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,18 @@
+// A diagnosis for people: verdict, what to add, how the errors fell, what to measure next; a page of text.
+#pragma once
+#include <string>
+
+#include "sim/identify/diagnosis.h"
+
+namespace omnihil {
+
+std::string diagnosis_text(const Diagnosis& diagnosis);
+
+// "velocity rad/s   fit 3.10  held out 3.30  extrapolation 4.10": one line per signal
+std::string errors_text(const Comparison& comparison);
+// "velocity rad/s   fit 3.10 -> 0.40 …"
+std::string errors_change_text(const Comparison& before, const Comparison& after);
+// One line per parameter: value, interval, drift against what the model file believed, what to say of it.
+std::string parameters_text(const std::vector<ParameterEstimate>& parameters);
+
+}  // namespace omnihil

@@ -1,0 +1,47 @@
+#include "tools/progress_line.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace omnihil {
+namespace {
+
+constexpr std::chrono::milliseconds kBetween{200};
+constexpr double kFirstEstimate = 0.05;  // share of the work before which no time is named
+
+}  // namespace
+
+ProgressLine::ProgressLine()
+    : start_(std::chrono::steady_clock::now()),
+      shown_(start_ - kBetween),
+      terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+ProgressLine::~ProgressLine() { clear(); }
+
+double ProgressLine::elapsed_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void ProgressLine::show(const std::string& doing, double share) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!terminal_ || now - shown_ < kBetween) return;
+  shown_ = now;
+  std::string text = fmt::format("{:3.0f} %  {}", 100.0 * share, doing);
+  if (share > kFirstEstimate && share < 1.0) {
+    text += fmt::format(", about {:.0f} s left", elapsed_s() * (1.0 - share) / share);
+  }
+  std::fprintf(stderr, "\r\x1b[K%s", text.c_str());
+  std::fflush(stderr);
+  written_ = true;
+}
+
+void ProgressLine::clear() {
+  if (!written_) return;
+  std::fprintf(stderr, "\r\x1b[K");
+  std::fflush(stderr);
+  written_ = false;
+}
+
+}  // namespace omnihil

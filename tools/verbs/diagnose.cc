@@ -1,0 +1,111 @@
+// omnihil diagnose DATASET: which physical effect is the model missing.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "hil/dataset_files.h"
+#include "hil/dataset_reader.h"
+#include "hil/diagnosis_json.h"
+#include "hil/report_html.h"
+#include "hil/serve_signals.h"
+#include "tools/diagnosis_text.h"
+#include "tools/exit_codes.h"
+#include "tools/guarded.h"
+#include "tools/program_commit.h"
+#include "tools/progress_line.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+struct Arguments {
+  std::string dataset;
+  std::string model;
+  std::string json;
+  std::string report;
+  std::string write;
+  DiagnoseOptions options;
+  bool quick = false;
+
+  Arguments() { options.jobs = 2; }
+};
+
+void write_report(const Arguments& a, const DatasetReading& reading, const Diagnosis& diagnosis,
+                  double elapsed_s) {
+  const std::unique_ptr<Predictor> predictor = make_predictor(*reading.dataset, *reading.nominal, {});
+  ReportInput input = report_input(*reading.dataset, *predictor, diagnosis, {.jobs = a.options.jobs});
+  input.model = a.model.empty() ? "the dataset's own" : a.model;
+  input.command = "omnihil diagnose " + a.dataset;
+  input.program = fmt::format("omnihil {} ({})", OMNIHIL_VERSION, program_commit());
+  input.elapsed_s = elapsed_s;
+  replace_file(a.report, report_html(input));
+}
+
+int run(const Arguments& a) {
+  const DatasetReading reading = read_dataset(a.dataset, a.model);
+  for (const ModelProblem& p : reading.problems)
+    std::fprintf(stderr, "omnihil diagnose: %s\n", p.text().c_str());
+  if (!reading.dataset) return kExitBadInput;
+  StopSignals stop;
+  Diagnosis diagnosis;
+  double elapsed_s = 0.0;
+  {
+    ProgressLine line;
+    DiagnoseOptions options = a.options;
+    if (a.quick) options.max_effects = 1;
+    options.progress = [&](const DiagnosisProgress& p) {
+      line.show(p.doing, p.share);
+      return !StopSignals::requested();
+    };
+    diagnosis = diagnose(*reading.dataset, *reading.nominal, options);
+    elapsed_s = line.elapsed_s();
+  }
+  const std::string model_text =
+      diagnosis.final_fit.model.effects.empty() && diagnosis.final_fit.parameters.empty()
+          ? reading.model_text
+          : candidate_text(diagnosis.final_fit.model);
+  if (!a.write.empty() && diagnosis.complete) replace_file_keeping_old(a.write, model_text);
+  const std::string json = a.json.empty()
+                               ? ""
+                               : diagnosis_json(diagnosis, {.elapsed_s = elapsed_s,
+                                                            .model = a.write.empty() ? model_text : a.write});
+  if (a.json == "-") {
+    std::fputs(json.c_str(), stdout);
+  } else {
+    if (!a.json.empty()) replace_file(a.json, json);
+    std::fputs(diagnosis_text(diagnosis).c_str(), stdout);
+  }
+  if (!a.report.empty()) write_report(a, reading, diagnosis, elapsed_s);
+  return diagnosis.complete ? kExitOk : kExitInterrupted;
+}
+
+}  // namespace
+
+void add_verb_diagnose(CLI::App& app, VerbResult& result) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb =
+      app.add_subcommand("diagnose", "which physical effect a model lacks, and what to measure next");
+  verb->add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml")->required();
+  verb->add_option("--model", a->model, "model to start from, in place of the dataset's own");
+  verb->add_option("--json", a->json,
+                   "diagnosis as JSON (omnihil-diagnosis/1); - : to stdout, in place of the text");
+  verb->add_option("--report", a->report, "diagnosis as one HTML file");
+  verb->add_option("--write", a->write, "the mended model; a file that is there is kept as FILE.1");
+  verb->add_option("--seed", a->options.seed, "of the simulated null and of the bootstrap")
+      ->capture_default_str();
+  verb->add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  verb->add_flag("--quick", a->quick, "the first effect only");
+  verb->footer(
+      "A verdict is no failure: exit code 0 whatever it is. Ctrl-C says what is known by then and ends with "
+      "130;\n"
+      "no model is written then.");
+  verb->callback([a, &result] { result.exit_code = guarded("diagnose", [&] { return run(*a); }); });
+}
+
+}  // namespace omnihil
