@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kSameGain = 0.03;  // of the best one's gain: within it two gains are one
 constexpr double kTwinGain = 0.06;  // so near, an effect may be meant instead, if it is known to be confused
+constexpr double kSameLeft = 1.15;  // what one leaves over what the best one leaves
+constexpr double kTwinLeft = 1.5;
 constexpr double kTwinSignal = 0.98;  // cosine of signals that no refit can part
 constexpr double kNothing = 0.01;     // gain below which a draw goes to "none"
 constexpr std::size_t kMostTwins = 3;
@@ -35,12 +37,13 @@ void give_probabilities(const Search& search, const Fitted& parent, Round& round
   const std::size_t use = (*search.uses)[1].empty() ? 0 : 1;
   const BlockBootstrap* bootstrap = search.judging.bootstrap[use];
   if (bootstrap == nullptr || bootstrap->empty() || round.contenders.empty()) return;
+  const Eigen::VectorXd weights = signal_weights((*search.uses)[use], *search.null, parent.residual[use]);
   std::vector<Eigen::VectorXd> draws;
   for (const Contender& c : round.contenders) {
-    draws.push_back(c.fitted.finite ? bootstrap->ratios(parent.residual[use], c.fitted.residual[use])
+    draws.push_back(c.fitted.finite ? bootstrap->ratios(parent.residual[use], c.fitted.residual[use], weights)
                                     : Eigen::VectorXd());
   }
-  const Eigen::Index count = bootstrap->ratios(parent.residual[use], parent.residual[use]).size();
+  const Eigen::Index count = bootstrap->draws();
   for (Eigen::Index d = 0; d < count; ++d) {
     double best = 1.0;
     for (const Eigen::VectorXd& r : draws) best = r.size() > 0 ? std::min(best, r[d]) : best;
@@ -85,9 +88,13 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
     const Contender& other = round.contenders[c];
     if (!other.judgement.accepted || other.screened.extends) continue;
     const double lost = (most - gain_of(other, has_holdout)) / most;
+    // Both may take nearly all, and yet one leave several times what the other leaves.
+    const double left = (1.0 - gain_of(other, has_holdout)) / std::max(1.0 - most, 1e-9);
     const bool confused = listed_twins(*best.screened.entry->info, *other.screened.entry->info);
     const bool alike = likeness(best.screened, other.screened) > kTwinSignal;
-    if (lost < kSameGain || (lost < kTwinGain && (confused || alike))) equals.push_back(c);
+    const bool same = lost < kSameGain && left < kSameLeft;
+    const bool twin = lost < kTwinGain && left < kTwinLeft && (confused || alike);
+    if (same || twin) equals.push_back(c);
   }
   if (equals.size() > kMostTwins) equals.resize(kMostTwins);
   // Of equals the one with the fewest numbers comes first; the best where that is a draw.

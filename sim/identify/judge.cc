@@ -16,6 +16,7 @@ constexpr int kDraws = 200;
 constexpr double kMatters = 0.02;
 constexpr double kMattersOfAll = 0.006;
 constexpr double kChanceMargin = 2.0;  // gain over the most that the null's replicates gave
+constexpr double kFloorWeight = 0.05;
 constexpr double kExtrapolationLoss = 0.03;
 constexpr double kPushedOut_sigmas = 3.5;     // of a base parameter's tolerance
 constexpr double kDriftAllowed_sigmas = 0.7;  // further out than it was before
@@ -73,39 +74,51 @@ BlockBootstrap::BlockBootstrap(const Evidence& evidence, std::uint64_t seed) : e
   }
 }
 
-Eigen::VectorXd BlockBootstrap::ratios(const Eigen::VectorXd& reference,
-                                       const Eigen::VectorXd& residual) const {
+Eigen::VectorXd BlockBootstrap::ratios(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
+                                       const Eigen::VectorXd& weights) const {
   const Eigen::MatrixXd before = counts_ * evidence_->block_sums(reference);
   const Eigen::MatrixXd after = counts_ * evidence_->block_sums(residual);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(counts_.rows());
-  double signals = 0.0;
+  double all = 0.0;
   for (Eigen::Index k = 0; k < before.cols(); ++k) {
-    if (evidence_->samples()[k] <= 0.0 || before.col(k).sum() <= 0.0) continue;
-    signals += 1.0;
+    if (weights[k] <= 0.0 || before.col(k).sum() <= 0.0) continue;
+    all += weights[k];
     for (Eigen::Index d = 0; d < out.size(); ++d) {
-      out[d] += before(d, k) > 0.0 ? after(d, k) / before(d, k) : 1.0;
+      out[d] += weights[k] * (before(d, k) > 0.0 ? after(d, k) / before(d, k) : 1.0);
     }
   }
-  return signals > 0.0 ? Eigen::VectorXd(out / signals) : Eigen::VectorXd::Ones(counts_.rows());
+  return all > 0.0 ? Eigen::VectorXd(out / all) : Eigen::VectorXd::Ones(counts_.rows());
 }
 
-UseGain BlockBootstrap::gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual) const {
-  const Eigen::VectorXd draws = ratios(reference, residual);
-  return {.ratio = energy_ratio(*evidence_, reference, residual),
+UseGain BlockBootstrap::gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
+                             const Eigen::VectorXd& weights) const {
+  const Eigen::VectorXd draws = ratios(reference, residual, weights);
+  return {.ratio = energy_ratio(*evidence_, reference, residual, weights),
           .best = at_share(draws, 0.05),
           .worst = at_share(draws, 0.95)};
 }
 
+Eigen::VectorXd signal_weights(const Evidence& evidence, const NullModel& null,
+                               const Eigen::VectorXd& reference) {
+  const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(reference);
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(square.size());
+  for (Eigen::Index k = 0; k < square.size(); ++k) {
+    if (square[k] > 0.0) weights[k] = std::max(kFloorWeight, 1.0 - floor[k] / square[k]);
+  }
+  return weights;
+}
+
 double energy_ratio(const Evidence& evidence, const Eigen::VectorXd& reference,
-                    const Eigen::VectorXd& residual) {
+                    const Eigen::VectorXd& residual, const Eigen::VectorXd& weights) {
   const Eigen::VectorXd before = evidence.mean_square(reference), after = evidence.mean_square(residual);
-  double sum = 0.0, signals = 0.0;
+  double sum = 0.0, all = 0.0;
   for (Eigen::Index k = 0; k < before.size(); ++k) {
     if (before[k] <= 0.0) continue;
-    sum += after[k] / before[k];
-    signals += 1.0;
+    const double weight = weights.size() > 0 ? weights[k] : 1.0;
+    sum += weight * after[k] / before[k];
+    all += weight;
   }
-  return signals > 0.0 ? sum / signals : 1.0;
+  return all > 0.0 ? sum / all : 1.0;
 }
 
 double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Eigen::VectorXd& residual) {
@@ -123,13 +136,12 @@ double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Ei
 double floor_share(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual) {
   if (evidence.empty()) return 1.0;
   const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(residual);
-  double sum = 0.0, signals = 0.0;
+  const Eigen::VectorXd weights = signal_weights(evidence, null, residual);
+  double sum = 0.0;
   for (Eigen::Index k = 0; k < square.size(); ++k) {
-    if (square[k] <= 0.0) continue;
-    sum += std::min(1.0, floor[k] / square[k]);
-    signals += 1.0;
+    if (square[k] > 0.0) sum += weights[k] * std::min(1.0, floor[k] / square[k]);
   }
-  return signals > 0.0 ? sum / signals : 1.0;
+  return weights.sum() > 0.0 ? sum / weights.sum() : 1.0;
 }
 
 Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted& child,
@@ -142,7 +154,8 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   std::array<UseGain*, kUses> gains{&out.fit, &out.holdout, &out.extrapolation};
   for (std::size_t u = 0; u < kUses; ++u) {
     if ((*context.uses)[u].empty()) continue;
-    *gains[u] = context.bootstrap[u]->gain(parent.residual[u], child.residual[u]);
+    const Eigen::VectorXd weights = signal_weights((*context.uses)[u], *context.null, parent.residual[u]);
+    *gains[u] = context.bootstrap[u]->gain(parent.residual[u], child.residual[u], weights);
   }
   const Use decides = (*context.uses)[1].empty() ? Use::kFit : Use::kHoldout;
   const std::size_t d = static_cast<std::size_t>(decides);

@@ -39,18 +39,25 @@ class BlockBootstrap {
  public:
   BlockBootstrap(const Evidence& evidence, std::uint64_t seed);
   bool empty() const { return counts_.rows() == 0; }
-  // Per draw: energy of `residual` over that of `reference`, mean over the signals.
-  Eigen::VectorXd ratios(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual) const;
-  UseGain gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual) const;
+  int draws() const { return static_cast<int>(counts_.rows()); }
+  // Per draw: energy of `residual` over that of `reference`, mean over the signals with these weights.
+  Eigen::VectorXd ratios(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
+                         const Eigen::VectorXd& weights) const;
+  UseGain gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
+               const Eigen::VectorXd& weights) const;
 
  private:
   const Evidence* evidence_;
   Eigen::MatrixXd counts_;  // [draw, block]
 };
 
-// Ratio of error energies, mean over the signals that the reference has.
+// Ratio of error energies, mean over the signals that the reference has, with these weights (empty: equal).
 double energy_ratio(const Evidence& evidence, const Eigen::VectorXd& reference,
-                    const Eigen::VectorXd& residual);
+                    const Eigen::VectorXd& residual, const Eigen::VectorXd& weights = {});
+// What each signal counts: its share of error energy above the sensors' floor, so that a signal at its floor
+// does not water down what another one shows. At least kFloorWeight.
+Eigen::VectorXd signal_weights(const Evidence& evidence, const NullModel& null,
+                               const Eigen::VectorXd& reference);
 // sqrt of the mean over signals of mean((residual / noise)^2)
 double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Eigen::VectorXd& residual);
 

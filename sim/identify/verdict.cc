@@ -37,13 +37,14 @@ Leftover leftover_of(const Uses& uses, const SignalKinds& kinds, const NullModel
   out.signal = kinds.name[static_cast<std::size_t>(worst)];
   const double floor = null.floor(uses[u].use())[worst];
   out.spread = floor > 0.0 ? null.spread(uses[u].use())[worst] / floor : 0.0;
-  double sum = 0.0, signals = 0.0;
+  double left = 0.0, all = 0.0;
   for (Eigen::Index k = 0; k < after.size(); ++k) {
-    if (before[k] < 0.02) continue;
-    sum += std::clamp(after[k] / before[k], 0.0, 1.0);
-    signals += 1.0;
+    if (before[k] <= 0.0) continue;
+    const double weight = before[k] / (1.0 + before[k]);  // a signal at its floor has nothing to explain
+    left += weight * std::clamp(after[k] / before[k], 0.0, 1.0);
+    all += weight;
   }
-  out.unexplained = signals > 0.0 ? sum / signals : 0.0;
+  out.unexplained = all > 0.0 ? left / all : 0.0;
   return out;
 }
 
