@@ -30,7 +30,8 @@ SignalKinds signal_kinds(const Predictor& predictor) {
         square.push_back(0.0);
         count.push_back(0.0);
       }
-      square[k] += s.noise_sigma * s.noise_sigma;
+      const double sigma = s.whitening_s > 0.0 ? s.whitened_sigma : s.noise_sigma;
+      square[k] += sigma * sigma;
       count[k] += 1.0;
     }
   }
@@ -84,15 +85,37 @@ void Evidence::add_run(int run, const SignalKinds& kinds) {
   blocks_ += run_blocks;
 }
 
+Eigen::MatrixXd Evidence::whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const {
+  const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
+  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(rows.rows(), rows.cols(), std::nan(""));
+  for (const int row : part.rows) all.row(row) = rows.row(row);
+  whiten(signal, all);
+  Eigen::MatrixXd out(part.rows.size(), rows.cols());
+  for (std::size_t i = 0; i < part.rows.size(); ++i)
+    out.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
+  return out;
+}
+
+void Evidence::whiten_part(const Part& part, Eigen::MatrixXd& columns) const {
+  const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
+  if (signal.whitening_s <= 0.0) return;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(signal.measured.size()),
+                                                  columns.cols(), std::nan(""));
+  for (std::size_t i = 0; i < part.rows.size(); ++i)
+    all.row(part.rows[i]) = columns.row(static_cast<Eigen::Index>(i));
+  whiten(signal, all);
+  for (std::size_t i = 0; i < part.rows.size(); ++i)
+    columns.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
+}
+
 Eigen::VectorXd Evidence::gathered(const std::vector<std::vector<std::vector<double>>>& values) const {
   Eigen::VectorXd out(size_);
   for (const Part& part : parts_) {
     const std::size_t run =
         static_cast<std::size_t>(std::find(runs_.begin(), runs_.end(), part.run) - runs_.begin());
     const std::vector<double>& from = values[run][static_cast<std::size_t>(part.signal)];
-    for (std::size_t i = 0; i < part.rows.size(); ++i) {
-      out[part.first + static_cast<Eigen::Index>(i)] = from[static_cast<std::size_t>(part.rows[i])];
-    }
+    const Eigen::Map<const Eigen::MatrixXd> column(from.data(), static_cast<Eigen::Index>(from.size()), 1);
+    out.segment(part.first, static_cast<Eigen::Index>(part.rows.size())) = whitened_rows(part, column);
   }
   return out;
 }
@@ -134,9 +157,7 @@ Eigen::MatrixXd Evidence::derivatives(const Candidate& candidate, std::span<cons
     for (const Part& part : parts_) {
       if (part.run != run) continue;
       const Eigen::MatrixXd& from = p.derivatives[static_cast<std::size_t>(part.signal)];
-      for (std::size_t i = 0; i < part.rows.size(); ++i) {
-        out.row(part.first + static_cast<Eigen::Index>(i)) = from.row(part.rows[i]);
-      }
+      out.middleRows(part.first, static_cast<Eigen::Index>(part.rows.size())) = whitened_rows(part, from);
     }
   });
   return out.allFinite()

@@ -7,7 +7,8 @@
 //   fit.mean_square(r)[0];                                   // of the first kind of signal
 //   fit.block_sums(r);                                       // the same in blocks of time, for a bootstrap
 //
-// Only samples that were measured are in it. Residuals are autocorrelated: blocks of time, not samples, are
+// Only samples that were measured are in it, whitened (predictor.h), so that sums of squares mean something.
+// Residuals are autocorrelated: blocks of time, not samples, are
 // what may be drawn at random.
 #pragma once
 #include <Eigen/Core>
@@ -22,7 +23,7 @@ namespace omnihil {
 // The signals of a dataset over all its runs, in the order in which they first appear.
 struct SignalKinds {
   std::vector<std::string> name;
-  std::vector<double> noise_sigma;  // root mean square over the runs
+  std::vector<double> noise_sigma;  // of the whitened residual; root mean square over the runs
   int count() const { return static_cast<int>(name.size()); }
 };
 SignalKinds signal_kinds(const Predictor& predictor);
@@ -55,6 +56,9 @@ class Evidence {
   // What another predictor of the same dataset has measured, in this order (NaN: it has not).
   Eigen::VectorXd measured_by(const Predictor& other) const;
 
+  // A signal's record over one part's own rows (as predicted: not whitened), whitened in place.
+  void whiten_part(const Part& part, Eigen::MatrixXd& columns) const;
+
   // A track of the runs' regimes, sample by sample; NaN where a run does not have it.
   Eigen::VectorXd track(const Candidate& candidate, std::string_view name) const;
 
@@ -69,7 +73,10 @@ class Evidence {
 
  private:
   void add_run(int run, const SignalKinds& kinds);
+  // Whitened; `values`: per run of this use, per signal, per row.
   Eigen::VectorXd gathered(const std::vector<std::vector<std::vector<double>>>& values) const;
+  // Rows of the part, whitened; `rows`: all rows of its run.
+  Eigen::MatrixXd whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const;
 
   const Predictor* predictor_;
   Use use_;

@@ -1,5 +1,6 @@
 #include "sim/identify/order_spectrum.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -74,14 +75,17 @@ double energy_of(const Evidence& evidence, const Eigen::ArrayXd& s, const Eigen:
   double energy = 0.0;
   for (const Evidence::Part& part : evidence.parts()) {
     const Eigen::Index n = static_cast<Eigen::Index>(part.rows.size());
-    const auto sn = s.segment(part.first, n).matrix(), cn = c.segment(part.first, n).matrix();
+    Eigen::MatrixXd both(n, 2);
+    both << s.segment(part.first, n).matrix(), c.segment(part.first, n).matrix();
+    evidence.whiten_part(part, both);
+    const auto sn = both.col(0), cn = both.col(1);
     const auto rn = r.segment(part.first, n);
     Eigen::Matrix2d gram;
     gram << sn.squaredNorm(), sn.dot(cn), sn.dot(cn), cn.squaredNorm();
     if (gram(0, 0) < 1e-9 || gram(1, 1) < 1e-9 || gram.determinant() < 1e-6 * gram(0, 0) * gram(1, 1))
       continue;
     const Eigen::Vector2d b(sn.dot(rn), cn.dot(rn));
-    const Eigen::Vector2d a = gram.inverse() * b;
+    const Eigen::Vector2d a = gram.ldlt().solve(b);
     energy += b.dot(a);
     if (taken != nullptr) taken->segment(part.first, n) = a[0] * sn + a[1] * cn;
   }
