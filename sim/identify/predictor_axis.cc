@@ -254,7 +254,7 @@ class AxisPredictor : public Predictor {
   // What the sensors would have shown: noise where it comes in, rounding of counts.
   void replace_measurement(const Candidate& truth, int n, std::uint64_t seed) {
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
-    Prediction p = predict(truth, n);
+    Prediction p = truth_behind_noisy_input(truth, n, seed);
     for (std::size_t c = 0; c < s.compared.size(); ++c) {
       ComparedSignal& signal = s.compared[c];
       const std::uint64_t stream = stream_of(signal.name) + static_cast<std::uint64_t>(n) * 1000003;
@@ -273,6 +273,23 @@ class AxisPredictor : public Predictor {
         if (!std::isfinite(pattern[k])) signal.measured[k] = kMissing;
       }
     }
+  }
+
+  // The bus voltage that drives the model is a measurement too: the world's own differs from it by the
+  // sensor's noise, which wanders off in speed and more so in position.
+  Prediction truth_behind_noisy_input(const Candidate& truth, int n, std::uint64_t seed) {
+    AxisSetup& s = setups_[static_cast<std::size_t>(n)];
+    const auto bus = std::find_if(s.compared.begin(), s.compared.end(),
+                                  [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
+    if (s.method != Method::kForward || bus == s.compared.end()) return predict(truth, n);
+    const std::vector<double> given = s.input.bus_voltage_V;
+    const std::uint64_t stream = stream_of("bus_voltage input") + static_cast<std::uint64_t>(n) * 1000003;
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      s.input.bus_voltage_V[k] += bus->noise_sigma * gaussian(seed, stream, k);
+    }
+    Prediction p = predict(truth, n);
+    s.input.bus_voltage_V = given;
+    return p;
   }
 
   // A sensor that rounds rounds its noise as well; the rounding's own sigma^2 = q^2 / 12 is part of the
