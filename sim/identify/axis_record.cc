@@ -73,6 +73,29 @@ double first_slope(const std::vector<double>& t, const std::vector<double>& x, s
   return std::abs(fit[1]) > 3.0 * error + 0.1 * gained ? fit[1] : 0.0;
 }
 
+// The measured bus voltage drives the model: its sensor's noise would come out as current. What a window of
+// 21 samples shows beyond the noise is kept, the rest is the window's mean (J.-S. Lee, IEEE PAMI 2(2), 1980).
+std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
+  constexpr std::size_t kHalf = 10;
+  const std::size_t n = x.size();
+  if (n < 2 * kHalf + 1 || !(sigma > 0.0)) return x;
+  std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
+  const double level = x.front();
+  for (std::size_t k = 0; k < n; ++k) {
+    const double d = x[k] - level;
+    sum[k + 1] = sum[k] + d, square[k + 1] = square[k] + d * d;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t from = k > kHalf ? k - kHalf : 0, to = std::min(n, k + kHalf + 1);
+    const double count = static_cast<double>(to - from);
+    const double mean = (sum[to] - sum[from]) / count;
+    const double variance = (square[to] - square[from]) / count - mean * mean;
+    const double share = variance > sigma * sigma ? 1.0 - sigma * sigma / variance : 0.0;
+    out[k] = level + mean + share * (x[k] - level - mean);
+  }
+  return out;
+}
+
 }  // namespace
 
 bool AxisRecord::gap_before(std::size_t k) const {
@@ -125,7 +148,9 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
   r.period_s = median_period(r.time_s);
   r.command = held(command, r.first_row);
   r.enable = held(run.signal("enable"), r.first_row);
-  r.bus_V = held(run.signal("bus_voltage"), r.first_row);
+  r.bus_measured_V = as_measured(run.signal("bus_voltage"), r.first_row);
+  const Channel* bus = dataset.channel("bus_voltage");
+  r.bus_V = without_noise(held(run.signal("bus_voltage"), r.first_row), bus != nullptr ? bus->sigma : 0.0);
   r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
   r.velocity = as_measured(run.signal("velocity"), r.first_row);
   r.position = as_measured(run.signal("position"), r.first_row);

@@ -19,9 +19,9 @@ struct AxisRecord {
   double period_s = 0.0;  // median
   std::vector<double> time_s;
   std::vector<double> command;
-  std::vector<double> enable, bus_V, load_torque_Nm;  // empty: not measured
+  std::vector<double> enable, bus_V, load_torque_Nm;  // empty: not measured; bus_V: less its stated noise
   // measured, NaN where missing; empty: not measured
-  std::vector<double> velocity, position, counts, current, temperature;
+  std::vector<double> velocity, position, counts, current, temperature, bus_measured_V;
   double counts_per_output_rad = 0.0;
   double gear_ratio = 1.0;  // nominal
 

@@ -155,8 +155,8 @@ class ForwardSetup {
     const bool electric = s_.input.kind == CommandKind::kDuty ||
                           s_.input.kind == CommandKind::kPositionTarget ||
                           s_.input.kind == CommandKind::kMotorVoltage;
-    if (!r_.bus_V.empty() && electric && r_.bus_V.size() > 2) {
-      std::vector<double> bus = r_.bus_V;
+    if (!r_.bus_measured_V.empty() && electric && r_.bus_V.size() > 2) {
+      std::vector<double> bus = r_.bus_measured_V;
       bus.front() = kMissing;
       add("bus_voltage", "V", AxisOutput::kBusVoltage, std::move(bus), channel("bus_voltage").sigma);
     }

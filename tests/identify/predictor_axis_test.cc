@@ -291,6 +291,42 @@ TEST(AxisPredictor, KnownNumbersOfARunHoldAndHaveNoDerivative) {
   EXPECT_EQ(b.derivatives[0].col(0).norm(), 0.0);
 }
 
+TEST(AxisPredictor, NoiseOfTheBusSensorDoesNotComeOutAsCurrent) {
+  const Candidate truth = model();
+  Dataset d = bench(truth, 2000), noisy_bus = d;
+  for (Dataset* set : {&d, &noisy_bus}) {
+    set->channels.push_back({.signal = "bus_voltage", .column = "", .unit = "V", .sigma = 0.1});
+    std::vector<double>& bus = set->runs[0].signals["bus_voltage"];
+    for (std::size_t k = 0; k < 2000; ++k) {
+      // a real step of 2 V in the middle stays
+      const double level = k < 1000 ? 24.0 : 22.0;
+      bus.push_back(set == &d ? level : noisy(level, 0.1, 3, "bus", k));
+    }
+  }
+  const auto a = make_predictor(d, truth, {}), b = make_predictor(noisy_bus, truth, {});
+  const Prediction quiet = a->predict(truth, 0), loud = b->predict(truth, 0);
+  // unfiltered: 0.1 V * duty 0.15 / 0.5 ohm = 30 mA
+  EXPECT_LT(rms(quiet.values[1], loud.values[1]), 0.4 * 0.1 * 0.15 / 0.5);
+  EXPECT_LT(std::abs(quiet.values[0][1020] - loud.values[0][1020]), 0.5);
+}
+
+TEST(AxisPredictor, ASaggingSupplyShowsInTheBusVoltage) {
+  const Candidate truth = model("[effects.battery_sag]\nresistance_ohm = 0.2\n"), plain = model();
+  Dataset d = bench(truth, 1500);
+  AxisInput in;
+  in.time_s = d.runs[0].time_s;
+  in.command = d.runs[0].signals["duty"];
+  d.channels.push_back({.signal = "bus_voltage", .column = "", .unit = "V", .sigma = 0.02});
+  for (const auto& s : run_axis<double>(drive_of(truth), EffectSet<double>(truth.effects), in))
+    d.runs[0].signals["bus_voltage"].push_back(s.bus_voltage_V);
+  const auto p = make_predictor(d, plain, {});
+  const auto error = [&](const Candidate& c) {
+    return rms(p->compared(0)[2].measured, p->predict(c, 0).values[2]);
+  };
+  EXPECT_EQ(p->compared(0)[2].name, "bus_voltage");
+  EXPECT_LT(error(truth), 0.25 * error(plain));
+}
+
 TEST(AxisPredictor, SaysWhichEffectsCannotAct) {
   const auto p = make_predictor(bench(model(), 50), model(), {});
   EXPECT_EQ(p->applies(*find_effect("cogging")), "");
