@@ -19,7 +19,6 @@ class RobotPredictor : public Predictor {
  public:
   RobotPredictor(const Dataset& dataset, const Candidate& nominal, const PredictOptions& options)
       : dataset_(dataset), nominal_(nominal), options_(options) {
-    motion_.step_s = kStep_s;
     motion_.slave_angle = options.slave_angle;
     for (const Run& run : dataset_.runs) {
       records_.push_back(robot_record(dataset_, run, rolling_params(of_run(nominal, run).file.parameters)));
@@ -87,9 +86,6 @@ class RobotPredictor : public Predictor {
   std::string applies(const EffectEntry& entry) const override;
 
  private:
-  // Within a sample period of 1 ms the speeds are right to a tenth of an encoder's noise (tests).
-  static constexpr double kStep_s = 1e-3;
-
   // Those that the run knows keep their places, but nothing depends on them.
   static std::vector<Unknown> open_unknowns(std::span<const Unknown> unknowns, const Run& run) {
     std::vector<Unknown> open(unknowns.begin(), unknowns.end());

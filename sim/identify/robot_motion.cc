@@ -98,6 +98,7 @@ class Runner {
     const std::size_t n = record_.size();
     RollingState<T> x = robot_.start(record_.start_velocity, record_.theta_rotor_rad[0]);
     T own_heading = T(0);
+    const double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
     std::array<double, kWheels> between;
     for (std::size_t k = 0;; ++k) {
       keep(x);
@@ -105,7 +106,7 @@ class Runner {
       RollingInput in = record_.input(k);
       if (!options_.slave_angle) in.theta_rotor_rad = nullptr;
       const double dt_s = record_.time_s[k + 1] - record_.time_s[k];
-      const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / options_.step_s - 1e-6)));
+      const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - 1e-6)));
       for (int j = 0; j < steps; ++j) {
         if (in.theta_rotor_rad != nullptr && steps > 1) {
           for (std::size_t i = 0; i < kWheels; ++i) {

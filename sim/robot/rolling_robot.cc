@@ -4,83 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/robot/rolling_grip.h"
+
 namespace omnihil {
 namespace {
 
-constexpr double kRollingStiffness_N_s_per_m = 1e6;  // of a wheel that rolls: 1 N slides 1 um/s
 constexpr int kIterations = 40;
-constexpr int kDampedAfter = 12;
+constexpr int kHalvings = 8;
 constexpr double kSolved_m_s = 1e-13;
-
-template <typename T>
-T absolute(const T& x) {
-  return value_of(x) < 0.0 ? T(-x) : x;
-}
-
-// tyre.h, over the share x of the extremum's slip.
-template <typename T>
-struct TyreShape {
-  T peak = T(0), last = T(0);  // friction coefficients
-  T last_part = T(1);          // the asymptote's slip over the extremum's
-
-  TyreShape<double> values() const { return {value_of(peak), value_of(last), value_of(last_part)}; }
-  T coefficient(const T& x) const {
-    if (value_of(x) <= 1.0) return peak * x * (1.5 - 0.5 * x * x);
-    if (value_of(x) >= value_of(last_part)) return last;
-    const T y = (x - 1.0) / (last_part - 1.0);
-    return peak + (last - peak) * y * y * (3.0 - 2.0 * y);
-  }
-  double coefficient_slope(double x) const {
-    const double p = value_of(peak), l = value_of(last), part = value_of(last_part);
-    if (x <= 1.0) return p * 1.5 * (1.0 - x * x);
-    if (x >= part) return 0.0;
-    const double y = (x - 1.0) / (part - 1.0);
-    return (l - p) * 6.0 * y * (1.0 - y) / (part - 1.0);
-  }
-};
-
-// Floor force over slip speed of one wheel, and its slope: rolling, or the tyre's curve.
-template <typename T>
-struct Grip {
-  bool rolls = true;
-  T load_N = T(0);
-  T full_grip_m_s = T(0);  // slip speed at the curve's extremum
-  TyreShape<T> shape;
-
-  double force(double slip_m_s) const {
-    if (rolls) return kRollingStiffness_N_s_per_m * slip_m_s;
-    const double x = std::abs(slip_m_s) / value_of(full_grip_m_s);
-    return std::copysign(value_of(load_N) * shape.values().coefficient(x), slip_m_s);
-  }
-  double slope(double slip_m_s) const {
-    if (rolls) return kRollingStiffness_N_s_per_m;
-    const double scale = value_of(full_grip_m_s);
-    return value_of(load_N) * shape.values().coefficient_slope(std::abs(slip_m_s) / scale) / scale;
-  }
-  // With what the curve's numbers carry. A wheel that rolls, with an unknown compliance of value zero behind
-  // it:  s = F / K + v_c f^-1(F / N)
-  T force_of(const T& slip_m_s) const {
-    if (!rolls) {
-      const T x = absolute(slip_m_s) / full_grip_m_s;
-      const T size = load_N * shape.coefficient(x);
-      return value_of(slip_m_s) < 0.0 ? T(-size) : size;
-    }
-    if (is_exactly(full_grip_m_s, 0.0)) return kRollingStiffness_N_s_per_m * slip_m_s;
-    const double force_N = kRollingStiffness_N_s_per_m * value_of(slip_m_s);
-    const double used = force_N / (value_of(shape.peak) * value_of(load_N) + 1e-300);
-    // x (3 - x^2) / 2 = y  =>  x = 2 sin(asin(y) / 3)
-    const double share = 2.0 * std::sin(std::asin(std::clamp(used, -1.0, 1.0)) / 3.0);
-    return kRollingStiffness_N_s_per_m * (slip_m_s - share * full_grip_m_s);
-  }
-};
-
-// Dry friction takes `level` off the size of y, down to standstill.
-template <typename T>
-T shrunk(const T& y, const T& level_up, const T& level_down) {
-  if (value_of(y) > value_of(level_up)) return y - level_up;
-  if (value_of(y) < -value_of(level_down)) return y + level_down;
-  return T(0);
-}
 
 }  // namespace
 
@@ -313,7 +244,8 @@ void RollingRobot<T>::set_grip(const RollingState<T>& x, std::size_t i, const T&
 
 template <typename T>
 void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput& in, Step& s) const {
-  const T turn2 = x.velocity[2] * x.velocity[2];
+  const T turn = x.velocity[2] + 0.5 * x.turn_change_rad_s;
+  const T turn2 = turn * turn;
   s.force(0) += p_.mass_kg * turn2 * p_.center_of_mass_x_m;
   s.force(1) += p_.mass_kg * turn2 * p_.center_of_mass_y_m;
   if (effects_.body.empty()) return;
@@ -334,6 +266,25 @@ void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput& in,
   s.force(0) += port.force_x_N;
   s.force(1) += port.force_y_N;
   s.force(2) += port.torque_z_Nm;
+}
+
+// The winding answers another speed by another current, if a voltage is held: wheel_drive.h.
+template <typename T>
+void RollingRobot<T>::answer_of_winding(bool enabled, const Link& link, const DriveState<T>& state, double h,
+                                        Wheel& w) const {
+  w.slope = p_.drive.viscous_friction_Nm_s_per_rad;
+  const double used = std::abs(value_of(state.current_A)) * value_of(link.inverse_limit_per_A);
+  if (!enabled || used >= 1.0 - 1e-9) return;
+  const T settled = p_.drive.torque_constant_Nm_per_A / p_.drive.resistance_ohm;
+  w.mean_answer = w.end_answer = settled;
+  if (value_of(p_.drive.inductance_H) > 0.0) {
+    using std::exp;
+    const T time = h * p_.drive.resistance_ohm / p_.drive.inductance_H;
+    const T rest = 1.0 - (1.0 - exp(-time)) / time;
+    w.end_answer = settled * rest;
+    w.mean_answer = settled * (1.0 - 2.0 * rest / time);
+  }
+  w.slope += p_.drive.torque_constant_Nm_per_A * w.mean_answer;
 }
 
 // Four drives, each against the floor's force and the friction of the step before.
@@ -368,21 +319,7 @@ void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput& in, Step& s
     w.friction_up_Nm += link.friction_positive_Nm;
     w.friction_down_Nm += link.friction_negative_Nm;
     w.omega_foreseen = state.omega_rotor_rad_s;
-    // the winding answers another speed by less current, if a voltage is held: wheel_drive.h
-    const double used = std::abs(value_of(state.current_A)) * value_of(link.inverse_limit_per_A);
-    w.slope = p_.drive.viscous_friction_Nm_s_per_rad;
-    if (in.enabled[i] && used < 1.0 - 1e-9) {
-      const T settled = p_.drive.torque_constant_Nm_per_A / p_.drive.resistance_ohm;
-      w.mean_answer = w.end_answer = settled;
-      if (value_of(p_.drive.inductance_H) > 0.0) {
-        using std::exp;
-        const T time = s.h * p_.drive.resistance_ohm / p_.drive.inductance_H;
-        const T rest = 1.0 - (1.0 - exp(-time)) / time;
-        w.end_answer = settled * rest;
-        w.mean_answer = settled * (1.0 - 2.0 * rest / time);
-      }
-      w.slope += p_.drive.torque_constant_Nm_per_A * w.mean_answer;
-    }
+    answer_of_winding(in.enabled[i], link, state, s.h, w);
     w.effective_inertia = inertia_at_rotor(p_.drive) + 0.5 * s.h * w.slope;
   }
 }
@@ -393,7 +330,7 @@ template <typename T>
 void RollingRobot<T>::foresee(const RollingState<T>& x, Step& s) const {
   using std::cos;
   using std::sin;
-  const T half = 0.5 * s.h * x.velocity[2];
+  const T half = 0.5 * s.h * (x.velocity[2] + 0.5 * x.turn_change_rad_s);  // mid-step, looked ahead
   s.cos_half = cos(half);
   s.sin_half = sin(half);
   s.turned = s.half_turned(s.half_turned(Vector3(x.velocity[0], x.velocity[1], x.velocity[2])));
@@ -407,80 +344,98 @@ void RollingRobot<T>::foresee(const RollingState<T>& x, Step& s) const {
   for (std::size_t i = 0; i < kWheels; ++i) s.wheel[i].hub_free_m_s = rim_[i].dot(s.free);
 }
 
+// One rotor's end speed under a floor force, and the friction that comes with it.
 template <typename T>
-void RollingRobot<T>::solve(RollingState<T>& x, Step& s) {
+T RollingRobot<T>::rotor_end(const RollingState<T>& x, const Step& s, std::size_t i, const T& force_N,
+                             T* friction_Nm) const {
+  const Wheel& w = s.wheel[i];
+  const T quickness = s.h / w.effective_inertia;  // speed per torque
+  const T y = w.omega_foreseen - quickness * (w.lever_m * (force_N - x.force_N[i]) - x.friction_Nm[i]);
+  const T omega = shrunk(y, T(quickness * w.friction_up_Nm), T(quickness * w.friction_down_Nm));
+  if (friction_Nm != nullptr) *friction_Nm = (y - omega) / quickness;
+  return omega;
+}
+
+// The slips that floor, rotors and body agree on, as values; `jacobian` at the solution.
+//   s - (hub + A F) + lever omega+ = 0,  F = -f(s)
+template <typename T>
+Eigen::Vector4d RollingRobot<T>::solve_values(const RollingState<T>& x, const Step& s,
+                                              Eigen::Matrix4d& jacobian) {
   using Vector4 = Eigen::Vector4d;
-  Eigen::Matrix4d answer, jacobian;
-  Vector4 slip, hub, rotor, quick, up, down;
+  Eigen::Matrix4d answer;
+  Vector4 slip, hub, rotor, quick, lever, up, down;
   for (Eigen::Index i = 0; i < kWheels; ++i) {
     const auto n = static_cast<std::size_t>(i);
     const Wheel& w = s.wheel[n];
-    quick(i) = s.h / value_of(w.effective_inertia);  // rotor speed per torque
+    lever(i) = value_of(w.lever_m);
+    quick(i) = s.h / value_of(w.effective_inertia);
     up(i) = quick(i) * value_of(w.friction_up_Nm);
     down(i) = quick(i) * value_of(w.friction_down_Nm);
     hub(i) = value_of(w.hub_free_m_s);
     rotor(i) = value_of(w.omega_foreseen) +
-               quick(i) * (value_of(w.lever_m) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]));
+               quick(i) * (lever(i) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]));
     slip(i) = x.slip_m_s[n];
     for (Eigen::Index j = 0; j < kWheels; ++j) answer(i, j) = value_of(s.answer(i, j));
   }
-  // s - (hub + A F) + lever omega+ = 0,  F = -f(s)
-  for (int round = 0;; ++round) {
-    Vector4 force, slope, residual, turns;
+  const auto residual_of = [&](const Vector4& at, Eigen::Matrix4d* slopes) {
+    Vector4 force, residual;
     for (Eigen::Index i = 0; i < kWheels; ++i) {
-      const Wheel& w = s.wheel[static_cast<std::size_t>(i)];
-      force(i) = -w.grip.force(slip(i));
-      slope(i) = w.grip.slope(slip(i));
-      const double omega = shrunk(rotor(i) - quick(i) * value_of(w.lever_m) * force(i), up(i), down(i));
-      turns(i) = omega != 0.0 ? 1.0 : 0.0;
-      residual(i) = slip(i) - hub(i) + value_of(w.lever_m) * omega;
+      const Grip<T>& g = s.wheel[static_cast<std::size_t>(i)].grip;
+      force(i) = -g.force(at(i));
+      const double omega = shrunk(rotor(i) - quick(i) * lever(i) * force(i), up(i), down(i));
+      residual(i) = at(i) - hub(i) + lever(i) * omega;
+      if (slopes == nullptr) continue;
+      const double slope = g.slope(at(i)), turns = omega != 0.0 ? 1.0 : 0.0;
+      slopes->col(i) = answer.col(i) * slope;
+      (*slopes)(i, i) += 1.0 + turns * lever(i) * lever(i) * quick(i) * slope;
     }
-    residual -= answer * force;
-    for (Eigen::Index i = 0; i < kWheels; ++i) {
-      const double lever = value_of(s.wheel[static_cast<std::size_t>(i)].lever_m);
-      for (Eigen::Index j = 0; j < kWheels; ++j) jacobian(i, j) = answer(i, j) * slope(j);
-      jacobian(i, i) += 1.0 + turns(i) * lever * lever * quick(i) * slope(i);
-    }
-    Vector4 change = jacobian.partialPivLu().solve(residual);
-    const bool solved = change.cwiseAbs().maxCoeff() <= kSolved_m_s;
-    if (solved || round == kIterations) {
-      if (!solved) unsolved_ += 1.0;
-      break;
-    }
-    if (round >= kDampedAfter) change *= 0.5;
-    slip -= change;
-  }
-  // Once more on T, from the solution: exact derivatives.
-  Eigen::Matrix<T, kWheels, 1> residual;
-  const Eigen::PartialPivLU<Eigen::Matrix4d> lu(jacobian);
-  const auto omega_end = [&](std::size_t n, const T& force_N, T* friction_Nm) {
-    const Wheel& w = s.wheel[n];
-    const T quickness = s.h / w.effective_inertia;
-    const T y = w.omega_foreseen - quickness * (w.lever_m * (force_N - x.force_N[n]) - x.friction_Nm[n]);
-    const T omega = shrunk(y, T(quickness * w.friction_up_Nm), T(quickness * w.friction_down_Nm));
-    if (friction_Nm != nullptr) *friction_Nm = (y - omega) / quickness;
-    return omega;
+    return Vector4(residual - answer * force);
   };
-  std::array<T, kWheels> force;
+  Vector4 residual = residual_of(slip, &jacobian);
+  for (int round = 0; round < kIterations; ++round) {
+    Vector4 change = jacobian.partialPivLu().solve(residual);
+    if (change.cwiseAbs().maxCoeff() <= kSolved_m_s) return slip;
+    // a tyre's curve bends: no further than what is left shrinks
+    Vector4 next = slip - change;
+    Vector4 left = residual_of(next, nullptr);
+    for (int part = 0; part < kHalvings && left.squaredNorm() > residual.squaredNorm(); ++part) {
+      change *= 0.5;
+      next = slip - change;
+      left = residual_of(next, nullptr);
+    }
+    slip = next;
+    residual = residual_of(slip, &jacobian);
+  }
+  unsolved_ += 1.0;
+  return slip;
+}
+
+template <typename T>
+void RollingRobot<T>::solve(RollingState<T>& x, Step& s) {
+  Eigen::Matrix4d jacobian;
+  const Eigen::Vector4d slip = solve_values(x, s, jacobian);
+  // Newton once more on T, from the solution: exact derivatives.
+  const Eigen::Matrix4d inverse = jacobian.inverse();
+  std::array<T, kWheels> force, residual;
   for (std::size_t i = 0; i < kWheels; ++i) {
     force[i] = -s.wheel[i].grip.force_of(T(slip(static_cast<Eigen::Index>(i))));
   }
   for (std::size_t i = 0; i < kWheels; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    T r = T(slip(row)) - s.wheel[i].hub_free_m_s + s.wheel[i].lever_m * omega_end(i, force[i], nullptr);
-    for (std::size_t j = 0; j < kWheels; ++j) r -= s.answer(row, static_cast<Eigen::Index>(j)) * force[j];
-    residual(row) = r;
+    residual[i] =
+        slip(row) - s.wheel[i].hub_free_m_s + s.wheel[i].lever_m * rotor_end(x, s, i, force[i], nullptr);
+    for (std::size_t j = 0; j < kWheels; ++j) {
+      residual[i] -= s.answer(row, static_cast<Eigen::Index>(j)) * force[j];
+    }
   }
-  const Eigen::Matrix4d inverse = lu.inverse();
   for (std::size_t i = 0; i < kWheels; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     T exact = T(slip(row));
-    for (Eigen::Index j = 0; j < kWheels; ++j) exact -= inverse(row, j) * residual(j);
+    for (std::size_t j = 0; j < kWheels; ++j)
+      exact -= inverse(row, static_cast<Eigen::Index>(j)) * residual[j];
     x.slip_m_s[i] = value_of(exact);
     s.force_N[i] = -s.wheel[i].grip.force_of(exact);
-  }
-  for (std::size_t i = 0; i < kWheels; ++i) {
-    s.omega_end[i] = omega_end(i, s.force_N[i], &s.friction_Nm[i]);
+    s.omega_end[i] = rotor_end(x, s, i, s.force_N[i], &s.friction_Nm[i]);
   }
 }
 
@@ -507,6 +462,7 @@ void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput& in, Step& s
   const Vector3 end = s.free + s.half_turned(pushed) * T(s.h);
   x.accel_x_m_s2 = (end(0) - s.turned(0)) / s.h;
   x.accel_y_m_s2 = (end(1) - s.turned(1)) / s.h;
+  x.turn_change_rad_s = end(2) - x.velocity[2];
   for (std::size_t i = 0; i < 3; ++i) x.velocity[i] = end(static_cast<Eigen::Index>(i));
   x.floor_x_N = floor_x;
   x.floor_y_N = floor_y;

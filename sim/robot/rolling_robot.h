@@ -20,10 +20,10 @@
 //   Without a tyre f is a line so steep that 1 N slides 1 um/s: rolling. With wheel_slip, or a tyre, f is the
 //   tyre's curve over s / (scale + v_c), scale = extremum slip times max(|v|, |rim|, floor) for a tyre, 0
 //   without.
-// Order 2 in the step where wheels roll; tested against the plant with a tyre, and against itself at small
-// steps. A force that an effect adds along the wheel's drive direction (roller_ripple) turns the wheel only:
-// on a wheel that rolls, a force at the point of contact does no work.
-// Cannot represent: what the planar plant cannot, and play or compliance between rotor and wheel.
+// Order 2 in the step where wheels roll, 1 where they slip. A force that an effect adds along the wheel's
+// drive direction (roller_ripple) turns the wheel only: on a wheel that rolls, a force at the point of
+// contact does no work. Cannot represent: what the planar plant cannot, and play or compliance between rotor
+// and wheel.
 #pragma once
 #include <Eigen/Core>
 #include <memory>
@@ -35,6 +35,10 @@
 #include "sim/robot/wheel_load.h"
 
 namespace omnihil {
+
+// As long as a step may be (tests: errors below a tenth of an encoder's noise).
+inline constexpr double kRollingStep_s = 1e-3;      // without a tyre
+inline constexpr double kSlippingStep_s = 0.25e-3;  // with one: the floor's force is of order 1 in the step
 
 // Held over one call.
 struct RollingInput {
@@ -60,6 +64,7 @@ struct RollingState {
   std::array<T, kWheels> force_N{}, friction_Nm{};
   std::array<double, kWheels> slip_m_s{};
   T floor_x_N = T(0), floor_y_N = T(0);
+  T turn_change_rad_s = T(0);
 
   const T& omega_rotor_rad_s(std::size_t i) const { return drive[i].omega_rotor_rad_s; }
 };
@@ -76,7 +81,6 @@ class RollingRobot {
   // Wheels roll with the body.
   RollingState<T> start(const BodyVelocity<double>& velocity,
                         const std::array<double, kWheels>& theta_rotor_rad) const;
-  // One step; how long it may be is the caller's business (tests: 1 ms is within the sensors' noise).
   void advance(RollingState<T>& state, const RollingInput& input, double step_s);
 
   const EffectSet<T>& effects() const { return effects_; }
@@ -96,6 +100,11 @@ class RollingRobot {
                 Wheel& w) const;
   void ask_body(const RollingState<T>& x, const RollingInput& in, Step& s) const;
   void foresee(const RollingState<T>& x, Step& s) const;
+  void answer_of_winding(bool enabled, const Link& link, const DriveState<T>& state, double h,
+                         Wheel& w) const;
+  T rotor_end(const RollingState<T>& x, const Step& s, std::size_t wheel, const T& force_N,
+              T* friction_Nm) const;
+  Eigen::Vector4d solve_values(const RollingState<T>& x, const Step& s, Eigen::Matrix4d& jacobian);
   void solve(RollingState<T>& x, Step& s);
   void finish(RollingState<T>& x, const RollingInput& in, Step& s) const;
 
