@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/robot/rolling_grip.h"
+#include "sim/robot/rolling_balance.h"
 
 namespace omnihil {
 namespace {
 
-constexpr int kIterations = 40;
-constexpr int kHalvings = 8;
-constexpr double kSolved_m_s = 1e-13;
+constexpr int kSweeps = 30;
 
 }  // namespace
 
@@ -356,57 +354,31 @@ T RollingRobot<T>::rotor_end(const RollingState<T>& x, const Step& s, std::size_
   return omega;
 }
 
-// The slips that floor, rotors and body agree on, as values; `jacobian` at the solution.
-//   s - (hub + A F) + lever omega+ = 0,  F = -f(s)
+// The slips of this step, as values; `jacobian` at the solution.
 template <typename T>
 Eigen::Vector4d RollingRobot<T>::solve_values(const RollingState<T>& x, const Step& s,
                                               Eigen::Matrix4d& jacobian) {
-  using Vector4 = Eigen::Vector4d;
-  Eigen::Matrix4d answer;
-  Vector4 slip, hub, rotor, quick, lever, up, down;
+  RollingBalance<T> balance;
   for (Eigen::Index i = 0; i < kWheels; ++i) {
     const auto n = static_cast<std::size_t>(i);
     const Wheel& w = s.wheel[n];
-    lever(i) = value_of(w.lever_m);
-    quick(i) = s.h / value_of(w.effective_inertia);
-    up(i) = quick(i) * value_of(w.friction_up_Nm);
-    down(i) = quick(i) * value_of(w.friction_down_Nm);
-    hub(i) = value_of(w.hub_free_m_s);
-    rotor(i) = value_of(w.omega_foreseen) +
-               quick(i) * (lever(i) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]));
-    slip(i) = x.slip_m_s[n];
-    for (Eigen::Index j = 0; j < kWheels; ++j) answer(i, j) = value_of(s.answer(i, j));
+    balance.grips[n] = &w.grip;
+    balance.lever(i) = value_of(w.lever_m);
+    balance.quick(i) = s.h / value_of(w.effective_inertia);
+    balance.up(i) = balance.quick(i) * value_of(w.friction_up_Nm);
+    balance.down(i) = balance.quick(i) * value_of(w.friction_down_Nm);
+    balance.hub(i) = value_of(w.hub_free_m_s);
+    const double held_Nm = balance.lever(i) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]);
+    balance.rotor(i) = value_of(w.omega_foreseen) + balance.quick(i) * held_Nm;
+    for (Eigen::Index j = 0; j < kWheels; ++j) balance.answer(i, j) = value_of(s.answer(i, j));
   }
-  const auto residual_of = [&](const Vector4& at, Eigen::Matrix4d* slopes) {
-    Vector4 force, residual;
-    for (Eigen::Index i = 0; i < kWheels; ++i) {
-      const Grip<T>& g = s.wheel[static_cast<std::size_t>(i)].grip;
-      force(i) = -g.force(at(i));
-      const double omega = shrunk(rotor(i) - quick(i) * lever(i) * force(i), up(i), down(i));
-      residual(i) = at(i) - hub(i) + lever(i) * omega;
-      if (slopes == nullptr) continue;
-      const double slope = g.slope(at(i)), turns = omega != 0.0 ? 1.0 : 0.0;
-      slopes->col(i) = answer.col(i) * slope;
-      (*slopes)(i, i) += 1.0 + turns * lever(i) * lever(i) * quick(i) * slope;
-    }
-    return Vector4(residual - answer * force);
-  };
-  Vector4 residual = residual_of(slip, &jacobian);
-  for (int round = 0; round < kIterations; ++round) {
-    Vector4 change = jacobian.partialPivLu().solve(residual);
-    if (change.cwiseAbs().maxCoeff() <= kSolved_m_s) return slip;
-    // a tyre's curve bends: no further than what is left shrinks
-    Vector4 next = slip - change;
-    Vector4 left = residual_of(next, nullptr);
-    for (int part = 0; part < kHalvings && left.squaredNorm() > residual.squaredNorm(); ++part) {
-      change *= 0.5;
-      next = slip - change;
-      left = residual_of(next, nullptr);
-    }
-    slip = next;
-    residual = residual_of(slip, &jacobian);
+  Eigen::Vector4d slip(x.slip_m_s[0], x.slip_m_s[1], x.slip_m_s[2], x.slip_m_s[3]);
+  if (!balance.newton(slip)) {
+    slip = Eigen::Vector4d(x.slip_m_s[0], x.slip_m_s[1], x.slip_m_s[2], x.slip_m_s[3]);
+    for (int n = 0; n < kSweeps; ++n) balance.sweep(slip);
+    if (!balance.newton(slip)) unsolved_ += 1.0;
   }
-  unsolved_ += 1.0;
+  jacobian = balance.slopes(slip);
   return slip;
 }
 

@@ -1,0 +1,92 @@
+// One step of a robot that rolls (rolling_robot.h): the slips on which floor, rotors and body agree.
+//
+//   RollingBalance<double> b; …fill…;
+//   if (!b.newton(slip)) b.sweep(slip);
+#pragma once
+#include <Eigen/LU>
+#include <array>
+
+#include "firmware_iface/robot_io.h"
+#include "sim/robot/rolling_grip.h"
+
+namespace omnihil {
+
+// What floor, rotors and body must agree on in one step, as values:
+//   s - (hub + A F) + lever omega+ = 0,  F = -f(s)
+// A is symmetric but for the step's turn and positive, f and the rotors' answer rise: one solution, but for
+// the falling part of a tyre's curve.
+template <typename T>
+struct RollingBalance {
+  using Vector4 = Eigen::Vector4d;
+  static constexpr double kSolved_m_s = 1e-13;
+  static constexpr double kFastest_m_s = 1e3;  // no slip is faster
+  static constexpr int kBisections = 60;
+  static constexpr int kHalvings = 8;
+  static constexpr int kIterations = 12;
+  std::array<const Grip<T>*, kWheels> grips{};
+  Eigen::Matrix4d answer;  // A: rim speed per floor force
+  // per rotor: speed without floor force and friction, speed per torque, radius over gear, what friction
+  // takes
+  Vector4 hub, rotor, quick, lever, up, down;
+
+  const Grip<T>& grip(Eigen::Index i) const { return *grips[static_cast<std::size_t>(i)]; }
+  double omega(Eigen::Index i, double force_N) const {
+    return shrunk(rotor(i) - quick(i) * lever(i) * force_N, up(i), down(i));
+  }
+  Vector4 forces(const Vector4& slip) const {
+    Vector4 force;
+    for (Eigen::Index i = 0; i < kWheels; ++i) force(i) = -grip(i).force(slip(i));
+    return force;
+  }
+  Vector4 residual(const Vector4& slip) const {
+    const Vector4 force = forces(slip);
+    Vector4 r = slip - hub - answer * force;
+    for (Eigen::Index i = 0; i < kWheels; ++i) r(i) += lever(i) * omega(i, force(i));
+    return r;
+  }
+  Eigen::Matrix4d slopes(const Vector4& slip) const {
+    Eigen::Matrix4d out;
+    for (Eigen::Index i = 0; i < kWheels; ++i) {
+      const double slope = grip(i).slope(slip(i));
+      const double turns = omega(i, -grip(i).force(slip(i))) != 0.0 ? 1.0 : 0.0;
+      out.col(i) = answer.col(i) * slope;
+      out(i, i) += 1.0 + turns * lever(i) * lever(i) * quick(i) * slope;
+    }
+    return out;
+  }
+  // Newton, no further than what is left shrinks.
+  bool newton(Vector4& slip) const {
+    Vector4 left = residual(slip);
+    for (int round = 0; round < kIterations; ++round) {
+      Vector4 change = slopes(slip).partialPivLu().solve(left);
+      if (change.cwiseAbs().maxCoeff() <= kSolved_m_s) return true;
+      Vector4 next = residual(slip - change);
+      for (int part = 0; part < kHalvings && next.squaredNorm() > left.squaredNorm(); ++part) {
+        change *= 0.5;
+        next = residual(slip - change);
+      }
+      slip -= change;
+      left = next;
+    }
+    return false;
+  }
+  // Wheel by wheel, each by bisection: slow, and nothing can go wrong.
+  void sweep(Vector4& slip) const {
+    for (Eigen::Index i = 0; i < kWheels; ++i) {
+      const Vector4 force = forces(slip);
+      const double others = hub(i) + answer.row(i).dot(force) - answer(i, i) * force(i);
+      const auto left = [&](double at) {
+        const double own_N = -grip(i).force(at);
+        return at - others - answer(i, i) * own_N + lever(i) * omega(i, own_N);
+      };
+      double low = -kFastest_m_s, high = kFastest_m_s;
+      for (int n = 0; n < kBisections; ++n) {
+        const double middle = 0.5 * (low + high);
+        (left(middle) > 0.0 ? high : low) = middle;
+      }
+      slip(i) = 0.5 * (low + high);
+    }
+  }
+};
+
+}  // namespace omnihil
