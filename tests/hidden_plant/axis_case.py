@@ -36,7 +36,10 @@ def draw_kinds(rng, shows, rig, generic, closed_loop=False):
     if closed_loop:
         return "speed_targets", "speed_targets", "speed_targets"
     main = "mixed" if generic else rng.choice([k for k in shows if k in POOL] or list(POOL))
-    return main, main, rng.choice([k for k in POOL if k != main])
+    other = rng.choice([k for k in POOL if k != main])
+    if not generic and rng.random() < 0.25:  # half of the record something else, as where two effects are hidden
+        main = "+".join(rng.sample([main, rng.choice(list(POOL))], 2))
+    return main, main, other
 
 
 def asked_of(rng, kind, rows=ROWS):

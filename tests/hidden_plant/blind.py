@@ -6,6 +6,7 @@
 """
 import argparse
 import concurrent.futures
+import hashlib
 import json
 import os
 import pathlib
@@ -15,6 +16,11 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import cases  # noqa: E402
+import run_program  # noqa: E402
+import score  # noqa: E402
+import table  # noqa: E402
+
+SKIPPED = 77
 
 
 def arguments():
@@ -30,7 +36,8 @@ def arguments():
     parser.add_argument("--timeout", type=float, default=600, help="seconds one diagnosis may take (600)")
     parser.add_argument("--no-oracle", action="store_true", help="leave out the fits of the true effect")
     parser.add_argument("--json", type=pathlib.Path, help="every result and the table, as JSON")
-    parser.add_argument("--floors", action="store_true", help="exit 1 when a score is below its floor (for ctest)")
+    parser.add_argument("--reduced", action="store_true",
+                        help="a few cases of each class of the open set; exit 1 when a score is below its floor (for ctest)")
     return parser.parse_args()
 
 
@@ -49,6 +56,50 @@ def generate(case, keep):
     return answer
 
 
+def work(case, keep, args, stamp):
+    """Makes a case, lets the program diagnose it, judges. What was done by this very program is not done again."""
+    answer = generate(case, keep)
+    if args.generate_only:
+        return None
+    path = keep / "results" / case.set / stamp / f"{case.name}.json"
+    folder = keep / "cases" / case.set / case.name
+    result = run_program.read_json(path)
+    if result is None:
+        result = run_program.diagnose(args.program, folder, args.timeout, 1)
+    wants_oracle = case.cls in ("single", "generic") and not args.no_oracle and not result.get("oracle")
+    if wants_oracle and min(e["share"] for e in answer["effects"]) >= score.LEAST_SHARE:
+        result["oracle"] = run_program.oracle(args.program, folder, answer, args.timeout)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(f".{os.getpid()}")
+    part.write_text(json.dumps(result) + "\n")
+    part.replace(path)
+    return score.judge(result, answer)
+
+
+def can_diagnose(program):
+    """Does the program have what is to be tested?"""
+    if not program or not program.exists():
+        return False
+    return all(run_program.call(program, [verb, "--help"], 60, None)["code"] == 0 for verb in ("diagnose", "fit", "compare"))
+
+
+def run_all(todo, keep, args, stamp):
+    """All cases, several at a time; progress on stderr. Results come back in the order of the list."""
+    rows = {}
+    with concurrent.futures.ProcessPoolExecutor(args.jobs) as pool:
+        jobs = {pool.submit(work, case, keep, args, stamp): case for case in todo}
+        for done, job in enumerate(concurrent.futures.as_completed(jobs), 1):
+            case, row = jobs[job], job.result()
+            rows[case.key] = row
+            if row:
+                said = " + ".join(row["named"]) or "-"
+                print(f"{done}/{len(jobs)} {case.cls} {case.name}: {row['verdict'] or 'no answer'} {said} ({row['seconds']:.0f} s)",
+                      file=sys.stderr, flush=True)
+            elif done % 10 == 0 or done == len(jobs):
+                print(f"{done} of {len(jobs)} cases written", file=sys.stderr, flush=True)
+    return [rows[case.key] for case in todo]
+
+
 def main():
     args = arguments()
     set_name = "sealed" if args.sealed else args.set
@@ -57,19 +108,28 @@ def main():
     if unknown:
         print(f"blind: no such class: {', '.join(sorted(unknown))}; there are {', '.join(cases.classes())}", file=sys.stderr)
         return 2
-    todo = cases.list_cases(set_name, only, args.cases)
+    if not args.generate_only and not can_diagnose(args.program):
+        print(f"blind: skipped: {args.program} has no verbs diagnose, fit and compare")
+        return SKIPPED
+    if args.generate_only and args.sealed:
+        print("blind: sealed cases are made only to be scored", file=sys.stderr)
+        return 2
+    todo = cases.reduced() if args.reduced else cases.list_cases(set_name, only, args.cases)
+    stamp = "" if args.generate_only else hashlib.sha256(args.program.read_bytes()).hexdigest()[:12]
     with tempfile.TemporaryDirectory(prefix="blind-") as scratch:
         keep = (args.keep or pathlib.Path(scratch)).resolve()
-        with concurrent.futures.ProcessPoolExecutor(args.jobs) as pool:
-            jobs = {pool.submit(generate, case, keep): case for case in todo}
-            for done, job in enumerate(concurrent.futures.as_completed(jobs), 1):
-                job.result()
-                if done % 10 == 0 or done == len(jobs):
-                    print(f"{done} of {len(jobs)} cases written", file=sys.stderr, flush=True)
+        rows = run_all(todo, keep, args, stamp)
         if args.generate_only:
             print(f"cases: {keep / 'cases' / set_name}; answers: {keep / 'answers' / set_name}")
             return 0
-    return 0
+    figures = score.summary(rows)
+    table.print_all(rows, figures)
+    if args.json:
+        args.json.write_text(json.dumps({"set": set_name, "program": stamp, "figures": figures, "cases": rows}, indent=1) + "\n")
+    low = table.below_floor(figures) if args.reduced else []
+    for line in low:
+        print(f"below the floor: {line}")
+    return 1 if low else 0
 
 
 if __name__ == "__main__":

@@ -118,5 +118,5 @@ def size_for(ruler, hide, limits, share):
 
 
 def spread_share(rng: random.Random, index):
-    """5, 15 and 50 % in turn; one in three below the limit from which an effect is to be named."""
+    """Around 5, 15 and 50 % and above, in turn; one in eight below the limit from which an effect is to be named."""
     return (0.18, 0.5, 0.05, 0.25, 0.7, 0.18, 0.5, 0.9)[index % 8] * rng.uniform(0.95, 1.1)
