@@ -64,10 +64,8 @@ void add_effects(ModelBundle& bundle, const std::vector<std::string>& with,
     if (!fault.empty()) {
       faults.push_back("--with " + fault);
     } else if (!acts_on_robot(id_of(text))) {
-      faults.push_back(
-          fmt::format("--with {}: has no place in the simulation of a robot; allowed there: every "
-                      "effect but those between rotor and output",
-                      text));
+      faults.push_back(fmt::format(
+          "--with {}: has no place in the simulation of a robot: it acts on a bench alone", text));
     }
   }
   if (faults.size() > before) return;

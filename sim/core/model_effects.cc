@@ -43,8 +43,7 @@ std::vector<EffectUse> read_robot_effects(const ModelDocument& document, const M
 
 bool acts_on_robot(std::string_view effect) {
   const EffectEntry* entry = find_effect(effect);
-  return effect == kInBaseModel ||
-         (entry != nullptr && (entry->info->rigs & kOnRobot) != 0 && entry->info->place != Place::kShaft);
+  return effect == kInBaseModel || (entry != nullptr && (entry->info->rigs & kOnRobot) != 0);
 }
 
 }  // namespace omnihil

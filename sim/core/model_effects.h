@@ -17,7 +17,7 @@ namespace omnihil {
 std::vector<EffectUse> read_robot_effects(const ModelDocument& document, const ModelDocument* motor,
                                           const RobotModel* robot, std::vector<ModelProblem>& problems);
 
-// Whether a robot's simulation has the effect's place: all but play and compliance of the shaft.
+// Whether a robot's simulation has the effect: all but those of a bench alone.
 bool acts_on_robot(std::string_view effect);
 
 }  // namespace omnihil

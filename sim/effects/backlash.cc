@@ -26,7 +26,8 @@ struct Backlash {
       .twins = {"shaft_compliance", "actuator_delay"},
       .reveals =
           "small slow reversals with encoders on rotor and output: hysteresis of width gap; with one "
-          "encoder a pause of the output after each reversal, the longer the slower",
+          "encoder a pause of the output after each reversal, the longer the slower; on a robot the encoders "
+          "against the camera, turning to and fro",
       .visible = "two counts of an encoder on the output",
       .min_visible = [](const SensorSet& s) { return 2.0 * 6.283185307179586 / s.counts_per_turn; },
       .claims = kOdd,

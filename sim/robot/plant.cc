@@ -1,5 +1,6 @@
 #include "sim/robot/plant.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -69,7 +70,7 @@ struct Plant::Impl {
       : options(options_),
         models(robots_.begin(), robots_.end()),
         effects(make_effects(models, options_)),
-        mechanics(make_mechanics(models, options_.physics, floors_of(effects))),
+        mechanics(make_mechanics(models_of_mechanics(models), options_.physics, floors_of(effects))),
         layout(std::visit([](const auto& m) { return m.layout(); }, mechanics)),
         q(models.size() * layout.q_per_robot),
         u(models.size() * layout.u_per_robot),
@@ -78,9 +79,10 @@ struct Plant::Impl {
         memory(models.size()),
         torques(models.size()),
         wheel_steps(models.size()) {
-    step_s = static_cast<double>(options.mechanical_step_ns) * 1e-9;
-    substeps = static_cast<int>(options.mechanical_step_ns / options.electrical_step_ns);
-    for (const RobotModel& m : models) {
+    step_ns = mechanics_step_ns(models, options);
+    step_s = static_cast<double>(step_ns) * 1e-9;
+    substeps = static_cast<int>(step_ns / options.electrical_step_ns);
+    for (const RobotModel& m : models_of_mechanics(models)) {
       drives.push_back(wheel_drive_law(m, static_cast<double>(options.electrical_step_ns) * 1e-9, substeps));
     }
     effect_memory.resize(models.size());
@@ -115,8 +117,11 @@ struct Plant::Impl {
     memory[robot].drive = kept;
     state_known = false;
     if (effects[robot]) {
+      std::array<double, kWheels> rotors{};
+      for (std::size_t i = 0; i < kWheels; ++i) rotors[i] = theta_rotor_rad(robot, i);
       effect_memory[robot] = effects[robot]->initial_memory();
       RobotEffectMemory& mem = effect_memory[robot];
+      for (std::size_t i = 0; i < kWheels; ++i) mem.drive[i].theta_rotor_rad = rotors[i];
       mem.seen_s = mem.read_s = now_s();
       for (std::size_t i = 0; i < kWheels; ++i) mem.seen_theta_rotor_rad[i] = theta_rotor_rad(robot, i);
       histories[robot].clear();
@@ -125,8 +130,14 @@ struct Plant::Impl {
   }
 
   double now_s() const { return static_cast<double>(now_ns) * 1e-9; }
+  bool two_masses(std::size_t robot) const { return effects[robot] && effects[robot]->two_masses(); }
   double theta_rotor_rad(std::size_t robot, std::size_t wheel) const {
-    return models[robot].gear_ratio * wheel_angles(robot)[wheel];
+    return two_masses(robot) ? effect_memory[robot].drive[wheel].theta_rotor_rad
+                             : models[robot].gear_ratio * wheel_angles(robot)[wheel];
+  }
+  double omega_rotor_rad_s(std::size_t robot, std::size_t wheel) const {
+    return two_masses(robot) ? effect_memory[robot].drive[wheel].omega_rotor_rad_s
+                             : models[robot].gear_ratio * wheel_speeds_of(robot)[wheel];
   }
 
   // What sensors could see now.
@@ -141,7 +152,7 @@ struct Plant::Impl {
     p.bus_voltage_V = effect_memory[n].bus_voltage_V;
     for (std::size_t i = 0; i < kWheels; ++i) {
       p.theta_rotor_rad[i] = theta_rotor_rad(n, i);
-      p.omega_rotor_rad_s[i] = models[n].gear_ratio * wheel_speeds_of(n)[i];
+      p.omega_rotor_rad_s[i] = omega_rotor_rad_s(n, i);
     }
     p.charge_C = effect_memory[n].charge_C;
     return p;
@@ -186,8 +197,8 @@ struct Plant::Impl {
     for (std::size_t i = 0; i < kWheels; ++i) {
       WheelDriveInput& in = inputs[i];
       in.bridge = {mem.drive.mode[i], mem.drive.duty_ratio[i], model.bus_voltage_V};
-      in.omega_rotor_rad_s = model.gear_ratio * omega_wheel[i];
-      in.theta_rotor_rad = theta_rotor_rad(n, i);
+      in.omega_wheel_rad_s = omega_wheel[i];
+      in.theta_wheel_rad = wheel_angles(n)[i];
       in.contact_Nm = more.wheel_radius_m[i] * contacts.force_longitudinal_N[i] / model.gear_ratio;
       in.friction_rotor_Nm = more.friction_wheel_Nm[i] / model.gear_ratio;
     }
@@ -212,7 +223,7 @@ struct Plant::Impl {
     integrate(options.integrator, back, torques, step_s, q, u, scratch);
     state_known = false;
     for (std::size_t n = 0; n < models.size(); ++n) end_robot(back, n);
-    now_ns += options.mechanical_step_ns;
+    now_ns += step_ns;
     for (std::size_t n = 0; n < models.size(); ++n) {
       if (effects[n]) remember(n);
     }
@@ -233,7 +244,7 @@ struct Plant::Impl {
       }
       memory[n].motor_torque_Nm[i] = step.drive.mean_torque_Nm;
       memory[n].current_sum_A[i] += step.drive.mean_current_A;
-      held = held && step.torque.locked;
+      held = held && (step.torque.locked || (two_masses(n) && step.rotor_held));
     }
     ++memory[n].current_steps;
     if (held && !free()) come_to_rest(n);
@@ -248,10 +259,14 @@ struct Plant::Impl {
   // The floor's viscous hold would let the speed fade for ever, into numbers that cost time to compute with.
   void come_to_rest(std::size_t n) {
     double* body = &u[n * layout.u_per_robot];
-    const double lever_m = models[n].wheel_center_radius_m;
-    if (std::abs(body[0] * lever_m) < kStandstill_m_s && std::abs(body[1]) < kStandstill_m_s &&
-        std::abs(body[2]) < kStandstill_m_s) {
+    double* wheels = wheel_speeds_of(n);
+    const auto stands = [](double v_m_s) { return std::abs(v_m_s) < kStandstill_m_s; };
+    const bool rims_stand = std::all_of(
+        wheels, wheels + kWheels, [&](double omega) { return stands(omega * models[n].wheel_radius_m); });
+    if (stands(body[0] * models[n].wheel_center_radius_m) && stands(body[1]) && stands(body[2]) &&
+        rims_stand) {
       body[0] = body[1] = body[2] = 0.0;
+      std::fill_n(wheels, kWheels, 0.0);
     }
   }
 
@@ -282,6 +297,7 @@ struct Plant::Impl {
   AllEffects effects;  // before the mechanics, which points into it
   Mechanics mechanics;
   StateLayout layout;
+  std::int64_t step_ns = 0;  // of the mechanics: that of the options, or a part of it
   double step_s = 0.0;
   int substeps = 1;
   std::int64_t now_ns = 0;
@@ -330,7 +346,7 @@ void Plant::advance(std::int64_t duration_ns) {
   if (p.fault) return;
   std::visit(
       [&](auto& back) {
-        for (std::int64_t n = duration_ns / p.options.mechanical_step_ns; n > 0; --n) p.step(back);
+        for (std::int64_t n = duration_ns / p.step_ns; n > 0; --n) p.step(back);
       },
       p.mechanics);
   p.look_for_fault();
@@ -383,9 +399,10 @@ RobotTruth Plant::truth(int robot) const {
       },
       p.mechanics);
   for (std::size_t i = 0; i < kWheels; ++i) {
+    t.theta_wheel_rad[i] = p.wheel_angles(n)[i];
     t.omega_wheel_rad_s[i] = p.wheel_speeds_of(n)[i];
-    t.omega_rotor_rad_s[i] = p.models[n].gear_ratio * t.omega_wheel_rad_s[i];
-    t.theta_rotor_rad[i] = p.models[n].gear_ratio * p.wheel_angles(n)[i];
+    t.omega_rotor_rad_s[i] = p.omega_rotor_rad_s(n, i);
+    t.theta_rotor_rad[i] = p.theta_rotor_rad(n, i);
     t.motor_current_A[i] = p.memory[n].winding[i].current_A;
     t.motor_torque_Nm[i] = p.memory[n].motor_torque_Nm[i];
   }

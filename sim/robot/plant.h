@@ -54,6 +54,7 @@ struct RobotTruth {
   double v_forward_m_s = 0, v_left_m_s = 0, omega_body_rad_s = 0;  // of the geometric centre, in B
   std::array<double, kWheels> theta_rotor_rad{};
   std::array<double, kWheels> omega_rotor_rad_s{};
+  std::array<double, kWheels> theta_wheel_rad{};  // the rotor's over the gear, but for play and compliance
   std::array<double, kWheels> omega_wheel_rad_s{};
   std::array<double, kWheels> motor_current_A{};
   std::array<double, kWheels> motor_torque_Nm{};          // at the rotor

@@ -26,7 +26,8 @@ DriveParams<double> wheel_drive_params(const RobotModel& model) {
 }
 
 struct RobotEffects::Link {
-  double friction_rotor_Nm = 0.0;            // told: rolling resistance
+  double friction_rotor_Nm = 0.0;            // told: rolling resistance, where rotor and wheel are one
+  double friction_wheel_Nm = 0.0;            // the same where they are not, through the gear
   mutable double friction_Nm = 0.0;          // learnt: whole level, the larger direction
   mutable double inverse_limit_per_A = 0.0;  // learnt: of the current
 };
@@ -95,13 +96,31 @@ std::vector<RobotModel> models_with_effects(std::span<const RobotModel> robots) 
   return models;
 }
 
+bool has_shaft(const RobotModel& model) {
+  return model.effects != nullptr && !EffectSet<double>(*model.effects).shaft.empty();
+}
+
+std::vector<RobotModel> models_of_mechanics(std::span<const RobotModel> robots) {
+  std::vector<RobotModel> models(robots.begin(), robots.end());
+  for (RobotModel& m : models) {
+    if (has_shaft(m)) m.motor.rotor_inertia_kg_m2 = m.motor.viscous_friction_Nm_s_per_rad = 0.0;
+  }
+  return models;
+}
+
+std::int64_t mechanics_step_ns(std::span<const RobotModel> robots, const PlantOptions& options) {
+  return std::any_of(robots.begin(), robots.end(), has_shaft) ? options.electrical_step_ns
+                                                              : options.mechanical_step_ns;
+}
+
 AllEffects make_effects(const std::vector<RobotModel>& models, const PlantOptions& o) {
   AllEffects all(models.size());
+  const std::int64_t step_ns = mechanics_step_ns(models, o);
   for (std::size_t n = 0; n < models.size(); ++n) {
     if (models[n].effects == nullptr) continue;
     all[n] = std::make_unique<RobotEffects>(models[n], static_cast<double>(o.electrical_step_ns) * 1e-9,
-                                            static_cast<int>(o.mechanical_step_ns / o.electrical_step_ns),
-                                            static_cast<double>(o.mechanical_step_ns) * 1e-9);
+                                            static_cast<int>(step_ns / o.electrical_step_ns),
+                                            static_cast<double>(step_ns) * 1e-9);
   }
   return all;
 }
@@ -174,7 +193,7 @@ WheelTorque torque_course(const WheelDriveLaw& law, const DriveResult<double>& r
   const double middle_Nm = (6.0 * mean_Nm - start_Nm - end_Nm) / 4.0;  // Simpson's rule
   // first half of the parabola through the three: (5 start + 8 middle - end) / 24
   const double half_Nm = (5.0 * start_Nm + 8.0 * middle_Nm - end_Nm) / 24.0 - 0.5 * in.contact_Nm;
-  const double start_rad_s = in.omega_rotor_rad_s;
+  const double start_rad_s = law.gear_ratio * in.omega_wheel_rad_s;
   WheelTorque course;
   course.omega_rad_s = {start_rad_s, start_rad_s + half_Nm * law.step_s / inertia_kg_m2,
                         end.omega_rotor_rad_s, start_rad_s};
@@ -188,30 +207,58 @@ WheelTorque torque_course(const WheelDriveLaw& law, const DriveResult<double>& r
 
 double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
+// A wheel behind its shaft: pushed by it, and held at zero by its own friction.
+void push_wheel(double shaft_Nm, double contact_Nm, double friction_Nm, WheelStep& step) {
+  const double applied_Nm = shaft_Nm - contact_Nm;
+  if (step.direction == 0.0 && friction_Nm > 0.0) {
+    step.torque.locked = std::abs(applied_Nm) <= friction_Nm;
+    if (step.torque.locked) return;
+    step.direction = sign(applied_Nm);
+  }
+  step.torque.torque_Nm.fill(shaft_Nm - step.direction * friction_Nm);
+}
+
 }  // namespace
+
+// Where rotor and wheel are one, the mechanics' wheel says where the rotor is; else it is the drive's output.
+void RobotEffects::set_motion(const WheelDriveLaw& law, RobotEffectMemory& memory,
+                              const std::array<WheelDriveInput, kWheels>& inputs) {
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    DriveState<double>& state = memory.drive[i];
+    Link& link = links_->wheel[i];
+    if (two_masses()) {
+      state.omega_output_rad_s = inputs[i].omega_wheel_rad_s;
+      state.theta_output_rad = inputs[i].theta_wheel_rad;
+      state.has_output = true;
+      link.friction_wheel_Nm = inputs[i].friction_rotor_Nm;
+    } else {
+      state.omega_rotor_rad_s = law.gear_ratio * inputs[i].omega_wheel_rad_s;
+      state.theta_rotor_rad = law.gear_ratio * inputs[i].theta_wheel_rad;
+      link.friction_rotor_Nm = inputs[i].friction_rotor_Nm;
+    }
+  }
+}
 
 void RobotEffects::begin_step(const WheelDriveLaw& law, RobotEffectMemory& memory,
                               const std::array<WheelDriveInput, kWheels>& inputs,
                               std::array<WheelStep, kWheels>& steps) {
   std::array<double, kWheels> start_A;
-  for (std::size_t i = 0; i < kWheels; ++i) {
-    DriveState<double>& state = memory.drive[i];
-    start_A[i] = state.current_A;
-    state.omega_rotor_rad_s = inputs[i].omega_rotor_rad_s;
-    state.theta_rotor_rad = inputs[i].theta_rotor_rad;
-    links_->wheel[i].friction_rotor_Nm = inputs[i].friction_rotor_Nm;
-  }
+  for (std::size_t i = 0; i < kWheels; ++i) start_A[i] = memory.drive[i].current_A;
+  set_motion(law, memory, inputs);
   std::array<DriveResult<double>, kWheels> results{};
   advance(memory, inputs, results);
   for (std::size_t i = 0; i < kWheels; ++i) {
     const DriveState<double>& end = memory.drive[i];
     const DriveResult<double>& r = results[i];
     WheelStep step;
-    step.direction = sign(inputs[i].omega_rotor_rad_s);
+    step.direction = sign(inputs[i].omega_wheel_rad_s);
+    step.rotor_held = r.held;
     step.drive.mean_current_A = r.mean_current_A;
     step.drive.mean_torque_Nm = law.turning.constants.torque_constant_Nm_per_A * r.mean_current_A;
     step.drive.omega_end_rad_s = end.omega_rotor_rad_s;
-    if (r.held) {
+    if (two_masses()) {
+      push_wheel(r.mean_shaft_torque_Nm, inputs[i].contact_Nm, links_->wheel[i].friction_wheel_Nm, step);
+    } else if (r.held) {
       step.torque.locked = true;
     } else {
       step.torque = torque_course(law, r, start_A[i], end, inputs[i], drives_[i].inertia_kg_m2());
@@ -238,9 +285,10 @@ double RobotEffects::end_wheel(const WheelDriveLaw& law, RobotEffectMemory& memo
     step.drive.mean_torque_Nm += law.turning.constants.torque_constant_Nm_per_A * mean_A;
   }
   memory.charge_C[wheel] += step.drive.mean_current_A * law.step_s;
-  const double friction_Nm = links_->wheel[wheel].friction_Nm;
+  const Link& link = links_->wheel[wheel];
+  const double friction_Nm = two_masses() ? link.friction_wheel_Nm : link.friction_Nm;
   if (step.torque.locked || friction_Nm == 0.0) return omega_wheel_after_rad_s;
-  const double foreseen_rad_s = step.drive.omega_end_rad_s;
+  const double foreseen_rad_s = two_masses() ? step.direction : step.drive.omega_end_rad_s;
   if (foreseen_rad_s == 0.0) return 0.0;  // friction stopped it within the step
   if (foreseen_rad_s * omega_wheel_after_rad_s >= 0.0) return omega_wheel_after_rad_s;
   // net torque before zero |net|; past zero |net| - 2 tau_c, never against the motion

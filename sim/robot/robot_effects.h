@@ -15,8 +15,13 @@
 //   Rolling resistance is a level of dry friction on its wheel and joins the friction of the drive, so that a
 //   wheel is held by both together. A wheel that friction stopped within a step stands at its end; one that
 //   passed zero against the forecast gets the settlement of wheel_drive.h with the friction in force.
-// Cannot represent: play and compliance between rotor and wheel (Place::kShaft is not asked here: the
-//   mechanics has one freedom per wheel).
+// Play and compliance between rotor and wheel (Place::kShaft): the rotor is a mass of its own, advanced by
+//   DriveSim with the wheel as its output (shaft_step.h); the mechanics has the wheel alone, pushed by the
+//   shaft's mean torque, and goes along in the electrical step (mechanics_step_ns), because a wheel without
+//   its rotor settles on the floor several times faster. Wheel and floor correct the drive's forecast of the
+//   wheel after every step; shaft and wheel get the same impulse, so no momentum is lost. Rolling resistance
+//   then holds the wheel, all friction of the drive the rotor.
+// Cannot represent: one stage of play that all four wheels share; flexing of the wheel's suspension.
 #pragma once
 #include <array>
 #include <memory>
@@ -42,7 +47,7 @@ struct RobotEffectMemory {
 // One wheel's input over a mechanical step.
 struct WheelDriveInput {
   BridgeInput bridge;
-  double omega_rotor_rad_s = 0.0, theta_rotor_rad = 0.0;
+  double omega_wheel_rad_s = 0.0, theta_wheel_rad = 0.0;
   double contact_Nm = 0.0;         // floor's torque on the rotor, as in begin_wheel_step
   double friction_rotor_Nm = 0.0;  // rolling resistance, through the gear
 };
@@ -63,12 +68,16 @@ class RobotEffects {
   FloorEffects floor;
   const EffectSet<double>& set() const { return *set_; }
   bool looks_back() const { return !set_->timing.empty(); }
+  // The rotors are masses of their own: their motion is in memory.drive, the wheels' in the mechanics.
+  bool two_masses() const { return drives_[0].two_masses(); }
 
  private:
   // What the plant tells a wheel's drive, and learns from it, within its chains of effects.
   struct Link;
   struct LinkEffect;
   struct Links;
+  void set_motion(const WheelDriveLaw& law, RobotEffectMemory& memory,
+                  const std::array<WheelDriveInput, kWheels>& inputs);
   void advance(RobotEffectMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
                std::array<DriveResult<double>, kWheels>& results) const;
 
@@ -81,6 +90,13 @@ class RobotEffects {
 
 // The models with what body effects make of their masses; effects all at neutral are none.
 std::vector<RobotModel> models_with_effects(std::span<const RobotModel> robots);
+
+// An effect acts between the rotors and the wheels.
+bool has_shaft(const RobotModel& model);
+// What the mechanics moves: without the rotors (and their friction) where these are masses of their own.
+std::vector<RobotModel> models_of_mechanics(std::span<const RobotModel> robots);
+// The step of the mechanics: the electrical one where any robot has a shaft.
+std::int64_t mechanics_step_ns(std::span<const RobotModel> robots, const PlantOptions& options);
 
 using AllEffects = std::vector<std::unique_ptr<RobotEffects>>;  // per robot; null: it has none
 AllEffects make_effects(const std::vector<RobotModel>& models, const PlantOptions& options);

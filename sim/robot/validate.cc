@@ -10,6 +10,7 @@
 #include "sim/core/effect_reader.h"
 #include "sim/robot/contact.h"
 #include "sim/robot/planar_law.h"
+#include "sim/robot/robot_effects.h"
 
 namespace omnihil {
 namespace {
@@ -203,14 +204,23 @@ std::vector<std::string> plant_problems(std::span<const RobotModel> robots, cons
   for (std::size_t n = 0; n < robots.size(); ++n) {
     std::vector<std::string> of_robot = robot_problems(robots[n]);
     if (of_robot.empty() && options.physics != Physics::kSimbodyFree) check_height(robots[n], of_robot);
+    if (has_shaft(robots[n]) &&
+        !(robots[n].wheel_inertia_kg_m2 > 0 && robots[n].motor.rotor_inertia_kg_m2 > 0)) {
+      of_robot.push_back(
+          "effects between rotor and wheel (backlash, shaft_compliance) need wheel_inertia_kg_m2 and "
+          "motor.rotor_inertia_kg_m2 to be more than 0");
+    }
     if (of_robot.empty() && options.mechanical_step_ns > 0) {
-      const double rate = stiffest_contact_rate(robots[n]), limit = explicit_limit(options.integrator);
-      const double step_s = static_cast<double>(options.mechanical_step_ns) * 1e-9;
+      const RobotModel moved = models_of_mechanics(robots.subspan(n, 1)).front();
+      const double rate = stiffest_contact_rate(moved), limit = explicit_limit(options.integrator);
+      const std::int64_t step_ns = mechanics_step_ns(robots, options);
+      const double step_s = static_cast<double>(step_ns) * 1e-9;
       if (!(rate * step_s < limit)) {
-        of_robot.push_back(fmt::format(
-            "tyre_longitudinal and slip_speed_floor_m_s are too stiff for mechanical_step_ns = {}: "
-            "the contact settles at {:.4g} 1/s; the step must be below {:.0f} ns",
-            options.mechanical_step_ns, rate, limit / rate * 1e9));
+        of_robot.push_back(
+            fmt::format("tyre_longitudinal and slip_speed_floor_m_s are too stiff for {} = {}: "
+                        "the contact settles at {:.4g} 1/s; the step must be below {:.0f} ns",
+                        step_ns == options.mechanical_step_ns ? "mechanical_step_ns" : "electrical_step_ns",
+                        step_ns, rate, limit / rate * 1e9));
       }
     }
     for (const std::string& problem : of_robot) {

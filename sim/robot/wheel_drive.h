@@ -44,8 +44,9 @@ struct WheelDriveLaw {
 };
 
 struct WheelStep {
-  WheelTorque torque;      // for the mechanics
-  double direction = 0.0;  // friction acts against it; 0: none or locked
+  WheelTorque torque;       // for the mechanics
+  double direction = 0.0;   // friction acts against it; 0: none or locked
+  bool rotor_held = false;  // by friction throughout, where the rotor is a mass of its own
   DcDriveResult drive;
 };
 

@@ -104,9 +104,10 @@ TEST(ModelFile, DefaultsAreSaidToBeDefaults) {
 }
 
 TEST(ModelFile, EffectsThatAreNotSimulatedAreKeptAndSaid) {
-  EXPECT_TRUE(read_model(kRobot, "r.toml", motor_text).notes.empty());  // cogging acts in a robot
   const std::string with_play = std::string(kRobot) + "[effects.backlash]\ngap_rad = 0.003\n";
-  const ModelReading read = read_model(with_play, "r.toml", motor_text);
+  EXPECT_TRUE(read_model(with_play, "r.toml", motor_text).notes.empty());  // all effects act in a robot
+  const std::string motor = std::string(kMotor) + "[effects.backlash]\ngap_rad = 0.003\n";
+  const ModelReading read = read_model(motor, "m.toml", motor_text);
   ASSERT_TRUE(read.model.has_value());
   ASSERT_EQ(read.notes.size(), 1u);
   EXPECT_NE(read.notes[0].find("effects.backlash"), std::string::npos);

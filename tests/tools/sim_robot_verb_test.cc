@@ -44,10 +44,10 @@ TEST_F(SimRobotVerb, WritesADatasetOfTheRigRobotThatIsTheSameEveryTime) {
 
 TEST_F(SimRobotVerb, NamesEveryFaultAtOnce) {
   const Ran ran = run_omnihil(
-      "sim omni_default --rig robot --excite wobble --rate 333 --with floor_tlt --with backlash --out " +
+      "sim omni_default --rig robot --excite wobble --rate 333 --with floor_tlt --with backlash.gap_rad=9 --out " +
       shell(out_));
   EXPECT_EQ(ran.exit_code, 2);
-  for (const char* word : {"wobble", "--rate", "did you mean \"floor_tilt\"", "backlash"}) {
+  for (const char* word : {"wobble", "--rate", "did you mean \"floor_tilt\"", "gap_rad"}) {
     EXPECT_TRUE(ran.says(word)) << word << " in " << ran.text;
   }
   EXPECT_FALSE(fs::exists(out_));
