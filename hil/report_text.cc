@@ -101,13 +101,14 @@ std::string verdict_sentence(const Diagnosis& d) {
   } else if (d.verdict == Verdict::kAdequate) {
     text = "The model is adequate: no known effect lowers the error by more than chance.";
   } else {
-    text = "The model lacks something that no known effect explains.";
-    if (!d.unknown.sentence.empty()) text += " " + d.unknown.sentence;
+    text = d.unknown.sentence.empty() ? "The model lacks something that no known effect explains."
+                                      : d.unknown.sentence;
     if (!d.effects.empty()) {
       text += fmt::format(" Of the known effects {} did help: {}.", joined(d.effects),
                           error_change(d.baseline_comparison, d.final_comparison));
     }
   }
+  if (d.verdict != Verdict::kUnknown && !d.unknown.sentence.empty()) text += " " + d.unknown.sentence;
   if (has_faults(d)) text = "The data have faults that can mislead; mend them first. " + text;
   if (!d.complete) text = "Interrupted: what follows is true as far as it goes. " + text;
   return text;
