@@ -82,7 +82,7 @@ def draw_rig(rng, kind="drive", gear=None, needs=()):
     loud = rng.choice((0.3, 1.0, 1.0, 3.0))
     bus = "bus hidden" not in needs and rng.random() < 0.75
     sensors = sensors_of(rng, kind, needs, bus)
-    true.update(current_noise_A=0.03 * loud, bus_noise_V=0.02 * loud, speed_noise_rad_s=0.25 * loud,
+    true.update(current_noise_A=0.03 * loud, bus_noise_V=0.02 * loud, speed_noise_rad_s=0.25 * loud / believed["gear"],
                 encoder_cpr=rng.choice((4096.0, 4096.0, 2048.0, 16384.0)))
     if bus:
         true.update(supply_drift_V=rng.uniform(0, 0.01) * believed["supply_V"], supply_drift_Hz=rng.uniform(0.03, 0.08))

@@ -27,7 +27,6 @@ void axis_sense(const AxisParams *p, const double *raw, int n, double seed, doub
   double lost = 0, last = 0;
   for (int k = 0; k < n; k++, raw += RAW_COLUMNS, seen += SEEN_COLUMNS) {
     const double angle = p->encoder_on_output > 0 ? raw[RAW_OUT_ANGLE] : raw[RAW_ANGLE];
-    const double speed = p->encoder_on_output > 0 ? raw[RAW_OUT_SPEED] : raw[RAW_SPEED];
     const double shown = angle + p->encoder_swing_rad * sin(angle + p->encoder_swing_phase);
     const double counts = floor(shown / count);
     if (p->lost_per_count > 0) {
@@ -38,9 +37,11 @@ void axis_sense(const AxisParams *p, const double *raw, int n, double seed, doub
     seen[SEEN_COUNTS] = counts - lost;
     seen[SEEN_BUS] = to_step(raw[RAW_BUS] + p->bus_noise_V * gauss(&noise), 0.005);
     seen[SEEN_CURRENT] = to_step(raw[RAW_CURRENT] + p->current_noise_A * gauss(&noise), 0.01);
-    seen[SEEN_SPEED] = p->hall_window_s > 0 ? hall_speed(p, raw - k * RAW_COLUMNS, k)
-                                            : speed + p->speed_noise_rad_s * gauss(&noise);
-    seen[SEEN_ANGLE] = angle + p->angle_noise_rad * gauss(&noise);
+    // Speed and position are told at the output; Hall sensors sit at the rotor.
+    const double hall = p->hall_window_s > 0 ? hall_speed(p, raw - k * RAW_COLUMNS, k) / p->gear : 0;
+    seen[SEEN_SPEED] =
+        p->hall_window_s > 0 ? hall : raw[RAW_OUT_SPEED] + p->speed_noise_rad_s * gauss(&noise);
+    seen[SEEN_ANGLE] = raw[RAW_OUT_ANGLE] + p->angle_noise_rad * gauss(&noise);
   }
 }
 

@@ -130,13 +130,14 @@ def reduced():
 
 
 def list_cases(set_name, only=None, count=None):
-    """Cases of a set: of the named classes, the first `count` of each."""
+    """Cases of a set: of the named classes, the first `count` of each; class by class in turn, so that a run that is cut off
+    has seen of each."""
     out = []
     for name, cls in classes().items():
         if only and name not in only:
             continue
         out += [Case(set_name, name, k, what) for k, what in enumerate(cls.cases[:count])]
-    return out
+    return sorted(out, key=lambda case: case.index)
 
 
 def make(case, folder):

@@ -84,6 +84,13 @@ class AxisSensorTest(unittest.TestCase):
         angle, counts = plant.raw_columns(raw)["angle"], plant.sense_axis(BARE, raw, 1)["counts"]
         self.assertEqual([math.floor(a / (2 * math.pi / 4096)) for a in angle], list(counts))
 
+    def test_speed_and_position_are_the_output_s(self):
+        params = dict(BARE, gear=4, speed_noise_rad_s=0, angle_noise_rad=0)
+        raw, _ = plant.run_axis(params, [0.3] * 300)
+        seen, columns = plant.sense_axis(params, raw, 1), plant.raw_columns(raw)
+        self.assertAlmostEqual(seen["speed"][-1], columns["speed"][-1] / 4)
+        self.assertAlmostEqual(seen["angle"][-1], columns["angle"][-1] / 4)
+
     def test_late_samples_show_the_past(self):
         now, _ = speeds(BARE, [0.3] * 500)
         late, _ = speeds(dict(BARE, late_sample_s=0.003), [0.3] * 500)
