@@ -7,9 +7,11 @@ namespace omnihil {
 namespace {
 
 constexpr double kSameGain = 0.03;  // of the best one's gain: within it two gains are one
-constexpr double kTwinGain = 0.06;  // so near, an effect may be meant instead, if it is known to be confused
+constexpr double kTwinGain = 0.08;  // so near, an effect may be meant instead, if it is known to be confused
 constexpr double kSameLeft = 1.15;  // what one leaves over what the best one leaves
 constexpr double kTwinLeft = 1.5;
+constexpr double kListedLeft =
+    8.0;  // effects that are known to be confused: their forms differ from the truth's
 constexpr double kTwinSignal = 0.98;  // cosine of signals that no refit can part
 constexpr double kNothing = 0.01;     // gain below which a draw goes to "none"
 constexpr std::size_t kMostTwins = 3;
@@ -84,6 +86,7 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
   const Contender& best = round.contenders.front();
   const double most = gain_of(best, has_holdout);
   std::vector<std::size_t> equals{0};
+  std::size_t first = 0;  // of those that leave the same, the one with the fewest numbers
   for (std::size_t c = 1; c < round.contenders.size(); ++c) {
     const Contender& other = round.contenders[c];
     if (!other.judgement.accepted || other.screened.extends) continue;
@@ -93,15 +96,12 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
     const bool confused = listed_twins(*best.screened.entry->info, *other.screened.entry->info);
     const bool alike = likeness(best.screened, other.screened) > kTwinSignal;
     const bool same = lost < kSameGain && left < kSameLeft;
-    const bool twin = lost < kTwinGain && left < kTwinLeft && (confused || alike);
+    const bool twin = lost < kTwinGain && ((confused && left < kListedLeft) || (alike && left < kTwinLeft));
     if (same || twin) equals.push_back(c);
+    const bool fewer = numbers(other) < numbers(round.contenders[first]);
+    if (left < kSameLeft && fewer && equals.back() == c && equals.size() <= kMostTwins) first = c;
   }
   if (equals.size() > kMostTwins) equals.resize(kMostTwins);
-  // Of equals the one with the fewest numbers comes first; the best where that is a draw.
-  const std::size_t first =
-      *std::min_element(equals.begin(), equals.end(), [&](std::size_t a, std::size_t b) {
-        return numbers(round.contenders[a]) < numbers(round.contenders[b]);
-      });
   std::rotate(round.contenders.begin(), round.contenders.begin() + static_cast<std::ptrdiff_t>(first),
               round.contenders.begin() + static_cast<std::ptrdiff_t>(first) + 1);
   round.chosen = 0;

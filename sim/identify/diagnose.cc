@@ -19,6 +19,8 @@ namespace {
 constexpr double kAfterBaseline = 0.12;
 constexpr double kAfterNull = 0.16;
 constexpr double kAfterRounds = 0.85;
+constexpr double kShort = 0.02;  // of the error energy, that a fit of the same model may miss
+constexpr int kMostRestarts = 2;
 
 class Diagnosing {
  public:
@@ -67,7 +69,8 @@ class Diagnosing {
 
   void simulate() {
     bench_.simulate();
-    search_ = bench_.search(out_.not_visible);
+    search_ = bench_.search(not_applicable_);
+    out_.not_visible = not_applicable_;
     say("simulated null", kAfterNull);
   }
 
@@ -83,23 +86,55 @@ class Diagnosing {
 
   void rounds() {
     double from = kAfterNull;
+    int restarts = 0;
     for (int n = 0; n < options_.max_effects && !stopped_; ++n) {
       const double to = from + 0.5 * (kAfterRounds - from);
       search_.progress = [&](const std::string& doing, double share) {
         return say(fmt::format("round {}: {}", n + 1, doing), from + share * (to - from));
       };
       Round round = addition_round(search_, current_);
-      if (n == 0) first_ranking(round);
+      if (out_.effects.empty() && n == 0) first_ranking(round);
       if (n == 0 || !round.orders.empty()) order_ = round.orders.empty() ? 0.0 : round.orders.front();
       out_.ladder.back().ranking = round.ranking;
       if (round.chosen < 0) return;
+      if (parent_was_short(round)) {
+        // The search found better numbers for the model as it is: rank again from there.
+        if (++restarts <= kMostRestarts) {
+          --n;
+          continue;
+        }
+      }
       take(round);
       from = to;
     }
   }
 
+  // Is the chosen effect's gain one of the base parameters alone, which the parent's fit had missed?
+  bool parent_was_short(const Round& round) {
+    const Contender& best = round.contenders[static_cast<std::size_t>(round.chosen)];
+    if (best.screened.extends) return false;
+    Fitted without = refit_as_it_is(bench_.setup(true, stop()),
+                                    without_effect(best.fitted.fit.model, best.screened.name), 1);
+    if (!without.finite) return false;
+    const double ratio = energy_ratio(bench_.uses()[0], current_.residual[0], without.residual[0]);
+    if (ratio > 1.0 - kShort) return false;
+    current_ = std::move(without);
+    if (out_.effects.empty()) rebase();
+    return true;
+  }
+
+  // The baseline itself was short: what was said of it is said anew.
+  void rebase() {
+    bench_.take_base(current_);
+    out_.baseline = current_.fit;
+    out_.baseline_comparison = compare(bench_.predictor(), current_.fit.model);
+    out_.ladder.back().comparison = out_.baseline_comparison;
+    out_.ladder.back().parameters = current_.fit.parameters;
+  }
+
   void first_ranking(const Round& round) {
     out_.ranking = round.ranking;
+    out_.not_visible = not_applicable_;
     for (const RankedEffect& r : round.ranking) {
       if (r.why.starts_with("not visible") || r.why.starts_with("not tried")) {
         out_.not_visible.push_back(r.effect + ": " + r.why);
@@ -144,7 +179,7 @@ class Diagnosing {
     out_.final_fit = current_.fit;
     out_.final_comparison =
         added ? compare(bench_.predictor(), current_.fit.model) : out_.baseline_comparison;
-    const Leftover rest = leftover_of(bench_.uses(), bench_.kinds(), bench_.null(), bench_.base(), current_);
+    const Leftover rest = leftover_of(bench_.predictor(), bench_.kinds(), out_.baseline.model, current_.fit.model, options_.seed, options_.jobs);
     const bool remains = misleading() || structure_remains(rest, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
@@ -177,6 +212,7 @@ class Diagnosing {
   const DiagnoseOptions& options_;
   Workbench bench_;
   Search search_;
+  std::vector<std::string> not_applicable_;
   Fitted current_;
   Diagnosis out_;
   double order_ = 0.0;  // strongest of the residual's, per rotor turn

@@ -1,5 +1,6 @@
 #include "sim/identify/evidence.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +13,20 @@ namespace {
 // a few times over, yet leave enough of them to draw from.
 constexpr double kBlock_s = 0.5;
 constexpr int kMostBlocksPerRun = 200;
+
+constexpr const char* kBusVoltage = "bus_voltage";
+
+// Least squares of 1, x, x^2 over the rows, taken off each column.
+void take_slow_course_off(Eigen::MatrixXd& columns) {
+  const Eigen::Index n = columns.rows();
+  if (n < 6) return;
+  Eigen::MatrixXd slow(n, 3);
+  const Eigen::ArrayXd x = Eigen::ArrayXd::LinSpaced(n, -1.0, 1.0);
+  slow << Eigen::VectorXd::Ones(n), x.matrix(), x.square().matrix();
+  const Eigen::Matrix3d gram = slow.transpose() * slow;
+  const Eigen::MatrixXd share = gram.ldlt().solve(slow.transpose() * columns);
+  columns -= slow * share;
+}
 
 int kind_of(const SignalKinds& kinds, const std::string& name) {
   return static_cast<int>(std::find(kinds.name.begin(), kinds.name.end(), name) - kinds.name.begin());
@@ -40,8 +55,8 @@ SignalKinds signal_kinds(const Predictor& predictor) {
   return kinds;
 }
 
-Evidence::Evidence(const Predictor& predictor, const SignalKinds& kinds, Use use)
-    : predictor_(&predictor), use_(use), kinds_(kinds.count()) {
+Evidence::Evidence(const Predictor& predictor, const SignalKinds& kinds, Use use, Weighing weighing)
+    : predictor_(&predictor), use_(use), weighing_(weighing), kinds_(kinds.count()) {
   for (int run = 0; run < predictor.run_count(); ++run) {
     if (predictor.run(run).use == use) add_run(run, kinds);
   }
@@ -89,16 +104,17 @@ Eigen::MatrixXd Evidence::whitened_rows(const Part& part, const Eigen::MatrixXd&
   const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(rows.rows(), rows.cols(), std::nan(""));
   for (const int row : part.rows) all.row(row) = rows.row(row);
-  whiten(signal, all);
+  if (weighing_ == Weighing::kWhitened) whiten(signal, all);
   Eigen::MatrixXd out(part.rows.size(), rows.cols());
   for (std::size_t i = 0; i < part.rows.size(); ++i)
     out.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
+  if (signal.name == kBusVoltage) take_slow_course_off(out);
   return out;
 }
 
 void Evidence::whiten_part(const Part& part, Eigen::MatrixXd& columns) const {
   const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
-  if (signal.whitening_s <= 0.0) return;
+  if (signal.whitening_s <= 0.0 || weighing_ == Weighing::kAsSeen) return;
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(signal.measured.size()),
                                                   columns.cols(), std::nan(""));
   for (std::size_t i = 0; i < part.rows.size(); ++i)

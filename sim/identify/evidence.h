@@ -8,10 +8,11 @@
 //   fit.block_sums(r);                                       // the same in blocks of time, for a bootstrap
 //
 // Only samples that were measured are in it, whitened (predictor.h), so that sums of squares mean something.
-// Residuals are autocorrelated: blocks of time, not samples, are
-// what may be drawn at random.
+// Of a measured bus voltage the slow course of the battery (a parabola per run) is left out: the model is
+// given it. Residuals are autocorrelated: blocks of time, not samples, are what may be drawn at random.
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,10 @@ struct SignalKinds {
 };
 SignalKinds signal_kinds(const Predictor& predictor);
 
+// How residuals enter: whitened, so that sums of squares are likelihoods (what decides), or as they are seen
+// (how large an error is to somebody who looks at the signal).
+enum class Weighing : std::uint8_t { kWhitened, kAsSeen };
+
 class Evidence {
  public:
   struct Part {  // one signal of one run
@@ -39,7 +44,8 @@ class Evidence {
     std::vector<int> time_block;  // per row: which block of time
   };
 
-  Evidence(const Predictor& predictor, const SignalKinds& kinds, Use use);
+  Evidence(const Predictor& predictor, const SignalKinds& kinds, Use use,
+           Weighing weighing = Weighing::kWhitened);
 
   bool empty() const { return size_ == 0; }
   Eigen::Index size() const { return size_; }
@@ -80,6 +86,7 @@ class Evidence {
 
   const Predictor* predictor_;
   Use use_;
+  Weighing weighing_;
   std::vector<int> runs_;
   std::vector<Part> parts_;
   Eigen::Index size_ = 0;

@@ -13,8 +13,9 @@ namespace {
 constexpr int kDraws = 200;
 // What an addition must take away from the held-out error energy that is above the sensors' floor, and of the
 // whole of it. Real recordings never reach the floor: without this every effect would stay.
-constexpr double kMatters = 0.02;
-constexpr double kMattersOfAll = 0.006;
+constexpr double kMatters = 0.03;
+// More where the sensors' noise is most of what is left: a gain of a few per cent of noise is no effect.
+constexpr double kMattersAtFloor = 0.05;
 constexpr double kChanceMargin = 2.0;  // gain over the most that the null's replicates gave
 constexpr double kFloorWeight = 0.05;
 constexpr double kExtrapolationLoss = 0.03;
@@ -43,7 +44,7 @@ std::string pushed_out(const FitResult& parent, const FitResult& child) {
 
 std::string unphysical(const FitResult& child, const std::string& name) {
   for (const ParameterEstimate& p : child.parameters) {
-    if (!p.path.starts_with(name + ".") || !p.unphysical) continue;
+    if (!p.path.starts_with(name + ".") || !p.unphysical || std::abs(p.value) < 1e-9) continue;
     return fmt::format("{} = {:.4g} {} is not physical", p.path, p.value, p.unit);
   }
   return "";
@@ -161,11 +162,11 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   const std::size_t d = static_cast<std::size_t>(decides);
   const UseGain& held = *gains[d];
   const double above_floor = 1.0 - floor_share((*context.uses)[d], *context.null, parent.residual[d]);
-  const double needed = std::max(kMatters * above_floor, kMattersOfAll);
+  const double needed = kMatters + kMattersAtFloor * (1.0 - above_floor);
   if (gain_over_chance < kChanceMargin) {
     out.why =
         fmt::format("its gain is {:.1f} times what chance gives in the simulated null", gain_over_chance);
-  } else if (1.0 - out.fit.ratio < kMattersOfAll) {
+  } else if (1.0 - out.fit.ratio < 0.5 * kMatters) {
     out.why = fmt::format("it lowers the error energy of the fit runs by {:.1f} % only",
                           100.0 * (1.0 - out.fit.ratio));
   } else if (1.0 - held.ratio < needed) {

@@ -275,17 +275,20 @@ class AxisPredictor : public Predictor {
     }
   }
 
-  // The bus voltage that drives the model is a measurement too: the world's own differs from it by the
-  // sensor's noise, which wanders off in speed and more so in position.
+  // The bus voltage that drives the model is a measurement too, a mean over a window (axis_record.cc): the world's
+  // own differs from it by what the mean leaves of the sensor's noise, which wanders off in speed and position.
   Prediction truth_behind_noisy_input(const Candidate& truth, int n, std::uint64_t seed) {
+    constexpr std::size_t kWindow = 21;
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     const auto bus = std::find_if(s.compared.begin(), s.compared.end(),
                                   [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
     if (s.method != Method::kForward || bus == s.compared.end()) return predict(truth, n);
     const std::vector<double> given = s.input.bus_voltage_V;
     const std::uint64_t stream = stream_of("bus_voltage input") + static_cast<std::uint64_t>(n) * 1000003;
+    double sum = 0.0;
     for (std::size_t k = 0; k < given.size(); ++k) {
-      s.input.bus_voltage_V[k] += bus->noise_sigma * gaussian(seed, stream, k);
+      sum += gaussian(seed, stream, k) - (k >= kWindow ? gaussian(seed, stream, k - kWindow) : 0.0);
+      s.input.bus_voltage_V[k] += bus->noise_sigma * sum / static_cast<double>(kWindow);
     }
     Prediction p = predict(truth, n);
     s.input.bus_voltage_V = given;

@@ -13,10 +13,13 @@ constexpr double kUnexplained = 0.20;  // of what the baseline left above the nu
 constexpr double kSpreads = 5.0;       // of the null's replicates
 
 // Excess of each signal's energy over the null's.
-Eigen::VectorXd excess_of(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual) {
+Eigen::VectorXd excess_of(const Evidence& evidence, const NullModel& null, const SignalKinds& kinds,
+                          const Eigen::VectorXd& residual) {
   const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(residual);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(square.size());
   for (Eigen::Index k = 0; k < out.size(); ++k) {
+    // A measured bus voltage is given to the model: what it leaves there is no structure of the drive.
+    if (kinds.name[static_cast<std::size_t>(k)] == "bus_voltage") continue;
     if (floor[k] > 0.0) out[k] = square[k] / floor[k] - 1.0;
   }
   return out;
@@ -24,13 +27,19 @@ Eigen::VectorXd excess_of(const Evidence& evidence, const NullModel& null, const
 
 }  // namespace
 
-Leftover leftover_of(const Uses& uses, const SignalKinds& kinds, const NullModel& null,
-                     const Fitted& baseline, const Fitted& last) {
+Leftover leftover_of(const Predictor& predictor, const SignalKinds& kinds, const Candidate& baseline,
+                     const Candidate& last, std::uint64_t seed, int jobs) {
+  constexpr int kReplicates = 8;
   Leftover out;
+  const Uses uses{Evidence(predictor, kinds, Use::kFit, Weighing::kAsSeen),
+                  Evidence(predictor, kinds, Use::kHoldout, Weighing::kAsSeen),
+                  Evidence(predictor, kinds, Use::kExtrapolation, Weighing::kAsSeen)};
   const std::size_t u = uses[1].empty() ? 0 : 1;
-  if (!last.finite || !baseline.finite) return out;
-  const Eigen::VectorXd before = excess_of(uses[u], null, baseline.residual[u]);
-  const Eigen::VectorXd after = excess_of(uses[u], null, last.residual[u]);
+  const Eigen::VectorXd first = uses[u].residual(baseline, jobs), now = uses[u].residual(last, jobs);
+  if (uses[u].empty() || first.size() == 0 || now.size() == 0) return out;
+  const NullModel null = simulate_null(predictor, last, uses, seed, kReplicates, jobs);
+  const Eigen::VectorXd before = excess_of(uses[u], null, kinds, first);
+  const Eigen::VectorXd after = excess_of(uses[u], null, kinds, now);
   Eigen::Index worst = 0;
   out.excess = after.maxCoeff(&worst);
   out.excess_before = before[worst];

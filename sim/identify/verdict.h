@@ -24,8 +24,9 @@ struct Leftover {
   std::string signal;
 };
 
-Leftover leftover_of(const Uses& uses, const SignalKinds& kinds, const NullModel& null,
-                     const Fitted& baseline, const Fitted& last);
+// Counted in signals as they are seen, not whitened: how large it is to somebody who looks.
+Leftover leftover_of(const Predictor& predictor, const SignalKinds& kinds, const Candidate& baseline,
+                     const Candidate& last, std::uint64_t seed, int jobs);
 
 bool structure_remains(const Leftover& rest, bool effects_added);
 std::string leftover_sentence(const Leftover& rest, bool effects_added);

@@ -35,6 +35,8 @@ class Workbench {
   RefitSetup setup(bool quick, const std::function<bool()>& stop) const;
   // False: no fit runs, or the model does not stay finite.
   bool fit_base(const std::function<bool()>& stop);
+  // A better fit of the same model.
+  void take_base(Fitted base) { base_ = std::move(base); }
   // After fit_base.
   void simulate();
   // After simulate; effects that cannot act here go to `not_applicable` with why.
