@@ -179,7 +179,8 @@ class Diagnosing {
     out_.final_fit = current_.fit;
     out_.final_comparison =
         added ? compare(bench_.predictor(), current_.fit.model) : out_.baseline_comparison;
-    const Leftover rest = leftover_of(bench_.predictor(), bench_.kinds(), out_.baseline.model, current_.fit.model, options_.seed, options_.jobs);
+    const Leftover rest = leftover_of(bench_.predictor(), bench_.kinds(), out_.baseline.model,
+                                      current_.fit.model, options_.seed, options_.jobs);
     const bool remains = misleading() || structure_remains(rest, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);

@@ -275,8 +275,9 @@ class AxisPredictor : public Predictor {
     }
   }
 
-  // The bus voltage that drives the model is a measurement too, a mean over a window (axis_record.cc): the world's
-  // own differs from it by what the mean leaves of the sensor's noise, which wanders off in speed and position.
+  // The bus voltage that drives the model is a measurement too, a mean over a window (axis_record.cc): the
+  // world's own differs from it by what the mean leaves of the sensor's noise, which wanders off in speed and
+  // position.
   Prediction truth_behind_noisy_input(const Candidate& truth, int n, std::uint64_t seed) {
     constexpr std::size_t kWindow = 21;
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
