@@ -196,6 +196,26 @@ TEST(SessionTest, AValueThatIsNotFiniteEndsTheRunNamingTimeRobotAndSignal) {
   EXPECT_EQ(said, "at 0.030000 s robot 5: drive duty_ratio[2] is not finite; the run ends here");
 }
 
+TEST(SessionTest, ARobotWhoseEncodersCountBackwardsDrivesAsOneWhoseEncodersCountForwards) {
+  double v_forward_m_s[2]{};
+  for (const int direction : {1, -1}) {
+    SessionConfig config = session_config(setup_of("omni_default", "ulaval-hermes", {0}));
+    config.robots[0].encoder.direction = direction;
+    Session session(std::move(config), make_reference_firmware);
+    const Bytes move = encoded("ulaval-hermes", "SPEED_MOVE", {{"robot", 0}, {"vx", 0.5}});
+    Bytes out;
+    for (int k = 0; k < 600; ++k) session.step(k % 50 == 0 ? move : Bytes{}, out);
+    v_forward_m_s[direction < 0] = session.plant().truth(0).v_forward_m_s;
+    // what the firmware reports has the wheel's sign, not the counter's
+    const RobotTruth truth = session.plant().truth(0);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      EXPECT_NEAR(session.firmware(0).feedback().omega_wheel_rad_s[i], truth.omega_wheel_rad_s[i], 0.5);
+    }
+  }
+  EXPECT_NEAR(v_forward_m_s[0], 0.5, 0.03);
+  EXPECT_NEAR(v_forward_m_s[1], v_forward_m_s[0], 0.002);  // a count's place differs, nothing else
+}
+
 TEST(SessionTest, CountsGainSetsThatTheFirmwareRefuses) {
   const SessionSetup setup = setup_of("roboteam_2024", "roboteam-rem-v8", {0});
   Probes probes;
