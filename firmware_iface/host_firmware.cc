@@ -116,7 +116,11 @@ std::vector<std::string> check_robot_config(const RobotConfig& config) {
   positive(config.wheel_radius_m, "wheel_radius_m");
   positive(config.wheel_center_radius_m, "wheel_center_radius_m");
   positive(config.gear_ratio, "gear_ratio");
-  positive(config.encoder_counts_per_rotor_turn, "encoder_counts_per_rotor_turn");
+  const double counts = config.encoder_counts_per_rotor_turn;
+  if (!std::isfinite(counts) || counts == 0.0) {
+    faults.push_back(line("encoder_counts_per_rotor_turn", counts,
+                          "must not be 0; below 0: counts fall with positive rotation"));
+  }
   positive(config.bus_voltage_nominal_V, "bus_voltage_nominal_V");
   positive(config.motor_resistance_ohm, "motor_resistance_ohm");
   positive(config.motor_torque_constant_Nm_per_A, "motor_torque_constant_Nm_per_A");

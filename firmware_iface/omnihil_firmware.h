@@ -141,7 +141,7 @@ typedef struct omnihil_robot_config {
   double wheel_radius_m;
   double wheel_center_radius_m;
   double gear_ratio; /* rotor turns per wheel turn */
-  double encoder_counts_per_rotor_turn;
+  double encoder_counts_per_rotor_turn; /* below 0: counts fall with positive rotation */
   double bus_voltage_nominal_V;
   double motor_resistance_ohm;
   double motor_torque_constant_Nm_per_A;

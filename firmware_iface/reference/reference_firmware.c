@@ -10,7 +10,7 @@ static int check_config(const omnihil_robot_config* config) {
   const double positive[] = {config->wheel_radius_m,
                              config->wheel_center_radius_m,
                              config->gear_ratio,
-                             config->encoder_counts_per_rotor_turn,
+                             fabs(config->encoder_counts_per_rotor_turn),
                              config->bus_voltage_nominal_V,
                              config->motor_resistance_ohm,
                              config->motor_torque_constant_Nm_per_A};

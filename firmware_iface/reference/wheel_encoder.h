@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 typedef struct encoder_setup {
-  float rad_per_count;
+  float rad_per_count;         /* negative where counts fall with positive rotation */
   float filter_s;              /* in the control loop */
   float report_filter_s;       /* of the reported speed and of the acceleration */
   float omega_rotor_max_rad_s; /* above it a jump is not a rotation */

@@ -30,8 +30,9 @@ void wheel_tuning_init(wheel_tuning* tuning, const omnihil_robot_config* config,
       tuning->inertia_free_kg_m2 + kMassGuess_kg * radius_m * radius_m / (2.0f * gear * gear);
 
   encoder_setup* encoder = &tuning->encoder;
+  /* the one place where the counter's direction goes in */
   encoder->rad_per_count = kTwoPi / (float)config->encoder_counts_per_rotor_turn;
-  float step_rad_s = encoder->rad_per_count / period_s;
+  float step_rad_s = fabsf(encoder->rad_per_count) / period_s;
   float step_wanted_rad_s = kRimSpeedStep_m_s * gear / radius_m;
   encoder->filter_s = period_s * fmaxf(0.0f, step_rad_s / step_wanted_rad_s - 1.0f);
   encoder->report_filter_s = fmaxf(kReportFilter_s, encoder->filter_s);
