@@ -10,6 +10,10 @@
  * docs/frames-and-wheels.md. Wheel i sits at wheel_angle_rad[i] from x towards y; its positive direction
  * is the body's counter-clockwise tangent. All-zero bytes are the neutral value of every struct.
  * No pointers in the data structs; the layout is frozen per OMNIHIL_FIRMWARE_ABI (static_assert in tests).
+ *
+ * Three-phase robots: the bench also calls motor_tick() once per PWM period of the bridges, inside the time
+ * between two tick()s. Members behind feedback() of omnihil_firmware_api were added later: a table whose
+ * struct_bytes ends before them is served as ever, and drives by duty.
  */
 #ifndef OMNIHIL_FIRMWARE_H
 #define OMNIHIL_FIRMWARE_H
@@ -22,6 +26,7 @@ extern "C" {
 
 #define OMNIHIL_FIRMWARE_ABI 1u
 #define OMNIHIL_WHEELS 4
+#define OMNIHIL_LEGS 3  /* half bridges of a three-phase motor */
 #define OMNIHIL_LOOPS 5 /* gain sets: body x, body y, body omega, body yaw, wheels */
 
 /* omnihil_command.mode */
@@ -44,7 +49,20 @@ enum { OMNIHIL_KICK_NONE = 0, OMNIHIL_KICK_STRAIGHT = 1, OMNIHIL_KICK_CHIP = 2 }
 /* omnihil_command.kick_when */
 enum { OMNIHIL_KICK_ON_BALL = 0, OMNIHIL_KICK_NOW = 1, OMNIHIL_KICK_AT_YAW = 2 };
 /* omnihil_drive.mode[i] */
-enum { OMNIHIL_DRIVE_COAST = 0, OMNIHIL_DRIVE_DUTY = 1 };
+enum {
+  OMNIHIL_DRIVE_COAST = 0,
+  OMNIHIL_DRIVE_DUTY = 1,
+  OMNIHIL_DRIVE_PHASES = 2 /* as motor_tick() says; three-phase robots only */
+};
+/* omnihil_motor_drive.leg[i][x] */
+enum {
+  OMNIHIL_LEG_OFF = 0,  /* both switches open: the phase floats, or its diodes conduct */
+  OMNIHIL_LEG_PWM = 1,  /* high for the duty, low for the rest (0: held low, 1: held high) */
+  OMNIHIL_LEG_HIGH = 2, /* high for the duty, open for the rest */
+  OMNIHIL_LEG_LOW = 3   /* low for the duty, open for the rest */
+};
+/* omnihil_motor_config.back_emf */
+enum { OMNIHIL_BACK_EMF_SINE = 0, OMNIHIL_BACK_EMF_TRAPEZOID = 1 };
 /* omnihil_feedback.flags */
 enum {
   OMNIHIL_FEEDBACK_COMMAND_TIMEOUT = 1u << 0, /* no valid command within the firmware's timeout */
@@ -140,13 +158,44 @@ typedef struct omnihil_robot_config {
   double wheel_angle_rad[OMNIHIL_WHEELS];
   double wheel_radius_m;
   double wheel_center_radius_m;
-  double gear_ratio; /* rotor turns per wheel turn */
+  double gear_ratio;                    /* rotor turns per wheel turn */
   double encoder_counts_per_rotor_turn; /* below 0: counts fall with positive rotation */
   double bus_voltage_nominal_V;
   double motor_resistance_ohm;
   double motor_torque_constant_Nm_per_A;
   double command_timeout_s; /* 0: the firmware's own default */
 } omnihil_robot_config;
+
+/* The four motors of a three-phase robot; handed over once, after init(). All per phase, to the star point.
+ */
+typedef struct omnihil_motor_config {
+  uint32_t pole_pairs;
+  uint32_t back_emf;           /* OMNIHIL_BACK_EMF_* */
+  double pwm_frequency_Hz;     /* motor_tick() is called this often */
+  double current_sample_ratio; /* instant of the sample within the PWM period, 0: its beginning */
+  double phase_resistance_ohm;
+  double phase_inductance_d_H;
+  double phase_inductance_q_H;
+  double flux_linkage_Wb; /* peak back-EMF of a phase over the electrical speed */
+  double rotor_inertia_kg_m2;
+  double current_limit_A; /* the board's, of a pair of phases; 0: none */
+} omnihil_motor_config;
+
+/* What the board's motor interrupt sees in one PWM period, all four motors. */
+typedef struct omnihil_motor_sensors {
+  uint64_t now_ns; /* of the sample */
+  double bus_voltage_V;
+  double phase_current_A[OMNIHIL_WHEELS][OMNIHIL_LEGS]; /* into the motor, through shunt and ADC */
+  double theta_elec_rad[OMNIHIL_WHEELS];  /* 0 .. 2 pi: the d axis before phase a, by the angle sensor */
+  int64_t encoder_counts[OMNIHIL_WHEELS]; /* as in omnihil_sensors */
+  uint32_t hall_code[OMNIHIL_WHEELS];     /* H1 + 2 H2 + 4 H3 */
+} omnihil_motor_sensors;
+
+/* The legs of the four bridges from the next PWM period on, where omnihil_drive.mode is PHASES. */
+typedef struct omnihil_motor_drive {
+  uint32_t leg[OMNIHIL_WHEELS][OMNIHIL_LEGS];          /* OMNIHIL_LEG_* */
+  double leg_duty_ratio[OMNIHIL_WHEELS][OMNIHIL_LEGS]; /* 0..1, centre-aligned */
+} omnihil_motor_drive;
 
 typedef struct omnihil_firmware_api {
   uint32_t abi_version;       /* OMNIHIL_FIRMWARE_ABI */
@@ -163,6 +212,9 @@ typedef struct omnihil_firmware_api {
   void (*get_gains)(const void* state, omnihil_gains* gains);
   void (*tick)(void* state, const omnihil_sensors* sensors, omnihil_drive* drive);
   void (*feedback)(const void* state, omnihil_feedback* feedback);
+  /* For three-phase robots; NULL: the bridges commutate by themselves, by the duties of tick(). */
+  int (*motor_init)(void* state, const omnihil_motor_config* config); /* 0, or nonzero: refused */
+  void (*motor_tick)(void* state, const omnihil_motor_sensors* sensors, omnihil_motor_drive* drive);
 } omnihil_firmware_api;
 
 /* The one symbol a firmware library exports. Returns NULL when it cannot serve that ABI version. */

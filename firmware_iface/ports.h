@@ -33,6 +33,10 @@ class Firmware {
   virtual RobotGains gains() const = 0;
   virtual RobotDrive tick(const RobotSensors& sensors) = 0;
   virtual RobotFeedback feedback() const = 0;
+  // Whether it sets the legs of three-phase bridges itself: motor_tick() is then called once per PWM period,
+  // and what it gives acts from the next period on.
+  virtual bool drives_phases() const { return false; }
+  virtual MotorDrive motor_tick(const MotorSensors&) { return {}; }
 };
 
 }  // namespace omnihil

@@ -9,6 +9,7 @@
 namespace omnihil {
 
 inline constexpr int kWheels = OMNIHIL_WHEELS;
+inline constexpr int kLegs = OMNIHIL_LEGS;
 
 using RobotCommand = omnihil_command;
 using RobotSensors = omnihil_sensors;
@@ -16,5 +17,8 @@ using RobotDrive = omnihil_drive;
 using RobotFeedback = omnihil_feedback;
 using RobotGains = omnihil_gains;
 using RobotConfig = omnihil_robot_config;
+using MotorConfig = omnihil_motor_config;
+using MotorSensors = omnihil_motor_sensors;
+using MotorDrive = omnihil_motor_drive;
 
 }  // namespace omnihil

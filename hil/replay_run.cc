@@ -2,8 +2,8 @@
 
 #include <chrono>
 
-#include "firmware_iface/host_firmware.h"
 #include "hil/recording_memory.h"
+#include "hil/reference_firmware.h"
 #include "hil/replay.h"
 #include "hil/replay_hash.h"
 #include "hil/session_setup.h"
@@ -19,7 +19,8 @@ RecordingHeader replay_header(const RecordingHeader& recorded, const ReplayOptio
 ReplayRun run_again(const Recording& recording, const ReplayOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const RecordingHeader header = replay_header(recording.header, options);
-  Session session(session_config(session_setup(header)), make_reference_firmware);
+  const SessionConfig config = session_config(session_setup(header));
+  Session session(config, reference_firmware_for(config));
   RecordingMemory memory(header);
   OutputHash hash;
   std::vector<SessionObserver*> observers{&memory, &hash};

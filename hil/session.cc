@@ -14,6 +14,13 @@ namespace {
 constexpr double kRowSpacing_m = 0.5;
 constexpr std::size_t kMaxFrameBytes = 512;  // of a frame that a firmware writes; radio packets are shorter
 constexpr int kMaxFramesPerTick = 16;  // so that a firmware that never stops sending cannot stop the loop
+
+// A firmware that sets the legs of its robot's bridges, as the plant calls it.
+struct MotorPort : MotorControl {
+  explicit MotorPort(Firmware& of) : firmware(of) {}
+  MotorDrive motor_tick(const MotorSensors& sensors) override { return firmware.motor_tick(sensors); }
+  Firmware& firmware;
+};
 }  // namespace
 
 struct Session::Impl : RadioSink {
@@ -24,6 +31,11 @@ struct Session::Impl : RadioSink {
       plant.set_pose(static_cast<int>(i), 0.0, kRowSpacing_m * static_cast<double>(i), 0.0);
     }
     throw_problems(firmware_problems(config, firmware));
+    motor_ports.reserve(firmware.size());  // the plant keeps their addresses
+    for (std::size_t i = 0; i < firmware.size(); ++i) {
+      motor_ports.emplace_back(*firmware[i]);
+      if (firmware[i]->drives_phases()) plant.set_motor_control(static_cast<int>(i), &motor_ports[i]);
+    }
     RadioLinkConfig link_config;
     link_config.robot_ids = config.robot_ids;
     link_config.team = config.team;
@@ -107,6 +119,7 @@ struct Session::Impl : RadioSink {
   SessionConfig config;
   Plant plant;
   std::vector<std::unique_ptr<Firmware>> firmware;
+  std::vector<MotorPort> motor_ports;
   std::unique_ptr<RadioLink> link;
   SessionObserver* observer = nullptr;
   std::int64_t now_ns = 0;

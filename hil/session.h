@@ -6,7 +6,7 @@
 //
 // Deterministic: the same configuration and the same (time, bytes) sequence give the same bytes and states.
 //
-//   Session session(config, make_reference_firmware);
+//   Session session(config, reference_firmware_for(config));
 //   while (session.now_ns() < end_ns) session.step(host_bytes, answer);
 //
 // One step from t to t + step_ns, in this order: host bytes into the dongle at t; what has reached robots is
@@ -15,7 +15,9 @@
 // the dongle; the plant advances from one control instant to the next and to the end of the step; what has
 // left the dongle by t + step_ns is given to the host. The control grid is absolute: it does not depend on
 // the loop step, so a control period may be longer or shorter than a step.
-// Robots start at rest in a row: robot i of the list at x = 0, y = i * 0.5 m, looking along x (yaw 0).
+// A firmware that drives phases gets its motor_tick() from the plant, once per PWM period, within its
+// advance. Robots start at rest in a row: robot i of the list at x = 0, y = i * 0.5 m, looking along x (yaw
+// 0).
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -9,6 +9,7 @@
 
 #include "protocols/radio_format.h"
 #include "sim/core/params.h"
+#include "sim/robot/electric_model.h"
 
 namespace omnihil {
 namespace {
@@ -95,6 +96,12 @@ std::vector<std::string> firmware_problems(const SessionConfig& config,
           fmt::format("robot {}: control period {} ns of firmware \"{}\" must be a multiple of the "
                       "mechanical step, {} ns",
                       id, period_ns, firmware[i]->name(), config.plant.mechanical_step_ns));
+    }
+    if (firmware[i]->drives_phases() && !electrics_of(config.robots[i]).three_phase()) {
+      problems.push_back(fmt::format(
+          "robot {}: firmware \"{}\" sets the legs of three phases; the model's drive.kind must be \"dq\" or "
+          "\"switched\"",
+          id, firmware[i]->name()));
     }
     if (firmware[0] != nullptr && firmware[i]->radio_format() != firmware[0]->radio_format()) {
       problems.push_back(fmt::format(

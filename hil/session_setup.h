@@ -5,7 +5,8 @@
 //   setup.model = load_robot_model("ulaval_2024", folders).bundle;
 //   setup.radio_format = "ulaval-hermes";
 //   setup.robot_ids = parse_robot_list("0-5", problems);
-//   Session session(session_config(setup), make_reference_firmware);
+//   SessionConfig config = session_config(setup);
+//   Session session(config, reference_firmware_for(config));
 //
 //   RecordingHeader header = recording_header(setup, commit);
 //   SessionSetup again = session_setup(header);     // again's session_config() is the same

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "sim/robot/electric_model.h"
+
 namespace omnihil {
 namespace {
 
@@ -53,6 +55,16 @@ void check_wheels(Checks& c, const std::vector<double>& angle_deg) {
   }
 }
 
+// "motor.pole_pairs = 0: a three-phase drive needs 1 or more", each at the number it names.
+void check_electrics(const ParameterTable& table, std::vector<ModelConflict>& out) {
+  for (const std::string& problem : electric_problems(robot_model_of(table))) {
+    const std::string path = problem.substr(0, problem.find_first_of(" :,"));
+    const Parameter* at = table.find(path);
+    out.push_back(
+        {at != nullptr ? at : table.find("drive.kind"), problem.substr(problem.find(": ") + 2), ""});
+  }
+}
+
 void check_masses(Checks& c) {
   const double mass_kg = c["robot.mass_kg"];
   c.need(4.0 * c["robot.wheel_mass_kg"] < mass_kg, "robot.wheel_mass_kg",
@@ -83,6 +95,7 @@ std::vector<ModelConflict> model_conflicts(const ParameterTable& table, std::uin
     check_tyre(c, "tyre.lateral");
     check_wheels(c, table.find("robot.wheel_angle_deg")->values);
     check_masses(c);
+    check_electrics(table, out);
   }
   return out;
 }

@@ -90,6 +90,9 @@ ParameterTable table_of(const Merged& all) {
       table.parameters.push_back(*given);
     } else if (applies && row.otherwise) {
       table.parameters.push_back({.row = &row, .values = {*row.otherwise}, .origin = Origin::kDefault});
+      if (row.kind == ParameterKind::kChoice) {
+        table.parameters.back().text = row.choices[static_cast<std::size_t>(*row.otherwise)];
+      }
     }
   }
   return table;

@@ -22,6 +22,9 @@ std::string rigs_of(std::uint32_t rigs) {
 std::string default_of(const ParameterRow& row) {
   if (row.needed != 0) return fmt::format("needed ({})", rigs_of(row.needed));
   if (row.kind == ParameterKind::kTruth) return "false";
+  if (row.kind == ParameterKind::kChoice) {
+    return fmt::format("\"{}\"", row.choices[static_cast<std::size_t>(*row.otherwise)]);
+  }
   return row.otherwise ? fmt::format("{:g}", *row.otherwise) : "none";
 }
 

@@ -154,7 +154,7 @@ void ModelReader::read_value(const ParameterRow& row, const toml::key& key, cons
   out.column = static_cast<int>(node.source().begin.column);
   const toml::node* value = &node;
   bool good = true;
-  const bool numeric = row.kind != ParameterKind::kText && row.kind != ParameterKind::kTruth;
+  const bool numeric = !is_text(row) && row.kind != ParameterKind::kTruth;
   if (numeric && node.is_table()) {
     const std::size_t before = problems_.size();
     const toml::table& table = *node.as_table();
@@ -252,6 +252,16 @@ bool ModelReader::read_text(const ParameterRow& row, const toml::node& node, Par
     return false;
   }
   out.text = node.as_string()->get();
+  if (row.kind == ParameterKind::kChoice) {
+    const auto word = std::find(row.choices.begin(), row.choices.end(), out.text);
+    if (word == row.choices.end()) {
+      const std::string near = hint(out.text, row.choices);
+      wrong(node, path, "is not a choice",
+            fmt::format("allowed: {}{}", allowed_range(row), near.empty() ? "" : "; " + near));
+      return false;
+    }
+    out.values = {static_cast<double>(word - row.choices.begin())};
+  }
   if (row.section.empty() && row.key == "format" && out.text != kModelFormat) {
     wrong(node, path, "is not a format this program reads", fmt::format("allowed: \"{}\"", kModelFormat));
     return false;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/core/effect_registry.h"
+#include "sim/robot/electric_model.h"
 
 namespace omnihil {
 namespace {
@@ -29,11 +30,54 @@ template <auto Tyre, auto Member>
 void tyre(RobotModel& m, std::span<const double> v) {
   (m.*Tyre).*Member = v.front();
 }
+template <auto Member>
+void electric(RobotModel& m, std::span<const double> v) {
+  set_electrics(m, [&](ElectricModel& e) {
+    using Field = std::remove_reference_t<decltype(e.*Member)>;
+    e.*Member = static_cast<Field>(v.front());
+  });
+}
+template <auto Part, auto Member>
+void part(RobotModel& m, std::span<const double> v) {
+  set_electrics(m, [&](ElectricModel& e) {
+    using Field = std::remove_reference_t<decltype((e.*Part).*Member)>;
+    (e.*Part).*Member = static_cast<Field>(v.front());
+  });
+}
+template <auto Part, auto Member>
+void degrees(RobotModel& m, std::span<const double> v) {
+  set_electrics(m, [&](ElectricModel& e) { (e.*Part).*Member = v.front() * std::numbers::pi / 180.0; });
+}
+template <std::size_t Sensor>
+void hall_offset(RobotModel& m, std::span<const double> v) {
+  set_electrics(
+      m, [&](ElectricModel& e) { e.hall.sensor_offset_rad[Sensor] = v.front() * std::numbers::pi / 180.0; });
+}
+void pwm_frequency(RobotModel& m, std::span<const double> v) {
+  set_electrics(m, [&](ElectricModel& e) { e.inverter.pwm_frequency_Hz = v.front(); });
+}
+void battery_capacity(RobotModel& m, std::span<const double> v) {
+  set_electrics(m, [&](ElectricModel& e) { e.battery.capacity_C = 3600.0 * v.front(); });
+}
+void battery_refuses(RobotModel& m, std::span<const double> v) {
+  set_electrics(m, [&](ElectricModel& e) { e.battery.takes_charge = v.front() == 0.0; });
+}
+void motor_loop(RobotModel& m, std::span<const double> v) {
+  m.motor_loop = static_cast<MotorLoop>(static_cast<int>(v.front()));
+}
 void wheel_angles(RobotModel& m, std::span<const double> v) {
   for (std::size_t i = 0; i < m.wheel_angle_rad.size(); ++i) {
     m.wheel_angle_rad[i] = v[i] * std::numbers::pi / 180.0;
   }
 }
+
+using E = ElectricModel;
+constexpr std::string_view kDriveKinds[] = {"dc", "dq", "switched"};
+constexpr std::string_view kPwmModes[] = {"complementary", "high_side_chop", "fast_decay"};
+constexpr std::string_view kShapes[] = {"sine", "trapezoid"};
+constexpr std::string_view kConstantsFor[] = {"as_driven", "block", "sinusoidal"};
+constexpr std::string_view kShuntPlaces[] = {"phase", "low_side", "bus"};
+constexpr std::string_view kMotorLoops[] = {"duty", "foc", "six_step"};
 
 constexpr std::uint32_t R = kRigRobot, A = kRigAxis, L = kRigLinearAxis, M = kRigMotor;
 constexpr std::nullopt_t kNone = std::nullopt;
@@ -80,6 +124,23 @@ constexpr ParameterRow kRows[] = {
      "controller's setting; plateau of the current in a hard start", motor<&MotorParams::current_limit_A>},
     {"motor", "duty_limit_ratio", kNumber, "1", 1.0, 0, 1, true, R | A | M, 0,
      "largest duty the bridge gives", "controller's setting", motor<&MotorParams::duty_limit_ratio>},
+    {"motor", "back_emf", kChoice, "", 0.0, 0, 1, false, R | M, 0,
+     "shape of a phase's back-EMF; trapezoid: drive.kind = \"switched\" alone",
+     "oscilloscope across two phases, turned by hand", part<&E::back_emf, &BackEmf::shape>, kShapes},
+    {"motor", "flat_top_deg", kNumber, "deg", 120.0, 0, 179, false, R | M, 0,
+     "electrical length of a trapezoid's top", "oscilloscope", degrees<&E::back_emf, &BackEmf::flat_top_rad>},
+    {"motor", "torque_constant_for", kChoice, "", 0.0, 0, 2, false, R | M, 0,
+     "commutation that torque_constant belongs to; as_driven: the drive's own", "data sheet: most say block",
+     electric<&E::constant_for>, kConstantsFor},
+    {"motor", "saliency_ratio", kNumber, "1", 1.0, 0.1, 10, false, R | M, 0,
+     "L_q over L_d, their mean being half of inductance_H; drive.kind = \"dq\" alone",
+     "LCR meter over the rotor's angle: largest and smallest", electric<&E::saliency_ratio>},
+    {"motor", "inductance_saturation_per_A", kNumber, "1/A", 0.0, 0, 10, false, R | M, 0,
+     "L / (1 + (s i)^2) per axis; drive.kind = \"dq\" alone", "slope of a current step at several currents",
+     electric<&E::inductance_saturation_per_A>},
+    {"motor", "flux_saturation_per_A", kNumber, "1/A", 0.0, 0, 10, false, R | M, 0,
+     "flux linkage / (1 + (s i_q)^2); drive.kind = \"dq\" alone", "torque over current up to the largest",
+     electric<&E::flux_saturation_per_A>},
 
     {"gear", "ratio", kNumber, "1", 1.0, 0, 10000, true, R | A, 0, "rotor turns per output turn",
      "count teeth", robot<&RobotModel::gear_ratio>},
@@ -91,8 +152,94 @@ constexpr ParameterRow kRows[] = {
      "scales"},
     {"supply", "voltage_V", kNumber, "V", kNone, 0, 1000, true, R | A | L, R, "bus voltage at the bridge",
      "meter at the bridge, motors idle", robot<&RobotModel::bus_voltage_V>},
+    {"supply", "capacitance_F", kNumber, "F", 0.0, 0, 10, false, R, 0,
+     "capacitor on the bus; needs a [battery]", "its print", electric<&E::bus_capacitance_F>},
+    {"drive", "kind", kChoice, "", 0.0, 0, 2, false, R, 0,
+     "dc: DC-equivalent motor; dq: three phases, averaged; switched: three phases, every edge of the bridge",
+     "", electric<&E::kind>, kDriveKinds},
     {"drive", "pwm_frequency_Hz", kNumber, "Hz", kNone, 0, 1e7, true, R | A | L, 0,
-     "switching frequency of the bridge", "oscilloscope, or the firmware's timer setting"},
+     "switching frequency of the bridge; three phases: 20000 if not given, 8000 to 100000",
+     "oscilloscope, or the firmware's timer setting", pwm_frequency},
+    {"drive", "pwm_mode", kChoice, "", 0.0, 0, 2, false, R, 0,
+     "how a switched drive that is given a duty chops", "the bridge's data sheet", electric<&E::pwm_mode>,
+     kPwmModes},
+    {"drive", "dead_time_s", kNumber, "s", 0.0, 0, 1e-4, false, R, 0, "both switches of a leg off at an edge",
+     "the bridge's setting", part<&E::inverter, &Inverter::dead_time_s>},
+    {"drive", "switch_resistance_ohm", kNumber, "ohm", 0.0, 0, 10, false, R, 0,
+     "one switch, where resistance_ohm of the motor leaves the bridge out", "data sheet",
+     part<&E::inverter, &Inverter::switch_resistance_ohm>},
+    {"drive", "diode_forward_V", kNumber, "V", 0.0, 0, 5, false, R, 0, "of a freewheeling diode",
+     "data sheet", part<&E::inverter, &Inverter::diode_forward_V>},
+    {"battery", "cells", kWholeNumber, "1", 0.0, 0, 100, false, R, 0,
+     "lithium-polymer cells in series; 0: no battery, the bus stays at voltage_V", "its label",
+     part<&E::battery, &BatteryParams<double>::cells>},
+    {"battery", "capacity_Ah", kNumber, "Ah", 1.3, 0, 1000, true, R, 0, "full charge", "its label",
+     battery_capacity},
+    {"battery", "resistance_ohm", kNumber, "ohm", 0.04, 0, 10, true, R, 0, "whole pack with leads",
+     "dip of the voltage under a known current", part<&E::battery, &BatteryParams<double>::resistance_ohm>},
+    {"battery", "charge_ratio", kNumber, "1", 1.0, 0, 1, true, R, 0, "charge at the start, of the full one",
+     "voltage at rest", electric<&E::battery_charge_ratio>},
+    {"battery", "refuses_charge", kTruth, "", 0.0, 0, 1, false, R, 0,
+     "no current goes back into it: braking pumps the bus up", "a diode in the lead, or a bench supply",
+     battery_refuses},
+    {"thermal", "winding_to_housing_K_per_W", kNumber, "K/W", 0.0, 0, 1000, false, R | M, 0,
+     "R_th2 of the data sheet; 0: no heat is reckoned", "data sheet",
+     part<&E::heat, &HeatModel::winding_to_housing_K_per_W>},
+    {"thermal", "housing_to_ambient_K_per_W", kNumber, "K/W", 0.0, 0, 1000, false, R | M, 0,
+     "R_th1 of the data sheet, as mounted", "data sheet",
+     part<&E::heat, &HeatModel::housing_to_ambient_K_per_W>},
+    {"thermal", "winding_time_constant_s", kNumber, "s", 0.0, 0, 1e5, false, R | M, 0, "of the winding alone",
+     "data sheet", part<&E::heat, &HeatModel::winding_time_constant_s>},
+    {"thermal", "housing_time_constant_s", kNumber, "s", 0.0, 0, 1e6, false, R | M, 0,
+     "of the motor as a whole", "data sheet", part<&E::heat, &HeatModel::housing_time_constant_s>},
+    {"thermal", "copper_per_K", kNumber, "1/K", kCopperPerK, 0, 0.1, false, R | M, 0,
+     "rise of the winding's resistance", "of the metal", part<&E::heat, &HeatModel::copper_per_K>},
+    {"thermal", "magnet_per_K", kNumber, "1/K", kNeodymiumPerK, -0.1, 0, false, R | M, 0,
+     "change of the magnets' flux", "of the magnet's grade", part<&E::heat, &HeatModel::magnet_per_K>},
+    {"hall", "mounting_error_deg", kNumber, "deg", 0.0, -180, 180, false, R | M, 0,
+     "electrical, of all three sensors", "edges against the back-EMF's crossings",
+     degrees<&E::hall, &HallParams::mounting_error_rad>},
+    {"hall", "offset_1_deg", kNumber, "deg", 0.0, -60, 60, false, R | M, 0, "electrical, of the first alone",
+     "lengths of the six sectors at steady speed", hall_offset<0>},
+    {"hall", "offset_2_deg", kNumber, "deg", 0.0, -60, 60, false, R | M, 0, "of the second", "as the first",
+     hall_offset<1>},
+    {"hall", "offset_3_deg", kNumber, "deg", 0.0, -60, 60, false, R | M, 0, "of the third", "as the first",
+     hall_offset<2>},
+    {"hall", "glitch_ratio", kNumber, "1", 0.0, 0, 1, false, R | M, 0,
+     "of the reads in which one sensor is inverted", "count codes that are no neighbour's",
+     part<&E::hall, &HallParams::glitch_probability>},
+    {"angle_sensor", "bits", kWholeNumber, "1", 0.0, 0, 24, false, R | M, 0,
+     "of the absolute encoder that gives the electrical angle; 0: not rounded", "data sheet",
+     part<&E::angle, &AbsoluteEncoderParams::bits>},
+    {"angle_sensor", "zero_deg", kNumber, "deg", 0.0, -180, 180, false, R | M, 0,
+     "rotor angle it shows too much: an error of alignment", "current against torque",
+     degrees<&E::angle, &AbsoluteEncoderParams::zero_rad>},
+    {"angle_sensor", "eccentricity_deg", kNumber, "deg", 0.0, 0, 30, false, R | M, 0,
+     "error of order 1 over the rotor's turn", "against a second encoder",
+     degrees<&E::angle, &AbsoluteEncoderParams::eccentricity_rad>},
+    {"angle_sensor", "latency_s", kNumber, "s", 0.0, 0, 0.01, false, R | M, 0, "age of what it shows",
+     "data sheet", part<&E::angle, &AbsoluteEncoderParams::latency_s>},
+    {"current_sensor", "place", kChoice, "", 0.0, 0, 2, false, R, 0, "where the shunt is", "the board",
+     part<&E::current_sensor, &CurrentSensor::place>, kShuntPlaces},
+    {"current_sensor", "bits", kWholeNumber, "1", 0.0, 0, 24, false, R, 0, "of the ADC; 0: not rounded",
+     "data sheet", part<&E::current_sensor, &CurrentSensor::bits>},
+    {"current_sensor", "shunt_ohm", kNumber, "ohm", 1e-3, 0, 1, true, R, 0, "the shunt", "the board",
+     part<&E::current_sensor, &CurrentSensor::shunt_ohm>},
+    {"current_sensor", "amplifier_gain", kNumber, "1", 20.0, 0, 10000, true, R, 0,
+     "from the shunt to the ADC", "the board", part<&E::current_sensor, &CurrentSensor::amplifier_gain>},
+    {"current_sensor", "reference_V", kNumber, "V", 3.3, 0, 100, true, R, 0,
+     "full scale of the ADC, zero current in its middle", "the board",
+     part<&E::current_sensor, &CurrentSensor::reference_V>},
+    {"current_sensor", "gain_error_ratio", kNumber, "1", 0.0, -0.9, 10, false, R, 0,
+     "that the firmware does not know of", "against a meter",
+     part<&E::current_sensor, &CurrentSensor::gain_error_ratio>},
+    {"current_sensor", "offset_V", kNumber, "V", 0.0, -10, 10, false, R, 0, "at the ADC's input",
+     "reading without current", part<&E::current_sensor, &CurrentSensor::offset_V>},
+    {"current_sensor", "noise_V", kNumber, "V", 0.0, 0, 10, false, R, 0, "one sigma at the ADC's input",
+     "spread of the reading without current", part<&E::current_sensor, &CurrentSensor::noise_sigma_V>},
+    {"current_sensor", "sample_ratio", kNumber, "1", 0.0, 0, 1, false, R, 0,
+     "instant within the PWM period; 0: middle of the off-time, 0.5: middle of the on-time", "the firmware",
+     electric<&E::current_sample_ratio>},
     {"servo", "kp_duty_per_rad", kNumber, "1/rad", kNone, 0, 1e6, true, A, 0,
      "duty per position error of a position servo", "the servo's register"},
     {"servo", "duty_limit", kNumber, "1", 1.0, 0, 1, true, A, 0, "largest duty of the servo",
@@ -160,6 +307,10 @@ constexpr ParameterRow kRows[] = {
     {"firmware", "command_timeout_s", kNumber, "s", 0.0, 0, 3600, false, R, 0,
      "the robot stops this long after the last command; 0: the firmware's own", "the firmware's setting",
      robot<&RobotModel::control_timeout_s>},
+    {"firmware", "motor_loop", kChoice, "", 0.0, 0, 2, false, R, 0,
+     "what the reference firmware gives its bridges: duties, or three legs by field-oriented or six-step "
+     "control",
+     "", motor_loop, kMotorLoops},
     {"firmware", "radio", kText, "", kNone, 0, 0, false, R, 0,
      "radio format the robot speaks: ulaval-hermes …", ""},
 

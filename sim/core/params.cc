@@ -33,6 +33,13 @@ std::string parameter_path(const ParameterRow& row) {
 }
 
 std::string allowed_range(const ParameterRow& row) {
+  if (row.kind == ParameterKind::kChoice) {
+    std::string words;
+    for (const std::string_view word : row.choices) {
+      words += fmt::format("{}\"{}\"", words.empty() ? "" : ", ", word);
+    }
+    return words;
+  }
   const std::string unit = row.unit == "1" || row.unit.empty() ? "" : fmt::format(" {}", row.unit);
   const char* whole = row.kind == ParameterKind::kWholeNumber ? ", whole" : "";
   return fmt::format("{}{:g} to {:g}{}{}", row.above_lower ? "more than " : "", row.lower, row.upper, unit,
@@ -70,7 +77,7 @@ double ParameterTable::value_or(std::string_view path, double otherwise) const {
 std::string ParameterTable::set(std::string_view path, double value) {
   Parameter* p = find(path);
   if (p == nullptr) return fmt::format("{}: this model has no such parameter", path);
-  if (p->row->kind == ParameterKind::kText) return fmt::format("{}: is a text, not a number", path);
+  if (is_text(*p->row)) return fmt::format("{}: is a text, not a number", path);
   const bool whole = p->row->kind != ParameterKind::kWholeNumber || value == std::floor(value);
   if (!within_bounds(*p->row, value) || !whole) {
     return fmt::format("{} = {:g}: allowed is {}", path, value, allowed_range(*p->row));

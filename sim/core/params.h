@@ -34,7 +34,8 @@ enum class ParameterKind : std::uint8_t {
   kWholeNumber,
   kWheelNumbers,  // one number per wheel
   kText,
-  kTruth,  // true or false; kept as 1 or 0
+  kTruth,   // true or false; kept as 1 or 0
+  kChoice,  // one word of a list; kept as its place in the list, and as text
 };
 
 using ParameterStore = void (*)(RobotModel&, std::span<const double>);
@@ -47,12 +48,13 @@ struct ParameterRow {
   std::optional<double> otherwise;  // value when the file does not give one
   double lower = 0.0;
   double upper = 0.0;
-  bool above_lower = false;        // the lower bound itself is not allowed
-  std::uint32_t rigs = 0;          // RigBit
-  std::uint32_t needed = 0;        // RigBit: a file of this rig must give it
-  std::string_view what;           // one line
-  std::string_view how;            // how to measure it
-  ParameterStore store = nullptr;  // into a RobotModel; null: kept in the table alone
+  bool above_lower = false;                     // the lower bound itself is not allowed
+  std::uint32_t rigs = 0;                       // RigBit
+  std::uint32_t needed = 0;                     // RigBit: a file of this rig must give it
+  std::string_view what;                        // one line
+  std::string_view how;                         // how to measure it
+  ParameterStore store = nullptr;               // into a RobotModel; null: kept in the table alone
+  std::span<const std::string_view> choices{};  // kChoice
 };
 
 enum class Origin : std::uint8_t { kDefault, kMotorFile, kRobotFile, kSet };
@@ -60,7 +62,7 @@ enum class Origin : std::uint8_t { kDefault, kMotorFile, kRobotFile, kSet };
 struct Parameter {
   const ParameterRow* row = nullptr;
   std::vector<double> values{};       // one, or one per wheel; empty for text
-  std::string text{};                 // kText
+  std::string text{};                 // kText, kChoice
   std::optional<double> tolerance{};  // relative 1-sigma; absent: known exactly
   std::string source{};
   Origin origin = Origin::kDefault;
@@ -72,6 +74,10 @@ struct Parameter {
 
 // "motor.resistance_ohm"; the key alone at the top of the file.
 std::string parameter_path(const ParameterRow& row);
+
+inline bool is_text(const ParameterRow& row) {
+  return row.kind == ParameterKind::kText || row.kind == ParameterKind::kChoice;
+}
 
 // "more than 0 up to 1000 ohm", "-360 to 360 deg", "0 or more, whole"
 std::string allowed_range(const ParameterRow& row);

@@ -8,16 +8,7 @@ namespace {
 
 // Switched between kHigh and kLow; `high` is the share of the period it is high.
 Leg complementary_leg(const AveragedDrive& d, double high, double bus_V, double current_A) {
-  double gap = 0.0;
-  if (d.gap_ratio > 0.0) {
-    // s(i) f t_d, s from -1 to 1 within half the ripple
-    const double half_ripple_A = 0.5 * d.ripple_per_V_A * bus_V * high * (1.0 - high);
-    gap = current_A >= half_ripple_A
-              ? d.gap_ratio
-              : (current_A <= -half_ripple_A ? -d.gap_ratio : d.gap_ratio * current_A / half_ripple_A);
-  }
-  const double share = std::clamp(high - gap, 0.0, 1.0), drop_V = 2.0 * gap * d.inverter.diode_forward_V;
-  const LegSource s{share * bus_V - drop_V, share, drop_V};
+  const LegSource s = mean_leg(d, high, bus_V, current_A);
   return {s, s, true};
 }
 
@@ -73,6 +64,19 @@ AveragedDrive make_averaged_drive(const PhaseMotor<double>& motor, const Inverte
   d.gap_ratio = inverter.pwm_frequency_Hz * inverter.dead_time_s;
   d.ripple_per_V_A = 1.0 / (2.0 * d.circuit.inductance_H * inverter.pwm_frequency_Hz);
   return d;
+}
+
+LegSource mean_leg(const AveragedDrive& d, double high, double bus_V, double current_A) {
+  double gap = 0.0;
+  if (d.gap_ratio > 0.0) {
+    // s(i) f t_d, s from -1 to 1 within half the ripple
+    const double half_ripple_A = 0.5 * d.ripple_per_V_A * bus_V * high * (1.0 - high);
+    gap = current_A >= half_ripple_A
+              ? d.gap_ratio
+              : (current_A <= -half_ripple_A ? -d.gap_ratio : d.gap_ratio * current_A / half_ripple_A);
+  }
+  const double share = std::clamp(high - gap, 0.0, 1.0), drop_V = 2.0 * gap * d.inverter.diode_forward_V;
+  return {share * bus_V - drop_V, share, drop_V};
 }
 
 void advance_averaged(const AveragedDrive& drive, PhaseState& state, const BridgeCommand& command,

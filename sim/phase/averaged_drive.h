@@ -35,6 +35,9 @@ AveragedDrive make_averaged_drive(const PhaseMotor<double>& motor, const Inverte
 void advance_averaged(const AveragedDrive& drive, PhaseState& state, const BridgeCommand& command,
                       const PhaseInput& input, PhaseFlow& flow);
 
+// A complementary leg that is high for the share `high`, as the mean source that it is over a period.
+LegSource mean_leg(const AveragedDrive& drive, double high, double bus_V, double current_A);
+
 // Peak to peak of the current that a pair of windings of L_ll carries on top of its mean.
 inline double ripple_A(double bus_V, double duty_ratio, double inductance_ll_H, double pwm_frequency_Hz) {
   // d (1 - d) V T / L

@@ -55,6 +55,15 @@ inline int hall_sector(int code) {
   return kSector[static_cast<std::size_t>(code & 7)];
 }
 
+// The two legs of a sector that turn the rotor forward: current into `high`, out of `low`. Phases 0, 1, 2.
+struct BlockLegs {
+  int high, low;
+};
+inline BlockLegs block_legs(int sector) {
+  constexpr std::array<BlockLegs, 6> kPairs = {{{1, 2}, {1, 0}, {2, 0}, {2, 1}, {0, 1}, {0, 2}}};
+  return kPairs[static_cast<std::size_t>(sector)];
+}
+
 inline int hall_with_glitches(const HallParams& p, int code, const HallKey& key) {
   if (!(uniform(key.seed, key.stream, 2 * key.sample) < p.glitch_probability)) return code;
   return code ^ (1 << (random_bits(key.seed, key.stream, 2 * key.sample + 1) % 3));

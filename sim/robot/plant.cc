@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <variant>
 
 #include "sim/motor/encoder.h"
 #include "sim/robot/chassis.h"
+#include "sim/robot/electric_wheels.h"
 #include "sim/robot/integrate.h"
+#include "sim/robot/plain_bytes.h"
 #include "sim/robot/planar.h"
 #include "sim/robot/robot_effects.h"
 #include "sim/robot/robot_sensing.h"
@@ -51,18 +52,6 @@ void require_valid(std::span<const RobotModel> robots, const PlantOptions& optio
   if (!all.empty()) throw std::invalid_argument(all);
 }
 
-template <typename T>
-void append(std::vector<std::uint8_t>& out, const T* items, std::size_t count) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(items);
-  out.insert(out.end(), bytes, bytes + count * sizeof(T));
-}
-
-template <typename T>
-void take(std::span<const std::uint8_t>& in, T* items, std::size_t count) {
-  std::memcpy(static_cast<void*>(items), in.data(), count * sizeof(T));
-  in = in.subspan(count * sizeof(T));
-}
-
 }  // namespace
 
 struct Plant::Impl {
@@ -77,6 +66,9 @@ struct Plant::Impl {
         u_before(u.size()),
         scratch(q.size(), u.size()),
         memory(models.size()),
+        electrics(models.size()),
+        electric_memory(models.size()),
+        controls(models.size()),
         torques(models.size()),
         wheel_steps(models.size()) {
     step_ns = mechanics_step_ns(models, options);
@@ -84,6 +76,11 @@ struct Plant::Impl {
     substeps = static_cast<int>(step_ns / options.electrical_step_ns);
     for (const RobotModel& m : models_of_mechanics(models)) {
       drives.push_back(wheel_drive_law(m, static_cast<double>(options.electrical_step_ns) * 1e-9, substeps));
+    }
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (!electrics_of(models[n]).any()) continue;
+      electrics[n] = std::make_unique<ElectricWheels>(
+          models[n], static_cast<double>(options.electrical_step_ns) * 1e-9, step_s, options.seed, n);
     }
     effect_memory.resize(models.size());
     histories.resize(models.size());
@@ -116,6 +113,7 @@ struct Plant::Impl {
     memory[robot] = RobotMemory{};
     memory[robot].drive = kept;
     state_known = false;
+    if (electrics[robot]) electric_memory[robot] = electrics[robot]->initial_memory();
     if (effects[robot]) {
       std::array<double, kWheels> rotors{};
       for (std::size_t i = 0; i < kWheels; ++i) rotors[i] = theta_rotor_rad(robot, i);
@@ -188,8 +186,15 @@ struct Plant::Impl {
     }
   }
 
-  void begin_wheels_with_effects(std::size_t n, const WheelContacts<double>& contacts,
-                                 const FloorForces& more) {
+  void begin_electric_wheels(std::size_t n, const std::array<WheelDriveInput, kWheels>& inputs) {
+    electrics[n]->begin_step(electric_memory[n], inputs, now_ns, controls[n], wheel_steps[n]);
+    if (effects[n]) effect_memory[n].bus_voltage_V = electric_memory[n].supply.bus_voltage_V;
+    for (std::size_t i = 0; i < kWheels; ++i) torques[n][i] = wheel_steps[n][i].torque;
+  }
+
+  // `more`: of floor effects; null: none.
+  std::array<WheelDriveInput, kWheels> wheel_inputs(std::size_t n, const WheelContacts<double>& contacts,
+                                                    const FloorForces* more) const {
     const RobotModel& model = models[n];
     const RobotMemory& mem = memory[n];
     const double* omega_wheel = wheel_speeds_of(n);
@@ -199,9 +204,14 @@ struct Plant::Impl {
       in.bridge = {mem.drive.mode[i], mem.drive.duty_ratio[i], model.bus_voltage_V};
       in.omega_wheel_rad_s = omega_wheel[i];
       in.theta_wheel_rad = wheel_angles(n)[i];
-      in.contact_Nm = more.wheel_radius_m[i] * contacts.force_longitudinal_N[i] / model.gear_ratio;
-      in.friction_rotor_Nm = more.friction_wheel_Nm[i] / model.gear_ratio;
+      const double radius_m = more != nullptr ? more->wheel_radius_m[i] : model.wheel_radius_m;
+      in.contact_Nm = radius_m * contacts.force_longitudinal_N[i] / model.gear_ratio;
+      if (more != nullptr) in.friction_rotor_Nm = more->friction_wheel_Nm[i] / model.gear_ratio;
     }
+    return inputs;
+  }
+
+  void begin_wheels_with_effects(std::size_t n, const std::array<WheelDriveInput, kWheels>& inputs) {
     effects[n]->begin_step(drives[n], effect_memory[n], inputs, wheel_steps[n]);
     for (std::size_t i = 0; i < kWheels; ++i) torques[n][i] = wheel_steps[n][i].torque;
   }
@@ -213,8 +223,11 @@ struct Plant::Impl {
     }
     set_state(back);
     for (std::size_t n = 0; n < models.size(); ++n) {
-      if (effects[n]) {
-        begin_wheels_with_effects(n, back.contacts(n), back.floor_forces(n));
+      if (electrics[n]) {
+        const FloorForces* more = effects[n] ? &back.floor_forces(n) : nullptr;
+        begin_electric_wheels(n, wheel_inputs(n, back.contacts(n), more));
+      } else if (effects[n]) {
+        begin_wheels_with_effects(n, wheel_inputs(n, back.contacts(n), &back.floor_forces(n)));
       } else {
         begin_wheels(n, back.contacts(n));
       }
@@ -236,7 +249,11 @@ struct Plant::Impl {
     bool held = true;
     for (std::size_t i = 0; i < kWheels; ++i) {
       WheelStep& step = wheel_steps[n][i];
-      if (effects[n]) {
+      if (electrics[n]) {
+        after[i] = electrics[n]->end_wheel(i, step, before[i], after[i]);
+        memory[n].winding[i].current_A = electrics[n]->motor_current_A(electric_memory[n], i);
+        effect_memory[n].charge_C[i] += step.drive.mean_current_A * step_s;
+      } else if (effects[n]) {
         after[i] = effects[n]->end_wheel(drives[n], effect_memory[n], i, step, before[i], after[i]);
         memory[n].winding[i].current_A = effect_memory[n].drive[i].current_A;
       } else {
@@ -281,6 +298,7 @@ struct Plant::Impl {
           if (!std::isfinite(values[i])) report(n, signal, i);
         }
       };
+      for (const auto& legs : electric_memory[n].legs.leg_duty_ratio) scan(legs, kLegs, "leg_duty_ratio");
       for (std::size_t i = 0; i < kWheels; ++i) {
         if (!std::isfinite(memory[n].drive.duty_ratio[i])) report(n, "duty_ratio", i);
         if (!std::isfinite(memory[n].winding[i].current_A)) report(n, "motor_current_A", i);
@@ -306,6 +324,9 @@ struct Plant::Impl {
   std::vector<RobotMemory> memory;
   std::vector<RobotEffectMemory> effect_memory;
   std::vector<RobotHistory> histories;
+  std::vector<std::unique_ptr<ElectricWheels>> electrics;  // null: DC-equivalent on a constant bus
+  std::vector<ElectricMemory> electric_memory;
+  std::vector<MotorControl*> controls;
   std::vector<WheelDriveLaw> drives;
   std::vector<WheelTorques> torques;
   std::vector<std::array<WheelStep, kWheels>> wheel_steps;
@@ -333,6 +354,23 @@ void Plant::set_pose(int robot, double x_m, double y_m, double yaw_rad) {
 
 void Plant::write(int robot, const RobotDrive& drive) {
   impl_->memory[static_cast<std::size_t>(robot)].drive = drive;
+}
+
+void Plant::set_motor_control(int robot, MotorControl* control) {
+  impl_->controls[static_cast<std::size_t>(robot)] = control;
+}
+
+void Plant::write_legs(int robot, const MotorDrive& legs) {
+  impl_->electric_memory[static_cast<std::size_t>(robot)].legs = legs;
+}
+
+MotorSensors Plant::motor_sensors(int robot) const {
+  return impl_->electric_memory[static_cast<std::size_t>(robot)].seen;
+}
+
+ElectricTruth Plant::electric_truth(int robot) const {
+  const auto n = static_cast<std::size_t>(robot);
+  return impl_->electrics[n] ? impl_->electrics[n]->truth(impl_->electric_memory[n]) : ElectricTruth{};
 }
 
 void Plant::advance(std::int64_t duration_ns) {
@@ -371,7 +409,7 @@ RobotSensors Plant::read(int robot) const {
     mem.current_sum_A[i] = 0.0;
   }
   mem.current_steps = 0;
-  s.bus_voltage_V = model.bus_voltage_V;
+  s.bus_voltage_V = p.electrics[n] ? p.electric_memory[n].supply.bus_voltage_V : model.bus_voltage_V;
   s.gyro_z_rad_s =
       std::visit([&](const auto& m) { return m.motion(p.q, p.u, n).velocity.omega_body_rad_s; }, p.mechanics);
   s.accel_x_m_s2 = mem.accel_x_m_s2;
@@ -428,6 +466,7 @@ std::vector<std::uint8_t> Plant::save() const {
   append(out, p.u.data(), p.u.size());
   append(out, p.memory.data(), p.memory.size());
   for (std::size_t n = 0; n < p.models.size(); ++n) {
+    if (p.electrics[n]) append(out, &p.electric_memory[n], 1);
     if (!p.effects[n]) continue;
     append(out, &p.effect_memory[n], 1);
     append(out, &p.histories[n].count(), 1);
@@ -438,14 +477,7 @@ std::vector<std::uint8_t> Plant::save() const {
 
 bool Plant::restore(std::span<const std::uint8_t> bytes) {
   Impl& p = *impl_;
-  std::size_t size = 4 * sizeof(std::uint64_t) + (p.q.size() + p.u.size()) * sizeof(double) +
-                     p.memory.size() * sizeof(RobotMemory);
-  for (std::size_t n = 0; n < p.models.size(); ++n) {
-    if (!p.effects[n]) continue;
-    size += sizeof(RobotEffectMemory) + sizeof(std::uint64_t) +
-            p.histories[n].points().size() * sizeof(RobotInstant);
-  }
-  if (bytes.size() != size) return false;
+  if (bytes.size() != save().size()) return false;
   std::uint64_t head[3];
   take(bytes, head, 3);
   if (head[0] != kStateMark || head[1] != plant_fingerprint(p.models, p.options)) return false;
@@ -454,6 +486,7 @@ bool Plant::restore(std::span<const std::uint8_t> bytes) {
   take(bytes, p.u.data(), p.u.size());
   take(bytes, p.memory.data(), p.memory.size());
   for (std::size_t n = 0; n < p.models.size(); ++n) {
+    if (p.electrics[n]) take(bytes, &p.electric_memory[n], 1);
     if (!p.effects[n]) continue;
     take(bytes, &p.effect_memory[n], 1);
     take(bytes, &p.histories[n].count(), 1);

@@ -12,12 +12,13 @@
 // One mechanical step: the floor's forces at its start (contact.h); per wheel the winding through the
 // electrical sub-steps with that load held, and its friction (wheel_drive.h); the mechanics with the mean
 // motor torque held (integrate.h over PlanarMechanics or Chassis); wheels that passed zero speed are settled.
+// A robot whose model has electrics of its own (electric_model.h) goes through electric_wheels.h instead.
 // Sensors: encoder counts of the rotor angle; gyro = yaw rate; accelerometer = the geometric centre's mean
 // acceleration over the last mechanical step, in the level body frame; bus voltage = the model's constant;
 // motor current = mean since the last read() of that robot (read() therefore counts as a call in the sequence
 // above). A robot whose wheels are all held by friction and that slides slower than 1 pm/s stops exactly
 // (planar joint). Cannot represent: contact between robots, walls and ball; sensor noise, bias
-// and filtering; battery sag without the effect of that name.
+// and filtering; a sagging bus without [battery] in the model or the effect battery_sag.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -28,6 +29,7 @@
 #include <vector>
 
 #include "firmware_iface/robot_io.h"
+#include "sim/robot/electric_ports.h"
 #include "sim/robot/robot_model.h"
 
 namespace omnihil {
@@ -91,6 +93,12 @@ class Plant {
 
   void set_pose(int robot, double x_m, double y_m, double yaw_rad);  // at rest there
   void write(int robot, const RobotDrive& drive);
+  // Three-phase robots, wheels in mode PHASES: whoever sets the legs within advance() (not owned, null:
+  // nobody), or legs that stay until written again. What the board's sensors saw in the last PWM period.
+  void set_motor_control(int robot, MotorControl* control);
+  void write_legs(int robot, const MotorDrive& legs);
+  MotorSensors motor_sensors(int robot) const;
+  ElectricTruth electric_truth(int robot) const;
   void advance(std::int64_t duration_ns);  // asserts: a multiple of the mechanical step
   RobotSensors read(int robot) const;
   RobotTruth truth(int robot) const;

@@ -14,7 +14,11 @@
 
 namespace omnihil {
 
-struct EffectUse;  // sim/core/effect_set.h
+struct EffectUse;      // sim/core/effect_set.h
+struct ElectricModel;  // sim/robot/electric_model.h
+
+// What the robot's own firmware makes of its motors: a duty, or the legs of three phases.
+enum class MotorLoop : std::uint8_t { kDuty, kFoc, kSixStep };
 
 struct RobotModel {
   std::string name;
@@ -36,6 +40,9 @@ struct RobotModel {
   MotorParams motor;
   EncoderParams encoder;
   double bus_voltage_V = 0.0;
+  // Three-phase drive, battery, heat; null: the DC-equivalent motor on a constant bus.
+  std::shared_ptr<const ElectricModel> electric;
+  MotorLoop motor_loop = MotorLoop::kDuty;
   double control_timeout_s = 0.0;  // the team's own command timeout; 0: the firmware's default
   // On top of the base model above (Coulomb friction is part of that); null: none.
   std::shared_ptr<const std::vector<EffectUse>> effects;

@@ -9,6 +9,7 @@
 
 #include "sim/core/effect_reader.h"
 #include "sim/robot/contact.h"
+#include "sim/robot/electric_model.h"
 #include "sim/robot/planar_law.h"
 #include "sim/robot/robot_effects.h"
 
@@ -165,6 +166,18 @@ void check_steps(const PlantOptions& o, std::vector<std::string>& out) {
   }
 }
 
+// The drives' periods fill the mechanics' step.
+void check_periods(const ElectricModel& electric, std::int64_t step_ns, std::vector<std::string>& out) {
+  const double frequency_Hz = electric.inverter.pwm_frequency_Hz;
+  const double step_s = static_cast<double>(step_ns) * 1e-9, periods = frequency_Hz * step_s;
+  if (step_ns <= 0 || (periods > 0.5 && std::abs(periods - std::round(periods)) <= 1e-9 * periods)) return;
+  out.push_back(
+      fmt::format("drive.pwm_frequency_Hz = {}: {} periods in the mechanical step of {} ns; must be a whole "
+                  "number of them, "
+                  "a multiple of {:g} Hz",
+                  frequency_Hz, periods, step_ns, 1.0 / step_s));
+}
+
 }  // namespace
 
 std::vector<std::string> robot_problems(const RobotModel& model) {
@@ -175,6 +188,7 @@ std::vector<std::string> robot_problems(const RobotModel& model) {
   if (model.encoder.direction != 1 && model.encoder.direction != -1) {
     out.push_back(fmt::format("encoder.direction = {}: must be 1 or -1", model.encoder.direction));
   }
+  for (std::string& problem : electric_problems(model)) out.push_back(std::move(problem));
   if (!out.empty()) return out;
   check_together(model, out);
   return out;
@@ -210,6 +224,9 @@ std::vector<std::string> plant_problems(std::span<const RobotModel> robots, cons
           "effects between rotor and wheel (backlash, shaft_compliance) need wheel_inertia_kg_m2 and "
           "motor.rotor_inertia_kg_m2 to be more than 0");
     }
+    if (of_robot.empty() && electrics_of(robots[n]).three_phase()) {
+      check_periods(electrics_of(robots[n]), mechanics_step_ns(robots, options), of_robot);
+    }
     if (of_robot.empty() && options.mechanical_step_ns > 0) {
       const RobotModel moved = models_of_mechanics(robots.subspan(n, 1)).front();
       const double rate = stiffest_contact_rate(moved), limit = explicit_limit(options.integrator);
@@ -230,6 +247,59 @@ std::vector<std::string> plant_problems(std::span<const RobotModel> robots, cons
   return out;
 }
 
+namespace {
+
+// Numbers of the electrics, one after another; empty where there are none.
+std::string electric_text(const RobotModel& m) {
+  const ElectricModel& e = electrics_of(m);
+  if (!e.any()) return "";
+  const auto& b = e.battery;
+  const auto& h = e.heat;
+  const auto& s = e.current_sensor;
+  std::string text = fmt::format(" {} {} {} {}", static_cast<int>(e.kind), static_cast<int>(e.pwm_mode),
+                                 static_cast<int>(e.back_emf.shape), static_cast<int>(e.constant_for));
+  text += fmt::format(" {} {} {}", m.motor.pole_pairs, e.angle.bits, b.cells);
+  text += fmt::format(" {} {} {}", static_cast<int>(s.place), s.bits, b.takes_charge);
+  for (const double value : {e.inverter.pwm_frequency_Hz,
+                             e.inverter.dead_time_s,
+                             e.inverter.switch_resistance_ohm,
+                             e.inverter.diode_forward_V,
+                             e.back_emf.flat_top_rad,
+                             e.saliency_ratio,
+                             e.inductance_saturation_per_A,
+                             e.flux_saturation_per_A,
+                             e.hall.mounting_error_rad,
+                             e.hall.sensor_offset_rad[0],
+                             e.hall.sensor_offset_rad[1],
+                             e.hall.sensor_offset_rad[2],
+                             e.hall.glitch_probability,
+                             e.angle.zero_rad,
+                             e.angle.eccentricity_rad,
+                             e.angle.latency_s,
+                             s.shunt_ohm,
+                             s.amplifier_gain,
+                             s.reference_V,
+                             s.gain_error_ratio,
+                             s.offset_V,
+                             s.noise_sigma_V,
+                             e.current_sample_ratio,
+                             b.capacity_C,
+                             b.resistance_ohm,
+                             e.battery_charge_ratio,
+                             e.bus_capacitance_F,
+                             h.winding_to_housing_K_per_W,
+                             h.housing_to_ambient_K_per_W,
+                             h.winding_time_constant_s,
+                             h.housing_time_constant_s,
+                             h.copper_per_K,
+                             h.magnet_per_K}) {
+    text += fmt::format(" {}", value);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::uint64_t plant_fingerprint(std::span<const RobotModel> robots, const PlantOptions& options) {
   std::string text =
       fmt::format("{} {} {} {} {}", static_cast<int>(options.physics), static_cast<int>(options.integrator),
@@ -238,6 +308,7 @@ std::uint64_t plant_fingerprint(std::span<const RobotModel> robots, const PlantO
     text += fmt::format(";{} {} {} {}", m.name, m.encoder.direction, m.encoder.index_offset_counts,
                         m.rollers_per_wheel);
     for (const Field& f : fields_of(m)) text += fmt::format(" {}", f.value);
+    text += electric_text(m);
     if (m.effects != nullptr) text += write_effects(*m.effects, false);
   }
   std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a

@@ -46,7 +46,20 @@ static_assert(offsetof(omnihil_feedback, omega_dribbler_rad_s) == 368);
 static_assert(sizeof(omnihil_robot_config) == 8 + 8 * (4 + 8));
 static_assert(offsetof(omnihil_robot_config, wheel_radius_m) == 40);
 static_assert(offsetof(omnihil_robot_config, command_timeout_s) == 96);
-static_assert(sizeof(omnihil_firmware_api) == 2 * 4 + 2 * 8 + 2 * 4 + 8 * 8);
+// the first table ended behind feedback(): libraries that have no more are still served
+static_assert(offsetof(omnihil_firmware_api, motor_init) == 2 * 4 + 2 * 8 + 2 * 4 + 8 * 8);
+static_assert(sizeof(omnihil_firmware_api) == offsetof(omnihil_firmware_api, motor_init) + 2 * 8);
+static_assert(sizeof(omnihil_motor_config) == 8 + 8 * 8);
+static_assert(offsetof(omnihil_motor_config, pwm_frequency_Hz) == 8);
+static_assert(offsetof(omnihil_motor_config, current_limit_A) == 64);
+// motor sensors: time, bus, 4 x 3 currents, 4 angles, 4 counts, 4 x u32
+static_assert(sizeof(omnihil_motor_sensors) == 8 + 8 + 8 * 12 + 8 * 4 + 8 * 4 + 4 * 4);
+static_assert(offsetof(omnihil_motor_sensors, phase_current_A) == 16);
+static_assert(offsetof(omnihil_motor_sensors, theta_elec_rad) == 112);
+static_assert(offsetof(omnihil_motor_sensors, encoder_counts) == 144);
+static_assert(offsetof(omnihil_motor_sensors, hall_code) == 176);
+static_assert(sizeof(omnihil_motor_drive) == 4 * 12 + 8 * 12);
+static_assert(offsetof(omnihil_motor_drive, leg_duty_ratio) == 48);
 static_assert(offsetof(omnihil_firmware_api, init) == 32);
 static_assert(offsetof(omnihil_firmware_api, feedback) == 88);
 

@@ -55,6 +55,8 @@ SCRIPT_TEST(ServeTest, "serial_client.py", a_computer_that_cannot_keep_up_is_sai
 SCRIPT_TEST(ServeTest, "serial_client.py", the_status_line_fits_the_terminal)
 SCRIPT_TEST(ServeTest, "serial_client.py", refuses_a_name_that_a_file_has)
 SCRIPT_TEST(ServeTest, "serial_client.py", names_every_bad_argument)
+SCRIPT_TEST(PhaseClientTest, "phase_client.py", field_oriented_control_follows_a_velocity)
+SCRIPT_TEST(PhaseClientTest, "phase_client.py", six_step_control_follows_a_velocity)
 SCRIPT_TEST(RemClientTest, "rem_client.py", one_metre_per_second_forward)
 SCRIPT_TEST(HostStreamTest, "hermes_stream.py", real_host_drives_six_robots_with_no_frame_refused)
 

@@ -35,14 +35,6 @@ inline PhaseMotor<double> sine_motor() {
   return phase_motor_of(sheet_motor(), Commutation::kSinusoidal, kSine);
 }
 
-// The two legs of a Hall sector for positive torque: {high, low}. Sector 0: b high, c low.
-struct BlockLegs {
-  int high, low;
-};
-inline BlockLegs block_legs(int sector) {
-  constexpr BlockLegs kLegs[6] = {{1, 2}, {1, 0}, {2, 0}, {2, 1}, {0, 1}, {0, 2}};
-  return kLegs[sector];
-}
 inline BridgeCommand six_step(double theta_elec_rad, double duty_ratio, PwmMode mode) {
   const BlockLegs legs = block_legs(hall_sector(hall_code({}, theta_elec_rad)));
   return block_command(legs.high, legs.low, duty_ratio, mode);

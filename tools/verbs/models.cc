@@ -45,7 +45,7 @@ int list() {
 std::string number(double value) { return fmt::format("{:.6g}", value); }
 
 std::string value_text(const Parameter& p) {
-  if (p.row->kind == ParameterKind::kText) return fmt::format("\"{}\"", p.text);
+  if (is_text(*p.row)) return fmt::format("\"{}\"", p.text);
   if (p.row->kind == ParameterKind::kTruth) return p.value() != 0.0 ? "true" : "false";
   std::string out;
   for (const double v : p.values) out += (out.empty() ? "" : ", ") + number(v);
@@ -68,7 +68,7 @@ void print_parameters(const ModelFile& model) {
       section = p.row->section;
       std::printf("\n[%s]\n", std::string(section).c_str());
     }
-    const std::string known = p.row->kind == ParameterKind::kText || p.origin == Origin::kDefault ? ""
+    const std::string known = is_text(*p.row) || p.origin == Origin::kDefault ? ""
                               : p.tolerance ? fmt::format("+-{:g} %", 100.0 * *p.tolerance)
                                             : "exact";
     std::printf("  %-30s %-26s %-8s %s\n", std::string(p.row->key).c_str(), value_text(p).c_str(),

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "firmware_iface/host_firmware.h"
 #include "hil/effect_overrides.h"
 #include "hil/model_store.h"
 #include "hil/recording_header.h"
+#include "hil/reference_firmware.h"
 #include "hil/session_setup.h"
 #include "protocols/radio_format.h"
 #include "tools/exit_codes.h"
@@ -91,8 +91,8 @@ int run(Words& words) {
   try {
     RecordingHeader header = recording_header(words.setup, program_commit());
     header.sample_every = words.sample_every;
-    const ServeEnd end =
-        serve(session_config(words.setup), make_reference_firmware, std::move(header), words.options);
+    const SessionConfig config = session_config(words.setup);
+    const ServeEnd end = serve(config, reference_firmware_for(config), std::move(header), words.options);
     switch (end) {
       case ServeEnd::kDone:
         return kExitOk;

@@ -1,0 +1,36 @@
+// What passes between a three-phase robot's electrics and the outside: who sets its legs, what is true of it.
+//
+//   struct Mine : MotorControl { MotorDrive motor_tick(const MotorSensors& s) override { … } };
+//   plant.set_motor_control(0, &mine);     // called once per PWM period of robot 0, within advance()
+#pragma once
+#include <array>
+
+#include "firmware_iface/robot_io.h"
+
+namespace omnihil {
+
+// Sets the legs of three-phase bridges, once per PWM period of that robot.
+class MotorControl {
+ public:
+  virtual ~MotorControl() = default;
+  virtual MotorDrive motor_tick(const MotorSensors& sensors) = 0;
+};
+
+// Where energy went since the robot was placed. source = battery heat + bus + gain of the bus capacitor;
+// bus = winding + device + mechanical + gain of what the inductances hold.
+struct EnergyBook {
+  double source_J = 0.0, battery_heat_J = 0.0, bus_J = 0.0;
+  double winding_heat_J = 0.0, device_heat_J = 0.0, mechanical_J = 0.0;
+};
+
+// What no sensor of the robot shows. All zero for a robot without electrics of its own.
+struct ElectricTruth {
+  std::array<std::array<double, kLegs>, kWheels> phase_current_A{};
+  std::array<double, kWheels> winding_K{}, housing_K{};  // over ambient
+  double bus_voltage_V = 0.0;
+  double battery_charge_C = 0.0;
+  double in_inductances_J = 0.0;
+  EnergyBook book;
+};
+
+}  // namespace omnihil

@@ -1,0 +1,78 @@
+// Four wheels of one robot whose electrics are more than a DC-equivalent motor on a constant bus: three-phase
+// drives, a battery, warm windings. Period by period of the drive, all wheels on one bus.
+//
+//   ElectricWheels wheels(model, electrical_step_s, step_s, seed, robot);
+//   ElectricMemory memory = wheels.initial_memory();
+//   wheels.begin_step(memory, inputs, now_ns, control, steps);       // one mechanical step; steps to it
+//   … mechanics advances one step …
+//   omega_wheel = wheels.end_wheel(memory, i, steps[i], omega_before, omega_after);
+//
+// Law: within a mechanical step the floor's torque of its start is held. Per period (PWM period with three
+//   phases, electrical sub-step without): each winding by wheel_electrics.h at the bus voltage of the
+//   period's start; then the bus by supply.h with the current of all four. Dry friction acts per period: a
+//   rotor at rest is held while |motor + floor| <= level (motor: mean of the period before); one that passes
+//   zero stops there. The mechanics gets, as constant torque of the step, the one that gives the rotor the
+//   change of speed it had:  T = J (omega_end - omega_start) / h + floor + b mean omega.
+//   Then the temperatures by thermal.h with the step's winding losses.
+//   A firmware that sets the legs (MotorControl) is called after each period with what its sensors saw in it;
+//   what it gives acts from the next one on.
+// Coupling to the mechanics: held torques on either side, first order in the mechanical step.
+// Cannot represent: effects that act in the drive (validate.h refuses them), the winding's answer to a speed
+//   other than the foreseen one within a mechanical step.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sim/robot/electric_ports.h"
+#include "sim/robot/robot_effects.h"
+#include "sim/robot/wheel_electrics.h"
+
+namespace omnihil {
+
+// Plain bytes.
+struct ElectricMemory {
+  std::array<WheelElectricState, kWheels> wheel{};
+  SupplyState<double> supply{};
+  MotorSensors seen{};  // in the last period
+  MotorDrive legs{};    // in force
+  EnergyBook book{};
+};
+
+class ElectricWheels {
+ public:
+  ElectricWheels(const RobotModel& model, double electrical_step_s, double step_s, std::uint64_t seed,
+                 std::size_t robot);
+
+  ElectricMemory initial_memory() const;
+  // `control` may be null: the legs of memory stay in force.
+  void begin_step(ElectricMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
+                  std::int64_t now_ns, MotorControl* control, std::array<WheelStep, kWheels>& steps);
+  double end_wheel(std::size_t wheel, const WheelStep& step, double omega_wheel_before_rad_s,
+                   double omega_wheel_after_rad_s) const;
+  ElectricTruth truth(const ElectricMemory& memory) const;
+  double motor_current_A(const ElectricMemory& memory, std::size_t wheel) const;  // torque-equivalent, now
+
+ private:
+  struct Course;  // of one wheel through a mechanical step
+  PeriodFlow advance_wheel(ElectricMemory& memory, std::size_t wheel, const WheelDriveInput& in,
+                           std::int64_t now_ns, Course& course) const;
+  void advance_bus(ElectricMemory& memory, double bus_charge_C) const;
+  void see(ElectricMemory& memory, const std::array<PeriodSample, kWheels>& samples,
+           std::int64_t at_ns) const;
+  double measured_A(const PeriodSample& sample, std::size_t wheel, std::size_t phase,
+                    std::int64_t at_ns) const;
+  int hall(std::size_t wheel, double theta_rotor_rad, std::int64_t at_ns) const;
+
+  RobotModel model_;
+  ElectricModel electric_;
+  std::vector<WheelElectrics> wheels_;  // each with its own temperature
+  ThermalParams<double> thermal_;
+  int periods_ = 1;
+  double step_s_ = 0.0;
+  std::uint64_t seed_ = 0;
+  std::size_t robot_ = 0;
+  std::array<double, kWheels> friction_Nm_{};  // level of the last step
+};
+
+}  // namespace omnihil
