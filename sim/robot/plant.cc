@@ -45,13 +45,6 @@ Mechanics make_mechanics(const std::vector<RobotModel>& robots, Physics physics,
                  effects);
 }
 
-void require_valid(std::span<const RobotModel> robots, const PlantOptions& options) {
-  std::string all;
-  for (const std::string& problem : plant_problems(robots, options))
-    all += (all.empty() ? "" : "\n") + problem;
-  if (!all.empty()) throw std::invalid_argument(all);
-}
-
 }  // namespace
 
 struct Plant::Impl {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "sim/core/effect_reader.h"
 #include "sim/robot/contact.h"
@@ -299,6 +300,13 @@ std::string electric_text(const RobotModel& m) {
 }
 
 }  // namespace
+
+void require_valid(std::span<const RobotModel> robots, const PlantOptions& options) {
+  std::string all;
+  for (const std::string& problem : plant_problems(robots, options))
+    all += (all.empty() ? "" : "\n") + problem;
+  if (!all.empty()) throw std::invalid_argument(all);
+}
 
 std::uint64_t plant_fingerprint(std::span<const RobotModel> robots, const PlantOptions& options) {
   std::string text =

@@ -19,6 +19,8 @@ namespace omnihil {
 
 std::vector<std::string> robot_problems(const RobotModel& model);
 std::vector<std::string> plant_problems(std::span<const RobotModel> robots, const PlantOptions& options);
+// Throws std::invalid_argument with all of them, a line each, if there are any.
+void require_valid(std::span<const RobotModel> robots, const PlantOptions& options);
 
 // Decay rate (1/s) of the stiffest sliding mode of the four contacts at standstill. Explicit integration is
 // stable while rate * step < explicit_limit(integrator).
