@@ -97,6 +97,7 @@ void refit_nominees(const Search& search, const Fitted& parent, const std::vecto
     if (stopped) return;
     RefitSetup setup{.predictor = search.predictor,
                      .uses = search.uses,
+                     .seen = search.seen,
                      .nominal = search.nominal,
                      .seed = search.seed,
                      .stop = [&] { return stopped.load(); }};

@@ -23,6 +23,7 @@ struct Search {
   const Candidate* nominal = nullptr;
   const SignalKinds* kinds = nullptr;
   const Uses* uses = nullptr;
+  const Uses* seen = nullptr;  // the same, not whitened
   const NullModel* null = nullptr;
   JudgeContext judging;
   std::vector<const EffectEntry*> applicable;

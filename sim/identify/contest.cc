@@ -7,11 +7,11 @@ namespace omnihil {
 namespace {
 
 constexpr double kSameGain = 0.03;  // of the best one's gain: within it two gains are one
-constexpr double kTwinGain = 0.08;  // so near, an effect may be meant instead, if it is known to be confused
+constexpr double kTwinGain = 0.12;  // so near, an effect may be meant instead, if it is known to be confused
 constexpr double kSameLeft = 1.15;  // what one leaves over what the best one leaves
 constexpr double kTwinLeft = 1.5;
 constexpr double kListedLeft =
-    8.0;  // effects that are known to be confused: their forms differ from the truth's
+    20.0;  // effects that are known to be confused: their forms differ from the truth's
 constexpr double kTwinSignal = 0.98;  // cosine of signals that no refit can part
 constexpr double kNothing = 0.01;     // gain below which a draw goes to "none"
 constexpr std::size_t kMostTwins = 3;

@@ -190,7 +190,6 @@ class Diagnosing {
       out_.unknown = unknown_structure(search_, current_, out_.final_comparison);
       out_.unknown.sentence = leftover_sentence(rest, added);
     }
-    note_base_twins(out_);
     out_.next_experiment = next_experiment(dataset_, out_);
     out_.complete = !stopped_;
     say("done", 1.0);

@@ -5,21 +5,12 @@
 
 #include <algorithm>
 
-#include "sim/core/effect_registry.h"
-
 namespace omnihil {
 namespace {
 
 constexpr double kImitated = 0.03;  // share of its signal that is the effect's own
 constexpr double kLeastExplained = 0.03;
 constexpr std::size_t kMostWhere = 6;
-
-bool is_strength(const std::string& path) {
-  const std::size_t dot = path.find('.');
-  const EffectEntry* entry = find_effect(path.substr(0, dot));
-  const int row = entry != nullptr ? find_param(*entry->info, path.substr(dot + 1)) : -1;
-  return row >= 0 && entry->info->params[static_cast<std::size_t>(row)].role == ParamRole::kStrength;
-}
 
 void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& diagnosis) {
   for (const IndistinguishableSet& set : diagnosis.indistinguishable) {
@@ -52,20 +43,6 @@ void note_twins(const Round& round, Diagnosis& diagnosis) {
             fmt::format("{:.1f} % of what {} does to these signals is its own; the rest {} can do as well.",
                         100.0 * chosen.screened.kept, chosen.screened.name, chosen.screened.imitated_by),
             diagnosis);
-  }
-}
-
-void note_base_twins(Diagnosis& diagnosis) {
-  for (const std::string& effect : diagnosis.effects) {
-    for (const ParameterEstimate& p : diagnosis.final_fit.parameters) {
-      if (!p.path.starts_with(effect + ".") || p.identifiable || !is_strength(p.path)) continue;
-      for (const std::string& other : p.trades_with) {
-        if (other.starts_with(effect + ".")) continue;
-        add_set({effect, other},
-                fmt::format("{} is not determined by these data: it trades against {}.", p.path, other),
-                diagnosis);
-      }
-    }
   }
 }
 

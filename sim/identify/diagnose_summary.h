@@ -7,9 +7,6 @@ namespace omnihil {
 // The chosen effect, the contenders that cannot be told from it, and the base parameter that imitates it.
 void note_twins(const Round& round, Diagnosis& diagnosis);
 
-// Effects whose numbers the final fit could not tell from base parameters.
-void note_base_twins(Diagnosis& diagnosis);
-
 // The axes that explain most of what a comparison leaves, the most telling first; `order` of the residual
 // along the rotor's angle, 0: none stands out.
 std::vector<Where> where_of(const Comparison& comparison, double order);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/core/effect_reader.h"
+#include "sim/core/effect_registry.h"
 #include "sim/core/random.h"
 
 namespace omnihil {
@@ -17,14 +19,25 @@ constexpr double kMatters = 0.03;
 // More where the sensors' noise is most of what is left: a gain of a few per cent of noise is no effect.
 constexpr double kMattersAtFloor = 0.05;
 constexpr double kChanceMargin = 2.0;  // gain over the most that the null's replicates gave
+constexpr double kSeen = 0.015;        // fall of some signal's error energy, noise included
 constexpr double kFloorWeight = 0.05;
 constexpr double kExtrapolationLoss = 0.03;
+constexpr double kSignificant_sigmas = 2.0;
 constexpr double kPushedOut_sigmas = 3.5;     // of a base parameter's tolerance
 constexpr double kDriftAllowed_sigmas = 0.7;  // further out than it was before
 
 double at_share(Eigen::VectorXd values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<Eigen::Index>(share * static_cast<double>(values.size() - 1))];
+}
+
+// The largest relative fall of one signal's error energy, as somebody sees it who looks at the signal.
+double gain_as_seen(const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {
+  double most = 0.0;
+  for (Eigen::Index k = 0; k < std::min(parent.size(), child.size()); ++k) {
+    if (parent[k] > 0.0) most = std::max(most, 1.0 - child[k] / parent[k]);
+  }
+  return most;
 }
 
 // A base parameter that the addition pushes out of its tolerance; empty: none.
@@ -42,22 +55,51 @@ std::string pushed_out(const FitResult& parent, const FitResult& child) {
   return "";
 }
 
+// A bound that says that the law is bent to something it does not mean. A strength may stay at its neutral
+// value (one of several), a phase goes round, an exponent is a form.
+bool misused_bound(const ParameterEstimate& p, const EffectParam* row) {
+  if (!p.at_bound || row == nullptr) return false;
+  if (row->role != ParamRole::kShape) return std::abs(p.value - row->neutral) > 1e-3 * std::abs(row->typical);
+  return !row->name.starts_with("phase") && row->name != "exponent";
+}
+
+// Numbers of the effect that no drive has; empty: none.
 std::string unphysical(const FitResult& child, const std::string& name) {
+  const EffectEntry* entry = find_effect(name);
+  bool strong = entry == nullptr;
   for (const ParameterEstimate& p : child.parameters) {
-    if (!p.path.starts_with(name + ".") || !p.unphysical || std::abs(p.value) < 1e-9) continue;
-    return fmt::format("{} = {:.4g} {} is not physical", p.path, p.value, p.unit);
+    if (!p.path.starts_with(name + ".")) continue;
+    const std::string key = p.path.substr(name.size() + 1);
+    const EffectParam* row = nullptr;
+    for (std::size_t i = 0; entry != nullptr && i < entry->info->params.size(); ++i) {
+      const EffectParam& r = entry->info->params[i];
+      if (r.name == key || param_key(r, child.model.file.linear) == key) row = &r;
+    }
+    if (misused_bound(p, row)) {
+      return fmt::format("{} ends at a bound ({:.4g} {}): a symptom, not a result", p.path, p.value, p.unit);
+    }
+    if (row == nullptr || row->role == ParamRole::kShape) continue;
+    const double size = std::abs(p.value - row->neutral);
+    if (p.unphysical && size > 1e-9)
+      return fmt::format("{} = {:.4g} {} is not physical", p.path, p.value, p.unit);
+    if (size > kSignificant_sigmas * p.data_sigma || p.data_sigma <= 0.0) strong = strong || size > 0.0;
   }
-  return "";
+  return strong ? "" : "its strength is not told from zero";
 }
 
 }  // namespace
 
-Fitted fitted(const Uses& uses, FitResult fit, int jobs) {
+Fitted fitted(const Uses& uses, const Uses& seen, FitResult fit, int jobs) {
   Fitted out{.fit = std::move(fit), .residual = {}, .finite = true};
   for (std::size_t u = 0; u < kUses; ++u) {
     if (uses[u].empty()) continue;
     out.residual[u] = uses[u].residual(out.fit.model, jobs);
-    if (out.residual[u].size() != uses[u].size()) out.finite = false;
+    if (out.residual[u].size() != uses[u].size()) {
+      out.finite = false;
+      continue;
+    }
+    const Eigen::VectorXd as_seen = seen[u].residual(out.fit.model, jobs);
+    if (as_seen.size() == seen[u].size()) out.as_seen[u] = seen[u].mean_square(as_seen);
   }
   return out;
 }
@@ -177,6 +219,9 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
                   decides == Use::kHoldout ? "held-out" : "fit", 100.0 * (held.ratio - 1.0))
             : fmt::format("it takes {:.1f} % of the held-out error energy; {:.1f} % would matter",
                           100.0 * (1.0 - held.ratio), 100.0 * needed);
+  } else if (const double seen = gain_as_seen(parent.as_seen[d], child.as_seen[d]); seen < kSeen) {
+    out.why =
+        fmt::format("no signal's error falls by more than {:.1f} % in energy as it is seen", 100.0 * seen);
   } else if (held.worst > 1.0) {
     out.why = "its gain comes from a few moments of the held-out runs alone";
   } else if (out.extrapolation.ratio > 1.0 + kExtrapolationLoss && out.extrapolation.best > 1.0) {

@@ -24,10 +24,11 @@ using Residuals = std::array<Eigen::VectorXd, kUses>;
 // A fitted model and what it leaves.
 struct Fitted {
   FitResult fit;
-  Residuals residual;
-  bool finite = false;  // in every use
+  Residuals residual;                            // whitened
+  std::array<Eigen::VectorXd, kUses> as_seen{};  // mean square per kind of signal, not whitened
+  bool finite = false;                           // in every use
 };
-Fitted fitted(const Uses& uses, FitResult fit, int jobs);
+Fitted fitted(const Uses& uses, const Uses& seen, FitResult fit, int jobs);
 
 struct UseGain {
   double ratio = 1.0;

@@ -31,7 +31,7 @@ Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::
   options.profile = !setup.quick;
   options.stop = setup.stop;
   const Candidate start = with_values(candidate, unknowns, values);
-  return fitted(*setup.uses, fit(*setup.predictor, start, unknowns, options), setup.jobs);
+  return fitted(*setup.uses, *setup.seen, fit(*setup.predictor, start, unknowns, options), setup.jobs);
 }
 
 // The effect a tenth as strong: near neutral, yet with a direction for its shapes.
@@ -87,7 +87,10 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   if (ratio > 1.0) {
     // The parent, with the effect neutral, is a member of the larger family.
     FitResult same = parent.fit;
-    best = {.fit = std::move(same), .residual = parent.residual, .finite = parent.finite};
+    best = {.fit = std::move(same),
+            .residual = parent.residual,
+            .as_seen = parent.as_seen,
+            .finite = parent.finite};
   }
   return best;
 }

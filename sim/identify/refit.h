@@ -16,6 +16,7 @@ namespace omnihil {
 struct RefitSetup {
   const Predictor* predictor = nullptr;
   const Uses* uses = nullptr;
+  const Uses* seen = nullptr;          // the same, not whitened
   const Candidate* nominal = nullptr;  // whose priors hold
   std::uint64_t seed = 1;
   int jobs = 1;

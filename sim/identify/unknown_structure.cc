@@ -168,6 +168,7 @@ Found formula_of(const Search& search, const Fitted& last, const LinearBase& bas
   RefitSetup setup;
   setup.predictor = search.predictor;
   setup.uses = search.uses;
+  setup.seen = search.seen;
   setup.nominal = search.nominal;
   setup.seed = search.seed;
   setup.jobs = search.jobs;

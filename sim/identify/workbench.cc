@@ -22,12 +22,16 @@ Workbench::Workbench(const Dataset& dataset, const Candidate& nominal, const Wor
       predictor_(make_predictor(dataset, nominal, {})),
       kinds_(signal_kinds(*predictor_)),
       uses_{Evidence(*predictor_, kinds_, Use::kFit), Evidence(*predictor_, kinds_, Use::kHoldout),
-            Evidence(*predictor_, kinds_, Use::kExtrapolation)} {}
+            Evidence(*predictor_, kinds_, Use::kExtrapolation)},
+      seen_{Evidence(*predictor_, kinds_, Use::kFit, Weighing::kAsSeen),
+            Evidence(*predictor_, kinds_, Use::kHoldout, Weighing::kAsSeen),
+            Evidence(*predictor_, kinds_, Use::kExtrapolation, Weighing::kAsSeen)} {}
 
 RefitSetup Workbench::setup(bool quick, const std::function<bool()>& stop) const {
   RefitSetup s;
   s.predictor = predictor_.get();
   s.uses = &uses_;
+  s.seen = &seen_;
   s.nominal = &nominal_;
   s.seed = options_.seed;
   s.jobs = options_.jobs;
@@ -63,6 +67,7 @@ Search Workbench::search(std::vector<std::string>& not_applicable) const {
   search.nominal = &nominal_;
   search.kinds = &kinds_;
   search.uses = &uses_;
+  search.seen = &seen_;
   search.null = &null_;
   search.judging = {
       .uses = &uses_, .null = &null_, .bootstrap = {&bootstrap_[0], &bootstrap_[1], &bootstrap_[2]}};

@@ -27,6 +27,7 @@ class Workbench {
   const Predictor& predictor() const { return *predictor_; }
   const SignalKinds& kinds() const { return kinds_; }
   const Uses& uses() const { return uses_; }
+  const Uses& seen() const { return seen_; }  // not whitened
   const NullModel& null() const { return null_; }
   const Fitted& base() const { return base_; }
   const Candidate& nominal() const { return nominal_; }
@@ -49,6 +50,7 @@ class Workbench {
   std::unique_ptr<Predictor> predictor_;
   SignalKinds kinds_;
   Uses uses_;
+  Uses seen_;
   NullModel null_;
   std::vector<BlockBootstrap> bootstrap_;
   Fitted base_;

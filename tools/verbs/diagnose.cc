@@ -1,4 +1,6 @@
 // omnihil diagnose DATASET: which physical effect is the model missing.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -8,10 +10,12 @@
 #include "hil/dataset_files.h"
 #include "hil/dataset_reader.h"
 #include "hil/diagnosis_json.h"
+#include "hil/report_html.h"
 #include "hil/serve_signals.h"
 #include "tools/diagnosis_text.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
+#include "tools/program_commit.h"
 #include "tools/progress_line.h"
 #include "tools/verbs/verbs.h"
 
@@ -22,12 +26,24 @@ struct Arguments {
   std::string dataset;
   std::string model;
   std::string json;
+  std::string report;
   std::string write;
   DiagnoseOptions options;
   bool quick = false;
 
   Arguments() { options.jobs = 2; }
 };
+
+void write_report(const Arguments& a, const DatasetReading& reading, const Diagnosis& diagnosis,
+                  double elapsed_s) {
+  const std::unique_ptr<Predictor> predictor = make_predictor(*reading.dataset, *reading.nominal, {});
+  ReportInput input = report_input(*reading.dataset, *predictor, diagnosis, {.jobs = a.options.jobs});
+  input.model = a.model.empty() ? "the dataset's own" : a.model;
+  input.command = "omnihil diagnose " + a.dataset;
+  input.program = fmt::format("omnihil {} ({})", OMNIHIL_VERSION, program_commit());
+  input.elapsed_s = elapsed_s;
+  replace_file(a.report, report_html(input));
+}
 
 int run(const Arguments& a) {
   const DatasetReading reading = read_dataset(a.dataset, a.model);
@@ -63,6 +79,7 @@ int run(const Arguments& a) {
     if (!a.json.empty()) replace_file(a.json, json);
     std::fputs(diagnosis_text(diagnosis).c_str(), stdout);
   }
+  if (!a.report.empty()) write_report(a, reading, diagnosis, elapsed_s);
   return diagnosis.complete ? kExitOk : kExitInterrupted;
 }
 
@@ -76,6 +93,7 @@ void add_verb_diagnose(CLI::App& app, VerbResult& result) {
   verb->add_option("--model", a->model, "model to start from, in place of the dataset's own");
   verb->add_option("--json", a->json,
                    "diagnosis as JSON (omnihil-diagnosis/1); - : to stdout, in place of the text");
+  verb->add_option("--report", a->report, "diagnosis as one HTML file");
   verb->add_option("--write", a->write, "the mended model; a file that is there is kept as FILE.1");
   verb->add_option("--seed", a->options.seed, "of the simulated null and of the bootstrap")
       ->capture_default_str();
