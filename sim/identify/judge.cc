@@ -82,7 +82,9 @@ std::string unphysical(const FitResult& child, const std::string& name) {
     const double size = std::abs(p.value - row->neutral);
     if (p.unphysical && size > 1e-9)
       return fmt::format("{} = {:.4g} {} is not physical", p.path, p.value, p.unit);
-    if (size > kSignificant_sigmas * p.data_sigma || p.data_sigma <= 0.0) strong = strong || size > 0.0;
+    // With what the file knows of the base: where the data fix ratios alone (speed without current), the
+    // scale of every torque comes from the tolerances.
+    if (size > kSignificant_sigmas * p.sigma || p.sigma <= 0.0) strong = strong || size > 0.0;
   }
   return strong ? "" : "its strength is not told from zero";
 }
