@@ -1,4 +1,7 @@
-"""Drives: how a person moves a robot over the floor to record it. Targets in the body's frame, ramped, as open-loop duties."""
+"""Drives: how a person moves a robot over the floor to record it. Targets in the body's frame, ramped, as open-loop duties.
+
+All stay below the grip of an ordinary tyre: beyond its peak any two tyre models part ways, and nothing would be hidden.
+"""
 import math
 
 ANGLES = (55, 135, 225, 305)
@@ -19,9 +22,16 @@ def _limits(dt, a=2.0, alpha=14.0):
     return (a * dt, a * dt, alpha * dt)
 
 
+def _within(vx, vy, w, most=2.5):
+    """The twist with its turning cut so that the curve it drives needs at most `most` m/s^2 of grip."""
+    v = math.hypot(vx, vy)
+    limit = most / v if v > 0 else abs(w)
+    return vx, vy, max(-limit, min(limit, w))
+
+
 def random_drive(rng, n, dt):
     """Random drive."""
-    legs = [(round(rng.uniform(0.5, 1.2) / dt), (rng.uniform(-1.4, 1.4), rng.uniform(-1.4, 1.4), rng.uniform(-4, 4)))
+    legs = [(round(rng.uniform(0.5, 1.2) / dt), _within(rng.uniform(-1.4, 1.4), rng.uniform(-1.4, 1.4), rng.uniform(-4, 4)))
             for _ in range(40)]
     return _ramped([(round(0.2 / dt), (0, 0, 0))] + legs, n, _limits(dt))
 
@@ -44,9 +54,9 @@ def hard_starts(rng, n, dt):
     legs = [(round(0.2 / dt), (0, 0, 0))]
     for _ in range(40):
         a, v = rng.uniform(0, 2 * math.pi), rng.uniform(0.8, 1.8)
-        legs += [(round(rng.uniform(0.4, 0.7) / dt), (v * math.cos(a), v * math.sin(a), rng.choice((0, 0, -6, 6)))),
+        legs += [(round(rng.uniform(0.4, 0.7) / dt), _within(v * math.cos(a), v * math.sin(a), rng.choice((0, 0, -6, 6)))),
                  (round(rng.uniform(0.2, 0.5) / dt), (0, 0, 0))]
-    return _ramped(legs, n, _limits(dt, 3.5, 30))
+    return _ramped(legs, n, _limits(dt, 3.0, 16))
 
 
 def crawl(rng, n, dt):
