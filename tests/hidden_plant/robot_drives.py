@@ -1,6 +1,6 @@
 """Drives: how a person moves a robot over the floor to record it. Targets in the body's frame, ramped, as open-loop duties.
 
-All stay below the grip of an ordinary tyre: beyond its peak any two tyre models part ways, and nothing would be hidden.
+All stay below the grip of an ordinary tyre most of the time: a robot that spins out amplifies every difference.
 """
 import math
 

@@ -11,8 +11,8 @@
   /* body and wheels */                                                                                  \
   X(mass_kg, 2.4) X(yaw_kgm2, 0.012) X(height_m, 0.045) X(base_m, 0.0805) X(wheel_m, 0.027)                 \
   X(wheel_kgm2, 2.2e-5) X(angle_1, 55) X(angle_2, 135) X(angle_3, 225) X(angle_4, 305)                     \
-  /* tyre: magic formula along, rollers across */                                                        \
-  X(grip, 0.75) X(grip_slip, 0.10) X(slide_ratio, 0.8) X(slip_floor_m_s, 0.5) X(roller_grip, 0.02)           \
+  /* tyre: as a model file declares it */                                                                \
+  X(grip, 0.75) X(grip_slip, 0.10) X(slide_slip, 0.4) X(slide_grip, 0.6) X(slip_floor_m_s, 0.5) X(roller_grip, 0.02)           \
   /* hidden on the floor */                                                                              \
   X(brush, 0) X(brush_m_s, 0) X(brush_grip, 0.6) X(roller_drag, 0) X(roller_ripple, 0)                      \
   X(rollers, 15) X(roller_phase, 0) X(rolling, 0) X(offset_x_m, 0) X(offset_y_m, 0) X(payload_kg, 0)        \

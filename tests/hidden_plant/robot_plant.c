@@ -28,11 +28,14 @@ typedef struct {
 static double sign(double v) { return (v > 0) - (v < 0); }
 static double largest(double a, double b) { return a > b ? a : b; }
 
-// Along the wheel, over the load: the magic formula (Pacejka 2012, sec. 4.3) with its peak near x = 1, never
-// below the sliding value beyond it.
-static double magic(double x, double peak, double slide_ratio) {
-  const double f = sin(5 * atan(0.3 * fabs(x)));
-  return sign(x) * peak * (fabs(x) > 1.08 ? largest(f, slide_ratio) : f);
+// What a model file declares a tyre to be, over the load: up to the extremum, down to the asymptote, constant
+// beyond.
+static double declared(double slip, double extremum, double peak, double asymptote, double rest) {
+  const double x = fabs(slip) / extremum, t = (fabs(slip) - extremum) / (asymptote - extremum);
+  const double f = x < 1   ? x * (1.5 - 0.5 * x * x) * peak
+                   : t < 1 ? peak + (rest - peak) * t * t * (3 - 2 * t)
+                           : rest;
+  return sign(slip) * f;
 }
 
 // Brush model (Pacejka 2012, sec. 3.2): bristles that slide one after another.
@@ -126,13 +129,16 @@ static void step(Robot *r, const double *duty, double dribbler, double h) {
     const double along = -r->sin_a[k] * bx + r->cos_a[k] * by + p->base_m * r->w;
     const double across = r->cos_a[k] * bx + r->sin_a[k] * by;
     const double rim = r->radius[k] * r->rim[k], load = r->load[k];
-    const double full = p->grip_slip * largest(largest(fabs(along), fabs(rim)), p->slip_floor_m_s);
-    double f = p->brush > 0 ? load * brush((rim - along) / (full + p->brush_m_s), p->brush_grip)
-                            : load * magic((rim - along) / full, p->grip, p->slide_ratio);
+    const double fast = largest(largest(fabs(along), fabs(rim)), p->slip_floor_m_s);
+    double f =
+        load * (p->brush > 0
+                    ? brush((rim - along) / (p->grip_slip * fast + p->brush_m_s), p->brush_grip)
+                    : declared((rim - along) / fast, p->grip_slip, p->grip, p->slide_slip, p->slide_grip));
     if (p->roller_ripple != 0)
       f += load * p->roller_ripple *
            (sin(p->rollers * r->phi[k] + p->roller_phase) + 0.15 * sin(2 * p->rollers * r->phi[k]));
-    double g = -load * magic(across / largest(fabs(across), p->slip_floor_m_s), p->roller_grip, 0.5);
+    double g =
+        -load * declared(across / largest(fabs(across), p->slip_floor_m_s), 1, p->roller_grip, 2, 0.01);
     g -= load * p->roller_drag * 2 / M_PI * atan(across / 0.01);
     fx += -r->sin_a[k] * f + r->cos_a[k] * g;
     fy += r->cos_a[k] * f + r->sin_a[k] * g;
