@@ -1,6 +1,7 @@
 #include "hil/csv_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -129,6 +130,11 @@ class CsvReader {
       say(1, 1, "", "",
           line.find(';') != std::string_view::npos ? "is separated by semicolons" : "is separated by tabs",
           "commas between cells and a point as decimal mark are needed");
+    }
+    const auto missing = [](const auto& column) { return !column.has_value(); };
+    if (table_.header.size() > 1 && std::all_of(table_.columns.begin(), table_.columns.end(), missing)) {
+      say(1, 1, "", line.substr(0, 40), "the first line names none of the columns that the channels ask for",
+          fmt::format("needed: {}", fmt::join(wanted, ", ")));
     }
     double number = 0.0;
     const auto is_number = [&](const std::string& name) { return parse_number(name, number); };
