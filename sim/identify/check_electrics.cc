@@ -3,7 +3,9 @@
 // With a current: i = u / R - (k / R) w over windows, so that R and k come out separately: R far from the
 // model's says the current has a wrong scale, k far from it says the speed has. Without a current the speed
 // per volt alone: w = u / k' - friction, k' = k (1 + R b / k^2). Windows of 0.2 s leave inductance and delays
-// out. Effects move these numbers by some ten per cent at most; what is said here is more.
+// out. Effects move these numbers by some ten per cent, rarely by half: a fault needs a factor that no effect
+// brings, or the same factor in the acceleration (J dw/dt = k i - friction), which a wrong back-EMF leaves
+// alone. Runs of another kind of motion (extrapolation) are left out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +21,7 @@ using Grade = DataFinding::Grade;
 constexpr double kWindow_s = 0.2;
 constexpr std::size_t kLeastWindows = 15;
 constexpr double kDoubtful = 0.28, kWrong = 0.33;  // |log| of a ratio that should be 1
+constexpr double kWrongAlone = 0.8;                // likewise, where the acceleration does not confirm it
 constexpr double kTolerances = 4.0;                // of the model's number
 constexpr double kWrongCurrent = 1.1;              // |log|: a factor of three
 
@@ -31,7 +34,7 @@ Windows windows_of(const CheckContext& data, std::size_t wheel) {
   const double gear = nominal_value(data.nominal, "gear.ratio").value_or(1.0);
   for (const RunView& view : data.runs) {
     const DriveView& drive = view.drives[wheel];
-    if (view.run->steady || view.period_s > 0.05) continue;
+    if (view.run->steady || view.period_s > 0.05 || view.run->use == Use::kExtrapolation) continue;
     if (drive.position == nullptr && drive.velocity == nullptr) continue;
     std::vector<double> u = asked_voltage(data, view, drive);
     if (u.empty()) continue;
@@ -72,17 +75,45 @@ std::string speed_name(const CheckContext& data, std::size_t wheel) {
   return "";
 }
 
-void say_speed(const CheckContext& data, std::size_t wheel, double ratio, const char* how,
+void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double confirmed, const char* how,
                std::vector<DataFinding>& findings) {
   const double tolerance = kTolerances * tolerance_of(data.nominal, "motor.torque_constant_Nm_per_A");
   const double off = std::abs(std::log(ratio));
   if (off < std::max(kDoubtful, tolerance)) return;
   const std::string name = speed_name(data, wheel);
+  const bool same = std::log(confirmed) * std::log(ratio) > 0.0 && std::abs(std::log(confirmed)) > 0.5 * off;
+  const double wrong = std::max(same ? kWrong : kWrongAlone, tolerance);
   findings.push_back(
-      {off > std::max(kWrong, tolerance) ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,
+      {off > wrong ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,
        fmt::format("the speed from {} is {:.3g} times what {} and the model's torque constant "
                    "allow: a wrong scale (gear ratio, counts_per_rev or a unit), or not this motor",
                    name, ratio, how)});
+}
+
+// Acceleration over what current and nominal inertia allow; 1 where it cannot be told.
+double acceleration_ratio(const CheckContext& data, std::size_t wheel) {
+  constexpr double kShortWindow_s = 0.02;
+  const double gear = nominal_value(data.nominal, "gear.ratio").value_or(1.0);
+  std::vector<double> torque, acceleration, speed, side;
+  const DriveParams<double> nominal = drive_of(data.nominal);
+  for (const RunView& view : data.runs) {
+    const DriveView& drive = view.drives[wheel];
+    if (view.run->steady || drive.current == nullptr || view.period_s > 0.005) continue;
+    const std::vector<double> none(view.run->time_s.size(), 0.0);
+    const WindowMeans w = window_means(view, drive, none, kShortWindow_s);
+    for (std::size_t k = 1; k + 1 < w.speed.size(); ++k) {
+      const double span_s = w.time_s[k + 1] - w.time_s[k - 1];
+      if (span_s > 3.0 * kShortWindow_s || !std::isfinite(w.current[k])) continue;
+      torque.push_back(nominal.torque_constant_Nm_per_A * w.current[k]);
+      acceleration.push_back((w.speed[k + 1] - w.speed[k - 1]) * gear / span_s);
+      speed.push_back(w.speed[k] * gear);
+      side.push_back(w.speed[k] > 0.0 ? 1.0 : -1.0);
+    }
+  }
+  const LineFit line = fit_line({acceleration, speed, side}, torque);
+  if (line.coefficient.empty() || line.explained < 0.5 || line.coefficient[0] <= 5.0 * line.sigma[0])
+    return 1.0;
+  return inertia_at_rotor(nominal) / line.coefficient[0];
 }
 
 // True: the current told the scales.
@@ -112,7 +143,9 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
                      "scale or unit{}",
                      name, current_ratio, thousand ? " (milliamperes, mA, in place of A)" : "")});
   }
-  say_speed(data, wheel, constant / (-b / a), "voltage, current", findings);
+  const double confirmed =
+      data.dataset.rig == Rig::kAxis ? acceleration_ratio(data, wheel) : constant / (-b / a);
+  say_speed(data, wheel, constant / (-b / a), confirmed, "voltage, current", findings);
   return true;
 }
 
@@ -141,7 +174,7 @@ void by_speed_per_volt(const CheckContext& data, std::size_t wheel, const Window
     }
     return;
   }
-  say_speed(data, wheel, ratio, "the voltage", findings);
+  say_speed(data, wheel, ratio, 1.0, "the voltage", findings);
 }
 
 }  // namespace

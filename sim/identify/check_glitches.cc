@@ -18,6 +18,7 @@ namespace {
 constexpr double kOutstanding = 12.0;  // robust sigmas of the second difference
 constexpr double kQuanta = 4.0;
 constexpr std::size_t kSustained = 4;  // samples before and after that a speed must last
+constexpr double kFarBeyond = 4.0;     // the bound: less may be a late time stamp
 constexpr double kShareFault = 5e-4;   // of the rows
 
 struct Samples {
@@ -69,6 +70,7 @@ void check_signal(const RunView& view, const std::string& name, const std::vecto
   const double robust = 1.4826 * median_of(sizes), highest = sustained_speed(s);
   std::size_t count = 0, first = 0;
   double largest = 0.0;
+  bool far = false;
   for (std::size_t k = 1; k + 1 < s.x.size(); ++k) {
     const double period = std::max(s.t[k] - s.t[k - 1], s.t[k + 1] - s.t[k]);
     const double bound = std::max({kOutstanding * robust, kQuanta * quantum, highest * period});
@@ -78,9 +80,11 @@ void check_signal(const RunView& view, const std::string& name, const std::vecto
       continue;
     if (count++ == 0) first = k;
     largest = std::max(largest, std::abs(second[k]));
+    far = far || std::abs(second[k]) > kFarBeyond * bound;
   }
   if (count == 0) return;
-  const bool many = count >= 3 && static_cast<double>(count) > kShareFault * static_cast<double>(s.x.size());
+  const bool many =
+      far && count >= 3 && static_cast<double>(count) > kShareFault * static_cast<double>(s.x.size());
   findings.push_back(
       {many ? DataFinding::Grade::kFault : DataFinding::Grade::kDoubt, "glitch", view.run->file, name,
        largest,

@@ -80,8 +80,8 @@ void check_position_against_speed(const CheckContext& data, std::vector<DataFind
       if (s < 0.0) continue;  // said by check_direction
       if (std::abs(s - 1.0) > std::max(kScaleSaid, 5.0 * line.sigma[0])) {
         findings.push_back(
-            {std::abs(s - 1.0) > 0.15 ? Grade::kFault : Grade::kDoubt, "wrong_scale", view.run->file,
-             drive.position_name, s,
+            {std::abs(s - 1.0) > 0.15 ? Grade::kFault : Grade::kDoubt, "position_against_speed",
+             view.run->file, drive.position_name, s,
              fmt::format(
                  "{} moves {:.4g} times as far as the integral of velocity: one of the two has a wrong "
                  "scale (unit, counts_per_rev or gear ratio){}",

@@ -55,7 +55,8 @@ inline Bench simulated_bench(const BenchRecipe& recipe) {
   }
   AxisBench bench{.title = "simulated", .model = model, .runs = {}, .noise = {}};
   for (std::size_t r = 0; r < recipe.excitations.size(); ++r) {
-    AxisInput in{.kind = recipe.drive, .time_s = {}, .command = {}};
+    AxisInput in;
+    in.kind = recipe.drive;
     in.encoder_counts_per_turn = recipe.counts_per_turn;
     in.noise_seed = recipe.seed + r;
     const ExcitationOptions options{.duration_s = recipe.duration_s, .seed = recipe.seed + r};
