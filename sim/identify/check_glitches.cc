@@ -18,7 +18,7 @@ namespace {
 constexpr double kOutstanding = 12.0;  // robust sigmas of the second difference
 constexpr double kQuanta = 4.0;
 constexpr std::size_t kSustained = 4;  // samples before and after that a speed must last
-constexpr double kFarBeyond = 4.0;     // the bound: less may be a late time stamp
+constexpr double kFarBeyond = 2.5;     // the bound: less may be a late time stamp
 constexpr double kShareFault = 5e-4;   // of the rows
 
 struct Samples {
