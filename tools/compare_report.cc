@@ -40,10 +40,12 @@ std::string error_table(const CompareReport& r) {
 }
 
 std::string worst_text(const CompareReport& r) {
+  constexpr int kShown = 4;  // of each use; all are in the JSON
   std::string out;
   for (const Use use : kAllUses) {
+    int shown = 0;
     for (const WorstRegime& w : r.comparison.worst) {
-      if (w.use == use) out += fmt::format("{:<14}{}\n", use_name(use), w.sentence);
+      if (w.use == use && shown++ < kShown) out += fmt::format("{:<14}{}\n", use_name(use), w.sentence);
     }
   }
   return out.empty() ? "" : "\nWhere it is worst\n" + out;

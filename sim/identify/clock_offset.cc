@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace omnihil {
@@ -14,19 +15,37 @@ constexpr std::size_t kLeastSamples = 200;  // per stretch
 
 struct Stretch {
   const ComparedSignal* signal;
-  const std::vector<double>* model;
+  std::vector<double> model;  // of the whole run, without holes
   std::size_t from, to;
   double period_s;
 };
 
-double squared_error(const Stretch& s, int lag) {
+// Straight lines between the values that are there: a camera's model stands only at its frames.
+std::vector<double> without_holes(const std::vector<double>& model) {
+  std::vector<double> out = model;
+  std::size_t last = model.size();
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    if (!std::isfinite(model[k])) continue;
+    for (std::size_t i = last + 1; last < model.size() && i < k; ++i) {
+      const double share = static_cast<double>(i - last) / static_cast<double>(k - last);
+      out[i] = model[last] + share * (model[k] - model[last]);
+    }
+    last = k;
+  }
+  return out;
+}
+
+// Mean over the samples that both have; none when there are too few.
+double mean_square(const Stretch& s, int lag) {
+  constexpr std::size_t kLeastCommon = 30;
   double sum = 0.0;
+  std::size_t n = 0;
   for (std::size_t k = s.from; k < s.to; ++k) {
     const auto then = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) - lag);
-    const double e = s.signal->measured[k] - (*s.model)[then];
-    if (std::isfinite(e)) sum += e * e;
+    const double e = s.signal->measured[k] - s.model[then];
+    if (std::isfinite(e)) sum += e * e, ++n;
   }
-  return sum;
+  return n < kLeastCommon ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(n);
 }
 
 struct Best {
@@ -37,12 +56,13 @@ struct Best {
 Best best_lag(const Stretch& s) {
   const int reach = std::clamp(static_cast<int>(kMostSeconds / s.period_s), 3, kMostSteps);
   std::vector<double> error;
-  for (int lag = -reach; lag <= reach; ++lag) error.push_back(squared_error(s, lag));
+  for (int lag = -reach; lag <= reach; ++lag) error.push_back(mean_square(s, lag));
   const auto at = static_cast<std::size_t>(std::min_element(error.begin(), error.end()) - error.begin());
   Best best{.lag = static_cast<double>(at) - reach,
             .at_zero = error[static_cast<std::size_t>(reach)],
             .least = error[at]};
-  if (at == 0 || at + 1 == error.size()) return best;
+  if (!std::isfinite(best.at_zero)) return {};
+  if (at == 0 || at + 1 == error.size() || !std::isfinite(error[at - 1] + error[at + 1])) return best;
   const double bend = error[at - 1] - 2.0 * error[at] + error[at + 1];
   if (bend <= 0.0) return best;
   const double shift = 0.5 * (error[at - 1] - error[at + 1]) / bend;
@@ -65,7 +85,7 @@ std::vector<Stretch> stretches_of(const Predictor& predictor, std::span<const Pr
       const std::size_t usable = n - 2 * kMostSteps;
       const std::size_t parts = std::min<std::size_t>(kStretches, usable / kLeastSamples);
       for (std::size_t p = 0; p < parts; ++p) {
-        out.push_back({&signal, &prediction.values[s], kMostSteps + usable * p / parts,
+        out.push_back({&signal, without_holes(prediction.values[s]), kMostSteps + usable * p / parts,
                        kMostSteps + usable * (p + 1) / parts, period_s});
       }
     }
@@ -82,9 +102,9 @@ std::optional<ClockOffset> clock_offset(const Predictor& predictor, std::span<co
   std::vector<double> seconds, weights;
   for (const Stretch& s : stretches) {
     const Best best = best_lag(s);
-    const double gain = best.at_zero - best.least;
-    at_zero += best.at_zero;
-    least += best.least;
+    const double gain = (best.at_zero - best.least) * static_cast<double>(s.to - s.from);
+    at_zero += best.at_zero * static_cast<double>(s.to - s.from);
+    least += best.least * static_cast<double>(s.to - s.from);
     period_s = s.period_s;
     seconds.push_back(best.lag * s.period_s);
     weights.push_back(gain);

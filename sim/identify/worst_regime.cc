@@ -47,7 +47,9 @@ std::string range_text(const RegimeError& regime, std::size_t first, std::size_t
   const std::string unit = regime.unit.empty() || regime.unit == "1" ? "" : " " + regime.unit;
   const std::string what = words.what.empty() ? "" : fmt::format(" {}", words.what);
   const double from = regime.bins[first].from, to = regime.bins[last].to;
-  if (first == 0) return fmt::format("{} {:.3g}{}{}", words.low, to, unit, what);
+  const double whole = regime.bins.back().to - regime.bins.front().from;
+  const bool from_the_start = from - regime.bins.front().from < 1e-3 * whole;  // standstill itself left out
+  if (from_the_start) return fmt::format("{} {:.3g}{}{}", words.low, to, unit, what);
   if (last + 1 == regime.bins.size()) return fmt::format("{} {:.3g}{}{}", words.high, from, unit, what);
   return fmt::format("between {:.3g} and {:.3g}{}{}", from, to, unit, what);
 }

@@ -42,6 +42,21 @@ TEST(ClockOffset, IsFoundToAFractionOfAPeriod) {
   }
 }
 
+// A camera's frames: one row in twelve.
+TEST(ClockOffset, IsFoundInSparseSignalsToo) {
+  FakePredictor fake;
+  std::vector<double> measured, model;
+  for (int i = 0; i < 12000; ++i) {
+    const double t = i * 1e-3;
+    measured.push_back(i % 12 == 0 ? motion(t - 0.02) : NAN);
+    model.push_back(i % 12 == 0 ? motion(t) : NAN);
+  }
+  fake.add(Use::kFit, measured, model);
+  const auto offset = clock_offset(fake, predictions_of(fake), "velocity");
+  ASSERT_TRUE(offset);
+  EXPECT_NEAR(offset->seconds, 0.02, 1e-3);
+}
+
 TEST(ClockOffset, IsNotClaimedWhereThereIsNone) {
   const FakePredictor fake = late_by(0.0);
   const auto offset = clock_offset(fake, predictions_of(fake), "velocity");
