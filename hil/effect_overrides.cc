@@ -25,13 +25,13 @@ bool opens_section(const std::string& line) {
   return first != std::string::npos && line[first] == '[';
 }
 
-// The text without one section.
+// The text without one section and those below it.
 std::string without(const std::string& text, const std::string& section) {
   std::istringstream lines(text);
   std::string out, line;
   bool inside = false;
   while (std::getline(lines, line)) {
-    if (opens_section(line)) inside = section_of(line) == section;
+    if (opens_section(line)) inside = (section_of(line) + ".").starts_with(section + ".");
     if (!inside) out += line + "\n";
   }
   return out;

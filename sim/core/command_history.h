@@ -5,8 +5,10 @@
 //
 // The mean over an interval is piecewise linear in the interval's place, so a delay has an honest derivative
 // at every resolution, which the value at an instant would not have.
-// Remembers the last 256 changes; before the oldest, its value is taken to have held for ever.
+// Remembers the last 2048 changes, 0.1 s of them at 20 kHz; before the oldest, its value is taken to have
+// held for ever.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -14,7 +16,7 @@
 
 namespace omnihil {
 
-inline constexpr int kCommandChanges = 256;  // a power of two; 0.18 s of changes at 1.4 kHz
+inline constexpr int kCommandChanges = 2048;  // a power of two
 
 struct CommandHistory {
   struct Change {
@@ -35,6 +37,19 @@ struct CommandHistory {
   const Change& newest() const { return changes[(count - 1) % kCommandChanges]; }
   const Change& at(std::uint64_t number) const { return changes[number % kCommandChanges]; }
   std::uint64_t oldest() const { return count > kCommandChanges ? count - kCommandChanges : 0; }
+  // The number of the first change at or after a time; `count` if there is none.
+  std::uint64_t first_from(double time_s) const {
+    std::uint64_t low = oldest(), high = count;
+    while (low < high) {
+      const std::uint64_t middle = low + (high - low) / 2;
+      if (at(middle).start_s < time_s) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return low;
+  }
 };
 
 // Mean over [start, start + length] of the held values; the newest holds on. 0 when nothing was asked yet.
@@ -44,12 +59,13 @@ T mean_over(const CommandHistory& history, const T& start_s, double length_s) {
   const T end_s = start_s + length_s;
   T sum = T(0);
   T segment_end_s = end_s;
-  for (std::uint64_t n = history.count; n-- > history.oldest();) {
+  const std::uint64_t oldest = history.oldest();
+  for (std::uint64_t n = std::max(history.first_from(value_of(end_s)), oldest + 1); n-- > oldest;) {
     const auto& change = history.at(n);
-    const bool first = n == history.oldest();
-    if (!first && change.start_s >= value_of(end_s)) continue;
+    const bool first = n == oldest;
     // mean = 1/h sum over segments of value * overlap
-    if (first || change.start_s <= value_of(start_s)) {
+    // A change at the very start is parted off with no overlap: its share's derivative is there all the same.
+    if (first || change.start_s < value_of(start_s)) {
       sum += (segment_end_s - start_s) * change.value;
       break;
     }

@@ -73,6 +73,9 @@ enum ClaimBit : std::uint32_t {
   kOdd = 1u << 1,           // speed, current, voltage and torque reversed: the effect reversed
   kConservative = 1u << 2,  // its torque does no work over a turn
   kRandom = 1u << 3,        // draws random numbers: needs a seed
+  // At neutral no signal changes with its strength to first order (a limit that nothing reaches, a square).
+  // A fit that starts there alone never leaves: give it a second start away from neutral.
+  kFlatAtNeutral = 1u << 4,
 };
 
 enum RigsBit : std::uint32_t { kOnAxis = 1u << 0, kOnRobot = 1u << 1, kOnBoth = 3u };
@@ -103,10 +106,11 @@ struct EffectInfo {
   std::string_view source;  // author, year, number
   std::string_view cannot;  // what it does not represent
   Place place = Place::kTorque;
-  std::array<std::string_view, 8> twins{};            // ids, or base parameters by path; as many as there are
-  std::string_view reveals;                           // the experiment, and the signal in which it shows
-  std::string_view visible;                           // the smallest size that can be seen, in words
-  double (*min_visible)(const SensorSet&) = nullptr;  // of the first parameter; null: `visible` says why not
+  std::array<std::string_view, 8> twins{};  // ids, or base parameters by path; as many as there are
+  std::string_view reveals;                 // the experiment, and the signal in which it shows
+  std::string_view visible;                 // the smallest size that can be seen, in words
+  // Of the first strength, by the simple estimator that `visible` names; null: `visible` says why not.
+  double (*min_visible)(const SensorSet&) = nullptr;
   std::uint32_t claims = kClaimNone;
   std::uint32_t rigs = kOnBoth;
   std::span<const EffectParam> params;
@@ -116,5 +120,12 @@ struct EffectInfo {
   std::string_view needs = "";
   EffectPlot plot{};
 };
+
+// The row that an effect's size is told by: its first strength.
+constexpr std::size_t first_strength(const EffectInfo& info) {
+  std::size_t row = 0;
+  while (row + 1 < info.params.size() && info.params[row].role != ParamRole::kStrength) ++row;
+  return row;
+}
 
 }  // namespace omnihil

@@ -90,12 +90,14 @@ struct TorquePort {
   T omega_output_rad_s = T(0);
   T theta_output_rad = T(0);
   T tau_motor_Nm = T(0);  // electromagnetic, mean expected over the sub-step
-  T tau_load_Nm = T(0);   // at the rotor: gravity and everything outside, positive accelerates
   T gear_ratio = T(1);
   T inertia_kg_m2 = T(0);  // of all that turns with the rotor
   double dt_s = 0.0;
   // changes
   T tau_Nm = T(0);  // added to the rotor, positive accelerates
+  // At the rotor, positive accelerates: starts as the base model's gravity and everything outside, for laws
+  // that look at the load. An effect that is a load adds itself here too; only tau_Nm moves anything.
+  T tau_load_Nm = T(0);
   T friction_positive_Nm =
       T(0);  // level that opposes motion in the positive direction and holds at zero; >= 0
   T friction_negative_Nm = T(0);

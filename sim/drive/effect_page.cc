@@ -24,6 +24,8 @@ std::string claims_of(const EffectInfo& info) {
   add(kOdd, "everything reversed, it is reversed");
   add(kConservative, "does no work over a turn");
   add(kRandom, "draws random numbers: the same for the same seed");
+  add(kFlatAtNeutral,
+      "at neutral no signal changes with it to first order: a fit needs a start away from neutral");
   return out;
 }
 
@@ -70,8 +72,8 @@ std::string visible_of(const EffectInfo& info) {
   const SensorSet s;
   return fmt::format(
       "{}. About {:.2g} {} with {:g} counts per turn, {:g} Hz, {:g} A and {:g} V of noise over {:g} s.",
-      info.visible, info.min_visible(s), info.params[0].unit, s.counts_per_turn, s.rate_Hz, s.current_sigma_A,
-      s.voltage_sigma_V, s.duration_s);
+      info.visible, info.min_visible(s), info.params[first_strength(info)].unit, s.counts_per_turn, s.rate_Hz,
+      s.current_sigma_A, s.voltage_sigma_V, s.duration_s);
 }
 
 }  // namespace
@@ -111,8 +113,9 @@ std::string effect_page(const EffectEntry& entry) {
   if (!claims.empty()) out += "Tested for it:\n\n" + claims + "\n";
   const DriveParams<double> drive = demonstration_drive();
   const std::vector<EffectUse> uses{typical_use(entry, &drive)};
+  const EffectParam& row = info.params[first_strength(info)];
   out += fmt::format("## In a model file\n\n```toml{}```\n\nOn a command line: `--with {}.{}={:g}`\n",
-                     write_effects(uses, false), info.id, info.params[0].name, info.params[0].typical);
+                     write_effects(uses, false), info.id, row.name, row.typical);
   return out;
 }
 

@@ -8,7 +8,7 @@
 //   delays, resonance prbs    one of -1, 1 for multiples of 20 ms                                      fits
 //   in general creep   triangle of a tenth of full scale, 16 s per period                       friction at
 //   rest, cogging
-// Source: Ljung, System Identification, 2nd ed. 1999, sec. 13.3 (inputs).
+// Source: Ljung, System Identification, 2nd ed. 1999 (inputs).
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -21,8 +21,8 @@ struct ActuatorDelay {
       .id = "actuator_delay",
       .title = "Actuator delay",
       .equation = "u(t) -> mean of u over [t - d, t - d + h], h the sub-step",
-      .source = "Ljung, System Identification, 2nd ed. 1999, sec. 4.2 (time delay of the input)",
-      .cannot = "vary from packet to packet, drop or reorder commands; delays beyond the last 256 changes",
+      .source = "Ljung, System Identification, 2nd ed. 1999 (time delay of the input)",
+      .cannot = "vary from packet to packet, drop or reorder commands; delays beyond the last 2048 changes",
       .place = Place::kCommand,
       .twins = {"motor.inductance_H", "winding_inductance", "sampling_delay"},
       .reveals = "chirp, PRBS or steps of the duty: speed later by the same time at every frequency",
@@ -32,6 +32,8 @@ struct ActuatorDelay {
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.35, .to_s = 0.6},
   };
+
+  static_assert(kParams[kDelay].upper * 20e3 < kCommandChanges, "the longest delay, commands at 20 kHz");
 
   template <typename T>
   static void apply(const T* p, T*, CommandPort<T>& port) {

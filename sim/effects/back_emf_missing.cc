@@ -22,7 +22,9 @@ struct BackEmfMissing {
       .id = "back_emf_missing",
       .title = "Back-EMF without speed",
       .equation = "e = k_e ((1 - f) omega + f (1 rad/s)); f = 1: tau = (k/R) u - k/(R k'), k' = 1 / k_e",
-      .source = "an SSL simulator paper's eq. 7 as printed; with the speed factor: Hanselman 2003, ch. 4",
+      .source =
+          "Bakhshandeh and Sharbafi 2012, eq. 7 as printed; with the speed factor: Hanselman, Brushless "
+          "Permanent Magnet Motor Design, 2nd ed. 2003",
       .cannot =
           "be a property of a motor: energy is not kept. A fit that wants it says that a recording or a "
           "model "

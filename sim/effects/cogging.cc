@@ -30,7 +30,7 @@ struct Cogging {
   enum Param { kAmplitude, kOrder, kPhase, kFirstHarmonic, kHighest = kFirstHarmonic + 2 * (kHarmonics - 1) };
   static constexpr int kDerived = 1;  // the highest harmonic in use
 
-  // Order of a turn: least common multiple of poles and slots (Hanselman 2003, ch. 8).
+  // Order of a turn: least common multiple of poles and slots (Hanselman 2003).
   static double order_of(const DriveParams<double>& drive) {
     return drive.pole_pairs > 0 && drive.slots > 0 ? std::lcm(2 * drive.pole_pairs, drive.slots) : 48.0;
   }
@@ -90,7 +90,7 @@ struct Cogging {
       .id = "cogging",
       .title = "Cogging",
       .equation = "tau += A sin(n theta + p) + sum_k A_k sin(k n theta + p_k), theta of the rotor",
-      .source = "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003, ch. 8",
+      .source = "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003",
       .cannot =
           "change with current (torque_ripple does), with temperature or with the axial position of the "
           "rotor",

@@ -29,7 +29,7 @@ struct CommutationMisalignment {
           "L "
           "|omega i|)",
       .source =
-          "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003, ch. 10 (cosine); second term "
+          "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003 (cosine); second term "
           "ours: "
           "the current lags its sector by about q, and commutating early makes up for it",
       .cannot =

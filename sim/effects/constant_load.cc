@@ -23,7 +23,9 @@ struct ConstantLoad {
       .id = "constant_load",
       .title = "Constant load",
       .equation = "tau_out = M; at the rotor M / N",
-      .source = "Newton 1687; catalogue of parasitic loads: Armstrong-Helouvry, 1991, sec. 2.4",
+      .source =
+          "Newton 1687; catalogue of parasitic loads: Armstrong-Helouvry, Control of Machines with Friction, "
+          "1991",
       .cannot = "depend on position (gravity_load does), start or end during a run",
       .place = Place::kTorque,
       .twins = {"friction_asymmetry", "floor_tilt"},

@@ -23,7 +23,7 @@ struct CoulombFriction {
       .id = "coulomb_friction",
       .title = "Coulomb friction",
       .equation = "tau_friction = -c sgn(omega); at rest the rotor holds while |tau_other| <= c",
-      .source = "Coulomb 1785; Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30(7), 1994, sec. 2.1",
+      .source = "Coulomb 1785; Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30(7), 1994",
       .cannot =
           "a higher level at low speed (stribeck_friction), elastic creep before sliding (lugre_friction)",
       .place = Place::kTorque,

@@ -21,7 +21,7 @@ struct CurrentLimit {
       .title = "Current limit",
       .equation = "|i| <= 1 / q, q = inverse_current_per_A; the least of all limits holds",
       .source =
-          "Mohan, Undeland, Robbins, Power Electronics, 3rd ed. 2003, sec. 8-6 (current-regulated "
+          "Mohan, Undeland, Robbins, Power Electronics, 3rd ed. 2003 (current-regulated "
           "bridge); ideal chopper: our simplification",
       .cannot = "foldback over time, a limit of the bus current, overshoot and ripple of a real chopper",
       .place = Place::kBridge,
@@ -35,7 +35,7 @@ struct CurrentLimit {
             // One over the peak current of a small drive (10 A), from which the noise leaves something.
             return 1.0 / 10.0 * (1.0 + 3.0 * s.current_sigma_A / 10.0);
           },
-      .claims = kOdd,
+      .claims = kOdd | kFlatAtNeutral,
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "motor_current", .from_s = 0.0, .to_s = 2.0},
   };

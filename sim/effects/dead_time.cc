@@ -35,7 +35,7 @@ struct DeadTime {
       .title = "Dead time and device drop",
       .equation = "u -= V_d i / sqrt(i^2 + i_w^2)",
       .source =
-          "Murai, Watanabe, Iwasaki, IEEE Trans. Ind. Appl. 23(4), 1987 (mean loss V_bus t_d f_pwm against "
+          "Murai, Watanabe, Iwasaki, IEEE Trans. Ind. Appl., 1987 (mean loss V_bus t_d f_pwm against "
           "the current); root: our smoothing over the ripple current",
       .cannot =
           "the distortion within an electrical turn (sixth order), change with bus voltage or PWM frequency",

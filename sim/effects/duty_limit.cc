@@ -20,8 +20,7 @@ struct DutyLimit {
       .id = "duty_limit",
       .title = "Duty limit",
       .equation = "|D| <= 1 - cut",
-      .source =
-          "Mohan, Undeland, Robbins, Power Electronics, 3rd ed. 2003, sec. 8-2 (range of the modulation)",
+      .source = "Mohan, Undeland, Robbins, Power Electronics, 3rd ed. 2003 (range of the modulation)",
       .cannot =
           "steps of a coarse PWM timer, over-modulation; a drive asked for a current or torque has no "
           "duty to limit",
@@ -30,13 +29,14 @@ struct DutyLimit {
       .reveals =
           "ramp of the duty to full, both ways: speed flat above one duty, while the current is far "
           "from flat when loaded",
-      .visible = "the cut whose loss of speed is three times the speed's noise of one second at full duty",
+      .visible =
+          "the cut whose loss of speed is three counts of the encoder in a tenth of a second at full duty",
       .min_visible =
           [](const SensorSet& s) {
-            // Speed from two counts one second apart, of 400 rad/s at full duty.
-            return 3.0 * 6.283185307179586 / s.counts_per_turn / 400.0;
+            // Speed from two counts a tenth of a second apart, of 400 rad/s at full duty.
+            return 3.0 * 6.283185307179586 / s.counts_per_turn / (400.0 * 0.1);
           },
-      .claims = kOdd,
+      .claims = kOdd | kFlatAtNeutral,
       .params = kParams,
       .plot = {.excitation = "ramp", .x = "duty", .y = "velocity", .from_s = 0.0, .to_s = 8.0},
   };

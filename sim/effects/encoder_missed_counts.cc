@@ -27,7 +27,7 @@ struct EncoderMissedCounts {
       .id = "encoder_missed_counts",
       .title = "Missed encoder counts",
       .equation = "lost += direction * (2 pi / counts) * Poisson(p * counts passed); angle = theta - lost",
-      .source = "Kingman, Poisson Processes, 1993, sec. 1.1 (rare independent losses); model: ours",
+      .source = "Kingman, Poisson Processes, 1993 (rare independent losses); model: ours",
       .cannot =
           "losses that come in bursts or only at high speed, counts that are seen twice; direction is "
           "that at the end of a sample. Expected values (a fit) are p times the way",

@@ -30,8 +30,7 @@ struct FrictionAsymmetry {
       .id = "friction_asymmetry",
       .title = "Friction asymmetry",
       .equation = "c+ = c (1 + r_c), c- = c (1 - r_c); b+ = b (1 + r_b), b- = b (1 - r_b)",
-      .source =
-          "Armstrong-Helouvry, Control of Machines with Friction, 1991, sec. 2.4 (direction dependence)",
+      .source = "Armstrong-Helouvry, Control of Machines with Friction, 1991 (direction dependence)",
       .cannot =
           "act without friction: it parts what the motor and coulomb_friction have, not Stribeck, LuGre and "
           "load-dependent parts",

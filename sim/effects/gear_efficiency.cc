@@ -24,8 +24,8 @@ struct GearEfficiency {
       .title = "Gear efficiency",
       .equation = "tau_out = eta^sgn(P) N tau_motor, eta = 1 - loss, P = tau_motor omega",
       .source =
-          "Pelchen, Schweiger, Otter, Modelica 2002, Modeling and Simulating the Efficiency of Gearboxes, "
-          "eqs. 1 to 4",
+          "Pelchen, Schweiger, Otter, Modeling and Simulating the Efficiency of Gearboxes and of Planetary "
+          "Gearboxes, 2nd International Modelica Conference, 2002",
       .cannot =
           "lose anything of a load that the motor does not oppose (load_dependent_friction does); leave out "
           "the torque that accelerates the rotor before the gear; depend on speed",

@@ -31,7 +31,7 @@ struct GravityLoad {
       .id = "gravity_load",
       .title = "Gravity load",
       .equation = "tau_out = -m g l sin(theta_out + p); at the rotor tau_out / N",
-      .source = "Newton 1687; Craig, Introduction to Robotics, 3rd ed. 2005, sec. 6.7 (one link)",
+      .source = "Newton 1687; Craig, Introduction to Robotics, 3rd ed. 2005 (one link)",
       .cannot = "add the mass's inertia (load.inertia_kg_m2 does), tilt the axis of the shaft during a run",
       .place = Place::kTorque,
       .twins = {"imbalance", "load.gravity_torque_Nm"},

@@ -31,7 +31,7 @@ struct Imbalance {
       .id = "imbalance",
       .title = "Rotor imbalance",
       .equation = "tau = -m g e sin(theta + p), theta of the rotor",
-      .source = "Den Hartog, Mechanical Vibrations, 4th ed. 1956, sec. 6.1 (static imbalance)",
+      .source = "Den Hartog, Mechanical Vibrations, 4th ed. 1956 (static imbalance)",
       .cannot = "the centrifugal force on the bearings and what it shakes, friction that follows from it",
       .place = Place::kTorque,
       .twins = {"gravity_load", "encoder_eccentricity"},

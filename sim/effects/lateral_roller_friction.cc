@@ -27,7 +27,7 @@ struct LateralRollerFriction {
       .equation = "F_lateral -= mu_r N v / sqrt(v^2 + v_s^2), v of the hub along the axle, v_s = 0.02 m/s",
       .source =
           "Coulomb 1785 at the rollers' journals; root: our smoothing; size after Williams, Carter, "
-          "Gallina, Rosati, IEEE Trans. Robotics and Automation 18(3), 2002, sec. III",
+          "Gallina, Rosati, IEEE Trans. Robotics and Automation 18(3), 2002",
       .cannot = "holding a robot on a slope (below v_s the force fades), rollers that jam, change with speed",
       .place = Place::kContact,
       .twins = {"rolling_resistance"},

@@ -32,7 +32,7 @@ struct LoadDependentFriction {
       .equation = "level += |K_m tau_motor - K_e tau_load|, tau_load positive where it accelerates",
       .source =
           "Duclusaud, Passault, Padois, Ly, Extended Friction Models for the Physics Simulation of Servo "
-          "Actuators, 2024, models M3 to M5",
+          "Actuators, arXiv 2410.08650, 2024 (its load-dependent models)",
       .cannot =
           "tell tooth torque from motor torque: what accelerates the rotor itself counts as load; change "
           "with "

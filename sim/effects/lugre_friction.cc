@@ -70,7 +70,7 @@ struct LugreFriction {
           "tau = -(s0 z + s1 dz/dt); dz/dtheta = 1 - s0 z sgn(omega) / g; g = c + max(s - c, 0) "
           "exp(-(omega / omega_s)^2)",
       .source =
-          "Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Trans. Autom. Control 40(3), 1995, eqs. 1 to 5 "
+          "Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Trans. Autom. Control 40(3), 1995 "
           "(without the viscous term, which the motor has)",
       .cannot =
           "hold for ever: under a torque that trembles below breakaway the bristles drift; remember several "

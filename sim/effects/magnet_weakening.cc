@@ -23,7 +23,7 @@ struct MagnetWeakening {
       .title = "Magnet weakening",
       .equation = "k -> k (1 - b T), torque constant and back-EMF constant alike; T: rise of winding_heating",
       .source =
-          "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003, ch. 2 (remanence and "
+          "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003 (remanence and "
           "temperature)",
       .cannot =
           "a temperature of the magnets of their own (they are taken as warm as the winding, which is too "

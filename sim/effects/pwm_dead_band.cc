@@ -26,7 +26,7 @@ struct PwmDeadBand {
           "u = e + w (D V - e), w = 0 for |D| <= 0.9 d, 1 for |D| >= 1.1 d, linear between; e the "
           "back-EMF: no current where w = 0",
       .source =
-          "Mohan, Undeland, Robbins, Power Electronics, 3rd ed. 2003, ch. 7 (discontinuous conduction: "
+          "Mohan, Undeland, Robbins, Power Electronics, 3rd ed. 2003 (discontinuous conduction: "
           "switch pulses too short to build up a current); sharp band: our simplification",
       .cannot =
           "the quadratic rise of the current in discontinuous conduction, a band that changes with "
@@ -43,7 +43,7 @@ struct PwmDeadBand {
             const double samples = s.rate_Hz * 0.1;
             return 3.0 * s.current_sigma_A / 10.0 / (samples > 1 ? std::sqrt(samples) : 1.0);
           },
-      .claims = kOdd,
+      .claims = kOdd | kFlatAtNeutral,
       .params = kParams,
       .plot = {.excitation = "creep", .x = "duty", .y = "motor_current", .from_s = 0.0, .to_s = 8.0},
   };

@@ -22,7 +22,7 @@ struct RollingResistance {
       .id = "rolling_resistance",
       .title = "Rolling resistance",
       .equation = "tau_wheel = -c_r N r sgn(omega_wheel); at rest the wheel holds while it suffices",
-      .source = "Coulomb 1785; Johnson, Contact Mechanics, 1985, sec. 9.1 (hysteresis in rolling)",
+      .source = "Coulomb 1785; Johnson, Contact Mechanics, 1985 (hysteresis in rolling)",
       .cannot =
           "growth with speed, the direction of the carpet's pile, holding a wheel whose motor is free "
           "beyond one step of the mechanics at a time",

@@ -20,7 +20,7 @@ struct SamplingDelay {
       .id = "sampling_delay",
       .title = "Sampling delay",
       .equation = "y(t) -> y(t - d) for everything the drive's sensors give",
-      .source = "Ljung, System Identification, 2nd ed. 1999, sec. 4.2 (time delay of the output)",
+      .source = "Ljung, System Identification, 2nd ed. 1999 (time delay of the output)",
       .cannot = "differ between channels, vary from sample to sample (sample_jitter)",
       .place = Place::kTiming,
       .twins = {"actuator_delay"},

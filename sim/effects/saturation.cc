@@ -23,7 +23,7 @@ struct Saturation {
       .title = "Magnetic saturation",
       .equation = "k -> k / (1 + (i / i_s)^2), torque constant and back-EMF constant alike",
       .source =
-          "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003, ch. 4; the form is ours: even, "
+          "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003; the form is ours: even, "
           "smooth, k i has its greatest value at i_s",
       .cannot =
           "inductance that falls with current, saturation without current, torque beyond i_s (it falls again "
@@ -41,7 +41,7 @@ struct Saturation {
             // (i / i_s)^2 = d_k / k; d_k / k from the current's mean over a tenth of a second, at 8 A
             return std::sqrt(3.0 * s.current_sigma_A / (8.0 * std::sqrt(0.1 * s.rate_Hz))) / 8.0;
           },
-      .claims = kOdd,
+      .claims = kOdd | kFlatAtNeutral,
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.0, .to_s = 2.0},
   };

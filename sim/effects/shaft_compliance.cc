@@ -30,7 +30,7 @@ struct ShaftCompliance {
       .id = "shaft_compliance",
       .title = "Shaft compliance",
       .equation = "tau_shaft = twist / c + d twist', twist = theta_rotor / N - theta_out",
-      .source = "Meirovitch, Fundamentals of Vibrations, 2001, ch. 5 (two masses, one spring)",
+      .source = "Meirovitch, Fundamentals of Vibrations, 2001 (two masses, one spring)",
       .cannot = "further modes, stiffness that grows with torque, hysteresis of belts",
       .place = Place::kShaft,
       .twins = {"backlash"},

@@ -43,8 +43,8 @@ struct StribeckFriction {
       .title = "Stribeck friction",
       .equation = "level += c_s exp(-|omega / omega_s|^d)",
       .source =
-          "Stribeck 1902; Bo and Pavelescu, Wear 82, 1982, eq. 3 (exponent); Armstrong-Helouvry, Dupont, "
-          "Canudas de Wit, Automatica 30(7), 1994, sec. 2.1",
+          "Stribeck 1902; Bo and Pavelescu, Wear 82, 1982 (exponent); Armstrong-Helouvry, Dupont, "
+          "Canudas de Wit, Automatica 30(7), 1994",
       .cannot =
           "elastic creep before sliding (lugre_friction), a breakaway level that grows with the time at "
           "rest, "

@@ -26,7 +26,7 @@ struct TargetSpeedLimit {
       .title = "Speed limit of the target",
       .equation = "|d target'/dt| <= 1 / q, q = inverse_rate_s_per_rad; target' starts at the position",
       .source =
-          "Biagiotti, Melchiorri, Trajectory Planning for Automatic Machines and Robots, 2008, ch. 3 "
+          "Biagiotti, Melchiorri, Trajectory Planning for Automatic Machines and Robots, 2008 "
           "(constant-velocity profile)",
       .cannot =
           "limits of acceleration (trapezoids, S-curves), a profile that restarts from the measured "
@@ -42,7 +42,7 @@ struct TargetSpeedLimit {
             // A step of 1 rad that takes three samples longer.
             return 3.0 / s.rate_Hz;
           },
-      .claims = kOdd,
+      .claims = kOdd | kFlatAtNeutral,
       .params = kParams,
       .states = kStates,
       .plot = {.excitation = "servo", .x = "time", .y = "position", .from_s = 0.0, .to_s = 2.0},

@@ -51,7 +51,7 @@ struct ThermalDerating {
             const double samples = s.rate_Hz > 1.0 ? s.rate_Hz : 1.0;
             return 3.0 * s.current_sigma_A / 20.0 / std::sqrt(samples);
           },
-      .claims = kOdd,
+      .claims = kOdd | kFlatAtNeutral,
       .params = kParams,
       .needs = "winding_heating",
       .plot = {.excitation = "stall", .x = "time", .y = "motor_current", .from_s = 0.0, .to_s = 20.0},

@@ -49,8 +49,8 @@ struct TorqueRipple {
       .title = "Torque ripple",
       .equation = "k -> k (1 + r cos(n theta + p)), torque constant and back-EMF constant alike",
       .source =
-          "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003, ch. 8; Jahns and Soong, IEEE "
-          "Trans. Ind. Electron. 43(2), 1996, sec. II",
+          "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003; Jahns and Soong, IEEE "
+          "Trans. Ind. Electron. 43(2), 1996",
       .cannot =
           "several harmonics at once, the spikes of commutation itself (the switched six-step drive has "
           "them), "

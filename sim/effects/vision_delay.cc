@@ -20,7 +20,7 @@ struct VisionDelay {
       .id = "vision_delay",
       .title = "Vision delay",
       .equation = "p(t) -> p(t - d) for what cameras see of the robot",
-      .source = "Ljung, System Identification, 2nd ed. 1999, sec. 4.2 (time delay of the output)",
+      .source = "Ljung, System Identification, 2nd ed. 1999 (time delay of the output)",
       .cannot = "differ between cameras, drop or swap frames; the drive's own sensors are not affected",
       .place = Place::kTiming,
       .twins = {"sampling_delay"},

@@ -35,7 +35,7 @@ struct WheelSlip {
           "v_slide = v_rim - v_hub; force = load f(v_slide / (v_0 + v_c)), full grip at v_0 + v_c, |f| "
           "<= mu; v_0 of the base model",
       .source =
-          "Pacejka, Tyre and Vehicle Dynamics, 3rd ed. 2012, sec. 4.3 (stiffness, peak and sliding); the "
+          "Pacejka, Tire and Vehicle Dynamics, 3rd ed. 2012 (stiffness, peak and sliding); the "
           "sliding speed in place of its slip ratio is our choice, for starts from rest",
       .cannot =
           "coupling of drive and side force, roller by roller contact, warm-up or dust; the shape of the "

@@ -69,7 +69,7 @@ struct WindingHeating {
           "R -> R (1 + a T_w); C_w dT_w/dt = R i^2 - (T_w - T_h) / R_w; C_h dT_h/dt = (T_w - T_h) / R_w - "
           "T_h / "
           "R_h; rises over ambient, R at ambient",
-      .source = "Maxon, Formulae Handbook 2014, ch. 7 (two-mass thermal model); IEC 60028:1925 (copper)",
+      .source = "Braun, Formulae Handbook, maxon academy (two-mass thermal model); IEC 60028:1925 (copper)",
       .cannot =
           "heat from iron loss, friction and the bridge; cooling that grows with speed; a start other than "
           "at "

@@ -24,7 +24,7 @@ struct WindingInductance {
       .id = "winding_inductance",
       .title = "Winding inductance",
       .equation = "L di/dt = u - R i - k omega, L -> L + L_x",
-      .source = "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003, ch. 4",
+      .source = "Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. 2003",
       .cannot = "depend on angle or current; the ripple of the current within a PWM period",
       .place = Place::kWinding,
       .twins = {"actuator_delay", "motor.inductance_H"},

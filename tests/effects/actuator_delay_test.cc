@@ -25,6 +25,26 @@ TEST(ActuatorDelay, ShiftsTheResponseByWholeSamplesExactly) {
   }
 }
 
+// The longest delay with a command that changes every 50 us: what was asked 2000 changes ago.
+TEST(ActuatorDelay, ReachesItsUpperBoundWhateverTheRateOfCommands) {
+  const double delay_s = find_effect("actuator_delay")->info->params[0].upper;
+  for (const double period_s : {50e-6, 200e-6, 1e-3}) {
+    CommandHistory history;
+    const auto asked = [&](double time_s) {
+      return std::sin(300.0 * std::floor(time_s / period_s + 0.5) * period_s);
+    };
+    const int count = static_cast<int>(0.35 / period_s);
+    for (int n = 0; n < count; ++n) history.push(n * period_s, asked(n * period_s));
+    CommandPort<double> port;
+    port.history = &history;
+    port.now_s = (count - 1) * period_s;
+    port.dt_s = 10e-6;  // within one held value
+    find_effect("actuator_delay")->simulate.command(nullptr, &delay_s, nullptr, port);
+    const double then_s = std::floor((port.now_s - delay_s) / period_s + 1e-6) * period_s;
+    EXPECT_NEAR(port.setpoint, asked(then_s), 1e-9) << period_s;
+  }
+}
+
 // u from 0 to 1 at t = 0.1 ms; over [0.05, 0.15] ms delayed by 0.025 ms the mean is a quarter.
 TEST(ActuatorDelay, TakesTheMeanOverTheSubStep) {
   CommandHistory history;

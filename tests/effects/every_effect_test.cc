@@ -163,6 +163,97 @@ TEST_P(EveryEffect, HasDerivativesThatAgreeWithDifferences) {
   }
 }
 
+// Every signal of a drive's record.
+template <typename T>
+std::vector<T> signals_of(const std::vector<AxisSample<T>>& samples) {
+  std::vector<T> out;
+  for (const AxisSample<T>& s : samples) {
+    out.insert(out.end(), {s.position_rad, s.velocity_rad_s, s.encoder_counts, s.motor_current_A,
+                           s.bus_voltage_V, s.winding_rise_K, s.motor_voltage_V});
+  }
+  return out;
+}
+
+// Steps of the duty and of a position target under a load; with random numbers and with what is expected.
+std::vector<AxisInput> probes() {
+  std::vector<AxisInput> inputs{excite(Excitation::kSteps, 0.8, 1.0), excite(Excitation::kPrbs, 1.0, 1.0)};
+  inputs[1].kind = CommandKind::kPositionTarget;
+  for (AxisInput& in : inputs) {
+    in.encoder_counts_per_turn = 4096;
+    for (const double t : in.time_s) in.load_torque_Nm.push_back(0.01 * std::sin(20.0 * t));
+  }
+  inputs.push_back(inputs[0]);
+  inputs[2].noise_seed = 1;
+  return inputs;
+}
+
+DriveParams<double> probed_drive() {
+  DriveParams<double> drive = small_drive();
+  drive.servo_kp_duty_per_rad = 2.0;
+  drive.coulomb_friction_Nm = 0.002;
+  return drive;
+}
+
+// The largest derivative with respect to one strength, all at neutral: of a drive's signals, or of what the
+// law changes where only a robot has the place.
+double slope_at_neutral(const EffectEntry& entry, std::size_t row) {
+  const EffectUse use = neutral_use(entry);
+  const std::vector<Jet> values = as_jets(use.values, static_cast<int>(row));
+  double most = 0.0;
+  const auto look = [&](const Jet& x) { most = std::max(most, std::abs(x.v[0])); };
+  if ((entry.info->rigs & kOnAxis) != 0) {
+    const EffectSet<Jet> set(std::vector{use}, std::span<const Jet>(values));
+    for (const AxisInput& in : probes()) {
+      for (const Jet& x : signals_of(run_axis(drive_params_as<Jet>(probed_drive()), set, in))) look(x);
+    }
+  } else {
+    for_each_place<Jet>(entry, [&](auto function, auto port) {
+      for (std::uint64_t n = 0; n < kDraws; ++n) {
+        for (const auto& c : changes(applied<Jet>(entry, function, port, values, n))) look(c.value);
+      }
+    });
+  }
+  return most;
+}
+
+double change_at_typical(const EffectEntry& entry, std::size_t row) {
+  std::vector<double> at = typical_use(entry).values, more = at;
+  more[row] += 1e-3 * (at[row] - entry.info->params[row].neutral);
+  double most = 0.0;
+  const auto set_of = [&](const std::vector<double>& values) {
+    EffectUse use = typical_use(entry);
+    use.values = values;
+    return with({use});
+  };
+  for (const AxisInput& in : probes()) {
+    const auto a = signals_of(run_axis(probed_drive(), set_of(at), in));
+    const auto b = signals_of(run_axis(probed_drive(), set_of(more), in));
+    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(b[i] - a[i]));
+  }
+  for_each_place<double>(entry, [&](auto function, auto port) {
+    for (std::uint64_t n = 0; n < kDraws; ++n) {
+      const auto a = changes(applied<double>(entry, function, port, at, n));
+      const auto b = changes(applied<double>(entry, function, port, more, n));
+      for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(b[i].value - a[i].value));
+    }
+  });
+  return most;
+}
+
+// So a fit that starts at neutral feels it, or knows that it does not.
+TEST_P(EveryEffect, HasASlopeAtNeutralOrSaysThatItIsFlatThere) {
+  for (std::size_t i = 0; i < info().params.size(); ++i) {
+    if (info().params[i].role != ParamRole::kStrength) continue;
+    const double slope = slope_at_neutral(entry(), i);
+    if ((info().claims & kFlatAtNeutral) == 0) {
+      EXPECT_GT(slope, 0.0) << info().params[i].name << ": claim kFlatAtNeutral";
+    } else {
+      EXPECT_EQ(slope, 0.0) << info().params[i].name;
+      EXPECT_GT(change_at_typical(entry(), i), 0.0) << info().params[i].name;
+    }
+  }
+}
+
 TEST_P(EveryEffect, IsOddIfItClaimsSo) {
   if ((info().claims & kOdd) == 0) return;
   const std::vector<double> params = typical_use(entry()).values;

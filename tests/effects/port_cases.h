@@ -58,6 +58,7 @@ void fill(BridgePort<T>& p, const Draw& draw, double sign, CommandHistory&) {
   p.current_A = T(sign * draw(-10, 10));
   p.back_emf_V = T(sign * draw(-10, 10));
   p.temperature_rise_K = T(draw(0, 80));
+  p.resistance_ohm = T(draw(0.3, 2));
   p.pwm_frequency_Hz = T(draw(1e4, 5e4));
   p.dt_s = 5e-5;
   p.voltage_V = p.duty_ratio * p.bus_voltage_V;

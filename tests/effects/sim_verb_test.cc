@@ -106,10 +106,12 @@ TEST_F(SimVerb, RefusesWithEveryReasonAndWritesNothing) {
 }
 
 TEST_F(SimVerb, DrivesAMotorFileAndARobotsWheelToo) {
-  for (const char* name : {"maxon_ec45_flat_30w", "omni_default"}) {
-    const Ran ran = run_omnihil(std::string("sim ") + name + " --excite steps --duration 0.2 --out" +
-                                shell(folder_ / name));
+  for (const char* model : {"maxon_ec45_flat_30w", "omni_default --rig axis"}) {
+    const auto folder = folder_ / std::string(model).substr(0, 4);
+    const Ran ran =
+        run_omnihil(std::string("sim ") + model + " --excite steps --duration 0.2 --out" + shell(folder));
     EXPECT_EQ(ran.exit_code, 0) << ran.text;
+    EXPECT_NE(text_of(folder / "dataset.toml").find("rig = \"axis\""), std::string::npos) << model;
   }
 }
 

@@ -42,9 +42,18 @@ TEST_F(SimRobotVerb, WritesADatasetOfTheRigRobotThatIsTheSameEveryTime) {
   EXPECT_EQ(text_of(out_ / "a" / "model.toml").find("floor_tilt"), std::string::npos);
 }
 
+TEST_F(SimRobotVerb, TakesARobotsModelAsTheWholeRobotAndSaysSo) {
+  const Ran ran = run_omnihil("sim omni_default --excite steps --duration 0.2 --out " + shell(out_));
+  ASSERT_EQ(ran.exit_code, 0) << ran.text;
+  EXPECT_TRUE(ran.says("omni_default is a robot")) << ran.text;
+  EXPECT_TRUE(ran.says("--rig axis")) << ran.text;
+  EXPECT_NE(text_of(out_ / "dataset.toml").find("rig = \"robot\""), std::string::npos);
+}
+
 TEST_F(SimRobotVerb, NamesEveryFaultAtOnce) {
   const Ran ran = run_omnihil(
-      "sim omni_default --rig robot --excite wobble --rate 333 --with floor_tlt --with backlash.gap_rad=9 --out " +
+      "sim omni_default --rig robot --excite wobble --rate 333 --with floor_tlt --with backlash.gap_rad=9 "
+      "--out " +
       shell(out_));
   EXPECT_EQ(ran.exit_code, 2);
   for (const char* word : {"wobble", "--rate", "did you mean \"floor_tilt\"", "gap_rad"}) {

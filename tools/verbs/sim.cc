@@ -1,4 +1,4 @@
-// omnihil sim MODEL --excite NAME|FILE … --out DATASET: a virtual bench for one drive.
+// omnihil sim MODEL --excite NAME|FILE … --out DATASET: a virtual bench for one drive or a whole robot.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +8,8 @@
 #include <string>
 
 #include "hil/dataset_files.h"
+#include "hil/model_store.h"
+#include "sim/core/model_document.h"
 #include "tools/axis_bench.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
@@ -19,7 +21,7 @@ namespace {
 
 struct Arguments {
   BenchOptions bench;
-  std::string rig = "axis";
+  std::string rig;  // empty: what the model is
   std::string out;
 };
 
@@ -56,8 +58,20 @@ int run_robot(const Arguments& arguments) {
   return kExitOk;
 }
 
+// A robot's model file is the whole robot unless one of its drives is asked for.
+bool wants_robot(const Arguments& arguments) {
+  if (!arguments.rig.empty()) return arguments.rig == "robot";
+  const StoredModel stored = load_model(arguments.bench.model, {OMNIHIL_SOURCE_MODELS});
+  std::vector<ModelProblem> said_later;
+  const auto document = parse_document(stored.bundle.robot_text, stored.bundle.robot_file, said_later);
+  if (!document || document->table["rig"].value_or(std::string()) != "robot") return false;
+  std::printf("%s is a robot: all of it is driven, on the floor (--rig axis: one of its wheels, lifted)\n",
+              arguments.bench.model.c_str());
+  return true;
+}
+
 int run(const Arguments& arguments) {
-  if (arguments.rig == "robot") return run_robot(arguments);
+  if (wants_robot(arguments)) return run_robot(arguments);
   std::vector<std::string> faults;
   const std::optional<AxisBench> bench = make_bench(arguments.bench, faults);
   for (const std::string& fault : faults) std::fprintf(stderr, "omnihil sim: %s\n", fault.c_str());
@@ -81,16 +95,15 @@ int run(const Arguments& arguments) {
 void add_verb_sim(CLI::App& app, VerbResult& result) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("sim", "a virtual bench: drive a model, write a dataset");
-  verb->add_option("MODEL", a->bench.model,
-                   "model of an axis, or of a motor or robot (then one wheel's drive), by name or path")
+  verb->add_option("MODEL", a->bench.model, "model of an axis, a motor or a robot, by name or path")
       ->required();
   verb->add_option(
           "--excite", a->bench.excitations,
           "steps, ramp, chirp, prbs, creep, or a CSV file of time and command; several give several runs")
       ->required();
-  verb->add_option("--rig", a->rig, "axis: one drive; robot: the whole robot on the floor")
-      ->check(CLI::IsMember({"axis", "robot"}))
-      ->capture_default_str();
+  verb->add_option("--rig", a->rig,
+                   "axis: one drive; robot: the whole robot on the floor; without it: what the model is")
+      ->check(CLI::IsMember({"axis", "robot"}));
   verb->add_option("--out", a->out, "new folder of the dataset")->required();
   verb->add_option("--with", a->bench.with,
                    "add an effect: ID.parameter=value, or ID for its typical size; several allowed");
