@@ -66,6 +66,7 @@ def work(case, keep, args, stamp):
     result = run_program.read_json(path)
     if result is None:
         result = run_program.diagnose(args.program, folder, args.timeout, 1)
+        result["of_the_run_s"] = result["seconds"] / args.jobs  # its part of the whole run's time
     wants_oracle = case.cls in ("single", "generic") and not args.no_oracle and not result.get("oracle")
     if wants_oracle and min(e["share"] for e in answer["effects"]) >= score.LEAST_SHARE:
         result["oracle"] = run_program.oracle(args.program, folder, answer, args.timeout)
@@ -76,11 +77,11 @@ def work(case, keep, args, stamp):
     return score.judge(result, answer)
 
 
-def can_diagnose(program):
+def has_verbs(program, *verbs):
     """Does the program have what is to be tested?"""
     if not program or not program.exists():
         return False
-    return all(run_program.call(program, [verb, "--help"], 60, None)["code"] == 0 for verb in ("diagnose", "fit", "compare"))
+    return all(run_program.call(program, [verb, "--help"], 120, None)["code"] == 0 for verb in verbs)
 
 
 def run_all(todo, keep, args, stamp):
@@ -108,9 +109,14 @@ def main():
     if unknown:
         print(f"blind: no such class: {', '.join(sorted(unknown))}; there are {', '.join(cases.classes())}", file=sys.stderr)
         return 2
-    if not args.generate_only and not can_diagnose(args.program):
-        print(f"blind: skipped: {args.program} has no verbs diagnose, fit and compare")
+    if args.program:
+        args.program = args.program.resolve()
+    if not args.generate_only and not has_verbs(args.program, "diagnose"):
+        print(f"blind: skipped: {args.program} has no verb diagnose")
         return SKIPPED
+    if not (args.generate_only or args.no_oracle or has_verbs(args.program, "fit", "compare")):
+        print("blind: without the verbs fit and compare there is no oracle: the error reduction is not scored", file=sys.stderr)
+        args.no_oracle = True
     if args.generate_only and args.sealed:
         print("blind: sealed cases are made only to be scored", file=sys.stderr)
         return 2

@@ -17,8 +17,9 @@ def matches(name, effect, diagnosis):
 
 
 def pooled(errors, sigma):
-    """Root mean square over signals, each over its noise."""
-    values = [(e.get("rmse", math.nan) / sigma[name]) ** 2 for name, e in (errors or {}).items() if sigma.get(name)]
+    """Root mean square over signals, each over its noise. A measured bus voltage is an input, not an answer."""
+    values = [(e.get("rmse", math.nan) / sigma[name]) ** 2 for name, e in (errors or {}).items()
+              if sigma.get(name) and name != "bus_voltage"]
     return math.sqrt(sum(values) / len(values)) if values else math.nan
 
 
@@ -104,7 +105,7 @@ def judge(result, answer):
     ranked = [r.get("effect") for r in d.get("ranking") or []]
     out = {"case": answer["case"], "class": answer["class"], "rig": answer["rig"], "true": [e["id"] for e in answer["effects"]],
            "what": answer["what"], "shares": [e["share"] for e in answer["effects"]], "verdict": d.get("verdict"),
-           "named": named, "ranked": ranked[:3], "seconds": result.get("seconds"), "code": result.get("code"),
+           "named": named, "ranked": ranked[:3], "seconds": result.get("seconds"), "of_the_run_s": result.get("of_the_run_s"), "code": result.get("code"),
            "answered": bool(d)}
     effects = answer["effects"]
     if effects:
@@ -168,7 +169,7 @@ def summary(rows):
     single, generic, robot = large(get("single")), large(get("generic")), large(get("robot"))
     both = single + generic
     reductions = [r["reduction"] for r in both if not math.isnan(r["reduction"])]
-    control_s = [r["seconds"] for r in get("control") if r["seconds"]]
+    control_s = [r["of_the_run_s"] for r in get("control") if r["of_the_run_s"]]
     return {
         "single first": rate(single, lambda r: r["first"]),
         "single first two": rate(single, lambda r: r["first_two"]),

@@ -7,7 +7,7 @@ DONE_WHEN = (
      (("single first", 0.92, 1),)),
     ("... in the first two", (("single first two", 0.98, 1),)),
     ("no hidden effect: false alarm", (("false alarm", 0.02, -1),)),
-    ("... all records within 60 min (sum of the times of single runs)", (("controls minutes", 60, -1),)),
+    ("... all of its records, minutes", (("controls minutes", 60, -1),)),
     ("two effects: both named", (("pair both", 0.75, 1),)),
     ("outside the catalogue: unknown", (("outside unknown", 0.85, 1),)),
     ("... wrong confident name", (("outside wrong name", 0.05, -1),)),
