@@ -117,14 +117,28 @@ class ForwardSetup {
     c.whitened_sigma = position_sigma * std::sqrt(2.0 / (1.0 + std::exp(-dt / kWhitening_s)));
   }
 
-  void motion() {
-    const bool servo = s_.input.kind == CommandKind::kPositionTarget;
-    const std::string speed_unit = dataset_.linear ? "m/s" : "rad/s";
-    const bool has_speed = !r_.velocity.empty();
-    if (servo && !r_.position.empty()) {
-      add("position", dataset_.linear ? "m" : "rad", AxisOutput::kPosition, r_.position,
-          channel("position").sigma);
+  // A servo holds an angle: that is compared, from its own sensor or from the encoder.
+  void servo_motion(const std::string& position_unit, const std::string& speed_unit) {
+    if (!r_.position.empty()) {
+      add("position", position_unit, AxisOutput::kPosition, r_.position, channel("position").sigma);
+    } else if (!r_.counts.empty()) {
+      std::vector<double> angle = r_.counts;
+      for (double& v : angle) v = (v + 0.5) / r_.counts_per_output_rad;  // the middle of a count
+      ComparedSignal& c =
+          add("position", position_unit, AxisOutput::kPosition, std::move(angle),
+              std::hypot(1.0 / std::sqrt(12.0), channel("encoder").sigma) / r_.counts_per_output_rad);
+      c.quantum = 1.0 / r_.counts_per_output_rad;
+    } else {
+      add("velocity", speed_unit, AxisOutput::kVelocity, r_.velocity, channel("velocity").sigma);
     }
+  }
+
+  void motion() {
+    const std::string speed_unit = dataset_.linear ? "m/s" : "rad/s";
+    if (s_.input.kind == CommandKind::kPositionTarget) {
+      return servo_motion(dataset_.linear ? "m" : "rad", speed_unit);
+    }
+    const bool has_speed = !r_.velocity.empty();
     if (has_speed) {
       add("velocity", speed_unit, AxisOutput::kVelocity, r_.velocity, channel("velocity").sigma);
     }
@@ -135,7 +149,7 @@ class ForwardSetup {
           std::hypot(1.0 / std::sqrt(12.0), channel("encoder").sigma) / r_.counts_per_output_rad;
       add_differenced(differences, AxisOutput::kCountsDifferenced, r_.counts, r_.counts_per_output_rad, sigma,
                       1.0 / r_.counts_per_output_rad);
-    } else if (!r_.position.empty() && !servo && !has_speed) {
+    } else if (!r_.position.empty() && !has_speed) {
       const NoiseEstimate own = estimate_noise(r_.position);
       const double sigma = channel("position").sigma > 0.0 ? channel("position").sigma : own.sigma;
       add_differenced(differences, AxisOutput::kPositionDifferenced, r_.position, 1.0, sigma, own.quantum);

@@ -57,6 +57,14 @@ bool needs_short_steps(const Candidate& c) {
   });
 }
 
+// A delay whose derivative a limit behind it hides (predictor_axis.h).
+bool is_hidden_delay(const Candidate& c, const Unknown& u) {
+  if (u.path != "actuator_delay.delay_s") return false;
+  return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
+    return use.entry->info->id == "target_speed_limit" && !is_neutral(use);
+  });
+}
+
 class AxisPredictor : public Predictor {
  public:
   AxisPredictor(const Dataset& dataset, const Candidate& nominal, const PredictOptions& options)
@@ -113,6 +121,10 @@ class AxisPredictor : public Predictor {
         p.values.push_back(std::move(values));
       }
     }
+    for (std::size_t u = 0; u < unknowns.size() && rows > 0; ++u) {
+      if (is_hidden_delay(own, unknowns[u]) && !is_known(run(n), unknowns[u].path))
+        difference(own, unknowns, u, n, p);
+    }
     complete(s, p);
     return p;
   }
@@ -124,6 +136,26 @@ class AxisPredictor : public Predictor {
   }
 
  private:
+  void difference(const Candidate& own, std::span<const Unknown> unknowns, std::size_t u, int n,
+                  Prediction& p) const {
+    constexpr double kStep_s = 2e-3;  // two of the longest sub-steps
+    const auto& values = own.effects[static_cast<std::size_t>(unknowns[u].effect)].values;
+    const double at = values[static_cast<std::size_t>(unknowns[u].row)];
+    const double down = std::max(unknowns[u].lower, at - kStep_s),
+                 up = std::min(unknowns[u].upper, at + kStep_s);
+    const auto run_at = [&](double delay_s) {
+      const Candidate moved = with_values(own, unknowns.subspan(u, 1), std::span(&delay_s, 1));
+      return axis_outputs<double>(setup(n), drive_of(moved), EffectSet<double>(moved.effects), step_for(own));
+    };
+    const auto a = run_at(up), b = run_at(down);
+    for (std::size_t c = 0; c < a.size(); ++c) {
+      for (std::size_t k = 0; k < a[c].size(); ++k) {
+        p.derivatives[c](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(u)) =
+            (a[c][k] - b[c][k]) / (up - down);
+      }
+    }
+  }
+
   const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
   double step_for(const Candidate& c) const {
     return needs_short_steps(c) ? std::min(step_s_, options_.step_s) : step_s_;

@@ -1,9 +1,11 @@
 // Rig "axis": what one drive on a bench would have shown its sensors (predictor.h). Made by make_predictor.
 //
-// Derivatives are exact: the drive is run on dual numbers, eight unknowns at a time. The sub-step is the
-// longest (half, quarter … of the sampling period, never longer than 1 ms) at which the nominal model's
-// predictions agree with those of a quarter of it within a tenth of the noise; models with an effect on the
-// shaft, or with presliding friction, take PredictOptions::step_s if that is shorter.
+// Derivatives are exact: the drive is run on dual numbers, eight unknowns at a time. One exception: a delay
+// in front of a limit of the target's speed moves the instant at which the limit starts to act, which no
+// derivative within a sub-step sees; it gets the difference of two runs. The sub-step is the longest (half,
+// quarter … of the sampling period, never longer than 1 ms) at which the nominal model's predictions agree
+// with those of a quarter of it within a tenth of the noise; models with an effect on the shaft, or with
+// presliding friction, take PredictOptions::step_s if that is shorter.
 #pragma once
 #include <memory>
 

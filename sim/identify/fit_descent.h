@@ -1,0 +1,25 @@
+// One descent of a fit from one start: Ceres' trust region (Levenberg-Marquardt, dense QR) within bounds, on
+// a problem condensed to as many residuals as unknowns (Agarwal, Mierle and others, ceres-solver.org).
+//
+//   Descent d = descend(problem, start, 30, options);
+//   d.x; d.cost;                  // never above the start's
+#pragma once
+#include <cmath>
+
+#include "sim/identify/fit.h"
+#include "sim/identify/fit_problem.h"
+
+namespace omnihil {
+
+struct Descent {
+  Eigen::VectorXd x;
+  double cost = INFINITY;
+  int iterations = 0;
+  bool converged = false;
+};
+
+// `held`: index of an unknown that stays where it is; -1: none.
+Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int iterations,
+                const FitOptions& options, Eigen::Index held = -1);
+
+}  // namespace omnihil
