@@ -81,7 +81,7 @@ class Stopper : public ceres::IterationCallback {
 }  // namespace
 
 Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int iterations,
-                const FitOptions& options) {
+                const FitOptions& options, Eigen::Index held) {
   const std::vector<Unknown>& unknowns = problem.unknowns();
   Eigen::VectorXd scale(start.size());
   for (std::size_t i = 0; i < unknowns.size(); ++i) scale[static_cast<Eigen::Index>(i)] = unknowns[i].scale;
