@@ -6,9 +6,10 @@
 namespace omnihil {
 namespace {
 
-constexpr double kSameGain = 0.03;  // of the best one's gain: within it two gains are one
-constexpr double kTwinGain = 0.12;  // so near, an effect may be meant instead, if it is known to be confused
-constexpr double kSameLeft = 1.15;  // what one leaves over what the best one leaves
+constexpr double kSameGain = 0.03;   // of the best one's gain: within it two gains are one
+constexpr double kTwinGain = 0.12;   // so near, an effect may be meant instead, if it is known to be confused
+constexpr double kLeastLeft = 0.02;  // of what was above the floor: less is left by chance
+constexpr double kSameLeft = 1.15;   // what one leaves over what the best one leaves
 constexpr double kTwinLeft = 1.5;
 constexpr double kListedLeft =
     20.0;  // effects that are known to be confused: their forms differ from the truth's
@@ -85,14 +86,19 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
   if (round.contenders.empty() || !round.contenders.front().judgement.accepted) return;
   const Contender& best = round.contenders.front();
   const double most = gain_of(best, has_holdout);
+  const std::size_t use = has_holdout ? 1 : 0;
+  const double floor = floor_share((*search.uses)[use], *search.null, parent.residual[use]);
   std::vector<std::size_t> equals{0};
   std::size_t first = 0;  // of those that leave the same, the one with the fewest numbers
   for (std::size_t c = 1; c < round.contenders.size(); ++c) {
     const Contender& other = round.contenders[c];
     if (!other.judgement.accepted || other.screened.extends) continue;
     const double lost = (most - gain_of(other, has_holdout)) / most;
-    // Both may take nearly all, and yet one leave several times what the other leaves.
-    const double left = (1.0 - gain_of(other, has_holdout)) / std::max(1.0 - most, 1e-9);
+    // Both may take nearly all, and yet one leave several times what the other leaves above the sensors'
+    // floor.
+    const double least = kLeastLeft * (1.0 - floor);
+    const double left =
+        std::max(1.0 - gain_of(other, has_holdout) - floor, least) / std::max(1.0 - most - floor, least);
     const bool confused = listed_twins(*best.screened.entry->info, *other.screened.entry->info);
     const bool alike = likeness(best.screened, other.screened) > kTwinSignal;
     const bool same = lost < kSameGain && left < kSameLeft;

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "hil/diagnosis_json.h"
+#include "sim/identify/add_effect.h"
+#include "sim/identify/diagnosis.h"
+#include "simulated_bench.h"
+
+namespace omnihil {
+namespace {
+
+// Steps to fit, steps drawn anew held out.
+BenchRecipe steps_with(std::vector<std::string> hidden) {
+  BenchRecipe recipe;
+  recipe.with = std::move(hidden);
+  recipe.excitations = {Excitation::kSteps, Excitation::kPrbs, Excitation::kSteps};
+  recipe.duration_s = 4.0;
+  return recipe;
+}
+
+Diagnosis diagnosed(const Bench& bench, int jobs = 1) {
+  DiagnoseOptions options;
+  options.jobs = jobs;
+  return diagnose(bench.dataset, bench.nominal, options);
+}
+
+bool same_set(const Diagnosis& d, const std::string& a, const std::string& b) {
+  return std::any_of(d.indistinguishable.begin(), d.indistinguishable.end(),
+                     [&](const IndistinguishableSet& s) {
+                       return std::find(s.members.begin(), s.members.end(), a) != s.members.end() &&
+                              std::find(s.members.begin(), s.members.end(), b) != s.members.end();
+                     });
+}
+
+TEST(DiagnoseTest, NamesNothingWhereNothingIsMissing) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({})));
+  EXPECT_EQ(d.verdict, Verdict::kAdequate) << d.unknown.sentence;
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_TRUE(d.complete);
+}
+
+TEST(DiagnoseTest, NamesCoggingThatIsNoPureSine) {
+  // order 48 and its double: the model begins with one sine
+  const Diagnosis d = diagnosed(simulated_bench(
+      steps_with({"cogging.amplitude_Nm=0.02", "cogging.amplitude_2=0.005", "cogging.phase_2=1"})));
+  ASSERT_FALSE(d.effects.empty()) << d.unknown.sentence;
+  EXPECT_EQ(d.effects.front(), "cogging");
+  const double before = d.baseline_comparison.error(Use::kHoldout, "velocity")->rmse;
+  EXPECT_LT(d.final_comparison.error(Use::kHoldout, "velocity")->rmse, before);
+}
+
+TEST(DiagnoseTest, AnswersTwinsAsASet) {
+  // With the command as the only reference a late command and a late measurement are the same.
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({"actuator_delay.delay_s=0.004"})));
+  ASSERT_FALSE(d.effects.empty());
+  const bool either = d.effects.front() == "actuator_delay" || d.effects.front() == "sampling_delay";
+  EXPECT_TRUE(either) << d.effects.front();
+  EXPECT_TRUE(d.effects.front() == "actuator_delay" || same_set(d, "actuator_delay", "sampling_delay"));
+  if (!d.indistinguishable.empty()) EXPECT_FALSE(d.next_experiment.what.empty());
+}
+
+TEST(DiagnoseTest, TheSameAtAnyNumberOfThreads) {
+  const Bench bench = simulated_bench(steps_with({"coulomb_friction.torque_Nm=0.02"}));
+  EXPECT_EQ(diagnosis_json(diagnosed(bench, 1), {}), diagnosis_json(diagnosed(bench, 2), {}));
+}
+
+TEST(DiagnoseTest, ProbabilitiesNeverSumToMoreThanOne) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({"battery_sag.resistance_ohm=0.1"})));
+  double sum = 0.0;
+  for (const RankedEffect& r : d.ranking) {
+    EXPECT_GE(r.probability, 0.0) << r.effect;
+    sum += r.probability;
+  }
+  EXPECT_LE(sum, 1.0 + 1e-9);
+}
+
+TEST(DiagnoseTest, NeverNamesAerodynamicDrag) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({})));
+  for (const RankedEffect& r : d.ranking) EXPECT_EQ(r.effect.find("aero"), std::string::npos);
+}
+
+TEST(DiagnoseTest, SaysWhatItKnowsWhenItIsStopped) {
+  const Bench bench = simulated_bench(steps_with({"cogging.amplitude_Nm=0.02"}));
+  DiagnoseOptions options;
+  options.progress = [](const DiagnosisProgress& p) { return p.share < 0.2; };
+  const Diagnosis d = diagnose(bench.dataset, bench.nominal, options);
+  EXPECT_FALSE(d.complete);
+  EXPECT_FALSE(d.baseline.parameters.empty());
+  EXPECT_EQ(nlohmann::json::parse(diagnosis_json(d, {}))["complete"], false);
+}
+
+TEST(DiagnoseTest, ItsJsonHasTheKeysOfTheFormat) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({"cogging.amplitude_Nm=0.02"})));
+  const nlohmann::json j = nlohmann::json::parse(diagnosis_json(d, {.elapsed_s = 1.5, .model = "m.toml"}));
+  EXPECT_EQ(j["format"], "omnihil-diagnosis/1");
+  for (const char* key : {"dataset", "seed", "elapsed_s", "signals", "baseline", "verdict", "effects",
+                          "ranking", "indistinguishable", "where", "next_experiment", "final"}) {
+    EXPECT_TRUE(j.contains(key)) << key;
+  }
+  EXPECT_TRUE(j["baseline"]["fit"]["velocity"]["rmse"].is_number());
+  EXPECT_TRUE(j["ranking"][0]["parameters"].is_object());
+  EXPECT_EQ(j["final"]["model"], "m.toml");
+}
+
+TEST(DiagnoseTest, FittedErrorsNeverRiseAlongTheLadder) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({"cogging.amplitude_Nm=0.02"})));
+  for (std::size_t n = 1; n < d.ladder.size(); ++n) {
+    if (d.ladder[n].added.starts_with("removed")) continue;
+    // whitened, all signals, as the fit weighs them
+    EXPECT_LE(d.ladder[n].comparison.pooled(Use::kFit), d.ladder[n - 1].comparison.pooled(Use::kFit) * 1.01)
+        << d.ladder[n].added;
+  }
+}
+
+TEST(AddEffectTest, RefusesWhatMakesNoDifference) {
+  const Bench bench = simulated_bench(steps_with({}));
+  const Addition a =
+      add_effect(bench.dataset, bench.nominal, neutral_use(*find_effect("quadratic_drag")), {});
+  EXPECT_TRUE(a.applies);
+  EXPECT_FALSE(a.useful);
+  EXPECT_FALSE(a.why.empty());
+}
+
+TEST(AddEffectTest, TakesWhatIsThere) {
+  const Bench bench = simulated_bench(steps_with({"cogging.amplitude_Nm=0.02"}));
+  const Addition a = add_effect(bench.dataset, bench.nominal, neutral_use(*find_effect("cogging")), {});
+  EXPECT_TRUE(a.useful) << a.why;
+  EXPECT_LT(a.after.error(Use::kHoldout, "velocity")->rmse, a.before.error(Use::kHoldout, "velocity")->rmse);
+}
+
+TEST(AddEffectTest, SaysWhyAnEffectCannotAct) {
+  const Bench bench = simulated_bench(steps_with({}));
+  const Addition a = add_effect(bench.dataset, bench.nominal, neutral_use(*find_effect("wheel_slip")), {});
+  EXPECT_FALSE(a.applies);
+  EXPECT_FALSE(a.why.empty());
+}
+
+}  // namespace
+}  // namespace omnihil

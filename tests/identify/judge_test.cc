@@ -1,0 +1,153 @@
+#include "sim/identify/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fake_predictor.h"
+#include "sim/core/random.h"
+#include "sim/identify/linear_base.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kSamples = 4000;
+
+std::vector<double> noise_of(double sigma, std::uint64_t stream) {
+  std::vector<double> out;
+  for (int i = 0; i < kSamples; ++i)
+    out.push_back(sigma * gaussian(1, stream, static_cast<std::uint64_t>(i)));
+  return out;
+}
+
+// Three runs of noise, one per use; residuals are made by the tests.
+struct Court {
+  FakePredictor fake;
+  SignalKinds kinds;
+  std::unique_ptr<Uses> uses;
+  NullModel null;
+  std::vector<BlockBootstrap> bootstrap;
+  JudgeContext context;
+
+  Court() {
+    for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation}) {
+      fake.add(use, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
+    }
+    kinds = signal_kinds(fake);
+    uses = std::make_unique<Uses>(Uses{Evidence(fake, kinds, Use::kFit), Evidence(fake, kinds, Use::kHoldout),
+                                       Evidence(fake, kinds, Use::kExtrapolation)});
+    for (std::size_t u = 0; u < kUses; ++u) {
+      null.mean_square[u] = Eigen::MatrixXd::Constant(2, 1, 0.01);
+      bootstrap.emplace_back((*uses)[u], 1);
+    }
+    context = {.uses = uses.get(), .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
+  }
+
+  // A model that leaves noise of these sizes.
+  Fitted leaving(double fit, double holdout, double extrapolation) const {
+    Fitted out;
+    out.finite = true;
+    const std::array<double, kUses> sizes{fit, holdout, extrapolation};
+    for (std::size_t u = 0; u < kUses; ++u) {
+      const std::vector<double> r = noise_of(sizes[u], 7);
+      out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), kSamples);
+      out.as_seen[u] = (*uses)[u].mean_square(out.residual[u]);
+    }
+    return out;
+  }
+};
+
+TEST(JudgeTest, TakesWhatGainsEverywhere) {
+  const Court court;
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.7, 0.7, 0.7), "x", 100).accepted);
+}
+
+TEST(JudgeTest, RefusesATrainingGainWithAHeldOutLoss) {
+  const Court court;
+  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.9, 1.1, 1), "x", 100);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("raises the held-out"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, RefusesALossOnAnotherKindOfMotion) {
+  const Court court;
+  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("extrapolation"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, RefusesWhatChanceGivesAsWell) {
+  const Court court;
+  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 0.8), "x", 1.1);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("chance"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, RefusesWhatDoesNotMatter) {
+  const Court court;
+  // energy falls by 1 - 0.99^2 = 2 %
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.99, 0.99, 1), "x", 100).accepted);
+}
+
+TEST(JudgeTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
+  const Court court;
+  Fitted parent = court.leaving(1, 1, 1), child = court.leaving(0.7, 0.7, 0.7);
+  ParameterEstimate r;
+  r.path = "motor.resistance_ohm";
+  r.prior_sigma = 0.1;
+  r.drift_sigmas = 1.0;
+  parent.fit.parameters = {r};
+  r.drift_sigmas = -5.0;
+  child.fit.parameters = {r};
+  const Judgement j = judge(court.context, parent, child, "x", 100);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("motor.resistance_ohm"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, ReadsAParameterAtItsBoundAsASymptom) {
+  const Court court;
+  Fitted child = court.leaving(0.7, 0.7, 0.7);
+  ParameterEstimate p;
+  p.path = "quadratic_drag.coefficient_Nm_s2_per_rad2";
+  p.value = 1.0;
+  p.sigma = 1e-3;
+  p.at_bound = true;
+  child.fit.parameters = {p};
+  const Judgement j = judge(court.context, court.leaving(1, 1, 1), child, "quadratic_drag", 100);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("symptom"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, RefusesAStrengthThatIsNotToldFromZero) {
+  const Court court;
+  Fitted child = court.leaving(0.7, 0.7, 0.7);
+  ParameterEstimate p;
+  p.path = "lugre_friction.static_torque_Nm";
+  p.value = 5e-5;
+  p.sigma = 8e-5;
+  child.fit.parameters = {p};
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), child, "lugre_friction", 100).accepted);
+}
+
+TEST(BlockBootstrapTest, AGainInOneMomentAloneIsUncertain) {
+  const Court court;
+  const Fitted parent = court.leaving(1, 1, 1);
+  Eigen::VectorXd everywhere = 0.9 * parent.residual[1], once = parent.residual[1];
+  once.head(500) *= 0.1;  // one block of eight loses nearly all
+  once.tail(kSamples - 500) *= 1.01;
+  const Eigen::VectorXd weights = Eigen::VectorXd::Ones(1);
+  const UseGain sure = court.bootstrap[1].gain(parent.residual[1], everywhere, weights);
+  const UseGain unsure = court.bootstrap[1].gain(parent.residual[1], once, weights);
+  EXPECT_LT(sure.worst, 1.0);
+  EXPECT_GT(unsure.worst, 1.0);
+}
+
+TEST(BoundedGainTest, AOneSidedStrengthIsNotTakenBelowZero) {
+  const Eigen::MatrixXd gram = Eigen::MatrixXd::Identity(1, 1);
+  const Eigen::VectorXd against = Eigen::VectorXd::Constant(1, -2.0);
+  EXPECT_EQ(bounded_gain(gram, against, {false}).first, 0.0);
+  EXPECT_DOUBLE_EQ(bounded_gain(gram, against, {true}).first, 4.0);  // b' G^-1 b
+}
+
+}  // namespace
+}  // namespace omnihil
