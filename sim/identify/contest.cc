@@ -8,8 +8,10 @@ namespace {
 
 constexpr double kSameGain = 0.03;   // of the best one's gain: within it two gains are one
 constexpr double kTwinGain = 0.12;   // so near, an effect may be meant instead, if it is known to be confused
-constexpr double kLeastLeft = 0.02;  // of what was above the floor: less is left by chance
-constexpr double kSameLeft = 1.15;   // what one leaves over what the best one leaves
+constexpr double kPerNumber = 0.01;  // of the gain
+constexpr double kLeastLeft = 0.002;  // of what was above the floor: less is left by chance
+constexpr double kFloorError = 0.05;  // of the floor, that the simulated null may be off
+constexpr double kSameLeft = 1.15;    // what one leaves over what the best one leaves
 constexpr double kTwinLeft = 1.5;
 constexpr double kListedLeft =
     20.0;  // effects that are known to be confused: their forms differ from the truth's
@@ -29,6 +31,11 @@ int numbers(const Contender& c) {
 double gain_of(const Contender& c, bool has_holdout) {
   const double fit = 1.0 - c.judgement.fit.ratio;
   return has_holdout ? 0.5 * (fit + 1.0 - c.judgement.holdout.ratio) : fit;
+}
+
+// The same, less a little for every further number: a law of many numbers bends to what it does not mean.
+double merit_of(const Contender& c, bool has_holdout) {
+  return gain_of(c, has_holdout) * (1.0 - kPerNumber * std::max(0, numbers(c) - 1));
 }
 
 bool listed_twins(const EffectInfo& a, const EffectInfo& b) {
@@ -81,7 +88,7 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
   std::stable_sort(round.contenders.begin(), round.contenders.end(),
                    [&](const Contender& a, const Contender& b) {
                      if (a.judgement.accepted != b.judgement.accepted) return a.judgement.accepted;
-                     return gain_of(a, has_holdout) > gain_of(b, has_holdout);
+                     return merit_of(a, has_holdout) > merit_of(b, has_holdout);
                    });
   if (round.contenders.empty() || !round.contenders.front().judgement.accepted) return;
   const Contender& best = round.contenders.front();
@@ -96,7 +103,7 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
     const double lost = (most - gain_of(other, has_holdout)) / most;
     // Both may take nearly all, and yet one leave several times what the other leaves above the sensors'
     // floor.
-    const double least = kLeastLeft * (1.0 - floor);
+    const double least = std::max(kLeastLeft * (1.0 - floor), kFloorError * floor);
     const double left =
         std::max(1.0 - gain_of(other, has_holdout) - floor, least) / std::max(1.0 - most - floor, least);
     const bool confused = listed_twins(*best.screened.entry->info, *other.screened.entry->info);

@@ -19,6 +19,7 @@ constexpr double kMatters = 0.03;
 // More where the sensors' noise is most of what is left: a gain of a few per cent of noise is no effect.
 constexpr double kMattersAtFloor = 0.05;
 constexpr double kChanceMargin = 2.0;  // gain over the most that the null's replicates gave
+constexpr double kPlain = 0.3;         // of the held-out error energy
 constexpr double kSeen = 0.015;        // fall of some signal's error energy, noise included
 constexpr double kFloorWeight = 0.05;
 constexpr double kExtrapolationLoss = 0.03;
@@ -63,8 +64,9 @@ bool misused_bound(const ParameterEstimate& p, const EffectParam* row) {
   return !row->name.starts_with("phase") && row->name != "exponent";
 }
 
-// Numbers of the effect that no drive has; empty: none.
-std::string unphysical(const FitResult& child, const std::string& name) {
+// Numbers of the effect that no drive has; empty: none. `plain`: it takes so much that its strength is no
+// question, however it trades against its own shapes.
+std::string unphysical(const FitResult& child, const std::string& name, bool plain) {
   const EffectEntry* entry = find_effect(name);
   bool strong = entry == nullptr;
   for (const ParameterEstimate& p : child.parameters) {
@@ -86,7 +88,7 @@ std::string unphysical(const FitResult& child, const std::string& name) {
     // scale of every torque comes from the tolerances.
     if (size > kSignificant_sigmas * p.sigma || p.sigma <= 0.0) strong = strong || size > 0.0;
   }
-  return strong ? "" : "its strength is not told from zero";
+  return strong || plain ? "" : "its strength is not told from zero";
 }
 
 }  // namespace
@@ -229,7 +231,7 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   } else if (out.extrapolation.ratio > 1.0 + kExtrapolationLoss && out.extrapolation.best > 1.0) {
     out.why = fmt::format("it raises the error energy of the extrapolation runs by {:.0f} %",
                           100.0 * (out.extrapolation.ratio - 1.0));
-  } else if (out.why = unphysical(child.fit, name); !out.why.empty()) {
+  } else if (out.why = unphysical(child.fit, name, 1.0 - held.ratio > kPlain); !out.why.empty()) {
     return out;
   } else if (out.why = pushed_out(parent.fit, child.fit); !out.why.empty()) {
     return out;
