@@ -120,7 +120,7 @@ TEST(JudgeTest, ReadsAParameterAtItsBoundAsASymptom) {
 
 TEST(JudgeTest, RefusesAStrengthThatIsNotToldFromZero) {
   const Court court;
-  Fitted child = court.leaving(0.7, 0.7, 0.7);
+  Fitted child = court.leaving(0.9, 0.9, 0.9);
   ParameterEstimate p;
   p.path = "lugre_friction.static_torque_Nm";
   p.value = 5e-5;
