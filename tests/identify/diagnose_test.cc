@@ -41,14 +41,14 @@ bool same_set(const Diagnosis& d, const std::string& a, const std::string& b) {
                      });
 }
 
-TEST(DiagnoseTest, NamesNothingWhereNothingIsMissing) {
+TEST(SlowDiagnoseTest, NamesNothingWhereNothingIsMissing) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({})));
   EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
   EXPECT_TRUE(d.effects.empty());
   EXPECT_TRUE(d.complete);
 }
 
-TEST(DiagnoseTest, NamesCoggingThatIsNoPureSine) {
+TEST(SlowDiagnoseTest, NamesCoggingThatIsNoPureSine) {
   // order 48 and its double: the model begins with one sine
   const Diagnosis d = diagnosed(simulated_bench(
       steps_with({"cogging.amplitude_Nm=0.008", "cogging.amplitude_2=0.003", "cogging.phase_2=1"})));
@@ -58,7 +58,7 @@ TEST(DiagnoseTest, NamesCoggingThatIsNoPureSine) {
   EXPECT_LT(d.final_comparison.error(Use::kHoldout, "velocity")->rmse, before);
 }
 
-TEST(DiagnoseTest, AnswersTwinsAsASet) {
+TEST(SlowDiagnoseTest, AnswersTwinsAsASet) {
   // With the command as the only reference a late command and a late measurement are the same.
   const Diagnosis d = diagnosed(simulated_bench(steps_with({"actuator_delay.delay_s=0.004"})));
   ASSERT_FALSE(d.effects.empty()) << reasons(d);
@@ -68,12 +68,12 @@ TEST(DiagnoseTest, AnswersTwinsAsASet) {
   EXPECT_FALSE(d.next_experiment.what.empty());
 }
 
-TEST(DiagnoseTest, TheSameAtAnyNumberOfThreads) {
+TEST(SlowDiagnoseTest, TheSameAtAnyNumberOfThreads) {
   const Bench bench = simulated_bench(steps_with({"coulomb_friction.torque_Nm=0.02"}));
   EXPECT_EQ(diagnosis_json(diagnosed(bench, 1), {}), diagnosis_json(diagnosed(bench, 2), {}));
 }
 
-TEST(DiagnoseTest, ProbabilitiesNeverSumToMoreThanOne) {
+TEST(SlowDiagnoseTest, ProbabilitiesNeverSumToMoreThanOne) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({"battery_sag.resistance_ohm=0.1"})));
   double sum = 0.0;
   for (const RankedEffect& r : d.ranking) {
@@ -83,12 +83,12 @@ TEST(DiagnoseTest, ProbabilitiesNeverSumToMoreThanOne) {
   EXPECT_LE(sum, 1.0 + 1e-9);
 }
 
-TEST(DiagnoseTest, NeverNamesAerodynamicDrag) {
+TEST(SlowDiagnoseTest, NeverNamesAerodynamicDrag) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({})));
   for (const RankedEffect& r : d.ranking) EXPECT_EQ(r.effect.find("aero"), std::string::npos);
 }
 
-TEST(DiagnoseTest, SaysWhatItKnowsWhenItIsStopped) {
+TEST(SlowDiagnoseTest, SaysWhatItKnowsWhenItIsStopped) {
   const Bench bench = simulated_bench(steps_with({"cogging.amplitude_Nm=0.008"}));
   DiagnoseOptions options;
   options.progress = [](const DiagnosisProgress& p) { return p.share < 0.2; };
@@ -98,7 +98,7 @@ TEST(DiagnoseTest, SaysWhatItKnowsWhenItIsStopped) {
   EXPECT_EQ(nlohmann::json::parse(diagnosis_json(d, {}))["complete"], false);
 }
 
-TEST(DiagnoseTest, ItsJsonHasTheKeysOfTheFormat) {
+TEST(SlowDiagnoseTest, ItsJsonHasTheKeysOfTheFormat) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({"cogging.amplitude_Nm=0.008"})));
   const nlohmann::json j = nlohmann::json::parse(diagnosis_json(d, {.elapsed_s = 1.5, .model = "m.toml"}));
   EXPECT_EQ(j["format"], "omnihil-diagnosis/1");
@@ -111,7 +111,7 @@ TEST(DiagnoseTest, ItsJsonHasTheKeysOfTheFormat) {
   EXPECT_EQ(j["final"]["model"], "m.toml");
 }
 
-TEST(DiagnoseTest, FittedErrorsNeverRiseAlongTheLadder) {
+TEST(SlowDiagnoseTest, FittedErrorsNeverRiseAlongTheLadder) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({"cogging.amplitude_Nm=0.008"})));
   for (std::size_t n = 1; n < d.ladder.size(); ++n) {
     if (d.ladder[n].added.starts_with("removed")) continue;
@@ -121,7 +121,7 @@ TEST(DiagnoseTest, FittedErrorsNeverRiseAlongTheLadder) {
   }
 }
 
-TEST(AddEffectTest, RefusesWhatMakesNoDifference) {
+TEST(SlowAddEffectTest, RefusesWhatMakesNoDifference) {
   const Bench bench = simulated_bench(steps_with({}));
   const Addition a =
       add_effect(bench.dataset, bench.nominal, neutral_use(*find_effect("quadratic_drag")), {});
@@ -130,14 +130,14 @@ TEST(AddEffectTest, RefusesWhatMakesNoDifference) {
   EXPECT_FALSE(a.why.empty());
 }
 
-TEST(AddEffectTest, TakesWhatIsThere) {
+TEST(SlowAddEffectTest, TakesWhatIsThere) {
   const Bench bench = simulated_bench(steps_with({"cogging.amplitude_Nm=0.008"}));
   const Addition a = add_effect(bench.dataset, bench.nominal, neutral_use(*find_effect("cogging")), {});
   EXPECT_TRUE(a.useful) << a.why;
   EXPECT_LT(a.after.error(Use::kHoldout, "velocity")->rmse, a.before.error(Use::kHoldout, "velocity")->rmse);
 }
 
-TEST(AddEffectTest, SaysWhyAnEffectCannotAct) {
+TEST(SlowAddEffectTest, SaysWhyAnEffectCannotAct) {
   const Bench bench = simulated_bench(steps_with({}));
   const Addition a = add_effect(bench.dataset, bench.nominal, neutral_use(*find_effect("wheel_slip")), {});
   EXPECT_FALSE(a.applies);
