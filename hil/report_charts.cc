@@ -135,7 +135,8 @@ Json maps(const Diagnosis& d, std::size_t& left_out) {
   const Use use = judging_use(d.baseline_comparison);
   std::vector<const RegimeError*> curves;
   for (const RegimeError& c : d.baseline_comparison.regimes) {
-    if (c.use == use && !c.bins.empty()) curves.push_back(&c);
+    // A measured signal against itself shows its own noise as a slope.
+    if (c.use == use && !c.bins.empty() && c.axis != c.signal) curves.push_back(&c);
   }
   std::ranges::stable_sort(curves,
                            [](auto* a, auto* b) { return a->explained_fraction > b->explained_fraction; });

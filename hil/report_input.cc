@@ -43,6 +43,12 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
   return d;
 }
 
+// NaN where both have none.
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::ranges::equal(a, b,
+                            [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
 RunPart run_part(const Predictor& predictor, const Diagnosis& d, int run, bool spectra) {
   RunPart part;
   const std::vector<ComparedSignal>& compared = predictor.compared(run);
@@ -57,8 +63,10 @@ RunPart run_part(const Predictor& predictor, const Diagnosis& d, int run, bool s
                              c.time_s, c.measured, values_of(before, s), values_of(after, s)});
   }
   if (!spectra || !has_model(d.baseline)) return part;
+  std::vector<double> last;  // without a gear the output's angle is the rotor's
   for (const RegimeTrack& track : predictor.regimes(d.baseline.model, run)) {
-    if (track.name.find("angle") == std::string::npos) continue;
+    if (track.name.find("angle") == std::string::npos || same(track.value, last)) continue;
+    last = track.value;
     for (const ReportOverlay& o : part.overlays) {
       if (!belong(o.signal, track.name)) continue;
       part.spectra.push_back({o.signal, o.unit, track.name,

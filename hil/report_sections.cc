@@ -45,6 +45,9 @@ std::string verdict_section(const ReportInput& input) {
   std::string html = fmt::format(
       "<section id=\"verdict\" class=\"verdict {}\">\n<h1>{}</h1>\n<p class=\"sentence\">{}</p>\n",
       verdict_class(d), escaped(input.title.empty() ? d.dataset : input.title), escaped(verdict_sentence(d)));
+  if (d.verdict != Verdict::kUnknown && !d.unknown.sentence.empty()) {
+    html += fmt::format("<p>{}</p>\n", escaped(d.unknown.sentence));
+  }
   if (!d.baseline_comparison.worst.empty()) {
     html += fmt::format("<p>Before: {}</p>\n", escaped(d.baseline_comparison.worst.front().sentence));
   }

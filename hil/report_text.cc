@@ -108,7 +108,6 @@ std::string verdict_sentence(const Diagnosis& d) {
                           error_change(d.baseline_comparison, d.final_comparison));
     }
   }
-  if (d.verdict != Verdict::kUnknown && !d.unknown.sentence.empty()) text += " " + d.unknown.sentence;
   if (has_faults(d)) text = "The data have faults that can mislead; mend them first. " + text;
   if (!d.complete) text = "Interrupted: what follows is true as far as it goes. " + text;
   return text;

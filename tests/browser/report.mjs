@@ -1,4 +1,5 @@
 // Opens a report in Debian's chromium and holds one property of it: node report.mjs PROPERTY PAGE [MOST_BYTES].
+// node report.mjs picture PAGE OUT.png: its first page as a picture.
 // Exit 0: holds; 1: does not, said why; 77: cannot be looked at here (no chromium, no playwright-core), said why.
 import { existsSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -163,15 +164,16 @@ async function main() {
   const client = process.env.OMNIHIL_BROWSER_NPM + '/node_modules/playwright-core';
   if (!existsSync(client)) skip(`playwright-core is not there: npm could not fetch it when the tests were built`);
   if (!readFileSync(file, 'utf8').includes('uPlot')) skip('the report was built without uPlot');
-  const browser = await createRequire(import.meta.url)(client).chromium.launch({ executablePath: chromium, args: ['--no-sandbox'] });
+  const browser = await createRequire(import.meta.url)(client).chromium.launch({ executablePath: chromium, args: ['--no-sandbox'], timeout: 200000 });
   try {
-    const page = await browser.newPage({ viewport: { width: 1200, height: 900 }, colorScheme: 'light' });
+    const page = await browser.newPage({ viewport: { width: 1100, height: 1000 }, colorScheme: 'light' });
+    page.setDefaultTimeout(200000);
     const seen = { requests: [], errors: [] };
     page.on('request', (r) => seen.requests.push(r.url()));
     page.on('pageerror', (e) => seen.errors.push(String(e)));
     page.on('console', (m) => ['error', 'warning'].includes(m.type()) && seen.errors.push(m.text()));
     await page.goto(pathToFileURL(file).href);
-    if (property === 'picture') writeFileSync(picture, await page.screenshot({ fullPage: true }));
+    if (property === 'picture') writeFileSync(picture, await page.screenshot());
     else await properties[property](page, file, seen);
     if (seen.errors.length > 0) throw new Error('console: ' + seen.errors.join('\n'));
   } finally {

@@ -5,7 +5,7 @@
     console_docs.py --write PROGRAM PAGE     puts today's output into the page
 
 A block fenced with ```console holds lines `$ omnihil …` and below each what it prints. All blocks of a page run in order in
-one empty folder. Words have to be the same; numbers may differ by 3 %, or by two units of the last digit that is shown.
+one empty folder. Words have to be the same; numbers may differ by 3 %, or by two units of the last digit that is shown; below 1e-9 all are 0.
 """
 import pathlib
 import re
@@ -36,7 +36,7 @@ def alike(shown, said):
     for a, b in zip(NUMBER.findall(shown), NUMBER.findall(said)):
         mantissa, _, exponent = a.partition("e")
         last = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
-        if abs(float(a) - float(b)) > max(0.03 * abs(float(a)), 2.001 * last):
+        if abs(float(a) - float(b)) > max(0.03 * abs(float(a)), 2.001 * last, 1e-9):
             return False
     return True
 
@@ -72,7 +72,8 @@ def main():
         return 0
     if count == 0:
         bad.append(f"{page} has no command")
-    print("\n".join(bad))
+    if bad:
+        print("\n".join(bad), f"\nAfter reading what changed: {sys.argv[0]} --write {sys.argv[2]} {page}", sep="")
     return 1 if bad else 0
 
 

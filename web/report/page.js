@@ -97,7 +97,7 @@ function markWorst(u, map) {
   if (b[0] === null || b[1] === null) return;
   shade(u, [b[0], b[1]], null, 'red');
   const left = u.valToPos(b[0], 'x', true), rightHalf = left > u.bbox.left + u.bbox.width / 2;
-  label(u, `worst: ${Math.round(100 * b[4])} % of the error in ${Math.round(100 * b[5])} % of the time`,
+  label(u, `worst: ${Math.round(100 * b[4])} % of the error in ${shown(Number((100 * b[5]).toPrecision(2)))} % of the time`,
         rightHalf ? Math.min(u.valToPos(b[1], 'x', true), u.bbox.left + u.bbox.width) : Math.max(left, u.bbox.left),
         u.bbox.top + 14 * devicePixelRatio, rightHalf ? 'right' : 'left');
 }
