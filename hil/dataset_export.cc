@@ -49,9 +49,12 @@ struct Places {
     gyro = column_index(header, "gyro_z_rad_s");
     accel_x = column_index(header, "accel_x_m_s2");
     accel_y = column_index(header, "accel_y_m_s2");
-    x = column_index(header, "true_x_m");
-    y = column_index(header, "true_y_m");
-    yaw = column_index(header, "true_yaw_rad");
+    // recordings of before there were columns of the camera hold the true pose alone
+    const bool seen =
+        std::find(header.columns.begin(), header.columns.end(), "vision_x_m") != header.columns.end();
+    x = column_index(header, seen ? "vision_x_m" : "true_x_m");
+    y = column_index(header, seen ? "vision_y_m" : "true_y_m");
+    yaw = column_index(header, seen ? "vision_yaw_rad" : "true_yaw_rad");
   }
 };
 

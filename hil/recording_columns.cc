@@ -86,12 +86,19 @@ void add_truth(Columns& c) {
   > (c, "true_load_N", "N");
 }
 
+void add_vision(Columns& c) {
+  c.push_back({"vision_x_m", "m", [](const RobotSample& s) { return s.vision.x_m; }});
+  c.push_back({"vision_y_m", "m", [](const RobotSample& s) { return s.vision.y_m; }});
+  c.push_back({"vision_yaw_rad", "rad", [](const RobotSample& s) { return s.vision.yaw_rad; }, true});
+}
+
 Columns make_columns() {
   Columns columns;
   add_drive(columns);
   add_sensors(columns);
   add_feedback(columns);
   add_truth(columns);
+  add_vision(columns);
   return columns;
 }
 

@@ -81,6 +81,7 @@ struct Session::Impl : RadioSink {
     sample.drive = robot.tick(sample.sensors);
     sample.feedback = robot.feedback();
     sample.truth = plant.truth(static_cast<int>(i));
+    sample.vision = plant.vision(static_cast<int>(i));
     if (const std::string broken = first_non_finite(sample); !broken.empty()) give_up(now_ns, id, broken);
     plant.write(static_cast<int>(i), sample.drive);
     for (int frames = 0; frames < kMaxFramesPerTick; ++frames) {

@@ -49,6 +49,7 @@ struct RobotSample {
   RobotSensors sensors{};
   RobotFeedback feedback{};
   RobotTruth truth{};
+  VisionPose vision{};  // what a camera would see at this tick
 };
 
 class SessionObserver {

@@ -56,10 +56,11 @@ struct ExperimentOptions {
 
 // What is asked of the drive, or of the four.
 struct PlannedRun {
-  std::string excitation;  // "creep", …
-  std::string words;       // "ramps slowly through zero, ±10 % duty, 16 s a period"
+  std::string excitation;      // "creep", …
+  std::string words;           // "ramps slowly through zero, ±10 % duty, 16 s a period"
+  std::string input = "duty";  // or "motor_voltage", "position_target", as the given data have it
   std::vector<double> time_s;
-  std::vector<std::vector<double>> duty;  // per drive: one, or one per wheel
+  std::vector<std::vector<double>> duty;  // of that input, per drive: one, or one per wheel
 };
 
 struct TriedRun {

@@ -23,6 +23,7 @@ class RobotPredictor : public Predictor {
     for (const Run& run : dataset_.runs) {
       records_.push_back(robot_record(dataset_, run, rolling_params(of_run(nominal, run).file.parameters)));
       signals_.push_back(robot_signals(dataset_, run, records_.back()));
+      add_input_noise(of_run(nominal, run), records_.back(), signals_.back());
       compared_.emplace_back();
       for (const RobotSignal& s : signals_.back()) compared_.back().push_back(s.compared);
     }
@@ -86,6 +87,15 @@ class RobotPredictor : public Predictor {
   std::string applies(const EffectEntry& entry) const override;
 
  private:
+  void add_input_noise(const Candidate& model, const RobotRecord& record, std::vector<RobotSignal>& signals) {
+    if (record.size() < 2 || (record.duty_quantum == 0.0 && record.bus_sigma_V == 0.0)) return;
+    const auto values = robot_values<double>(model, {}, 0);
+    const RobotMotion<double> motion = run_robot(values, record, motion_);
+    const RobotMotion<double> other = run_robot(values, with_input_noise(record, kNoiseSeed), motion_);
+    if (motion.finite && other.finite) omnihil::add_input_noise(record, motion, other, signals);
+  }
+  static constexpr std::uint64_t kNoiseSeed = 1;  // of a floor's size alone
+
   // Those that the run knows keep their places, but nothing depends on them.
   static std::vector<Unknown> open_unknowns(std::span<const Unknown> unknowns, const Run& run) {
     std::vector<Unknown> open(unknowns.begin(), unknowns.end());
@@ -113,17 +123,35 @@ class RobotPredictor : public Predictor {
 
 std::unique_ptr<Predictor> RobotPredictor::simulated(const Candidate& truth, std::uint64_t seed) const {
   Dataset made = dataset_;
+  std::vector<RobotMotion<double>> motions;
+  const auto own_seed = [&](std::size_t n) { return mix_bits(seed ^ mix_bits(n)); };
   for (std::size_t n = 0; n < made.runs.size(); ++n) {
-    Run& run = made.runs[n];
-    const std::uint64_t own_seed = mix_bits(seed ^ mix_bits(n));
     RobotMotionOptions free = motion_;
     free.slave_angle = false;
     free.follow_camera = false;
-    free.noise_seed = own_seed;
-    const auto model = robot_values<double>(of_run(truth, run), {}, 0);
-    measure_robot(records_[n], run_robot(model, records_[n], free), signals_[n], own_seed, run);
+    free.noise_seed = own_seed(n);
+    const auto model = robot_values<double>(of_run(truth, made.runs[n]), {}, 0);
+    // the duties that the world had, before they were rounded; its bus before it was measured
+    RobotRecord world = with_input_noise(records_[n], own_seed(n));
+    world.bus_voltage_V = records_[n].bus_voltage_V;
+    motions.push_back(run_robot(model, world, free));
+    measure_robot(records_[n], motions.back(), signals_[n], own_seed(n), made.runs[n]);
   }
-  return std::make_unique<RobotPredictor>(made, nominal_, options_);
+  auto null = std::make_unique<RobotPredictor>(made, nominal_, options_);
+  for (std::size_t n = 0; n < made.runs.size(); ++n) {
+    for (std::size_t s = 0; s < null->signals_[n].size(); ++s) {
+      RobotSignal& signal = null->signals_[n][s];
+      if (signal.output == RobotOutput::kBusVoltage) {
+        measure_robot_bus(records_[n], motions[n], own_seed(n), signal);
+        null->compared_[n][s] = signal.compared;
+      }
+      // the sensors are the same, whatever their noise was taken from
+      signal.channel_sigma = signals_[n][s].channel_sigma;
+      null->compared_[n][s].noise_sigma = compared_[n][s].noise_sigma;
+      null->compared_[n][s].whitened_sigma = compared_[n][s].whitened_sigma;
+    }
+  }
+  return null;
 }
 
 std::string RobotPredictor::applies(const EffectEntry& entry) const {
@@ -131,8 +159,6 @@ std::string RobotPredictor::applies(const EffectEntry& entry) const {
   const auto is = [&](std::string_view id) { return e.id == id; };
   if ((e.rigs & kOnRobot) == 0) return "acts on a single axis";
   if (e.place == Place::kShaft) return "needs a freedom between rotor and wheel, which a robot's model lacks";
-  if (e.place == Place::kSupply && has_channel("bus_voltage"))
-    return "the bus voltage is measured at the bridge: whatever pulls it down is in it";
   if (is("target_speed_limit")) return "needs a position servo";
   if (is("hall_speed_estimator")) return "needs a speed that the drive's electronics estimate";
   if (is("sample_jitter")) return "has no expected value: it is noise";

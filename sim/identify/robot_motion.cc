@@ -17,7 +17,7 @@ template <typename T>
 struct Truth {
   std::vector<std::array<T, kWheels>> theta_rotor_rad, omega_rotor_rad_s, charge_C;
   std::vector<std::array<T, 3>> velocity;
-  std::vector<T> accel_x, accel_y, bus;
+  std::vector<T> accel_x, accel_y, bus, supply;
 };
 
 // Place of a time among the samples: between `from` and `from` + 1.
@@ -151,6 +151,7 @@ class Runner {
     truth_.accel_x.push_back(x.accel_x_m_s2);
     truth_.accel_y.push_back(x.accel_y_m_s2);
     truth_.bus.push_back(x.bus_voltage_V);
+    truth_.supply.push_back(x.supply_voltage_V);
     out_.temperature_rise_K.push_back(rise);
   }
 
@@ -187,6 +188,7 @@ class Runner {
       out_.accel_y_m_s2[k] = seen([&](std::size_t j) { return truth_.accel_y[j]; });
     }
     out_.bus_voltage_V = truth_.bus;
+    out_.supply_voltage_V = truth_.supply;
     out_.velocity = truth_.velocity;
   }
 
@@ -219,6 +221,7 @@ class Runner {
     const std::size_t n = record_.size();
     std::vector<T> x(n, T(0)), y(n, T(0)), theta(n, T(0));
     T vx = T(0), vy = T(0);
+    theta[0] = T(options_.follow_camera ? 0.0 : first_heading());
     for (std::size_t k = 0; k < n; ++k) {
       if (k > 0) {
         const double dt_s = record_.time_s[k] - record_.time_s[k - 1];
@@ -246,6 +249,13 @@ class Runner {
     out_.x_m = follow(x, &CameraFrame::x_m);
     out_.y_m = follow(y, &CameraFrame::y_m);
     out_.theta_rad = follow(theta, &CameraFrame::theta_rad);
+  }
+
+  double first_heading() const {
+    for (const CameraFrame& f : record_.frames) {
+      if (std::isfinite(f.theta_rad)) return f.theta_rad;
+    }
+    return 0.0;
   }
 
   void look_back(std::vector<T>& way) const {

@@ -40,9 +40,9 @@ struct RobotMotion {
   std::vector<std::array<T, kWheels>> encoder_rad;  // unrounded, at the rotor
   std::vector<std::array<T, kWheels>> current_A;    // mean over the period that ends at the sample
   std::vector<T> gyro_rad_s, accel_x_m_s2, accel_y_m_s2;
-  std::vector<T> bus_voltage_V;
-  std::vector<T> temperature_rise_K;       // mean of the four windings
-  std::vector<std::array<T, 3>> velocity;  // body frame: true, not as seen
+  std::vector<T> bus_voltage_V, supply_voltage_V;  // RollingState
+  std::vector<T> temperature_rise_K;               // mean of the four windings
+  std::vector<std::array<T, 3>> velocity;          // body frame: true, not as seen
   // As a camera would see it, the corrections of follow_camera included; NaN between frames (follow_camera)
   // or everywhere the record has none.
   std::vector<T> x_m, y_m, theta_rad;

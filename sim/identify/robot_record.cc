@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include "sim/core/random.h"
+
 namespace omnihil {
 namespace {
 
@@ -31,6 +33,35 @@ double first_of(const std::vector<double>& signal, double otherwise) {
   return found == signal.end() ? otherwise : *found;
 }
 
+// The measured bus voltage drives the model, so its sensor's noise would come out as speed: a white noise of
+// 20 mV moves a rotor's angle ten times as much as an encoder's rounding. Each sample is the mean of the
+// longest of three windows that shows no more than noise; where the shortest shows more, what goes beyond is
+// kept (J.-S. Lee, IEEE PAMI 2(2), 1980).
+std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
+  constexpr std::array<std::size_t, 3> kHalf = {250, 50, 10};  // samples
+  constexpr double kNoMoreThanNoise = 1.2;                     // of the variance
+  const std::size_t n = x.size();
+  if (!(sigma > 0.0)) return x;
+  std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double d = x[k] - x.front();
+    sum[k + 1] = sum[k] + d;
+    square[k + 1] = square[k] + d * d;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    for (const std::size_t half : kHalf) {
+      const std::size_t from = k > half ? k - half : 0, to = std::min(n, k + half + 1);
+      const double count = static_cast<double>(to - from);
+      const double mean = (sum[to] - sum[from]) / count;
+      const double variance = (square[to] - square[from]) / count - mean * mean;
+      out[k] = x.front() + mean;
+      if (variance <= kNoMoreThanNoise * sigma * sigma) break;
+      if (half == kHalf.back()) out[k] += (1.0 - sigma * sigma / variance) * (x[k] - x.front() - mean);
+    }
+  }
+  return out;
+}
+
 void read_drive(const Run& run, RobotRecord& r) {
   for (std::size_t i = 0; i < kWheels; ++i) {
     const std::vector<double>* duty = run.signal(numbered("duty", i));
@@ -41,6 +72,25 @@ void read_drive(const Run& run, RobotRecord& r) {
       r.enabled[k][i] = asked && (enable == nullptr || !((*enable)[k] == 0.0));
     }
   }
+}
+
+// A record with few decimals: the last of them is what its duties are known to.
+double rounding_of(const std::vector<std::array<double, kWheels>>& duties) {
+  std::vector<double> all;
+  for (const auto& duty : duties) all.insert(all.end(), duty.begin(), duty.end());
+  std::sort(all.begin(), all.end());
+  constexpr std::ptrdiff_t kEnough = 20;  // different values; fewer may be round by choice
+  std::vector<double> different = all;
+  different.erase(std::unique(different.begin(), different.end()), different.end());
+  if (static_cast<std::ptrdiff_t>(different.size()) < kEnough) return 0.0;
+  constexpr std::array<double, 4> kDecimals = {1e2, 1e3, 1e4, 1e5};
+  for (const double scale : kDecimals) {
+    const bool round = std::all_of(different.begin(), different.end(), [&](double v) {
+      return std::abs(v * scale - std::round(v * scale)) < 1e-6 * scale * 1e-3 + 1e-7;
+    });
+    if (round) return 1.0 / scale;
+  }
+  return 0.0;
 }
 
 // Straight lines over gaps.
@@ -152,10 +202,14 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   r.encoder_rotor_rad.resize(r.size());
   r.theta_rotor_rad.resize(r.size());
   read_drive(run, r);
+  r.duty_quantum = rounding_of(r.duty_ratio);
   read_encoders(dataset, run, nominal.drive.gear_ratio, r);
   r.dribbler_rad_s = held(run.signal("dribbler"), r.size(), 0.0);
   if (const std::vector<double>* bus = run.signal("bus_voltage"); bus != nullptr) {
-    r.bus_voltage_V = held(bus, r.size(), first_of(*bus, nominal.drive.supply_voltage_V));
+    const Channel* channel = dataset.channel("bus_voltage");
+    r.bus_sigma_V = channel != nullptr ? channel->sigma : 0.0;
+    r.bus_voltage_V =
+        without_noise(held(bus, r.size(), first_of(*bus, nominal.drive.supply_voltage_V)), r.bus_sigma_V);
   }
   if (const std::vector<double>* gyro = run.signal("gyro_z"); gyro != nullptr) {
     const std::vector<double> rate = held(gyro, r.size(), first_of(*gyro, 0.0));
@@ -167,6 +221,19 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   read_frames(run, r);
   unwrap_by_gyro(r);
   r.start_velocity = start_velocity(r, nominal);
+  return r;
+}
+
+RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {
+  RobotRecord r = record;
+  const std::uint64_t bus_stream = stream_of("bus_voltage"), duty_stream = stream_of("duty");
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      r.duty_ratio[k][i] += r.duty_quantum * (uniform(seed, duty_stream + i, k) - 0.5);
+    }
+    if (!r.bus_voltage_V.empty()) r.bus_voltage_V[k] += r.bus_sigma_V * gaussian(seed, bus_stream, k);
+  }
+  if (!r.bus_voltage_V.empty()) r.bus_voltage_V = without_noise(r.bus_voltage_V, r.bus_sigma_V);
   return r;
 }
 

@@ -8,6 +8,7 @@
 // An empty duty is a bridge that is off. A missing sample of an input is the one before.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,9 @@ struct RobotRecord {
   std::vector<double> time_s;
   std::vector<std::array<double, kWheels>> duty_ratio;
   std::vector<std::array<bool, kWheels>> enabled;
-  std::vector<double> bus_voltage_V;  // empty: not measured
+  std::vector<double> bus_voltage_V;  // less its sensor's noise; empty: not measured
+  double bus_sigma_V = 0.0;           // of the sensor; 0: not stated
+  double duty_quantum = 0.0;          // decimals that the record's duties are rounded to; 0: none seen
   std::vector<double> dribbler_rad_s;
   std::array<double, kWheels> counts_per_rotor_turn{};         // 0: no encoder there
   std::vector<std::array<double, kWheels>> encoder_rotor_rad;  // as counted
@@ -42,6 +45,10 @@ struct RobotRecord {
 // gear_ratio, wheel_radius_m and the wheels' places of the nominal model: for the start alone, and for
 // encoders on the wheel.
 RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal);
+
+// The record with inputs as another throw of their own noise would have it: duties off by their rounding, the
+// bus voltage by its sensor.
+RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed);
 
 // Heading of the body per sample, as measured; empty where neither gyro nor camera give one.
 // A camera's frame is `age` older than its stamp.

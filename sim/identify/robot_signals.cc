@@ -27,6 +27,7 @@ constexpr Source kSources[] = {
     {RobotOutput::kVisionX, "vision_x", "m", false},
     {RobotOutput::kVisionY, "vision_y", "m", false},
     {RobotOutput::kVisionTheta, "vision_theta", "rad", false},
+    {RobotOutput::kBusVoltage, "bus_voltage", "V", false},
 };
 
 double CameraFrame::*frame_member(RobotOutput output) {
@@ -77,6 +78,9 @@ void take_velocity(const Channel& channel, const RobotRecord& r, RobotSignal& s)
   s.channel_sigma = channel.sigma;
   c.noise_sigma = std::sqrt(2.0 * counts2) * c.quantum;
   c.noise_is_stated = true;
+  // Not whitened (predictor.h): what a floor does to a robot at random adds up to more angle than the
+  // rounding of counts hides, and would be taken for physics.
+  c.whitened_sigma = c.noise_sigma;
 }
 
 void take_frames(const Channel& channel, const RobotRecord& r, RobotSignal& s) {
@@ -101,10 +105,11 @@ void take(const Channel& channel, const Run& run, const RobotRecord& r, RobotSig
   } else {
     s.compared.measured = *run.signal(s.channel);
     // the mean over a period that nobody saw begin
-    if (s.output == RobotOutput::kCurrent && !s.compared.measured.empty()) s.compared.measured[0] = kNaN;
+    const bool mean = s.output == RobotOutput::kCurrent || s.output == RobotOutput::kBusVoltage;
+    if (mean && !s.compared.measured.empty()) s.compared.measured[0] = kNaN;
     s.channel_sigma = channel.sigma > 0.0 ? channel.sigma : noise_under(s.compared.measured);
   }
-  s.compared.noise_sigma = s.channel_sigma;
+  s.compared.noise_sigma = s.compared.whitened_sigma = s.channel_sigma;
   s.compared.noise_is_stated = channel.sigma > 0.0;
 }
 
@@ -132,6 +137,23 @@ std::vector<RobotSignal> robot_signals(const Dataset& dataset, const Run& run, c
   }
   return signals;
 }
+
+namespace {
+
+template <typename T>
+std::vector<T> at_mean_of(const std::vector<double>& measured, std::vector<T> y) {
+  T shift = T(0);
+  double count = 0.0;
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    if (!std::isfinite(measured[k])) continue;
+    shift += measured[k] - y[k];
+    count += 1.0;
+  }
+  for (T& v : y) v += shift / std::max(count, 1.0);
+  return y;
+}
+
+}  // namespace
 
 template <typename T>
 std::vector<T> robot_signal_values(const RobotSignal& s, const RobotRecord& r, const RobotMotion<T>& m) {
@@ -162,6 +184,8 @@ std::vector<T> robot_signal_values(const RobotSignal& s, const RobotRecord& r, c
       return m.y_m;
     case RobotOutput::kVisionTheta:
       return m.theta_rad;
+    case RobotOutput::kBusVoltage:
+      return at_mean_of(s.compared.measured, m.supply_voltage_V);
   }
   return out;
 }
@@ -170,6 +194,25 @@ template std::vector<double> robot_signal_values(const RobotSignal&, const Robot
                                                  const RobotMotion<double>&);
 template std::vector<Jet> robot_signal_values(const RobotSignal&, const RobotRecord&,
                                               const RobotMotion<Jet>&);
+
+void add_input_noise(const RobotRecord& r, const RobotMotion<double>& m, const RobotMotion<double>& perturbed,
+                     std::vector<RobotSignal>& signals) {
+  const auto mean_square = [](const std::vector<double>& d) {
+    double sum = 0.0, count = 0.0;
+    for (const double v : d) {
+      if (std::isfinite(v)) sum += v * v, count += 1.0;
+    }
+    return count > 0.0 ? sum / count : 0.0;
+  };
+  for (RobotSignal& s : signals) {
+    std::vector<double> d = robot_signal_values(s, r, perturbed);
+    const std::vector<double> plain = robot_signal_values(s, r, m);
+    for (std::size_t k = 0; k < d.size(); ++k) d[k] -= plain[k];
+    ComparedSignal& c = s.compared;
+    c.noise_sigma = std::sqrt(c.noise_sigma * c.noise_sigma + mean_square(d));
+    c.whitened_sigma = std::sqrt(c.whitened_sigma * c.whitened_sigma + mean_square(whitened(c, d)));
+  }
+}
 
 // ------------------------------------------------------------------------------------------- regimes
 
@@ -250,6 +293,12 @@ void measure_robot(const RobotRecord& r, const RobotMotion<double>& m,
     std::vector<double>& out = run.signals.find(s.channel)->second;
     const std::uint64_t stream = stream_of(s.channel);
     const auto noise = [&](std::size_t k) { return s.channel_sigma * gaussian(seed, stream, k); };
+    if (s.output == RobotOutput::kBusVoltage) {  // an input: the world had it without its sensor's noise
+      for (std::size_t k = 0; k < r.size(); ++k) {
+        if (std::isfinite(out[k])) out[k] = r.bus_voltage_V[k] + noise(k);
+      }
+      continue;
+    }
     if (s.output == RobotOutput::kVelocity) {
       const double counts_per_rad = r.counts_per_rotor_turn[s.wheel] / (2.0 * std::numbers::pi);
       for (std::size_t k = 0; k < r.size(); ++k) {
@@ -265,6 +314,16 @@ void measure_robot(const RobotRecord& r, const RobotMotion<double>& m,
       if (!std::isfinite(first)) first = is_vision(s.output) ? out[k] - values[k] : 0.0;
       out[k] = values[k] + first + noise(k);
     }
+  }
+}
+
+void measure_robot_bus(const RobotRecord& r, const RobotMotion<double>& m, std::uint64_t seed,
+                       RobotSignal& s) {
+  const std::vector<double> values = robot_signal_values(s, r, m);
+  const std::uint64_t stream = stream_of("bus_voltage compared");
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    double& out = s.compared.measured[k];
+    if (std::isfinite(out)) out = values[k] + s.channel_sigma * gaussian(seed, stream, k);
   }
 }
 

@@ -148,7 +148,8 @@ RollingState<T> RollingRobot<T>::start(const BodyVelocity<double>& v,
                                        const std::array<double, kWheels>& theta_rotor_rad) const {
   RollingState<T> x;
   x.velocity = {T(v.v_forward_m_s), T(v.v_left_m_s), T(v.omega_body_rad_s)};
-  x.bus_voltage_V = p_.drive.supply_voltage_V;
+  x.bus_voltage_V = x.supply_voltage_V = p_.drive.supply_voltage_V;
+  x.supply_states = drives_[0].initial_state().effects;
   for (std::size_t i = 0; i < kWheels; ++i) {
     x.drive[i] = drives_[i].initial_state();
     x.theta_rotor_rad[i] = T(theta_rotor_rad[i]);
@@ -438,7 +439,24 @@ void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput& in, Step& s
   for (std::size_t i = 0; i < 3; ++i) x.velocity[i] = end(static_cast<Eigen::Index>(i));
   x.floor_x_N = floor_x;
   x.floor_y_N = floor_y;
-  x.bus_voltage_V = in.bus_is_measured ? T(in.bus_voltage_V) : s.wheel[0].drive.bus_voltage_V;
+  supply(x, in, s);
+}
+
+template <typename T>
+void RollingRobot<T>::supply(RollingState<T>& x, const RollingInput& in, const Step& s) const {
+  if (!in.bus_is_measured) {
+    x.bus_voltage_V = x.supply_voltage_V = s.wheel[0].drive.bus_voltage_V;
+    return;
+  }
+  x.bus_voltage_V = T(in.bus_voltage_V);
+  if (effects_.supply.empty()) return;
+  SupplyPort<T> port;
+  port.bus_current_A = T(0);
+  for (const Wheel& w : s.wheel) port.bus_current_A += w.drive.mean_bus_current_A;
+  port.dt_s = s.h;
+  port.bus_voltage_V = p_.drive.supply_voltage_V;
+  effects_.supply.apply(effects_.values(), x.supply_states.data(), port);
+  x.supply_voltage_V = port.bus_voltage_V;
 }
 
 template class RollingRobot<double>;

@@ -59,12 +59,14 @@ struct RollingState {
   std::array<T, kWheels> theta_rotor_rad{};    // turned since the start, plus where it started
   std::array<T, kWheels> charge_C{};           // integral of the motor current
   T accel_x_m_s2 = T(0), accel_y_m_s2 = T(0);  // of the geometric centre, mean over the last step
-  T bus_voltage_V = T(0);
+  T bus_voltage_V = T(0);                      // that the bridges had
+  T supply_voltage_V = T(0);  // that the supply would give by its effects, where the bus is measured
   // of the step before, where the next one's solution begins
   std::array<T, kWheels> force_N{}, friction_Nm{};
   std::array<double, kWheels> slip_m_s{};
   T floor_x_N = T(0), floor_y_N = T(0);
   T turn_change_rad_s = T(0);
+  std::array<T, kMaxEffectStates> supply_states{};
 
   const T& omega_rotor_rad_s(std::size_t i) const { return drive[i].omega_rotor_rad_s; }
 };
@@ -107,6 +109,7 @@ class RollingRobot {
   Eigen::Vector4d solve_values(const RollingState<T>& x, const Step& s, Eigen::Matrix4d& jacobian);
   void solve(RollingState<T>& x, Step& s);
   void finish(RollingState<T>& x, const RollingInput& in, Step& s) const;
+  void supply(RollingState<T>& x, const RollingInput& in, const Step& s) const;
 
   RollingParams<T> p_;
   EffectSet<T> effects_;

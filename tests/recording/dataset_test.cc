@@ -10,6 +10,7 @@
 #include "hil/dataset_export.h"
 #include "hil/dataset_files.h"
 #include "hil/dataset_model.h"
+#include "hil/effect_overrides.h"
 #include "tests/recording/real_run.h"
 
 namespace omnihil {
@@ -111,13 +112,41 @@ TEST(Dataset, ValuesAreThoseOfTheSamples) {
         EXPECT_EQ(table.at("duty_2")[row], "");
       }
       if (!table.at("vision_theta")[row].empty()) {
-        EXPECT_EQ(number(table.at("vision_theta")[row]), of(chunk, "true_yaw_rad"));
+        EXPECT_EQ(number(table.at("vision_theta")[row]), of(chunk, "vision_yaw_rad"));
       }
       ++row;
     }
     EXPECT_EQ(row, table.at("time_s").size());
     EXPECT_EQ(row, 200U);
   }
+}
+
+// A camera that is 40 ms late shows in the dataset where the robot was 40 ms before.
+TEST(Dataset, CameraFramesAreAsLateAsTheModelSays) {
+  SessionSetup late = real::setup(real::kHermes, {0});
+  std::vector<std::string> faults;
+  add_effects(late.model, {"vision_delay.delay_s=0.04"}, faults);
+  ASSERT_TRUE(faults.empty()) << faults.front();
+  const Recording recording = real::record(late, 400, 1);
+  const DatasetExport made = make_dataset(recording, *read_bundle(late.model).model, {});
+  const Table fit = read_csv(file(made, "robot_0_fit.csv"));
+  const auto& columns = recording.header.columns;
+  const auto true_x =
+      static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "true_x_m") - columns.begin());
+  std::vector<double> way;
+  for (const RecordedChunk& chunk : recording.chunks) {
+    if (chunk.kind == RecordedChunk::Kind::kSample) way.push_back(chunk.sample[true_x]);
+  }
+  int frames = 0;
+  double moved_m = 0.0;
+  for (std::size_t row = 40; row < fit.at("vision_x").size(); ++row) {
+    if (fit.at("vision_x")[row].empty()) continue;
+    EXPECT_NEAR(number(fit.at("vision_x")[row]), way[row - 40], 1e-9) << row << " ms";
+    moved_m = std::max(moved_m, std::abs(way[row] - way[row - 40]));
+    ++frames;
+  }
+  EXPECT_GT(frames, 5);
+  EXPECT_GT(moved_m, 1e-3);  // it did move meanwhile
 }
 
 TEST(Dataset, TimeIncreasesAndCameraFramesComeAtTheirRate) {

@@ -1,0 +1,25 @@
+// What `omnihil experiment` writes: the planned run as a table, as radio packets, and in words.
+//
+//   folder.write("run.csv", planned_csv(run, inputs));
+//   std::string fault;
+//   folder.write("stream.txt", planned_stream(run, format, {.id = 3}, 100.0, fault));
+#pragma once
+#include <string>
+
+#include "protocols/drive_frames.h"
+#include "sim/identify/experiment.h"
+
+namespace omnihil {
+
+// time_s and what is asked, as `omnihil sim MODEL --excite run.csv` takes it back.
+std::string planned_csv(const PlannedRun& run);
+
+// The four duties as frames, `rate_Hz` a second, and zero at the end: as `omnihil play` takes it. `fault`:
+// why there is none.
+std::string planned_stream(const PlannedRun& run, const RadioFormat& format, const RobotAddress& robot,
+                           double rate_Hz, std::string& fault);
+
+// The plan for a reader: what, how far it separates, what the run does, what was refused.
+std::string plan_text(const ExperimentPlan& plan);
+
+}  // namespace omnihil

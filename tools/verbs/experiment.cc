@@ -1,0 +1,239 @@
+// omnihil experiment DATASET: the run that best tells rival effects apart, or says most about a number.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hil/dataset_files.h"
+#include "hil/dataset_reader.h"
+#include "hil/serve_signals.h"
+#include "sim/core/effect_registry.h"
+#include "sim/core/params.h"
+#include "sim/identify/refit.h"
+#include "tools/axis_bench.h"
+#include "tools/exit_codes.h"
+#include "tools/experiment_files.h"
+#include "tools/guarded.h"
+#include "tools/progress_line.h"
+#include "tools/robot_bench.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::string_view kBase = "base";
+
+struct Arguments {
+  std::string dataset, model, out, radio;
+  std::vector<std::string> separate;
+  ExperimentQuestion question;
+  ExperimentOptions options;
+  RobotAddress robot;
+  std::string team = "blue";
+  double packets_Hz = 100.0;
+
+  Arguments() { options.jobs = 2; }
+};
+
+// A bench of one's own where there is no measurement: the model, recorded with the usual steps.
+std::string simulated_dataset(const Arguments& a, const std::filesystem::path& folder,
+                              std::vector<std::string>& faults) {
+  BenchOptions bench;
+  bench.model = a.model;
+  bench.excitations = {"steps"};
+  bench.duration_s = 5.0;
+  bench.rate_Hz = a.options.rate_Hz;
+  bench.seed = a.options.seed;
+  NewFolder out(folder);
+  if (const std::optional<AxisBench> axis = make_bench(bench, faults); axis) {
+    out.write("dataset.toml", dataset_text(*axis));
+    out.write("model.toml", axis_model_text(axis->model));
+    for (const AxisBenchRun& run : axis->runs) out.write(run.name + ".csv", run_csv(*axis, run));
+  } else if (std::vector<std::string> own; true) {
+    const std::optional<RobotBench> robot = make_robot_bench(bench, own);
+    if (!robot) return "";
+    faults.clear();
+    for (const DatasetFile& file : robot->files) out.write(file.name, file.text);
+  }
+  out.finish();
+  return folder.string();
+}
+
+std::vector<std::string> words_of(const std::vector<std::string>& lists) {
+  std::vector<std::string> words;
+  for (const std::string& list : lists) {
+    std::size_t from = 0;
+    while (from <= list.size()) {
+      const std::size_t comma = std::min(list.find(',', from), list.size());
+      if (comma > from) words.push_back(list.substr(from, comma - from));
+      from = comma + 1;
+    }
+  }
+  return words;
+}
+
+std::vector<std::string> check_names(const std::vector<std::string>& names, const Predictor& predictor) {
+  std::vector<std::string> faults;
+  for (const std::string& name : names) {
+    if (name == kBase) continue;
+    const EffectEntry* entry = find_effect(name);
+    const std::string_view near = entry == nullptr ? nearest_effect(name) : "";
+    if (entry == nullptr || name == "expression") {
+      faults.push_back(fmt::format("--separate {}: there is no such effect; {}", name,
+                                   near.empty() ? "allowed: effects of `omnihil effects`, or \"base\""
+                                                : fmt::format("did you mean \"{}\"?", near)));
+    } else if (const std::string why = predictor.applies(*entry); !why.empty()) {
+      faults.push_back(fmt::format("--separate {}: {}", name, why));
+    }
+  }
+  return faults;
+}
+
+// The model with an effect, fitted from its typical size and from nothing; without data at its typical size.
+Rival rival_of(const std::string& name, const Candidate& nominal, const Predictor* predictor, int jobs) {
+  Candidate plain = nominal;
+  const bool has = std::any_of(nominal.effects.begin(), nominal.effects.end(),
+                               [&](const EffectUse& u) { return effect_name(u) == name; });
+  if (name != kBase && !has) plain = with_effect(nominal, *find_effect(name));
+  Candidate typical = plain;
+  const DriveParams<double> drive = drive_of(nominal);
+  if (name != kBase && !has) typical.effects.back() = typical_use(*find_effect(name), &drive);
+  if (predictor == nullptr) return {name, typical};
+  std::optional<FitResult> best;
+  for (const Candidate& start : {plain, typical}) {
+    FitResult r = fit(*predictor, start, unknowns_with_priors(start, nominal), {.jobs = jobs, .quick = true});
+    if (!best || r.cost < best->cost) best = std::move(r);
+    if (name == kBase) break;
+  }
+  return {name, best->model};
+}
+
+void write_plan(const Arguments& a, const ExperimentPlan& plan, const RadioFormat* format,
+                std::string& text) {
+  NewFolder folder(a.out);
+  folder.write("run.csv", planned_csv(*plan.run));
+  if (format != nullptr) {
+    std::string fault;
+    const std::string stream = planned_stream(*plan.run, *format, a.robot, a.packets_Hz, fault);
+    if (!fault.empty()) throw std::invalid_argument("--radio: " + fault);
+    folder.write("stream.txt", stream);
+    text += fmt::format(
+        "Packets: {}/stream.txt, for `omnihil play`; {:g} a second hold what run.csv asks {:g} times a "
+        "second.\n",
+        a.out, a.packets_Hz, a.options.rate_Hz);
+  }
+  folder.write("plan.txt", text);
+  folder.finish();
+}
+
+int run(Arguments a) {
+  std::vector<std::string> faults;
+  const std::vector<std::string> names = words_of(a.separate);
+  if (a.dataset.empty() && a.model.empty())
+    faults.push_back("give a DATASET, or --model for a bench of its own");
+  if (names.size() < 2 && a.question.shrink.empty())
+    faults.push_back("--separate A,B: two effects (or \"base\") to tell apart, or --shrink PATH");
+  const RadioFormat* format = a.radio.empty() ? nullptr : find_radio_format(a.radio);
+  if (!a.radio.empty() && (format == nullptr || !can_drive_by_duty(*format))) {
+    faults.push_back(fmt::format("--radio {}: {}", a.radio,
+                                 format == nullptr ? "there is no such format; `omnihil formats` lists them"
+                                                   : "has no packet that hands duties to the wheels"));
+  }
+  std::string where = a.dataset;
+  const std::filesystem::path own =
+      std::filesystem::temp_directory_path() / fmt::format("omnihil-experiment-{}", ::getpid());
+  if (faults.empty() && where.empty()) where = simulated_dataset(a, own, faults);
+  DatasetReading reading;
+  if (faults.empty()) reading = read_dataset(where, a.dataset.empty() ? "" : a.model);
+  std::filesystem::remove_all(own);
+  for (const ModelProblem& p : reading.problems) faults.push_back(p.text());
+  std::unique_ptr<Predictor> predictor;
+  if (reading.dataset) {
+    predictor = make_predictor(*reading.dataset, *reading.nominal, {});
+    for (std::string& fault : check_names(names, *predictor)) faults.push_back(std::move(fault));
+    if (format != nullptr && reading.dataset->rig != Rig::kRobot) {
+      faults.push_back("--radio: this is a single axis; only a robot has a radio to send packets to");
+    }
+  }
+  for (const std::string& fault : faults) std::fprintf(stderr, "omnihil experiment: %s\n", fault.c_str());
+  if (!faults.empty() || !reading.dataset) return kExitBadInput;
+  StopSignals stop;
+  ExperimentPlan plan;
+  {
+    ProgressLine line;
+    const Predictor* data = a.dataset.empty() ? nullptr : predictor.get();
+    std::vector<Rival> rivals;
+    for (const std::string& name : names.empty() ? std::vector<std::string>{std::string(kBase)} : names) {
+      line.show("fitting " + name, 0.0);
+      rivals.push_back(rival_of(name, *reading.nominal, data, a.options.jobs));
+    }
+    a.options.progress = [&](const DiagnosisProgress& p) {
+      line.show(p.doing, p.share);
+      return !StopSignals::requested();
+    };
+    plan = plan_experiment(*reading.dataset, rivals, a.question, a.options);
+  }
+  std::string text = plan_text(plan);
+  if (plan.run && !a.out.empty()) write_plan(a, plan, format, text);
+  std::fputs(text.c_str(), plan.run ? stdout : stderr);
+  if (StopSignals::requested()) return kExitInterrupted;
+  return plan.run ? kExitOk : kExitBadInput;
+}
+
+}  // namespace
+
+void add_verb_experiment(CLI::App& app, VerbResult& result) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb =
+      app.add_subcommand("experiment", "the run to record next: tells effects apart, or shrinks a number");
+  verb->add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml");
+  verb->add_option("--model", a->model,
+                   "model in place of the dataset's own; without a DATASET: a simulated bench");
+  verb->add_option("--separate", a->separate, "effects to tell apart, or \"base\" for none: A,B");
+  verb->add_option("--shrink", a->question.shrink, "number to know better: its path in the model")
+      ->type_name("PATH");
+  ExperimentLimits& limits = a->options.limits;
+  verb->add_option("--max-voltage", limits.voltage_V, "at the motor, V")->check(CLI::PositiveNumber);
+  verb->add_option("--max-current", limits.current_A, "of a motor, A")->check(CLI::PositiveNumber);
+  verb->add_option("--max-speed", limits.speed_rad_s, "of the rotor, rad/s (linear axis: m/s)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--max-travel", limits.travel, "from the start, rad at the output (linear axis, robot: m)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--duration", limits.duration_s, "of the run, s")
+      ->check(CLI::Range(1.0, 600.0))
+      ->capture_default_str();
+  verb->add_option("--rate", a->options.rate_Hz, "samples per second")
+      ->check(CLI::Range(10.0, 10000.0))
+      ->capture_default_str();
+  verb->add_option("--out", a->out, "new folder: run.csv, plan.txt, stream.txt");
+  verb->add_option("--radio", a->radio, "write the run as packets of this format too (robots)");
+  verb->add_option("--robot", a->robot.id, "that the packets are for")
+      ->check(CLI::Range(0, 15))
+      ->capture_default_str();
+  verb->add_option("--team", a->team, "of the robot")
+      ->check(CLI::IsMember({"blue", "yellow"}))
+      ->capture_default_str();
+  verb->add_option("--packets", a->packets_Hz, "radio packets per second")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  verb->add_option("--seed", a->options.seed, "of the random excitations")->capture_default_str();
+  verb->add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  verb->footer(
+      "Every excitation is simulated; one that would break a limit is refused and listed. The expected "
+      "separation\n"
+      "is in sigmas of the noise, with one model refitted to the other.");
+  verb->callback([a, &result] {
+    a->robot.blue = a->team == "blue";
+    result.exit_code = guarded("experiment", [&] { return run(*a); });
+  });
+}
+
+}  // namespace omnihil
