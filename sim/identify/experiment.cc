@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/identify/experiment_distance.h"
 #include "sim/identify/experiment_menu.h"
@@ -15,7 +16,7 @@
 namespace omnihil {
 namespace {
 
-constexpr double kLevels[] = {1.0, 0.5, 0.2, 0.08};  // shares of the largest level there is
+constexpr double kLevels[] = {1.0, 0.5, 0.2, 0.08, 0.03, 0.01};  // shares of the largest level there is
 constexpr int kRefitRounds = 3;
 constexpr std::size_t kRefined = 3;       // of the menu's best, looked at in full
 constexpr double kQuickLongest_s = 10.0;  // within a diagnosis
@@ -46,6 +47,7 @@ class Planner {
   std::string broken_limit(const MotionExtremes& m) const;
   double largest_level() const;
   double score(const Trial& t, int rounds) const;
+  bool imitates(std::size_t whole, std::size_t part) const;
   double separation(const Predictor& world_of_a, std::size_t a, std::size_t b, int rounds) const;
   std::vector<Trial> screen();
   void describe(const Trial& best);
@@ -106,7 +108,7 @@ void Planner::prepare_rivals() {
     double least = 1e300;
     for (std::size_t a = 0; a < held_.size(); ++a) {
       for (std::size_t b = 0; b < held_.size(); ++b) {
-        if (a == b) continue;
+        if (a == b || imitates(b, a)) continue;
         const Distance d = refitted_distance(*given_, fit_runs_, held_[a].model, held_[b], variances_, 1);
         least = std::min(least, d.sigmas);
       }
@@ -175,6 +177,16 @@ std::string Planner::broken_limit(const MotionExtremes& m) const {
   return "";
 }
 
+// A model with all effects of another can be fitted to whatever that one does: nothing is learnt from it.
+bool Planner::imitates(std::size_t whole, std::size_t part) const {
+  const std::vector<EffectUse>& all = held_[whole].model.effects;
+  const std::vector<EffectUse>& some = held_[part].model.effects;
+  return std::all_of(some.begin(), some.end(), [&](const EffectUse& e) {
+    return std::any_of(all.begin(), all.end(),
+                       [&](const EffectUse& f) { return effect_name(f) == effect_name(e); });
+  });
+}
+
 double Planner::separation(const Predictor& world, std::size_t a, std::size_t b, int rounds) const {
   const Distance d = refitted_distance(world, {0}, held_[a].model, held_[b], variances_, rounds);
   return d.finite ? d.sigmas : 0.0;
@@ -188,15 +200,17 @@ double Planner::score(const Trial& t, int rounds) const {
     const Eigen::MatrixXd all = held_.front().hold + information_of(*world, {0}, held_.front(), variances_);
     return plan_.sigma_before / sigma_of(all, wanted_);
   }
-  double least = 1e300;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t a = 0; a < held_.size(); ++a) {
-    if (rounds == 0 && a + 1 == held_.size()) break;
-    const auto world = planned_world(bench_, in, held_[a].model, options_.seed);
-    for (std::size_t b = rounds == 0 ? a + 1 : 0; b < held_.size(); ++b) {
-      if (a != b) least = std::min(least, separation(*world, a, b, rounds));
+    std::unique_ptr<Predictor> world;
+    for (std::size_t b = 0; b < held_.size(); ++b) {
+      const bool counts = a != b && !imitates(b, a) && (rounds > 0 || a < b || imitates(a, b));
+      if (!counts) continue;
+      if (!world) world = planned_world(bench_, in, held_[a].model, options_.seed);
+      least = std::min(least, separation(*world, a, b, rounds));
     }
   }
-  return least;
+  return std::isfinite(least) ? least : 0.0;
 }
 
 // The menu at all levels within the limits, best first.
@@ -204,7 +218,7 @@ std::vector<Trial> Planner::screen() {
   std::vector<Trial> trials;
   for (std::size_t e = 0; e < menu_.size(); ++e) {
     for (const double level : kLevels) {
-      if (options_.quick && (level == kLevels[1] || level == kLevels[3])) continue;
+      if (options_.quick && (level == kLevels[1] || level == kLevels[3] || level == kLevels[5])) continue;
       trials.push_back({.entry = e, .level = level * largest_level(), .score = 0.0, .refused = {}});
     }
   }
@@ -276,8 +290,10 @@ ExperimentPlan Planner::plan() {
                     (trials.empty() ? std::string("none was tried") : trials.back().refused);
   } else {
     // the usual steps at the highest level that is allowed, and the best few, in full
-    const auto usual =
-        std::find_if(allowed.begin(), allowed.end(), [](const Trial& t) { return t.entry == 0; });
+    auto usual = allowed.end();
+    for (auto t = allowed.begin(); t != allowed.end(); ++t) {
+      if (t->entry == 0 && (usual == allowed.end() || t->level > usual->level)) usual = t;
+    }
     std::vector<Trial> final(
         allowed.begin(), allowed.begin() + static_cast<std::ptrdiff_t>(std::min(kRefined, allowed.size())));
     if (usual != allowed.end()) final.push_back(*usual);

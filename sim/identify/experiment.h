@@ -10,11 +10,11 @@
 // means: all its unknowns move, held by their priors and by what the given data say of them:
 //     d^2 = min over x of |(y_truth - y_rival(x)) / s|^2 + (x - x_given)' P (x - x_given)
 // by Gauss and Newton, P the information of the given data with the priors. The smaller of the two directions
-// counts. s is the noise, or what the fitted models leave of the given data if that is more.
-// For a number (`shrink`): its sigma after the run, sqrt of its entry in (P + J' J)^-1 (c-optimality).
-// Source: Hunter and Reiner 1965 (discrimination by the distance of refitted predictions); Ljung 1999
-// sec. 13. Cannot: plan what needs other sensors, other loads or another supply; the answer is as good as the
-// rivals.
+// counts, but for a model that holds the other within it: that one can imitate the other. s is the noise, or
+// what the fitted models leave of the given data if that is more. For a number (`shrink`): its sigma after
+// the run, sqrt of its entry in (P + J' J)^-1 (c-optimality). Source: Hunter and Reiner 1965 (discrimination
+// by the distance of refitted predictions); Ljung 1999 sec. 13. Cannot: plan what needs other sensors, other
+// loads or another supply; the answer is as good as the rivals.
 #pragma once
 #include <array>
 #include <functional>

@@ -115,7 +115,7 @@ class Runner {
           }
           in.theta_rotor_rad = &between;
         }
-        in.yaw_rad = heading_.empty() ? value_of(own_heading) : value_of(heading_[k]);
+        x.yaw_rad = heading_.empty() ? own_heading : heading_[k];
         const T before = x.velocity[2];
         robot_.advance(x, in, dt_s / steps);
         own_heading += 0.5 * (before + x.velocity[2]) * (dt_s / steps);
@@ -272,7 +272,7 @@ class Runner {
   std::vector<T> follow(const std::vector<T>& way, double CameraFrame::*seen) const {
     std::vector<T> out(way.size(), T(kNaN));
     T correction = T(0);
-    double last_s = kNaN;
+    double last_s = kNaN, frames = 0.0;
     for (const CameraFrame& f : record_.frames) {
       if (!std::isfinite(f.*seen)) continue;
       const double now_s = record_.time_s[f.sample];
@@ -284,9 +284,12 @@ class Runner {
         correction = f.*seen - there;  // the first frame says where the robot is; it is not compared
       } else {
         out[f.sample] = there + correction;
-        correction += (f.*seen - out[f.sample]) * -std::expm1(-(now_s - last_s) / kFollow_s);
+        // at first the mean of the frames so far, so that the first one's noise does not linger
+        const double gain = std::max(-std::expm1(-(now_s - last_s) / kFollow_s), 1.0 / (frames + 1.0));
+        correction += (f.*seen - out[f.sample]) * gain;
       }
       last_s = now_s;
+      frames += 1.0;
     }
     return out;
   }

@@ -1,5 +1,6 @@
 #include "sim/identify/robot_record.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kHeadingMemory_s = 1.0;  // over which the gyro's integral is held to the camera's heading
-constexpr double kStartSpan_s = 0.01;     // of the speeds at the start
+constexpr double kStartSpan_s = 0.02;     // from which the speeds at the start are read
 
 std::string numbered(std::string_view name, std::size_t wheel) {
   return std::string(name) + "_" + std::to_string(wheel + 1);
@@ -164,17 +165,33 @@ void unwrap_by_gyro(RobotRecord& r) {
   }
 }
 
+// theta = theta_0 + v t + a t^2 / 2 over the first moments, by least squares: v.
+double speed_at_start(const RobotRecord& r, std::size_t wheel, std::size_t last) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k <= last; ++k) {
+    const double t = (r.time_s[k] - r.time_s[0]) / kStartSpan_s;
+    const Eigen::Vector3d row(1.0, t, t * t);
+    normal += row * row.transpose();
+    right += row * (r.theta_rotor_rad[k][wheel] - r.theta_rotor_rad[0][wheel]);
+  }
+  return Eigen::Vector3d(normal.ldlt().solve(right))(1) / kStartSpan_s;
+}
+
 BodyVelocity<double> start_velocity(const RobotRecord& r, const RollingParams<double>& nominal) {
   std::size_t last = 0;
   while (last + 1 < r.size() && r.time_s[last] - r.time_s[0] < kStartSpan_s) ++last;
-  if (!r.has_all_encoders || last == 0) return {};
+  if (!r.has_all_encoders || last < 3) return {};
   WheelGeometry<double> g;
   std::array<double, kWheels> omega_wheel;
   for (std::size_t i = 0; i < kWheels; ++i) {
     g.cos_angle[i] = std::cos(nominal.wheel_angle_rad[i]);
     g.sin_angle[i] = std::sin(nominal.wheel_angle_rad[i]);
-    omega_wheel[i] = (r.theta_rotor_rad[last][i] - r.theta_rotor_rad[0][i]) / (r.time_s[last] - r.time_s[0]) /
-                     nominal.drive.gear_ratio;
+    omega_wheel[i] = speed_at_start(r, i, last) / nominal.drive.gear_ratio;
+    // within a count or two it stands
+    const double count_rad = kTurn / r.counts_per_rotor_turn[i];
+    if (std::abs(r.theta_rotor_rad[last][i] - r.theta_rotor_rad[0][i]) < 2.5 * count_rad)
+      omega_wheel[i] = 0.0;
   }
   g.wheel_center_radius_m = nominal.wheel_center_radius_m;
   g.wheel_radius_m = nominal.wheel_radius_m;

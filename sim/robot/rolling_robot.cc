@@ -252,7 +252,7 @@ void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput& in,
   port.v_forward_m_s = x.velocity[0];
   port.v_left_m_s = x.velocity[1];
   port.omega_body_rad_s = x.velocity[2];
-  port.yaw_rad = T(in.yaw_rad);
+  port.yaw_rad = x.yaw_rad;
   port.dribbler_rad_s = T(in.dribbler_rad_s);
   port.dt_s = s.h;
   port.mass_kg = p_.mass_kg;

@@ -46,7 +46,6 @@ struct RollingInput {
   std::array<bool, kWheels> enabled{true, true, true, true};
   double bus_voltage_V = 0.0;    // used when bus_is_measured
   bool bus_is_measured = false;  // at the bridge: then nothing sags it again
-  double yaw_rad = 0.0;          // for forces that know the field's directions
   double dribbler_rad_s = 0.0;
   // Angles that the laws of the angle shall see instead of the model's own; null: its own.
   const std::array<double, kWheels>* theta_rotor_rad = nullptr;
@@ -54,6 +53,7 @@ struct RollingInput {
 
 template <typename T>
 struct RollingState {
+  T yaw_rad = T(0);             // for forces that know the field's directions; the caller's to move
   std::array<T, 3> velocity{};  // v_forward, v_left, omega_body of the geometric centre, body frame
   std::array<DriveState<T>, kWheels> drive{};
   std::array<T, kWheels> theta_rotor_rad{};    // turned since the start, plus where it started

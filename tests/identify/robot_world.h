@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "sim/core/effect_registry.h"
 #include "sim/identify/predictor.h"
@@ -85,6 +86,30 @@ inline Dataset blank_robot(double duration_s, bool bus) {
   d.runs.push_back(run);
   d.runs.push_back(run);
   d.runs[1].use = Use::kHoldout;
+  return d;
+}
+
+// The dataset with what a simulated predictor of it measured: speeds summed up to counts.
+inline Dataset measured(Dataset d, const Predictor& simulated) {
+  for (std::size_t r = 0; r < d.runs.size(); ++r) {
+    Run& run = d.runs[r];
+    for (const ComparedSignal& c : simulated.compared(static_cast<int>(r))) {
+      std::string name = c.name;
+      const bool speed = name.starts_with("velocity");
+      if (speed) name.replace(0, 8, "encoder");
+      std::vector<double>& out = run.signals[name];
+      const Channel* channel = d.channel(name);
+      double counts = 0.0;
+      for (std::size_t k = 0; k < out.size(); ++k) {
+        const double v = std::isfinite(c.measured[k]) ? c.measured[k] : 0.0;
+        if (speed && k > 0) {
+          counts +=
+              v * (run.time_s[k] - run.time_s[k - 1]) * channel->counts_per_rev / (2.0 * std::numbers::pi);
+        }
+        if (std::isfinite(out[k]) && name != "bus_voltage") out[k] = speed ? std::floor(counts + 0.5) : v;
+      }
+    }
+  }
   return d;
 }
 
