@@ -15,8 +15,8 @@ enum ExitCode : int {
 
 inline constexpr const char* kExitCodeHelp =
     "Exit codes:\n"
-    "  0    did what was asked; check: agrees\n"
-    "  1    check: differs, the first difference is named\n"
+    "  0    did what was asked; check, compare: agrees\n"
+    "  1    check: differs, the first difference is named; compare: outside a tolerance tube\n"
     "  2    unusable arguments, model, recording or packet; nothing was written\n"
     "  3    a device or file could not be opened, read or written\n"
     "  4    the simulated state stopped being finite, or a fault inside the program\n"

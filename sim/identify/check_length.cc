@@ -19,7 +19,7 @@ void check_length(const CheckContext& data, std::vector<DataFinding>& findings) 
     if (run.use == Use::kFit) fitted_s += run.steady ? 1e9 : run.duration_s();
     if (run.time_s.size() < kFewRows) {
       findings.push_back(
-          {DataFinding::Grade::kDoubt, "too_short", run.file, "", run.duration_s(),
+          {DataFinding::Grade::kDoubt, "few_rows", run.file, "", run.duration_s(),
            fmt::format("has {} rows only: too few to tell an effect from noise", run.time_s.size())});
     }
   }

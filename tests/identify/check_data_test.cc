@@ -200,6 +200,112 @@ TEST_F(SpoiltData, ALoadThatTheTorqueContainsAlready) {
   expect("duplicate_force", "would be counted twice");
 }
 
+TEST_F(SpoiltData, ADriveThatHardlyMoves) {
+  for (std::size_t r = 0; r < 3; ++r) {
+    std::vector<double>& ticks = signal(r, "encoder");
+    for (std::size_t k = ticks.size() / 4; k < ticks.size(); ++k) ticks[k] = ticks[ticks.size() / 4];
+  }
+  expect("near_stall", "limit of friction", Grade::kDoubt);
+}
+
+TEST_F(SpoiltData, ADutyAtItsLimitMostOfTheTime) {
+  for (double& v : signal(0, "duty")) v = v > 0.0 ? 1.0 : -1.0;
+  expect("saturated_command", "is at full duty in", Grade::kDoubt);
+}
+
+TEST_F(SpoiltData, AVoltageThatIsCutOff) {
+  omnihil::Run& run = bench.dataset.runs[1];  // the chirp
+  std::vector<double> voltage = *run.signal("duty");
+  for (double& v : voltage) v = std::clamp(24.0 * v, -5.0, 5.0);
+  run.signals.erase("duty");
+  run.signals["motor_voltage"] = voltage;
+  bench.dataset.channels.push_back(*bench.dataset.channel("duty"));
+  bench.dataset.channels.back().signal = "motor_voltage";
+  bench.dataset.channels.back().column = "voltage";
+  expect("saturated_command", "motor_voltage is cut off at 5", Grade::kDoubt);
+}
+
+TEST_F(SpoiltData, ARecordTooShortToSettle) {
+  for (omnihil::Run& run : bench.dataset.runs) {
+    run.time_s.resize(20);
+    for (auto& [name, values] : run.signals) values.resize(20);
+  }
+  expect("few_rows", "has 20 rows only", Grade::kDoubt);
+  expect("too_short", "too short to see a steady speed", Grade::kDoubt);
+}
+
+TEST_F(SpoiltData, AHoldoutOfAnotherKind) {
+  for (double& v : signal(2, "duty")) v *= 0.1;
+  expect("holdout_differs", "the holdout is another kind of motion", Grade::kNote);
+}
+
+TEST_F(SpoiltData, AFlagOfOppositeMeaning) {
+  for (omnihil::Run& run : bench.dataset.runs) {
+    run.signals["enable"] = std::vector<double>(run.time_s.size(), 0.0);
+    std::vector<double> speed(run.time_s.size(), 0.0);
+    for (std::size_t k = 1; k < speed.size(); ++k) speed[k] = 500.0 * (*run.signal("duty"))[k - 1];
+    run.signals["velocity"] = speed;
+  }
+  for (const char* name : {"enable", "velocity"}) {
+    bench.dataset.channels.push_back(bench.dataset.channels.back());
+    bench.dataset.channels.back().signal = name;
+    bench.dataset.channels.back().column = name;
+  }
+  expect("opposite_flag", "the flag has the opposite meaning");
+}
+
+class SpoiltRobot : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto data = shared_data();
+    if (!data || !std::filesystem::exists(*data / "robot_sample"))
+      GTEST_SKIP() << "OMNIHIL_SHARED has no folder robot_sample";
+    DatasetReading read = read_dataset((*data / "robot_sample").string());
+    ASSERT_TRUE(read.dataset) << all_text(read.problems);
+    dataset = std::move(*read.dataset);
+    nominal = std::move(*read.nominal);
+  }
+  void expect(const char* kind, const char* signal) {
+    const auto findings = check_data(dataset, nominal);
+    const bool said = std::any_of(findings.begin(), findings.end(), [&](const DataFinding& f) {
+      return f.kind == kind && f.signal == signal && f.grade == Grade::kFault;
+    });
+    EXPECT_TRUE(said) << text_of(findings);
+  }
+  Dataset dataset;
+  Candidate nominal;
+};
+
+TEST_F(SpoiltRobot, OneEncoderThatCountsBackwards) {
+  for (omnihil::Run& run : dataset.runs) {
+    for (double& v : run.signals.find("encoder_3")->second) v = -v;
+  }
+  expect("swapped_sign", "encoder_3");
+}
+
+TEST_F(SpoiltRobot, AGyroUpsideDown) {
+  for (omnihil::Run& run : dataset.runs) {
+    for (double& v : run.signals.find("gyro_z")->second) v = -v;
+  }
+  expect("swapped_sign", "gyro_z");
+}
+
+TEST_F(SpoiltRobot, CountsPerTurnOfOneEncoderWrong) {
+  for (Channel& channel : dataset.channels) {
+    if (channel.signal == "encoder_2") channel.counts_per_rev /= 4.0;
+  }
+  expect("wrong_scale", "encoder_2");
+}
+
+TEST_F(SpoiltRobot, ACameraThatJumps) {
+  std::vector<double>& x = dataset.runs[0].signals.find("vision_x")->second;
+  int frame = 0;
+  for (double& v : x) {
+    if (std::isfinite(v) && ++frame % 100 == 0) v += 2.0;
+  }
+  expect("glitch", "vision_x");
+}
+
 TEST(CheckDataPosition, DegreesInPlaceOfRadiansAreNamed) {
   Bench bench = simulated_bench({.with = {}, .counts_per_turn = 0.0, .model = ""});
   for (omnihil::Run& run : bench.dataset.runs) {
