@@ -97,8 +97,8 @@ Columns make_columns() {
   add_drive(columns);
   add_sensors(columns);
   add_feedback(columns);
-  add_truth(columns);
   add_vision(columns);
+  add_truth(columns);
   return columns;
 }
 
