@@ -23,6 +23,7 @@ def source(*key):
 @dataclasses.dataclass
 class Hidden:
     """Something hidden: plant parameters, and what the answer says about it."""
+
     id: str
     params: dict
     answer: dict
@@ -31,13 +32,19 @@ class Hidden:
 def draw_kinds(rng, shows, rig, generic, closed_loop=False):
     """Excitations of the fit, the holdout and the extrapolation run."""
     if rig.kind == "servo":
-        main = "position_mixed" if generic else rng.choice([k for k in shows if k in SERVO_POOL] or list(SERVO_POOL))
+        main = (
+            "position_mixed"
+            if generic
+            else rng.choice([k for k in shows if k in SERVO_POOL] or list(SERVO_POOL))
+        )
         return main, main, rng.choice(list(SERVO_POOL))
     if closed_loop:
         return "speed_targets", "speed_targets", "speed_targets"
     main = "mixed" if generic else rng.choice([k for k in shows if k in POOL] or list(POOL))
     other = rng.choice([k for k in POOL if k != main])
-    if not generic and rng.random() < 0.25:  # half of the record something else, as where two effects are hidden
+    if (
+        not generic and rng.random() < 0.25
+    ):  # half of the record something else, as where two effects are hidden
         main = "+".join(rng.sample([main, rng.choice(list(POOL))], 2))
     return main, main, other
 
@@ -54,9 +61,18 @@ def hide_effect(effect, rng, rig, asked, share, params=None):
     ruler = Ruler(rig, asked, params)
     size, reached = size_for(ruler, lambda m: effect.hide(m, shape, rig), size_range(effect, rig), share)
     oracle = effect.oracle(size, shape, rig)
-    return Hidden(effect.id, effect.hide(size, shape, rig), {
-        "id": effect.id, "same_law": same_law(effect, rig), "size": size, "share": reached, "parameters": oracle,
-        "equal_law": list(effect.equal_law)})
+    return Hidden(
+        effect.id,
+        effect.hide(size, shape, rig),
+        {
+            "id": effect.id,
+            "same_law": same_law(effect, rig),
+            "size": size,
+            "share": reached,
+            "parameters": oracle,
+            "equal_law": list(effect.equal_law),
+        },
+    )
 
 
 def channels_of(rig):
@@ -69,7 +85,11 @@ def channels_of(rig):
     if s.get("current"):
         out["motor_current"] = {"column": '"current_A"', **sigma(rig.true["current_noise_A"])}
     if s.get("encoder"):
-        out["encoder"] = {"column": '"ticks"', "counts_per_rev": f'{rig.true["encoder_cpr"]:.0f}', "shaft": '"rotor"'}
+        out["encoder"] = {
+            "column": '"ticks"',
+            "counts_per_rev": f'{rig.true["encoder_cpr"]:.0f}',
+            "shaft": '"rotor"',
+        }
     if s.get("position"):
         out["position"] = {"column": '"angle_rad"', **sigma(rig.true["angle_noise_rad"])}
     if s.get("velocity"):
@@ -85,8 +105,13 @@ def record(rig, params, asked, seed):
     n, command = len(asked), plant.raw_columns(raw)["command"]
     out = {"time_s": [round(k * DT, 6) for k in range(n)]}
     out["position_target" if rig.kind == "servo" else "duty"] = [round(x, 6) for x in command]
-    for sensor, column, source_name in (("bus", "bus_V", "bus"), ("current", "current_A", "current"), ("encoder", "ticks", "counts"),
-                                        ("position", "angle_rad", "angle"), ("velocity", "speed_rad_s", "speed")):
+    for sensor, column, source_name in (
+        ("bus", "bus_V", "bus"),
+        ("current", "current_A", "current"),
+        ("encoder", "ticks", "counts"),
+        ("position", "angle_rad", "angle"),
+        ("velocity", "speed_rad_s", "speed"),
+    ):
         if rig.sensors.get(sensor):
             out[column] = list(seen[source_name])
     return out
@@ -166,6 +191,12 @@ def make_control_case(folder, key, closed_loop=False):
 
 
 def answer_of(rig, kinds, effects):
-    return {"rig": "axis", "effects": effects, "excitation": list(kinds), "base": base_answer(rig),
-            "believed": {MODEL_KEY[k]: v for k, v in rig.believed.items() if k in MODEL_KEY},
-            "sensors": rig.sensors, "heating_declared": rig.heating_declared}
+    return {
+        "rig": "axis",
+        "effects": effects,
+        "excitation": list(kinds),
+        "base": base_answer(rig),
+        "believed": {MODEL_KEY[k]: v for k, v in rig.believed.items() if k in MODEL_KEY},
+        "sensors": rig.sensors,
+        "heating_declared": rig.heating_declared,
+    }

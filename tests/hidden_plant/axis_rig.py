@@ -5,18 +5,67 @@ import math
 # R, L, torque constant, rotor inertia, pole pairs, slots, supply, winding K/W, housing K/W, winding J/K, housing J/K.
 # The first two are Maxon EC 45 flat 30 W (200142) and 50 W (651607); the third is a small brushed motor, a guess.
 MOTORS = (
-    dict(resistance_ohm=1.2, inductance_H=0.56e-3, flux_Vs=0.0255, rotor_kgm2=92.5e-7, pole_pairs=8, slots=12,
-         supply_V=18.0, winding_K_per_W=3.96, housing_K_per_W=5.7, winding_J_per_K=2.9, housing_J_per_K=44.0,
-         viscous_Nms=3.2e-6, dry_Nm=2.2e-3),
-    dict(resistance_ohm=0.447, inductance_H=0.243e-3, flux_Vs=0.0295, rotor_kgm2=135e-7, pole_pairs=8, slots=12,
-         supply_V=24.0, winding_K_per_W=8.28, housing_K_per_W=1.57, winding_J_per_K=3.5, housing_J_per_K=50.0,
-         viscous_Nms=5.4e-6, dry_Nm=4.0e-3),
-    dict(resistance_ohm=2.1, inductance_H=0.6e-3, flux_Vs=0.019, rotor_kgm2=48e-7, pole_pairs=7, slots=12,
-         supply_V=16.0, winding_K_per_W=6.0, housing_K_per_W=8.0, winding_J_per_K=2.0, housing_J_per_K=30.0,
-         viscous_Nms=2.5e-6, dry_Nm=1.5e-3),
+    dict(
+        resistance_ohm=1.2,
+        inductance_H=0.56e-3,
+        flux_Vs=0.0255,
+        rotor_kgm2=92.5e-7,
+        pole_pairs=8,
+        slots=12,
+        supply_V=18.0,
+        winding_K_per_W=3.96,
+        housing_K_per_W=5.7,
+        winding_J_per_K=2.9,
+        housing_J_per_K=44.0,
+        viscous_Nms=3.2e-6,
+        dry_Nm=2.2e-3,
+    ),
+    dict(
+        resistance_ohm=0.447,
+        inductance_H=0.243e-3,
+        flux_Vs=0.0295,
+        rotor_kgm2=135e-7,
+        pole_pairs=8,
+        slots=12,
+        supply_V=24.0,
+        winding_K_per_W=8.28,
+        housing_K_per_W=1.57,
+        winding_J_per_K=3.5,
+        housing_J_per_K=50.0,
+        viscous_Nms=5.4e-6,
+        dry_Nm=4.0e-3,
+    ),
+    dict(
+        resistance_ohm=2.1,
+        inductance_H=0.6e-3,
+        flux_Vs=0.019,
+        rotor_kgm2=48e-7,
+        pole_pairs=7,
+        slots=12,
+        supply_V=16.0,
+        winding_K_per_W=6.0,
+        housing_K_per_W=8.0,
+        winding_J_per_K=2.0,
+        housing_J_per_K=30.0,
+        viscous_Nms=2.5e-6,
+        dry_Nm=1.5e-3,
+    ),
 )
-SERVO = dict(resistance_ohm=4.4, inductance_H=88e-6, flux_Vs=2.5, rotor_kgm2=0.010, pole_pairs=1, slots=0, supply_V=12.0,
-             winding_K_per_W=10.0, housing_K_per_W=10.0, winding_J_per_K=3.0, housing_J_per_K=30.0, viscous_Nms=0.05, dry_Nm=0.05)
+SERVO = dict(
+    resistance_ohm=4.4,
+    inductance_H=88e-6,
+    flux_Vs=2.5,
+    rotor_kgm2=0.010,
+    pole_pairs=1,
+    slots=0,
+    supply_V=12.0,
+    winding_K_per_W=10.0,
+    housing_K_per_W=10.0,
+    winding_J_per_K=3.0,
+    housing_J_per_K=30.0,
+    viscous_Nms=0.05,
+    dry_Nm=0.05,
+)
 
 # Relative 1-sigma a data sheet states, and how far off the truth is (from, to).
 TOLERANCE = {
@@ -42,12 +91,12 @@ MODEL_KEY = {
 
 @dataclasses.dataclass
 class Rig:
-    kind: str                    # "drive" or "servo"
-    believed: dict               # nominal value of every base parameter, by plant name
-    true: dict                   # plant parameters of the drive itself
+    kind: str  # "drive" or "servo"
+    believed: dict  # nominal value of every base parameter, by plant name
+    true: dict  # plant parameters of the drive itself
     slots: int
-    sensors: dict                # which channels there are
-    left_out: set                # base parameters the model file does not have
+    sensors: dict  # which channels there are
+    left_out: set  # base parameters the model file does not have
     heating_declared: bool = False
 
     @property
@@ -82,15 +131,29 @@ def draw_rig(rng, kind="drive", gear=None, needs=()):
     loud = rng.choice((0.3, 1.0, 1.0, 3.0))
     bus = "bus hidden" not in needs and rng.random() < 0.75
     sensors = sensors_of(rng, kind, needs, bus)
-    true.update(current_noise_A=0.03 * loud, bus_noise_V=0.02 * loud, speed_noise_rad_s=0.25 * loud / believed["gear"],
-                encoder_cpr=rng.choice((4096.0, 4096.0, 2048.0, 16384.0)))
+    true.update(
+        current_noise_A=0.03 * loud,
+        bus_noise_V=0.02 * loud,
+        speed_noise_rad_s=0.25 * loud / believed["gear"],
+        encoder_cpr=rng.choice((4096.0, 4096.0, 2048.0, 16384.0)),
+    )
     if bus:
-        true.update(supply_drift_V=rng.uniform(0, 0.01) * believed["supply_V"], supply_drift_Hz=rng.uniform(0.03, 0.08))
+        true.update(
+            supply_drift_V=rng.uniform(0, 0.01) * believed["supply_V"],
+            supply_drift_Hz=rng.uniform(0.03, 0.08),
+        )
     true["supply_V"] *= 1 + rng.uniform(-0.005, 0.005)
     rig = Rig(kind, believed, true, slots, sensors, left_out)
     if kind == "servo":
-        true.update(command_kind=1, servo_duty_per_rad=rng.choice((2.0, 2.6)), servo_duty_limit=0.97, pendulum_Nm=0.8,
-                    speed_noise_rad_s=0.05, angle_noise_rad=5e-4, step_s=12.5e-6)
+        true.update(
+            command_kind=1,
+            servo_duty_per_rad=rng.choice((2.0, 2.6)),
+            servo_duty_limit=0.97,
+            pendulum_Nm=0.8,
+            speed_noise_rad_s=0.05,
+            angle_noise_rad=5e-4,
+            step_s=12.5e-6,
+        )
     if "heating" in needs or ("not heated" not in needs and rng.random() < 0.06):
         declare_heating(rng, rig)
     return rig
@@ -106,7 +169,11 @@ def sensors_of(rng, kind, needs, bus):
     roll = rng.random()
     if "two speeds" in needs or roll < 0.12:
         return dict(channels, encoder=True, velocity=True)
-    return dict(channels, velocity=True) if roll < 0.27 and "encoder" not in needs else dict(channels, encoder=True)
+    return (
+        dict(channels, velocity=True)
+        if roll < 0.27 and "encoder" not in needs
+        else dict(channels, encoder=True)
+    )
 
 
 def declare_heating(rng, rig):
@@ -131,17 +198,26 @@ def model_sections(rig, gear=None):
     def rough(name):
         return f"{{ value = {b[name]:.6g}, tolerance = {TOLERANCE[name][0]:g} }}"
 
-    motor = {MODEL_KEY[k].split(".")[1]: rough(k) for k in ("resistance_ohm", "inductance_H", "flux_Vs")
-             if k not in rig.left_out}
+    motor = {
+        MODEL_KEY[k].split(".")[1]: rough(k)
+        for k in ("resistance_ohm", "inductance_H", "flux_Vs")
+        if k not in rig.left_out
+    }
     if rig.kind == "drive":
         motor.update(pole_pairs=f"{b['pole_pairs']:.0f}", slots=str(rig.slots))
     motor.update({MODEL_KEY[k].split(".")[1]: rough(k) for k in ("rotor_kgm2", "viscous_Nms")})
-    sections = {"motor": motor, "gear": {"ratio": f"{gear or b['gear']:g}"}, "load": {"inertia_kg_m2": rough("load_kgm2")},
-                "supply": {"voltage_V": f"{{ value = {b['supply_V']:g}, tolerance = 0.01 }}"}}
+    sections = {
+        "motor": motor,
+        "gear": {"ratio": f"{gear or b['gear']:g}"},
+        "load": {"inertia_kg_m2": rough("load_kgm2")},
+        "supply": {"voltage_V": f"{{ value = {b['supply_V']:g}, tolerance = 0.01 }}"},
+    }
     if rig.kind == "servo":
         sections["load"]["gravity_torque_Nm"] = f"{rig.true['pendulum_Nm']:g}"
-        sections["servo"] = {"kp_duty_per_rad": f"{rig.true['servo_duty_per_rad']:g}",
-                             "duty_limit": f"{rig.true['servo_duty_limit']:g}"}
+        sections["servo"] = {
+            "kp_duty_per_rad": f"{rig.true['servo_duty_per_rad']:g}",
+            "duty_limit": f"{rig.true['servo_duty_limit']:g}",
+        }
     if "dry_Nm" not in rig.left_out:
         sections["effects.coulomb_friction"] = {"torque_Nm": rough("dry_Nm")}
     if rig.heating_declared:
@@ -151,11 +227,13 @@ def model_sections(rig, gear=None):
 
 def heating_section(rig):
     t = {**rig.believed, **rig.true}
-    return {"temperature_coefficient_per_K": "0.00393",
-            "thermal_resistance_K_per_W": f"{t['winding_K_per_W']:.6g}",
-            "thermal_capacity_J_per_K": f"{t['winding_J_per_K']:.6g}",
-            "housing_thermal_resistance_K_per_W": f"{t['housing_K_per_W']:.6g}",
-            "housing_thermal_capacity_J_per_K": f"{t['housing_J_per_K']:.6g}"}
+    return {
+        "temperature_coefficient_per_K": "0.00393",
+        "thermal_resistance_K_per_W": f"{t['winding_K_per_W']:.6g}",
+        "thermal_capacity_J_per_K": f"{t['winding_J_per_K']:.6g}",
+        "housing_thermal_resistance_K_per_W": f"{t['housing_K_per_W']:.6g}",
+        "housing_thermal_capacity_J_per_K": f"{t['housing_J_per_K']:.6g}",
+    }
 
 
 def speed_noise(rig):

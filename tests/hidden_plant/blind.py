@@ -26,18 +26,29 @@ SKIPPED = 77
 def arguments():
     parser = argparse.ArgumentParser(prog="./dev blind", description="the sealed test of the diagnosis")
     parser.add_argument("--program", type=pathlib.Path, help="the program to test")
-    parser.add_argument("--set", choices=cases.SETS[:2], default="dev", help="dev: open, to develop against (default)")
+    parser.add_argument(
+        "--set", choices=cases.SETS[:2], default="dev", help="dev: open, to develop against (default)"
+    )
     parser.add_argument("--sealed", action="store_true", help="the third set, for a closing score only")
     parser.add_argument("--only", help="classes, separated by commas: " + ", ".join(cases.classes()))
     parser.add_argument("--cases", type=int, help="at most so many of each class")
     parser.add_argument("--jobs", type=int, default=2, help="cases at a time (2)")
-    parser.add_argument("--keep", type=pathlib.Path, help="folder for cases, answers and results; what is there is not done again")
-    parser.add_argument("--generate-only", action="store_true", help="write the cases and their answers, run nothing")
+    parser.add_argument(
+        "--keep",
+        type=pathlib.Path,
+        help="folder for cases, answers and results; what is there is not done again",
+    )
+    parser.add_argument(
+        "--generate-only", action="store_true", help="write the cases and their answers, run nothing"
+    )
     parser.add_argument("--timeout", type=float, default=600, help="seconds one diagnosis may take (600)")
     parser.add_argument("--no-oracle", action="store_true", help="leave out the fits of the true effect")
     parser.add_argument("--json", type=pathlib.Path, help="every result and the table, as JSON")
-    parser.add_argument("--reduced", action="store_true",
-                        help="a few cases of each class of the open set; exit 1 when a score is below its floor (for ctest)")
+    parser.add_argument(
+        "--reduced",
+        action="store_true",
+        help="a few cases of each class of the open set; exit 1 when a score is below its floor (for ctest)",
+    )
     return parser.parse_args()
 
 
@@ -94,8 +105,11 @@ def run_all(todo, keep, args, stamp):
             rows[case.key] = row
             if row:
                 said = " + ".join(row["named"]) or "-"
-                print(f"{done}/{len(jobs)} {case.cls} {case.name}: {row['verdict'] or 'no answer'} {said} ({row['seconds']:.0f} s)",
-                      file=sys.stderr, flush=True)
+                print(
+                    f"{done}/{len(jobs)} {case.cls} {case.name}: {row['verdict'] or 'no answer'} {said} ({row['seconds']:.0f} s)",
+                    file=sys.stderr,
+                    flush=True,
+                )
             elif done % 10 == 0 or done == len(jobs):
                 print(f"{done} of {len(jobs)} cases written", file=sys.stderr, flush=True)
     return [rows[case.key] for case in todo]
@@ -107,7 +121,10 @@ def main():
     only = args.only.split(",") if args.only else None
     unknown = set(only or ()) - set(cases.classes())
     if unknown:
-        print(f"blind: no such class: {', '.join(sorted(unknown))}; there are {', '.join(cases.classes())}", file=sys.stderr)
+        print(
+            f"blind: no such class: {', '.join(sorted(unknown))}; there are {', '.join(cases.classes())}",
+            file=sys.stderr,
+        )
         return 2
     if args.program:
         args.program = args.program.resolve()
@@ -115,7 +132,10 @@ def main():
         print(f"blind: skipped: {args.program} has no verb diagnose")
         return SKIPPED
     if not (args.generate_only or args.no_oracle or has_verbs(args.program, "fit", "compare")):
-        print("blind: without the verbs fit and compare there is no oracle: the error reduction is not scored", file=sys.stderr)
+        print(
+            "blind: without the verbs fit and compare there is no oracle: the error reduction is not scored",
+            file=sys.stderr,
+        )
         args.no_oracle = True
     if args.generate_only and args.sealed:
         print("blind: sealed cases are made only to be scored", file=sys.stderr)
@@ -131,7 +151,10 @@ def main():
     figures = score.summary(rows)
     table.print_all(rows, figures)
     if args.json:
-        args.json.write_text(json.dumps({"set": set_name, "program": stamp, "figures": figures, "cases": rows}, indent=1) + "\n")
+        args.json.write_text(
+            json.dumps({"set": set_name, "program": stamp, "figures": figures, "cases": rows}, indent=1)
+            + "\n"
+        )
     low = table.below_floor(figures) if args.reduced else []
     for line in low:
         print(f"below the floor: {line}")

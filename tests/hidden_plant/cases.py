@@ -48,20 +48,30 @@ def _together(a, b):
         return False
     if b.id in a.same or a.id in b.same or {a.id, b.id} <= {"gravity_load", "imbalance"}:
         return False
-    alike = ({"backlash", "shaft_compliance"}, {"current_limit", "thermal_derating"},
-             {"stribeck_friction", "lugre_friction"}, {"coulomb_friction", "stribeck_friction"},
-             {"coulomb_friction", "lugre_friction"}, {"coulomb_friction", "friction_asymmetry"},
-             {"actuator_delay", "sampling_delay"}, {"hall_speed_estimator", "sample_jitter"})
+    alike = (
+        {"backlash", "shaft_compliance"},
+        {"current_limit", "thermal_derating"},
+        {"stribeck_friction", "lugre_friction"},
+        {"coulomb_friction", "stribeck_friction"},
+        {"coulomb_friction", "lugre_friction"},
+        {"coulomb_friction", "friction_asymmetry"},
+        {"actuator_delay", "sampling_delay"},
+        {"hall_speed_estimator", "sample_jitter"},
+    )
     return {a.id, b.id} not in alike
 
 
 def _shares(case):
     import axis_case
-    return spread_share(axis_case.source("share", *case.key), case.index)  # 33 effects: each meets all of the 8 shares
+
+    return spread_share(
+        axis_case.source("share", *case.key), case.index
+    )  # 33 effects: each meets all of the 8 shares
 
 
 def _single(case, folder, share, **options):
     import axis_case
+
     return axis_case.make_effects_case(folder, case.key, case.what, share, **options)
 
 
@@ -78,14 +88,17 @@ def _loop_effects(count):
 
 def _robot_share(case):
     import axis_case
-    return spread_share(axis_case.source("share", *case.key), case.index + case.index // len(robot_effects.EFFECTS))
+
+    return spread_share(
+        axis_case.source("share", *case.key), case.index + case.index // len(robot_effects.EFFECTS)
+    )
 
 
 @dataclasses.dataclass(frozen=True)
 class Class:
     title: str
-    cases: list      # what is hidden, case by case
-    make: callable   # (case, folder) -> answer
+    cases: list  # what is hidden, case by case
+    make: callable  # (case, folder) -> answer
 
 
 def classes():
@@ -93,34 +106,66 @@ def classes():
     import faults
     import outside
     import robot_case
+
     strange, broken = outside.names(), list(faults.KINDS)
     bots = [e.id for e in robot_effects.EFFECTS]
     return {
-        "single": Class("one hidden effect, recommended excitation", _around(8, 0),
-                        lambda c, f: _single(c, f, _shares(c))),
-        "generic": Class("one hidden effect, mixed excitation", _around(3, 0),
-                         lambda c, f: _single(c, f, _shares(c), generic=True)),
+        "single": Class(
+            "one hidden effect, recommended excitation", _around(8, 0), lambda c, f: _single(c, f, _shares(c))
+        ),
+        "generic": Class(
+            "one hidden effect, mixed excitation",
+            _around(3, 0),
+            lambda c, f: _single(c, f, _shares(c), generic=True),
+        ),
         "control": Class("no hidden effect", [()] * 150, lambda c, f: axis_case.make_control_case(f, c.key)),
         "pair": Class("two hidden effects", _pairs()[:60], lambda c, f: _single(c, f, 0.5)),
-        "faint": Class("one effect below what can be seen", _around(1, 0)[::2] + _around(1, 0)[1:16:2],
-                       lambda c, f: _single(c, f, 5e-5)),
-        "loop": Class("closed-loop record, one hidden effect", _loop_effects(24),
-                      lambda c, f: _single(c, f, 0.5, closed_loop=True)),
-        "loop-control": Class("closed-loop record, no hidden effect", [()] * 12,
-                              lambda c, f: axis_case.make_control_case(f, c.key, closed_loop=True)),
-        "outside": Class("something no list of effects has", [(strange[k % len(strange)],) for k in range(50)],
-                         lambda c, f: outside.make_case(f, c.key, c.what[0])),
-        "fault": Class("broken record", [(broken[k % len(broken)],) for k in range(42)],
-                       lambda c, f: faults.make_case(f, c.key, c.what[0])),
-        "robot": Class("robot, one hidden effect", [(bots[k % len(bots)],) for k in range(5 * len(bots))],
-                       lambda c, f: robot_case.make_case(f, c.key, c.what, _robot_share(c))),
-        "robot-control": Class("robot, no hidden effect", [()] * 24, lambda c, f: robot_case.make_case(f, c.key, (), 0)),
+        "faint": Class(
+            "one effect below what can be seen",
+            _around(1, 0)[::2] + _around(1, 0)[1:16:2],
+            lambda c, f: _single(c, f, 5e-5),
+        ),
+        "loop": Class(
+            "closed-loop record, one hidden effect",
+            _loop_effects(24),
+            lambda c, f: _single(c, f, 0.5, closed_loop=True),
+        ),
+        "loop-control": Class(
+            "closed-loop record, no hidden effect",
+            [()] * 12,
+            lambda c, f: axis_case.make_control_case(f, c.key, closed_loop=True),
+        ),
+        "outside": Class(
+            "something no list of effects has",
+            [(strange[k % len(strange)],) for k in range(50)],
+            lambda c, f: outside.make_case(f, c.key, c.what[0]),
+        ),
+        "fault": Class(
+            "broken record",
+            [(broken[k % len(broken)],) for k in range(42)],
+            lambda c, f: faults.make_case(f, c.key, c.what[0]),
+        ),
+        "robot": Class(
+            "robot, one hidden effect",
+            [(bots[k % len(bots)],) for k in range(5 * len(bots))],
+            lambda c, f: robot_case.make_case(f, c.key, c.what, _robot_share(c)),
+        ),
+        "robot-control": Class(
+            "robot, no hidden effect", [()] * 24, lambda c, f: robot_case.make_case(f, c.key, (), 0)
+        ),
     }
 
 
 # A few of each class of the open set, sizes well above the limit: what every run of the tests does in minutes.
-REDUCED = {"single": (6, 7, 12, 15), "generic": (12,), "control": (0, 1, 3), "pair": (0,), "outside": (1,), "fault": (1,),
-           "robot": (9,)}
+REDUCED = {
+    "single": (6, 7, 12, 15),
+    "generic": (12,),
+    "control": (0, 1, 3),
+    "pair": (0,),
+    "outside": (1,),
+    "fault": (1,),
+    "robot": (9,),
+}
 
 
 def reduced():
@@ -143,7 +188,14 @@ def list_cases(set_name, only=None, count=None):
 def make(case, folder):
     """Writes the case's folder and returns its answer."""
     answer = classes()[case.cls].make(case, folder)
-    return {"case": case.name, "set": case.set, "class": case.cls, "index": case.index, "what": list(case.what), **answer}
+    return {
+        "case": case.name,
+        "set": case.set,
+        "class": case.cls,
+        "index": case.index,
+        "what": list(case.what),
+        **answer,
+    }
 
 
 assert all(e in BY_ID for pair in _pairs() for e in pair)

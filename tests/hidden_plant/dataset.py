@@ -15,8 +15,18 @@ def write_model(path, rig_name, sections):
 
 def write_dataset(folder, title, rig_name, channels, runs):
     """`channels`: {signal: {key: text}}; `runs`: [{file, use, excitation}]."""
-    lines = ['format = "omnihil-dataset/1"', f'title = "{title}"', f'rig = "{rig_name}"', 'model = "model.toml"', "", "[channels]"]
-    lines += [f"{signal} = {{ " + ", ".join(f"{k} = {v}" for k, v in keys.items()) + " }" for signal, keys in channels.items()]
+    lines = [
+        'format = "omnihil-dataset/1"',
+        f'title = "{title}"',
+        f'rig = "{rig_name}"',
+        'model = "model.toml"',
+        "",
+        "[channels]",
+    ]
+    lines += [
+        f"{signal} = {{ " + ", ".join(f"{k} = {v}" for k, v in keys.items()) + " }"
+        for signal, keys in channels.items()
+    ]
     for run in runs:
         lines += ["", "[[runs]]"] + [f'{k} = "{v}"' for k, v in run.items()]
     (folder / "dataset.toml").write_text("\n".join(lines) + "\n")

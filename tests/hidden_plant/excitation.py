@@ -62,7 +62,9 @@ def prbs(rng, n, dt):
         if rng.random() < 0.02:
             level = rng.uniform(-0.3, 0.3)
         high = not high
-        out += [level + (0.3 if high else -0.3)] * max(1, round(rng.choice((0.01, 0.02, 0.05, 0.1, 0.2)) / dt))
+        out += [level + (0.3 if high else -0.3)] * max(
+            1, round(rng.choice((0.01, 0.02, 0.05, 0.1, 0.2)) / dt)
+        )
     return out[:n]
 
 
@@ -91,8 +93,10 @@ def to_the_top(rng, n, dt):
     """Ramps to full duty and back, both ways."""
     period_s = rng.uniform(5, 9)
     top = rng.uniform(0.97, 1.0)
-    return [top * max(-1.0, min(1.0, 1.15 * math.asin(math.sin(2 * math.pi * k * dt / period_s)) * 2 / math.pi))
-            for k in range(n)]
+    return [
+        top * max(-1.0, min(1.0, 1.15 * math.asin(math.sin(2 * math.pi * k * dt / period_s)) * 2 / math.pi))
+        for k in range(n)
+    ]
 
 
 def reversals(rng, n, dt):
@@ -117,7 +121,10 @@ def mixed(rng, n, dt):
     return (out + [0.0] * n)[:n]
 
 
-POOL = {f.__name__: f for f in (steps, stairs, slow, creep, chirp, prbs, shuttle, hard, to_the_top, reversals, mixed)}
+POOL = {
+    f.__name__: f
+    for f in (steps, stairs, slow, creep, chirp, prbs, shuttle, hard, to_the_top, reversals, mixed)
+}
 PLAIN = {name: f.__doc__.rstrip(".").split(",")[0].lower() for name, f in POOL.items()}
 
 
@@ -126,7 +133,9 @@ def position_steps(rng, n, dt):
     """Position steps of several sizes."""
     out = [0.0] * round(0.3 / dt)
     while len(out) < n:
-        out += [rng.choice((0.1, 0.3, 0.8, 1.5, 2.5)) * rng.choice((-1, 1))] * round(rng.uniform(0.5, 1.4) / dt)
+        out += [rng.choice((0.1, 0.3, 0.8, 1.5, 2.5)) * rng.choice((-1, 1))] * round(
+            rng.uniform(0.5, 1.4) / dt
+        )
     return out[:n]
 
 
@@ -134,8 +143,10 @@ def position_sines(rng, n, dt):
     """Position sines of growing frequency."""
     f = rng.uniform(0.25, 0.5)
     a, b = rng.uniform(0.5, 1.0), rng.uniform(0.2, 0.5)
-    return [a * math.sin(2 * math.pi * f * k * dt) + b * math.sin(2 * math.pi * f * (2 + 0.15 * k * dt) * k * dt)
-            for k in range(n)]
+    return [
+        a * math.sin(2 * math.pi * f * k * dt) + b * math.sin(2 * math.pi * f * (2 + 0.15 * k * dt) * k * dt)
+        for k in range(n)
+    ]
 
 
 def position_mixed(rng, n, dt):

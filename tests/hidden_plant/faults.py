@@ -60,7 +60,10 @@ KINDS = {
     "glitches": (glitches, ("glitch", "jump", "outlier", "spike")),
     "swapped_sign": (swapped_sign, ("sign", "backwards", "reversed", "opposite", "direction")),
     "wrong_gear_ratio": (unchanged, ("gear", "ratio")),
-    "dropped_ticks": (dropped_ticks, ("dropped", "lost", "missed", "missing", "stuck", "stands still", "frozen", "jump", "glitch")),
+    "dropped_ticks": (
+        dropped_ticks,
+        ("dropped", "lost", "missed", "missing", "stuck", "stands still", "frozen", "jump", "glitch"),
+    ),
     "late_timestamps": (late_timestamps, ("stamp", "jitter", "clock", "late", "timing")),
     "wrong_counts_per_turn": (unchanged, ("scale", "counts_per_rev", "counts per", "factor", "gear")),
     "current_in_milliamperes": (milliamperes, ("scale", "milliamp", "mA", "factor", "unit")),

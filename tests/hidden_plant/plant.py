@@ -8,8 +8,20 @@ import subprocess
 HERE = pathlib.Path(__file__).resolve().parent
 RAW = ("command", "bus", "current", "angle", "speed", "out_angle", "out_speed", "winding_K")
 SEEN = ("counts", "bus", "current", "speed", "angle")
-BOT = ("bus", *(f"current_{k}" for k in range(1, 5)), *(f"counts_{k}" for k in range(1, 5)), "gyro", "ax", "ay",
-       "cam_x", "cam_y", "cam_turn", "x", "y", "turn")
+BOT = (
+    "bus",
+    *(f"current_{k}" for k in range(1, 5)),
+    *(f"counts_{k}" for k in range(1, 5)),
+    "gyro",
+    "ax",
+    "ay",
+    "cam_x",
+    "cam_y",
+    "cam_turn",
+    "x",
+    "y",
+    "turn",
+)
 SUMS = ("in_J", "lost_J", "stored_J")
 
 
@@ -22,8 +34,22 @@ def library_path():
     newest = max(path.stat().st_mtime for path in [*sources, *HERE.glob("*.h")])
     if not built.exists() or built.stat().st_mtime < newest:
         fresh = built.with_suffix(f".{os.getpid()}")
-        subprocess.run(["cc", "-std=c11", "-D_GNU_SOURCE", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-o", str(fresh),
-                        *map(str, sources), "-lm"], check=True)
+        subprocess.run(
+            [
+                "cc",
+                "-std=c11",
+                "-D_GNU_SOURCE",
+                "-O2",
+                "-ffp-contract=off",
+                "-fPIC",
+                "-shared",
+                "-o",
+                str(fresh),
+                *map(str, sources),
+                "-lm",
+            ],
+            check=True,
+        )
         fresh.replace(built)
     return built
 
@@ -62,7 +88,7 @@ class Columns(dict):
 
     @classmethod
     def split(cls, flat, names):
-        return cls({name: flat[k::len(names)] for k, name in enumerate(names)})
+        return cls({name: flat[k :: len(names)] for k, name in enumerate(names)})
 
 
 AXIS = Plant("axis")
@@ -73,7 +99,9 @@ def run_axis(params, asked):
     """Simulates one record. Returns (raw table, sums); raise when the state stopped being finite."""
     n = len(asked)
     raw, sums = _doubles(n * len(RAW)), _doubles(len(SUMS))
-    failed = _lib.axis_run(AXIS.pack(params), _pointer(array.array("d", asked)), n, _pointer(raw), _pointer(sums))
+    failed = _lib.axis_run(
+        AXIS.pack(params), _pointer(array.array("d", asked)), n, _pointer(raw), _pointer(sums)
+    )
     if failed:
         raise ArithmeticError("the hidden axis stopped being finite")
     return raw, dict(zip(SUMS, sums))
@@ -108,4 +136,4 @@ def inner_products(rows):
         flat.extend(row)
     out = _doubles(m * m)
     _lib.inner_products(_pointer(flat), m, n, _pointer(out))
-    return [list(out[k * m:(k + 1) * m]) for k in range(m)]
+    return [list(out[k * m : (k + 1) * m]) for k in range(m)]

@@ -31,8 +31,13 @@ def _within(vx, vy, w, most=2.5):
 
 def random_drive(rng, n, dt):
     """Random drive."""
-    legs = [(round(rng.uniform(0.5, 1.2) / dt), _within(rng.uniform(-1.4, 1.4), rng.uniform(-1.4, 1.4), rng.uniform(-4, 4)))
-            for _ in range(40)]
+    legs = [
+        (
+            round(rng.uniform(0.5, 1.2) / dt),
+            _within(rng.uniform(-1.4, 1.4), rng.uniform(-1.4, 1.4), rng.uniform(-4, 4)),
+        )
+        for _ in range(40)
+    ]
     return _ramped([(round(0.2 / dt), (0, 0, 0))] + legs, n, _limits(dt))
 
 
@@ -43,7 +48,10 @@ def directions(rng, n, dt):
     for k in range(16):
         a, v = start + k * math.pi / 8, rng.choice((0.4, 0.8, 1.3))
         rows = round(rng.uniform(0.8, 1.1) / dt)
-        legs += [(rows, (v * math.cos(a), v * math.sin(a), 0)), (rows, (-v * math.cos(a), -v * math.sin(a), 0))]
+        legs += [
+            (rows, (v * math.cos(a), v * math.sin(a), 0)),
+            (rows, (-v * math.cos(a), -v * math.sin(a), 0)),
+        ]
         if k % 4 == 3:
             legs += [(round(0.8 / dt), (0, 0, rng.choice((-5, 5))))]
     return _ramped(legs, n, _limits(dt))
@@ -54,8 +62,13 @@ def hard_starts(rng, n, dt):
     legs = [(round(0.2 / dt), (0, 0, 0))]
     for _ in range(40):
         a, v = rng.uniform(0, 2 * math.pi), rng.uniform(0.8, 1.8)
-        legs += [(round(rng.uniform(0.4, 0.7) / dt), _within(v * math.cos(a), v * math.sin(a), rng.choice((0, 0, -6, 6)))),
-                 (round(rng.uniform(0.2, 0.5) / dt), (0, 0, 0))]
+        legs += [
+            (
+                round(rng.uniform(0.4, 0.7) / dt),
+                _within(v * math.cos(a), v * math.sin(a), rng.choice((0, 0, -6, 6))),
+            ),
+            (round(rng.uniform(0.2, 0.5) / dt), (0, 0, 0)),
+        ]
     return _ramped(legs, n, _limits(dt, 3.0, 16))
 
 
@@ -64,7 +77,9 @@ def crawl(rng, n, dt):
     legs = [(round(0.2 / dt), (0, 0, 0))]
     for _ in range(30):
         a, v = rng.uniform(0, 2 * math.pi), rng.choice((0.06, 0.1, 0.16, 0.25))
-        legs += [(round(rng.uniform(1, 2) / dt), (v * math.cos(a), v * math.sin(a), rng.choice((0, 0, -0.8, 0.8))))]
+        legs += [
+            (round(rng.uniform(1, 2) / dt), (v * math.cos(a), v * math.sin(a), rng.choice((0, 0, -0.8, 0.8))))
+        ]
     return _ramped(legs, n, _limits(dt))
 
 

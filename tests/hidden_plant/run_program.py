@@ -14,8 +14,14 @@ import dataset
 def call(program, words, timeout, cwd):
     """Runs the program. Returns {code, seconds, text}; code None when the time ran out."""
     start = time.monotonic()
-    process = subprocess.Popen([str(program), *map(str, words)], cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               text=True, errors="replace")
+    process = subprocess.Popen(
+        [str(program), *map(str, words)],
+        cwd=cwd,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+    )
     try:
         text, _ = process.communicate(timeout=timeout)
         code = process.returncode
@@ -55,7 +61,9 @@ def diagnose(program, case_folder, timeout, jobs):
         folder = pathlib.Path(scratch) / "case"
         shutil.copytree(case_folder, folder)
         out = pathlib.Path(scratch) / "diagnosis.json"
-        result = call(program, ["diagnose", folder, "--json", out, "--seed", 1, "--jobs", jobs], timeout, scratch)
+        result = call(
+            program, ["diagnose", folder, "--json", out, "--seed", 1, "--jobs", jobs], timeout, scratch
+        )
         result["diagnosis"] = read_json(out)
         result["final_model"] = final_model(result["diagnosis"], folder)
         return result
@@ -91,12 +99,33 @@ def oracle(program, case_folder, answer, timeout):
         folder = pathlib.Path(scratch) / "case"
         shutil.copytree(case_folder, folder)
         nominal = tomllib.loads((folder / "model.toml").read_text())
-        true_form, fitted, out = folder / "true_form.toml", folder / "fitted.toml", pathlib.Path(scratch) / "compare.json"
+        true_form, fitted, out = (
+            folder / "true_form.toml",
+            folder / "fitted.toml",
+            pathlib.Path(scratch) / "compare.json",
+        )
         dataset.write_model(true_form, answer["rig"], oracle_sections(nominal, answer["effects"]))
-        fit = call(program, ["fit", folder, "--model", true_form, "--write", fitted, "--json", pathlib.Path(scratch) / "fit.json"],
-                   timeout, scratch)
+        fit = call(
+            program,
+            [
+                "fit",
+                folder,
+                "--model",
+                true_form,
+                "--write",
+                fitted,
+                "--json",
+                pathlib.Path(scratch) / "fit.json",
+            ],
+            timeout,
+            scratch,
+        )
         if not fitted.exists():
             return {"code": fit["code"], "text": fit["text"]}
         compare = call(program, ["compare", folder, "--model", fitted, "--json", out], timeout, scratch)
-        return {"code": compare["code"], "seconds": fit["seconds"] + compare["seconds"], "text": compare["text"][-1500:],
-                "compare": read_json(out)}
+        return {
+            "code": compare["code"],
+            "seconds": fit["seconds"] + compare["seconds"],
+            "text": compare["text"][-1500:],
+            "compare": read_json(out),
+        }

@@ -3,7 +3,7 @@ import math
 import statistics
 
 LEAST_SHARE = 0.15  # of the residual: from here on an effect has to be named
-LARGEST_SET = 3     # a longer set of effects that cannot be told apart is no answer
+LARGEST_SET = 3  # a longer set of effects that cannot be told apart is no answer
 
 
 def sets_of(diagnosis):
@@ -18,8 +18,11 @@ def matches(name, effect, diagnosis):
 
 def pooled(errors, sigma):
     """Root mean square over signals, each over its noise. A measured bus voltage is an input, not an answer."""
-    values = [(e.get("rmse", math.nan) / sigma[name]) ** 2 for name, e in (errors or {}).items()
-              if sigma.get(name) and name != "bus_voltage"]
+    values = [
+        (e.get("rmse", math.nan) / sigma[name]) ** 2
+        for name, e in (errors or {}).items()
+        if sigma.get(name) and name != "bus_voltage"
+    ]
     return math.sqrt(sum(values) / len(values)) if values else math.nan
 
 
@@ -65,7 +68,9 @@ def parameter_errors(result, answer):
             continue
         ranked = next((r for r in d.get("ranking") or [] if r.get("effect") == effect["id"]), {})
         for name in effect["equal_law"]:
-            true, found = effect["parameters"][name], value_at(result.get("final_model") or {}, f"effects.{effect['id']}.{name}")
+            true, found = effect["parameters"][name], value_at(
+                result.get("final_model") or {}, f"effects.{effect['id']}.{name}"
+            )
             if math.isnan(found):
                 found = value_at(ranked.get("parameters") or {}, name)
             neutral = 1.0 if name.startswith("ratio_") else 0.0
@@ -93,7 +98,10 @@ def fault_text(result):
     """What the program says about the record: findings in its JSON, else everything it printed."""
     d, out = result.get("diagnosis") or {}, []
     for key, value in d.items():
-        if any(word in key for word in ("fault", "finding", "sanity", "data", "quality")) and key != "dataset":
+        if (
+            any(word in key for word in ("fault", "finding", "sanity", "data", "quality"))
+            and key != "dataset"
+        ):
             out.append(str(value))
     return "\n".join(out) if out else result.get("text", "")
 
@@ -103,10 +111,21 @@ def judge(result, answer):
     d = result.get("diagnosis") or {}
     named = list(d.get("effects") or [])
     ranked = [r.get("effect") for r in d.get("ranking") or []]
-    out = {"case": answer["case"], "class": answer["class"], "rig": answer["rig"], "true": [e["id"] for e in answer["effects"]],
-           "what": answer["what"], "shares": [e["share"] for e in answer["effects"]], "verdict": d.get("verdict"),
-           "named": named, "ranked": ranked[:3], "seconds": result.get("seconds"), "of_the_run_s": result.get("of_the_run_s"), "code": result.get("code"),
-           "answered": bool(d)}
+    out = {
+        "case": answer["case"],
+        "class": answer["class"],
+        "rig": answer["rig"],
+        "true": [e["id"] for e in answer["effects"]],
+        "what": answer["what"],
+        "shares": [e["share"] for e in answer["effects"]],
+        "verdict": d.get("verdict"),
+        "named": named,
+        "ranked": ranked[:3],
+        "seconds": result.get("seconds"),
+        "of_the_run_s": result.get("of_the_run_s"),
+        "code": result.get("code"),
+        "answered": bool(d),
+    }
     effects = answer["effects"]
     if effects:
         first, second = named[:1], named[:2] + ranked[:2]
@@ -147,7 +166,12 @@ def median(values):
 
 def rate(rows, test):
     hits = sum(bool(test(r)) for r in rows)
-    return {"hits": hits, "of": len(rows), "rate": hits / len(rows) if rows else math.nan, "interval": wilson(hits, len(rows))}
+    return {
+        "hits": hits,
+        "of": len(rows),
+        "rate": hits / len(rows) if rows else math.nan,
+        "interval": wilson(hits, len(rows)),
+    }
 
 
 def large(rows):
@@ -191,7 +215,9 @@ def summary(rows):
         "fault named as effect": rate(get("fault"), lambda r: r["verdict"] == "effect" and not r["found"]),
         "robot first": rate(robot, lambda r: r["first"]),
         "robot first two": rate(robot, lambda r: r["first_two"]),
-        "reduction median": median(reductions), "reduction p10": quantile(reductions, 0.1), "reduction cases": len(reductions),
+        "reduction median": median(reductions),
+        "reduction p10": quantile(reductions, 0.1),
+        "reduction cases": len(reductions),
         "parameter error median": median([e for r in both for e in r["parameter_errors"]]),
         "base bias median": median([e for r in both for e in r["bias"]]),
         "no answer": rate(rows, lambda r: not r["answered"]),

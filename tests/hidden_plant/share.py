@@ -85,8 +85,11 @@ class Ruler:
         products = [sum(a * b for a, b in zip(column, difference)) for column in self.columns]
         held = [[v + (j == k) for j, v in enumerate(row)] for k, row in enumerate(self.gram)]
         moves = solve(held, products)
-        left = total - 2 * sum(m * p for m, p in zip(moves, products)) + sum(
-            a * b * self.gram[j][k] for j, a in enumerate(moves) for k, b in enumerate(moves))
+        left = (
+            total
+            - 2 * sum(m * p for m, p in zip(moves, products))
+            + sum(a * b * self.gram[j][k] for j, a in enumerate(moves) for k, b in enumerate(moves))
+        )
         energy = max(0.0, left) / n
         return energy / (energy + self.signals)
 

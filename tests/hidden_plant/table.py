@@ -3,8 +3,10 @@ import math
 
 # row, figures of score.summary, and what each has to reach: (name, bound, "at least" or "at most")
 DONE_WHEN = (
-    ("one hidden effect, at least 15 % of the residual, recommended excitation: named first",
-     (("single first", 0.92, 1),)),
+    (
+        "one hidden effect, at least 15 % of the residual, recommended excitation: named first",
+        (("single first", 0.92, 1),),
+    ),
     ("... in the first two", (("single first two", 0.98, 1),)),
     ("no hidden effect: false alarm", (("false alarm", 0.02, -1),)),
     ("... all of its records, minutes", (("controls minutes", 60, -1),)),
@@ -18,7 +20,12 @@ DONE_WHEN = (
     ("robot: named first", (("robot first", 0.85, 1),)),
 )
 # Below these the reduced run of the tests fails: so few cases say only that the diagnosis has not fallen apart.
-FLOORS = {"single first": (0.5, 1), "single first two": (0.75, 1), "false alarm": (0.34, -1), "no answer": (0.0, -1)}
+FLOORS = {
+    "single first": (0.5, 1),
+    "single first two": (0.75, 1),
+    "false alarm": (0.34, -1),
+    "no answer": (0.0, -1),
+}
 
 
 def number(figure):
@@ -45,7 +52,9 @@ def done_when(figures):
     for title, parts in DONE_WHEN:
         for name, bound, way in parts:
             verdict = words[reached(figures[name], bound, way)]
-            lines.append(f"{verdict:5s} {title}: {show(figures[name])}   [{'>=' if way > 0 else '<='} {bound:g}]")
+            lines.append(
+                f"{verdict:5s} {title}: {show(figures[name])}   [{'>=' if way > 0 else '<='} {bound:g}]"
+            )
     return lines
 
 
@@ -53,14 +62,20 @@ def confusion(rows):
     """One line per hidden effect: what was named first, how often."""
     counts = {}
     for r in rows:
-        if len(r["true"]) == 1 and r["class"] in ("single", "generic", "loop", "robot") and r["shares"][0] >= 0.15:
+        if (
+            len(r["true"]) == 1
+            and r["class"] in ("single", "generic", "loop", "robot")
+            and r["shares"][0] >= 0.15
+        ):
             said = r["named"][0] if r["named"] else f"({r['verdict'] or 'no answer'})"
             counts.setdefault((r["rig"], r["true"][0]), {}).setdefault((r["first"], said), 0)
             counts[(r["rig"], r["true"][0])][(r["first"], said)] += 1
     lines = []
     for (rig, true), said in sorted(counts.items()):
         total, right = sum(said.values()), sum(n for (ok, _), n in said.items() if ok)
-        names = ", ".join(f"{'' if ok else '!'}{name} {n}" for (ok, name), n in sorted(said.items(), key=lambda kv: -kv[1]))
+        names = ", ".join(
+            f"{'' if ok else '!'}{name} {n}" for (ok, name), n in sorted(said.items(), key=lambda kv: -kv[1])
+        )
         lines.append(f"  {rig:5s} {true:26s} {right:3d}/{total:<3d} {names}")
     return lines
 
@@ -73,10 +88,13 @@ def others(rows):
             if r["class"] != cls:
                 continue
             good = {"outside": r["verdict"] == "unknown", "fault": r.get("found"), "pair": r.get("all")}.get(
-                cls, r["verdict"] == "adequate" and not r["named"])
+                cls, r["verdict"] == "adequate" and not r["named"]
+            )
             if not good:
                 hidden = " + ".join(r["what"]) or "nothing"
-                lines.append(f"  {cls:13s} {r['case']} {hidden}: {r['verdict'] or 'no answer'} {' + '.join(r['named'])}")
+                lines.append(
+                    f"  {cls:13s} {r['case']} {hidden}: {r['verdict'] or 'no answer'} {' + '.join(r['named'])}"
+                )
     return lines
 
 
@@ -95,5 +113,8 @@ def print_all(rows, figures):
 
 
 def below_floor(figures):
-    return [f"{name}: {show(figures[name])}, floor {bound:g}" for name, (bound, way) in FLOORS.items()
-            if reached(figures[name], bound, way) is False]
+    return [
+        f"{name}: {show(figures[name])}, floor {bound:g}"
+        for name, (bound, way) in FLOORS.items()
+        if reached(figures[name], bound, way) is False
+    ]

@@ -6,8 +6,16 @@ import unittest
 import plant
 
 # A drive without friction: everything in closed form.
-BARE = dict(resistance_ohm=1.0, inductance_H=0.2e-3, flux_Vs=0.03, rotor_kgm2=1e-5, load_kgm2=4e-5, viscous_Nms=0.0, dry_Nm=0.0,
-            supply_V=20.0)
+BARE = dict(
+    resistance_ohm=1.0,
+    inductance_H=0.2e-3,
+    flux_Vs=0.03,
+    rotor_kgm2=1e-5,
+    load_kgm2=4e-5,
+    viscous_Nms=0.0,
+    dry_Nm=0.0,
+    supply_V=20.0,
+)
 
 
 def speeds(params, asked):
@@ -23,7 +31,9 @@ class AxisPlantTest(unittest.TestCase):
         self.assertAlmostEqual(sums["in_J"], sums["lost_J"] + sums["stored_J"], delta=1e-6 * sums["in_J"])
 
     def test_energy_balance_holds_over_a_compliant_shaft(self):
-        wave = [0.4 if (k // 150) % 2 else -0.4 for k in range(4050)] + [0.0] * 3000  # ends at rest, shaft relaxed
+        wave = [0.4 if (k // 150) % 2 else -0.4 for k in range(4050)] + [
+            0.0
+        ] * 3000  # ends at rest, shaft relaxed
         _, sums = speeds(dict(BARE, viscous_Nms=1e-5, shaft_Nm_per_rad=20, gear=3, load_kgm2=2e-4), wave)
         self.assertAlmostEqual(sums["in_J"], sums["lost_J"] + sums["stored_J"], delta=1e-5 * sums["in_J"])
 
@@ -58,9 +68,20 @@ class AxisPlantTest(unittest.TestCase):
 
     def test_half_the_step_changes_nothing_that_can_be_seen(self):
         wave = [0.5 * math.sin(2 * math.pi * (0.5 + k * 1e-3) * k * 1e-3) for k in range(6000)]
-        for hidden in ({}, {"bristles": 1, "breakaway_ratio": 0.8, "bristle_Nm_per_rad": 3}, {"current_cap_A": 5},
-                       {"play_rad": 0.01, "shaft_Nm_per_rad": 40, "shaft_damping_Nms": 0.01, "gear": 3, "load_kgm2": 4e-4},
-                       {"edge_V": 0.4}, {"cog_Nm": 2e-3}):
+        for hidden in (
+            {},
+            {"bristles": 1, "breakaway_ratio": 0.8, "bristle_Nm_per_rad": 3},
+            {"current_cap_A": 5},
+            {
+                "play_rad": 0.01,
+                "shaft_Nm_per_rad": 40,
+                "shaft_damping_Nms": 0.01,
+                "gear": 3,
+                "load_kgm2": 4e-4,
+            },
+            {"edge_V": 0.4},
+            {"cog_Nm": 2e-3},
+        ):
             params = {**BARE, "dry_Nm": 3e-3, "viscous_Nms": 1e-5, **hidden}
             coarse, _ = speeds(params, wave)
             fine, _ = speeds(dict(params, step_s=12.5e-6), wave)

@@ -16,9 +16,24 @@ import robot_case
 from axis_effects import EFFECTS
 from excitation import POOL
 
-SIGNALS = {"time", "duty", "motor_current", "bus_voltage", "encoder", "position", "velocity", "position_target", "dribbler", "gyro_z",
-           "accel_x", "accel_y", "vision_x", "vision_y", "vision_theta", *(f"{s}_{k}" for k in range(1, 5)
-                                                                           for s in ("duty", "encoder", "motor_current"))}
+SIGNALS = {
+    "time",
+    "duty",
+    "motor_current",
+    "bus_voltage",
+    "encoder",
+    "position",
+    "velocity",
+    "position_target",
+    "dribbler",
+    "gyro_z",
+    "accel_x",
+    "accel_y",
+    "vision_x",
+    "vision_y",
+    "vision_theta",
+    *(f"{s}_{k}" for k in range(1, 5) for s in ("duty", "encoder", "motor_current")),
+}
 CHOSEN = [("control", 2), ("single", 7), ("pair", 3), ("outside", 1), ("fault", 1), ("robot", 10)]
 
 
@@ -76,19 +91,30 @@ class CasesTest(unittest.TestCase):
     def test_the_same_case_comes_out_the_same(self):
         case, folder, answer = self.made[0]
         again = self.root / "again" / case.name
-        self.assertEqual(json.dumps(cases.make(case, again), sort_keys=True), json.dumps(answer, sort_keys=True))
+        self.assertEqual(
+            json.dumps(cases.make(case, again), sort_keys=True), json.dumps(answer, sort_keys=True)
+        )
         self.assertEqual(tree_hash(again), tree_hash(folder))
 
     def test_sets_share_no_record(self):
         for name in ("single", "control"):
-            keys = {s: [axis_case.source(*c.key).random() for c in cases.list_cases(s, [name], 40)] for s in cases.SETS}
-            self.assertFalse(set(keys["dev"]) & set(keys["release"]) or set(keys["dev"]) & set(keys["sealed"]))
+            keys = {
+                s: [axis_case.source(*c.key).random() for c in cases.list_cases(s, [name], 40)]
+                for s in cases.SETS
+            }
+            self.assertFalse(
+                set(keys["dev"]) & set(keys["release"]) or set(keys["dev"]) & set(keys["sealed"])
+            )
 
     def test_controls_are_driven_by_every_excitation_that_reveals_an_effect(self):
         kinds = set()
         for k in range(400):
             rng = axis_case.source("dev", "control", k)
-            kinds |= set(axis_case.draw_kinds(rng, rng.choice(EFFECTS).shows, axis_case.draw_rig(rng), False)[0].split("+"))
+            kinds |= set(
+                axis_case.draw_kinds(rng, rng.choice(EFFECTS).shows, axis_case.draw_rig(rng), False)[0].split(
+                    "+"
+                )
+            )
         self.assertLessEqual({k for e in EFFECTS for k in e.shows if k in POOL}, kinds)
 
     def test_there_are_enough_cases(self):
@@ -113,7 +139,9 @@ class CasesTest(unittest.TestCase):
             robot = robot_case.draw_robot(axis_case.source("off", k))
             for name, (_, least, most, _) in robot_case.BASE.items():
                 if name not in robot.left_out | robot.known:
-                    self.assertTrue(least - 1e-3 <= abs(robot.true[name] / robot.believed[name] - 1) <= most + 1e-3)
+                    self.assertTrue(
+                        least - 1e-3 <= abs(robot.true[name] / robot.believed[name] - 1) <= most + 1e-3
+                    )
 
 
 if __name__ == "__main__":

@@ -9,8 +9,17 @@ import robot_drives
 
 ANGLES = [math.radians(a) for a in robot_drives.ANGLES]
 # No friction, no noise: motion in closed form. Half full duty makes rims run at k' u.
-FREE = dict(viscous_Nms=0, dry_Nm=0, roller_grip=0, current_noise_A=0, bus_noise_V=0, gyro_noise_rad_s=0, accel_noise_m_s2=0,
-            vision_noise_m=0, vision_noise_rad=0)
+FREE = dict(
+    viscous_Nms=0,
+    dry_Nm=0,
+    roller_grip=0,
+    current_noise_A=0,
+    bus_noise_V=0,
+    gyro_noise_rad_s=0,
+    accel_noise_m_s2=0,
+    vision_noise_m=0,
+    vision_noise_rad=0,
+)
 
 
 def drive(twist, seconds=1.5, ramp_s=0.8):
@@ -38,7 +47,9 @@ class RobotPlantTest(unittest.TestCase):
             for k, a in enumerate(ANGLES):
                 counts = c[f"counts_{k + 1}"]
                 rim = (counts[-1] - counts[-101]) / 16384 * 2 * math.pi / 3 * 0.027 / 0.1
-                self.assertAlmostEqual(rim, -math.sin(a) * body[0] + math.cos(a) * body[1] + 0.0805 * w, delta=0.006)
+                self.assertAlmostEqual(
+                    rim, -math.sin(a) * body[0] + math.cos(a) * body[1] + 0.0805 * w, delta=0.006
+                )
 
     def test_force_makes_the_acceleration_of_mass_and_wheels(self):
         # All four motors at the same current i: moment = 4 R_b (N k i / r) on I + 4 J_w (R_b / r)^2.
@@ -50,11 +61,13 @@ class RobotPlantTest(unittest.TestCase):
 
     def test_a_free_robot_rolls_down_a_tilted_floor(self):
         # m g sin(a) moves the robot and, through four free wheels, their inertia; windings short the motors: none at 1e9 ohm.
-        c = plant.run_robot(dict(FREE, tilt_rad=0.02, tilt_towards=0.7, resistance_ohm=1e6), [[0.0] * 5] * 1000)
+        c = plant.run_robot(
+            dict(FREE, tilt_rad=0.02, tilt_towards=0.7, resistance_ohm=1e6), [[0.0] * 5] * 1000
+        )
         along = c["x"][-1] * math.cos(0.7) + c["y"][-1] * math.sin(0.7)
         across = -c["x"][-1] * math.sin(0.7) + c["y"][-1] * math.cos(0.7)
         share = sum((-math.sin(a) * math.cos(0.7) + math.cos(a) * math.sin(0.7)) ** 2 for a in ANGLES)
-        mass = 2.4 + share * (2.2e-5 + 9 * 1.35e-5) / 0.027 ** 2
+        mass = 2.4 + share * (2.2e-5 + 9 * 1.35e-5) / 0.027**2
         self.assertAlmostEqual(along, 0.5 * 2.4 / mass * 9.80665 * math.sin(0.02), delta=0.02 * along)
         self.assertLess(abs(across), 0.1 * along)
 
@@ -85,8 +98,12 @@ class RobotPlantTest(unittest.TestCase):
         self.assertNotEqual(list(a["current_1"]), list(other["current_1"]))
 
     def test_shorter_steps_change_nothing_that_can_be_seen(self):
-        asked = [row + [0.0] for row in robot_drives.duties(robot_drives.random_drive(random.Random(1), 4000, 1e-3),
-                                                            plant.ROBOT.defaults)]
+        asked = [
+            row + [0.0]
+            for row in robot_drives.duties(
+                robot_drives.random_drive(random.Random(1), 4000, 1e-3), plant.ROBOT.defaults
+            )
+        ]
         coarse, fine = plant.run_robot(FREE, asked), plant.run_robot(dict(FREE, step_s=10e-6), asked)
         for name, least in (("x", 1e-4), ("turn", 5e-4), ("gyro", 1e-3), ("current_1", 0.005)):
             rms = math.sqrt(sum((a - b) ** 2 for a, b in zip(coarse[name], fine[name])) / 4000)

@@ -10,14 +10,32 @@ import table
 
 
 def answer(*effects, cls="single", share=0.5, **more):
-    return {"case": "x", "class": cls, "rig": "axis", "what": list(effects), "base": {}, **more,
-            "effects": [{"id": e, "same_law": [], "share": share, "parameters": {"a": 2.0}, "equal_law": ["a"]} for e in effects]}
+    return {
+        "case": "x",
+        "class": cls,
+        "rig": "axis",
+        "what": list(effects),
+        "base": {},
+        **more,
+        "effects": [
+            {"id": e, "same_law": [], "share": share, "parameters": {"a": 2.0}, "equal_law": ["a"]}
+            for e in effects
+        ],
+    }
 
 
 def said(*effects, verdict="effect", twins=(), ranking=()):
-    return {"seconds": 1.0, "code": 0, "text": "", "diagnosis": {
-        "verdict": verdict, "effects": list(effects), "indistinguishable": [list(t) for t in twins],
-        "ranking": [{"effect": r, "parameters": {}} for r in ranking]}}
+    return {
+        "seconds": 1.0,
+        "code": 0,
+        "text": "",
+        "diagnosis": {
+            "verdict": verdict,
+            "effects": list(effects),
+            "indistinguishable": [list(t) for t in twins],
+            "ranking": [{"effect": r, "parameters": {}} for r in ranking],
+        },
+    }
 
 
 class ScoreTest(unittest.TestCase):
@@ -29,7 +47,9 @@ class ScoreTest(unittest.TestCase):
     def test_a_twin_counts_only_when_it_is_declared_and_the_set_is_small(self):
         a = answer("battery_sag")
         self.assertFalse(score.judge(said("winding_heating"), a)["first"])
-        self.assertTrue(score.judge(said("winding_heating", twins=[("battery_sag", "winding_heating")]), a)["first"])
+        self.assertTrue(
+            score.judge(said("winding_heating", twins=[("battery_sag", "winding_heating")]), a)["first"]
+        )
         large = ("battery_sag", "winding_heating", "current_limit", "saturation")
         self.assertFalse(score.judge(said("winding_heating", twins=[large]), a)["first"])
 
@@ -41,7 +61,9 @@ class ScoreTest(unittest.TestCase):
     def test_second_place_counts_for_the_first_two(self):
         row = score.judge(said("imbalance", "cogging"), answer("cogging"))
         self.assertEqual((row["first"], row["first_two"], row["extra"]), (False, True, 1))
-        self.assertTrue(score.judge(said("imbalance", ranking=["imbalance", "cogging"]), answer("cogging"))["first_two"])
+        self.assertTrue(
+            score.judge(said("imbalance", ranking=["imbalance", "cogging"]), answer("cogging"))["first_two"]
+        )
 
     def test_pairs_need_both(self):
         a = answer("cogging", "dead_time", cls="pair")
@@ -49,14 +71,19 @@ class ScoreTest(unittest.TestCase):
         self.assertFalse(score.judge(said("dead_time"), a)["all"])
 
     def test_no_answer_is_a_false_alarm_and_counted(self):
-        rows = [score.judge({"seconds": 1.0, "code": None, "text": "", "diagnosis": None}, answer(cls="control"))]
+        rows = [
+            score.judge({"seconds": 1.0, "code": None, "text": "", "diagnosis": None}, answer(cls="control"))
+        ]
         figures = score.summary(rows)
         self.assertEqual((figures["false alarm"]["hits"], figures["no answer"]["hits"]), (1, 1))
 
     def test_error_reduction_is_the_oracle_s_share(self):
         result = said("cogging")
-        result["diagnosis"].update(signals={"velocity": {"noise_sigma": 0.5}}, baseline={"holdout": {"velocity": {"rmse": 3.0}}},
-                                   final={"holdout": {"velocity": {"rmse": 1.5}}})
+        result["diagnosis"].update(
+            signals={"velocity": {"noise_sigma": 0.5}},
+            baseline={"holdout": {"velocity": {"rmse": 3.0}}},
+            final={"holdout": {"velocity": {"rmse": 1.5}}},
+        )
         result["oracle"] = {"compare": {"error": {"holdout": {"velocity": {"rmse": 1.0}}}}}
         self.assertAlmostEqual(score.error_reduction(result), (3.0 - 1.5) / (3.0 - 1.0))
         result["oracle"]["compare"]["error"]["holdout"]["velocity"]["rmse"] = 2.99
@@ -70,7 +97,7 @@ class ScoreTest(unittest.TestCase):
     def test_wilson_s_interval(self):
         low, high = score.wilson(0, 150)  # z^2 / (n + z^2)
         self.assertEqual(low, 0)
-        self.assertAlmostEqual(high, 1.96 ** 2 / (150 + 1.96 ** 2))
+        self.assertAlmostEqual(high, 1.96**2 / (150 + 1.96**2))
 
     def test_a_row_passes_at_its_bound_and_misses_beyond(self):
         self.assertTrue(table.reached(0.92, 0.92, 1))
@@ -86,18 +113,28 @@ class ScoreTest(unittest.TestCase):
         self.assertLessEqual(set(table.FLOORS), set(figures))
 
     def test_the_oracle_s_model_keeps_the_nominal_and_adds_the_effect(self):
-        nominal = {"format": "omnihil-model/1", "motor": {"resistance_ohm": {"value": 1.2, "tolerance": 0.1}, "slots": 12},
-                   "effects": {"coulomb_friction": {"torque_Nm": {"value": 0.003, "tolerance": 0.3}}}}
+        nominal = {
+            "format": "omnihil-model/1",
+            "motor": {"resistance_ohm": {"value": 1.2, "tolerance": 0.1}, "slots": 12},
+            "effects": {"coulomb_friction": {"torque_Nm": {"value": 0.003, "tolerance": 0.3}}},
+        }
         effect = {"id": "cogging", "parameters": {"amplitude_Nm": 0.002, "order": 48.0}}
         sections = run_program.oracle_sections(nominal, [effect])
         self.assertEqual(sections["motor"]["slots"], "12")
-        self.assertEqual(sections["effects.coulomb_friction"]["torque_Nm"], "{ value = 0.003, tolerance = 0.3 }")
-        self.assertEqual(sections["effects.cogging"], {"amplitude_Nm": "{ value = 0.002, tolerance = 0.3 }", "order": "48.0"})
+        self.assertEqual(
+            sections["effects.coulomb_friction"]["torque_Nm"], "{ value = 0.003, tolerance = 0.3 }"
+        )
+        self.assertEqual(
+            sections["effects.cogging"],
+            {"amplitude_Nm": "{ value = 0.002, tolerance = 0.3 }", "order": "48.0"},
+        )
 
     def test_the_reduced_run_takes_open_cases_of_every_kind(self):
         chosen = cases.reduced()
         self.assertEqual({c.set for c in chosen}, {"dev"})
-        self.assertLessEqual({"single", "control", "pair", "outside", "fault", "robot"}, {c.cls for c in chosen})
+        self.assertLessEqual(
+            {"single", "control", "pair", "outside", "fault", "robot"}, {c.cls for c in chosen}
+        )
 
 
 if __name__ == "__main__":
