@@ -175,9 +175,22 @@ class DatasetReader {
     }
   }
 
+  // No model here makes duties of radio commands: the duties themselves are needed.
+  void check_robot_drive() {
+    for (std::size_t r = 0; r < dataset_.runs.size(); ++r) {
+      if (dataset_.runs[r].signal("duty_1") != nullptr) continue;
+      problem(plan_.runs[r].at, "runs", fmt::format("\"{}\"", dataset_.runs[r].file),
+              "is driven by radio commands alone, of which no duties are computed here",
+              "log duty_1 to duty_4 beside them");
+    }
+  }
+
   // What the drive input needs of the model.
   void check_model() {
-    if (dataset_.rig != Rig::kAxis) return;
+    if (dataset_.rig != Rig::kAxis) {
+      check_robot_drive();
+      return;
+    }
     const ParameterTable& table = out_.nominal->file.parameters;
     const auto has = [&](const char* path) { return table.value_or(path, 0.0) > 0.0; };
     const bool constant = has("motor.torque_constant_Nm_per_A") || has("motor.torque_constant_N_per_A");

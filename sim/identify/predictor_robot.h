@@ -13,9 +13,8 @@
 // Compared: "velocity_1" … "velocity_4" (rotor, differences of counts on both sides), "motor_current_1" …,
 // "gyro_z", "accel_x", "accel_y", "vision_x", "vision_y", "vision_theta" (where there is a frame).
 // bus_voltage, where measured, is what the bridges had: an input, less its noise; and its drop is compared
-// with that of the model's supply. Without it the model's supply holds. Driven by radio commands alone
-// (command_vx …), the duty is what the reference firmware makes of them and of the measured encoders and gyro
-// (robot_firmware.h).
+// with that of the model's supply. Without it the model's supply holds.
+// Cannot: make duties of radio commands (command_vx …); the reader refuses a robot that logged nothing else.
 #pragma once
 #include <memory>
 
