@@ -22,7 +22,7 @@ LAYERS = {  # folder -> folders it may not include
     "hil/": ("tools/",),
 }
 PURE = ("sim/", "protocols/", "firmware_iface/")
-IMPURE = re.compile(r"#\s*include\s*<(chrono|fstream|random|thread|ctime|filesystem|sys/socket\.h|unistd\.h|termios\.h)>")
+IMPURE = re.compile(r"#\s*include\s*<(chrono|fstream|random|ctime|filesystem|sys/socket\.h|unistd\.h|termios\.h)>")
 
 
 def limit_of(path):
