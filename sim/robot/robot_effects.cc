@@ -4,6 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "sim/robot/link_effect.h"
+
 namespace omnihil {
 
 static_assert(std::is_trivially_copyable_v<RobotEffectMemory>);
@@ -37,21 +39,8 @@ struct RobotEffects::Links {
 
 // Last in the chains of bridge and torque, by its name. It changes nothing but the friction.
 struct RobotEffects::LinkEffect {
-  static constexpr EffectParam kParams[] = {{.name = "on",
-                                             .unit = "1",
-                                             .typical = 1,
-                                             .upper = 1,
-                                             .what = "always on",
-                                             .how = "never seen by users"}};
-  static constexpr EffectInfo kInfo{.id = "~wheel",
-                                    .title = "Link between drive and plant",
-                                    .equation = "level += rolling resistance",
-                                    .source = "rolling_resistance.cc",
-                                    .cannot = "",
-                                    .place = Place::kTorque,
-                                    .reveals = "",
-                                    .visible = "",
-                                    .params = kParams};
+  static constexpr EffectInfo kInfo =
+      link_info("Link between drive and plant", "level += rolling resistance", "rolling_resistance.cc");
 
   static void bridge(const void* context, const double*, double*, BridgePort<double>& port) {
     static_cast<const Link*>(context)->inverse_limit_per_A = port.inverse_current_limit_per_A;

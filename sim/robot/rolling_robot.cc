@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/robot/link_effect.h"
 #include "sim/robot/rolling_balance.h"
 
 namespace omnihil {
@@ -23,21 +24,7 @@ struct RollingRobot<T>::Link {
 // Last in the chains of bridge and torque, by its name.
 template <typename T>
 struct RollingRobot<T>::LinkEffect {
-  static constexpr EffectParam kParams[] = {{.name = "on",
-                                             .unit = "1",
-                                             .typical = 1,
-                                             .upper = 1,
-                                             .what = "always on",
-                                             .how = "never seen by users"}};
-  static constexpr EffectInfo kInfo{.id = "~wheel",
-                                    .title = "Link between drive and body",
-                                    .equation = "",
-                                    .source = "rolling_robot.h",
-                                    .cannot = "",
-                                    .place = Place::kTorque,
-                                    .reveals = "",
-                                    .visible = "",
-                                    .params = kParams};
+  static constexpr EffectInfo kInfo = link_info("Link between drive and body", "", "rolling_robot.h");
   static Link& link(const void* context) { return *static_cast<Link*>(const_cast<void*>(context)); }
   static void bridge(const void* context, const T*, T*, BridgePort<T>& port) {
     link(context).inverse_limit_per_A = port.inverse_current_limit_per_A;
