@@ -1,0 +1,67 @@
+// What a chip is built of: blocks of registers that live in the time of the core clock.
+//
+//   class Watchdog final : public Peripheral { ... };
+//   machine.attach(0x40003000, 0x400, watchdog);    // the bus then calls read() and write()
+//
+// Time is counted in cycles of the core clock since reset; nothing here knows seconds but CoreClock, which keeps
+// both over changes of the clock tree. A peripheral never pushes state: what a register shows is worked out from
+// now() when it is read, and only instants at which something happens by itself (an interrupt, a byte on a wire)
+// are announced by next_event().
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace omnihil::mcu {
+
+using Cycles = std::uint64_t;
+inline constexpr Cycles kNever = ~Cycles{0};
+
+// The machine as a peripheral sees it.
+class System {
+ public:
+  virtual ~System() = default;
+  // The instant of the access that is going on, or of the event that is being run.
+  virtual Cycles now() const = 0;
+  // What now() is in time since power-on; exact over changes of the core clock.
+  virtual std::int64_t to_ns(Cycles at) const = 0;
+  virtual Cycles from_ns(std::int64_t at_ns) const = 0;  // the first cycle not before at_ns
+  virtual double core_hz() const = 0;
+  // From now on the core runs at `hz`: called by the clock tree (RCC) alone. Peripherals hear of it.
+  virtual void set_core_hz(double hz) = 0;
+  // A peripheral's interrupt line. A rising edge makes it pending, a line still high on return does so again.
+  virtual void set_irq(int irq, bool high) = 0;
+  // next_event() of some peripheral has changed, or an exception may be due: look again after this access.
+  virtual void reschedule() = 0;
+  // Reset of the whole chip at the end of this access or event, by the named cause.
+  virtual void request_reset(std::string_view cause) = 0;
+  // Bus master access (DMA): as the core would, without its permission. `bytes` is 1, 2 or 4.
+  virtual std::uint32_t bus_read(std::uint32_t address, unsigned bytes) = 0;
+  virtual void bus_write(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
+  // A register, a bit or a use of it that is not modelled: reported once each with the program counter.
+  virtual void report_unmodelled(std::string_view peripheral, std::string_view what) = 0;
+};
+
+class Peripheral {
+ public:
+  explicit Peripheral(std::string name) : name_(std::move(name)) {}
+  virtual ~Peripheral() = default;
+  Peripheral(const Peripheral&) = delete;
+  Peripheral& operator=(const Peripheral&) = delete;
+
+  const std::string& name() const { return name_; }
+  virtual void reset() = 0;
+  // `offset` from the block's base; `bytes` 1, 2 or 4, `offset` a multiple of it.
+  virtual std::uint32_t read(std::uint32_t offset, unsigned bytes) = 0;
+  virtual void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) = 0;
+  // The next instant at which it acts by itself; run_events() is then called with now() at that instant.
+  virtual Cycles next_event() const { return kNever; }
+  virtual void run_events() {}
+  // The core clock changes at now(); what is counted in core cycles ahead must be counted anew.
+  virtual void clock_changed() {}
+
+ private:
+  std::string name_;
+};
+
+}  // namespace omnihil::mcu
