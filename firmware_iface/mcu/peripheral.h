@@ -3,12 +3,13 @@
 //   class Watchdog final : public Peripheral { ... };
 //   machine.attach(0x40003000, 0x400, watchdog);    // the bus then calls read() and write()
 //
-// Time is counted in cycles of the core clock since reset; nothing here knows seconds but CoreClock, which keeps
-// both over changes of the clock tree. A peripheral never pushes state: what a register shows is worked out from
-// now() when it is read, and only instants at which something happens by itself (an interrupt, a byte on a wire)
-// are announced by next_event().
+// Time is counted in cycles of the core clock since reset; nothing here knows seconds but CoreClock, which
+// keeps both over changes of the clock tree. A peripheral never pushes state: what a register shows is worked
+// out from now() when it is read, and only instants at which something happens by itself (an interrupt, a
+// byte on a wire) are announced by next_event().
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -35,9 +36,14 @@ class System {
   virtual void reschedule() = 0;
   // Reset of the whole chip at the end of this access or event, by the named cause.
   virtual void request_reset(std::string_view cause) = 0;
+  // By what the chip was reset last: "power-on" or what request_reset() was given. For the reset flags.
+  virtual std::string_view reset_cause() const = 0;
   // Bus master access (DMA): as the core would, without its permission. `bytes` is 1, 2 or 4.
   virtual std::uint32_t bus_read(std::uint32_t address, unsigned bytes) = 0;
   virtual void bus_write(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
+  // Changes the contents of the flash as they lie there, for the flash controller alone; no erased bits are
+  // looked at.
+  virtual void program_flash(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
   // A register, a bit or a use of it that is not modelled: reported once each with the program counter.
   virtual void report_unmodelled(std::string_view peripheral, std::string_view what) = 0;
 };
@@ -59,9 +65,20 @@ class Peripheral {
   virtual void run_events() {}
   // The core clock changes at now(); what is counted in core cycles ahead must be counted anew.
   virtual void clock_changed() {}
+  // Until when a read of `offset` gives what it would give now and changes nothing; a loop that polls it can
+  // then be skipped up to there (or to the next event, whichever is first). 0: not known.
+  virtual Cycles stable_until(std::uint32_t /*offset*/) const { return 0; }
 
  private:
   std::string name_;
+};
+
+// Who is told of stores to the flash's addresses (the flash controller); without one they are reported and
+// lost.
+class FlashWrites {
+ public:
+  virtual ~FlashWrites() = default;
+  virtual void flash_write(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
 };
 
 }  // namespace omnihil::mcu

@@ -1,0 +1,279 @@
+#include "firmware_iface/mcu/core/cpu.h"
+
+#include <cfenv>
+#include <cmath>
+
+namespace omnihil::mcu {
+namespace {
+
+constexpr std::uint32_t kFpscrWritable = 0xF7C0009F;
+
+int host_rounding(std::uint32_t fpscr) {
+  constexpr int kModes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+  return kModes[fpscr >> 22 & 3];
+}
+
+}  // namespace
+
+Cpu::Cpu(const Variant& variant, Memory& memory, CpuBus& bus, double cpi_scale)
+    : variant_(variant), memory_(memory), bus_(bus), scale_(std::lround(cpi_scale * kSubcycles)) {
+  trap_unaligned = variant.arch == Arch::kV6M;
+  memory_changed();
+}
+
+void Cpu::memory_changed() {
+  ram_ = flash_ = ccm_ = Window{};
+  for (const auto& region : memory_.regions()) {
+    Window window{region->base, region->size, region->data(), region->block};
+    if (!region->writable()) {
+      if (!flash_.data) flash_ = window;
+    } else if (!ram_.data) {
+      ram_ = window;
+    } else if (!ccm_.data) {
+      ccm_ = window;
+    }
+  }
+}
+
+Stop Cpu::run(std::int64_t now, std::int64_t deadline) {
+  const int mode = host_rounding(reg.fpscr), host = mode == FE_TONEAREST ? mode : std::fegetround();
+  if (mode != FE_TONEAREST) std::fesetround(mode);
+  fp_changed();
+  watching_ = false;
+  watch_.rest = watch_.rest < 2 ? 2 : watch_.rest;
+  const Stop stop = execute(now, deadline);
+  if (mode != FE_TONEAREST || reg.fpscr & 0x00C00000u) std::fesetround(host);
+  return stop;
+}
+
+void Cpu::set_fpscr(std::uint32_t value) {
+  const std::uint32_t old = reg.fpscr;
+  reg.fpscr = value & kFpscrWritable;
+  if ((old ^ value) & 0x00C00000u) std::fesetround(host_rounding(reg.fpscr));
+}
+
+bool Cpu::fp_begin() {
+  if (!fp_enabled) return false;
+  if (fp_automatic) {
+    reg.control |= kFpContextActive;
+    set_fpscr((reg.fpscr & ~0x07C00000u) | fpdscr);
+  }
+  fp_ready_ = true;
+  return true;
+}
+
+std::uint32_t Cpu::access_pc() const {
+  if (!code_ || !access_op_) return reg.r[15];
+  return code_->base + static_cast<std::uint32_t>(access_op_ - code_->ops.data()) * 2;
+}
+
+bool Cpu::holds(unsigned condition) const {
+  const bool n = reg.n >> 31, z = reg.z == 0, c = reg.c, v = reg.v;
+  bool result = true;
+  switch (condition >> 1) {
+    case 0:
+      result = z;
+      break;
+    case 1:
+      result = c;
+      break;
+    case 2:
+      result = n;
+      break;
+    case 3:
+      result = v;
+      break;
+    case 4:
+      result = c && !z;
+      break;
+    case 5:
+      result = n == v;
+      break;
+    case 6:
+      result = n == v && !z;
+      break;
+    default:
+      return true;
+  }
+  return result != static_cast<bool>(condition & 1);
+}
+
+// ---- decoding into slots
+
+std::uint16_t Cpu::halfword(std::uint32_t pc) const {
+  const MemoryRegion* region = memory_.find(pc);
+  if (!region) return 0;
+  std::uint16_t value;
+  std::memcpy(&value, region->data() + (pc - region->base), 2);
+  return value;
+}
+
+Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
+  const std::uint16_t first = halfword(pc);
+  Op op = decode({pc, variant_, it}, first, is_wide(first) ? halfword(pc + 2) : std::uint16_t{0});
+  int cycles = op_cycles(op.code);
+  if (op.code == kLdm || op.code == kStm || op.code == kPush || op.code == kPopPc) {
+    cycles += std::popcount(op.imm & 0xFFFF);
+  } else if (op.code == kVldm || op.code == kVstm) {
+    cycles += op.m;
+  }
+  op.cost = static_cast<std::uint16_t>(cycles * scale_);
+  return op;
+}
+
+void Cpu::fill(std::uint32_t pc, std::uint8_t it) {
+  MemoryRegion& region = *code_;
+  MemoryBlock& block = *region.block;
+  do {
+    const std::uint32_t at = pc - region.base;
+    if (at >= region.size) return;
+    Op& op = region.ops[at / 2];
+    op = make(pc, it);
+    const std::uint32_t end = at + 2u * op.halfwords;
+    const std::uint32_t code_end = block.code_begin + block.code_size;
+    if (block.code_size == 0) {
+      block.code_begin = at;
+      block.code_size = end - at;
+    } else {
+      const std::uint32_t begin = at < block.code_begin ? at : block.code_begin;
+      block.code_size = (end > code_end ? end : code_end) - begin;
+      block.code_begin = begin;
+    }
+    const std::uint16_t first = halfword(pc);
+    it = is_it(first) && op.code == kNop ? static_cast<std::uint8_t>(first & 0xFF) : it_next(it);
+    pc += 2u * op.halfwords;
+  } while (it != 0);
+}
+
+bool Cpu::go_to(std::uint32_t pc) {
+  if (!code_ || pc - code_->base >= code_->size) {
+    code_ = memory_.find(pc);
+    if (!code_ || !code_->executable()) {
+      code_ = nullptr;
+      const bool never = (pc >= 0x40000000u && pc < 0x60000000u) || pc >= 0xA0000000u;
+      fault = {never ? kInstructionAccess : kInstructionBus, 0};
+      return false;
+    }
+  }
+  if (code_->ops.empty()) {
+    code_->ops.resize(code_->size / 2 + 2);
+    code_->ops[code_->size / 2].code = code_->ops[code_->size / 2 + 1].code = kOffEnd;
+  }
+  return true;
+}
+
+void Cpu::resume_it(std::uint32_t pc, std::uint8_t it) {
+  if (!go_to(pc)) return;
+  const Op& op = code_->ops[(pc - code_->base) / 2];
+  if (op.code == kUndecoded ? it != 0 : op.it != it) fill(pc, it);
+}
+
+std::uint8_t Cpu::it_at(std::uint32_t pc) {
+  const MemoryRegion* region = memory_.find(pc);
+  return region && !region->ops.empty() ? region->ops[(pc - region->base) / 2].it : std::uint8_t{0};
+}
+
+// ---- memory off the fast path
+
+bool Cpu::invalid_access(std::uint32_t address, unsigned bytes, bool must_align) {
+  if (address % bytes == 0) return false;
+  if (must_align || trap_unaligned) {
+    fault = {kUnaligned, address};
+    return true;
+  }
+  bus_.note_unaligned(address);
+  return false;
+}
+
+bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align) {
+  if (invalid_access(address, bytes, must_align)) return false;
+  const MemoryRegion* region = memory_.find(address);
+  if (region && address - region->base <= region->size - bytes) {
+    value = 0;
+    std::memcpy(&value, region->data() + (address - region->base), bytes);
+    if (address < 4096) bus_.note_null(address, false);
+    return true;
+  }
+  if (address % bytes == 0) {
+    if (bus_.read(address, bytes, value)) return true;
+    fault = {kPreciseBus | kBusAddressValid, address};
+    return false;
+  }
+  if (!region) {  // device memory takes no unaligned access
+    fault = {kUnaligned, address};
+    return false;
+  }
+  value = 0;
+  for (unsigned i = 0; i < bytes; ++i) {
+    std::uint32_t byte = 0;
+    if (!slow_load(address + i, 1, byte, false)) return false;
+    value |= byte << (8 * i);
+  }
+  return true;
+}
+
+bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align) {
+  if (invalid_access(address, bytes, must_align)) return false;
+  const MemoryRegion* region = memory_.find(address);
+  if (region && region->writable() && address - region->base <= region->size - bytes) {
+    const std::uint32_t at = address - region->base;
+    if (watching_ && std::memcmp(region->data() + at, &value, bytes) != 0) changed_ = true;
+    std::memcpy(region->data() + at, &value, bytes);
+    memory_.invalidate(*region->block, at, bytes);
+    if (address < 4096) bus_.note_null(address, true);
+    return true;
+  }
+  changed_ = true;
+  if (region && address < 4096) bus_.note_null(address, true);
+  if (address % bytes == 0 || !region) {
+    if (address % bytes != 0) {
+      fault = {kUnaligned, address};
+      return false;
+    }
+    if (bus_.write(address, bytes, value)) return true;
+    fault = {kPreciseBus | kBusAddressValid, address};
+    return false;
+  }
+  for (unsigned i = 0; i < bytes; ++i) {
+    if (!slow_store(address + i, 1, value >> (8 * i) & 255, false)) return false;
+  }
+  return true;
+}
+
+// ---- busy waiting
+
+// A loop that comes round to the same registers without having changed anything will do so until something
+// outside changes: whole turns of it are skipped, which leaves every result as it would be.
+void Cpu::watch_loop(const Op* at, std::int64_t& left, std::uint64_t& count, std::int64_t end) {
+  if (!watching_) {
+    watching_ = true;
+    changed_ = false;
+    watch_.at = at;
+    watch_.registers = reg;
+    watch_.left = left;
+    watch_.count = count;
+    watch_.limit = INT64_MAX;
+    watch_.patience = 64;
+    watch_.rest = 1;
+    return;
+  }
+  watch_.rest = 1;
+  const bool again = at == watch_.at;
+  if (!changed_ && !again && --watch_.patience > 0) return;
+  watching_ = false;
+  if (changed_ || !again || !(watch_.registers == reg)) {
+    watch_.pause = watch_.pause < 4096 ? watch_.pause * 2 : 4096;
+    watch_.rest = watch_.pause;
+    return;
+  }
+  watch_.rest = watch_.pause = 64;
+  const std::int64_t turn = watch_.left - left, now = end - left;
+  std::int64_t room = left - 1;
+  if (watch_.limit - now < room) room = watch_.limit - now;
+  const std::int64_t turns = room > 0 ? room / turn : 0;
+  left -= turns * turn;
+  count += static_cast<std::uint64_t>(turns) * (count - watch_.count);
+  statistics.skipped_subcycles += static_cast<std::uint64_t>(turns * turn);
+}
+
+}  // namespace omnihil::mcu

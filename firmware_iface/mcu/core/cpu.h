@@ -1,0 +1,156 @@
+// One Cortex-M core without its exceptions: runs pre-decoded instructions until a deadline or until something
+// happens that the machine around it must act on.
+//
+//   Cpu cpu(kCortexM4F, memory, bus);
+//   cpu.reg.r[15] = entry;
+//   const Stop stop = cpu.run(now, deadline);   // both in 16ths of a cycle
+//
+// Instructions are whole: the core stops before the first one that would start at or after the deadline.
+// Memory beyond the Memory goes to the CpuBus, stamped with the time at which its instruction started. A
+// faulting instruction has changed no register and is what r[15] then names (stores of a list may have been
+// made). Approximate: cycles (a table, see op_codes.inc, times `cpi_scale`). Not there: FPSCR's cumulative
+// exception flags, flush-to-zero, alternative half precision.
+#pragma once
+#include <cstdint>
+
+#include "firmware_iface/mcu/core/decode.h"
+#include "firmware_iface/mcu/core/memory.h"
+#include "firmware_iface/mcu/core/registers.h"
+#include "firmware_iface/mcu/core/variant.h"
+
+namespace omnihil::mcu {
+
+enum class Stop : std::uint8_t { kDeadline, kWfi, kWfe, kSvc, kExceptionReturn, kBreakpoint, kFault };
+
+// Bits of the configurable fault status register (DDI 0403E.e B3.2.15).
+enum FaultStatus : std::uint32_t {
+  kInstructionAccess = 1u << 0,
+  kDataAccess = 1u << 1,
+  kInstructionBus = 1u << 8,
+  kPreciseBus = 1u << 9,
+  kUnstackingBus = 1u << 11,
+  kStackingBus = 1u << 12,
+  kBusAddressValid = 1u << 15,
+  kUndefinedInstruction = 1u << 16,
+  kInvalidState = 1u << 17,
+  kInvalidReturn = 1u << 18,
+  kNoCp = 1u << 19,
+  kUnaligned = 1u << 24,
+  kDivideByZero = 1u << 25,
+};
+
+struct Fault {
+  std::uint32_t status = 0;
+  std::uint32_t address = 0;
+};
+
+// What is not plain memory. `false`: a bus fault. Peripherals may ask the core to stop by Cpu::stop_soon().
+class CpuBus {
+ public:
+  virtual ~CpuBus() = default;
+  virtual bool read(std::uint32_t address, unsigned bytes, std::uint32_t& value) = 0;
+  virtual bool write(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
+  // A null pointer, or an address that is no multiple of its size: allowed, and worth telling.
+  virtual void note_null(std::uint32_t address, bool is_write) = 0;
+  virtual void note_unaligned(std::uint32_t address) = 0;
+};
+
+struct CpuStatistics {
+  std::uint64_t instructions = 0;
+  std::uint64_t skipped_subcycles = 0;  // of them spent in busy-waiting loops that were fast-forwarded
+};
+
+class Cpu {
+ public:
+  Cpu(const Variant& variant, Memory& memory, CpuBus& bus, double cpi_scale = 1.0);
+
+  Stop run(std::int64_t now, std::int64_t deadline);
+  std::int64_t now() const { return now_; }  // of the last access while running, of the stop afterwards
+
+  // From inside a bus access: end run() after this instruction.
+  void stop_soon() { stop_requested_ = true; }
+  // Something is pending: writes to PRIMASK, BASEPRI and the like end run().
+  void set_attention(bool on) { attention_ = on; }
+  // The memory or a peripheral read by the loop that is being watched would change from `at` on.
+  void limit_fast_forward(std::int64_t at) { watch_.limit = at < watch_.limit ? at : watch_.limit; }
+  bool watching() const { return watching_; }
+  void spoil_fast_forward() { changed_ = true; }
+
+  std::uint32_t access_pc() const;                    // of the instruction whose bus access is going on
+  void memory_changed();                              // regions were added: fetch their addresses anew
+  void resume_it(std::uint32_t pc, std::uint8_t it);  // code at pc is entered in the middle of an IT block
+  std::uint8_t it_at(std::uint32_t pc);               // ITSTATE of the instruction at pc
+  std::uint32_t special(std::uint32_t sysm) const;    // MRS
+  std::uint32_t xpsr() { return reg.apsr() | reg.ipsr | 0x01000000u | it_to_xpsr(it_at(reg.r[15])); }
+  // After a change of fp_enabled, fp_automatic or CONTROL.FPCA.
+  void fp_changed() { fp_ready_ = fp_enabled && ((reg.control & kFpContextActive) || !fp_automatic); }
+  const Variant& variant() const { return variant_; }
+  std::int64_t subcycles(int cycles) const { return cycles * scale_; }
+
+  Registers reg;
+  Fault fault;                         // after Stop::kFault
+  std::uint32_t exception_return = 0;  // after Stop::kExceptionReturn
+  std::uint32_t breakpoint = 0;        // after Stop::kBreakpoint
+  bool trap_unaligned = false, trap_divide_by_zero = false, fp_enabled = false;
+  bool fp_automatic = true;  // FPCCR.ASPEN: FP instructions make a context to be stacked
+  std::uint32_t fpdscr = 0;  // what FPSCR's modes are in a new context
+  bool fast_forward = true;
+  std::uint32_t lowest_sp[2] = {~0u, ~0u};  // of main and process stack
+  CpuStatistics statistics;
+
+ private:
+  struct Window {  // a region as the fast paths see it
+    std::uint32_t base = 0, size = 0;
+    std::uint8_t* data = nullptr;
+    MemoryBlock* block = nullptr;
+  };
+  struct Watch {
+    const Op* at = nullptr;
+    Registers registers;
+    std::int64_t left = 0;
+    std::uint64_t count = 0;
+    std::int64_t limit = 0;
+    int patience = 0, rest = 64, pause = 64;
+  };
+
+  Stop execute(std::int64_t now, std::int64_t deadline);
+  bool go_to(std::uint32_t pc);  // sets code_; false: a fault
+  void fill(std::uint32_t pc, std::uint8_t it);
+  Op make(std::uint32_t pc, std::uint8_t it) const;
+  std::uint16_t halfword(std::uint32_t pc) const;
+  bool holds(unsigned condition) const;
+  bool fp_begin();
+  void write_special(std::uint32_t sysm, unsigned mask, std::uint32_t value);
+  void change_masks(std::uint32_t imm);
+  void set_fpscr(std::uint32_t value);
+  void track_stack() {
+    const int which = reg.uses_psp() ? 1 : 0;
+    if (reg.r[13] < lowest_sp[which]) lowest_sp[which] = reg.r[13];
+  }
+  bool invalid_access(std::uint32_t address, unsigned bytes, bool must_align);
+  bool slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align);
+  bool slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align);
+  void watch_loop(const Op* at, std::int64_t& left, std::uint64_t& count, std::int64_t end);
+  template <class T>
+  bool load(std::uint32_t address, T& value) const;
+  template <class T>
+  bool store(std::uint32_t address, T value);
+
+  const Variant& variant_;
+  Memory& memory_;
+  CpuBus& bus_;
+  std::int64_t scale_;  // 16ths of a cycle for one cycle of the table
+  std::int64_t now_ = 0;
+  bool stop_requested_ = false, attention_ = false, fp_ready_ = false;
+  bool watching_ = false, changed_ = false;
+  Window ram_, flash_, ccm_;
+  MemoryRegion* code_ = nullptr;
+  const Op* access_op_ = nullptr;
+  Watch watch_;
+};
+
+// Parallel additions and subtractions; `ge` is set by the plain ones.
+std::uint32_t parallel_add(std::uint32_t x, std::uint32_t y, unsigned which, unsigned kind,
+                           std::uint32_t& ge);
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,213 @@
+// The loop that runs decoded instructions: one switch, its cases by group in execute_*.inc.
+//
+// Inside of the cases: R are the registers, `cur` the operation, `op` the slot to run next, `left` the
+// subcycles to the deadline. A case ends with NEXT, with a jump (BRANCH, INTERWORK) or by leaving (LEAVE,
+// FAULT).
+#include <cmath>
+
+#include "firmware_iface/mcu/core/cpu.h"
+#include "firmware_iface/mcu/core/fp.h"
+#include "firmware_iface/mcu/core/shifter.h"
+
+namespace omnihil::mcu {
+
+using std::bit_cast;
+using std::rotr;
+
+template <class T>
+inline bool Cpu::load(std::uint32_t address, T& value) const {
+  if (address & (sizeof(T) - 1)) [[unlikely]]
+    return false;
+  std::uint32_t at = address - ram_.base;
+  const std::uint8_t* data = ram_.data;
+  if (at >= ram_.size) {
+    at = address - flash_.base;
+    data = flash_.data;
+    if (at >= flash_.size) {
+      at = address - ccm_.base;
+      data = ccm_.data;
+      if (at >= ccm_.size) return false;
+    }
+  }
+  std::memcpy(&value, data + at, sizeof(T));
+  return true;
+}
+
+template <class T>
+inline bool Cpu::store(std::uint32_t address, T value) {
+  const std::uint32_t at = address - ram_.base;
+  if (at >= ram_.size || (address & (sizeof(T) - 1)) || at - ram_.block->code_begin < ram_.block->code_size)
+    return false;
+  if (watching_ && std::memcmp(ram_.data + at, &value, sizeof(T)) != 0) changed_ = true;
+  std::memcpy(ram_.data + at, &value, sizeof(T));
+  return true;
+}
+
+namespace {
+
+std::int32_t s32(std::uint32_t value) { return static_cast<std::int32_t>(value); }
+std::uint32_t u32(std::int64_t value) { return static_cast<std::uint32_t>(value); }
+std::int32_t low_half(std::uint32_t value) { return static_cast<std::int16_t>(value); }
+std::int32_t high_half(std::uint32_t value) { return static_cast<std::int16_t>(value >> 16); }
+std::int32_t half(std::uint32_t value, unsigned top) { return top ? high_half(value) : low_half(value); }
+std::int64_t product(std::uint32_t a, std::uint32_t b) { return std::int64_t{s32(a)} * s32(b); }
+std::uint64_t unsigned_product(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} * b; }
+std::uint64_t pair(std::uint32_t high, std::uint32_t low) { return std::uint64_t{high} << 32 | low; }
+std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << width) - 1; }
+
+}  // namespace
+
+#define NEXT break
+#define LEAVE(reason) \
+  do {                \
+    stop = reason;    \
+    goto leave;       \
+  } while (0)
+#define FAULT(bits)    \
+  do {                 \
+    fault = {bits, 0}; \
+    goto faulted;      \
+  } while (0)
+#define BRANCH(address) \
+  do {                  \
+    target = (address); \
+    goto branch;        \
+  } while (0)
+#define INTERWORK(address) \
+  do {                     \
+    target = (address);    \
+    goto interwork;        \
+  } while (0)
+#define PC_OF(slot) (code_->base + static_cast<std::uint32_t>((slot)-slots) * 2)
+// What a bus access may want to know, and what it may ask for.
+#define BUS(call)                      \
+  do {                                 \
+    now_ = end - (left + cur->cost);   \
+    access_op_ = cur;                  \
+    if (!(call)) goto faulted;         \
+    if (stop_requested_ && left > 0) { \
+      end -= left;                     \
+      left = 0;                        \
+    }                                  \
+  } while (0)
+#define LOAD_ALIGNED(type, value, address, must_align)         \
+  type value;                                                  \
+  do {                                                         \
+    if (!load<type>(address, value)) [[unlikely]] {            \
+      std::uint32_t word = 0;                                  \
+      BUS(slow_load(address, sizeof(type), word, must_align)); \
+      value = static_cast<type>(word);                         \
+    }                                                          \
+  } while (0)
+#define LOAD(type, value, address) LOAD_ALIGNED(type, value, address, false)
+#define STORE_ALIGNED(type, address, value, must_align)                             \
+  do {                                                                              \
+    if (!store<type>(address, static_cast<type>(value))) [[unlikely]] {             \
+      BUS(slow_store(address, sizeof(type), static_cast<type>(value), must_align)); \
+    }                                                                               \
+  } while (0)
+#define STORE(type, address, value) STORE_ALIGNED(type, address, value, false)
+#define REQUEST_CHECK()                \
+  do {                                 \
+    if (stop_requested_ && left > 0) { \
+      end -= left;                     \
+      left = 0;                        \
+    }                                  \
+  } while (0)
+#define RD R.r[cur->d]
+#define RN R.r[cur->n]
+#define RM R.r[cur->m]
+#define RA R.r[cur->a]
+#define FLAGS_NZ(x) (R.n = R.z = (x))
+
+Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
+  Registers& R = reg;
+  Stop stop = Stop::kDeadline;
+  std::int64_t end = deadline, left = deadline - now;
+  std::uint64_t count = 0;
+  std::uint32_t target = R.r[15];
+  const std::int64_t taken = scale_ * kTakenBranchCycles;
+  stop_requested_ = false;
+  now_ = now;
+  access_op_ = nullptr;
+  if (!go_to(target)) return Stop::kFault;
+  Op* slots = code_->ops.data();
+  const Op* op = slots + (target - code_->base) / 2;
+  const Op* cur = op;
+
+  while (left > 0) {
+    cur = op;
+    op += cur->halfwords;
+    left -= cur->cost;
+    ++count;
+    if (cur->condition != kAlways && !holds(cur->condition)) continue;
+    switch (cur->code) {
+      case kUndecoded:
+        fill(PC_OF(cur), 0);
+        op = cur;
+        --count;
+        continue;
+      case kOffEnd:  // memory may go on behind it
+        target = PC_OF(cur);
+        --count;
+        goto relocate;
+      case kUndefined:
+        FAULT(kUndefinedInstruction);
+      case kNoCoprocessor:
+        FAULT(kNoCp);
+      case kNop:
+        NEXT;
+#include "firmware_iface/mcu/core/execute_access.inc"
+#include "firmware_iface/mcu/core/execute_control.inc"
+#include "firmware_iface/mcu/core/execute_data.inc"
+#include "firmware_iface/mcu/core/execute_dsp.inc"
+#include "firmware_iface/mcu/core/execute_fp.inc"
+      case kCodes:
+        __builtin_unreachable();
+    }
+    continue;
+
+  interwork:
+    if (target >= 0xF0000000u && R.ipsr != 0) {
+      exception_return = target;
+      LEAVE(Stop::kExceptionReturn);
+    }
+    if (!(target & 1)) {
+      op = cur;
+      R.r[15] = target;
+      fault = {kInvalidState, 0};
+      stop = Stop::kFault;
+      goto finished;
+    }
+  branch:
+    target &= ~1u;
+    left -= taken;
+    if (target - code_->base < code_->size) [[likely]] {
+      op = slots + (target - code_->base) / 2;
+      if (op <= cur && fast_forward && --watch_.rest <= 0) watch_loop(cur, left, count, end);
+      continue;
+    }
+  relocate:
+    if (!go_to(target)) {
+      R.r[15] = target;
+      stop = Stop::kFault;
+      goto finished;
+    }
+    slots = code_->ops.data();
+    op = slots + (target - code_->base) / 2;
+    continue;
+
+  faulted:
+    op = cur;
+    stop = Stop::kFault;
+  leave:
+    break;
+  }
+  R.r[15] = PC_OF(op);
+finished:
+  statistics.instructions += count;
+  now_ = end - left;
+  return stop;
+}
+
+}  // namespace omnihil::mcu

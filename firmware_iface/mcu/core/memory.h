@@ -1,0 +1,62 @@
+// Memory the core reads, writes and runs from without asking anybody: flash, RAM, core-coupled RAM and their
+// aliases.
+//
+//   Memory memory;
+//   memory.add("flash", 0x08000000, 1 << 20, kFlash);
+//   memory.alias("flash", 0x00000000);
+//
+// Each region carries a slot for the decoded form of each of its halfwords, made when code first runs from
+// it. Everything that changes bytes goes through here (or through the core's fast path, which calls
+// invalidate()).
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware_iface/mcu/core/op.h"
+
+namespace omnihil::mcu {
+
+enum MemoryKind : std::uint8_t { kFlash, kRam, kDataRam };  // kDataRam: no code can run from it
+
+struct MemoryBlock {
+  std::string name;
+  MemoryKind kind = kRam;
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t code_begin = 0, code_size = 0;  // where decoded code lies, as offsets
+};
+
+struct MemoryRegion {
+  std::uint32_t base = 0, size = 0;
+  MemoryBlock* block = nullptr;
+  std::vector<Op> ops;  // empty until code runs from here; two more at the end that lead out
+
+  std::uint8_t* data() const { return block->bytes.data(); }
+  bool writable() const { return block->kind != kFlash; }
+  bool executable() const { return block->kind != kDataRam; }
+};
+
+class Memory {
+ public:
+  // Filled with 0xFF for flash, 0 otherwise. Sizes are multiples of 4.
+  void add(std::string name, std::uint32_t base, std::uint32_t size, MemoryKind kind);
+  void alias(const std::string& name, std::uint32_t base);
+  MemoryRegion* find(std::uint32_t address);
+  const std::vector<std::unique_ptr<MemoryRegion>>& regions() const { return regions_; }
+
+  // Host access, across regions byte by byte; false where no memory is.
+  bool read(std::uint32_t address, std::span<std::uint8_t> bytes);
+  bool write(std::uint32_t address, std::span<const std::uint8_t> bytes);
+  void clear_ram();
+  // The bytes [begin, begin + size) of the block have changed: what was decoded from them is forgotten.
+  void invalidate(MemoryBlock& block, std::uint32_t begin, std::uint32_t size);
+  void forget_code();
+
+ private:
+  std::vector<std::unique_ptr<MemoryBlock>> blocks_;
+  std::vector<std::unique_ptr<MemoryRegion>> regions_;
+};
+
+}  // namespace omnihil::mcu

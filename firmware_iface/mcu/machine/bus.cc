@@ -1,0 +1,189 @@
+// The machine's bus: what an address reaches that is not plain memory.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "firmware_iface/mcu/machine/machine.h"
+
+namespace omnihil::mcu {
+namespace {
+
+constexpr std::uint32_t kSystemControl = 0xE000E000, kDwt = 0xE0001000, kDebug = 0xE000EDF0;
+
+bool in(std::uint32_t address, std::uint32_t base, std::uint32_t size) { return address - base < size; }
+bool is_private(std::uint32_t address) { return in(address, 0xE0000000, 0x100000); }
+bool may_be_peripheral(std::uint32_t address) {
+  return in(address, 0x40000000, 0x20000000) || in(address, 0x1FFF0000, 0x10000) || is_private(address);
+}
+std::uint32_t part(std::uint32_t word, std::uint32_t address, unsigned bytes) {
+  word >>= 8 * (address & 3);
+  return bytes == 4 ? word : word & ((1u << (8 * bytes)) - 1);
+}
+
+}  // namespace
+
+const Machine::Slot* Machine::slot_at(std::uint32_t address) {
+  if (last_slot_ < slots_.size() && in(address, slots_[last_slot_].base, slots_[last_slot_].size)) {
+    return &slots_[last_slot_];
+  }
+  const auto after =
+      std::upper_bound(slots_.begin(), slots_.end(), address,
+                       [](std::uint32_t value, const Slot& slot) { return value < slot.base; });
+  if (after == slots_.begin()) return nullptr;
+  const auto slot = after - 1;
+  if (!in(address, slot->base, slot->size)) return nullptr;
+  last_slot_ = static_cast<std::size_t>(slot - slots_.begin());
+  return &*slot;
+}
+
+bool Machine::bit_band(std::uint32_t address, std::uint32_t& target, unsigned& bit) const {
+  if (config_.variant.arch == Arch::kV6M || (address & 0xDE000000u) != 0x02000000u || (address >> 29) > 2)
+    return false;
+  if ((address >> 29) == 0) return false;
+  const std::uint32_t offset = address & 0x01FFFFFF, byte = offset >> 5;
+  target = (address & 0xE0000000u) + (byte & ~3u);
+  bit = (offset >> 2 & 7) + 8 * (byte & 3);
+  return true;
+}
+
+bool Machine::read(std::uint32_t address, unsigned bytes, std::uint32_t& value) {
+  if (const Slot* slot = slot_at(address)) {
+    const std::uint32_t offset = address - slot->base;
+    if (cpu_.watching()) {
+      const Cycles until = slot->peripheral->stable_until(offset);
+      if (until > now()) {
+        if (until != kNever) cpu_.limit_fast_forward(static_cast<std::int64_t>(until) * kSubcycles);
+      } else {
+        cpu_.spoil_fast_forward();
+      }
+    }
+    value = slot->peripheral->read(offset, bytes);
+    return true;
+  }
+  std::uint32_t target = 0;
+  unsigned bit = 0;
+  if (bit_band(address, target, bit)) {
+    std::uint32_t word = 0;
+    std::uint8_t raw[4];
+    if (memory_.read(target, raw)) {
+      word = raw[bit / 8] >> (bit & 7);
+    } else {
+      if (!read(target, 4, word)) return false;
+      word >>= bit;
+    }
+    value = word & 1;
+    return true;
+  }
+  cpu_.spoil_fast_forward();
+  return read_unknown(address, bytes, value);
+}
+
+bool Machine::read_unknown(std::uint32_t address, unsigned bytes, std::uint32_t& value) {
+  if (is_private(address)) {
+    if (!cpu_.reg.privileged()) return false;
+    const std::uint32_t word_address = address & ~3u;
+    const bool system = in(address, kSystemControl, 0x1000) && !in(address, kDebug, 16);
+    value =
+        part(system ? read_system(word_address - kSystemControl) : read_debug(word_address), address, bytes);
+    return true;
+  }
+  if (!may_be_peripheral(address)) return false;
+  report_unmodelled("bus", fmt::format("0x{:08x} read", address & ~3u));
+  const auto stored = unknown_.find(address & ~3u);
+  value = stored == unknown_.end() ? 0 : part(stored->second, address, bytes);
+  return true;
+}
+
+bool Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value) {
+  if (const Slot* slot = slot_at(address)) {
+    slot->peripheral->write(address - slot->base, bytes, value);
+    return true;
+  }
+  std::uint32_t target = 0;
+  unsigned bit = 0;
+  if (bit_band(address, target, bit)) {
+    const std::uint32_t mask = 1u << bit, set = (value & 1) << bit;
+    std::uint8_t raw;
+    if (memory_.read(target + bit / 8, {&raw, 1})) {
+      raw = static_cast<std::uint8_t>((raw & ~(1u << (bit & 7))) | (value & 1) << (bit & 7));
+      return memory_.write(target + bit / 8, {&raw, 1});
+    }
+    std::uint32_t word = 0;
+    return read(target, 4, word) && write(target, 4, (word & ~mask) | set);
+  }
+  return write_unknown(address, bytes, value);
+}
+
+bool Machine::write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t value) {
+  if (memory_.find(address)) {  // flash; an alias at 0 was a null pointer's, and told so
+    if (flash_writes_ && address >= 4096) {
+      flash_writes_->flash_write(address, bytes, value);
+    } else if (address >= 4096) {
+      report_unmodelled("flash", fmt::format("store to 0x{:08x} without a flash controller", address));
+    }
+    return true;
+  }
+  if (is_private(address)) {
+    if (!cpu_.reg.privileged()) return false;
+    if (in(address, kSystemControl, 0x1000) && !in(address, kDebug, 16)) {
+      if (!write_system(address - kSystemControl, bytes, value)) {
+        report_unmodelled("system control", fmt::format("0x{:08x} written", address));
+      }
+    } else {
+      write_debug(address, value);
+    }
+    return true;
+  }
+  if (!may_be_peripheral(address)) return false;
+  report_unmodelled("bus", fmt::format("0x{:08x} written", address & ~3u));
+  std::uint32_t& word = unknown_[address & ~3u];
+  const unsigned shift = 8 * (address & 3);
+  const std::uint32_t mask = (bytes == 4 ? ~0u : (1u << (8 * bytes)) - 1) << shift;
+  word = (word & ~mask) | (value << shift & mask);
+  return true;
+}
+
+bool Machine::read_word(std::uint32_t address, std::uint32_t& value) {
+  std::uint8_t raw[4];
+  if (!memory_.read(address, raw)) return false;
+  std::memcpy(&value, raw, 4);
+  return true;
+}
+
+bool Machine::write_word(std::uint32_t address, std::uint32_t value) {
+  const MemoryRegion* region = memory_.find(address);
+  if (!region || !region->writable()) return false;
+  std::uint8_t raw[4];
+  std::memcpy(raw, &value, 4);
+  return memory_.write(address, raw);
+}
+
+std::uint32_t Machine::bus_read(std::uint32_t address, unsigned bytes) {
+  std::uint32_t value = 0;
+  std::uint8_t raw[4] = {};
+  if (memory_.read(address, {raw, bytes})) {
+    std::memcpy(&value, raw, 4);
+  } else if (is_private(address) || !read(address, bytes, value)) {
+    report_unmodelled("bus", fmt::format("0x{:08x} read by DMA: nothing is there", address));
+  }
+  return value;
+}
+
+void Machine::bus_write(std::uint32_t address, unsigned bytes, std::uint32_t value) {
+  const MemoryRegion* region = memory_.find(address);
+  if (region && region->writable()) {
+    std::uint8_t raw[4];
+    std::memcpy(raw, &value, 4);
+    cpu_.spoil_fast_forward();
+    memory_.write(address, {raw, bytes});
+  } else if (is_private(address) || region || !write(address, bytes, value)) {
+    report_unmodelled("bus", fmt::format("0x{:08x} written by DMA: nothing is there", address));
+  }
+}
+
+void Machine::program_flash(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  cpu_.spoil_fast_forward();
+  memory_.write(address, bytes);
+}
+
+}  // namespace omnihil::mcu

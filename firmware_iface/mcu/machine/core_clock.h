@@ -1,0 +1,39 @@
+// Cycles of the core clock and time since power-on, both ways, over changes of the clock's rate.
+//
+//   CoreClock clock(16'000'000);
+//   clock.change(cycles, 168'000'000);
+//   clock.to_ns(cycles + 168) == clock.to_ns(cycles) + 1000
+//
+// Within a stretch of one rate the conversion is exact (integers); where the rate changes the instant is kept
+// in femtoseconds, rounded down.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "firmware_iface/mcu/peripheral.h"
+
+namespace omnihil::mcu {
+
+class CoreClock {
+ public:
+  explicit CoreClock(std::uint64_t hz) { change(0, hz); }
+  // From cycle `at` on; not before the last change.
+  void change(Cycles at, std::uint64_t hz);
+  std::uint64_t hz() const { return stretches_.back().hz; }
+  std::int64_t to_ns(Cycles at) const;       // rounded down
+  Cycles from_ns(std::int64_t at_ns) const;  // the first cycle not before it
+
+ private:
+  __extension__ using Wide = unsigned __int128;
+  struct Stretch {
+    Cycles begin;
+    std::uint64_t hz;
+    Wide begin_fs;
+  };
+  Wide to_fs(const Stretch& stretch, Cycles at) const {
+    return stretch.begin_fs + Wide{at - stretch.begin} * 1'000'000'000'000'000u / stretch.hz;
+  }
+  std::vector<Stretch> stretches_;
+};
+
+}  // namespace omnihil::mcu

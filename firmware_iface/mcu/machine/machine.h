@@ -1,0 +1,185 @@
+// A microcontroller: core, memory, exceptions, and whatever peripherals are attached to its bus.
+//
+//   Machine machine({.variant = kCortexM4F, .flash_bytes = 1 << 20, .ram_bytes = 128 << 10, .reset_hz =
+//   16e6}); machine.attach(0x40003000, 0x400, watchdog); machine.load(image, problems); machine.power_on();
+//   machine.run_until_ns(1'000'000);
+//
+// The same image with the same inputs at the same instants gives the same bytes, however the time is cut into
+// calls of run_until and whether busy-waiting loops are fast-forwarded or executed. An exception is taken
+// between two instructions, at the first boundary at or after its cause; stacking takes the cycles of the
+// core's manual. Approximate: cycles of instructions, no contention on buses, no caches, no flash wait states
+// but `cpi_scale`. FP context is stacked at once (the lazy way shows in cycles alone). Not there: MPU, debug,
+// trace.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_iface/mcu/core/cpu.h"
+#include "firmware_iface/mcu/machine/core_clock.h"
+#include "firmware_iface/mcu/machine/elf_image.h"
+#include "firmware_iface/mcu/machine/nvic.h"
+#include "firmware_iface/mcu/machine/report.h"
+#include "firmware_iface/mcu/machine/systick.h"
+#include "firmware_iface/mcu/peripheral.h"
+
+namespace omnihil::mcu {
+
+struct ExtraMemory {
+  std::string name;
+  std::uint32_t base, bytes;
+  MemoryKind kind;
+};
+
+struct MachineConfig {
+  Variant variant = kCortexM4F;
+  std::uint32_t flash_base = 0x08000000, flash_bytes = 1 << 20;
+  std::uint32_t ram_base = 0x20000000, ram_bytes = 128 << 10;
+  std::vector<ExtraMemory> memories;  // core-coupled RAM, instruction RAM, system memory, further banks
+  std::vector<std::pair<std::string, std::uint32_t>>
+      aliases;  // of "flash", "ram" or one of those, at another base
+  bool flash_at_zero = true;
+  double reset_hz = 16e6;  // the clock the chip comes out of reset with
+  double cpi_scale = 1.0;  // cycles of the table are multiplied by this: fit it to one measured duration
+  bool fast_forward = true;
+};
+
+class Machine final : public System, private CpuBus {
+ public:
+  explicit Machine(const MachineConfig& config);
+
+  // `peripheral` answers for [base, base + size); it must outlive the machine. Attach before power_on().
+  void attach(std::uint32_t base, std::uint32_t size, Peripheral& peripheral);
+  void set_flash_writes(FlashWrites* controller) { flash_writes_ = controller; }
+  // BKPT asks here first; true: go on behind it. Without a hook, or refused, it is a fault as without a
+  // debugger.
+  void set_breakpoint_hook(std::function<bool(std::uint32_t)> hook) { breakpoint_hook_ = std::move(hook); }
+
+  // Copies the image into flash and RAM. False, with every problem named, if it does not fit; then nothing is
+  // copied.
+  bool load(const ElfImage& image, std::vector<std::string>& problems);
+  void power_on();  // RAM is cleared, time starts at 0
+  void reset(std::string_view cause);
+
+  // Runs to the first instruction boundary at or after `end`. Waiting inputs must be given to peripherals
+  // before.
+  void run_until(Cycles end);
+  void run_until_ns(std::int64_t end_ns);
+  // Until one of them holds: `end` is reached, or the program has stopped for good (lock-up).
+  bool stopped() const { return locked_up_; }
+
+  MachineReport report() const;
+  Cpu& cpu() { return cpu_; }
+  Memory& memory() { return memory_; }
+  const Nvic& nvic() const { return nvic_; }
+  const CoreClock& clock() const { return clock_; }
+  bool sleeping() const { return sleeping_ != Sleep::kNo; }
+
+  Cycles now() const override;
+  std::int64_t to_ns(Cycles at) const override { return clock_.to_ns(at); }
+  Cycles from_ns(std::int64_t at_ns) const override { return clock_.from_ns(at_ns); }
+  double core_hz() const override { return static_cast<double>(clock_.hz()); }
+  void set_core_hz(double hz) override;
+  void set_irq(int irq, bool high) override;
+  void reschedule() override;
+  void request_reset(std::string_view cause) override;
+  std::string_view reset_cause() const override { return reset_cause_; }
+  std::uint32_t bus_read(std::uint32_t address, unsigned bytes) override;
+  void bus_write(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
+  void program_flash(std::uint32_t address, std::span<const std::uint8_t> bytes) override;
+  void report_unmodelled(std::string_view peripheral, std::string_view what) override;
+  void set_nmi() { pend(kNmi); }
+
+ private:
+  enum class Sleep : std::uint8_t { kNo, kForInterrupt, kForEvent };
+  struct Slot {
+    std::uint32_t base, size;
+    Peripheral* peripheral;
+  };
+  struct Frame {  // of an exception being handled: for the load statistics
+    int exception;
+    Cycles entered;
+  };
+
+  // CpuBus
+  bool read(std::uint32_t address, unsigned bytes, std::uint32_t& value) override;
+  bool write(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
+  void note_null(std::uint32_t address, bool is_write) override;
+  void note_unaligned(std::uint32_t address) override;
+
+  const Slot* slot_at(std::uint32_t address);
+  bool read_unknown(std::uint32_t address, unsigned bytes, std::uint32_t& value);
+  bool write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t value);
+  bool bit_band(std::uint32_t address, std::uint32_t& target, unsigned& bit) const;
+  bool read_word(std::uint32_t address, std::uint32_t& value);  // stack frames, vectors
+  bool write_word(std::uint32_t address, std::uint32_t value);
+
+  // system_control.cc
+  std::uint32_t read_system(std::uint32_t offset);
+  bool write_system(std::uint32_t offset, unsigned bytes, std::uint32_t value);
+  std::uint32_t read_bits(std::uint32_t offset) const;
+  bool write_bits(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t handler_state() const;
+  void write_interrupt_control(std::uint32_t value);
+  void write_handler_control(std::uint32_t value);
+  std::uint32_t read_debug(std::uint32_t address);
+  void write_debug(std::uint32_t address, std::uint32_t value);
+  void apply_control();
+
+  // exceptions.cc
+  void pend(int e);
+  int execution_priority() const;
+  void take_exception();  // the most urgent one
+  void return_from(std::uint32_t exception_return);
+  void enter_handler(std::uint32_t exception_return);
+  bool push_frame();
+  bool pop_frame(std::uint32_t exception_return);
+  void raise(const Fault& fault);
+  void lock_up();
+  void account();
+
+  // machine.cc
+  void run_to(Cycles end, bool until_clock_changes);
+  void run_due_events();
+  Cycles next_event();
+  void handle(Stop stop);
+  bool wakes() const;
+  void sleep_until(Cycles end);
+  void do_reset();
+
+  const MachineConfig config_;
+  Memory memory_;
+  Cpu cpu_;
+  Nvic nvic_;
+  SysTick systick_;
+  CoreClock clock_;
+  std::vector<Slot> slots_;
+  std::size_t last_slot_ = 0;
+  std::map<std::uint32_t, std::uint32_t> unknown_;  // words written to where no model is
+  std::map<std::pair<std::string, std::string>, std::size_t> unmodelled_index_;
+  FlashWrites* flash_writes_ = nullptr;
+  std::function<bool(std::uint32_t)> breakpoint_hook_;
+
+  std::int64_t now_ = 0;      // in subcycles
+  Cycles event_at_ = kNever;  // the instant of the events that are being run
+  Cycles next_event_ = 0;
+  bool running_ = false, next_event_known_ = false, locked_up_ = false;
+  Sleep sleeping_ = Sleep::kNo;
+  std::string reset_cause_ = "power-on";
+  std::string reset_wanted_;
+  std::uint32_t initial_sp_ = 0;
+
+  std::uint32_t vtor_ = 0, ccr_ = 0x200, cfsr_ = 0, hfsr_ = 0, mmfar_ = 0, bfar_ = 0, scr_ = 0, shcsr_ = 0;
+  std::uint32_t cpacr_ = 0, fpccr_ = 0xC0000000u, fpcar_ = 0, demcr_ = 0, dwt_control_ = 0x40000000u;
+  Cycles cycle_count_base_ = 0;
+
+  MachineReport report_;
+  std::vector<Frame> frames_;
+  Cycles accounted_ = 0;
+};
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,342 @@
+// Registers of the core itself: NVIC, SCB, SysTick, FPU control, DWT's cycle counter (DDI 0403E.e B3).
+#include <fmt/format.h>
+
+#include "firmware_iface/mcu/machine/machine.h"
+
+namespace omnihil::mcu {
+namespace {
+
+enum Offset : std::uint32_t {
+  kTypeRegister = 0x004,
+  kAuxiliary = 0x008,
+  kSysTickFirst = 0x010,
+  kSysTickLast = 0x01C,
+  kSetEnable = 0x100,
+  kClearEnable = 0x180,
+  kSetPending = 0x200,
+  kClearPending = 0x280,
+  kActiveBits = 0x300,
+  kPriorities = 0x400,
+  kPrioritiesEnd = 0x4F0,
+  kCpuid = 0xD00,
+  kIcsr = 0xD04,
+  kVtor = 0xD08,
+  kAircr = 0xD0C,
+  kScr = 0xD10,
+  kCcr = 0xD14,
+  kSystemPriorities = 0xD18,
+  kShcsr = 0xD24,
+  kCfsr = 0xD28,
+  kHfsr = 0xD2C,
+  kDfsr = 0xD30,
+  kMmfar = 0xD34,
+  kBfar = 0xD38,
+  kAfsr = 0xD3C,
+  kIdFirst = 0xD40,
+  kIdLast = 0xD7C,
+  kClidr = 0xD78,
+  kCpacr = 0xD88,
+  kMpuType = 0xD90,
+  kStir = 0xF00,
+  kFpccr = 0xF34,
+  kFpcar = 0xF38,
+  kFpdscr = 0xF3C,
+  kMvfr0 = 0xF40,
+  kMvfr1 = 0xF44,
+  kMvfr2 = 0xF48,
+  kCacheFirst = 0xF50,
+  kCacheLast = 0xF78,
+};
+constexpr std::uint32_t kDwtControl = 0xE0001000, kDwtCycles = 0xE0001004, kDhcsr = 0xE000EDF0,
+                        kDemcr = 0xE000EDFC;
+constexpr std::uint32_t kAircrKey = 0x05FA;
+
+// SHCSR: the bit of each exception's state.
+struct HandlerBit {
+  int exception, active, pended, enabled;  // -1: has none
+};
+constexpr HandlerBit kHandlerBits[] = {{kMemManage, 0, 13, 16},  {kBusFault, 1, 14, 17},
+                                       {kUsageFault, 3, 12, 18}, {kSvCall, 7, 15, -1},
+                                       {kPendSv, 10, -1, -1},    {kSysTick, 11, -1, -1}};
+
+std::uint32_t feature(const Variant& variant, std::uint32_t offset) {
+  if (variant.fpu == Fpu::kNone) return 0;
+  const bool twice = variant.fpu == Fpu::kDouble;
+  if (offset == kMvfr0) return twice ? 0x10110221 : 0x10110021;
+  if (offset == kMvfr1) return twice ? 0x12000011 : 0x11000011;
+  return variant.fpv5 ? 0x40 : 0;
+}
+
+}  // namespace
+
+std::uint32_t Machine::handler_state() const {
+  std::uint32_t value = 0;
+  for (const HandlerBit& row : kHandlerBits) {
+    if (nvic_.active(row.exception)) value |= 1u << row.active;
+    if (row.pended >= 0 && nvic_.pending(row.exception)) value |= 1u << row.pended;
+    if (row.enabled >= 0 && nvic_.enabled(row.exception)) value |= 1u << row.enabled;
+  }
+  return value;
+}
+
+void Machine::write_handler_control(std::uint32_t value) {
+  for (const HandlerBit& row : kHandlerBits) {
+    if (row.enabled >= 0) nvic_.set_enabled(row.exception, value >> row.enabled & 1);
+    if (row.pended < 0) continue;
+    if (value >> row.pended & 1) {
+      pend(row.exception);
+    } else {
+      nvic_.clear_pending(row.exception);
+    }
+  }
+}
+
+// Banks of one bit per interrupt.
+std::uint32_t Machine::read_bits(std::uint32_t offset) const {
+  std::uint32_t value = 0;
+  const int first = kFirstIrq + static_cast<int>(offset & 0x7F) * 8;
+  for (int i = 0; i < 32 && first + i < Nvic::kExceptions; ++i) {
+    const bool set = offset >= kActiveBits   ? nvic_.active(first + i)
+                     : offset >= kSetPending ? nvic_.pending(first + i)
+                                             : nvic_.enabled(first + i);
+    value |= static_cast<std::uint32_t>(set) << i;
+  }
+  return value;
+}
+
+bool Machine::write_bits(std::uint32_t offset, std::uint32_t value) {
+  const int first = kFirstIrq + static_cast<int>(offset & 0x7F) * 8;
+  for (int i = 0; i < 32 && first + i < Nvic::kExceptions; ++i) {
+    if (!(value >> i & 1)) continue;
+    const int e = first + i;
+    if (offset < kClearEnable) {
+      nvic_.set_enabled(e, true);
+    } else if (offset < kSetPending) {
+      nvic_.set_enabled(e, false);
+    } else if (offset < kClearPending) {
+      pend(e);
+    } else {
+      nvic_.clear_pending(e);
+    }
+  }
+  cpu_.stop_soon();
+  return true;
+}
+
+std::uint32_t Machine::read_system(std::uint32_t offset) {
+  if (offset >= kSysTickFirst && offset <= kSysTickLast) return systick_.read(offset - kSysTickFirst, now());
+  if (offset >= kSetEnable && offset < kPriorities && (offset & 0x7F) < 0x20) return read_bits(offset);
+  if (offset >= kPriorities && offset < kPrioritiesEnd) {
+    std::uint32_t value = 0;
+    for (int i = 3; i >= 0; --i)
+      value = value << 8 | nvic_.priority(kFirstIrq + static_cast<int>(offset - kPriorities) + i);
+    return value;
+  }
+  if (offset >= kSystemPriorities && offset < kShcsr) {
+    std::uint32_t value = 0;
+    for (int i = 3; i >= 0; --i)
+      value = value << 8 | nvic_.priority(4 + static_cast<int>(offset - kSystemPriorities) + i);
+    return value;
+  }
+  switch (offset) {
+    case kTypeRegister:
+      return 7;  // 32 interrupts for each of these, and one more
+    case kAuxiliary:
+      return 0;
+    case kCpuid:
+      return config_.variant.cpuid;
+    case kIcsr: {
+      const int waiting = nvic_.best(Nvic::kLowest);
+      return cpu_.reg.ipsr | static_cast<std::uint32_t>(waiting) << 12 |
+             (nvic_.active_count() <= 1 ? 1u << 11 : 0) | (waiting >= kFirstIrq ? 1u << 22 : 0) |
+             (nvic_.pending(kSysTick) ? 1u << 26 : 0) | (nvic_.pending(kPendSv) ? 1u << 28 : 0) |
+             (nvic_.pending(kNmi) ? 1u << 31 : 0);
+    }
+    case kVtor:
+      return vtor_;
+    case kAircr:
+      return 0xFA050000u | nvic_.group() << 8;
+    case kScr:
+      return scr_;
+    case kCcr:
+      return ccr_;
+    case kShcsr:
+      return handler_state();
+    case kCfsr:
+      return cfsr_;
+    case kHfsr:
+      return hfsr_;
+    case kMmfar:
+      return mmfar_;
+    case kBfar:
+      return bfar_;
+    case kCpacr:
+      return cpacr_;
+    case kFpccr:
+      return fpccr_;
+    case kFpcar:
+      return fpcar_;
+    case kFpdscr:
+      return cpu_.fpdscr;
+    case kMvfr0:
+    case kMvfr1:
+    case kMvfr2:
+      return feature(config_.variant, offset);
+    case kDfsr:
+    case kAfsr:
+    case kMpuType:
+      return 0;
+    default:
+      break;
+  }
+  if (offset >= kIdFirst && offset <= kIdLast) return 0;
+  report_unmodelled("system control", fmt::format("0x{:08x} read", 0xE000E000u + offset));
+  return 0;
+}
+
+void Machine::write_interrupt_control(std::uint32_t value) {
+  if (value >> 31) pend(kNmi);
+  if (value >> 28 & 1) pend(kPendSv);
+  if (value >> 27 & 1) nvic_.clear_pending(kPendSv);
+  if (value >> 26 & 1) pend(kSysTick);
+  if (value >> 25 & 1) nvic_.clear_pending(kSysTick);
+}
+
+bool Machine::write_system(std::uint32_t offset, unsigned bytes, std::uint32_t value) {
+  if (offset >= kPriorities && offset < kPrioritiesEnd) {
+    for (unsigned i = 0; i < bytes; ++i) {
+      nvic_.set_priority(kFirstIrq + static_cast<int>(offset - kPriorities + i),
+                         static_cast<std::uint8_t>(value >> (8 * i)));
+    }
+    cpu_.stop_soon();
+    return true;
+  }
+  if (offset >= kSystemPriorities && offset < kShcsr) {
+    for (unsigned i = 0; i < bytes; ++i) {
+      nvic_.set_priority(4 + static_cast<int>(offset - kSystemPriorities + i),
+                         static_cast<std::uint8_t>(value >> (8 * i)));
+    }
+    cpu_.stop_soon();
+    return true;
+  }
+  if (offset >= kSysTickFirst && offset <= kSysTickLast) {
+    systick_.write(offset - kSysTickFirst, value, now());
+    reschedule();
+    return true;
+  }
+  if (offset >= kSetEnable && offset < kActiveBits && (offset & 0x7F) < 0x20)
+    return write_bits(offset, value);
+  const bool v7 = config_.variant.arch != Arch::kV6M;
+  switch (offset) {
+    case kIcsr:
+      write_interrupt_control(value);
+      return true;
+    case kVtor:
+      vtor_ = value & ~0x7Fu;
+      return true;
+    case kAircr:
+      if (value >> 16 != kAircrKey) return true;
+      if (v7) nvic_.set_group(value >> 8 & 7);
+      if (value & 4) request_reset("software");
+      cpu_.stop_soon();
+      return true;
+    case kScr:
+      scr_ = value & 0x16;
+      return true;
+    case kCcr:
+      if (v7) ccr_ = (value & 0x31B) | (ccr_ & ~0x31Bu) | (config_.variant.fpv5 ? value & 0x30000u : 0);
+      apply_control();
+      return true;
+    case kShcsr:
+      write_handler_control(value);
+      return true;
+    case kCfsr:  // write one to clear, by bytes too
+    case kCfsr + 1:
+    case kCfsr + 2:
+      cfsr_ &= ~(value << 8 * (offset - kCfsr));
+      return true;
+    case kHfsr:
+      hfsr_ &= ~value;
+      return true;
+    case kMmfar:
+      mmfar_ = value;
+      return true;
+    case kBfar:
+      bfar_ = value;
+      return true;
+    case kCpacr:
+      cpacr_ = config_.variant.fpu == Fpu::kNone ? 0 : value & 0x00F00000u;
+      apply_control();
+      return true;
+    case kFpccr:
+      fpccr_ = value & 0xC000003Fu;
+      apply_control();
+      return true;
+    case kFpcar:
+      fpcar_ = value & ~7u;
+      return true;
+    case kFpdscr:
+      cpu_.fpdscr = value & 0x07C00000u;
+      return true;
+    case kStir:
+      pend(kFirstIrq + static_cast<int>(value & 0xFF) % 240);
+      return true;
+    case kAuxiliary:
+    case kDfsr:
+      return true;
+    default:
+      break;
+  }
+  return offset >= kCacheFirst && offset <= kCacheLast &&
+         config_.variant.fpv5;  // there is no cache to maintain
+}
+
+// Control bits that the core itself looks at.
+void Machine::apply_control() {
+  const bool v7 = config_.variant.arch != Arch::kV6M;
+  cpu_.trap_unaligned = !v7 || (ccr_ >> 3 & 1);
+  cpu_.trap_divide_by_zero = v7 && (ccr_ >> 4 & 1);
+  const std::uint32_t access = cpacr_ >> 20 & 3;
+  cpu_.fp_enabled = access == 3 || (access == 1 && cpu_.reg.privileged());
+  cpu_.fp_automatic = fpccr_ >> 31;
+  cpu_.fp_changed();
+}
+
+std::uint32_t Machine::read_debug(std::uint32_t address) {
+  switch (address) {
+    case kDwtControl:
+      return dwt_control_;
+    case kDwtCycles:
+      if (!(dwt_control_ & 1)) return static_cast<std::uint32_t>(cycle_count_base_);
+      return static_cast<std::uint32_t>(now() - cycle_count_base_);
+    case kDemcr:
+      return demcr_;
+    case kDhcsr:
+      return 0;  // no debugger
+    default:
+      break;
+  }
+  report_unmodelled("debug", fmt::format("0x{:08x} read", address));
+  return 0;
+}
+
+void Machine::write_debug(std::uint32_t address, std::uint32_t value) {
+  switch (address) {
+    case kDwtControl: {
+      const std::uint32_t count = read_debug(kDwtCycles);
+      dwt_control_ = 0x40000000u | (value & 1);
+      cycle_count_base_ = dwt_control_ & 1 ? now() - count : count;
+      return;
+    }
+    case kDwtCycles:
+      cycle_count_base_ = dwt_control_ & 1 ? now() - value : value;
+      return;
+    case kDemcr:
+      demcr_ = value;
+      return;
+    default:
+      report_unmodelled("debug", fmt::format("0x{:08x} written", address));
+  }
+}
+
+}  // namespace omnihil::mcu
