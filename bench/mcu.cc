@@ -2,8 +2,8 @@
 //
 //   bench_mcu                prints the table; exit 0 when the target is met, 1 when it is missed
 //
-// CPU time of this thread over 60 M cycles of a Cortex-M4F, the best of five: four float PID controllers with limits,
-// and a CRC over bytes with a table in RAM. Needs the image that the cross compiler builds.
+// CPU time of this thread over 60 M cycles of a Cortex-M4F, the best of five: four float PID controllers with
+// limits, and a CRC over bytes with a table in RAM. Needs the image that the cross compiler builds.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -54,7 +54,8 @@ int main() {
     return 3;
   }
   const double control = omnihil::mips(image, 0), integer = omnihil::mips(image, 1);
-  std::printf("float control  %6.0f million instructions a second (at least %.0f)\n", control, omnihil::kTargetMips);
+  std::printf("float control  %6.0f million instructions a second (at least %.0f)\n", control,
+              omnihil::kTargetMips);
   std::printf("integer        %6.0f million instructions a second\n", integer);
   return control >= omnihil::kTargetMips ? 0 : 1;
 }

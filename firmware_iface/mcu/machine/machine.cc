@@ -257,6 +257,7 @@ void Machine::handle(Stop stop) {
       return;
     case Stop::kSvc:
       if (nvic_.group_priority(kSvCall) >= execution_priority()) {
+        hfsr_ |= 1u << 30;  // FORCED
         raise({0, 0});
       } else {
         pend(kSvCall);
