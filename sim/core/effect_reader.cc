@@ -9,6 +9,7 @@
 
 #include "sim/core/effect_registry.h"
 #include "sim/core/expression.h"
+#include "sim/core/linear_scale.h"
 
 namespace omnihil {
 namespace {
@@ -142,11 +143,11 @@ std::string param_key(const EffectParam& row, bool linear) {
 }
 
 ParamRange param_range(const EffectParam& row, bool linear) {
-  constexpr double kForceOverTorque = 1000.0;  // a convention: 10 N m allowed, so 10 kN
   const std::string key(row.name);
   const bool force = linear && param_key(row, true) != key && key.find("per_Nm") == std::string::npos &&
                      key.find("_Nm") != std::string::npos;
-  const double scale = force ? kForceOverTorque : 1.0;
+  const bool speed = linear && row.unit == "rad/s";
+  const double scale = force ? kForceOverTorque_per_m : (speed ? kTravelOverAngle_m_per_rad : 1.0);
   return {row.lower * scale, row.upper * scale, row.prior_scale * scale};
 }
 

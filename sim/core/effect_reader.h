@@ -32,7 +32,8 @@ std::string add_override(std::string_view text, const EffectContext& context, st
 // "amplitude_Nm" -> "amplitude_N" where the axis is linear; phases are kept.
 std::string param_key(const EffectParam& row, bool linear);
 
-// Bounds and prior scale; forces of a linear axis may be a thousand times what torques of a motor may be.
+// Bounds and prior scale; forces of a linear axis may be a thousand times what torques of a motor may be,
+// its speeds in m/s a thousandth of theirs in rad/s.
 struct ParamRange {
   double lower = 0.0;
   double upper = 0.0;

@@ -4,6 +4,8 @@
 #include <cassert>
 
 #include "sim/core/effect_registry.h"
+#include "sim/core/linear_scale.h"
+#include "sim/drive/drive_params.h"
 
 namespace omnihil {
 namespace {
@@ -18,7 +20,9 @@ bool absent(const EffectInfo& info, std::span<const T> values) {
 }
 
 double start_of(const EffectParam& row, const DriveParams<double>* drive) {
-  return row.start_for != nullptr && drive != nullptr ? row.start_for(*drive) : row.typical;
+  if (row.start_for != nullptr && drive != nullptr) return row.start_for(*drive);
+  const bool linear_speed = drive != nullptr && drive->linear && row.unit == "rad/s";
+  return linear_speed ? row.typical * kTravelOverAngle_m_per_rad : row.typical;
 }
 
 }  // namespace
