@@ -8,6 +8,7 @@
 
 #include "sim/drive/axis_signal.h"
 #include "sim/identify/axis_setup.h"
+#include "sim/identify/bus_voltage.h"
 
 namespace omnihil {
 namespace {
@@ -148,9 +149,15 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
   r.period_s = median_period(r.time_s);
   r.command = held(command, r.first_row);
   r.enable = held(run.signal("enable"), r.first_row);
-  r.bus_measured_V = as_measured(run.signal("bus_voltage"), r.first_row);
-  const Channel* bus = dataset.channel("bus_voltage");
-  r.bus_V = without_noise(held(run.signal("bus_voltage"), r.first_row), bus != nullptr ? bus->sigma : 0.0);
+  if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {
+    const std::vector<double> bus_V = plausible_bus_voltage(*measured);
+    for (std::size_t k = r.first_row; k < bus_V.size(); ++k) {
+      if (std::isfinite((*measured)[k]) && !std::isfinite(bus_V[k])) ++r.bus_left_out;
+    }
+    const Channel* bus = dataset.channel("bus_voltage");
+    r.bus_measured_V = as_measured(&bus_V, r.first_row);
+    r.bus_V = without_noise(held(&bus_V, r.first_row), bus != nullptr ? bus->sigma : 0.0);
+  }
   r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
   r.velocity = as_measured(run.signal("velocity"), r.first_row);
   r.position = as_measured(run.signal("position"), r.first_row);

@@ -22,6 +22,7 @@ struct AxisRecord {
   std::vector<double> enable, bus_V, load_torque_Nm;  // empty: not measured; bus_V: less its stated noise
   // measured, NaN where missing; empty: not measured
   std::vector<double> velocity, position, counts, current, temperature, bus_measured_V;
+  std::size_t bus_left_out = 0;  // readings that no supply gives (bus_voltage.h)
   double counts_per_output_rad = 0.0;
   double gear_ratio = 1.0;  // nominal
 

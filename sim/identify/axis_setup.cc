@@ -172,7 +172,12 @@ class ForwardSetup {
     if (!r_.bus_measured_V.empty() && electric && r_.bus_V.size() > 2) {
       std::vector<double> bus = r_.bus_measured_V;
       bus.front() = kMissing;
-      add("bus_voltage", "V", AxisOutput::kBusVoltage, std::move(bus), channel("bus_voltage").sigma);
+      ComparedSignal& c =
+          add("bus_voltage", "V", AxisOutput::kBusVoltage, std::move(bus), channel("bus_voltage").sigma);
+      if (r_.bus_left_out > 0 && !c.left_out.empty()) c.left_out += ", ";
+      if (r_.bus_left_out > 0) {
+        c.left_out += fmt::format("{} readings of bus_voltage that no supply gives", r_.bus_left_out);
+      }
     }
   }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sim/core/random.h"
+#include "sim/identify/bus_voltage.h"
 
 namespace omnihil {
 namespace {
@@ -222,11 +223,12 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   r.duty_quantum = rounding_of(r.duty_ratio);
   read_encoders(dataset, run, nominal.drive.gear_ratio, r);
   r.dribbler_rad_s = held(run.signal("dribbler"), r.size(), 0.0);
-  if (const std::vector<double>* bus = run.signal("bus_voltage"); bus != nullptr) {
+  if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {
+    const std::vector<double> bus_V = plausible_bus_voltage(*measured);
     const Channel* channel = dataset.channel("bus_voltage");
     r.bus_sigma_V = channel != nullptr ? channel->sigma : 0.0;
     r.bus_voltage_V =
-        without_noise(held(bus, r.size(), first_of(*bus, nominal.drive.supply_voltage_V)), r.bus_sigma_V);
+        without_noise(held(&bus_V, r.size(), first_of(bus_V, nominal.drive.supply_voltage_V)), r.bus_sigma_V);
   }
   if (const std::vector<double>* gyro = run.signal("gyro_z"); gyro != nullptr) {
     const std::vector<double> rate = held(gyro, r.size(), first_of(*gyro, 0.0));

@@ -184,6 +184,14 @@ TEST_F(SpoiltData, ASupplyThatTheModelDoesNotName) {
   expect("wrong_supply", "the model's supply.voltage_V says 15", Grade::kDoubt);
 }
 
+TEST_F(SpoiltData, ABusVoltageThatNoSupplyGives) {
+  omnihil::Run& run = bench.dataset.runs[0];
+  std::vector<double> bus(run.time_s.size(), 15.9);
+  for (std::size_t k = bus.size() - 300; k < bus.size(); ++k) bus[k] = 33.0;
+  run.signals["bus_voltage"] = bus;
+  expect("glitch", "bus_voltage reads up to 33 V in 300 rows", Grade::kDoubt);
+}
+
 TEST_F(SpoiltData, ALoadThatTheTorqueContainsAlready) {
   omnihil::Run& run = bench.dataset.runs[0];
   std::vector<double> load(run.time_s.size(), 0.0), torque(run.time_s.size(), 0.01);
