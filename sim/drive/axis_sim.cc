@@ -71,8 +71,9 @@ class AxisRun {
     AxisSample<T> s;
     s.time_s = input_.time_s[k];
     SensorPort<T> port = sense(k, dt, seen);
-    s.position_rad = port.encoder_angle_rad / p.gear_ratio;
-    s.velocity_rad_s = port.measured_speed_rad_s / p.gear_ratio;
+    // A sensor of angle or speed sits at the output, whichever shaft the encoder counts.
+    s.position_rad = port.encoder_angle_rad / p.gear_ratio + seen.lead_rad;
+    s.velocity_rad_s = port.measured_speed_rad_s / p.gear_ratio + seen.lead_rad_s;
     // counts = angle of the encoder's shaft * counts per turn / 2 pi
     s.encoder_counts = port.encoder_angle_rad * port.encoder_turns_per_rotor_turn *
                        (input_.encoder_counts_per_turn / (2.0 * std::numbers::pi));
@@ -153,12 +154,18 @@ class AxisRun {
 
   // What the encoder's shaft does, at the rotor.
   MotionPoint<T> now() const {
-    if (!input_.encoder_on_output || !state_.has_output) {
-      return {state_.now_s, state_.theta_rotor_rad + travel_ahead_rad_, state_.omega_rotor_rad_s, charge_C_};
-    }
+    MotionPoint<T> point{state_.now_s, state_.theta_rotor_rad + travel_ahead_rad_, state_.omega_rotor_rad_s,
+                         charge_C_};
+    if (!state_.has_output) return point;
     const T& gear = sim_.params().gear_ratio;
-    return {state_.now_s, state_.theta_output_rad * gear + travel_ahead_rad_,
-            state_.omega_output_rad_s * gear, charge_C_};
+    if (input_.encoder_on_output) {
+      point.theta_rad = state_.theta_output_rad * gear + travel_ahead_rad_;
+      point.omega_rad_s = state_.omega_output_rad_s * gear;
+    } else {
+      point.lead_rad = state_.theta_output_rad - state_.theta_rotor_rad / gear;
+      point.lead_rad_s = state_.omega_output_rad_s - state_.omega_rotor_rad_s / gear;
+    }
+    return point;
   }
   void remember() {
     if (looks_back_) record_.push(now());

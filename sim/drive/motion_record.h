@@ -19,6 +19,9 @@ struct MotionPoint {
   T theta_rad = T(0);
   T omega_rad_s = T(0);
   T charge_C = T(0);  // integral of the current
+  // The output's angle and speed less what the rotor's would be through a rigid gear.
+  T lead_rad = T(0);
+  T lead_rad_s = T(0);
 };
 
 template <typename T>
@@ -57,6 +60,8 @@ class MotionRecord {
                   s * r * r * h * a.omega_rad_s - s * s * r * h * b.omega_rad_s;
     p.omega_rad_s = a.omega_rad_s + (b.omega_rad_s - a.omega_rad_s) * s;
     p.charge_C = a.charge_C + (b.charge_C - a.charge_C) * s;
+    p.lead_rad = a.lead_rad + (b.lead_rad - a.lead_rad) * s;
+    p.lead_rad_s = a.lead_rad_s + (b.lead_rad_s - a.lead_rad_s) * s;
     return p;
   }
 

@@ -1,11 +1,39 @@
-// Backlash: play between rotor and output, in which no torque passes.
+// Backlash: play between rotor and output, in which no torque passes; beyond it flanks that give a little.
+#include <cmath>
+#include <numbers>
+
 #include "sim/core/effect_entry.h"
+#include "sim/drive/drive_params.h"
 
 namespace omnihil {
 namespace {
 
+constexpr double kContactMode_Hz = 150.0;  // both masses against each other: estimate, of shafts 20 to 200 Hz
+constexpr double kContactLoss = 0.5;       // of critical damping: guess, a factor of 3 either way
+
+// Both masses in parallel, at the output.
+double reduced_inertia_kg_m2(const DriveParams<double>& drive) {
+  const double rotor = drive.rotor_inertia_kg_m2 * drive.gear_ratio * drive.gear_ratio;
+  const double sum = rotor + drive.load_inertia_kg_m2;
+  return sum > 0.0 ? rotor * drive.load_inertia_kg_m2 / sum : 0.0;
+}
+
 struct Backlash {
-  enum Param { kGap };
+  enum Param { kGap, kCompliance, kDamping };
+  static constexpr double kCompliance_rad_per_Nm = 0.03;  // kContactMode_Hz with 1.2e-4 and 4.6e-5 kg m2
+  static constexpr double kDamping_Nm_s_per_rad = 0.03;   // kContactLoss with the above
+
+  // c = 1 / (J (2 pi f)^2)
+  static double compliance_of(const DriveParams<double>& drive) {
+    const double inertia = reduced_inertia_kg_m2(drive), rate = 2.0 * std::numbers::pi * kContactMode_Hz;
+    return inertia > 0.0 ? 1.0 / (inertia * rate * rate) : kCompliance_rad_per_Nm;
+  }
+  // d = 2 zeta J (2 pi f)
+  static double damping_of(const DriveParams<double>& drive) {
+    const double inertia = reduced_inertia_kg_m2(drive), rate = 2.0 * std::numbers::pi * kContactMode_Hz;
+    return inertia > 0.0 ? 2.0 * kContactLoss * inertia * rate : kDamping_Nm_s_per_rad;
+  }
+
   static constexpr EffectParam kParams[] = {
       {.name = "gap_rad",
        .unit = "rad",
@@ -15,13 +43,37 @@ struct Backlash {
        .prior_scale = 0.01,
        .what = "whole play at the output, from contact to contact",
        .how = "hold the rotor, move the output by hand against a dial; or two encoders at small reversals"},
+      {.name = "contact_compliance_rad_per_Nm",
+       .unit = "rad/(N m)",
+       .role = ParamRole::kShape,
+       .neutral = kNoNeutral,
+       .typical = kCompliance_rad_per_Nm,
+       .lower = 0,
+       .upper = 100,
+       .what = "twist of flanks and shaft per torque, in contact, at the output",
+       .how = "hold the rotor, load the output with a known torque beyond the play, read the twist",
+       .start_for = compliance_of},
+      {.name = "contact_damping_Nm_s_per_rad",
+       .unit = "N m s/rad",
+       .role = ParamRole::kShape,
+       .neutral = kNoNeutral,
+       .typical = kDamping_Nm_s_per_rad,
+       .lower = 0,
+       .upper = 100,
+       .what = "torque per rate of twist, in contact, at the output: how little it bounces",
+       .how = "decay of the bounces after a reversal",
+       .start_for = damping_of},
   };
   static constexpr EffectInfo kInfo{
       .id = "backlash",
       .title = "Backlash",
-      .equation = "tau_shaft = 0 while |theta_rotor / N - theta_out| <= gap / 2; beyond, in contact",
+      .equation =
+          "tau_shaft = 0 while |x| <= gap / 2, x = theta_rotor / N - theta_out; beyond, in contact, "
+          "(|x| - gap / 2) sgn(x) / c + d x', never pulling",
       .source = "Nordin, Gutman, Automatica 38(10), 2002 (dead zone model)",
-      .cannot = "friction of the flanks within the play, oil film, a gap that differs around the turn",
+      .cannot =
+          "friction of the flanks within the play, oil film, a gap that differs around the turn, flanks that "
+          "stiffen with force",
       .place = Place::kShaft,
       .twins = {"shaft_compliance", "actuator_delay"},
       .reveals =
@@ -37,8 +89,11 @@ struct Backlash {
 
   template <typename T>
   static void apply(const T* p, T*, ShaftPort<T>& port) {
-    // plays in a row add up
+    // plays in a row add up, compliances too
     port.gap_rad += p[kGap];
+    if (is_exactly(p[kGap], 0.0)) return;
+    port.compliance_rad_per_Nm += p[kCompliance];
+    port.damping_Nm_s_per_rad += p[kDamping];
   }
 };
 

@@ -92,7 +92,9 @@ class ForwardSetup {
                      .left_out = {}};
     c.quantum = estimate.quantum;
     c.noise_is_stated = stated_sigma > 0.0;
-    c.noise_sigma = c.noise_is_stated ? stated_sigma : estimate.sigma;
+    // What is stated is the sensor's own; its reading is rounded on top: q^2 / 12 (Widrow 1956).
+    c.noise_sigma =
+        c.noise_is_stated ? std::hypot(stated_sigma, c.quantum / std::sqrt(12.0)) : estimate.sigma;
     c.whitened_sigma = c.noise_sigma;
     std::size_t after_gap = 0;
     for (std::size_t k = 1; k < r_.size(); ++k) {

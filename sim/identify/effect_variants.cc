@@ -86,8 +86,9 @@ std::vector<double> order_grid(const EffectParam& row, double start, const Candi
 std::vector<double> shape_grid(const EffectParam& row, double start, const Candidate& candidate,
                                const DataScale& scale) {
   if (is_order(row)) return order_grid(row, start, candidate, scale);
-  if (is_phase(row) || row.start_for != nullptr || row.unit == "1") return {start};
   std::vector<double> grid;
+  if (row.unit == "rad/(N m)") return {start, 0.15 * start};
+  if (is_phase(row) || row.start_for != nullptr || row.unit == "1") return {start};
   if (row.unit == "rad/s" && scale.top_speed_rad_s > 0.0) {
     for (const double share : {0.01, 0.04, 0.15}) grid.push_back(share * scale.top_speed_rad_s);
   } else if (row.unit == "A" && scale.top_current_A > 0.0) {

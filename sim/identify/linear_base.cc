@@ -129,20 +129,30 @@ ProjectedColumns LinearBase::project(Eigen::MatrixXd weighted_columns) const {
   return out;
 }
 
-LinearGain LinearBase::gain(const ProjectedColumns& p, const std::vector<bool>& two_sided) const {
-  // D'r - D'J A^-1 g: the columns are D - J A^-1 J'D, so D'r = columns'r + coupling'J'r
+// D'r - D'J A^-1 g: the columns are D - J A^-1 J'D, so D'r = columns'r + coupling'J'r
+Eigen::VectorXd LinearBase::correlation(const ProjectedColumns& p) const {
   Eigen::VectorXd b = p.columns.transpose() * residual_;
-  if (p.coupling.rows() > 0) {
-    b += p.coupling.transpose() * (jacobian_.transpose() * residual_ - gradient_);
-  }
-  const auto [gain, a] = bounded_gain(p.gram, b, two_sided);
-  LinearGain out{.gain = gain, .coefficients = {a.data(), a.data() + a.size()}, .base_shift = {}};
-  out.base_shift = p.coupling.rows() > 0 ? Eigen::VectorXd(normal_.solve(gradient_) - p.coupling * a)
-                                         : Eigen::VectorXd::Zero(0);
-  for (Eigen::Index c = 0; c < out.base_shift.size(); ++c) {
-    out.base_shift[c] *= unknowns_[static_cast<std::size_t>(c)].scale;
-  }
-  return out;
+  if (p.coupling.rows() > 0) b += p.coupling.transpose() * (jacobian_.transpose() * residual_ - gradient_);
+  return b;
+}
+
+Eigen::VectorXd LinearBase::base_shift(const ProjectedColumns& p, const Eigen::VectorXd& a) const {
+  if (p.coupling.rows() == 0) return Eigen::VectorXd::Zero(0);
+  Eigen::VectorXd shift = normal_.solve(gradient_) - p.coupling * a;
+  for (Eigen::Index c = 0; c < shift.size(); ++c) shift[c] *= unknowns_[static_cast<std::size_t>(c)].scale;
+  return shift;
+}
+
+LinearGain LinearBase::gain(const ProjectedColumns& p, const std::vector<bool>& two_sided) const {
+  const auto [gain, a] = bounded_gain(p.gram, correlation(p), two_sided);
+  return {.gain = gain, .coefficients = {a.data(), a.data() + a.size()}, .base_shift = base_shift(p, a)};
+}
+
+LinearGain LinearBase::gain_as_tried(const ProjectedColumns& p) const {
+  const Eigen::VectorXd a = Eigen::VectorXd::Ones(p.gram.cols());
+  // |r|^2 - |r - D a|^2 = 2 a'b - a'G a
+  const double gain = 2.0 * a.dot(correlation(p)) - a.dot(p.gram * a);
+  return {.gain = gain, .coefficients = {a.data(), a.data() + a.size()}, .base_shift = base_shift(p, a)};
 }
 
 double LinearBase::gain_in_noise(const ProjectedColumns& p, const std::vector<bool>& two_sided,

@@ -50,11 +50,16 @@ class LinearBase {
 
   ProjectedColumns project(Eigen::MatrixXd weighted_columns) const;
   LinearGain gain(const ProjectedColumns& columns, const std::vector<bool>& two_sided) const;
+  // The same with every column as it is: of a law whose signal does not grow in proportion to its strength.
+  LinearGain gain_as_tried(const ProjectedColumns& columns) const;
   // What chance would have gained: `noise` weighted, in place of the residual.
   double gain_in_noise(const ProjectedColumns& columns, const std::vector<bool>& two_sided,
                        const Eigen::VectorXd& noise) const;
 
  private:
+  Eigen::VectorXd correlation(const ProjectedColumns& columns) const;
+  Eigen::VectorXd base_shift(const ProjectedColumns& columns, const Eigen::VectorXd& coefficients) const;
+
   bool usable_ = false;
   std::vector<Unknown> unknowns_;
   Eigen::VectorXd weights_;

@@ -57,6 +57,13 @@ bool needs_short_steps(const Candidate& c) {
   });
 }
 
+// Flanks that meet and part: exact derivatives multiply up from one impact to the next.
+bool has_play(const Candidate& c) {
+  return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
+    return use.entry->info->id == "backlash" && !is_neutral(use);
+  });
+}
+
 // A delay whose derivative a limit behind it hides (predictor_axis.h).
 bool is_hidden_delay(const Candidate& c, const Unknown& u) {
   if (u.path != "actuator_delay.delay_s") return false;
@@ -121,9 +128,15 @@ class AxisPredictor : public Predictor {
         p.values.push_back(std::move(values));
       }
     }
+    const bool play = has_play(own);
     for (std::size_t u = 0; u < unknowns.size() && rows > 0; ++u) {
-      if (is_hidden_delay(own, unknowns[u]) && !is_known(run(n), unknowns[u].path))
-        difference(own, unknowns, u, n, p);
+      if (is_known(run(n), unknowns[u].path)) continue;
+      if (is_hidden_delay(own, unknowns[u])) {
+        constexpr double kStep_s = 2e-3;  // two of the longest sub-steps
+        difference(own, unknowns, u, n, kStep_s, p);
+      } else if (play || explodes(s, unknowns[u], static_cast<Eigen::Index>(u), p)) {
+        difference(own, unknowns, u, n, kSecant * unknowns[u].scale, p);
+      }
     }
     complete(s, p);
     return p;
@@ -136,15 +149,34 @@ class AxisPredictor : public Predictor {
   }
 
  private:
-  void difference(const Candidate& own, std::span<const Unknown> unknowns, std::size_t u, int n,
+  static constexpr double kSecant = 0.05;  // of the step that matters
+
+  // Does a step of the size that matters move a signal, to first order, by several times the signal itself?
+  // Then the derivative is that of one impact or one slip after the other (play, sticking), multiplied up,
+  // while the motion itself stays bounded: it says nothing of a step of any size.
+  static bool explodes(const AxisSetup& s, const Unknown& unknown, Eigen::Index u, const Prediction& p) {
+    constexpr double kMost = 3.0;
+    for (std::size_t c = 0; c < p.derivatives.size(); ++c) {
+      double moved = 0.0, signal = 0.0;
+      for (Eigen::Index k = 0; k < p.derivatives[c].rows(); ++k) {
+        const double value = s.compared[c].measured[static_cast<std::size_t>(k)];
+        if (!std::isfinite(value)) continue;
+        moved += p.derivatives[c](k, u) * p.derivatives[c](k, u);
+        signal += value * value;
+      }
+      if (!(moved * unknown.scale * unknown.scale <= kMost * kMost * signal)) return true;
+    }
+    return false;
+  }
+
+  // The derivative as a secant, `step` to both sides.
+  void difference(const Candidate& own, std::span<const Unknown> unknowns, std::size_t u, int n, double step,
                   Prediction& p) const {
-    constexpr double kStep_s = 2e-3;  // two of the longest sub-steps
-    const auto& values = own.effects[static_cast<std::size_t>(unknowns[u].effect)].values;
-    const double at = values[static_cast<std::size_t>(unknowns[u].row)];
-    const double down = std::max(unknowns[u].lower, at - kStep_s),
-                 up = std::min(unknowns[u].upper, at + kStep_s);
-    const auto run_at = [&](double delay_s) {
-      const Candidate moved = with_values(own, unknowns.subspan(u, 1), std::span(&delay_s, 1));
+    const double at = value_at(own, unknowns[u].path).value_or(unknowns[u].start);
+    const double down = std::max(unknowns[u].lower, at - step), up = std::min(unknowns[u].upper, at + step);
+    if (!(up > down)) return;
+    const auto run_at = [&](double value) {
+      const Candidate moved = with_values(own, unknowns.subspan(u, 1), std::span(&value, 1));
       return axis_outputs<double>(setup(n), drive_of(moved), EffectSet<double>(moved.effects), step_for(own));
     };
     const auto a = run_at(up), b = run_at(down);
@@ -328,8 +360,7 @@ class AxisPredictor : public Predictor {
     return p;
   }
 
-  // A sensor that rounds rounds its noise as well; the rounding's own sigma^2 = q^2 / 12 is part of the
-  // stated one.
+  // A sensor that rounds rounds its noise as well; noise_sigma holds the rounding's own sigma^2 = q^2 / 12.
   static double read(double value, const ComparedSignal& signal, double normal) {
     const double q = signal.quantum;
     const double rest = signal.noise_sigma * signal.noise_sigma - q * q / 12.0;

@@ -89,6 +89,53 @@ Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& vari
   return best;
 }
 
+// A law that acts from some strength on, a limit that the data reach: sizes one by one, each as it is. A line
+// through one of them would lead back to where nothing is reached.
+class SizeSearch {
+ public:
+  explicit SizeSearch(const ScreeningTask& task) : task_(task) {}
+
+  Scored run(const std::vector<EffectVariant>& variants) {
+    constexpr int kLargest = 3, kSmallest = -7, kHalvings = 5;
+    for (const EffectVariant& v : variants) {
+      double acts = 0.0, idle = 0.0;  // factors of its typical size
+      for (int k = kLargest; k >= kSmallest && idle == 0.0; --k) {
+        (attempt(v, std::exp2(k)) ? acts : idle) = std::exp2(k);
+      }
+      if (acts == 0.0 || idle == 0.0) continue;
+      for (int n = 0; n < kHalvings; ++n) {
+        const double middle = std::sqrt(acts * idle);
+        (attempt(v, middle) ? acts : idle) = middle;
+      }
+      for (const double beyond : {1.08, 1.2, 1.4, 1.7}) attempt(v, acts * beyond);
+    }
+    for (const double refining : {std::exp2(0.25), std::exp2(-0.25)}) {
+      if (best_.finite) attempt(EffectVariant(best_.variant), refining);
+    }
+    return std::move(best_);
+  }
+
+ private:
+  // Does it change anything at this multiple of its size?
+  bool attempt(const EffectVariant& variant, double factor) {
+    EffectVariant sized = variant;
+    VariantColumn& column = sized.columns.front();
+    const EffectParam& row = variant.shape.entry->info->params[static_cast<std::size_t>(column.row)];
+    const ParamRange range = param_range(row, task_.model->file.linear);
+    column.size *= factor;
+    if (column.size <= 0.0 || row.neutral + column.size > range.upper) return true;
+    Scored s = score(task_, std::move(sized));
+    if (!s.finite) return true;
+    s.fit = task_.base->gain_as_tried(s.columns);
+    const bool acts = s.columns.gram(0, 0) > 1e-6 * task_.base->energy();
+    if (!best_.finite || s.fit.gain > best_.fit.gain) best_ = std::move(s);
+    return acts;
+  }
+
+  const ScreeningTask& task_;
+  Scored best_;
+};
+
 double share_in(const RegimeMask& regime, const ProjectedColumns& p, const std::vector<bool>& two_sided,
                 const Eigen::VectorXd& residual, const std::vector<Eigen::VectorXd>& noise) {
   const Eigen::MatrixXd inside = regime.inside.asDiagonal() * p.columns;
@@ -152,7 +199,8 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
 
 Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
   std::vector<EffectVariant> variants = variants_of(*entry, *task.model, task.scale);
-  Scored best = best_of(task, variants);
+  const bool steps_in = (entry->info->claims & kFlatAtNeutral) != 0 && variants.front().columns.size() == 1;
+  Scored best = steps_in ? SizeSearch(task).run(variants) : best_of(task, variants);
   // At its typical size, whatever the data ask for.
   const Scored typical = score(task, variants.front());
   if (entry->info->id == "cogging" && best.finite) {

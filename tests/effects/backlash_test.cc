@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tests/effects/bench.h"
 
@@ -20,10 +21,35 @@ TEST(Backlash, LeavesTheOutputAloneWithinThePlay) {
   EXPECT_EQ(out.velocity_rad_s, 0.0);
 }
 
+// The encoder may count the rotor; a sensor of angle or speed tells what the output does.
+TEST(Backlash, IsSeenByASensorOfSpeedAtTheOutput) {
+  DriveParams<double> p = small_drive();
+  p.viscous_friction_Nm_s_per_rad = 0.0;
+  AxisInput in = held(CommandKind::kMotorTorque, 0.0, 0.004, 10000.0);
+  in.command[0] = 0.001;
+  in.encoder_counts_per_turn = 4096.0;
+  const auto out = run_axis(p, with({use_of("backlash", {0.1})}), in).back();
+  const double turned_rad = out.encoder_counts * 2.0 * std::numbers::pi / 4096.0;
+  EXPECT_NEAR(turned_rad, out.theta_rotor_rad, 1e-12);
+  EXPECT_GT(turned_rad, 1e-5);
+  EXPECT_EQ(out.velocity_rad_s, 0.0);
+  EXPECT_EQ(out.position_rad, 0.0);
+}
+
+// In contact it is a spring with a damper: twist beyond the play = torque times compliance.
+TEST(Backlash, GivesInContactAsItsFlanksDo) {
+  DriveParams<double> p = small_drive();
+  AxisInput in = held(CommandKind::kMotorTorque, 0.01, 2.0);
+  in.load_torque_Nm.assign(in.time_s.size(), -0.01);
+  in.encoder_counts_per_turn = 2.0 * std::numbers::pi;
+  const auto out = run_axis(p, with({use_of("backlash", {0.02, 0.5, 0.01})}), in).back();
+  EXPECT_NEAR(out.encoder_counts - out.position_rad, 0.01 + 0.5 * 0.01, 1e-4);
+}
+
 TEST(Backlash, IsRigidInTheLimitOfNoGap) {
   const AxisInput in = excite(Excitation::kSteps, 0.8, 1.0);
   const auto rigid = run_axis(small_drive(), nothing(), in);
-  const auto tight = run_axis(small_drive(), with({use_of("backlash", {1e-9})}), in);
+  const auto tight = run_axis(small_drive(), with({use_of("backlash", {1e-9, 0.0, 0.0})}), in);
   for (std::size_t n = 0; n < tight.size(); ++n) {
     EXPECT_NEAR(tight[n].omega_rotor_rad_s, rigid[n].omega_rotor_rad_s, 0.5);
   }
@@ -37,7 +63,7 @@ TEST(Backlash, KeepsTheMomentumOfBothMassesAndTheTwistWithinThePlay) {
   AxisInput in = excite(Excitation::kPrbs, 0.01, 2.0);
   in.kind = CommandKind::kMotorTorque;
   in.encoder_on_output = true;
-  const auto out = run_axis(p, with({use_of("backlash", {0.01})}), in);
+  const auto out = run_axis(p, with({use_of("backlash", {0.01, 0.0, 0.0})}), in);
   double impulse = 0.0, most = 0.0;
   for (std::size_t n = 1; n < out.size(); ++n) {
     impulse += in.command[n - 1] * 1e-3;
@@ -57,7 +83,7 @@ TEST(Backlash, NeverAddsEnergy) {
   AxisInput in = held(CommandKind::kMotorTorque, 0.0, 2.0);
   in.command[0] = 0.05;
   in.encoder_on_output = true;
-  const auto out = run_axis(p, with({use_of("backlash", {0.01})}), in);
+  const auto out = run_axis(p, with({use_of("backlash", {0.01, 0.0, 0.0})}), in);
   const auto energy = [&](const AxisSample<double>& s) {
     return 0.5 * p.rotor_inertia_kg_m2 * s.omega_rotor_rad_s * s.omega_rotor_rad_s +
            0.5 * p.load_inertia_kg_m2 * s.velocity_rad_s * s.velocity_rad_s;

@@ -127,7 +127,7 @@ static double free_torque(const Axis *a, const double *y, double *motor_Nm) {
   t -= p->viscous_Nms * (1 + p->viscous_direction * sign(y[WR])) * y[WR];
   if (p->drag_Nm != 0) t -= p->drag_Nm * sign(y[WR]) * pow(fabs(y[WR]) / 300, p->drag_power);
   if (p->hub_Nm != 0) t -= p->hub_Nm * (0.5 * a->hub[0] + 0.3 * a->hub[1] + 0.2 * a->hub[2]);
-  return two_masses(p) ? t - shaft_torque(p, y) / p->gear : t + output_torque(a, y[TR]) / p->gear;
+  return two_masses(p) ? t - shaft_torque(p, y) / p->gear : t + output_torque(a, y[TR] / p->gear) / p->gear;
 }
 
 static double dry_level(const Axis *a, const double *y, double dir, double motor_Nm) {

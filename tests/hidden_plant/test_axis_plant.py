@@ -37,6 +37,13 @@ class AxisPlantTest(unittest.TestCase):
         _, sums = speeds(dict(BARE, viscous_Nms=1e-5, shaft_Nm_per_rad=20, gear=3, load_kgm2=2e-4), wave)
         self.assertAlmostEqual(sums["in_J"], sums["lost_J"] + sums["stored_J"], delta=1e-5 * sums["in_J"])
 
+    def test_a_pendulum_hangs_at_the_angle_of_the_output(self):
+        # push = m g l sin(angle of the output), whatever the gear; friction lets it settle
+        for gear in (1, 3):
+            params = dict(BARE, viscous_Nms=2e-3, gear=gear, load_kgm2=1e-4, push_Nm=0.01, pendulum_Nm=0.02)
+            columns, _ = speeds(params, [0.0] * 20000)
+            self.assertAlmostEqual(columns["out_angle"][-1], math.asin(0.5), delta=1e-3)
+
     def test_steady_speed_is_voltage_less_friction(self):
         # k i = b w + c and u = R i + k w give w = (k u / R - c) / (k^2 / R + b).
         b, c, u, k, r = 2e-5, 3e-3, 10.0, BARE["flux_Vs"], BARE["resistance_ohm"]

@@ -41,6 +41,23 @@ bool same_set(const Diagnosis& d, const std::string& a, const std::string& b) {
                      });
 }
 
+// Its impacts multiply up every exact derivative; the fit has to get through.
+TEST(SlowDiagnoseTest, NamesPlay) {
+  const Bench bench = simulated_bench(steps_with({"backlash.gap_rad=0.01"}));
+  DiagnoseOptions options;
+  options.jobs = 1;
+  options.max_effects = 1;
+  const Diagnosis d = diagnose(bench.dataset, bench.nominal, options);
+  EXPECT_EQ(d.effects, std::vector<std::string>{"backlash"}) << reasons(d);
+}
+
+// The duty reaches 0.6, the limit stands at 0.585: no smaller cut changes anything.
+TEST(SlowDiagnoseTest, NamesALimitThatIsHardlyReached) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({"duty_limit.cut=0.415"})));
+  ASSERT_EQ(d.effects, std::vector<std::string>{"duty_limit"}) << reasons(d);
+  EXPECT_NEAR(value_at(d.final_fit.model, "duty_limit.cut").value_or(0.0), 0.415, 0.002);
+}
+
 TEST(SlowDiagnoseTest, NamesNothingWhereNothingIsMissing) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({})));
   EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
