@@ -156,7 +156,9 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
     }
     const Channel* bus = dataset.channel("bus_voltage");
     r.bus_measured_V = as_measured(&bus_V, r.first_row);
-    r.bus_V = without_noise(held(&bus_V, r.first_row), bus != nullptr ? bus->sigma : 0.0);
+    const std::vector<double> given_V = held(&bus_V, r.first_row);
+    const double stated_V = bus != nullptr ? bus->sigma : 0.0;
+    r.bus_V = without_noise(given_V, stated_V > 0.0 ? stated_V : estimate_noise(given_V).sigma);
   }
   r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
   r.velocity = as_measured(run.signal("velocity"), r.first_row);
