@@ -1,0 +1,157 @@
+#include "firmware_iface/mcu/stm32/adc.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace omnihil::mcu {
+
+Adc::Adc(std::string name, std::span<const RegisterInfo> registers, const AdcTriggers& triggers,
+         ChipContext& context)
+    : RegisterBlock(std::move(name), context.system, registers), context_(context) {
+  const auto lines = [&context](const std::vector<std::string>& names, std::vector<int>& out) {
+    for (const std::string& n : names) out.push_back(n.empty() ? -1 : context.triggers.source(n));
+  };
+  lines(triggers.regular, regular_lines_);
+  lines(triggers.injected, injected_lines_);
+}
+
+void Adc::reset() {
+  RegisterBlock::reset();
+  active_ = Group::kNone;
+  suspended_ = false;
+  regular_place_ = place_ = 0;
+  phase_end_ = kNever;
+  listen();
+}
+
+void Adc::set_source(unsigned channel, AnalogSource source) {
+  sources_[channel % sources_.size()] = std::move(source);
+}
+
+void Adc::start(Group group) {
+  if (length(group) == 0) return;
+  if (group == Group::kRegular) {
+    if (busy(Group::kRegular)) return;
+    if (active_ == Group::kInjected) {
+      suspended_ = true;
+      return;
+    }
+    place_ = one_per_trigger() ? regular_place_ : 0;
+  } else {
+    if (active_ == Group::kInjected) return;
+    if (active_ == Group::kRegular) {
+      suspended_ = true;
+      regular_place_ = place_;
+    }
+    place_ = 0;
+  }
+  active_ = group;
+  begin();
+}
+
+void Adc::stop(Group group) {
+  if (group == Group::kRegular) {
+    suspended_ = false;
+    regular_place_ = 0;
+  }
+  if (active_ != group) return;
+  active_ = Group::kNone;
+  phase_end_ = kNever;
+  if (suspended_) {
+    suspended_ = false;
+    active_ = Group::kRegular;
+    place_ = regular_place_;
+    begin();
+  }
+}
+
+// Starts sampling the channel at place_.
+void Adc::begin() {
+  const double clocks = sample_clocks(channel(active_, place_));
+  sampling_ = true;
+  phase_end_ = now() + std::max<Cycles>(
+                           1, static_cast<Cycles>(std::llround(clocks * system().core_hz() / clock_hz())));
+}
+
+void Adc::run_events() {
+  if (phase_end_ > now()) return;
+  if (!sampling_) return finish();
+  const unsigned input = channel(active_, place_);
+  double volts = 0.0;
+  if (sources_[input]) {
+    volts = sources_[input](system().to_ns(phase_end_));
+  } else {
+    system().report_unmodelled(name(), fmt::format("input {} converted; nothing is connected to it", input));
+  }
+  const double full = static_cast<double>(1u << bits());
+  const double code = std::floor(volts / reference_V * full + 0.5);
+  code_ = code > 0.0 ? static_cast<std::uint32_t>(std::min(code, full - 1.0)) : 0u;
+  if (left_aligned()) code_ <<= bits() == 6 ? 2 : 16 - bits();
+  sampling_ = false;
+  phase_end_ += std::max<Cycles>(
+      1, static_cast<Cycles>(std::llround(convert_clocks() * system().core_hz() / clock_hz())));
+}
+
+void Adc::finish() {
+  const Group group = active_;
+  const unsigned place = place_;
+  const bool last = place + 1 >= length(group);
+  active_ = Group::kNone;
+  phase_end_ = kNever;
+  // What comes next is settled before the result is told: telling it may start or stop conversions.
+  if (group == Group::kInjected) {
+    if (!last) {
+      active_ = group;
+      ++place_;
+    } else if (suspended_) {
+      suspended_ = false;
+      active_ = Group::kRegular;
+      place_ = regular_place_;
+    }
+  } else if (one_per_trigger()) {
+    regular_place_ = last ? 0 : place + 1;
+  } else if (!last || continues()) {
+    active_ = group;
+    place_ = last ? 0 : place + 1;
+  }
+  if (active_ != Group::kNone) begin();
+  result(group, place, code_, last);
+  if (group == Group::kRegular && last && injected_follow()) start(Group::kInjected);
+}
+
+void Adc::triggered(int source, bool rising) {
+  for (const Group group : {Group::kInjected, Group::kRegular}) {
+    const auto& lines = group == Group::kRegular ? regular_lines_ : injected_lines_;
+    const auto [number, edges] = trigger(group);
+    if (number < 0 || static_cast<std::size_t>(number) >= lines.size()) continue;
+    if (lines[static_cast<std::size_t>(number)] != source || (edges & (rising ? 1u : 2u)) == 0) continue;
+    if (armed(group)) start(group);
+  }
+  system().reschedule();
+}
+
+// Listens to the triggers that the registers select, and to no others.
+void Adc::listen() {
+  std::vector<int> wanted;
+  for (const Group group : {Group::kRegular, Group::kInjected}) {
+    const auto& lines = group == Group::kRegular ? regular_lines_ : injected_lines_;
+    const auto [number, edges] = trigger(group);
+    if (number < 0 || edges == 0 || !armed(group)) continue;
+    if (static_cast<std::size_t>(number) >= lines.size() || lines[static_cast<std::size_t>(number)] < 0) {
+      system().report_unmodelled(name(), fmt::format("trigger {} is not modelled", number));
+      continue;
+    }
+    wanted.push_back(lines[static_cast<std::size_t>(number)]);
+  }
+  for (const auto* lines : {&regular_lines_, &injected_lines_}) {
+    for (const int line : *lines) {
+      if (line >= 0) {
+        context_.triggers.listen(line, *this, std::find(wanted.begin(), wanted.end(), line) != wanted.end());
+      }
+    }
+  }
+}
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,82 @@
+// Analogue to digital converters: the sequence and its timing here, the registers of a family in adc_v1,
+// adc_v2, adc_f0.
+//
+//   adc.set_source(5, [](std::int64_t at_ns) { return 1.65; });   // volts at input 5, as a function of time
+//
+// Law: a conversion samples for the time of its channel, then takes 12 (v1) or 12.5 clocks; the value is that
+// of the instant at which sampling ends: code = volts * 2^n / Vref, rounded, clipped at both ends. Injected
+// conversions interrupt regular ones, which then start anew. Inputs without a source read 0 V, and are
+// reported once. Cannot represent: dual and triple modes, analogue watchdogs, offsets, oversampling,
+// differential inputs, source impedance, noise (a source may bring its own).
+#pragma once
+#include <array>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware_iface/mcu/stm32/chip_context.h"
+#include "firmware_iface/mcu/stm32/register_block.h"
+
+namespace omnihil::mcu {
+
+using AnalogSource = std::function<double(std::int64_t at_ns)>;
+
+struct AdcTriggers {  // names by the number in EXTSEL, JEXTSEL; "" where there is none
+  std::vector<std::string> regular, injected;
+};
+
+class Adc : public RegisterBlock, public TriggerSink {
+ public:
+  Adc(std::string name, std::span<const RegisterInfo> registers, const AdcTriggers& triggers,
+      ChipContext& context);
+  void reset() override;
+  Cycles next_event() const override { return phase_end_; }
+  void run_events() override;
+  void triggered(int source, bool rising) override;
+
+  void set_source(unsigned channel, AnalogSource source);
+  double reference_V = 3.3;
+
+ protected:
+  enum class Group : std::uint8_t { kNone, kRegular, kInjected };
+  // What a family's registers say.
+  virtual unsigned length(Group group) const = 0;
+  virtual unsigned channel(Group group, unsigned place) const = 0;
+  virtual double sample_clocks(unsigned channel) const = 0;
+  virtual double convert_clocks() const = 0;
+  virtual double clock_hz() const = 0;
+  virtual unsigned bits() const = 0;
+  virtual bool left_aligned() const = 0;
+  // One result, the last of its sequence or not.
+  virtual void result(Group group, unsigned place, std::uint32_t code, bool last) = 0;
+  virtual bool continues() const = 0;        // regular sequences: at once again
+  virtual bool one_per_trigger() const = 0;  // regular: discontinuous, one conversion per start
+  virtual bool injected_follow() const = 0;  // JAUTO
+  // Which trigger starts a group (number in its table, or -1), and on which edges: 1 rising, 2 falling, 3
+  // both.
+  virtual std::pair<int, unsigned> trigger(Group group) const = 0;
+  virtual bool armed(Group group) const = 0;  // waits for its trigger
+
+  void start(Group group);
+  void stop(Group group);
+  bool busy(Group group) const { return active_ == group || (group == Group::kRegular && suspended_); }
+  void listen();
+  ChipContext& context() const { return context_; }
+
+ private:
+  void begin();
+  void finish();
+
+  ChipContext& context_;
+  std::array<AnalogSource, 32> sources_;
+  std::vector<int> regular_lines_, injected_lines_;
+  Group active_ = Group::kNone;
+  bool suspended_ = false;  // a regular sequence waits for injected ones
+  bool sampling_ = false;
+  unsigned place_ = 0, regular_place_ = 0;
+  std::uint32_t code_ = 0;
+  Cycles phase_end_ = kNever;
+};
+
+}  // namespace omnihil::mcu

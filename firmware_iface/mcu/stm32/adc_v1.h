@@ -1,0 +1,53 @@
+// ADC registers of F4 and F7 (RM0090 §13), and the block common to the three of them.
+//
+//   AdcV1Common common(context);
+//   AdcV1 adc(1, irq_line_number, common, triggers, context);
+#pragma once
+#include "firmware_iface/mcu/stm32/adc.h"
+
+namespace omnihil::mcu {
+
+class AdcV1Common final : public RegisterBlock {
+ public:
+  explicit AdcV1Common(ChipContext& context);
+  double clock_hz() const;
+  void set_status(unsigned adc, std::uint32_t status);  // from 0
+
+ protected:
+  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
+
+ private:
+  ChipContext& context_;
+};
+
+class AdcV1 final : public Adc {
+ public:
+  AdcV1(int number, int irq, AdcV1Common& common, const AdcTriggers& triggers, ChipContext& context);
+  void reset() override;
+
+ protected:
+  std::uint32_t load(std::uint32_t offset) override;
+  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
+  unsigned length(Group group) const override;
+  unsigned channel(Group group, unsigned place) const override;
+  double sample_clocks(unsigned channel) const override;
+  double convert_clocks() const override { return bits(); }
+  double clock_hz() const override { return common_.clock_hz(); }
+  unsigned bits() const override;
+  bool left_aligned() const override;
+  void result(Group group, unsigned place, std::uint32_t code, bool last) override;
+  bool continues() const override;
+  bool one_per_trigger() const override;
+  bool injected_follow() const override;
+  std::pair<int, unsigned> trigger(Group group) const override;
+  bool armed(Group group) const override;
+
+ private:
+  void update();
+  AdcV1Common& common_;
+  unsigned number_;
+  IrqLine irq_;
+  int dma_;
+};
+
+}  // namespace omnihil::mcu

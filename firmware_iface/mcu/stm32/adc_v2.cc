@@ -1,0 +1,238 @@
+#include "firmware_iface/mcu/stm32/adc_v2.h"
+
+#include <bit>
+#include <utility>
+
+namespace omnihil::mcu {
+namespace {
+enum : std::uint16_t {
+  kIsr = 0x00,
+  kIer = 0x04,
+  kCr = 0x08,
+  kCfgr = 0x0C,
+  kCfgr2 = 0x10,
+  kSmpr1 = 0x14,
+  kSmpr2 = 0x18,
+  kChselr = 0x28,
+  kSqr1 = 0x30,
+  kDr = 0x40,
+  kJsqr = 0x4C,
+  kJdr1 = 0x80
+};
+constexpr std::uint32_t kAdrdy = 1, kEosmp = 2, kEoc = 4, kEos = 8, kOvr = 16, kJeoc = 32, kJeos = 64;
+constexpr std::uint32_t kAden = 1, kAddis = 2, kAdstart = 4, kJadstart = 8, kAdstp = 16, kJadstp = 32,
+                        kAdcal = 1u << 31;
+
+constexpr RegisterInfo kV2[] = {{kIsr, "ISR", 0, 0},
+                                {kIer, "IER", 0, 0x7FF, 0x780},
+                                {kCr, "CR", 0x20000000, 0x70000000},
+                                {kCfgr, "CFGR", 0, 0xFFFFFFFF, 0x01C04000},
+                                {kCfgr2, "CFGR2", 0, 0xFFFFFFFF, 0x000001FF},
+                                {kSmpr1, "SMPR1"},
+                                {kSmpr2, "SMPR2"},
+                                {0x20, "TR1", 0x0FFF0000},
+                                {0x24, "TR2", 0x00FF0000},
+                                {0x28, "TR3", 0x00FF0000},
+                                {kSqr1, "SQR1"},
+                                {0x34, "SQR2"},
+                                {0x38, "SQR3"},
+                                {0x3C, "SQR4"},
+                                {kDr, "DR", 0, 0},
+                                {kJsqr, "JSQR"},
+                                {0x60, "OFR1", 0, 0xFFFFFFFF, 0x80000000},
+                                {0x64, "OFR2", 0, 0xFFFFFFFF, 0x80000000},
+                                {0x68, "OFR3", 0, 0xFFFFFFFF, 0x80000000},
+                                {0x6C, "OFR4", 0, 0xFFFFFFFF, 0x80000000},
+                                {kJdr1, "JDR1", 0, 0},
+                                {0x84, "JDR2", 0, 0},
+                                {0x88, "JDR3", 0, 0},
+                                {0x8C, "JDR4", 0, 0},
+                                {0xA0, "AWD2CR", 0, 0x7FFFF, 0x7FFFF},
+                                {0xA4, "AWD3CR", 0, 0x7FFFF, 0x7FFFF},
+                                {0xB0, "DIFSEL", 0, 0x7FFFE, 0x7FFFE},
+                                {0xB4, "CALFACT", 0x00400040, 0x007F007F},
+                                {0xC0, "GCOMP", 0, 0x3FFF, 0x3FFF}};
+constexpr RegisterInfo kF0[] = {{kIsr, "ISR", 0, 0},
+                                {kIer, "IER", 0, 0x9F, 0x80},
+                                {kCr, "CR", 0, 0},
+                                {kCfgr, "CFGR1", 0, 0x7CC1FDFF, 0x00C0C000},
+                                {kCfgr2, "CFGR2", 0, 0xC0000000},
+                                {kSmpr1, "SMPR", 0, 7},
+                                {0x20, "TR", 0x0FFF0000},
+                                {kChselr, "CHSELR", 0, 0x7FFFF},
+                                {kDr, "DR", 0, 0}};
+constexpr RegisterInfo kCommon[] = {
+    {0x00, "CSR", 0, 0}, {0x08, "CCR", 0, 0x01FFEF1F, 0x0000EF1F}, {0x0C, "CDR", 0, 0}};
+}  // namespace
+
+AdcV2::AdcV2(const std::string& name, AdcFamily family, int irq, const AdcTriggers& triggers,
+             ChipContext& context)
+    : Adc(name,
+          family == AdcFamily::kF0 ? std::span<const RegisterInfo>(kF0) : std::span<const RegisterInfo>(kV2),
+          triggers, context),
+      family_(family),
+      irq_(context.irqs, irq),
+      dma_(context.dma.line(name)) {}
+
+void AdcV2::reset() {
+  Adc::reset();
+  update();
+}
+
+unsigned AdcV2::length(Group group) const {
+  if (family_ == AdcFamily::kF0)
+    return group == Group::kRegular ? static_cast<unsigned>(std::popcount(value(kChselr))) : 0;
+  return group == Group::kInjected ? field(value(kJsqr), 0, 2) + 1 : field(value(kSqr1), 0, 4) + 1;
+}
+
+unsigned AdcV2::channel(Group group, unsigned place) const {
+  if (family_ == AdcFamily::kF0) {  // the selected ones, upwards or (SCANDIR) downwards
+    const unsigned n = bit(value(kCfgr), 2) ? length(group) - 1 - place : place;
+    std::uint32_t left = value(kChselr);
+    for (unsigned i = 0; i < n; ++i) left &= left - 1;
+    return static_cast<unsigned>(std::countr_zero(left | 1u << 31)) % 32;
+  }
+  if (group == Group::kInjected)
+    return field(value(kJsqr), (family_ == AdcFamily::kG4 ? 9 : 8) + 6 * place, 5);
+  return field(value(kSqr1 + 4 * ((place + 1) / 5)), 6 * ((place + 1) % 5), 5);
+}
+
+double AdcV2::sample_clocks(unsigned channel) const {
+  constexpr double kF0Clocks[] = {1.5, 7.5, 13.5, 28.5, 41.5, 55.5, 71.5, 239.5};
+  constexpr double kF3Clocks[] = {1.5, 2.5, 4.5, 7.5, 19.5, 61.5, 181.5, 601.5};
+  constexpr double kG4Clocks[] = {2.5, 6.5, 12.5, 24.5, 47.5, 92.5, 247.5, 640.5};
+  if (family_ == AdcFamily::kF0) return kF0Clocks[value(kSmpr1) & 7u];
+  const unsigned code =
+      channel < 10 ? field(value(kSmpr1), 3 * channel, 3) : field(value(kSmpr2), 3 * (channel % 10), 3);
+  return family_ == AdcFamily::kF3 ? kF3Clocks[code] : kG4Clocks[code];
+}
+
+double AdcV2::clock_hz() const {
+  const ClockTree& clocks = context().clocks;
+  if (family_ == AdcFamily::kF0) {
+    const unsigned mode = field(value(kCfgr2), 30, 2);
+    return mode == 0 ? 14e6 : clocks.bus_hz(Bus::kApb1) / (mode == 1 ? 2 : 4);  // 0: its own HSI14
+  }
+  const unsigned mode = field(ccr_, 16, 2);
+  constexpr double kAsync[] = {1, 2, 4, 6, 8, 10, 12, 16, 32, 64, 128, 256, 256, 256, 256, 256};
+  if (mode == 0)
+    return clocks.state().sysclk_hz / (family_ == AdcFamily::kG4 ? kAsync[field(ccr_, 18, 4)] : 1.0);
+  return clocks.state().hclk_hz / (mode == 1 ? 1 : mode == 2 ? 2 : 4);
+}
+
+bool AdcV2::left_aligned() const { return bit(value(kCfgr), family_ == AdcFamily::kG4 ? 15 : 5); }
+
+std::pair<int, unsigned> AdcV2::trigger(Group group) const {
+  const std::uint32_t cfgr = value(kCfgr), jsqr = value(kJsqr);
+  switch (family_) {
+    case AdcFamily::kF0:
+      if (group == Group::kInjected) return {-1, 0};
+      return {static_cast<int>(field(cfgr, 6, 3)), field(cfgr, 10, 2)};
+    case AdcFamily::kF3:
+      if (group == Group::kInjected) return {static_cast<int>(field(jsqr, 2, 4)), field(jsqr, 6, 2)};
+      return {static_cast<int>(field(cfgr, 6, 4)), field(cfgr, 10, 2)};
+    case AdcFamily::kG4:
+      break;
+  }
+  if (group == Group::kInjected) return {static_cast<int>(field(jsqr, 2, 5)), field(jsqr, 7, 2)};
+  return {static_cast<int>(field(cfgr, 5, 5)), field(cfgr, 10, 2)};
+}
+
+bool AdcV2::armed(Group group) const {
+  return (value(kCr) & (group == Group::kRegular ? kAdstart : kJadstart)) != 0;
+}
+
+void AdcV2::result(Group group, unsigned place, std::uint32_t code, bool last) {
+  std::uint32_t& isr = value(kIsr);
+  if (group == Group::kInjected) {
+    value(kJdr1 + 4 * place) = code;
+    isr |= kJeoc | (last ? kJeos : 0u);
+    if (last && trigger(group).second == 0 && !injected_follow()) value(kCr) &= ~kJadstart;
+    return update();
+  }
+  const bool dma = bit(value(kCfgr), 0);
+  const bool overrun = (isr & kEoc) != 0;
+  if (overrun) isr |= kOvr;
+  if (!overrun || bit(value(kCfgr), 12)) value(kDr) = code;
+  isr |= kEosmp | kEoc | (last ? kEos : 0u);
+  if (trigger(group).second == 0 && !continues() && (last || one_per_trigger())) value(kCr) &= ~kAdstart;
+  update();
+  if (dma) context().dma.pulse(dma_);
+}
+
+void AdcV2::update() { irq_.set((value(kIsr) & value(kIer) & 0x7Fu) != 0); }
+
+std::uint32_t AdcV2::load(std::uint32_t offset) {
+  if (offset == kDr) {
+    value(kIsr) &= ~kEoc;
+    update();
+  }
+  return value(offset);
+}
+
+// CR: bits are set by software and cleared by the hardware.
+void AdcV2::control(std::uint32_t written) {
+  std::uint32_t& cr = value(kCr);
+  cr = (cr & ~0x70000000u) | (written & 0x70000000u);  // voltage regulator, deep power down, calibration kind
+  if ((written & kAdcal) != 0) cr &= ~kAdcal;          // calibrated at once
+  if ((written & kAddis) != 0) {
+    cr &= ~(kAden | kAdstart | kJadstart);
+    value(kIsr) &= ~kAdrdy;
+    stop(Group::kRegular);
+    stop(Group::kInjected);
+    return;
+  }
+  if ((written & kAden) != 0 && (cr & kAden) == 0) {
+    cr |= kAden;
+    value(kIsr) |= kAdrdy;
+  }
+  if ((written & kAdstp) != 0) {
+    cr &= ~kAdstart;
+    stop(Group::kRegular);
+  }
+  if ((written & kJadstp) != 0) {
+    cr &= ~kJadstart;
+    stop(Group::kInjected);
+  }
+  if ((cr & kAden) == 0) return;
+  for (const Group group : {Group::kInjected, Group::kRegular}) {
+    const std::uint32_t mask = group == Group::kRegular ? kAdstart : kJadstart;
+    if ((written & mask) == 0 || (cr & mask) != 0 || length(group) == 0) continue;
+    cr |= mask;
+    if (trigger(group).second == 0) start(group);
+  }
+}
+
+void AdcV2::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  if (offset == kIsr) {
+    value(kIsr) &= ~written;
+  } else if (offset == kCr) {
+    control(written);
+  } else {
+    keep(offset, written, lanes);
+  }
+  if (offset == kCr || offset == kCfgr || offset == kJsqr) listen();
+  update();
+}
+
+AdcV2Common::AdcV2Common(const std::string& name, std::vector<AdcV2*> adcs, ChipContext& context)
+    : RegisterBlock(name, context.system, kCommon), adcs_(std::move(adcs)) {}
+
+void AdcV2Common::reset() {
+  RegisterBlock::reset();
+  for (AdcV2* adc : adcs_) adc->set_common(0);
+}
+
+std::uint32_t AdcV2Common::load(std::uint32_t offset) {
+  if (offset != 0) return value(offset);
+  std::uint32_t status = 0;
+  for (std::size_t i = 0; i < adcs_.size() && i < 2; ++i) status |= (adcs_[i]->status() & 0x7FFu) << (16 * i);
+  return status;
+}
+
+void AdcV2Common::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  keep(offset, written, lanes);
+  for (AdcV2* adc : adcs_) adc->set_common(value(0x08));
+}
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,63 @@
+// ADC registers of F3 and G4 (RM0316 §15, RM0440 §21), and of F0 (RM0091 §13), which has them without
+// injected ones.
+//
+//   AdcV2 adc("ADC1", AdcFamily::kF3, irq, triggers, context);
+//
+// The common block of a pair (clock prescaler, dual status) is at offset 0x300 of the first of them:
+// AdcV2Common.
+#pragma once
+#include "firmware_iface/mcu/stm32/adc.h"
+
+namespace omnihil::mcu {
+
+enum class AdcFamily : std::uint8_t { kF0, kF3, kG4 };
+
+class AdcV2 final : public Adc {
+ public:
+  AdcV2(const std::string& name, AdcFamily family, int irq, const AdcTriggers& triggers,
+        ChipContext& context);
+  void reset() override;
+  std::uint32_t status() const { return value(0); }
+  // CKMODE and PRESC of the common block.
+  void set_common(std::uint32_t ccr) { ccr_ = ccr; }
+
+ protected:
+  std::uint32_t load(std::uint32_t offset) override;
+  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
+  unsigned length(Group group) const override;
+  unsigned channel(Group group, unsigned place) const override;
+  double sample_clocks(unsigned channel) const override;
+  double convert_clocks() const override { return bits() + 0.5; }
+  double clock_hz() const override;
+  unsigned bits() const override { return 12 - 2 * field(value(0x0C), 3, 2); }
+  bool left_aligned() const override;
+  void result(Group group, unsigned place, std::uint32_t code, bool last) override;
+  bool continues() const override { return bit(value(0x0C), 13); }
+  bool one_per_trigger() const override { return bit(value(0x0C), 16); }
+  bool injected_follow() const override { return family_ != AdcFamily::kF0 && bit(value(0x0C), 25); }
+  std::pair<int, unsigned> trigger(Group group) const override;
+  bool armed(Group group) const override;
+
+ private:
+  void control(std::uint32_t written);
+  void update();
+  AdcFamily family_;
+  IrqLine irq_;
+  int dma_;
+  std::uint32_t ccr_ = 0;
+};
+
+class AdcV2Common final : public RegisterBlock {
+ public:
+  AdcV2Common(const std::string& name, std::vector<AdcV2*> adcs, ChipContext& context);
+  void reset() override;
+
+ protected:
+  std::uint32_t load(std::uint32_t offset) override;
+  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
+
+ private:
+  std::vector<AdcV2*> adcs_;
+};
+
+}  // namespace omnihil::mcu

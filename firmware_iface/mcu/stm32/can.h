@@ -1,0 +1,54 @@
+// CAN between a chip and the outside: frames, their time on the wire, and the port that both controllers
+// share.
+//
+//   can.on_transmit([](const CanFrame& frame, Cycles end) { … });   // when its last bit has left
+//   can.receive(frame);                                             // its last bit has arrived, now
+//   can_frame_bits(frame)                                           // 47 + 8 n + stuff bits, for classic
+//   frames
+//
+// Law: ISO 11898-1, bit stuffing counted exactly for classic frames (SOF .. CRC). CAN FD: stuffing of the
+// arbitration phase is taken at its mean of one in ten; its data phase runs at the data rate where BRS is
+// set. Cannot represent: arbitration against other nodes, errors, bus-off. Every frame is acknowledged.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+#include "firmware_iface/mcu/peripheral.h"
+
+namespace omnihil::mcu {
+
+struct CanFrame {
+  std::uint32_t id = 0;
+  bool extended = false, remote = false, fd = false, fast = false;  // fast: bit-rate switch
+  std::uint8_t bytes = 0;                                           // of data: 0..8, FD also 12 .. 64
+  std::array<std::uint8_t, 64> data{};
+  bool operator==(const CanFrame&) const = default;
+};
+
+// Bits on the wire at the nominal rate, with the three of the interframe space.
+unsigned can_frame_bits(const CanFrame& frame);
+// Of these, FD only: bits at the data rate.
+unsigned can_fast_bits(const CanFrame& frame);
+unsigned can_dlc(unsigned bytes);
+unsigned can_bytes(unsigned dlc, bool fd);
+
+class CanPort {
+ public:
+  virtual ~CanPort() = default;
+  virtual void receive(const CanFrame& frame) = 0;
+  void on_transmit(std::function<void(const CanFrame&, Cycles end)> listener) {
+    on_transmit_ = std::move(listener);
+  }
+
+ protected:
+  void sent(const CanFrame& frame, Cycles end) const {
+    if (on_transmit_) on_transmit_(frame, end);
+  }
+
+ private:
+  std::function<void(const CanFrame&, Cycles)> on_transmit_;
+};
+
+}  // namespace omnihil::mcu

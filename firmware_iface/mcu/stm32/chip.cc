@@ -1,0 +1,43 @@
+#include "firmware_iface/mcu/stm32/chip.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace omnihil::mcu {
+namespace {
+bool same_word(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+}  // namespace
+
+const ChipSpec* find_chip(std::string_view name) {
+  for (const ChipSpec* chip : all_chips()) {
+    if (same_word(chip->name, name)) return chip;
+    for (const std::string_view variant : chip->variants) {
+      if (same_word(variant, name)) return chip;
+    }
+  }
+  return nullptr;
+}
+
+Chip::Chip(const ChipSpec& spec, System& system) : spec_(spec), context_(system) {
+  spec.build(*this);
+  reset();
+}
+
+void Chip::reset() {
+  for (const Mapped& block : blocks_) block.peripheral->reset();
+}
+
+Peripheral* Chip::peripheral(std::string_view name) const {
+  for (const Mapped& block : blocks_) {
+    if (block.peripheral->name() == name) return block.peripheral;
+  }
+  return nullptr;
+}
+
+GpioPort* Chip::port(char letter) const { return find<GpioPort>(std::string("GPIO") + letter); }
+Flash* Chip::flash() const { return find<Flash>("FLASH"); }
+
+}  // namespace omnihil::mcu

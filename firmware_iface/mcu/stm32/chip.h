@@ -1,0 +1,94 @@
+// A microcontroller: its memories, its core, and the blocks at their addresses.
+//
+//   const ChipSpec* spec = find_chip("stm32f407");
+//   Machine machine(spec->core, spec->memories, …);
+//   Chip chip(*spec, machine);
+//   for (const Chip::Mapped& block : chip.blocks()) machine.attach(block.base, block.bytes,
+//   *block.peripheral); chip.reset();
+//
+// Adding a chip is adding a file to firmware_iface/mcu/stm32/chips/ that defines `const ChipSpec&
+// chip_STEM()`.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/chip_context.h"
+#include "firmware_iface/mcu/stm32/flash.h"
+#include "firmware_iface/mcu/stm32/gpio.h"
+
+namespace omnihil::mcu {
+
+class Chip;
+enum class CoreKind : std::uint8_t { kM0, kM3, kM4, kM4F, kM7, kM7DoubleFpu };
+
+struct MemorySpec {
+  std::string_view name;
+  std::uint32_t base = 0, bytes = 0;
+  bool flash = false;
+};
+
+struct ChipSpec {
+  std::string_view name;
+  std::vector<std::string_view> variants;  // other names of what is the same here
+  CoreKind core = CoreKind::kM4F;
+  std::vector<MemorySpec> memories;
+  unsigned interrupts = 82;
+  void (*build)(Chip& chip) = nullptr;
+};
+
+std::span<const ChipSpec* const> all_chips();
+const ChipSpec* find_chip(std::string_view name);  // by name or variant, whatever the case
+
+class Chip {
+ public:
+  struct Mapped {
+    std::uint32_t base, bytes;
+    Peripheral* peripheral;
+  };
+  Chip(const ChipSpec& spec, System& system);
+
+  const ChipSpec& spec() const { return spec_; }
+  ChipContext& context() { return context_; }
+  const std::vector<Mapped>& blocks() const { return blocks_; }
+  void reset();
+  // nullptr where the chip has none of that name or it is of another kind: chip.find<Timer>("TIM1").
+  template <class Kind>
+  Kind* find(std::string_view name) const {
+    return dynamic_cast<Kind*>(peripheral(name));
+  }
+  GpioPort* port(char letter) const;
+  Flash* flash() const;
+  // Names of the blocks of one kind, for messages.
+  template <class Kind>
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const Mapped& block : blocks_) {
+      if (dynamic_cast<Kind*>(block.peripheral) != nullptr) found.push_back(block.peripheral->name());
+    }
+    return found;
+  }
+
+  // For the chips' files.
+  template <class Kind>
+  Kind& add(std::uint32_t base, std::uint32_t bytes, std::unique_ptr<Kind> peripheral) {
+    Kind& kept = *peripheral;
+    owned_.push_back(std::move(peripheral));
+    blocks_.push_back({base, bytes, &kept});
+    return kept;
+  }
+
+ private:
+  Peripheral* peripheral(std::string_view name) const;
+  const ChipSpec& spec_;
+  ChipContext context_;
+  std::vector<std::unique_ptr<Peripheral>> owned_;
+  std::vector<Mapped> blocks_;
+};
+
+}  // namespace omnihil::mcu

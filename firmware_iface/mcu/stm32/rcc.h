@@ -1,0 +1,50 @@
+// Reset and clock control: from the registers of a family to the frequencies of the buses.
+//
+//   auto rcc = make_rcc(RccFamily::kF4, context);     // writes context.clocks at every change
+//
+// Law: the clock trees of RM0091 (F0), RM0316 (F3), RM0090 (F4), RM0410 (F7), RM0440 (G4), HSI or HSE or PLL
+// to SYSCLK, prescalers to HCLK and PCLKx. Oscillators and PLLs are ready at once after they are switched on.
+// A PLL whose input is off, or a selected source that is not ready, is reported and the switch does not
+// happen. Enable and reset bits of peripherals are kept; a peripheral works whether it is enabled or not (not
+// modelled), kernel clocks other than PCLK and SYSCLK for U(S)ARTs are reported. Clock outputs and the RTC
+// are not modelled.
+#pragma once
+#include <memory>
+
+#include "firmware_iface/mcu/stm32/chip_context.h"
+#include "firmware_iface/mcu/stm32/register_block.h"
+
+namespace omnihil::mcu {
+
+enum class RccFamily { kF0, kF3, kF4, kF7, kG4 };
+
+class Rcc : public RegisterBlock {
+ public:
+  Rcc(std::span<const RegisterInfo> registers, ChipContext& context)
+      : RegisterBlock("RCC", context.system, registers), context_(context) {}
+  void reset() override;
+
+ protected:
+  // The tree that the registers ask for now.
+  virtual ClockState tree() = 0;
+  // Bits of the status register that say why the chip was reset: of RM0090's CSR, all families alike.
+  std::uint32_t reset_flags() const;
+  void apply() { context_.clocks.set(tree()); }
+  ClockTree& clocks() { return context_.clocks; }
+
+  static std::uint32_t ahb_divider(std::uint32_t code);  // HPRE
+  static std::uint32_t apb_divider(std::uint32_t code);  // PPREx
+  // Fills in HCLK, APB buses and their timers.
+  static ClockState buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, std::uint32_t apb2);
+  bool flags_cleared_ = false;
+
+ private:
+  ChipContext& context_;
+};
+
+std::unique_ptr<Rcc> make_rcc(RccFamily family, ChipContext& context);
+std::unique_ptr<Rcc> make_rcc_f0_f3(RccFamily family, ChipContext& context);
+std::unique_ptr<Rcc> make_rcc_f4_f7(RccFamily family, ChipContext& context);
+std::unique_ptr<Rcc> make_rcc_g4(ChipContext& context);
+
+}  // namespace omnihil::mcu

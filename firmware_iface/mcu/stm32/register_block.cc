@@ -1,0 +1,76 @@
+#include "firmware_iface/mcu/stm32/register_block.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace omnihil::mcu {
+namespace {
+std::uint32_t lanes_of(std::uint32_t offset, unsigned bytes) {
+  const std::uint32_t all = bytes >= 4 ? 0xFFFFFFFFu : (1u << (8 * bytes)) - 1u;
+  return all << (8 * (offset & 3u));
+}
+}  // namespace
+
+RegisterBlock::RegisterBlock(std::string name, System& system, std::span<const RegisterInfo> registers)
+    : Peripheral(std::move(name)), system_(system), registers_(registers) {
+  std::size_t last = 0;
+  for (const RegisterInfo& r : registers) last = std::max<std::size_t>(last, r.offset);
+  values_.assign(last / 4 + 1, 0);
+  index_.assign(last / 4 + 1, 0);
+  for (std::size_t i = 0; i < registers.size(); ++i) {
+    index_[registers[i].offset / 4u] = static_cast<std::uint8_t>(i + 1);
+    values_[registers[i].offset / 4u] = registers[i].reset;
+  }
+}
+
+void RegisterBlock::reset() {
+  for (const RegisterInfo& r : registers_) value(r.offset) = r.reset;
+}
+
+const RegisterInfo* RegisterBlock::info(std::uint32_t offset) const {
+  const std::uint32_t word = offset >> 2;
+  if (word >= index_.size() || index_[word] == 0) return nullptr;
+  return &registers_[index_[word] - 1u];
+}
+
+void RegisterBlock::report(std::uint32_t offset, const char* what) {
+  system_.report_unmodelled(name(), fmt::format("register at offset 0x{:03X} {}", offset & ~3u, what));
+}
+
+std::uint32_t RegisterBlock::read(std::uint32_t offset, unsigned bytes) {
+  if (info(offset) == nullptr) {
+    report(offset, "read");
+    return 0;
+  }
+  const Cycles before = next_event();
+  const std::uint32_t word = load(offset & ~3u);
+  if (next_event() != before) system_.reschedule();
+  return (word & lanes_of(offset, bytes)) >> (8 * (offset & 3u));
+}
+
+void RegisterBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t value) {
+  const RegisterInfo* r = info(offset);
+  if (r == nullptr) {
+    report(offset, "written");
+    return;
+  }
+  const std::uint32_t lanes = lanes_of(offset, bytes);
+  const std::uint32_t placed = value << (8 * (offset & 3u)) & lanes;
+  if ((placed & r->no_effect & ~this->value(offset & ~3u)) != 0) {
+    system_.report_unmodelled(
+        name(), fmt::format("{}: bits 0x{:08X} have no effect", r->name, placed & r->no_effect));
+  }
+  const Cycles before = next_event();
+  store(offset & ~3u, placed, lanes);
+  if (next_event() != before) system_.reschedule();
+}
+
+void RegisterBlock::keep(std::uint32_t offset, std::uint32_t value, std::uint32_t lanes) {
+  const RegisterInfo* r = info(offset);
+  const std::uint32_t mask = lanes & (r != nullptr ? r->writable : 0u);
+  this->value(offset) = (this->value(offset) & ~mask) | (value & mask);
+}
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,160 @@
+#include "firmware_iface/mcu/stm32/spi.h"
+
+#include <utility>
+
+namespace omnihil::mcu {
+namespace {
+enum : std::uint16_t { kCr1 = 0x00, kCr2 = 0x04, kSr = 0x08, kDr = 0x0C };
+constexpr RegisterInfo kV1[] = {{kCr1, "CR1", 0, 0xFFFF, 0x3080},
+                                {kCr2, "CR2", 0, 0xF7, 0x10},
+                                {kSr, "SR", 2, 0},
+                                {kDr, "DR", 0, 0},
+                                {0x10, "CRCPR", 7, 0xFFFF},
+                                {0x14, "RXCRCR", 0, 0},
+                                {0x18, "TXCRCR", 0, 0},
+                                {0x1C, "I2SCFGR", 0, 0xFFF, 0x400},
+                                {0x20, "I2SPR", 2, 0x3FF}};
+constexpr RegisterInfo kV2[] = {{kCr1, "CR1", 0, 0xFFFF, 0x3080},
+                                {kCr2, "CR2", 0x700, 0x7FFF, 0x6018},
+                                {kSr, "SR", 2, 0},
+                                {kDr, "DR", 0, 0},
+                                {0x10, "CRCPR", 7, 0xFFFF},
+                                {0x14, "RXCRCR", 0, 0},
+                                {0x18, "TXCRCR", 0, 0},
+                                {0x1C, "I2SCFGR", 0, 0xFFF, 0x400},
+                                {0x20, "I2SPR", 2, 0x3FF}};
+constexpr std::uint32_t kRxne = 1, kTxe = 2, kOvr = 1u << 6, kBsy = 1u << 7;
+constexpr std::uint32_t kSpe = 1u << 6;  // CR1
+}  // namespace
+
+Spi::Spi(SpiSpec spec, ChipContext& context)
+    : RegisterBlock(spec.name, context.system,
+                    spec.v2 ? std::span<const RegisterInfo>(kV2) : std::span<const RegisterInfo>(kV1)),
+      spec_(std::move(spec)),
+      context_(context),
+      irq_(context.irqs, spec_.irq),
+      dma_rx_(context.dma.line(spec_.name + "_RX")),
+      dma_tx_(context.dma.line(spec_.name + "_TX")) {}
+
+void Spi::reset() {
+  RegisterBlock::reset();
+  transmit_.clear();
+  receive_.clear();
+  overrun_ = false;
+  frame_end_ = kNever;
+  update();
+}
+
+void Spi::select(SpiDevice& device, bool selected) {
+  for (Slave& slave : devices_) {
+    if (slave.device != &device || slave.selected == selected) continue;
+    slave.selected = selected;
+    device.select(selected);
+  }
+}
+
+unsigned Spi::frame_bits() const {
+  if (!spec_.v2) return bit(value(kCr1), 11) ? 16 : 8;  // DFF
+  return std::max(field(value(kCr2), 8, 4), 3u) + 1;    // DS
+}
+
+Cycles Spi::frame_cycles() const {
+  const ClockRatio clock = context_.clocks.bus(spec_.bus);
+  return Cycles{frame_bits()} * (2u << field(value(kCr1), 3, 3)) * clock.div / clock.mul;
+}
+
+std::uint32_t Spi::exchange(std::uint32_t out) const {
+  std::uint32_t in = wide() ? 0xFFFFu : 0xFFu;
+  for (const Slave& slave : devices_) {
+    if (!slave.selected) continue;
+    std::uint32_t answer = 0;
+    if (wide())
+      answer = static_cast<std::uint32_t>(slave.device->exchange(static_cast<std::uint8_t>(out >> 8))) << 8;
+    answer |= slave.device->exchange(static_cast<std::uint8_t>(out));
+    in &= answer;
+  }
+  return in;
+}
+
+void Spi::push(std::uint32_t frame) {
+  if (transmit_.size() >= capacity()) return;
+  transmit_.push_back(frame);
+  if (frame_end_ == kNever) begin();
+}
+
+void Spi::begin() {
+  if (transmit_.empty() || (value(kCr1) & kSpe) == 0) return;
+  shifting_ = transmit_.front();
+  transmit_.pop_front();
+  frame_end_ = now() + frame_cycles();
+}
+
+void Spi::run_events() {
+  if (frame_end_ > now()) return;
+  frame_end_ = kNever;
+  const std::uint32_t answer = exchange(shifting_);
+  if (receive_.size() < capacity()) {
+    receive_.push_back(answer);
+  } else {
+    overrun_ = true;
+  }
+  begin();
+  update();
+}
+
+std::uint32_t Spi::status() const {
+  std::uint32_t sr = 0;
+  if (receive_.size() >= ready_at()) sr |= kRxne;
+  if (spec_.v2 ? transmit_.size() * 2 <= capacity() : transmit_.empty()) sr |= kTxe;
+  if (overrun_) sr |= kOvr;
+  if (frame_end_ != kNever) sr |= kBsy;
+  if (!spec_.v2) return sr;
+  const auto level = [this](std::size_t n) {
+    return static_cast<std::uint32_t>(std::min<std::size_t>(wide() ? 2 * n : n, 3));
+  };
+  return sr | level(receive_.size()) << 9 | level(transmit_.size()) << 11;
+}
+
+void Spi::update() {
+  const std::uint32_t sr = status(), cr2 = value(kCr2);
+  irq_.set(((sr & kRxne) != 0 && bit(cr2, 6)) || ((sr & kTxe) != 0 && bit(cr2, 7)) ||
+           (overrun_ && bit(cr2, 5)));
+  context_.dma.set(dma_rx_, (sr & kRxne) != 0 && bit(cr2, 0));
+  context_.dma.set(dma_tx_, (status() & kTxe) != 0 && bit(cr2, 1) && (value(kCr1) & kSpe) != 0);
+}
+
+std::uint32_t Spi::load(std::uint32_t offset) {
+  if (offset == kSr) return status();
+  if (offset != kDr) return value(offset);
+  std::uint32_t data = 0;
+  if (!receive_.empty()) {
+    data = receive_.front();
+    receive_.pop_front();
+    if (spec_.v2 && !wide() && !bit(value(kCr2), 12) && !receive_.empty()) {  // a pair by one access
+      data |= receive_.front() << 8;
+      receive_.pop_front();
+    }
+  }
+  overrun_ = false;
+  update();
+  return data;
+}
+
+void Spi::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  if (offset == kDr) {
+    if (wide()) {
+      push(written & 0xFFFFu);
+    } else {
+      push(written & 0xFFu);
+      if (spec_.v2 && (lanes & 0xFF00u) != 0) push(written >> 8 & 0xFFu);  // packed
+    }
+  } else if (offset == kSr) {
+    return;
+  } else {
+    keep(offset, written, lanes);
+    if (offset == kCr1 && frame_end_ == kNever) begin();
+  }
+  update();
+}
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,59 @@
+// Signals from block to block within a chip: what a timer sends to ADCs and to other timers.
+//
+//   const int source = bus.source("TIM1_TRGO");
+//   bus.listen(source, adc, true);       // only what is listened to is scheduled by its sender
+//   bus.fire(source, true);              // rising edge, at system.now()
+#pragma once
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "firmware_iface/mcu/peripheral.h"
+
+namespace omnihil::mcu {
+
+class TriggerSink {
+ public:
+  virtual ~TriggerSink() = default;
+  virtual void triggered(int source, bool rising) = 0;
+};
+
+class TriggerBus {
+ public:
+  explicit TriggerBus(System& system) : system_(system) {}
+  int source(std::string_view name) {
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (lines_[i].name == name) return static_cast<int>(i);
+    }
+    lines_.push_back({std::string(name), {}});
+    return static_cast<int>(lines_.size() - 1);
+  }
+  void listen(int source, TriggerSink& sink, bool on) {
+    auto& sinks = lines_[static_cast<std::size_t>(source)].sinks;
+    const auto at = std::find(sinks.begin(), sinks.end(), &sink);
+    if (on == (at != sinks.end())) return;
+    if (on) {
+      sinks.push_back(&sink);
+    } else {
+      sinks.erase(at);
+    }
+    system_.reschedule();
+  }
+  bool heard(int source) const { return !lines_[static_cast<std::size_t>(source)].sinks.empty(); }
+  void fire(int source, bool rising) {
+    const auto sinks = lines_[static_cast<std::size_t>(source)].sinks;  // a sink may stop listening meanwhile
+    for (TriggerSink* sink : sinks) sink->triggered(source, rising);
+  }
+
+ private:
+  struct Line {
+    std::string name;
+    std::vector<TriggerSink*> sinks;
+  };
+  System& system_;
+  std::vector<Line> lines_;
+};
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,85 @@
+// A serial port: v1 (F4) and v2 (F0, F3, F7, G4) registers over one law.
+//
+//   Usart usart({.number = 1, .v2 = false, .bus = Bus::kApb2, .irq = 37}, context);
+//   usart.on_transmit([](std::uint8_t byte, Cycles end) { … });   // when its stop bit has left
+//   usart.feed(bytes, at_ns);                                      // from the other end, one frame after the
+//   other
+//
+// Law: RM0090 §30, RM0316 §29. A frame takes start + data + stop bits of BRR clock periods each; a received
+// byte is there at the end of its frame; the line is idle one frame after the last. Both ends are assumed to
+// agree on the baud rate unless `feed` says what the other end's bit takes. Parity is made and stripped, not
+// checked. Cannot represent: framing errors, noise, break, LIN, smart card, IrDA, synchronous mode, flow
+// control, mute, receiver timeout, the FIFOs of G4 (deeper than one byte).
+#pragma once
+#include <deque>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "firmware_iface/mcu/stm32/chip_context.h"
+#include "firmware_iface/mcu/stm32/register_block.h"
+
+namespace omnihil::mcu {
+
+struct UsartSpec {
+  int number = 1;
+  std::string name = "USART1";
+  bool v2 = false;
+  Bus bus = Bus::kApb2;
+  int irq = -1;
+};
+
+class Usart final : public RegisterBlock {
+ public:
+  Usart(UsartSpec spec, ChipContext& context);
+  void reset() override;
+  Cycles next_event() const override { return std::min({transmit_end_, receive_at_, idle_at_}); }
+  void run_events() override;
+  void clock_changed() override;
+
+  void on_transmit(std::function<void(std::uint8_t byte, Cycles end)> listener) {
+    on_transmit_ = std::move(listener);
+  }
+  // `bit_ns` 0: what this end is set to.
+  void feed(std::span<const std::uint8_t> bytes, std::int64_t at_ns, double bit_ns = 0.0);
+  double baud() const;
+  std::uint64_t overruns() const { return overruns_; }
+
+ protected:
+  std::uint32_t load(std::uint32_t offset) override;
+  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
+
+ private:
+  struct Waiting {
+    std::int64_t at_ns;
+    std::uint8_t byte;
+  };
+  std::uint32_t cr1() const { return value(spec_.v2 ? 0x00 : 0x0C); }
+  std::uint32_t cr2() const { return value(spec_.v2 ? 0x04 : 0x10); }
+  std::uint32_t cr3() const { return value(spec_.v2 ? 0x08 : 0x14); }
+  bool on(std::uint32_t which) const;  // TE or RE, with UE
+  Cycles bit_cycles() const;
+  unsigned frame_bits() const;
+  Cycles frame_cycles() const { return bit_cycles() * frame_bits(); }
+  void transmit(std::uint32_t data);
+  void receive(std::uint8_t byte);
+  void control_changed();
+  void update();
+  std::uint32_t take();
+
+  UsartSpec spec_;
+  ChipContext& context_;
+  IrqLine irq_;
+  int dma_rx_, dma_tx_;
+  std::uint32_t status_ = 0;
+  bool status_read_ = false;
+  std::uint32_t received_ = 0, shifting_ = 0, holding_ = 0;
+  bool holding_full_ = false;
+  Cycles transmit_end_ = kNever, receive_at_ = kNever, idle_at_ = kNever;
+  std::deque<Waiting> waiting_;
+  std::function<void(std::uint8_t, Cycles)> on_transmit_;
+  std::uint64_t overruns_ = 0;
+};
+
+}  // namespace omnihil::mcu
