@@ -41,7 +41,11 @@ class FakeSystem final : public System {
     irq_high[irq] = high;
   }
   void reschedule() override {}
-  void request_reset(std::string_view cause) override { resets.emplace_back(cause); }
+  void request_reset(std::string_view by) override { resets.emplace_back(by); }
+  std::string_view reset_cause() const override { return cause; }
+  void program_flash(std::uint32_t address, std::span<const std::uint8_t> bytes) override {
+    for (std::size_t i = 0; i < bytes.size(); ++i) memory[address + static_cast<std::uint32_t>(i)] = bytes[i];
+  }
   std::uint32_t bus_read(std::uint32_t address, unsigned bytes) override {
     if (Block* b = find(address)) return b->block->read(address - b->base, bytes);
     std::uint32_t v = 0;
@@ -81,6 +85,7 @@ class FakeSystem final : public System {
   std::map<int, int> irq_rises;
   std::map<std::string, int> unmodelled;
   std::vector<std::string> resets;
+  std::string cause = "power-on";
   std::map<std::uint32_t, std::uint8_t> memory;
   std::uint64_t events = 0;
 

@@ -24,6 +24,7 @@ class AdcV1 final : public Adc {
  public:
   AdcV1(int number, int irq, AdcV1Common& common, const AdcTriggers& triggers, ChipContext& context);
   void reset() override;
+  Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x4C ? 0 : kNever; }
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;

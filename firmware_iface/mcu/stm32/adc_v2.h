@@ -17,6 +17,7 @@ class AdcV2 final : public Adc {
   AdcV2(const std::string& name, AdcFamily family, int irq, const AdcTriggers& triggers,
         ChipContext& context);
   void reset() override;
+  Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x40 ? 0 : kNever; }
   std::uint32_t status() const { return value(0); }
   // CKMODE and PRESC of the common block.
   void set_common(std::uint32_t ccr) { ccr_ = ccr; }

@@ -21,6 +21,30 @@ const ChipSpec* find_chip(std::string_view name) {
   return nullptr;
 }
 
+MachineConfig machine_config(const ChipSpec& spec) {
+  MachineConfig config;
+  config.variant = spec.core;
+  config.reset_hz = spec.reset_hz;
+  for (const MemorySpec& memory : spec.memories) {
+    if (memory.flash) {
+      config.flash_base = memory.base;
+      config.flash_bytes = memory.bytes;
+    } else if (memory.name == "sram") {
+      config.ram_base = memory.base;
+      config.ram_bytes = memory.bytes;
+    } else {
+      config.memories.push_back({std::string(memory.name), memory.base, memory.bytes, kRam});
+      if (memory.base == 0) config.flash_at_zero = false;
+    }
+  }
+  return config;
+}
+
+void attach(Chip& chip, Machine& machine) {
+  for (const Chip::Mapped& block : chip.blocks()) machine.attach(block.base, block.bytes, *block.peripheral);
+  machine.set_flash_writes(chip.flash());
+}
+
 Chip::Chip(const ChipSpec& spec, System& system) : spec_(spec), context_(system) {
   spec.build(*this);
   reset();

@@ -1,10 +1,9 @@
 // A microcontroller: its memories, its core, and the blocks at their addresses.
 //
 //   const ChipSpec* spec = find_chip("stm32f407");
-//   Machine machine(spec->core, spec->memories, …);
+//   Machine machine(machine_config(*spec));
 //   Chip chip(*spec, machine);
-//   for (const Chip::Mapped& block : chip.blocks()) machine.attach(block.base, block.bytes,
-//   *block.peripheral); chip.reset();
+//   attach(chip, machine);
 //
 // Adding a chip is adding a file to firmware_iface/mcu/stm32/chips/ that defines `const ChipSpec&
 // chip_STEM()`.
@@ -17,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "firmware_iface/mcu/core/variant.h"
+#include "firmware_iface/mcu/machine/machine.h"
 #include "firmware_iface/mcu/stm32/adc.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/flash.h"
@@ -25,7 +26,6 @@
 namespace omnihil::mcu {
 
 class Chip;
-enum class CoreKind : std::uint8_t { kM0, kM3, kM4, kM4F, kM7, kM7DoubleFpu };
 
 struct MemorySpec {
   std::string_view name;
@@ -36,7 +36,8 @@ struct MemorySpec {
 struct ChipSpec {
   std::string_view name;
   std::vector<std::string_view> variants;  // other names of what is the same here
-  CoreKind core = CoreKind::kM4F;
+  Variant core = kCortexM4F;
+  double reset_hz = 16e6;
   std::vector<MemorySpec> memories;
   unsigned interrupts = 82;
   void (*build)(Chip& chip) = nullptr;
@@ -44,6 +45,8 @@ struct ChipSpec {
 
 std::span<const ChipSpec* const> all_chips();
 const ChipSpec* find_chip(std::string_view name);  // by name or variant, whatever the case
+MachineConfig machine_config(const ChipSpec& spec);
+void attach(Chip& chip, Machine& machine);  // every block at its address
 
 class Chip {
  public:

@@ -10,7 +10,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "firmware_iface/mcu/peripheral.h"
@@ -40,7 +39,6 @@ class ClockTree {
   double hsi_hz = 16e6;  // set by the chip
   double lsi_hz = 32e3;  // set by the chip
   double lse_hz = 32768;
-  std::string reset_cause = "power-on";  // of the reset that came last
 
   const ClockState& state() const { return state_; }
   ClockRatio bus(Bus bus) const { return state_.bus[static_cast<std::size_t>(bus)]; }

@@ -8,9 +8,12 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace omnihil::mcu {
@@ -39,6 +42,12 @@ struct DeviceWorld {
   std::function<double(std::int64_t at_ns)> bus_current_A;
   std::function<double(std::int64_t at_ns)> gyro_z_rad_s;
   std::function<double(std::int64_t at_ns)> accel_x_m_s2, accel_y_m_s2;
+  std::map<std::string, double, std::less<>> settings;  // from the board file: address, shunt_ohm, …
+
+  double setting(std::string_view name, double otherwise) const {
+    const auto at = settings.find(name);
+    return at == settings.end() ? otherwise : at->second;
+  }
 };
 
 class Device {
@@ -70,7 +79,8 @@ class Device {
 
 struct DeviceKind {
   std::string_view name;
-  std::string_view what;  // one line for people
+  std::string_view what;                   // one line for people
+  std::vector<std::string_view> settings;  // names it knows
   std::unique_ptr<Device> (*make)(const DeviceWorld& world);
 };
 

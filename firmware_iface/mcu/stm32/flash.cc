@@ -1,10 +1,13 @@
 #include "firmware_iface/mcu/stm32/flash.h"
 
 #include <algorithm>
-#include <utility>
+#include <array>
+#include <vector>
 
 namespace omnihil::mcu {
 namespace {
+constexpr std::uint32_t kBase = 0x08000000;
+
 constexpr RegisterInfo kF0F3[] = {
     {0x00, "ACR", 0x30, 0x1F},  {0x04, "KEYR", 0, 0}, {0x08, "OPTKEYR", 0, 0}, {0x0C, "SR", 0, 0},
     {0x10, "CR", 0x80, 0x3677}, {0x14, "AR"},         {0x1C, "OBR", 0x3FC, 0}, {0x20, "WRPR", 0xFFFFFFFF, 0}};
@@ -44,9 +47,10 @@ std::span<const RegisterInfo> table(FlashFamily family) {
 }
 }  // namespace
 
-Flash::Flash(FlashFamily family, std::uint32_t page_bytes, int irq, ChipContext& context)
+Flash::Flash(FlashFamily family, std::uint32_t bytes, std::uint32_t page_bytes, int irq, ChipContext& context)
     : RegisterBlock("FLASH", context.system, table(family)),
       family_(family),
+      bytes_(bytes),
       page_bytes_(page_bytes),
       irq_(context.irqs, irq) {}
 
@@ -54,13 +58,6 @@ void Flash::reset() {
   RegisterBlock::reset();
   keys_ = 0;
   irq_.set(false);
-}
-
-void Flash::attach_memory(std::uint32_t base, std::span<std::uint8_t> bytes,
-                          std::function<void(std::uint32_t, std::uint32_t)> changed) {
-  base_ = base;
-  bytes_ = bytes;
-  changed_ = std::move(changed);
 }
 
 bool Flash::locked() const {
@@ -110,10 +107,10 @@ void Flash::control(std::uint32_t written, std::uint32_t lanes) {
   value(at.cr) &= ~(1u << at.start);
   const std::uint32_t cr = value(at.cr);
   if (bit(cr, 2)) {
-    erase(0, static_cast<std::uint32_t>(bytes_.size()));  // MER
+    erase(0, bytes_);  // MER
   } else if (bit(cr, 1)) {
     if (family_ == FlashFamily::kF0F3) {
-      erase((value(0x14) - base_) / page_bytes_ * page_bytes_, page_bytes_);
+      erase((value(0x14) - kBase) / page_bytes_ * page_bytes_, page_bytes_);
     } else if (family_ == FlashFamily::kG4) {
       erase((field(cr, 3, 7) + (bit(cr, 11) ? 128u : 0u)) * page_bytes_, page_bytes_);
     } else {
@@ -133,25 +130,27 @@ void Flash::erase_sector(std::uint32_t sector) {
 }
 
 void Flash::erase(std::uint32_t from, std::uint32_t count) {
-  if (from >= bytes_.size()) {
+  if (from >= bytes_) {
     system().report_unmodelled(name(), "erase beyond the end of flash ignored");
     return;
   }
-  count = std::min<std::uint32_t>(count, static_cast<std::uint32_t>(bytes_.size()) - from);
-  std::fill_n(bytes_.begin() + from, count, std::uint8_t{0xFF});
-  if (changed_) changed_(base_ + from, count);
+  const std::vector<std::uint8_t> blank(std::min(count, bytes_ - from), 0xFF);
+  system().program_flash(kBase + from, blank);
 }
 
-bool Flash::program(std::uint32_t address, unsigned bytes, std::uint32_t word) {
+void Flash::flash_write(std::uint32_t address, unsigned bytes, std::uint32_t word) {
   const Layout at = layout(family_);
-  if (locked() || !bit(value(at.cr), 0) || address < base_ || address - base_ + bytes > bytes_.size())
-    return false;
-  for (unsigned i = 0; i < bytes; ++i)
-    bytes_[address - base_ + i] &= static_cast<std::uint8_t>(word >> (8 * i));
-  if (changed_) changed_(address, bytes);
+  if (locked() || !bit(value(at.cr), 0) || address < kBase || address - kBase + bytes > bytes_) {
+    system().report_unmodelled(name(), "store into flash that is not being programmed ignored");
+    return;
+  }
+  std::array<std::uint8_t, 4> cells{};
+  for (unsigned i = 0; i < bytes; ++i) {  // programming clears bits
+    cells[i] = static_cast<std::uint8_t>(system().bus_read(address + i, 1) & word >> (8 * i));
+  }
+  system().program_flash(address, std::span(cells).first(bytes));
   value(at.sr) |= 1u << at.done;
   irq_.set(bit(value(at.cr), at.done_enable));
-  return true;
 }
 
 }  // namespace omnihil::mcu

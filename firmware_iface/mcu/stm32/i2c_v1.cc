@@ -31,6 +31,9 @@ class I2cV1 final : public I2c {
   }
   Cycles next_event() const override { return at_; }
   void run_events() override;
+  Cycles stable_until(std::uint32_t offset) const override {
+    return (offset & ~3u) == kDr || (offset & ~3u) == kSr2 ? 0 : kNever;
+  }
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;

@@ -40,6 +40,7 @@ class I2cV2 final : public I2c {
   }
   Cycles next_event() const override { return at_; }
   void run_events() override;
+  Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == kRxdr ? 0 : kNever; }
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;

@@ -12,7 +12,7 @@ std::uint32_t Rcc::reset_flags() const {
   if (flags_cleared_) return 0;
   constexpr std::uint32_t kPin = 1u << 26, kPower = 1u << 27, kSoftware = 1u << 28;
   constexpr std::uint32_t kIwdg = 1u << 29, kWwdg = 1u << 30;
-  const std::string& cause = context_.clocks.reset_cause;
+  const std::string_view cause = system().reset_cause();
   if (cause == "IWDG") return kPin | kIwdg;
   if (cause == "WWDG") return kPin | kWwdg;
   if (cause == "power-on") return kPin | kPower;

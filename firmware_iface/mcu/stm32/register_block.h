@@ -34,6 +34,9 @@ class RegisterBlock : public Peripheral {
   std::uint32_t read(std::uint32_t offset, unsigned bytes) final;
   void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) final;
   std::span<const RegisterInfo> registers() const { return registers_; }
+  // Registers change by accesses and events alone; blocks with others, or with reads that do something, say
+  // so.
+  Cycles stable_until(std::uint32_t) const override { return kNever; }
 
  protected:
   // Default: what is stored.

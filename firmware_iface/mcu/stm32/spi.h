@@ -34,6 +34,7 @@ class Spi final : public RegisterBlock {
   void reset() override;
   Cycles next_event() const override { return frame_end_; }
   void run_events() override;
+  Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x0C ? 0 : kNever; }
 
   void connect(SpiDevice& device) { devices_.push_back({&device, false}); }
   void select(SpiDevice& device, bool selected);

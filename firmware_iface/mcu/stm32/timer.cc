@@ -364,6 +364,23 @@ std::uint32_t Timer::load(std::uint32_t offset) {
   return value(offset);
 }
 
+// Polled flags and counts: until the next end of the count, match or tick.
+Cycles Timer::stable_until(std::uint32_t offset) const {
+  offset &= ~3u;
+  const bool capturing = offset >= kCcr1 && offset < kCcr1 + 16 && captures((offset - kCcr1) / 4);
+  if (capturing || offset == kDmar || offset == kNewDmar) return 0;
+  if (offset != kCnt && offset != kSr && offset != kCr1) return kNever;
+  if (encoder()) return 0;
+  if (!running_) return kNever;
+  if (now() < anchor_) return 0;
+  if (offset == kCnt) return cycle_of(ticks_at(now()) + 1);
+  Cycles until = after(law_.to_boundary(position()));
+  for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
+    if (!captures(c)) until = std::min(until, next_match(c));
+  }
+  return until;
+}
+
 void Timer::generate(std::uint32_t events) {
   if ((events & kUpdate) != 0) {
     const bool silent = (value(kCr1) & kUdis) != 0;

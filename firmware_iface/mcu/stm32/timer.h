@@ -59,6 +59,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void run_events() override;
   void clock_changed() override;
   void triggered(int source, bool rising) override;
+  Cycles stable_until(std::uint32_t offset) const override;
 
   const TimerSpec& spec() const { return spec_; }
   void set_shaft(ShaftCount shaft);

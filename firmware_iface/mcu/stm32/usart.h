@@ -37,6 +37,9 @@ class Usart final : public RegisterBlock {
   Cycles next_event() const override { return std::min({transmit_end_, receive_at_, idle_at_}); }
   void run_events() override;
   void clock_changed() override;
+  Cycles stable_until(std::uint32_t offset) const override {
+    return (offset & ~3u) == (spec_.v2 ? 0x24u : 0x04u) ? 0 : kNever;
+  }
 
   void on_transmit(std::function<void(std::uint8_t byte, Cycles end)> listener) {
     on_transmit_ = std::move(listener);

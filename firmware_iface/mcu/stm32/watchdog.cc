@@ -30,7 +30,6 @@ class Iwdg final : public RegisterBlock {
   void run_events() override {
     if (at_ > now()) return;
     at_ = kNever;
-    context_.clocks.reset_cause = "IWDG";
     system().request_reset("IWDG");
   }
 
@@ -45,7 +44,6 @@ class Iwdg final : public RegisterBlock {
     if (key == 0xAAAA && deadline_ns_ >= 0) {
       const bool early = deadline_ns_ - system().to_ns(now()) > counts_ns(value(0x10) + 1);
       if (value(0x10) < value(0x08) && early) {
-        context_.clocks.reset_cause = "IWDG";
         return system().request_reset("IWDG");
       }
       feed();
@@ -71,6 +69,7 @@ class Iwdg final : public RegisterBlock {
 
 class Wwdg final : public RegisterBlock {
  public:
+  Cycles stable_until(std::uint32_t offset) const override { return offset < 4 ? 0 : kNever; }
   Wwdg(int irq, unsigned at, unsigned bits, ChipContext& context)
       : RegisterBlock("WWDG", context.system, kWwdg),
         context_(context),
@@ -142,7 +141,6 @@ class Wwdg final : public RegisterBlock {
   void bite() {
     at_ = kNever;
     on_ = false;
-    context_.clocks.reset_cause = "WWDG";
     system().request_reset("WWDG");
   }
   ChipContext& context_;

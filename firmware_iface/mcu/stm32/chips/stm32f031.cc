@@ -9,7 +9,7 @@ void build(Chip& chip) {
   ChipContext& context = chip.context();
   chip.add(0x40021000, 0x400, make_rcc(RccFamily::kF0, context));
   chip.add(0x40007000, 0x400, make_pwr(PwrFamily::kF0F3, context));
-  chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kF0F3, 1024, 3, context));
+  chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kF0F3, 32 * 1024, 1024, 3, context));
   add_ports(chip, "ABCF", 0x48000000);
   add_exti(chip, 0x40010400, 0x40010000, {{0, 1, 5}, {2, 3, 6}, {4, 15, 7}});
   struct Row {
@@ -69,7 +69,8 @@ const ChipSpec& chip_stm32f031() {
   static const ChipSpec spec{
       .name = "stm32f031",
       .variants = {"stspin32f0", "stspin32f0a", "stm32f031c6"},
-      .core = CoreKind::kM0,
+      .core = kCortexM0,
+      .reset_hz = 8e6,
       .memories = {{"flash", 0x08000000, 32 * 1024, true}, {"sram", 0x20000000, 4 * 1024}},
       .interrupts = 32,
       .build = build};

@@ -109,7 +109,7 @@ void build(Chip& chip) {
   ChipContext& context = chip.context();
   chip.add(0x40021000, 0x400, make_rcc(RccFamily::kF3, context));
   chip.add(0x40007000, 0x400, make_pwr(PwrFamily::kF0F3, context));
-  chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kF0F3, 2048, 4, context));
+  chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kF0F3, 256 * 1024, 2048, 4, context));
   add_ports(chip, "ABCDEF", 0x48000000);
   add_exti(chip, 0x40010400, 0x40010000, usual_exti_vectors());
   add_dma(chip);
@@ -143,7 +143,8 @@ void build(Chip& chip) {
 const ChipSpec& chip_stm32f303() {
   static const ChipSpec spec{.name = "stm32f303",
                              .variants = {"stm32f303rb", "stm32f303rc", "stm32f303cb", "stm32f303cc"},
-                             .core = CoreKind::kM4F,
+                             .core = kCortexM4F,
+                             .reset_hz = 8e6,
                              .memories = {{"flash", 0x08000000, 256 * 1024, true},
                                           {"sram", 0x20000000, 40 * 1024},
                                           {"ccm", 0x10000000, 8 * 1024}},

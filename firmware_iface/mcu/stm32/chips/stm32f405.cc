@@ -10,7 +10,7 @@ void build(Chip& chip) {
   ChipContext& context = chip.context();
   chip.add(0x40023800, 0x400, make_rcc(RccFamily::kF4, context));
   chip.add(0x40007000, 0x400, make_pwr(PwrFamily::kF4, context));
-  chip.add(0x40023C00, 0x400, std::make_unique<Flash>(FlashFamily::kF4, 16384, 4, context));
+  chip.add(0x40023C00, 0x400, std::make_unique<Flash>(FlashFamily::kF4, 1024 * 1024, 16384, 4, context));
   add_ports(chip, "ABCDEFGHI", 0x40020000);
   add_exti(chip, 0x40013C00, 0x40013800, usual_exti_vectors());
   add_dma_f4(chip);
@@ -50,7 +50,7 @@ void build(Chip& chip) {
 const ChipSpec& chip_stm32f405() {
   static const ChipSpec spec{.name = "stm32f405",
                              .variants = {"stm32f407", "stm32f415", "stm32f417"},
-                             .core = CoreKind::kM4F,
+                             .core = kCortexM4F,
                              .memories = {{"flash", 0x08000000, 1024 * 1024, true},
                                           {"sram", 0x20000000, 128 * 1024},
                                           {"ccm", 0x10000000, 64 * 1024},

@@ -10,7 +10,7 @@ void build(Chip& chip) {
   ChipContext& context = chip.context();
   chip.add(0x40023800, 0x400, make_rcc(RccFamily::kF7, context));
   chip.add(0x40007000, 0x400, make_pwr(PwrFamily::kF7, context));
-  chip.add(0x40023C00, 0x400, std::make_unique<Flash>(FlashFamily::kF7, 32768, 4, context));
+  chip.add(0x40023C00, 0x400, std::make_unique<Flash>(FlashFamily::kF7, 2048 * 1024, 32768, 4, context));
   add_ports(chip, "ABCDEFGHIJK", 0x40020000);
   add_exti(chip, 0x40013C00, 0x40013800, usual_exti_vectors());
   add_dma_f4(chip);
@@ -59,7 +59,7 @@ void build(Chip& chip) {
 const ChipSpec& chip_stm32f767() {
   static const ChipSpec spec{.name = "stm32f767",
                              .variants = {"stm32f765", "stm32f769", "stm32f777", "stm32f779"},
-                             .core = CoreKind::kM7DoubleFpu,
+                             .core = kCortexM7,
                              .memories = {{"flash", 0x08000000, 2048 * 1024, true},
                                           {"itcm", 0x00000000, 16 * 1024},
                                           {"sram", 0x20000000, 512 * 1024},

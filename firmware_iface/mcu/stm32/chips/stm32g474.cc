@@ -110,7 +110,7 @@ void build(Chip& chip) {
   ChipContext& context = chip.context();
   chip.add(0x40021000, 0x400, make_rcc(RccFamily::kG4, context));
   chip.add(0x40007000, 0x400, make_pwr(PwrFamily::kG4, context));
-  chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kG4, 2048, 4, context));
+  chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kG4, 512 * 1024, 2048, 4, context));
   add_ports(chip, "ABCDEFG", 0x48000000);
   add_exti(chip, 0x40010400, 0x40010000, usual_exti_vectors());
   auto mux = std::make_unique<DmaMux>(requests(), context);
@@ -164,7 +164,7 @@ void build(Chip& chip) {
 const ChipSpec& chip_stm32g474() {
   static const ChipSpec spec{.name = "stm32g474",
                              .variants = {"stm32g473", "stm32g483", "stm32g484"},
-                             .core = CoreKind::kM4F,
+                             .core = kCortexM4F,
                              .memories = {{"flash", 0x08000000, 512 * 1024, true},
                                           {"sram", 0x20000000, 128 * 1024},
                                           {"ccm", 0x10000000, 32 * 1024}},
