@@ -43,6 +43,11 @@ class System {
   virtual void bus_write(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
   // Changes the contents of the flash as they lie there, for the flash controller alone; no erased bits are
   // looked at.
+  // What address 0 shows from the next instruction on: flash, system memory or RAM by its base (the boot mode
+  // of SYSCFG). On a core without VTOR the vectors move with it.
+  virtual void map_at_zero(std::uint32_t base) = 0;
+  // Changes the contents of the flash as they lie there, for the flash controller alone; no erased bits are
+  // looked at.
   virtual void program_flash(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
   // A register, a bit or a use of it that is not modelled: reported once each with the program counter.
   virtual void report_unmodelled(std::string_view peripheral, std::string_view what) = 0;

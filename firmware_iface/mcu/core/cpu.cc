@@ -22,6 +22,7 @@ Cpu::Cpu(const Variant& variant, Memory& memory, CpuBus& bus, double cpi_scale)
 }
 
 void Cpu::memory_changed() {
+  code_ = nullptr;
   ram_ = flash_ = ccm_ = Window{};
   for (const auto& region : memory_.regions()) {
     Window window{region->base, region->size, region->data(), region->block};

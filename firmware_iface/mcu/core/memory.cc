@@ -46,23 +46,41 @@ MemoryRegion* Memory::find(std::uint32_t address) {
 }
 
 bool Memory::read(std::uint32_t address, std::span<std::uint8_t> bytes) {
-  for (std::uint8_t& byte : bytes) {
+  while (!bytes.empty()) {
     const MemoryRegion* region = find(address);
     if (!region) return false;
-    byte = region->data()[address++ - region->base];
+    const std::uint32_t at = address - region->base;
+    const std::size_t part = std::min<std::size_t>(bytes.size(), region->size - at);
+    std::copy_n(region->data() + at, part, bytes.begin());
+    bytes = bytes.subspan(part);
+    address += static_cast<std::uint32_t>(part);
   }
   return true;
 }
 
 bool Memory::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
-  for (const std::uint8_t byte : bytes) {
+  while (!bytes.empty()) {
     const MemoryRegion* region = find(address);
     if (!region) return false;
-    const std::uint32_t at = address++ - region->base;
-    region->data()[at] = byte;
-    invalidate(*region->block, at, 1);
+    const std::uint32_t at = address - region->base;
+    const std::size_t part = std::min<std::size_t>(bytes.size(), region->size - at);
+    std::copy_n(bytes.begin(), part, region->data() + at);
+    invalidate(*region->block, at, static_cast<std::uint32_t>(part));
+    bytes = bytes.subspan(part);
+    address += static_cast<std::uint32_t>(part);
   }
   return true;
+}
+
+void Memory::map_at_zero(std::uint32_t base) {
+  const MemoryRegion* target = find(base);
+  if (!target || target->base == 0) return;
+  for (const auto& region : regions_) {
+    if (region->base != 0) continue;
+    region->block = target->block;
+    region->size = target->size;
+    region->ops.clear();
+  }
 }
 
 void Memory::clear_ram() {

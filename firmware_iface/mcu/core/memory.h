@@ -43,6 +43,8 @@ class Memory {
   // Filled with 0xFF for flash, 0 otherwise. Sizes are multiples of 4.
   void add(std::string name, std::uint32_t base, std::uint32_t size, MemoryKind kind);
   void alias(const std::string& name, std::uint32_t base);
+  // The alias at 0, if there is one, shows the memory at `base` from now on. Not while code runs.
+  void map_at_zero(std::uint32_t base);
   MemoryRegion* find(std::uint32_t address);
   const std::vector<std::unique_ptr<MemoryRegion>>& regions() const { return regions_; }
 

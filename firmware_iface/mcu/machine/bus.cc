@@ -38,7 +38,8 @@ const Machine::Slot* Machine::slot_at(std::uint32_t address) {
 
 bool Machine::bit_band(std::uint32_t address, std::uint32_t& target, unsigned& bit) const {
   const bool ram = in(address, 0x22000000, 0x02000000), peripheral = in(address, 0x42000000, 0x02000000);
-  if (config_.variant.arch == Arch::kV6M || (!ram && !peripheral)) return false;
+  const bool has_it = config_.variant.arch != Arch::kV6M && !config_.variant.fpv5;  // M3 and M4 alone
+  if (!has_it || (!ram && !peripheral)) return false;
   const std::uint32_t offset = address & 0x01FFFFFF, byte = offset >> 5;
   target = (address & 0xE0000000u) + (byte & ~3u);
   bit = (offset >> 2 & 7) + 8 * (byte & 3);

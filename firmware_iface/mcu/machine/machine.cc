@@ -101,6 +101,7 @@ void Machine::do_reset() {
   cpu_.trap_unaligned = config_.variant.arch == Arch::kV6M;
   nvic_.reset();
   systick_.reset();
+  show_at_zero(config_.flash_base);
   vtor_ = config_.flash_base;
   cfsr_ = hfsr_ = mmfar_ = bfar_ = scr_ = shcsr_ = cpacr_ = fpcar_ = demcr_ = 0;
   ccr_ = config_.variant.arch == Arch::kV6M ? 0x208 : 0x200;
@@ -122,6 +123,18 @@ void Machine::do_reset() {
   cpu_.set_attention(false);
   if (!(start & 1)) lock_up();
   next_event_known_ = false;
+}
+
+void Machine::map_at_zero(std::uint32_t base) {
+  zero_wanted_ = base;
+  reschedule();
+}
+
+void Machine::show_at_zero(std::uint32_t base) {
+  zero_wanted_.reset();
+  memory_.map_at_zero(base);
+  cpu_.memory_changed();
+  if (config_.variant.arch == Arch::kV6M) vtor_ = base;
 }
 
 // ---- time
@@ -202,6 +215,7 @@ void Machine::run_to(Cycles end, bool until_clock_changes) {
       do_reset();
       continue;
     }
+    if (zero_wanted_) show_at_zero(*zero_wanted_);
     if (until_clock_changes && clock_.hz() != hz) return;
     if (locked_up_) {
       now_ = static_cast<std::int64_t>(std::max<Cycles>(std::min(end, next_event()), now() + 1)) * kSubcycles;

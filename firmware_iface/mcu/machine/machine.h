@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,9 +40,8 @@ struct MachineConfig {
   Variant variant = kCortexM4F;
   std::uint32_t flash_base = 0x08000000, flash_bytes = 1 << 20;
   std::uint32_t ram_base = 0x20000000, ram_bytes = 128 << 10;
-  std::vector<ExtraMemory> memories;  // core-coupled RAM, instruction RAM, system memory, further banks
-  std::vector<std::pair<std::string, std::uint32_t>>
-      aliases;  // of "flash", "ram" or one of those, at another base
+  std::vector<ExtraMemory> memories = {};  // core-coupled RAM, instruction RAM, system memory, further banks
+  std::vector<std::pair<std::string, std::uint32_t>> aliases = {};  // of "flash", "ram" or one of those, at another base
   bool flash_at_zero = true;
   double reset_hz = 16e6;  // the clock the chip comes out of reset with
   double cpi_scale = 1.0;  // cycles of the table are multiplied by this: fit it to one measured duration
@@ -90,6 +90,7 @@ class Machine final : public System, private CpuBus {
   std::string_view reset_cause() const override { return reset_cause_; }
   std::uint32_t bus_read(std::uint32_t address, unsigned bytes) override;
   void bus_write(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
+  void map_at_zero(std::uint32_t base) override;
   void program_flash(std::uint32_t address, std::span<const std::uint8_t> bytes) override;
   void report_unmodelled(std::string_view peripheral, std::string_view what) override;
   void set_nmi() { pend(kNmi); }
@@ -150,6 +151,7 @@ class Machine final : public System, private CpuBus {
   bool wakes() const;
   void sleep_until(Cycles end);
   void do_reset();
+  void show_at_zero(std::uint32_t base);
 
   const MachineConfig config_;
   Memory memory_;
@@ -171,6 +173,7 @@ class Machine final : public System, private CpuBus {
   Sleep sleeping_ = Sleep::kNo;
   std::string reset_cause_ = "power-on";
   std::string reset_wanted_;
+  std::optional<std::uint32_t> zero_wanted_;  // what address 0 is to show
   std::uint32_t initial_sp_ = 0;
 
   std::uint32_t vtor_ = 0, ccr_ = 0x200, cfsr_ = 0, hfsr_ = 0, mmfar_ = 0, bfar_ = 0, scr_ = 0, shcsr_ = 0;

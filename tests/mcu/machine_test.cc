@@ -1,0 +1,214 @@
+// The machine around the core: bus, time, resets, reports. Programs are a few instructions, written as
+// halfwords.
+#include "firmware_iface/mcu/machine/machine.h"
+
+#include <gtest/gtest.h>
+
+namespace omnihil::mcu {
+namespace {
+
+constexpr std::uint32_t kFlashBase = 0x08000000, kRamBase = 0x20000000, kCode = kFlashBase + 0x100;
+
+// A machine that runs `code` from reset, with 64 KB of flash and of RAM.
+class SmallMachine {
+ public:
+  explicit SmallMachine(std::vector<std::uint16_t> code, MachineConfig config = {})
+      : machine(small(std::move(config))), code_(std::move(code)) {}
+  void start() {
+    put(kFlashBase, kRamBase + 0x8000);
+    put(kFlashBase + 4, kCode | 1);
+    std::uint32_t at = kCode;
+    for (const std::uint16_t halfword : code_) {
+      const std::uint8_t raw[2] = {static_cast<std::uint8_t>(halfword),
+                                   static_cast<std::uint8_t>(halfword >> 8)};
+      machine.memory().write(at, raw);
+      at += 2;
+    }
+    machine.power_on();
+  }
+  void put(std::uint32_t address, std::uint32_t value) {
+    std::uint8_t raw[4];
+    std::memcpy(raw, &value, 4);
+    machine.memory().write(address, raw);
+  }
+  std::uint32_t get(std::uint32_t address) {
+    std::uint8_t raw[4] = {};
+    machine.memory().read(address, raw);
+    std::uint32_t value;
+    std::memcpy(&value, raw, 4);
+    return value;
+  }
+  std::uint32_t r(int i) { return machine.cpu().reg.r[i]; }
+
+  Machine machine;
+
+ private:
+  static MachineConfig small(MachineConfig config) {
+    config.flash_bytes = config.ram_bytes = 64 << 10;
+    return config;
+  }
+  std::vector<std::uint16_t> code_;
+};
+
+// A register that reads as `value` from the cycle `from` on and as 0 before.
+class Later final : public Peripheral {
+ public:
+  Later(System& system, Cycles from, bool says_until_when)
+      : Peripheral("later"), system_(system), from_(from), says_until_when_(says_until_when) {}
+  void reset() override {}
+  std::uint32_t read(std::uint32_t, unsigned) override {
+    ++reads;
+    return system_.now() >= from_ ? 1 : 0;
+  }
+  void write(std::uint32_t offset, unsigned, std::uint32_t) override {
+    if (offset == 4) system_.request_reset("watchdog");
+    if (offset == 8) system_.set_core_hz(32e6);
+  }
+  Cycles stable_until(std::uint32_t) const override {
+    return !says_until_when_ ? 0 : system_.now() < from_ ? from_ : kNever;
+  }
+  std::uint64_t reads = 0;
+
+ private:
+  System& system_;
+  Cycles from_;
+  bool says_until_when_;
+};
+
+constexpr std::uint16_t kLdrR0FromR1 = 0x6808, kStrR0ToR1 = 0x6008, kForever = 0xE7FE, kNopCode = 0xBF00;
+
+TEST(MachineTest, TimeGoesByTheTableOfCycles) {
+  SmallMachine small({kNopCode, kNopCode, kNopCode, kForever});
+  small.start();
+  small.machine.run_until(3);
+  EXPECT_EQ(small.r(15), kCode + 6);
+  EXPECT_EQ(small.machine.now(), 3u);
+}
+
+TEST(MachineTest, CpiScaleStretchesEveryCost) {
+  SmallMachine small(std::vector<std::uint16_t>(400, kNopCode), {.cpi_scale = 1.25});
+  small.start();
+  small.machine.run_until(250);
+  EXPECT_EQ(small.r(15), kCode + 2 * 200);  // 250 cycles / 1.25
+}
+
+TEST(MachineTest, PollingARegisterThatNamesItsNextChangeIsSkippedExactly) {
+  // 1: ldr r0, [r1]; cmp r0, #0; beq 1b; b .
+  const std::vector<std::uint16_t> code = {0xF04F, 0x4180, kLdrR0FromR1, 0x2800, 0xD0FC, kForever};
+  Cycles left[2];
+  std::uint64_t reads[2], instructions[2];
+  for (const bool says : {false, true}) {
+    SmallMachine small(code);
+    Later later(small.machine, 50'000, says);
+    small.machine.attach(0x40000000, 0x400, later);
+    small.start();
+    Cycles at = 0;
+    while (small.r(15) < kCode + 10 && at < 100'000) small.machine.run_until(at += 1);
+    small.machine.run_until(60'000);
+    left[says] = at;
+    instructions[says] = small.machine.report().instructions;
+    small.start();
+    later.reads = 0;
+    small.machine.run_until(60'000);
+    reads[says] = later.reads;
+  }
+  EXPECT_EQ(left[0], left[1]);
+  EXPECT_EQ(instructions[0], instructions[1]);
+  EXPECT_GT(left[0], 50'000u);
+  EXPECT_LT(left[0], 50'010u);
+  EXPECT_GT(reads[0], 5'000u);
+  EXPECT_LT(reads[1], 500u);
+}
+
+TEST(MachineTest, WhatIsNotModelledIsNamedOnceWithItsPlaceAndReadsBack) {
+  // movs r0, #5; mov r1, 0x40000000; str r0, [r1]; ldr r0, [r1]; ldr r0, [r1]
+  SmallMachine small({0x2005, 0xF04F, 0x4180, kStrR0ToR1, kLdrR0FromR1, kLdrR0FromR1, kForever});
+  small.start();
+  small.machine.run_until(100);
+  const MachineReport report = small.machine.report();
+  ASSERT_EQ(report.unmodelled.size(), 2u);
+  EXPECT_EQ(report.unmodelled[0].what, "0x40000000 written");
+  EXPECT_EQ(report.unmodelled[0].pc, kCode + 6);
+  EXPECT_EQ(report.unmodelled[1].what, "0x40000000 read");
+  EXPECT_EQ(report.unmodelled[1].pc, kCode + 8);
+  EXPECT_EQ(report.unmodelled[1].count, 2u);
+  EXPECT_EQ(small.r(0), 5u);
+}
+
+TEST(MachineTest, AResetStartsAnewKeepsRamAndNamesItsCause) {
+  // ldr r0, [pc, #8]; ldr r1, [r0]; adds r1, #1; str r1, [r0]; mov r1, 0x40000000; str r0, [r1, #4]; b .
+  SmallMachine small({0x4803, 0x6801, 0x3101, 0x6001, 0xF04F, 0x4180, 0x6048, kForever, 0x0000, 0x2000});
+  Later later(small.machine, 0, false);
+  small.machine.attach(0x40000000, 0x400, later);
+  small.start();
+  small.machine.run_until(1000);
+  EXPECT_EQ(small.machine.reset_cause(), "watchdog");
+  EXPECT_GT(small.get(kRamBase), 20u);  // counted over the resets
+  EXPECT_EQ(small.machine.report().resets[0].cause, "power-on");
+  EXPECT_EQ(small.machine.report().resets[1].cause, "watchdog");
+}
+
+TEST(MachineTest, NanosecondsFollowAChangeOfTheClock) {
+  // mov r1, 0x40000000; str r0, [r1, #8]; b .   The clock doubles from 16 to 32 MHz within the first
+  // microsecond.
+  SmallMachine small({0xF04F, 0x4180, 0x6088, kForever});
+  Later later(small.machine, 0, false);
+  small.machine.attach(0x40000000, 0x400, later);
+  small.start();
+  small.machine.run_until_ns(1'000'000);
+  EXPECT_NEAR(static_cast<double>(small.machine.now()), 32'000.0, 4.0);
+  EXPECT_GE(small.machine.to_ns(small.machine.now()), 1'000'000);
+  EXPECT_LT(small.machine.to_ns(small.machine.now()), 1'000'200);
+}
+
+TEST(MachineTest, CodeInRamThatIsOverwrittenRunsAsWritten) {
+  // movs r0, #0; ldr r1, [pc, #8]; ldr r2, [pc, #12]; strh r2, [r1]; bx (r1 | 1) twice by the caller below
+  SmallMachine small({0x4904, 0x4A05, 0x800A, 0x1C4B, 0x4718, kForever, kForever, kForever, kForever,
+                      kForever, 0x0000, 0x2000, 0x2007, 0x0000});
+  small.start();
+  small.put(kRamBase, 0xE7FE2001);  // movs r0, #1; b .
+  small.machine.cpu().reg.r[15] = kRamBase;
+  small.machine.run_until(100);
+  EXPECT_EQ(small.r(0), 1u);
+  small.machine.cpu().reg.r[15] = kCode;  // writes movs r0, #7 over it and jumps there
+  small.machine.run_until(200);
+  EXPECT_EQ(small.r(0), 7u);
+}
+
+TEST(MachineTest, ABusFaultWithoutAHandlerLocksUpAtTheVector) {
+  // mov r1, 0x30000000; ldr r0, [r1]: HardFault, whose vector is erased flash.
+  SmallMachine small({0xF04F, 0x5140, kLdrR0FromR1, kForever});
+  small.start();
+  small.machine.run_until(1000);
+  const MachineReport report = small.machine.report();
+  EXPECT_TRUE(report.locked_up);
+  ASSERT_FALSE(report.faults.empty());
+  EXPECT_EQ(report.faults[0].status, kPreciseBus | kBusAddressValid);
+  EXPECT_EQ(report.faults[0].address, 0x30000000u);
+  EXPECT_EQ(report.faults[0].pc, kCode + 4);
+  EXPECT_EQ(small.machine.now(), 1000u);  // time goes on
+}
+
+TEST(MachineTest, TheMainStacksHighWaterMarkIsKept) {
+  SmallMachine small({0xB5F0, 0xB088, 0xB008, 0xBDF0});  // push {r4-r7, lr}; sub sp, #32; add sp, #32; pop
+  small.start();
+  small.machine.run_until(8);
+  EXPECT_EQ(small.machine.report().main_stack_bytes, 5u * 4 + 32);
+}
+
+TEST(MachineTest, DmaReachesRamAndPeripheralsAndSpoilsNoCode) {
+  SmallMachine small({kForever});
+  Later later(small.machine, 0, false);
+  small.machine.attach(0x40000000, 0x400, later);
+  small.start();
+  small.machine.bus_write(kRamBase + 2, 2, 0xABCD);
+  EXPECT_EQ(small.get(kRamBase), 0xABCD0000u);
+  EXPECT_EQ(small.machine.bus_read(kRamBase + 3, 1), 0xABu);
+  EXPECT_EQ(small.machine.bus_read(0x40000000, 4), 1u);
+  EXPECT_TRUE(small.machine.report().unmodelled.empty());
+  small.machine.bus_write(0x90000000, 4, 1);
+  EXPECT_EQ(small.machine.report().unmodelled.size(), 1u);
+}
+
+}  // namespace
+}  // namespace omnihil::mcu
