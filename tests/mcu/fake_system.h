@@ -43,6 +43,7 @@ class FakeSystem final : public System {
   void reschedule() override {}
   void request_reset(std::string_view by) override { resets.emplace_back(by); }
   std::string_view reset_cause() const override { return cause; }
+  void map_at_zero(std::uint32_t base) override { at_zero = base; }
   void program_flash(std::uint32_t address, std::span<const std::uint8_t> bytes) override {
     for (std::size_t i = 0; i < bytes.size(); ++i) memory[address + static_cast<std::uint32_t>(i)] = bytes[i];
   }
@@ -85,6 +86,7 @@ class FakeSystem final : public System {
   std::map<int, int> irq_rises;
   std::map<std::string, int> unmodelled;
   std::vector<std::string> resets;
+  std::uint32_t at_zero = 0;  // what was asked to be shown there
   std::string cause = "power-on";
   std::map<std::uint32_t, std::uint8_t> memory;
   std::uint64_t events = 0;

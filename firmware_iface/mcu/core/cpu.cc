@@ -1,5 +1,6 @@
 #include "firmware_iface/mcu/core/cpu.h"
 
+#include <algorithm>
 #include <cfenv>
 #include <cmath>
 
@@ -130,15 +131,14 @@ void Cpu::fill(std::uint32_t pc, std::uint8_t it) {
     if (at >= region.size) return;
     Op& op = region.ops[at / 2];
     op = make(pc, it);
-    const std::uint32_t end = at + 2u * op.halfwords;
-    const std::uint32_t code_end = block.code_begin + block.code_size;
+    // In whole words: a store of any size that touches them is then noticed.
+    const std::uint32_t begin = at & ~3u, end = at + 4u, code_end = block.code_begin + block.code_size;
     if (block.code_size == 0) {
-      block.code_begin = at;
-      block.code_size = end - at;
-    } else {
-      const std::uint32_t begin = at < block.code_begin ? at : block.code_begin;
-      block.code_size = (end > code_end ? end : code_end) - begin;
       block.code_begin = begin;
+      block.code_size = end - begin;
+    } else {
+      block.code_begin = std::min(block.code_begin, begin);
+      block.code_size = std::max(end, code_end) - block.code_begin;
     }
     const std::uint16_t first = halfword(pc);
     it = is_it(first) && op.code == kNop ? static_cast<std::uint8_t>(first & 0xFF) : it_next(it);
