@@ -120,14 +120,16 @@ struct Cogging {
 
   template <typename T>
   static void apply(const T* p, T*, TorquePort<T>& port) {
-    // tau += A sin(n theta + p)
+    // tau += A sin(n theta + p), mean over the sub-step
     const T angle = p[kOrder] * port.theta_rotor_rad;
-    port.tau_Nm += p[kAmplitude] * sin_of(angle + p[kPhase]);
+    const T turned = p[kOrder] * port.omega_rotor_rad_s * port.dt_s;
+    port.tau_Nm += p[kAmplitude] * sin_of(angle + p[kPhase]) * turning_mean(turned);
     // tau += A_k sin(k n theta + p_k)
     const double highest = value_of(p[kHighest]);
     for (int k = 2; k <= highest; ++k) {
       const T* h = p + kFirstHarmonic + 2 * (k - 2);
-      if (!is_exactly(h[0], 0.0)) port.tau_Nm += h[0] * sin_of(double(k) * angle + h[1]);
+      if (is_exactly(h[0], 0.0)) continue;
+      port.tau_Nm += h[0] * sin_of(double(k) * angle + h[1]) * turning_mean(T(double(k) * turned));
     }
   }
 };

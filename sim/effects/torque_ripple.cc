@@ -75,8 +75,10 @@ struct TorqueRipple {
 
   template <typename T>
   static void apply(const T* p, T*, WindingPort<T>& port) {
-    // k -> k (1 + r cos(n theta + p))
-    const T factor = 1.0 + p[kFraction] * cos_of(p[kOrder] * port.theta_rotor_rad + p[kPhase]);
+    // k -> k (1 + r cos(n theta + p)), mean over the sub-step
+    const T turned = p[kOrder] * port.omega_rotor_rad_s * port.dt_s;
+    const T factor =
+        1.0 + p[kFraction] * cos_of(p[kOrder] * port.theta_rotor_rad + p[kPhase]) * turning_mean(turned);
     port.torque_constant_Nm_per_A *= factor;
     port.back_emf_V_s_per_rad *= factor;
   }

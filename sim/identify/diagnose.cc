@@ -21,6 +21,8 @@ constexpr double kAfterNull = 0.16;
 constexpr double kAfterRounds = 0.85;
 constexpr double kShort = 0.02;  // of the error energy, that a fit of the same model may miss
 constexpr int kMostRestarts = 2;
+constexpr int kMostRepeats = 3;
+constexpr double kWorthAnother = 0.005;  // fall of the error energy
 
 class Diagnosing {
  public:
@@ -145,9 +147,22 @@ class Diagnosing {
   void take(const Round& round) {
     const Contender& best = round.contenders[static_cast<std::size_t>(round.chosen)];
     current_ = best.fitted;
+    settle_in();
     if (!best.screened.extends) out_.effects.push_back(best.screened.name);
     add_step(best.screened.name, current_, compare(bench_.predictor(), current_.fit.model));
     note_twins(round, out_);
+  }
+
+  // The refits of a round are short; the one that stays goes on from where it is, or the next round would
+  // explain what is still on its way.
+  void settle_in() {
+    for (int k = 0; k < kMostRepeats && !stopped_; ++k) {
+      Fitted further = refit_as_it_is(bench_.setup(true, stop()), current_.fit.model, 1);
+      if (!further.finite) return;
+      const double ratio = energy_ratio(bench_.uses()[0], current_.residual[0], further.residual[0]);
+      if (ratio < 1.0) current_ = std::move(further);
+      if (ratio > 1.0 - kWorthAnother) return;
+    }
   }
 
   // An effect that later ones made superfluous goes.
@@ -158,7 +173,7 @@ class Diagnosing {
       const Fitted less =
           refit_as_it_is(bench_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
       const Judgement needed = judge(search_.judging, less, current_, name, 1e9);
-      if (needed.accepted || !less.finite || n + 1 == out_.effects.size()) {
+      if (needed.accepted || needed.plain || !less.finite || n + 1 == out_.effects.size()) {
         ++n;
         continue;
       }

@@ -209,6 +209,7 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   const UseGain& held = *gains[d];
   const double above_floor = 1.0 - floor_share((*context.uses)[d], *context.null, parent.residual[d]);
   const double needed = kMatters + kMattersAtFloor * (1.0 - above_floor);
+  out.plain = 1.0 - held.ratio > kPlain && held.worst < 1.0;
   if (gain_over_chance < kChanceMargin) {
     out.why =
         fmt::format("its gain is {:.1f} times what chance gives in the simulated null", gain_over_chance);
@@ -231,7 +232,7 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   } else if (out.extrapolation.ratio > 1.0 + kExtrapolationLoss && out.extrapolation.best > 1.0) {
     out.why = fmt::format("it raises the error energy of the extrapolation runs by {:.0f} %",
                           100.0 * (out.extrapolation.ratio - 1.0));
-  } else if (out.why = unphysical(child.fit, name, 1.0 - held.ratio > kPlain); !out.why.empty()) {
+  } else if (out.why = unphysical(child.fit, name, out.plain); !out.why.empty()) {
     return out;
   } else if (out.why = pushed_out(parent.fit, child.fit); !out.why.empty()) {
     return out;

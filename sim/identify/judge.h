@@ -64,6 +64,7 @@ double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Ei
 
 struct Judgement {
   bool accepted = false;
+  bool plain = false;  // it takes so much that no further question decides
   std::string why;
   UseGain fit, holdout, extrapolation;
 };

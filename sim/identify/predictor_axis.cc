@@ -57,6 +57,13 @@ bool needs_short_steps(const Candidate& c) {
   });
 }
 
+// Laws that go round many times a turn: a long sub-step feels only their mean, and that too early.
+bool has_ripple(const Candidate& c) {
+  return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
+    return (use.entry->info->id == "cogging" || use.entry->info->id == "torque_ripple") && !is_neutral(use);
+  });
+}
+
 // Flanks that meet and part: exact derivatives multiply up from one impact to the next.
 bool has_play(const Candidate& c) {
   return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
@@ -190,7 +197,9 @@ class AxisPredictor : public Predictor {
 
   const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
   double step_for(const Candidate& c) const {
-    return needs_short_steps(c) ? std::min(step_s_, options_.step_s) : step_s_;
+    constexpr double kRippleStep_s = 200e-6;
+    if (needs_short_steps(c)) return std::min(step_s_, options_.step_s);
+    return has_ripple(c) ? std::min(step_s_, std::max(options_.step_s, kRippleStep_s)) : step_s_;
   }
 
   Prediction predict_at(const Candidate& candidate, int n, double step_s) const {
