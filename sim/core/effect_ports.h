@@ -180,6 +180,8 @@ struct SensorPort {
   double time_s = 0.0;
   double dt_s = 0.0;                // since the sample before
   const NoiseKey* noise = nullptr;  // null: the expected value is asked for
+  // Whether the speed is worked out from the encoder; else a sensor of its own tells it.
+  bool speed_is_the_encoders = true;
   // changes, all at the rotor
   T encoder_angle_rad = T(0);
   T measured_speed_rad_s = T(0);

@@ -71,8 +71,8 @@ class AxisRun {
     AxisSample<T> s;
     s.time_s = input_.time_s[k];
     SensorPort<T> port = sense(k, dt, seen);
-    // A sensor of angle or speed sits at the output, whichever shaft the encoder counts.
-    s.position_rad = port.encoder_angle_rad / p.gear_ratio + seen.lead_rad;
+    // A sensor of angle or speed beside the encoder is another one, and sits at the output.
+    s.position_rad = (has_encoder() ? seen.theta_rad : port.encoder_angle_rad) / p.gear_ratio + seen.lead_rad;
     s.velocity_rad_s = port.measured_speed_rad_s / p.gear_ratio + seen.lead_rad_s;
     // counts = angle of the encoder's shaft * counts per turn / 2 pi
     s.encoder_counts = port.encoder_angle_rad * port.encoder_turns_per_rotor_turn *
@@ -174,6 +174,8 @@ class AxisRun {
     return looks_back_ && !alone_ ? record_.at(time_s) : now();
   }
 
+  bool has_encoder() const { return input_.encoder_counts_per_turn > 0.0; }
+
   T age(std::size_t k) {
     alone_ = k == 0;  // nothing to look back at yet
     TimingPort<T> port;
@@ -191,6 +193,7 @@ class AxisRun {
     port.theta_rotor_rad = seen.theta_rad - travel_ahead_rad_;
     port.encoder_angle_rad = seen.theta_rad;
     port.omega_rotor_rad_s = port.measured_speed_rad_s = seen.omega_rad_s;
+    port.speed_is_the_encoders = !has_encoder();
     if (input_.encoder_on_output) port.encoder_turns_per_rotor_turn = 1.0 / sim_.params().gear_ratio;
     if (sim_.effects().sensor.empty()) return port;
     const T way = seen.theta_rad - previous_.theta_rad;

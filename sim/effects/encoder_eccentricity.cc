@@ -60,7 +60,8 @@ struct EncoderEccentricity {
     // e sin(theta + p) at the encoder's shaft, seen from the rotor
     port.encoder_angle_rad += p[kAmplitude] * sin(angle) / turns;
     // its rate: e cos(theta + p) omega
-    port.measured_speed_rad_s += p[kAmplitude] * cos(angle) * port.omega_rotor_rad_s;
+    if (port.speed_is_the_encoders)
+      port.measured_speed_rad_s += p[kAmplitude] * cos(angle) * port.omega_rotor_rad_s;
   }
 };
 

@@ -78,7 +78,8 @@ struct EncoderMissedCounts {
     }
     x[kLost] += direction * lost;
     port.encoder_angle_rad -= x[kLost];
-    if (port.dt_s > 0.0) port.measured_speed_rad_s -= direction * lost / port.dt_s;
+    if (port.speed_is_the_encoders && port.dt_s > 0.0)
+      port.measured_speed_rad_s -= direction * lost / port.dt_s;
   }
 };
 

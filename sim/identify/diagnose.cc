@@ -7,7 +7,9 @@
 
 #include "sim/identify/diagnose_summary.h"
 #include "sim/identify/diagnosis.h"
+#include "sim/identify/effect_variants.h"
 #include "sim/identify/next_experiment.h"
+#include "sim/identify/noise_effect.h"
 #include "sim/identify/unknown_structure.h"
 #include "sim/identify/verdict.h"
 #include "sim/identify/workbench.h"
@@ -185,17 +187,18 @@ class Diagnosing {
 
   void conclude() {
     say("last fit", 0.88);
-    const bool added = !out_.effects.empty();
+    bool added = !out_.effects.empty();
     if (added && !stopped_) {
       Fitted last = refit_as_it_is(bench_.setup(false, stop()), current_.fit.model, 1);
       if (last.finite && energy_ratio(bench_.uses()[0], current_.residual[0], last.residual[0]) < 1.01)
         current_ = last;
     }
+    Leftover rest = leftover();
+    if (!misleading() && !stopped_ && rest_is_structure(rest) && take_noise_effect()) rest = leftover();
+    added = !out_.effects.empty();
     out_.final_fit = current_.fit;
     out_.final_comparison =
         added ? compare(bench_.predictor(), current_.fit.model) : out_.baseline_comparison;
-    const Leftover rest = leftover_of(bench_.predictor(), bench_.kinds(), out_.baseline.model,
-                                      current_.fit.model, options_.seed, options_.jobs);
     const bool remains = misleading() || structure_remains(rest, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
@@ -208,6 +211,50 @@ class Diagnosing {
     out_.next_experiment = next_experiment(dataset_, out_);
     out_.complete = !stopped_;
     say("done", 1.0);
+  }
+
+  Leftover leftover() {
+    return leftover_of(bench_.predictor(), bench_.kinds(), out_.baseline.model, current_.fit.model,
+                       options_.seed, options_.jobs);
+  }
+
+  bool rest_is_structure(const Leftover& rest) const { return structure_remains(rest, false); }
+
+  // What is left may be noise that an effect makes. Its strength was found without the fit, which sees means.
+  bool take_noise_effect() {
+    say("is the rest an effect's noise", 0.9);
+    std::vector<const EffectEntry*> others;
+    for (const EffectEntry* e : search_.applicable) {
+      if (std::find(out_.effects.begin(), out_.effects.end(), e->info->id) == out_.effects.end())
+        others.push_back(e);
+    }
+    const std::optional<NoiseEffect> found = noise_effect({.predictor = &bench_.predictor(),
+                                                           .seen = &bench_.seen(),
+                                                           .model = &current_.fit.model,
+                                                           .seed = options_.seed},
+                                                          others);
+    if (!found) return false;
+    const std::string name(found->use.entry->info->id);
+    current_.fit.model = with_use(current_.fit.model, found->use);
+    current_.fit.parameters.push_back(found->strength);
+    out_.effects.push_back(name);
+    add_step(name, current_, compare(bench_.predictor(), current_.fit.model));
+    for (std::size_t r = 0; r < out_.ranking.size(); ++r) {
+      RankedEffect& ranked = out_.ranking[r];
+      if (ranked.effect != name) continue;
+      ranked.accepted = true;
+      ranked.why = fmt::format("explains {:.0f} % of where the held-out runs are louder than their sensors",
+                               100.0 * found->explained);
+      ranked.parameters = parameters_of(current_.fit, name);
+      if (out_.effects.size() > 1) continue;
+      ranked.probability = found->explained;
+      for (RankedEffect& other : out_.ranking) {
+        if (other.effect != name) other.probability *= 1.0 - found->explained;
+      }
+      std::rotate(out_.ranking.begin(), out_.ranking.begin() + static_cast<std::ptrdiff_t>(r),
+                  out_.ranking.begin() + static_cast<std::ptrdiff_t>(r) + 1);
+    }
+    return true;
   }
 
   Diagnosis finish_early() {

@@ -356,7 +356,8 @@ class AxisPredictor : public Predictor {
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     const auto bus = std::find_if(s.compared.begin(), s.compared.end(),
                                   [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
-    if (s.method != Method::kForward || bus == s.compared.end()) return predict(truth, n);
+    s.input.noise_seed = random_bits(seed, stream_of("effects"), static_cast<std::uint64_t>(n));
+    if (s.method != Method::kForward || bus == s.compared.end()) return as_drawn(truth, n);
     const std::vector<double> given = s.input.bus_voltage_V;
     const std::uint64_t stream = stream_of("bus_voltage input") + static_cast<std::uint64_t>(n) * 1000003;
     double sum = 0.0;
@@ -364,8 +365,15 @@ class AxisPredictor : public Predictor {
       sum += gaussian(seed, stream, k) - (k >= kWindow ? gaussian(seed, stream, k - kWindow) : 0.0);
       s.input.bus_voltage_V[k] += bus->noise_sigma * sum / static_cast<double>(kWindow);
     }
-    Prediction p = predict(truth, n);
+    Prediction p = as_drawn(truth, n);
     s.input.bus_voltage_V = given;
+    return p;
+  }
+
+  // With what effects draw by chance; the seed goes again.
+  Prediction as_drawn(const Candidate& truth, int n) {
+    Prediction p = predict(truth, n);
+    setups_[static_cast<std::size_t>(n)].input.noise_seed.reset();
     return p;
   }
 

@@ -62,8 +62,10 @@ TEST(DcMotorList, CoggingTorque) {
   double sum = 0.0;
   for (int n = 0; n < parts; ++n) {
     const auto out = sim.advance(state, turned(2.0 * std::numbers::pi, CommandKind::kMotorCurrent, 0.0), 1);
-    const double angle = 2.0 * std::numbers::pi * (n + 0.5) / parts;
-    EXPECT_NEAR(-out.mean_outside_torque_Nm, 0.004 * std::sin(48 * angle + 0.3), 1e-12);
+    // mean of the sine over the sub-step, by its integral
+    const double a = 48 * 2.0 * std::numbers::pi * n / parts + 0.3,
+                 b = a + 48 * 2.0 * std::numbers::pi / parts;
+    EXPECT_NEAR(-out.mean_outside_torque_Nm, 0.004 * (std::cos(a) - std::cos(b)) / (b - a), 1e-12);
     sum += out.mean_outside_torque_Nm;
   }
   EXPECT_NEAR(sum / parts, 0.0, 1e-12);

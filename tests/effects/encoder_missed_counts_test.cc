@@ -17,19 +17,23 @@ AxisInput turned(double speed_rad_s, double duration_s) {
   return in;
 }
 
+double counted_rad(const AxisSample<double>& s) {
+  return s.encoder_counts * 2.0 * std::numbers::pi / kCounts;
+}
+
 // Expected: a thousandth of 20 rad.
 TEST(EncoderMissedCounts, LosesItsShareOfTheWayInTheMean) {
   const auto effects = with({use_of("encoder_missed_counts", {0.001})});
   const auto out = run_axis(small_drive(), effects, turned(10.0, 2.0)).back();
-  EXPECT_NEAR(out.theta_rotor_rad - out.position_rad, 0.001 * 20.0, 1e-12);
+  EXPECT_NEAR(out.theta_rotor_rad - counted_rad(out), 0.001 * 20.0, 1e-12);
   const auto back = run_axis(small_drive(), effects, turned(-10.0, 2.0)).back();
-  EXPECT_NEAR(back.theta_rotor_rad - back.position_rad, -0.001 * 20.0, 1e-12);
+  EXPECT_NEAR(back.theta_rotor_rad - counted_rad(back), -0.001 * 20.0, 1e-12);
 }
 
 TEST(EncoderMissedCounts, VanishesInTheLimit) {
   const auto out =
       run_axis(small_drive(), with({use_of("encoder_missed_counts", {1e-12})}), turned(10.0, 1.0));
-  for (const auto& s : out) EXPECT_NEAR(s.position_rad, s.theta_rotor_rad, 1e-10);
+  for (const auto& s : out) EXPECT_NEAR(counted_rad(s), s.theta_rotor_rad, 1e-10);
 }
 
 // The number lost is Poisson: about p n counts, to four standard deviations.
@@ -39,7 +43,7 @@ TEST(EncoderMissedCounts, LosesAsManyAsItsProbabilitySays) {
     in.noise_seed = 5;
     const auto out = run_axis(small_drive(), with({use_of("encoder_missed_counts", {p})}), in).back();
     const double passed = 400.0 * kCounts / (2.0 * std::numbers::pi);
-    const double lost = (out.theta_rotor_rad - out.position_rad) * kCounts / (2.0 * std::numbers::pi);
+    const double lost = (out.theta_rotor_rad - counted_rad(out)) * kCounts / (2.0 * std::numbers::pi);
     EXPECT_NEAR(lost, p * passed, 4.0 * std::sqrt(p * passed));
   }
 }
@@ -53,9 +57,9 @@ TEST(EncoderMissedCounts, ShowsAsJumpsOfWholeCountsThatNoTorqueMade) {
   const auto again = run_axis(small_drive(), effects, in);
   int jumps = 0;
   for (std::size_t n = 1; n < out.size(); ++n) {
-    EXPECT_EQ(out[n].position_rad, again[n].position_rad);
-    const double lost = ((out[n].theta_rotor_rad - out[n].position_rad) -
-                         (out[n - 1].theta_rotor_rad - out[n - 1].position_rad)) *
+    EXPECT_EQ(counted_rad(out[n]), counted_rad(again[n]));
+    const double lost = ((out[n].theta_rotor_rad - counted_rad(out[n])) -
+                         (out[n - 1].theta_rotor_rad - counted_rad(out[n - 1]))) *
                         kCounts / (2.0 * std::numbers::pi);
     EXPECT_NEAR(lost, std::round(lost), 1e-6);
     EXPECT_GE(std::round(lost), 0.0);

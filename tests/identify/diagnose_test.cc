@@ -58,6 +58,14 @@ TEST(SlowDiagnoseTest, NamesALimitThatIsHardlyReached) {
   EXPECT_NEAR(value_at(d.final_fit.model, "duty_limit.cut").value_or(0.0), 0.415, 0.002);
 }
 
+// No course of any signal changes in the mean: it shows in where the record is loud.
+TEST(SlowDiagnoseTest, NamesJitterByItsNoiseAndMeasuresIt) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({"sample_jitter.sigma_s=5e-6"})));
+  ASSERT_EQ(d.effects, std::vector<std::string>{"sample_jitter"}) << reasons(d);
+  EXPECT_EQ(d.verdict, Verdict::kEffect);
+  EXPECT_NEAR(value_at(d.final_fit.model, "sample_jitter.sigma_s").value_or(0.0), 5e-6, 0.5e-6);
+}
+
 TEST(SlowDiagnoseTest, NamesNothingWhereNothingIsMissing) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({})));
   EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
