@@ -38,6 +38,7 @@ struct Robot {
   const FloorEffects* effects = nullptr;
   FloorForces more;
   Vec3 f_body_W;  // of effects, level
+  std::array<bool, kWheels> lifted{};
 
   double radius_m(std::size_t i) const {
     return effects != nullptr ? more.wheel_radius_m[i] : law.geometry.wheel_radius_m;
@@ -195,6 +196,7 @@ struct Chassis::Impl {
       r.contacts =
           joint == Joint::kPlanar ? contact_forces(r.law, motion) : contact_forces_at(r.law, motion, load_N);
     }
+    lift_wheels(r.law, r.lifted, r.contacts);
     for (std::size_t i = 0; i < kWheels; ++i) {
       r.f_wheel_W[i] =
           r.contacts.force_longitudinal_N[i] * drive_W[i] + r.contacts.force_lateral_N[i] * outward_W[i];
@@ -239,6 +241,10 @@ Chassis& Chassis::operator=(Chassis&&) noexcept = default;
 
 const StateLayout& Chassis::layout() const {
   return impl_->joint == Joint::kPlanar ? kPlanarLayout : kFreeLayout;
+}
+
+void Chassis::lift(std::size_t robot, const std::array<bool, kWheels>& lifted) {
+  impl_->robots[robot].lifted = lifted;
 }
 
 void Chassis::set_state(const std::vector<double>& q, const std::vector<double>& u) {

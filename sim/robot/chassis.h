@@ -43,6 +43,8 @@ class Chassis {
   Chassis& operator=(Chassis&&) noexcept;
 
   const StateLayout& layout() const;
+  // Wheels that the floor does not reach, from the next set_state on.
+  void lift(std::size_t robot, const std::array<bool, kWheels>& lifted);
   void set_state(const std::vector<double>& q, const std::vector<double>& u);
   const WheelContacts<double>& contacts(std::size_t robot) const;
   const FloorForces& floor_forces(std::size_t robot) const;  // of a robot with effects only

@@ -147,6 +147,21 @@ WheelContacts<T> contact_forces(const ContactLaw<T>& law, const WheelMotion<T>& 
   return out;
 }
 
+// Wheels in the air: nothing acts on them; the sums are those of the others.
+inline void lift_wheels(const ContactLaw<double>& law, const std::array<bool, kWheels>& lifted,
+                        WheelContacts<double>& c) {
+  if (lifted == std::array<bool, kWheels>{}) return;
+  c.force_x_N = c.force_y_N = c.moment_z_Nm = 0.0;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    double& f = c.force_longitudinal_N[i];
+    double& s = c.force_lateral_N[i];
+    if (lifted[i]) f = s = c.load_N[i] = 0.0;
+    c.force_x_N += -law.geometry.sin_angle[i] * f + law.geometry.cos_angle[i] * s;
+    c.force_y_N += law.geometry.cos_angle[i] * f + law.geometry.sin_angle[i] * s;
+    c.moment_z_Nm += law.geometry.wheel_center_radius_m * f;
+  }
+}
+
 // Same with loads that something else knows (springs of the free body).
 template <typename T>
 WheelContacts<T> contact_forces_at(const ContactLaw<T>& law, const WheelMotion<T>& motion,

@@ -14,6 +14,11 @@ static_assert(std::is_trivially_copyable_v<ElectricMemory>);
 
 double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
+BridgeCommand with_faults(BridgeCommand legs, const WheelDriveInput& in) {
+  if (in.phase_lost) legs[0] = {};
+  return legs;
+}
+
 std::int64_t whole_ns(double time_s) { return std::llround(time_s * 1e9); }
 
 }  // namespace
@@ -51,6 +56,16 @@ ElectricMemory ElectricWheels::initial_memory() const {
   return memory;
 }
 
+void ElectricWheels::set_faults(const RobotFaults& faults, const RobotFaults& before,
+                                ElectricMemory& memory) const {
+  memory.supply_ratio = faults.supply_ratio;
+  memory.encoder_stuck = faults.encoder_stuck;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    if (faults.winding_rise_K[i] == before.winding_rise_K[i]) continue;
+    memory.wheel[i].rise.winding_K = faults.winding_rise_K[i];
+  }
+}
+
 double ElectricWheels::motor_current_A(const ElectricMemory& memory, std::size_t wheel) const {
   return wheels_[wheel].torque_Nm(memory.wheel[wheel]) / wheels_[wheel].torque_constant_Nm_per_A();
 }
@@ -85,7 +100,7 @@ PeriodFlow ElectricWheels::advance_wheel(ElectricMemory& memory, std::size_t whe
   WheelElectricState& x = memory.wheel[wheel];
   const double level_Nm = friction_Nm_[wheel];
   double direction = sign_of(x.omega_rotor_rad_s);
-  PeriodInput period{.bus_voltage_V = memory.supply.bus_voltage_V, .tau_load_Nm = in.contact_Nm};
+  PeriodInput period{.bus_voltage_V = memory.at_bridges_V(), .tau_load_Nm = in.contact_Nm};
   if (direction == 0.0 && level_Nm > 0.0) {
     const double applied_Nm = x.mean_torque_Nm - in.contact_Nm;
     period.held = std::abs(applied_Nm) <= level_Nm;
@@ -94,14 +109,15 @@ PeriodFlow ElectricWheels::advance_wheel(ElectricMemory& memory, std::size_t whe
   if (!period.held) period.tau_load_Nm += direction * level_Nm;
   BridgeInput bridge = in.bridge;
   bridge.bus_voltage_V = period.bus_voltage_V;
+  if (in.phase_lost && !electric_.three_phase()) bridge.mode = OMNIHIL_DRIVE_COAST;
   PeriodFlow f;
   if (!electric_.three_phase()) {
     f = drive.advance_dc(x, bridge, period);
   } else if (bridge.mode == OMNIHIL_DRIVE_PHASES) {
-    f = drive.advance(x, drive.firmware_command(x, memory.legs, wheel), period);
+    f = drive.advance(x, with_faults(drive.firmware_command(x, memory.legs, wheel), in), period);
   } else {
     const int code = hall(wheel, x.theta_rotor_rad, now_ns);
-    f = drive.advance(x, drive.own_command(x, bridge, code), period);
+    f = drive.advance(x, with_faults(drive.own_command(x, bridge, code), in), period);
   }
   if (level_Nm > 0.0 && x.omega_rotor_rad_s * direction < 0.0) x.omega_rotor_rad_s = 0.0;
   course.held = course.held && period.held;
@@ -141,13 +157,14 @@ void ElectricWheels::see(ElectricMemory& memory, const std::array<PeriodSample, 
                          std::int64_t at_ns) const {
   MotorSensors& seen = memory.seen;
   seen.now_ns = static_cast<std::uint64_t>(at_ns);
-  seen.bus_voltage_V = memory.supply.bus_voltage_V;
+  seen.bus_voltage_V = memory.at_bridges_V();
   for (std::size_t i = 0; i < kWheels; ++i) {
     const PeriodSample& sample = samples[i];
     for (std::size_t x = 0; x < kLegs; ++x) seen.phase_current_A[i][x] = measured_A(sample, i, x, at_ns);
+    seen.hall_code[i] = static_cast<std::uint32_t>(hall(i, sample.theta_rotor_rad, at_ns));
+    if (memory.encoder_stuck[i]) continue;
     seen.theta_elec_rad[i] =
         wheels_[i].sensed_theta_elec_rad(sample.theta_rotor_rad, sample.omega_rotor_rad_s);
-    seen.hall_code[i] = static_cast<std::uint32_t>(hall(i, sample.theta_rotor_rad, at_ns));
     if (std::isfinite(sample.theta_rotor_rad)) {
       seen.encoder_counts[i] = encoder_counts(model_.encoder, sample.theta_rotor_rad);
     }
@@ -174,7 +191,7 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const std::array<WheelDr
       const PeriodFlow f = advance_wheel(memory, i, inputs[i], begin_ns, course[i]);
       samples[i] = f.sample;
       bus_charge_C += f.bus_charge_C;
-      memory.book.bus_J += f.bus_charge_C * memory.supply.bus_voltage_V;
+      memory.book.bus_J += f.bus_charge_C * memory.at_bridges_V();
       memory.book.winding_heat_J += f.winding_heat_J;
       memory.book.device_heat_J += f.device_heat_J;
       memory.book.mechanical_J += f.mechanical_J;

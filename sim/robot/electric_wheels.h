@@ -26,6 +26,7 @@
 
 #include "sim/robot/electric_ports.h"
 #include "sim/robot/robot_effects.h"
+#include "sim/robot/robot_faults.h"
 #include "sim/robot/wheel_electrics.h"
 
 namespace omnihil {
@@ -37,6 +38,10 @@ struct ElectricMemory {
   MotorSensors seen{};  // in the last period
   MotorDrive legs{};    // in force
   EnergyBook book{};
+  double supply_ratio = 1.0;  // robot_faults.h
+  std::array<bool, kWheels> encoder_stuck{};
+
+  double at_bridges_V() const { return supply_ratio * supply.bus_voltage_V; }
 };
 
 class ElectricWheels {
@@ -45,6 +50,9 @@ class ElectricWheels {
                  std::size_t robot);
 
   ElectricMemory initial_memory() const;
+  // Supply, encoders and warm windings; the others reach it through its inputs. A winding whose rise was
+  // `before` is left to the heat model.
+  void set_faults(const RobotFaults& faults, const RobotFaults& before, ElectricMemory& memory) const;
   // `control` may be null: the legs of memory stay in force.
   void begin_step(ElectricMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
                   std::int64_t now_ns, MotorControl* control, std::array<WheelStep, kWheels>& steps);

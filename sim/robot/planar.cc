@@ -43,10 +43,11 @@ void PlanarMechanics::set_state(const std::vector<double>& q, const std::vector<
     const WheelMotion<double> motion = wheel_motion(r.law, velocity, omega_wheel);
     if (r.effects == nullptr) {
       r.contacts = contact_forces(r.law, motion);
-      continue;
+    } else {
+      const FloorState state{qr[0], velocity, omega_wheel, {qr[3], qr[4], qr[5], qr[6]}};
+      r.contacts = r.effects->contacts(r.law, motion, state, nullptr, r.more);
     }
-    const FloorState state{qr[0], velocity, omega_wheel, {qr[3], qr[4], qr[5], qr[6]}};
-    r.contacts = r.effects->contacts(r.law, motion, state, nullptr, r.more);
+    lift_wheels(r.law, r.lifted, r.contacts);
   }
 }
 

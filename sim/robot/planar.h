@@ -19,6 +19,8 @@ class PlanarMechanics {
                            const std::vector<const FloorEffects*>& effects = {});
 
   const StateLayout& layout() const { return kPlanarLayout; }
+  // Wheels that the floor does not reach, from the next set_state on.
+  void lift(std::size_t robot, const std::array<bool, kWheels>& lifted) { robots_[robot].lifted = lifted; }
   void set_state(const std::vector<double>& q, const std::vector<double>& u);
   const WheelContacts<double>& contacts(std::size_t robot) const { return robots_[robot].contacts; }
   // Of a robot with effects only.
@@ -44,6 +46,7 @@ class PlanarMechanics {
     WheelContacts<double> contacts;
     const FloorEffects* effects = nullptr;
     FloorForces more;
+    std::array<bool, kWheels> lifted{};
   };
   std::vector<Robot> robots_;
   std::vector<double> u_;  // current state

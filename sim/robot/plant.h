@@ -30,6 +30,7 @@
 
 #include "firmware_iface/robot_io.h"
 #include "sim/robot/electric_ports.h"
+#include "sim/robot/robot_faults.h"
 #include "sim/robot/robot_model.h"
 
 namespace omnihil {
@@ -99,6 +100,9 @@ class Plant {
   void write_legs(int robot, const MotorDrive& legs);
   MotorSensors motor_sensors(int robot) const;
   ElectricTruth electric_truth(int robot) const;
+  // In force until set again; part of the state. A wheel that gets blocked stands at once.
+  void set_faults(int robot, const RobotFaults& faults);
+  const RobotFaults& faults(int robot) const;
   void advance(std::int64_t duration_ns);  // asserts: a multiple of the mechanical step
   RobotSensors read(int robot) const;
   RobotTruth truth(int robot) const;

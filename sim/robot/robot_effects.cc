@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "sim/phase/thermal.h"
 #include "sim/robot/link_effect.h"
 
 namespace omnihil {
@@ -128,6 +129,18 @@ RobotEffectMemory RobotEffects::initial_memory() const {
   return memory;
 }
 
+void RobotEffects::set_faults(const RobotFaults& faults) {
+  supply_ratio_ = faults.supply_ratio;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    if (faults.winding_rise_K[i] == built_.winding_rise_K[i]) continue;
+    DriveParams<double> p = drives_[i].params();
+    p.resistance_ohm *= warm_resistance_ohm(1.0, kCopperPerK, faults.winding_rise_K[i]) /
+                        warm_resistance_ohm(1.0, kCopperPerK, built_.winding_rise_K[i]);
+    drives_[i] = DriveSim<double>(p, drives_[i].effects(), drives_[i].step_s());
+  }
+  built_ = faults;
+}
+
 // ------------------------------------------------------------------------------------------ four drives
 
 void RobotEffects::advance(RobotEffectMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
@@ -139,6 +152,8 @@ void RobotEffects::advance(RobotEffectMemory& memory, const std::array<WheelDriv
     in[i].setpoint = inputs[i].bridge.duty_ratio;
     in[i].tau_outside_Nm = -inputs[i].contact_Nm;
     in[i].wheel = static_cast<int>(i);
+    in[i].bus_is_measured = supply_ratio_ != 1.0;
+    in[i].bus_voltage_V = supply_ratio_ * bus_voltage_V_;
   }
   if (set_->supply.empty()) {
     for (std::size_t i = 0; i < kWheels; ++i)

@@ -29,6 +29,7 @@
 #include "sim/drive/drive_sim.h"
 #include "sim/robot/floor_effects.h"
 #include "sim/robot/plant.h"
+#include "sim/robot/robot_faults.h"
 #include "sim/robot/wheel_drive.h"
 
 namespace omnihil {
@@ -50,6 +51,7 @@ struct WheelDriveInput {
   double omega_wheel_rad_s = 0.0, theta_wheel_rad = 0.0;
   double contact_Nm = 0.0;         // floor's torque on the rotor, as in begin_wheel_step
   double friction_rotor_Nm = 0.0;  // rolling resistance, through the gear
+  bool phase_lost = false;
 };
 
 // The drive's numbers of a robot's wheel: the wheel is its load.
@@ -60,6 +62,8 @@ class RobotEffects {
   RobotEffects(const RobotModel& model, double electrical_step_s, int substeps, double step_s);
 
   RobotEffectMemory initial_memory() const;
+  // Supply and warm windings (robot_faults.h); the others reach it through its inputs.
+  void set_faults(const RobotFaults& faults);
   void begin_step(const WheelDriveLaw& law, RobotEffectMemory& memory,
                   const std::array<WheelDriveInput, kWheels>& inputs, std::array<WheelStep, kWheels>& steps);
   double end_wheel(const WheelDriveLaw& law, RobotEffectMemory& memory, std::size_t wheel, WheelStep& step,
@@ -86,6 +90,8 @@ class RobotEffects {
   std::vector<DriveSim<double>> drives_;
   int substeps_ = 1;
   double bus_voltage_V_ = 0.0;
+  double supply_ratio_ = 1.0;
+  RobotFaults built_;  // the windings of drives_
 };
 
 // The models with what body effects make of their masses; effects all at neutral are none.

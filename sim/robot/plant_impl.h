@@ -1,0 +1,384 @@
+// The state of a plant and one mechanical step of it; plant.h says what it does, plant.cc is its outside.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sim/phase/thermal.h"
+#include "sim/robot/chassis.h"
+#include "sim/robot/electric_wheels.h"
+#include "sim/robot/integrate.h"
+#include "sim/robot/planar.h"
+#include "sim/robot/planar_law.h"
+#include "sim/robot/plant.h"
+#include "sim/robot/robot_effects.h"
+#include "sim/robot/robot_faults.h"
+#include "sim/robot/robot_sensing.h"
+#include "sim/robot/wheel_drive.h"
+
+namespace omnihil {
+
+inline constexpr double kSpacing_m = 0.3;              // of the robots' starting row
+inline constexpr double kDribblerFull_rad_s = 1000.0;  // at ratio 1; guess, +-50 %
+inline constexpr double kStandstill_m_s = 1e-12;       // below it a robot with held wheels stops exactly
+
+// What one robot remembers besides positions and speeds; plain bytes, saved as they are.
+struct RobotMemory {
+  RobotDrive drive{};
+  std::array<DcDriveState, kWheels> winding{};
+  std::array<double, kWheels> motor_torque_Nm{};  // mean of the last step
+  std::array<double, kWheels> current_sum_A{};    // of the steps since the last read
+  std::int64_t current_steps = 0;
+  double accel_x_m_s2 = 0.0, accel_y_m_s2 = 0.0;
+  RobotFaults faults{};
+  std::array<std::int64_t, kWheels> counts_read{};  // at the last read
+};
+static_assert(std::is_trivially_copyable_v<RobotMemory>);
+
+using Mechanics = std::variant<PlanarMechanics, Chassis>;
+
+inline Mechanics make_mechanics(const std::vector<RobotModel>& robots, Physics physics,
+                                const std::vector<const FloorEffects*>& effects) {
+  if (physics == Physics::kPlanar) return PlanarMechanics(robots, effects);
+  return Chassis(robots, physics == Physics::kSimbody ? Chassis::Joint::kPlanar : Chassis::Joint::kFree,
+                 effects);
+}
+
+struct Plant::Impl {
+  Impl(std::span<const RobotModel> robots_, const PlantOptions& options_)
+      : options(options_),
+        models(robots_.begin(), robots_.end()),
+        effects(make_effects(models, options_)),
+        mechanics(make_mechanics(models_of_mechanics(models), options_.physics, floors_of(effects))),
+        layout(std::visit([](const auto& m) { return m.layout(); }, mechanics)),
+        q(models.size() * layout.q_per_robot),
+        u(models.size() * layout.u_per_robot),
+        u_before(u.size()),
+        scratch(q.size(), u.size()),
+        memory(models.size()),
+        electrics(models.size()),
+        electric_memory(models.size()),
+        controls(models.size()),
+        torques(models.size()),
+        wheel_steps(models.size()) {
+    step_ns = mechanics_step_ns(models, options);
+    step_s = static_cast<double>(step_ns) * 1e-9;
+    substeps = static_cast<int>(step_ns / options.electrical_step_ns);
+    const std::vector<RobotModel> moved = models_of_mechanics(models);
+    drives.resize(models.size());
+    healthy.reserve(models.size());
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      healthy.push_back(law_of(moved[n]));
+      drives[n].fill(healthy[n]);
+      bodies.push_back(planar_body(models[n]));
+    }
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (!electrics_of(models[n]).any()) continue;
+      electrics[n] = std::make_unique<ElectricWheels>(
+          models[n], static_cast<double>(options.electrical_step_ns) * 1e-9, step_s, options.seed, n);
+    }
+    effect_memory.resize(models.size());
+    histories.resize(models.size());
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (effects[n] && effects[n]->looks_back()) histories[n] = RobotHistory(kLongestAge_s, step_s);
+    }
+    for (std::size_t n = 0; n < models.size(); ++n) place(n, 0.0, kSpacing_m * static_cast<double>(n), 0.0);
+  }
+
+  WheelDriveLaw law_of(const RobotModel& moved) const {
+    return wheel_drive_law(moved, static_cast<double>(options.electrical_step_ns) * 1e-9, substeps);
+  }
+
+  // Brings laws and mechanics to memory[n].faults; `before`: those in force so far.
+  void apply_faults(std::size_t n, const RobotFaults& before) {
+    const RobotFaults& faults = memory[n].faults;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      drives[n][i] = healthy[n];
+      if (faults.winding_rise_K[i] != 0.0) {
+        RobotModel warm = models_of_mechanics({&models[n], 1}).front();
+        warm.motor.resistance_ohm =
+            warm_resistance_ohm(warm.motor.resistance_ohm, kCopperPerK, faults.winding_rise_K[i]);
+        drives[n][i] = law_of(warm);
+      }
+      if (!faults.blocked[i]) continue;
+      drives[n][i].coulomb_Nm = kBlocked_Nm;
+      wheel_speeds_of(n)[i] = 0.0;
+    }
+    if (effects[n]) effects[n]->set_faults(faults);
+    if (electrics[n]) electrics[n]->set_faults(faults, before, electric_memory[n]);
+    std::visit([&](auto& back) { back.lift(n, faults.lifted); }, mechanics);
+    state_known = false;
+  }
+
+  // v += a h, omega += alpha h of the force alone (planar_law.h).
+  void disturb(std::size_t n, double yaw_rad) {
+    const RobotFaults& f = memory[n].faults;
+    if (f.force_forward_N == 0.0 && f.force_left_N == 0.0 && f.moment_Nm == 0.0) return;
+    const auto a = body_acceleration(bodies[n], f.force_forward_N, f.force_left_N, f.moment_Nm, 0.0);
+    double* v = &u[n * layout.u_per_robot + layout.wheel_u - (free() ? 3 : 2)];
+    v[0] += step_s * (std::cos(yaw_rad) * a.x_m_s2 - std::sin(yaw_rad) * a.y_m_s2);
+    v[1] += step_s * (std::sin(yaw_rad) * a.x_m_s2 + std::cos(yaw_rad) * a.y_m_s2);
+    u[n * layout.u_per_robot + (free() ? 2 : 0)] += step_s * a.yaw_rad_s2;
+  }
+
+  const double* wheel_angles(std::size_t robot) const {
+    return &q[robot * layout.q_per_robot + layout.wheel_q];
+  }
+  double* wheel_angles(std::size_t robot) { return &q[robot * layout.q_per_robot + layout.wheel_q]; }
+  const double* wheel_speeds_of(std::size_t robot) const {
+    return &u[robot * layout.u_per_robot + layout.wheel_u];
+  }
+  double* wheel_speeds_of(std::size_t robot) { return &u[robot * layout.u_per_robot + layout.wheel_u]; }
+  // Field-frame v_x of a robot in an array of speeds; v_y follows.
+  const double* field_velocity(const std::vector<double>& speeds, std::size_t robot) const {
+    return &speeds[robot * layout.u_per_robot + layout.wheel_u - (free() ? 3 : 2)];
+  }
+  bool free() const { return options.physics == Physics::kSimbodyFree; }
+
+  void place(std::size_t robot, double x_m, double y_m, double yaw_rad) {
+    std::array<double, kWheels> angles;
+    std::copy_n(wheel_angles(robot), kWheels, angles.begin());
+    std::visit([&](const auto& m) { m.place(q, u, robot, x_m, y_m, yaw_rad); }, mechanics);
+    std::copy_n(angles.begin(), kWheels, wheel_angles(robot));  // turning a robot by hand turns no rotor
+    const RobotDrive kept = memory[robot].drive;
+    const RobotFaults faults = memory[robot].faults;
+    memory[robot] = RobotMemory{};
+    memory[robot].drive = kept;
+    memory[robot].faults = faults;
+    state_known = false;
+    if (electrics[robot]) electric_memory[robot] = electrics[robot]->initial_memory();
+    if (effects[robot]) {
+      std::array<double, kWheels> rotors{};
+      for (std::size_t i = 0; i < kWheels; ++i) rotors[i] = theta_rotor_rad(robot, i);
+      effect_memory[robot] = effects[robot]->initial_memory();
+      RobotEffectMemory& mem = effect_memory[robot];
+      for (std::size_t i = 0; i < kWheels; ++i) mem.drive[i].theta_rotor_rad = rotors[i];
+      mem.seen_s = mem.read_s = now_s();
+      for (std::size_t i = 0; i < kWheels; ++i) mem.seen_theta_rotor_rad[i] = theta_rotor_rad(robot, i);
+      histories[robot].clear();
+      remember(robot);
+    }
+    apply_faults(robot, {});
+  }
+
+  double now_s() const { return static_cast<double>(now_ns) * 1e-9; }
+  bool two_masses(std::size_t robot) const { return effects[robot] && effects[robot]->two_masses(); }
+  double theta_rotor_rad(std::size_t robot, std::size_t wheel) const {
+    return two_masses(robot) ? effect_memory[robot].drive[wheel].theta_rotor_rad
+                             : models[robot].gear_ratio * wheel_angles(robot)[wheel];
+  }
+  double omega_rotor_rad_s(std::size_t robot, std::size_t wheel) const {
+    return two_masses(robot) ? effect_memory[robot].drive[wheel].omega_rotor_rad_s
+                             : models[robot].gear_ratio * wheel_speeds_of(robot)[wheel];
+  }
+
+  // What sensors could see now.
+  RobotInstant instant(std::size_t n) const {
+    RobotInstant p;
+    const BodyMotion m = std::visit([&](const auto& back) { return back.motion(q, u, n); }, mechanics);
+    p.time_s = now_s();
+    p.x_m = m.x_m, p.y_m = m.y_m, p.yaw_rad = m.yaw_rad;
+    p.gyro_rad_s = m.velocity.omega_body_rad_s;
+    p.accel_x_m_s2 = memory[n].accel_x_m_s2;
+    p.accel_y_m_s2 = memory[n].accel_y_m_s2;
+    p.bus_voltage_V = effect_memory[n].bus_voltage_V;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      p.theta_rotor_rad[i] = theta_rotor_rad(n, i);
+      p.omega_rotor_rad_s[i] = omega_rotor_rad_s(n, i);
+    }
+    p.charge_C = effect_memory[n].charge_C;
+    return p;
+  }
+  void remember(std::size_t n) {
+    if (effects[n]->looks_back()) histories[n].push(instant(n));
+  }
+
+  Sensing sensing(std::size_t n) const {
+    Sensing at{instant(n), now_ns, options.seed, n, {}};
+    for (std::size_t i = 0; i < kWheels; ++i) at.current_A[i] = memory[n].winding[i].current_A;
+    return at;
+  }
+
+  // Brings the mechanics' floor forces up to date with q and u.
+  template <typename Back>
+  void set_state(Back& back) {
+    if (!state_known) back.set_state(q, u);
+    state_known = true;
+  }
+
+  BridgeInput bridge_input(std::size_t n, std::size_t i) const {
+    const RobotMemory& mem = memory[n];
+    const bool open = mem.faults.phase_lost[i] && !electrics[n];
+    const std::uint32_t mode = open ? std::uint32_t{OMNIHIL_DRIVE_COAST} : mem.drive.mode[i];
+    return {mode, mem.drive.duty_ratio[i], mem.faults.supply_ratio * models[n].bus_voltage_V};
+  }
+
+  void begin_wheels(std::size_t n, const WheelContacts<double>& contacts) {
+    const RobotModel& model = models[n];
+    RobotMemory& mem = memory[n];
+    const double* omega_wheel = wheel_speeds_of(n);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const double contact_Nm = model.wheel_radius_m * contacts.force_longitudinal_N[i] / model.gear_ratio;
+      const BridgeInput bridge = bridge_input(n, i);
+      const WheelStep step = begin_wheel_step(drives[n][i], mem.winding[i], bridge,
+                                              model.gear_ratio * omega_wheel[i], contact_Nm);
+      wheel_steps[n][i] = step;
+      torques[n][i] = step.torque;
+    }
+  }
+
+  void begin_electric_wheels(std::size_t n, const std::array<WheelDriveInput, kWheels>& inputs) {
+    electrics[n]->begin_step(electric_memory[n], inputs, now_ns, controls[n], wheel_steps[n]);
+    if (effects[n]) effect_memory[n].bus_voltage_V = electric_memory[n].at_bridges_V();
+    for (std::size_t i = 0; i < kWheels; ++i) torques[n][i] = wheel_steps[n][i].torque;
+  }
+
+  // `more`: of floor effects; null: none.
+  std::array<WheelDriveInput, kWheels> wheel_inputs(std::size_t n, const WheelContacts<double>& contacts,
+                                                    const FloorForces* more) const {
+    const RobotModel& model = models[n];
+    const double* omega_wheel = wheel_speeds_of(n);
+    std::array<WheelDriveInput, kWheels> inputs;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      WheelDriveInput& in = inputs[i];
+      in.bridge = bridge_input(n, i);
+      in.phase_lost = memory[n].faults.phase_lost[i];
+      in.omega_wheel_rad_s = omega_wheel[i];
+      in.theta_wheel_rad = wheel_angles(n)[i];
+      const double radius_m = more != nullptr ? more->wheel_radius_m[i] : model.wheel_radius_m;
+      in.contact_Nm = radius_m * contacts.force_longitudinal_N[i] / model.gear_ratio;
+      if (more != nullptr) in.friction_rotor_Nm = more->friction_wheel_Nm[i] / model.gear_ratio;
+      if (memory[n].faults.blocked[i]) in.friction_rotor_Nm = kBlocked_Nm;
+    }
+    return inputs;
+  }
+
+  void begin_wheels_with_effects(std::size_t n, const std::array<WheelDriveInput, kWheels>& inputs) {
+    effects[n]->begin_step(healthy[n], effect_memory[n], inputs, wheel_steps[n]);
+    for (std::size_t i = 0; i < kWheels; ++i) torques[n][i] = wheel_steps[n][i].torque;
+  }
+
+  template <typename Back>
+  void step(Back& back) {
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (effects[n]) effects[n]->floor.dribbler_rad_s = memory[n].drive.dribbler_ratio * kDribblerFull_rad_s;
+    }
+    set_state(back);
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (electrics[n]) {
+        const FloorForces* more = effects[n] ? &back.floor_forces(n) : nullptr;
+        begin_electric_wheels(n, wheel_inputs(n, back.contacts(n), more));
+      } else if (effects[n]) {
+        begin_wheels_with_effects(n, wheel_inputs(n, back.contacts(n), &back.floor_forces(n)));
+      } else {
+        begin_wheels(n, back.contacts(n));
+      }
+    }
+    u_before = u;
+    integrate(options.integrator, back, torques, step_s, q, u, scratch);
+    state_known = false;
+    for (std::size_t n = 0; n < models.size(); ++n) end_robot(back, n);
+    now_ns += step_ns;
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      if (effects[n]) remember(n);
+    }
+  }
+
+  template <typename Back>
+  void end_robot(const Back& back, std::size_t n) {
+    const double* before = &u_before[n * layout.u_per_robot + layout.wheel_u];
+    double* after = wheel_speeds_of(n);
+    bool held = true;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      WheelStep& step = wheel_steps[n][i];
+      if (electrics[n]) {
+        after[i] = electrics[n]->end_wheel(i, step, before[i], after[i]);
+        memory[n].winding[i].current_A = electrics[n]->motor_current_A(electric_memory[n], i);
+        effect_memory[n].charge_C[i] += step.drive.mean_current_A * step_s;
+      } else if (effects[n]) {
+        after[i] = effects[n]->end_wheel(healthy[n], effect_memory[n], i, step, before[i], after[i]);
+        memory[n].winding[i].current_A = effect_memory[n].drive[i].current_A;
+      } else {
+        after[i] = end_wheel_step(drives[n][i], memory[n].winding[i], step, before[i], after[i]);
+      }
+      memory[n].motor_torque_Nm[i] = step.drive.mean_torque_Nm;
+      memory[n].current_sum_A[i] += step.drive.mean_current_A;
+      held = held && (step.torque.locked || (two_masses(n) && step.rotor_held));
+    }
+    ++memory[n].current_steps;
+    if (held && !free()) come_to_rest(n);
+    const double yaw_rad = back.motion(q, u, n).yaw_rad;
+    disturb(n, yaw_rad);
+    const double* v0 = field_velocity(u_before, n);
+    const double* v1 = field_velocity(u, n);
+    const double ax = (v1[0] - v0[0]) / step_s, ay = (v1[1] - v0[1]) / step_s;
+    memory[n].accel_x_m_s2 = std::cos(yaw_rad) * ax + std::sin(yaw_rad) * ay;
+    memory[n].accel_y_m_s2 = -std::sin(yaw_rad) * ax + std::cos(yaw_rad) * ay;
+  }
+
+  // The floor's viscous hold would let the speed fade for ever, into numbers that cost time to compute with.
+  void come_to_rest(std::size_t n) {
+    double* body = &u[n * layout.u_per_robot];
+    double* wheels = wheel_speeds_of(n);
+    const auto stands = [](double v_m_s) { return std::abs(v_m_s) < kStandstill_m_s; };
+    const bool rims_stand = std::all_of(
+        wheels, wheels + kWheels, [&](double omega) { return stands(omega * models[n].wheel_radius_m); });
+    if (stands(body[0] * models[n].wheel_center_radius_m) && stands(body[1]) && stands(body[2]) &&
+        rims_stand) {
+      body[0] = body[1] = body[2] = 0.0;
+      std::fill_n(wheels, kWheels, 0.0);
+    }
+  }
+
+  void report(std::size_t robot, std::string_view signal, std::size_t index) {
+    if (!fault) fault = PlantFault{now_ns, static_cast<int>(robot), signal, static_cast<int>(index)};
+  }
+
+  void look_for_fault() {
+    for (std::size_t n = 0; n < models.size() && !fault; ++n) {
+      const auto scan = [&](const double* values, std::size_t count, std::string_view signal) {
+        for (std::size_t i = 0; i < count; ++i) {
+          if (!std::isfinite(values[i])) report(n, signal, i);
+        }
+      };
+      for (const auto& legs : electric_memory[n].legs.leg_duty_ratio) scan(legs, kLegs, "leg_duty_ratio");
+      for (std::size_t i = 0; i < kWheels; ++i) {
+        if (!std::isfinite(memory[n].drive.duty_ratio[i])) report(n, "duty_ratio", i);
+        if (!std::isfinite(memory[n].winding[i].current_A)) report(n, "motor_current_A", i);
+      }
+      scan(wheel_speeds_of(n), kWheels, "omega_wheel_rad_s");
+      scan(wheel_angles(n), kWheels, "theta_wheel_rad");
+      scan(&u[n * layout.u_per_robot], layout.wheel_u, "body_velocity");
+      scan(&q[n * layout.q_per_robot], layout.wheel_q, "pose");
+    }
+  }
+
+  PlantOptions options;
+  std::vector<RobotModel> models;
+  AllEffects effects;  // before the mechanics, which points into it
+  Mechanics mechanics;
+  StateLayout layout;
+  std::int64_t step_ns = 0;  // of the mechanics: that of the options, or a part of it
+  double step_s = 0.0;
+  int substeps = 1;
+  std::int64_t now_ns = 0;
+  std::vector<double> q, u, u_before;
+  IntegratorScratch scratch;
+  std::vector<RobotMemory> memory;
+  std::vector<RobotEffectMemory> effect_memory;
+  std::vector<RobotHistory> histories;
+  std::vector<std::unique_ptr<ElectricWheels>> electrics;  // null: DC-equivalent on a constant bus
+  std::vector<ElectricMemory> electric_memory;
+  std::vector<MotorControl*> controls;
+  std::vector<WheelDriveLaw> healthy;                      // per robot
+  std::vector<std::array<WheelDriveLaw, kWheels>> drives;  // with the faults in force
+  std::vector<PlanarBody<double>> bodies;
+  std::vector<WheelTorques> torques;
+  std::vector<std::array<WheelStep, kWheels>> wheel_steps;
+  bool state_known = false;
+  std::optional<PlantFault> fault;
+};
+
+}  // namespace omnihil
