@@ -4,7 +4,7 @@
  * allocates, so that several robots run side by side and a state can be copied. The bench calls, in this
  * order, once per control period: command() or radio_receive() for what the radio brought, tick() with the
  * sensors, radio_transmit() until it returns 0, feedback() when telemetry is wanted. The firmware never
- * blocks, never allocates, never reads a clock: time arrives as now_us.
+ * blocks, never allocates, never reads a clock: time arrives as now_us. docs/firmware.md has it all.
  *
  * Units are SI and stand in every name. Frames: body x forward, y left, z up, drawn in
  * docs/frames-and-wheels.md. Wheel i sits at wheel_angle_rad[i] from x towards y; its positive direction
@@ -128,8 +128,8 @@ typedef struct omnihil_gains {
 
 /* What the firmware knows of itself: the source of every telemetry packet. */
 typedef struct omnihil_feedback {
-  uint64_t now_us;
-  uint32_t flags; /* OMNIHIL_FEEDBACK_* */
+  uint64_t now_us; /* of the last control period that ran; 0: it does not tell */
+  uint32_t flags;  /* OMNIHIL_FEEDBACK_* */
   uint32_t command_age_ms;
   double battery_V;
   double capacitor_V;

@@ -37,6 +37,10 @@ class Firmware {
   // and what it gives acts from the next period on.
   virtual bool drives_phases() const { return false; }
   virtual MotorDrive motor_tick(const MotorSensors&) { return {}; }
+  // Why it no longer answers (crash, hang, lock-up), in words; empty: it does. Its wheels coast from then on.
+  virtual std::string_view failure() const { return {}; }
+  // Control periods that were due and did not run, where this side can count them (an emulated image).
+  virtual std::uint64_t missed_control_periods() const { return 0; }
 };
 
 }  // namespace omnihil

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <ctime>
 #include <exception>
 #include <memory>
 
-#include "firmware_iface/host_firmware.h"
+#include "firmware_iface/firmware_checks.h"
 #include "hil/clock.h"
 #include "hil/pty_transport.h"
 #include "hil/recording_header.h"
@@ -61,6 +62,7 @@ class Bench {
   void say_ready() const;
   ServeEnd loop();
   bool step();
+  void note_failures();
   ServeStatus status() const;
   void finish_recording();
 
@@ -74,6 +76,7 @@ class Bench {
   std::string model_;  // as the user named it
   LinePace pace_;
   std::int64_t start_ns_ = 0;
+  std::vector<bool> failed_;  // per robot: its firmware answers no more, and that was said
   std::vector<std::uint8_t> host_;
   std::vector<std::uint8_t> answer_;
 };
@@ -125,7 +128,7 @@ ServeStatus Bench::status() const {
   s.from_robots = session_.link().from_robots();
   s.gains_refused = session_.gains_refused();
   for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
-    const auto* host = dynamic_cast<const HostFirmware*>(&session_.firmware(static_cast<int>(i)));
+    const auto* host = dynamic_cast<const CheckedFirmware*>(&session_.firmware(static_cast<int>(i)));
     if (host != nullptr) s.firmware_faults += host->faults().total();
   }
   s.port = port_->counts();
@@ -139,11 +142,24 @@ ServeStatus Bench::status() const {
   return s;
 }
 
+// A firmware that is no more takes its own robot out, not the bench.
+void Bench::note_failures() {
+  failed_.resize(session_.config().robot_ids.size());
+  for (std::size_t i = 0; i < failed_.size(); ++i) {
+    const std::string_view failure = session_.firmware(static_cast<int>(i)).failure();
+    if (failed_[i] || failure.empty()) continue;
+    failed_[i] = true;
+    complain(fmt::format("robot {}: firmware {}; its wheels coast from here on",
+                         session_.config().robot_ids[i], failure));
+  }
+}
+
 // One turn of the loop; false when the device failed.
 bool Bench::step() {
   std::error_code error = port_->receive(session_.now_ns(), host_);
   answer_.clear();
   session_.step(host_, answer_);
+  note_failures();
   if (!error) error = port_->send(session_.now_ns(), answer_);
   if (port_->take_host_closed()) session_.host_closed();
   if (error) complain("device " + options_.device + ": " + error.message());
@@ -208,6 +224,8 @@ ServeEnd Bench::run(RecordingHeader header) {
     end = ServeEnd::kDiverged;
   }
   finish_recording();
+  const bool firmware_failed = std::find(failed_.begin(), failed_.end(), true) != failed_.end();
+  if (end == ServeEnd::kDone && firmware_failed) end = ServeEnd::kFirmware;
   if (end == ServeEnd::kDone && writer_ && writer_->error()) end = ServeEnd::kIo;
   if (!options_.quiet) {
     fmt::print("{}", final_report(status()));

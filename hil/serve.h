@@ -33,6 +33,7 @@ enum class ServeEnd {
   kIo,        // a device or file could not be opened, read or written
   kDiverged,  // a state was not finite, or a fault inside
   kLate,      // strict, and this computer could not keep up
+  kFirmware,  // as kDone, but a robot's firmware crashed or hung on the way: its wheels coasted from then on
 };
 
 // `header` describes `config` for the recording. Throws std::invalid_argument naming every problem of

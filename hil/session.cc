@@ -160,6 +160,14 @@ void Session::step(std::span<const std::uint8_t> host, std::vector<std::uint8_t>
   out.insert(out.end(), s.answer.begin(), s.answer.end());
 }
 
+void Session::command(int robot_index, const RobotCommand& command) {
+  impl_->firmware[static_cast<std::size_t>(robot_index)]->command(command, impl_->now_ns);
+}
+
+void Session::set_faults(int robot_index, const RobotFaults& faults) {
+  impl_->plant.set_faults(robot_index, faults);
+}
+
 void Session::host_closed() {
   if (impl_->observer) impl_->observer->host_closed(impl_->now_ns);
   impl_->link->host_closed(impl_->now_ns);

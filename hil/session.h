@@ -80,6 +80,9 @@ class Session {
   // appended to `out`. Throws std::runtime_error naming time, robot and signal if a state is not finite.
   void step(std::span<const std::uint8_t> host, std::vector<std::uint8_t>& out);
   void host_closed();
+  // Past the radio: a command as the firmware's command() takes it; faults of the robot (robot_faults.h).
+  void command(int robot_index, const RobotCommand& command);
+  void set_faults(int robot_index, const RobotFaults& faults);
   // Gain sets that came over the air and that a robot's firmware refused.
   std::uint64_t gains_refused() const;
 

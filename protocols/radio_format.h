@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware_iface/robot_io.h"
 #include "protocols/field_table.h"
 #include "protocols/packet_error.h"
 
@@ -55,6 +56,9 @@ struct RadioFormat {
     std::string_view field;
   };
   EncodeResult (*encode)(const Values& values, std::vector<std::uint8_t>& out) = nullptr;
+  // Appends the frames with which a host asks robot `robot_id` for this. False: the format cannot say it, and
+  // nothing is appended. Null: nobody needed it yet.
+  bool (*encode_command)(const RobotCommand& command, int robot_id, std::vector<std::uint8_t>& out) = nullptr;
   // The dongle with the robots' radio ends behind it.
   std::unique_ptr<RadioLink> (*make_link)(const RadioLinkConfig& config) = nullptr;
 

@@ -147,6 +147,38 @@ RadioFormat::EncodeResult encode(const Values& values, std::vector<std::uint8_t>
   return {};
 }
 
+Values packet_to(std::string_view name, int robot_id) {
+  Values values;
+  for (const Message& message : kMessages) {
+    if (message.name == name) values.message = &message;
+  }
+  values.set("robot", robot_id);
+  return values;
+}
+
+// The loop's register first: a robot ignores velocities in the open loop and duties in the closed one.
+bool encode_command(const RobotCommand& command, int robot_id, std::vector<std::uint8_t>& out) {
+  const bool velocity = command.mode == OMNIHIL_MODE_BODY_VELOCITY;
+  if (!velocity && command.mode != OMNIHIL_MODE_WHEEL_DUTY) return false;
+  if (command.flags != 0 || command.kick != OMNIHIL_KICK_NONE || command.dribbler_ratio != 0.0) return false;
+  Values loop = packet_to("SET_REGISTER", robot_id);
+  loop.set("value", velocity ? 1.0 : 0.0);
+  Values wanted = packet_to(velocity ? "SPEED_MOVE" : "OPEN_LOOP_COMMAND", robot_id);
+  if (velocity) {
+    wanted.set("vx", command.v_forward_m_s);
+    wanted.set("vy", command.v_left_m_s);
+    wanted.set("vtheta", command.omega_body_rad_s);
+  } else {
+    constexpr std::string_view kDuties[] = {"cmd[0]", "cmd[1]", "cmd[2]", "cmd[3]"};
+    for (std::size_t w = 0; w < OMNIHIL_WHEELS; ++w) wanted.set(kDuties[w], command.duty_ratio[w]);
+  }
+  const std::size_t before = out.size();
+  if (encode(loop, out).error == PacketError::kNone && encode(wanted, out).error == PacketError::kNone)
+    return true;
+  out.resize(before);
+  return false;
+}
+
 }  // namespace
 
 extern const RadioFormat kFormat_ulaval_hermes;
@@ -180,6 +212,7 @@ constinit const RadioFormat kFormat_ulaval_hermes{
     .messages = kMessages,
     .decode = decode,
     .encode = encode,
+    .encode_command = encode_command,
     .make_link = [](const RadioLinkConfig& config) { return make_hermes_dongle(config); },
 };
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Runs the commands of a page and compares what they print with what the page shows.
 
-    console_docs.py --check PROGRAM PAGE     exit 1 and a list when the page is not what the program says today
-    console_docs.py --write PROGRAM PAGE     puts today's output into the page
+    console_docs.py --check PROGRAM PAGE [FILE…]     exit 1 and a list when the page is not what the program says today
+    console_docs.py --write PROGRAM PAGE [FILE…]     puts today's output into the page
 
 A block fenced with ```console holds lines `$ omnihil …` and below each what it prints. All blocks of a page run in order in
-one empty folder. Words have to be the same; numbers may differ by 3 %, or by two units of the last digit that is shown; below 1e-9 all are 0.
+one folder that holds nothing but the FILEs. Words have to be the same; numbers may differ by 3 %, or by two units of the last digit that is shown; below 1e-9 all are 0.
 """
 import pathlib
 import re
@@ -50,12 +50,14 @@ def differences(shown, said):
 
 
 def main():
-    if len(sys.argv) != 4 or sys.argv[1] not in ("--check", "--write"):
+    if len(sys.argv) < 4 or sys.argv[1] not in ("--check", "--write"):
         print(__doc__)
         return 2
     program, page = str(pathlib.Path(sys.argv[2]).resolve()), pathlib.Path(sys.argv[3])
     text, bad, count = page.read_text(encoding="utf-8"), [], 0
     with tempfile.TemporaryDirectory() as folder:
+        for file in map(pathlib.Path, sys.argv[4:]):
+            (pathlib.Path(folder) / file.name).symlink_to(file.resolve())
         def block(match):
             nonlocal count
             out = ""

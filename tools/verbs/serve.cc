@@ -11,10 +11,10 @@
 #include "hil/effect_overrides.h"
 #include "hil/model_store.h"
 #include "hil/recording_header.h"
-#include "hil/reference_firmware.h"
 #include "hil/session_setup.h"
 #include "protocols/radio_format.h"
 #include "tools/exit_codes.h"
+#include "tools/firmware_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -38,6 +38,7 @@ struct Words {  // as the user gave them
   std::vector<std::string> with;
   SessionSetup setup;
   ServeOptions options;
+  FirmwareChoice firmware;
 };
 
 void complain(const std::string& lines) { std::fprintf(stderr, "omnihil serve:\n%s\n", lines.c_str()); }
@@ -92,7 +93,8 @@ int run(Words& words) {
     RecordingHeader header = recording_header(words.setup, program_commit());
     header.sample_every = words.sample_every;
     const SessionConfig config = session_config(words.setup);
-    const ServeEnd end = serve(config, reference_firmware_for(config), std::move(header), words.options);
+    const ServeEnd end =
+        serve(config, open_firmware(words.firmware, config), std::move(header), words.options);
     switch (end) {
       case ServeEnd::kDone:
         return kExitOk;
@@ -102,6 +104,8 @@ int run(Words& words) {
         return kExitDiverged;
       case ServeEnd::kLate:
         return kExitLate;
+      case ServeEnd::kFirmware:
+        return kExitFirmware;
     }
   } catch (const std::invalid_argument& error) {
     complain(error.what());
@@ -127,6 +131,7 @@ void add_verb_serve(CLI::App& app, VerbResult& result) {
   verb->add_option("--team", w.team, "team colour")
       ->check(CLI::IsMember({"blue", "yellow"}))
       ->capture_default_str();
+  add_firmware_options(*verb, w.firmware);
   verb->add_option("--record", w.options.record, "write a recording to this file");
   verb->add_option("--sample-every", w.sample_every,
                    "of each robot's control ticks, record every Nth (bytes are all recorded)")

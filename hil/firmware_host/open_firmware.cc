@@ -1,0 +1,74 @@
+#include "hil/firmware_host/open_firmware.h"
+
+#include <elf.h>
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include "hil/firmware_host/guarded_firmware.h"
+#include "hil/reference_firmware.h"
+#include "hil/session_checks.h"
+#include "hil/text_file.h"
+#include "sim/robot/electric_model.h"
+
+namespace omnihil {
+namespace {
+
+// What kind of file it is by its first bytes (System V ABI, ELF header); empty: a shared object.
+std::string why_no_library(const std::string& text) {
+  Elf32_Ehdr head{};  // type and machine are at the same place in both classes
+  if (text.size() < sizeof head || std::memcmp(text.data(), ELFMAG, SELFMAG) != 0) {
+    return "is no shared object (no ELF file)";
+  }
+  std::memcpy(&head, text.data(), sizeof head);
+  if (head.e_type == ET_DYN) return {};
+  return fmt::format("is an ELF file of type {} for machine {}; needed: a shared object of this computer",
+                     head.e_type, head.e_machine);
+}
+
+std::vector<std::string> problems_of(const FirmwareChoice& choice) {
+  std::vector<std::string> problems;
+  std::string error;
+  const std::string text = read_text_file(choice.file, error);
+  if (error.empty()) error = why_no_library(text);
+  if (!error.empty()) problems.push_back(fmt::format("firmware {}: {}", choice.file, error));
+  if (!choice.board.empty()) {
+    problems.push_back(
+        fmt::format("board {}: belongs to a microcontroller image; a shared object has none", choice.board));
+  }
+  if (!(choice.deadline_s > 0.0 && choice.deadline_s <= 3600.0)) {
+    problems.push_back(
+        fmt::format("firmware deadline: {} s; allowed: above 0, up to 3600 s", choice.deadline_s));
+  }
+  return problems;
+}
+
+Session::FirmwareMaker library_maker(const FirmwareChoice& choice, const SessionConfig& session) {
+  std::map<std::uint32_t, std::optional<MotorConfig>> motors;
+  for (std::size_t i = 0; i < std::min(session.robots.size(), session.robot_ids.size()); ++i) {
+    const RobotModel& model = session.robots[i];
+    auto& of_robot = motors[static_cast<std::uint32_t>(session.robot_ids[i])];
+    if (electrics_of(model).three_phase()) of_robot = motor_config(model);
+  }
+  const GuardedLibrary library{choice.file, choice.deadline_s};
+  return [library, motors = std::move(motors)](const RobotConfig& config) -> std::unique_ptr<Firmware> {
+    return std::make_unique<GuardedFirmware>(library, config, motors.at(config.robot_id));
+  };
+}
+
+}  // namespace
+
+Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session) {
+  if (choice.file.empty()) {
+    if (!choice.board.empty()) {
+      throw_problems({fmt::format("board {}: needs --firmware IMAGE beside it", choice.board)});
+    }
+    return reference_firmware_for(session);
+  }
+  throw_problems(problems_of(choice));
+  return library_maker(choice, session);
+}
+
+}  // namespace omnihil

@@ -1,0 +1,26 @@
+// The firmware that a user names, as a session takes it. Used by every verb that runs one.
+//
+//   FirmwareChoice choice{.file = "./libmyteam.so"};
+//   Session session(config, open_firmware(choice, config));
+//
+//   (empty)            the reference firmware that the robot's model asks for, in this process
+//   a shared object    of this computer: by the C ABI (omnihil_firmware.h), each robot in a process of its
+//   own
+#pragma once
+#include <string>
+#include <vector>
+
+#include "hil/session.h"
+
+namespace omnihil {
+
+struct FirmwareChoice {
+  std::string file;          // empty: the reference firmware
+  std::string board;         // board file of a microcontroller image
+  double deadline_s = 10.0;  // of wall time: a call that takes longer hangs
+};
+
+// Throws std::invalid_argument, all problems in one text; the maker does, too, when a robot is refused.
+Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session);
+
+}  // namespace omnihil

@@ -1,0 +1,110 @@
+// A scenario: what is done to one robot with its firmware at which instants, and what must come of it.
+//
+//   ScenarioReading reading = read_scenario(text, "wheel_step.toml");
+//   if (!reading.scenario) …reading.problems…
+//
+// Text form, a step and a check (scenario_help.h prints all of them):
+//   format = "omnihil-scenario/1"
+//   title = "Wheel speed step"
+//   duration_s = 1.5
+//   stand = true                       # the robot on a stand: no wheel touches the floor
+//   [[step]]
+//   at_s = 0.1
+//   do = "command"
+//   omega_wheel_rad_s = 20.0           # one for all, or [w0, w1, w2, w3]
+//   [[check]]
+//   is = "rise_time"
+//   at_most_s = 0.30
+//
+// Instants are whole milliseconds of virtual time. Every number's key ends in its unit.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_iface/robot_io.h"
+#include "sim/core/model_file.h"
+
+namespace omnihil {
+
+enum class StepKind : std::uint8_t {
+  kCommand,
+  kDisturb,
+  kRadioSilence,
+  kBrownOut,
+  kEncoderStuck,
+  kPhaseLost,
+  kWindingHot,
+  kWheelLifted,
+  kWheelBlocked,
+};
+
+using WheelSet = std::array<bool, kWheels>;
+
+struct ScenarioStep {
+  StepKind kind = StepKind::kCommand;
+  double at_s = 0.0;
+  double until_s = 0.0;  // end of a disturbance or fault; the run's end where none is given
+  int line = 0;
+  WheelSet wheels{};       // of a fault of wheels
+  RobotCommand command{};  // kCommand
+  double force_forward_N = 0.0, force_left_N = 0.0, moment_Nm = 0.0;
+  double supply_ratio = 1.0;
+  double rise_K = 0.0;
+};
+
+enum class CheckKind : std::uint8_t {
+  kRiseTime,
+  kOvershoot,
+  kSettlingTime,
+  kSteadyError,
+  kCommandedSign,
+  kStopsAfterSilence,
+  kWindUp,
+  kCurrentLimit,
+  kDutyLimit,
+  kControlPeriods,
+  kSignal,
+};
+
+struct ScenarioCheck {
+  CheckKind kind = CheckKind::kSignal;
+  int line = 0;
+  double from_s = 0.0, to_s = 0.0;
+  WheelSet wheels{};
+  std::string_view signal;                  // of scenario_signals.h
+  std::optional<double> at_most, at_least;  // in the check's unit
+  double band_ratio = 0.05;                 // kSettlingTime
+  double standstill_rad_s = 1.0;            // kStopsAfterSilence
+  bool magnitude = false;                   // kSignal: of the value's size
+};
+
+enum class CommandPath : std::uint8_t {
+  kAny,    // by radio where the firmware decodes one that can say it, else as SI command
+  kRadio,  // by radio or not at all
+  kHal,    // as SI command
+};
+
+struct Scenario {
+  std::string file, title, what;
+  std::string level = "wheel";  // "wheel": means something for a firmware of one wheel, too; "robot"
+  std::string robot = "omni_default";
+  bool stand = false;
+  CommandPath path = CommandPath::kAny;
+  double duration_s = 0.0;
+  double command_every_s = 0.01;
+  std::vector<ScenarioStep> steps;  // by time
+  std::vector<ScenarioCheck> checks;
+};
+
+struct ScenarioReading {
+  std::optional<Scenario> scenario;  // only without problems
+  std::vector<ModelProblem> problems;
+};
+
+ScenarioReading read_scenario(std::string_view text, const std::string& file);
+
+}  // namespace omnihil

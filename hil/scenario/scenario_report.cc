@@ -1,0 +1,117 @@
+#include "hil/scenario/scenario_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace omnihil {
+namespace {
+
+std::size_t failed_of(std::span<const CheckResult> results) {
+  return static_cast<std::size_t>(std::ranges::count(results, false, &CheckResult::passed));
+}
+
+std::string wheel_text(const CheckResult& r) {
+  return r.wheel < 0 ? std::string() : fmt::format("wheel {}", r.wheel);
+}
+
+// A failed check of a run that broke off, or one whose numbers say it all.
+std::string detail(const CheckResult& r) {
+  std::string text;
+  if (r.measured || r.allowed) text = fmt::format("{:<14} {}", r.measured_text(), r.allowed_text());
+  if (!r.passed || !r.note.empty()) {
+    if (r.measured || r.note.empty()) text += fmt::format(", at {:.3f} s", r.at_s);
+    if (!r.note.empty()) text += (text.empty() ? "" : ": ") + r.note;
+  }
+  return text;
+}
+
+std::string xml(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) >= 0x20 || c == '\n') out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+bool ScenarioOutcome::passed() const { return failed_of(results) == 0; }
+
+std::string scenario_text(const ScenarioOutcome& o, bool all) {
+  std::string text =
+      fmt::format("{}  {}: {}\n", o.passed() ? "ok  " : "FAIL", o.scenario.file, o.scenario.title);
+  for (const CheckResult& r : o.results) {
+    if (r.passed && !all) continue;
+    text +=
+        fmt::format("  {}  {:<22} {:<8} {}\n", r.passed ? "ok  " : "FAIL", r.name, wheel_text(r), detail(r));
+  }
+  if (!o.plot.empty()) text += fmt::format("  plot  {}\n", o.plot);
+  return text;
+}
+
+std::string failure_line(const CheckResult& r) {
+  std::string text = r.name;
+  if (r.wheel >= 0) text += fmt::format(" wheel {}", r.wheel);
+  text += ":";
+  if (r.measured || r.allowed) text += fmt::format(" {}, {},", r.measured_text(), r.allowed_text());
+  text += fmt::format(" at {:.3f} s", r.at_s);
+  if (!r.note.empty()) text += ": " + r.note;
+  if (r.line > 0) text += fmt::format(" (line {})", r.line);
+  return text;
+}
+
+std::string summary_line(std::span<const ScenarioOutcome> outcomes) {
+  std::size_t checks = 0, failed = 0, scenarios_failed = 0;
+  for (const ScenarioOutcome& o : outcomes) {
+    checks += o.results.size();
+    failed += failed_of(o.results);
+    scenarios_failed += o.passed() ? 0 : 1;
+  }
+  return fmt::format("{} scenarios, {} failed; {} checks, {} failed\n", outcomes.size(), scenarios_failed,
+                     checks, failed);
+}
+
+std::string junit_xml(std::span<const ScenarioOutcome> outcomes) {
+  std::size_t checks = 0, failed = 0;
+  for (const ScenarioOutcome& o : outcomes) checks += o.results.size(), failed += failed_of(o.results);
+  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  out += fmt::format("<testsuites name=\"omnihil scenario\" tests=\"{}\" failures=\"{}\">\n", checks, failed);
+  for (const ScenarioOutcome& o : outcomes) {
+    out +=
+        fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\">\n",
+                    xml(o.scenario.title), o.results.size(), failed_of(o.results), o.scenario.duration_s);
+    out += fmt::format("    <properties><property name=\"firmware\" value=\"{}\"/></properties>\n",
+                       xml(o.firmware));
+    for (const CheckResult& r : o.results) {
+      const std::string name = r.wheel < 0 ? r.name : fmt::format("{} wheel {}", r.name, r.wheel);
+      out += fmt::format("    <testcase classname=\"{}\" name=\"{}\" file=\"{}\" line=\"{}\" time=\"{:.3f}\"",
+                         xml(o.scenario.file), xml(name), xml(o.scenario.file), r.line, r.to_s - r.from_s);
+      if (r.passed) {
+        out += "/>\n";
+        continue;
+      }
+      const std::string line = xml(failure_line(r));
+      out += fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n", line, line);
+    }
+    out += "  </testsuite>\n";
+  }
+  return out + "</testsuites>\n";
+}
+
+}  // namespace omnihil

@@ -1,0 +1,32 @@
+// What came of scenarios: lines for people, JUnit XML for machines.
+//
+//   std::fputs(scenario_text(outcome, false).c_str(), stdout);
+//   write(junit_xml(outcomes));
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hil/scenario/scenario_check.h"
+
+namespace omnihil {
+
+struct ScenarioOutcome {
+  Scenario scenario;
+  std::string firmware, commands;
+  std::vector<CheckResult> results;
+  bool firmware_failed = false;
+  std::string plot;  // file; empty: none
+
+  bool passed() const;
+};
+
+// One block; `all`: passed checks too, else the failed ones alone.
+std::string scenario_text(const ScenarioOutcome& outcome, bool all);
+// "rise_time wheel 2: 0.412 s, at most 0.3 s, at 0.512 s (line 14)"
+std::string failure_line(const CheckResult& result);
+std::string summary_line(std::span<const ScenarioOutcome> outcomes);
+// testsuites / testsuite per file / testcase per check and wheel. Times are of the simulated robot.
+std::string junit_xml(std::span<const ScenarioOutcome> outcomes);
+
+}  // namespace omnihil

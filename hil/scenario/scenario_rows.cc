@@ -1,0 +1,70 @@
+#include "hil/scenario/scenario_rows.h"
+
+#include <algorithm>
+
+namespace omnihil {
+namespace {
+
+constexpr StepRow kSteps[] = {
+    {StepKind::kCommand, "command", false, false,
+     "v_forward_m_s v_left_m_s omega_body_rad_s omega_wheel_rad_s duty_ratio coast",
+     "what the host asks for, sent again every command_every_ms until the next command: a body velocity, or "
+     "wheel speeds, or duties (one number for all wheels or four), or coast = true",
+     "at_s = 0.1, do = \"command\", v_forward_m_s = 1.0"},
+    {StepKind::kDisturb, "disturb", true, false, "force_forward_N force_left_N moment_Nm",
+     "a force on the body at its middle, body frame; a moment about the vertical",
+     "at_s = 1.0, for_s = 0.2, do = \"disturb\", force_left_N = 5.0"},
+    {StepKind::kRadioSilence, "radio_silence", true, false, "", "no packet reaches the robot",
+     "at_s = 1.0, do = \"radio_silence\""},
+    {StepKind::kBrownOut, "brown_out", true, false, "supply_ratio",
+     "the supply dips to this part of its voltage, for bridges and voltage sensor alike",
+     "at_s = 1.0, for_s = 0.1, do = \"brown_out\", supply_ratio = 0.6"},
+    {StepKind::kEncoderStuck, "encoder_stuck", true, true, "", "the counts stay as they were",
+     "at_s = 1.0, do = \"encoder_stuck\", wheels = [2]"},
+    {StepKind::kPhaseLost, "phase_lost", true, true, "",
+     "the motor's winding is open; of a three-phase drive one leg of the bridge is dead",
+     "at_s = 1.0, do = \"phase_lost\", wheels = [0]"},
+    {StepKind::kWindingHot, "winding_hot", true, true, "rise_K",
+     "the winding is this much hotter than at its rated resistance",
+     "at_s = 0.0, do = \"winding_hot\", wheels = [0, 1], rise_K = 80.0"},
+    {StepKind::kWheelLifted, "wheel_lifted", true, true, "", "the wheel is in the air",
+     "at_s = 1.0, for_s = 0.3, do = \"wheel_lifted\", wheels = [3]"},
+    {StepKind::kWheelBlocked, "wheel_blocked", true, true, "", "the wheel stands, whatever turns it",
+     "at_s = 0.5, for_s = 1.0, do = \"wheel_blocked\", wheels = [0]"},
+};
+
+constexpr CheckRow kChecks[] = {
+    {CheckKind::kRiseTime, "rise_time", "s", "s", true, true, "",
+     "time from from_s until 90 % of the way to the commanded value is covered"},
+    {CheckKind::kOvershoot, "overshoot", "ratio", "", true, true, "",
+     "largest excess over the commanded value, as part of the step's height"},
+    {CheckKind::kSettlingTime, "settling_time", "s", "s", true, true, "band_ratio",
+     "time from from_s after which the value stays within band_ratio of the step's height (0.05)"},
+    {CheckKind::kSteadyError, "steady_error", "ratio", "", true, true, "",
+     "mean deviation from the commanded value over the window's last fifth, as part of it"},
+    {CheckKind::kCommandedSign, "commanded_sign", "", "rad/s", true, true, "",
+     "the wheel turns the way it is commanded (mean over the window's last half)"},
+    {CheckKind::kStopsAfterSilence, "stops_after_silence", "s", "s", true, false, "standstill_rad_s",
+     "time from the start of radio_silence until the wheel stands for good (slower than standstill_rad_s, "
+     "1)"},
+    {CheckKind::kWindUp, "wind_up", "ratio", "", true, false, "",
+     "largest excess over the commanded wheel speed after a blocked wheel is released, as part of it"},
+    {CheckKind::kCurrentLimit, "current_limit", "A", "A", true, false, "", "largest motor current"},
+    {CheckKind::kDutyLimit, "duty_limit", "ratio", "", true, false, "",
+     "largest duty asked for; requests that no bridge can take fail it, too"},
+    {CheckKind::kControlPeriods, "control_periods", "count", "", false, false, "",
+     "control periods that were due and did not run"},
+    {CheckKind::kSignal, "signal", "", "", true, false, "signal magnitude",
+     "a signal within at_least_… and at_most_… throughout the window; magnitude = true: its size"},
+};
+
+}  // namespace
+
+std::span<const StepRow> step_rows() { return kSteps; }
+std::span<const CheckRow> check_rows() { return kChecks; }
+
+const StepRow& row_of(StepKind kind) { return *std::ranges::find(kSteps, kind, &StepRow::kind); }
+
+const CheckRow& row_of(CheckKind kind) { return *std::ranges::find(kChecks, kind, &CheckRow::kind); }
+
+}  // namespace omnihil

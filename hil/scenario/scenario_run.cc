@@ -1,0 +1,209 @@
+#include "hil/scenario/scenario_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "firmware_iface/firmware_checks.h"
+#include "hil/session_checks.h"
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+namespace {
+
+std::int64_t ns(double time_s) { return std::llround(time_s * 1e3) * 1'000'000; }
+
+class Bench : public SessionObserver {
+ public:
+  Bench(const Scenario& scenario, const SessionConfig& config, const Session::FirmwareMaker& make_firmware)
+      : scenario_(scenario),
+        geometry_(wheel_geometry(config.robots.at(0))),
+        model_(config.robots.at(0)),
+        robot_id_(config.robot_ids.at(0)),
+        session_(config, make_firmware) {
+    session_.set_observer(this);
+    const RadioFormat* format = find_radio_format(config.radio_format);
+    const bool decodes = session_.firmware(0).radio_format() == config.radio_format;
+    if (decodes && format->encode_command != nullptr && scenario.path != CommandPath::kHal) format_ = format;
+    if (scenario.path == CommandPath::kRadio && format_ == nullptr) {
+      throw_problems(
+          {fmt::format("{}: commands = \"radio\": firmware \"{}\" decodes no radio format that a "
+                       "host's commands can be written in",
+                       scenario.file, session_.firmware(0).name())});
+    }
+  }
+
+  ScenarioRun run() {
+    run_.firmware = session_.firmware(0).name();
+    const std::int64_t end_ns = ns(scenario_.duration_s);
+    try {
+      while (session_.now_ns() < end_ns && run_.failure.empty()) {
+        begin_and_end_steps();
+        session_.step(host_packet(), answer_);
+        answer_.clear();
+        note_failure();
+      }
+    } catch (const std::runtime_error& error) {
+      run_.failure = error.what();
+    }
+    run_.commands = format_ != nullptr && !past_radio_
+                        ? fmt::format("commands by radio {}", session_.config().radio_format)
+                        : std::string("commands past the radio");
+    return std::move(run_);
+  }
+
+  void robot_tick(std::int64_t at_ns, const RobotSample& robot) override {
+    sample_.robot = robot;
+    // a control period that ran leaves its instant in the feedback; 0: this firmware does not tell
+    if (robot.feedback.now_us != 0 && robot.feedback.now_us != robot.sensors.now_us) ++stale_periods_;
+    sample_.missed_periods =
+        static_cast<double>(stale_periods_ + session_.firmware(0).missed_control_periods());
+    if (const auto* checked = dynamic_cast<const CheckedFirmware*>(&session_.firmware(0))) {
+      sample_.refused_requests = static_cast<double>(checked->faults().total());
+    }
+    run_.trace.add(static_cast<double>(at_ns) * 1e-9, sample_);
+  }
+
+ private:
+  void note_failure() {
+    const std::string_view failure = session_.firmware(0).failure();
+    if (failure.empty()) return;
+    run_.failure = failure;
+    run_.firmware_failed = true;
+  }
+
+  void begin_and_end_steps() {
+    const std::int64_t now_ns = session_.now_ns();
+    RobotFaults faults;
+    if (scenario_.stand) faults.lifted.fill(true);
+    silent_ = false;
+    for (const ScenarioStep& step : scenario_.steps) {
+      if (step.kind == StepKind::kCommand) {
+        if (ns(step.at_s) == now_ns) take_command(step.command);
+      } else if (ns(step.at_s) <= now_ns && now_ns < ns(step.until_s)) {
+        apply(step, faults);
+      }
+    }
+    if (faults != session_.plant().faults(0)) session_.set_faults(0, faults);
+  }
+
+  void apply(const ScenarioStep& step, RobotFaults& faults) {
+    const auto join = [&step](std::array<bool, kWheels>& set) {
+      for (std::size_t w = 0; w < kWheels; ++w) set[w] = set[w] || step.wheels[w];
+    };
+    switch (step.kind) {
+      case StepKind::kDisturb:
+        faults.force_forward_N += step.force_forward_N;
+        faults.force_left_N += step.force_left_N;
+        faults.moment_Nm += step.moment_Nm;
+        break;
+      case StepKind::kRadioSilence:
+        silent_ = true;
+        break;
+      case StepKind::kBrownOut:
+        faults.supply_ratio *= step.supply_ratio;
+        break;
+      case StepKind::kEncoderStuck:
+        join(faults.encoder_stuck);
+        break;
+      case StepKind::kPhaseLost:
+        join(faults.phase_lost);
+        break;
+      case StepKind::kWindingHot:
+        for (std::size_t w = 0; w < kWheels; ++w) {
+          if (step.wheels[w]) faults.winding_rise_K[w] = step.rise_K;
+        }
+        break;
+      case StepKind::kWheelLifted:
+        join(faults.lifted);
+        break;
+      case StepKind::kWheelBlocked:
+        join(faults.blocked);
+        break;
+      case StepKind::kCommand:
+        break;
+    }
+  }
+
+  // What the command means for body and wheels, eq. (5). A duty: the speed at which it meets the back-EMF.
+  void take_command(const RobotCommand& command) {
+    command_ = command;
+    sample_.commanded = true;
+    next_packet_ns_ = session_.now_ns();
+    auto& wheels = sample_.wanted_wheel_rad_s;
+    if (command.mode == OMNIHIL_MODE_BODY_VELOCITY) {
+      sample_.wanted_body = {command.v_forward_m_s, command.v_left_m_s, command.omega_body_rad_s};
+      wheels = wheel_speeds(geometry_, sample_.wanted_body);
+      return;
+    }
+    const double idle_rad_s =
+        model_.bus_voltage_V / model_.motor.torque_constant_Nm_per_A / model_.gear_ratio;
+    for (std::size_t w = 0; w < kWheels; ++w) {
+      wheels[w] = command.mode == OMNIHIL_MODE_WHEEL_SPEED  ? command.omega_wheel_rad_s[w]
+                  : command.mode == OMNIHIL_MODE_WHEEL_DUTY ? command.duty_ratio[w] * idle_rad_s
+                                                            : 0.0;
+    }
+    sample_.wanted_body = body_velocity(geometry_, wheels);
+  }
+
+  // A format without wheel speeds: the body velocity that asks for just these, if there is one.
+  RobotCommand as_body_velocity(const RobotCommand& command) const {
+    if (command.mode != OMNIHIL_MODE_WHEEL_SPEED) return command;
+    constexpr double kSame_rad_s = 1e-6;
+    const std::array<double, kWheels> back = wheel_speeds(geometry_, sample_.wanted_body);
+    for (std::size_t w = 0; w < kWheels; ++w) {
+      if (std::abs(back[w] - command.omega_wheel_rad_s[w]) > kSame_rad_s) return command;
+    }
+    RobotCommand body{};
+    body.mode = OMNIHIL_MODE_BODY_VELOCITY;
+    body.v_forward_m_s = sample_.wanted_body.v_forward_m_s;
+    body.v_left_m_s = sample_.wanted_body.v_left_m_s;
+    body.omega_body_rad_s = sample_.wanted_body.omega_body_rad_s;
+    return body;
+  }
+
+  // What the host writes now: due commands, by radio as bytes; else they go to the firmware at once.
+  std::span<const std::uint8_t> host_packet() {
+    packet_.clear();
+    if (!sample_.commanded || session_.now_ns() < next_packet_ns_) return packet_;
+    next_packet_ns_ += ns(scenario_.command_every_s);
+    if (silent_) return packet_;
+    if (format_ != nullptr) {
+      if (format_->encode_command(command_, robot_id_, packet_)) return packet_;
+      if (format_->encode_command(as_body_velocity(command_), robot_id_, packet_)) return packet_;
+      if (scenario_.path == CommandPath::kRadio) {
+        throw std::invalid_argument(
+            fmt::format("{}: commands = \"radio\": {} cannot say the command at {:g} s", scenario_.file,
+                        format_->id, static_cast<double>(session_.now_ns()) * 1e-9));
+      }
+    }
+    past_radio_ = true;
+    session_.command(0, command_);
+    return packet_;
+  }
+
+  const Scenario& scenario_;
+  WheelGeometry<double> geometry_;
+  RobotModel model_;
+  int robot_id_;
+  Session session_;
+  const RadioFormat* format_ = nullptr;  // null: commands go past the radio
+  bool past_radio_ = false, silent_ = false;
+  RobotCommand command_{};
+  std::int64_t next_packet_ns_ = 0;
+  ScenarioSample sample_;
+  std::uint64_t stale_periods_ = 0;
+  std::vector<std::uint8_t> packet_, answer_;
+  ScenarioRun run_;
+};
+
+}  // namespace
+
+ScenarioRun run_scenario(const Scenario& scenario, const SessionConfig& config,
+                         const Session::FirmwareMaker& make_firmware) {
+  return Bench(scenario, config, make_firmware).run();
+}
+
+}  // namespace omnihil

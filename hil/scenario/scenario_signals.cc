@@ -1,0 +1,73 @@
+#include "hil/scenario/scenario_signals.h"
+
+#include <algorithm>
+
+namespace omnihil {
+namespace {
+
+using S = const ScenarioSample&;
+using W = std::size_t;
+
+constexpr ScenarioSignal kSignals[] = {
+    {"omega_wheel_rad_s", "rad_s", "rad/s", true, "omega_wheel_commanded_rad_s", "true wheel speed",
+     [](S s, W w) { return s.robot.truth.omega_wheel_rad_s[w]; }},
+    {"omega_wheel_commanded_rad_s", "rad_s", "rad/s", true, "",
+     "what the command means for this wheel, by eq. (5)", [](S s, W w) { return s.wanted_wheel_rad_s[w]; }},
+    {"omega_wheel_reported_rad_s", "rad_s", "rad/s", true, "omega_wheel_commanded_rad_s",
+     "wheel speed that the firmware reports", [](S s, W w) { return s.robot.feedback.omega_wheel_rad_s[w]; }},
+    {"duty_ratio", "ratio", "", true, "", "duty that the firmware asks for",
+     [](S s, W w) { return s.robot.drive.duty_ratio[w]; }},
+    {"motor_current_A", "A", "A", true, "", "true motor current at the control period's start",
+     [](S s, W w) { return s.robot.truth.motor_current_A[w]; }},
+    {"slip_ratio", "ratio", "", true, "", "true slip of the wheel",
+     [](S s, W w) { return s.robot.truth.slip_longitudinal_ratio[w]; }},
+    {"v_forward_m_s", "m_s", "m/s", false, "v_forward_commanded_m_s", "true velocity, body frame",
+     [](S s, W) { return s.robot.truth.v_forward_m_s; }},
+    {"v_left_m_s", "m_s", "m/s", false, "v_left_commanded_m_s", "the same, to the left",
+     [](S s, W) { return s.robot.truth.v_left_m_s; }},
+    {"omega_body_rad_s", "rad_s", "rad/s", false, "omega_body_commanded_rad_s", "true yaw rate",
+     [](S s, W) { return s.robot.truth.omega_body_rad_s; }},
+    {"v_forward_commanded_m_s", "m_s", "m/s", false, "", "as commanded",
+     [](S s, W) { return s.wanted_body.v_forward_m_s; }},
+    {"v_left_commanded_m_s", "m_s", "m/s", false, "", "as commanded",
+     [](S s, W) { return s.wanted_body.v_left_m_s; }},
+    {"omega_body_commanded_rad_s", "rad_s", "rad/s", false, "", "as commanded",
+     [](S s, W) { return s.wanted_body.omega_body_rad_s; }},
+    {"yaw_rad", "rad", "rad", false, "", "true heading", [](S s, W) { return s.robot.truth.yaw_rad; }},
+    {"bus_voltage_V", "V", "V", false, "", "at the bridges, as measured",
+     [](S s, W) { return s.robot.sensors.bus_voltage_V; }},
+    {"missed_periods_count", "count", "", false, "", "control periods that did not run, so far",
+     [](S s, W) { return s.missed_periods; }},
+    {"refused_requests_count", "count", "", false, "", "bridge requests that no bridge can take, so far",
+     [](S s, W) { return s.refused_requests; }},
+};
+
+}  // namespace
+
+std::span<const ScenarioSignal> scenario_signals() { return kSignals; }
+
+const ScenarioSignal* find_scenario_signal(std::string_view name) {
+  const auto found = std::ranges::find(kSignals, name, &ScenarioSignal::name);
+  return found == std::end(kSignals) ? nullptr : found;
+}
+
+ScenarioTrace::ScenarioTrace() : columns_(std::size(kSignals) * kWheels) {}
+
+void ScenarioTrace::add(double now_s, const ScenarioSample& sample) {
+  time_s_.push_back(now_s);
+  for (std::size_t n = 0; n < std::size(kSignals); ++n) {
+    const std::size_t count = kSignals[n].of_wheels ? kWheels : 1;
+    for (std::size_t w = 0; w < count; ++w) {
+      columns_[n * kWheels + w].push_back(kSignals[n].value(sample, w));
+    }
+  }
+}
+
+std::span<const double> ScenarioTrace::column(std::string_view signal, std::size_t wheel) const {
+  const ScenarioSignal* row = find_scenario_signal(signal);
+  if (row == nullptr) return {};
+  const auto n = static_cast<std::size_t>(row - kSignals);
+  return columns_[n * kWheels + (row->of_wheels ? wheel : 0)];
+}
+
+}  // namespace omnihil

@@ -1,0 +1,52 @@
+// The signals a scenario's checks and plots look at, and the record of a run: one row per control period.
+//
+//   ScenarioTrace trace;
+//   trace.add(now_s, sample_of(…));
+//   std::span<const double> y = trace.column("omega_wheel_rad_s", 2);
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hil/session.h"
+#include "sim/robot/geometry.h"
+
+namespace omnihil {
+
+// One control period, as the bench saw it.
+struct ScenarioSample {
+  RobotSample robot;
+  bool commanded = false;  // a command was sent already
+  BodyVelocity<double> wanted_body;
+  std::array<double, kWheels> wanted_wheel_rad_s{};
+  double missed_periods = 0, refused_requests = 0;  // so far
+};
+
+struct ScenarioSignal {
+  std::string_view name;    // ends in the unit's suffix
+  std::string_view suffix;  // "rad_s"
+  std::string_view unit;    // "rad/s"
+  bool of_wheels;
+  std::string_view target;  // the signal that a command sets for it; empty: none
+  std::string_view what;
+  double (*value)(const ScenarioSample& sample, std::size_t wheel);
+};
+
+std::span<const ScenarioSignal> scenario_signals();
+const ScenarioSignal* find_scenario_signal(std::string_view name);
+
+class ScenarioTrace {
+ public:
+  ScenarioTrace();
+  void add(double now_s, const ScenarioSample& sample);
+  std::span<const double> time_s() const { return time_s_; }
+  std::span<const double> column(std::string_view signal, std::size_t wheel = 0) const;
+
+ private:
+  std::vector<double> time_s_;
+  std::vector<std::vector<double>> columns_;  // signal by signal, four each
+};
+
+}  // namespace omnihil

@@ -1,0 +1,130 @@
+#include "hil/scenario/scenario_suite.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "hil/effect_overrides.h"
+#include "hil/model_store.h"
+#include "hil/scenario/scenario_plot.h"
+#include "hil/session_checks.h"
+#include "hil/session_setup.h"
+#include "hil/text_file.h"
+
+namespace omnihil {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kRobotId = 1;
+constexpr const char* kDefaultRadio = "ulaval-hermes";
+
+std::vector<std::string> files_of(const std::string& path, std::vector<std::string>& problems) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return {path};
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(path, error)) {
+    if (entry.is_regular_file() && entry.path().extension() == ".toml")
+      files.push_back(entry.path().string());
+  }
+  if (error) problems.push_back(fmt::format("{}: {}", path, error.message()));
+  if (!error && files.empty()) problems.push_back(path + ": no .toml file in this folder");
+  std::ranges::sort(files);
+  return files;
+}
+
+// What a user names: a path, or a name among the shipped ones.
+std::string path_of(const std::string& named, const std::string& shipped) {
+  if (fs::exists(named) || shipped.empty()) return named;
+  for (const char* ending : {"", ".toml"}) {
+    const fs::path path = fs::path(shipped) / (named + ending);
+    if (fs::exists(path)) return path.string();
+  }
+  return named;
+}
+
+// Shipped ones go by their short name.
+std::string shown_name(const std::string& file, const std::string& shipped) {
+  if (shipped.empty() || !file.starts_with(shipped)) return file;
+  return fs::relative(file, shipped).string();
+}
+
+SessionConfig config_of(const Scenario& scenario, const SuiteOptions& options) {
+  std::vector<std::string> problems;
+  SessionSetup setup;
+  const StoredModel stored =
+      load_robot_model(options.robot.empty() ? scenario.robot : options.robot, options.model_folders);
+  for (const ModelProblem& problem : stored.problems) problems.push_back(problem.text());
+  setup.model = stored.bundle;
+  if (stored.problems.empty()) add_effects(setup.model, options.with, problems);
+  throw_problems(problems);
+  setup.radio_format = options.radio;
+  if (setup.radio_format.empty() && stored.model) setup.radio_format = stored.model->radio;
+  if (setup.radio_format.empty()) setup.radio_format = kDefaultRadio;
+  setup.robot_ids = {kRobotId};
+  setup.plant.physics = options.physics;
+  setup.plant.seed = options.seed;
+  return session_config(setup);
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.flush();
+  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), file.string());
+}
+
+// The plot of the first failed check that has signals.
+std::string plot_failure(const ScenarioOutcome& o, const ScenarioTrace& trace, const std::string& folder) {
+  const auto failed =
+      std::ranges::find_if(o.results, [](const CheckResult& r) { return !r.passed && !r.signals.empty(); });
+  if (folder.empty() || failed == o.results.end()) return {};
+  const fs::path file = fs::path(folder) / (fs::path(o.scenario.file).stem().string() + ".svg");
+  write(file, scenario_plot(fmt::format("{}: {}{}", o.scenario.title, failed->name,
+                                        failed->wheel < 0 ? "" : fmt::format(", wheel {}", failed->wheel)),
+                            trace, *failed));
+  return file.string();
+}
+
+}  // namespace
+
+SuiteReading read_suite(const std::vector<std::string>& paths, const std::string& level,
+                        const std::string& shipped) {
+  SuiteReading suite;
+  const std::vector<std::string> all{shipped};
+  for (const std::string& named : paths.empty() ? all : paths) {
+    const std::string path = path_of(named, shipped);
+    for (const std::string& file : files_of(path, suite.problems)) {
+      std::string error;
+      const std::string text = read_text_file(file, error);
+      if (!error.empty()) {
+        suite.problems.push_back(file + ": " + error);
+        continue;
+      }
+      ScenarioReading reading = read_scenario(text, shown_name(file, shipped));
+      for (const ModelProblem& problem : reading.problems) suite.problems.push_back(problem.text());
+      if (!reading.scenario || (!level.empty() && reading.scenario->level != level)) continue;
+      suite.scenarios.push_back(std::move(*reading.scenario));
+    }
+  }
+  return suite;
+}
+
+ScenarioOutcome run_one(const Scenario& scenario, const SuiteOptions& options) {
+  const SessionConfig config = config_of(scenario, options);
+  const ScenarioRun run = run_scenario(scenario, config, open_firmware(options.firmware, config));
+  ScenarioOutcome outcome;
+  outcome.scenario = scenario;
+  outcome.firmware = run.firmware;
+  outcome.commands = run.commands;
+  outcome.results = check_scenario(scenario, run);
+  outcome.firmware_failed = run.firmware_failed;
+  outcome.plot = plot_failure(outcome, run.trace, options.plots);
+  return outcome;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,126 @@
+// The shipped suite: healthy firmwares pass all of it, a firmware with one fault fails the matching check,
+// and that alone where a scenario asks for nothing else.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "hil/scenario/scenario_suite.h"
+
+namespace omnihil {
+namespace {
+
+const std::string kSuite = std::string(OMNIHIL_SOURCE_DIR) + "/examples/scenarios";
+
+SuiteOptions options(const std::string& library) {
+  SuiteOptions o;
+  o.firmware.file = library;
+  o.model_folders = {std::string(OMNIHIL_SOURCE_DIR) + "/models"};
+  return o;
+}
+
+std::string broken(const std::string& name) {
+  return std::string(OMNIHIL_BUILD_DIR) + "/tests/firmware/lib" + name + ".so";
+}
+
+std::vector<ScenarioOutcome> run_suite(const std::string& path, const SuiteOptions& o) {
+  const SuiteReading suite = read_suite({path}, "");
+  EXPECT_TRUE(suite.problems.empty());
+  std::vector<ScenarioOutcome> outcomes;
+  for (const Scenario& s : suite.scenarios) outcomes.push_back(run_one(s, o));
+  return outcomes;
+}
+
+void expect_all_pass(const SuiteOptions& o) {
+  for (const ScenarioOutcome& outcome : run_suite(kSuite, o)) {
+    for (const CheckResult& r : outcome.results) {
+      EXPECT_TRUE(r.passed) << outcome.scenario.file << ": " << failure_line(r);
+    }
+  }
+}
+
+TEST(ScenarioSuite, ReferenceFirmwarePassesAll) { expect_all_pass(options("")); }
+
+TEST(ScenarioSuite, ReferenceLibraryGivesTheSameReportAsBuiltIn) {
+  const std::string library =
+      std::string(OMNIHIL_BUILD_DIR) + "/firmware_iface/libomnihil_reference_firmware.so";
+  const std::string scenario = kSuite + "/wheel/speed_step.toml";
+  const auto a = run_suite(scenario, options("")), b = run_suite(scenario, options(library));
+  EXPECT_EQ(scenario_text(a[0], true), scenario_text(b[0], true));
+  EXPECT_EQ(junit_xml(a), junit_xml(b));
+}
+
+TEST(ScenarioSuite, ExampleFirmwareInCppPassesAll) {
+  expect_all_pass(options(std::string(OMNIHIL_BUILD_DIR) + "/examples/libexample_firmware.so"));
+}
+
+struct Broken {
+  const char* library;
+  const char* scenario;
+  const char* check;
+  std::set<int> wheels;
+};
+class BrokenFirmware : public testing::TestWithParam<Broken> {};
+
+// The four scenarios that ask for one thing each.
+constexpr const char* kOneThing[] = {"direction", "wind_up", "radio_silence", "control_period"};
+
+TEST_P(BrokenFirmware, FailsTheMatchingCheckAlone) {
+  const Broken& b = GetParam();
+  for (const char* name : kOneThing) {
+    const auto outcomes = run_suite(kSuite + "/wheel/" + name + ".toml", options(broken(b.library)));
+    ASSERT_EQ(outcomes.size(), 1u);
+    std::set<int> wheels;
+    for (const CheckResult& r : outcomes[0].results) {
+      if (r.passed) continue;
+      EXPECT_STREQ(name, b.scenario) << failure_line(r);
+      EXPECT_EQ(r.name, b.check);
+      EXPECT_NE(failure_line(r).find(b.check), std::string::npos);
+      wheels.insert(r.wheel);
+    }
+    EXPECT_EQ(wheels, std::string(name) == b.scenario ? b.wheels : std::set<int>{}) << name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Firmwares, BrokenFirmware,
+    testing::Values(Broken{"sign_error", "direction", "commanded_sign", {2}},
+                    Broken{"unlimited_integrator", "wind_up", "wind_up", {0}},
+                    Broken{"no_timeout", "radio_silence", "stops_after_silence", {0, 1, 2, 3}},
+                    Broken{"over_run", "control_period", "control_periods", {-1}}),
+    [](const auto& of) { return std::string(of.param.library); });
+
+TEST(ScenarioSuite, CrashIsAFailedCheckThatNamesIt) {
+  const auto outcomes = run_suite(kSuite + "/wheel/direction.toml", options(broken("null_pointer")));
+  ASSERT_FALSE(outcomes[0].passed());
+  EXPECT_TRUE(outcomes[0].firmware_failed);
+  EXPECT_EQ(outcomes[0].results[0].name, "runs_to_the_end");
+  EXPECT_NE(outcomes[0].results[0].note.find("null pointer"), std::string::npos);
+}
+
+TEST(ScenarioSuite, ReportIsTheSameEveryTime) {
+  const auto once = run_suite(kSuite + "/robot", options("")),
+             again = run_suite(kSuite + "/robot", options(""));
+  EXPECT_EQ(junit_xml(once), junit_xml(again));
+}
+
+TEST(ScenarioReport, JunitCountsAndEscapes) {
+  ScenarioOutcome o;
+  o.scenario.title = "a < b & \"c\"";
+  o.scenario.file = "f.toml";
+  CheckResult bad;
+  bad.name = "rise_time";
+  bad.wheel = 2;
+  bad.allowed = 0.3;
+  bad.unit = "s";
+  o.results = {bad, bad};
+  o.results[1].passed = true;
+  const std::vector<ScenarioOutcome> all{o};
+  const std::string xml = junit_xml(all);
+  EXPECT_NE(xml.find("tests=\"2\" failures=\"1\""), std::string::npos);
+  EXPECT_NE(xml.find("a &lt; b &amp; &quot;c&quot;"), std::string::npos);
+  EXPECT_NE(xml.find("rise_time wheel 2: never, at most 0.3 s"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace omnihil

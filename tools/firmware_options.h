@@ -1,0 +1,15 @@
+// The options with which a verb lets its user name a firmware: the same words for all of them.
+//
+//   add_firmware_options(*verb, words.firmware);      // --firmware, --board, --firmware-deadline
+#pragma once
+#include "hil/firmware_host/open_firmware.h"
+
+namespace CLI {
+class App;
+}
+
+namespace omnihil {
+
+void add_firmware_options(CLI::App& verb, FirmwareChoice& choice);
+
+}  // namespace omnihil

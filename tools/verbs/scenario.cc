@@ -1,0 +1,137 @@
+// omnihil scenario run FILE|FOLDER …: a test bench for controllers. The work is in hil/scenario/.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hil/recording_header.h"
+#include "hil/scenario/scenario_rows.h"
+#include "hil/scenario/scenario_suite.h"
+#include "tools/exit_codes.h"
+#include "tools/firmware_options.h"
+#include "tools/guarded.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> paths;
+  std::string level, junit, physics = "planar";
+  bool all = false, no_plots = false;
+  SuiteOptions suite;
+};
+
+void print_rows() {
+  fmt::print("Steps, [[step]] at_s = …, do = \"…\" (a fault lasts for_s, or to the end):\n");
+  for (const StepRow& row : step_rows()) {
+    fmt::print("  {}\n      {}\n      {}\n", row.word, row.what, row.example);
+  }
+  fmt::print(
+      "\nChecks, [[check]] is = \"…\" (over from_s to to_s; from the step's instant to the next step where "
+      "none are given):\n");
+  for (const CheckRow& row : check_rows()) {
+    const std::string limit = row.kind == CheckKind::kSignal ? "at_most_…, at_least_…"
+                              : row.suffix.empty()           ? ""
+                                                             : fmt::format("at_most_{}", row.suffix);
+    fmt::print("  {:<20} {}\n      {}\n", row.word, limit, row.what);
+  }
+  fmt::print("\nSignals, in a check's signal = \"…\":\n");
+  for (const ScenarioSignal& row : scenario_signals()) {
+    fmt::print("  {:<28} {}{}\n", row.name, row.what, row.of_wheels ? ", per wheel" : "");
+  }
+}
+
+int list(const Arguments& a) {
+  if (a.paths.empty() && a.level.empty()) print_rows();
+  const SuiteReading suite = read_suite(a.paths, a.level, OMNIHIL_SOURCE_SCENARIOS);
+  for (const std::string& problem : suite.problems) fmt::print(stderr, "omnihil scenario: {}\n", problem);
+  if (!suite.problems.empty()) return kExitBadInput;
+  if (a.paths.empty()) fmt::print("{}Shipped scenarios:\n", a.level.empty() ? "\n" : "");
+  for (const Scenario& s : suite.scenarios) {
+    fmt::print("  {:<28} {}\n", s.file, s.title);
+  }
+  return kExitOk;
+}
+
+void write_junit(const std::string& path, const std::vector<ScenarioOutcome>& outcomes) {
+  std::ofstream out(path, std::ios::binary);
+  out << junit_xml(outcomes);
+  out.flush();
+  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), path);
+}
+
+int run(Arguments& a) {
+  const SuiteReading suite = read_suite(a.paths, a.level, OMNIHIL_SOURCE_SCENARIOS);
+  for (const std::string& problem : suite.problems) fmt::print(stderr, "omnihil scenario: {}\n", problem);
+  if (!suite.problems.empty()) return kExitBadInput;
+  if (suite.scenarios.empty()) throw std::invalid_argument("no scenario of level \"" + a.level + "\"");
+  a.suite.model_folders = {OMNIHIL_SOURCE_MODELS};
+  a.suite.physics = *parse_physics(a.physics);
+  if (a.no_plots) a.suite.plots.clear();
+  std::vector<ScenarioOutcome> outcomes;
+  bool passed = true, firmware_failed = false;
+  for (const Scenario& scenario : suite.scenarios) {
+    outcomes.push_back(run_one(scenario, a.suite));
+    const ScenarioOutcome& o = outcomes.back();
+    if (outcomes.size() == 1) fmt::print("firmware \"{}\"\n", o.firmware);
+    fmt::print("{}", scenario_text(o, a.all));
+    std::fflush(stdout);
+    passed = passed && o.passed();
+    firmware_failed = firmware_failed || o.firmware_failed;
+  }
+  fmt::print("{}", summary_line(outcomes));
+  if (!a.junit.empty()) write_junit(a.junit, outcomes);
+  return firmware_failed ? kExitFirmware : passed ? kExitOk : kExitDiffers;
+}
+
+void add_run(CLI::App& verb, const std::shared_ptr<Arguments>& a, VerbResult& result) {
+  CLI::App* sub = verb.add_subcommand("run", "run scenarios and judge them");
+  sub->add_option("PATH", a->paths,
+                  "scenario files, folders of them, or names of shipped ones; none: all shipped");
+  add_firmware_options(*sub, a->suite.firmware);
+  sub->add_option("--level", a->level,
+                  "wheel: what a firmware of one wheel can do, too; robot; without it: all")
+      ->check(CLI::IsMember({"wheel", "robot"}));
+  sub->add_option("--robot", a->suite.robot, "robot model instead of the scenarios' own, by name or path");
+  sub->add_option("--with", a->suite.with, "add an effect: ID.parameter=value, or ID; several allowed");
+  sub->add_option("--radio", a->suite.radio, "radio format instead of the robot model's");
+  sub->add_option("--physics", a->physics, "planar, simbody or simbody-free")
+      ->check(CLI::IsMember({"simbody", "planar", "simbody-free"}))
+      ->capture_default_str();
+  sub->add_option("--seed", a->suite.seed, "of everything random")->capture_default_str();
+  sub->add_option("--junit", a->junit, "write JUnit XML to this file");
+  a->suite.plots = "scenario-plots";
+  sub->add_option("--plots", a->suite.plots, "folder for one SVG per failed scenario; made when one fails")
+      ->capture_default_str();
+  sub->add_flag("--no-plots", a->no_plots, "no plots");
+  sub->add_flag("--all", a->all, "print passed checks, too");
+  sub->footer(
+      "`omnihil scenario list` says which steps, checks and signals there are; docs/firmware.md is the "
+      "tutorial.\n"
+      "Exit codes: 0 all checks passed, 1 a check failed, 2 unusable scenario, robot or firmware, 3 a file "
+      "could\n"
+      "not be read or written, 6 the firmware crashed or hung.");
+  sub->callback([a, &result] { result.exit_code = guarded("scenario", [&] { return run(*a); }); });
+}
+
+}  // namespace
+
+void add_verb_scenario(CLI::App& app, VerbResult& result) {
+  CLI::App* verb = app.add_subcommand("scenario", "a test bench for controllers: steps, faults, checks");
+  verb->require_subcommand(1);
+  auto a = std::make_shared<Arguments>();
+  add_run(*verb, a, result);
+  auto b = std::make_shared<Arguments>();
+  CLI::App* sub =
+      verb->add_subcommand("list", "what can stand in a scenario; or the scenarios in files and folders");
+  sub->add_option("PATH", b->paths, "scenario files, or folders of them");
+  sub->add_option("--level", b->level, "wheel or robot")->check(CLI::IsMember({"wheel", "robot"}));
+  sub->callback([b, &result] { result.exit_code = guarded("scenario", [&] { return list(*b); }); });
+}
+
+}  // namespace omnihil
