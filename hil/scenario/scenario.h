@@ -75,11 +75,11 @@ struct ScenarioCheck {
   int line = 0;
   double from_s = 0.0, to_s = 0.0;
   WheelSet wheels{};
-  std::string_view signal;                  // of scenario_signals.h
-  std::optional<double> at_most, at_least;  // in the check's unit
-  double band_ratio = 0.05;                 // kSettlingTime
-  double standstill_rad_s = 1.0;            // kStopsAfterSilence
-  bool magnitude = false;                   // kSignal: of the value's size
+  std::string_view signal{};                    // of scenario_signals.h
+  std::optional<double> at_most{}, at_least{};  // in the check's unit
+  double band_ratio = 0.05;                     // kSettlingTime
+  double standstill_rad_s = 1.0;                // kStopsAfterSilence
+  bool magnitude = false;                       // kSignal: of the value's size
 };
 
 enum class CommandPath : std::uint8_t {

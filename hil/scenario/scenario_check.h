@@ -23,6 +23,7 @@ struct CheckResult {
   int line = 0;      // in the scenario's file
   int wheel = -1;    // -1: of the robot
   bool passed = false;
+  bool reached = true;                      // false: the run broke off before its window was over
   std::optional<double> measured, allowed;  // none: it never came to it
   bool at_least = false;                    // `allowed` is the least
   std::string unit;

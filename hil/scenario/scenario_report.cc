@@ -56,11 +56,14 @@ bool ScenarioOutcome::passed() const { return failed_of(results) == 0; }
 std::string scenario_text(const ScenarioOutcome& o, bool all) {
   std::string text =
       fmt::format("{}  {}: {}\n", o.passed() ? "ok  " : "FAIL", o.scenario.file, o.scenario.title);
+  std::size_t missed = 0;
   for (const CheckResult& r : o.results) {
-    if (r.passed && !all) continue;
+    missed += r.reached ? 0 : 1;
+    if ((r.passed || !r.reached) && !all) continue;
     text +=
         fmt::format("  {}  {:<22} {:<8} {}\n", r.passed ? "ok  " : "FAIL", r.name, wheel_text(r), detail(r));
   }
+  if (missed > 0 && !all) text += fmt::format("  FAIL  {} checks that it did not get to\n", missed);
   if (!o.plot.empty()) text += fmt::format("  plot  {}\n", o.plot);
   return text;
 }
