@@ -8,7 +8,9 @@
 #include <stdexcept>
 
 #include "firmware_iface/host_firmware.h"
+#include "hil/reference_firmware.h"
 #include "hil/session_checks.h"
+#include "sim/robot/electric_model.h"
 #include "tests/sim/sample_robot.h"
 
 namespace omnihil {
@@ -102,6 +104,32 @@ TEST(GuardedFirmware, RadioFramesPassBothWays) {
   EXPECT_EQ(guarded.radio_transmit(a), 0u);
 }
 
+TEST(GuardedFirmware, MotorTicksPassAsInThisProcess) {
+  RobotModel model = symmetric_robot();
+  model.motor.pole_pairs = 8;
+  ElectricModel electric;
+  electric.kind = DriveKind::kDq;
+  model.electric = std::make_shared<const ElectricModel>(electric);
+  const MotorConfig motors = motor_config(model);
+  GuardedFirmware guarded(library("foc"), config(), motors);
+  const std::unique_ptr<HostFirmware> host = make_foc_firmware(config(), motors);
+  ASSERT_TRUE(guarded.drives_phases());
+  for (int n = 1; n < 200; ++n) {
+    MotorSensors seen{};
+    seen.now_ns = static_cast<std::uint64_t>(n) * 50'000;
+    seen.bus_voltage_V = 24.0;
+    for (int w = 0; w < kWheels; ++w) seen.theta_elec_rad[w] = 0.01 * n * (w + 1);
+    if (n % 20 == 1) {
+      for (Firmware* f : {static_cast<Firmware*>(&guarded), static_cast<Firmware*>(host.get())}) {
+        f->command(forward_command(), n * 50'000);
+        f->tick(sensors_at(n / 20));
+      }
+    }
+    const MotorDrive a = guarded.motor_tick(seen), b = host->motor_tick(seen);
+    ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0) << "motor tick " << n;
+  }
+}
+
 TEST(GuardedFirmware, NullPointerIsNamedWithCallAndTick) {
   const std::string failure = failure_of("null_pointer");
   EXPECT_TRUE(has(failure, "null pointer")) << failure;
@@ -131,7 +159,6 @@ TEST(GuardedFirmware, AbortAndExitAreNamed) {
 }
 
 TEST(GuardedFirmware, AccessBehindTheStateBlockIsNamedWithItsPlace) {
-  const GuardedFirmware sample(library("behind_state"), config());
   const std::string near = failure_of("behind_state"), far = failure_of("far_behind");
   EXPECT_TRUE(has(near, "outside its state block")) << near;
   EXPECT_TRUE(has(near, "in tick(), tick 100")) << near;
