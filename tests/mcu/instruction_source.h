@@ -145,6 +145,7 @@ inline void draw_state(Draw& draw, bool doubles, OracleCase& c) {
   }
   c.fpscr = draw.one_in(4) ? draw.below(8) << 22 & 0x02C00000u : 0;
   if (draw.one_in(8)) c.fpscr |= 1u << 25;
+  if (draw.one_in(8)) c.fpscr |= 1u << 24;
 }
 
 // What follows an IT instruction in its block: 16- and 32-bit forms that neither branch nor touch memory.

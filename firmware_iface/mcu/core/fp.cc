@@ -101,6 +101,9 @@ double integral(double value, FpRounding rounding) {
 
 }  // namespace
 
+float fp_flush(float value) { return std::fpclassify(value) == FP_SUBNORMAL ? std::copysign(0.0f, value) : value; }
+double fp_flush(double value) { return std::fpclassify(value) == FP_SUBNORMAL ? std::copysign(0.0, value) : value; }
+
 float fp_nan(float a, float b, std::uint32_t fpscr) { return nan_of(a, b, fpscr); }
 double fp_nan(double a, double b, std::uint32_t fpscr) { return nan_of(a, b, fpscr); }
 float fp_fused(float a, float b, float c, std::uint32_t fpscr) { return fused(a, b, c, fpscr); }

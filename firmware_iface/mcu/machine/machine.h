@@ -41,7 +41,8 @@ struct MachineConfig {
   std::uint32_t flash_base = 0x08000000, flash_bytes = 1 << 20;
   std::uint32_t ram_base = 0x20000000, ram_bytes = 128 << 10;
   std::vector<ExtraMemory> memories = {};  // core-coupled RAM, instruction RAM, system memory, further banks
-  std::vector<std::pair<std::string, std::uint32_t>> aliases = {};  // of "flash", "ram" or one of those, at another base
+  std::vector<std::pair<std::string, std::uint32_t>> aliases =
+      {};  // of "flash", "ram" or one of those, at another base
   bool flash_at_zero = true;
   double reset_hz = 16e6;  // the clock the chip comes out of reset with
   double cpi_scale = 1.0;  // cycles of the table are multiplied by this: fit it to one measured duration
@@ -122,14 +123,25 @@ class Machine final : public System, private CpuBus {
   // system_control.cc
   std::uint32_t read_system(std::uint32_t offset);
   bool write_system(std::uint32_t offset, unsigned bytes, std::uint32_t value);
-  std::uint32_t read_bits(std::uint32_t offset) const;
-  bool write_bits(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t read_faults(std::uint32_t offset) const;
+  void write_faults(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t read_fpu(std::uint32_t offset) const;
+  void write_fpu(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t interrupt_state() const;
+  void write_reset_control(std::uint32_t value);
   std::uint32_t handler_state() const;
   void write_interrupt_control(std::uint32_t value);
   void write_handler_control(std::uint32_t value);
   std::uint32_t read_debug(std::uint32_t address);
   void write_debug(std::uint32_t address, std::uint32_t value);
   void apply_control();
+
+  // interrupt_registers.cc
+  static bool is_interrupt_register(std::uint32_t offset);
+  std::uint32_t read_interrupts(std::uint32_t offset) const;
+  void write_interrupts(std::uint32_t offset, unsigned bytes, std::uint32_t value);
+  std::uint32_t read_bits(std::uint32_t offset) const;
+  void write_bits(std::uint32_t offset, std::uint32_t value);
 
   // exceptions.cc
   void pend(int e);

@@ -1,4 +1,5 @@
-// Registers of the core itself: NVIC, SCB, SysTick, FPU control, DWT's cycle counter (DDI 0403E.e B3).
+// Registers of the core itself: system control block, FPU control, DWT's cycle counter (DDI 0403E.e B3).
+// Those of interrupts are in interrupt_registers.cc.
 #include <fmt/format.h>
 
 #include "firmware_iface/mcu/machine/machine.h"
@@ -11,30 +12,19 @@ enum Offset : std::uint32_t {
   kAuxiliary = 0x008,
   kSysTickFirst = 0x010,
   kSysTickLast = 0x01C,
-  kSetEnable = 0x100,
-  kClearEnable = 0x180,
-  kSetPending = 0x200,
-  kClearPending = 0x280,
-  kActiveBits = 0x300,
-  kPriorities = 0x400,
-  kPrioritiesEnd = 0x4F0,
   kCpuid = 0xD00,
   kIcsr = 0xD04,
   kVtor = 0xD08,
   kAircr = 0xD0C,
   kScr = 0xD10,
   kCcr = 0xD14,
-  kSystemPriorities = 0xD18,
   kShcsr = 0xD24,
   kCfsr = 0xD28,
   kHfsr = 0xD2C,
-  kDfsr = 0xD30,
   kMmfar = 0xD34,
   kBfar = 0xD38,
-  kAfsr = 0xD3C,
-  kIdFirst = 0xD40,
-  kIdLast = 0xD7C,
-  kClidr = 0xD78,
+  kIdFirst = 0xD3C,
+  kIdLast = 0xD80,
   kCpacr = 0xD88,
   kMpuType = 0xD90,
   kStir = 0xF00,
@@ -47,8 +37,8 @@ enum Offset : std::uint32_t {
   kCacheFirst = 0xF50,
   kCacheLast = 0xF78,
 };
-constexpr std::uint32_t kDwtControl = 0xE0001000, kDwtCycles = 0xE0001004, kDhcsr = 0xE000EDF0,
-                        kDemcr = 0xE000EDFC;
+constexpr std::uint32_t kDwtControl = 0xE0001000, kDwtCycles = 0xE0001004;
+constexpr std::uint32_t kDhcsr = 0xE000EDF0, kDemcr = 0xE000EDFC;
 constexpr std::uint32_t kAircrKey = 0x05FA;
 
 // SHCSR: the bit of each exception's state.
@@ -91,107 +81,12 @@ void Machine::write_handler_control(std::uint32_t value) {
   }
 }
 
-// Banks of one bit per interrupt.
-std::uint32_t Machine::read_bits(std::uint32_t offset) const {
-  std::uint32_t value = 0;
-  const int first = kFirstIrq + static_cast<int>(offset & 0x7F) * 8;
-  for (int i = 0; i < 32 && first + i < Nvic::kExceptions; ++i) {
-    const bool set = offset >= kActiveBits   ? nvic_.active(first + i)
-                     : offset >= kSetPending ? nvic_.pending(first + i)
-                                             : nvic_.enabled(first + i);
-    value |= static_cast<std::uint32_t>(set) << i;
-  }
-  return value;
-}
-
-bool Machine::write_bits(std::uint32_t offset, std::uint32_t value) {
-  const int first = kFirstIrq + static_cast<int>(offset & 0x7F) * 8;
-  for (int i = 0; i < 32 && first + i < Nvic::kExceptions; ++i) {
-    if (!(value >> i & 1)) continue;
-    const int e = first + i;
-    if (offset < kClearEnable) {
-      nvic_.set_enabled(e, true);
-    } else if (offset < kSetPending) {
-      nvic_.set_enabled(e, false);
-    } else if (offset < kClearPending) {
-      pend(e);
-    } else {
-      nvic_.clear_pending(e);
-    }
-  }
-  cpu_.stop_soon();
-  return true;
-}
-
-std::uint32_t Machine::read_system(std::uint32_t offset) {
-  if (offset >= kSysTickFirst && offset <= kSysTickLast) return systick_.read(offset - kSysTickFirst, now());
-  if (offset >= kSetEnable && offset < kPriorities && (offset & 0x7F) < 0x20) return read_bits(offset);
-  if (offset >= kPriorities && offset < kPrioritiesEnd) {
-    std::uint32_t value = 0;
-    for (int i = 3; i >= 0; --i)
-      value = value << 8 | nvic_.priority(kFirstIrq + static_cast<int>(offset - kPriorities) + i);
-    return value;
-  }
-  if (offset >= kSystemPriorities && offset < kShcsr) {
-    std::uint32_t value = 0;
-    for (int i = 3; i >= 0; --i)
-      value = value << 8 | nvic_.priority(4 + static_cast<int>(offset - kSystemPriorities) + i);
-    return value;
-  }
-  switch (offset) {
-    case kTypeRegister:
-      return 7;  // 32 interrupts for each of these, and one more
-    case kAuxiliary:
-      return 0;
-    case kCpuid:
-      return config_.variant.cpuid;
-    case kIcsr: {
-      const int waiting = nvic_.best(Nvic::kLowest);
-      return cpu_.reg.ipsr | static_cast<std::uint32_t>(waiting) << 12 |
-             (nvic_.active_count() <= 1 ? 1u << 11 : 0) | (waiting >= kFirstIrq ? 1u << 22 : 0) |
-             (nvic_.pending(kSysTick) ? 1u << 26 : 0) | (nvic_.pending(kPendSv) ? 1u << 28 : 0) |
-             (nvic_.pending(kNmi) ? 1u << 31 : 0);
-    }
-    case kVtor:
-      return vtor_;
-    case kAircr:
-      return 0xFA050000u | nvic_.group() << 8;
-    case kScr:
-      return scr_;
-    case kCcr:
-      return ccr_;
-    case kShcsr:
-      return handler_state();
-    case kCfsr:
-      return cfsr_;
-    case kHfsr:
-      return hfsr_;
-    case kMmfar:
-      return mmfar_;
-    case kBfar:
-      return bfar_;
-    case kCpacr:
-      return cpacr_;
-    case kFpccr:
-      return fpccr_;
-    case kFpcar:
-      return fpcar_;
-    case kFpdscr:
-      return cpu_.fpdscr;
-    case kMvfr0:
-    case kMvfr1:
-    case kMvfr2:
-      return feature(config_.variant, offset);
-    case kDfsr:
-    case kAfsr:
-    case kMpuType:
-      return 0;
-    default:
-      break;
-  }
-  if (offset >= kIdFirst && offset <= kIdLast) return 0;
-  report_unmodelled("system control", fmt::format("0x{:08x} read", 0xE000E000u + offset));
-  return 0;
+std::uint32_t Machine::interrupt_state() const {
+  const int waiting = nvic_.best(Nvic::kLowest);
+  return cpu_.reg.ipsr | static_cast<std::uint32_t>(waiting) << 12 |
+         (nvic_.active_count() <= 1 ? 1u << 11 : 0) | (waiting >= kFirstIrq ? 1u << 22 : 0) |
+         (nvic_.pending(kSysTick) ? 1u << 26 : 0) | (nvic_.pending(kPendSv) ? 1u << 28 : 0) |
+         (nvic_.pending(kNmi) ? 1u << 31 : 0);
 }
 
 void Machine::write_interrupt_control(std::uint32_t value) {
@@ -202,93 +97,149 @@ void Machine::write_interrupt_control(std::uint32_t value) {
   if (value >> 25 & 1) nvic_.clear_pending(kSysTick);
 }
 
-bool Machine::write_system(std::uint32_t offset, unsigned bytes, std::uint32_t value) {
-  if (offset >= kPriorities && offset < kPrioritiesEnd) {
-    for (unsigned i = 0; i < bytes; ++i) {
-      nvic_.set_priority(kFirstIrq + static_cast<int>(offset - kPriorities + i),
-                         static_cast<std::uint8_t>(value >> (8 * i)));
-    }
-    cpu_.stop_soon();
-    return true;
-  }
-  if (offset >= kSystemPriorities && offset < kShcsr) {
-    for (unsigned i = 0; i < bytes; ++i) {
-      nvic_.set_priority(4 + static_cast<int>(offset - kSystemPriorities + i),
-                         static_cast<std::uint8_t>(value >> (8 * i)));
-    }
-    cpu_.stop_soon();
-    return true;
-  }
-  if (offset >= kSysTickFirst && offset <= kSysTickLast) {
-    systick_.write(offset - kSysTickFirst, value, now());
-    reschedule();
-    return true;
-  }
-  if (offset >= kSetEnable && offset < kActiveBits && (offset & 0x7F) < 0x20)
-    return write_bits(offset, value);
-  const bool v7 = config_.variant.arch != Arch::kV6M;
+void Machine::write_reset_control(std::uint32_t value) {
+  if (value >> 16 != kAircrKey) return;
+  if (config_.variant.arch != Arch::kV6M) nvic_.set_group(value >> 8 & 7);
+  if (value & 4) request_reset("software");
+  cpu_.stop_soon();
+}
+
+std::uint32_t Machine::read_faults(std::uint32_t offset) const {
   switch (offset) {
-    case kIcsr:
-      write_interrupt_control(value);
-      return true;
-    case kVtor:
-      vtor_ = value & ~0x7Fu;
-      return true;
-    case kAircr:
-      if (value >> 16 != kAircrKey) return true;
-      if (v7) nvic_.set_group(value >> 8 & 7);
-      if (value & 4) request_reset("software");
-      cpu_.stop_soon();
-      return true;
-    case kScr:
-      scr_ = value & 0x16;
-      return true;
-    case kCcr:
-      if (v7) ccr_ = (value & 0x31B) | (ccr_ & ~0x31Bu) | (config_.variant.fpv5 ? value & 0x30000u : 0);
-      apply_control();
-      return true;
-    case kShcsr:
-      write_handler_control(value);
-      return true;
-    case kCfsr:  // write one to clear, by bytes too
-    case kCfsr + 1:
-    case kCfsr + 2:
-      cfsr_ &= ~(value << 8 * (offset - kCfsr));
-      return true;
+    case kCfsr:
+      return cfsr_;
+    case kHfsr:
+      return hfsr_;
+    case kMmfar:
+      return mmfar_;
+    case kBfar:
+      return bfar_;
+    default:
+      return 0;  // DFSR: there is no debugger
+  }
+}
+
+void Machine::write_faults(std::uint32_t offset, std::uint32_t value) {
+  switch (offset & ~3u) {
+    case kCfsr:
+      cfsr_ &= ~(value << 8 * (offset & 3));
+      return;  // write one to clear, by bytes too
     case kHfsr:
       hfsr_ &= ~value;
-      return true;
+      return;
     case kMmfar:
       mmfar_ = value;
-      return true;
+      return;
     case kBfar:
       bfar_ = value;
-      return true;
-    case kCpacr:
-      cpacr_ = config_.variant.fpu == Fpu::kNone ? 0 : value & 0x00F00000u;
-      apply_control();
-      return true;
+      return;
+    default:
+      return;
+  }
+}
+
+std::uint32_t Machine::read_fpu(std::uint32_t offset) const {
+  switch (offset) {
     case kFpccr:
-      fpccr_ = value & 0xC000003Fu;
-      apply_control();
-      return true;
+      return fpccr_;
     case kFpcar:
-      fpcar_ = value & ~7u;
-      return true;
+      return fpcar_;
     case kFpdscr:
-      cpu_.fpdscr = value & 0x07C00000u;
-      return true;
-    case kStir:
-      pend(kFirstIrq + static_cast<int>(value & 0xFF) % 240);
-      return true;
+      return cpu_.fpdscr;
+    default:
+      return feature(config_.variant, offset);
+  }
+}
+
+void Machine::write_fpu(std::uint32_t offset, std::uint32_t value) {
+  if (offset == kFpccr) fpccr_ = value & 0xC000003Fu;
+  if (offset == kFpcar) fpcar_ = value & ~7u;
+  if (offset == kFpdscr) cpu_.fpdscr = value & 0x07C00000u;
+  apply_control();
+}
+
+std::uint32_t Machine::read_system(std::uint32_t offset) {
+  if (offset >= kSysTickFirst && offset <= kSysTickLast) return systick_.read(offset - kSysTickFirst, now());
+  if (is_interrupt_register(offset)) return read_interrupts(offset);
+  if (offset >= kCfsr && offset <= kBfar) return read_faults(offset);
+  if (offset >= kFpccr && offset <= kMvfr2) return read_fpu(offset);
+  switch (offset) {
+    case kTypeRegister:
+      return 7;  // 32 interrupts for each of these, and one more
     case kAuxiliary:
-    case kDfsr:
-      return true;
+      return 0;
+    case kCpuid:
+      return config_.variant.cpuid;
+    case kIcsr:
+      return interrupt_state();
+    case kVtor:
+      return vtor_;
+    case kAircr:
+      return 0xFA050000u | nvic_.group() << 8;
+    case kScr:
+      return scr_;
+    case kCcr:
+      return ccr_;
+    case kShcsr:
+      return handler_state();
+    case kCpacr:
+      return cpacr_;
+    case kMpuType:
+      return 0;
     default:
       break;
   }
-  return offset >= kCacheFirst && offset <= kCacheLast &&
-         config_.variant.fpv5;  // there is no cache to maintain
+  if (offset >= kIdFirst && offset <= kIdLast) return 0;
+  report_unmodelled("system control", fmt::format("0x{:08x} read", 0xE000E000u + offset));
+  return 0;
+}
+
+bool Machine::write_system(std::uint32_t offset, unsigned bytes, std::uint32_t value) {
+  const bool v7 = config_.variant.arch != Arch::kV6M, cached = config_.variant.fpv5;
+  if (offset >= kSysTickFirst && offset <= kSysTickLast) {
+    systick_.write(offset - kSysTickFirst, value, now());
+    reschedule();
+  } else if (is_interrupt_register(offset)) {
+    write_interrupts(offset, bytes, value);
+  } else if (offset >= kCfsr && offset < kBfar + 4) {
+    write_faults(offset, value);
+  } else if (offset >= kFpccr && offset <= kFpdscr) {
+    write_fpu(offset, value);
+  } else {
+    switch (offset) {
+      case kIcsr:
+        write_interrupt_control(value);
+        break;
+      case kVtor:
+        vtor_ = v7 ? value & ~0x7Fu : vtor_;
+        break;
+      case kAircr:
+        write_reset_control(value);
+        break;
+      case kScr:
+        scr_ = value & 0x16;
+        break;
+      case kCcr:
+        if (v7) ccr_ = value & (cached ? 0x3031Bu : 0x31Bu);
+        apply_control();
+        break;
+      case kShcsr:
+        write_handler_control(value);
+        break;
+      case kCpacr:
+        cpacr_ = config_.variant.fpu == Fpu::kNone ? 0 : value & 0x00F00000u;
+        apply_control();
+        break;
+      case kStir:
+        pend(kFirstIrq + static_cast<int>(value & 0xFF) % 240);
+        break;
+      case kAuxiliary:
+        break;
+      default:
+        return offset >= kCacheFirst && offset <= kCacheLast && cached;  // there is no cache to maintain
+    }
+  }
+  return true;
 }
 
 // Control bits that the core itself looks at.
