@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 
+#include "firmware_iface/mcu/core/decode.h"
 #include "tests/mcu/unicorn/oracle_protocol.h"
 
 namespace omnihil::mcu {
@@ -82,19 +83,23 @@ inline void draw_wide(Draw& draw, bool doubles, std::uint32_t& h, std::uint32_t&
   }
 }
 
-inline void draw_instruction(Draw& draw, bool narrow_only, bool doubles, std::uint16_t* code) {
-  std::uint32_t h = 0, g = 0;
+// Most of what is refused here is drawn anew: an eighth of it is enough to see what the oracle says.
+inline void draw_instruction(Draw& draw, const Variant& variant, std::uint16_t* code) {
+  const bool narrow_only = variant.arch == Arch::kV6M, doubles = variant.fpu == Fpu::kDouble;
+  bool refused = true;
   do {
+    std::uint32_t h = 0, g = 0xBF00;
     if (narrow_only || draw.one_in(3)) {
       do h = draw.word() & 0xFFFF;
       while (h >> 11 >= 29);
-      g = 0xBF00;
     } else {
       draw_wide(draw, doubles, h, g);
     }
-  } while (is_left_out(h, g));
-  code[0] = static_cast<std::uint16_t>(h);
-  code[1] = static_cast<std::uint16_t>(g);
+    if (is_left_out(h, g)) continue;
+    code[0] = static_cast<std::uint16_t>(h);
+    code[1] = static_cast<std::uint16_t>(g);
+    refused = decode({kOracleCode, variant, 0}, code[0], code[1]).code == kUndefined && !draw.one_in(8);
+  } while (refused);
 }
 
 inline std::uint32_t draw_value(Draw& draw) {

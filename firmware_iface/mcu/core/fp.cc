@@ -77,23 +77,25 @@ F larger(F a, F b, std::uint32_t fpscr, bool want_less) {
   return (a < b) == want_less ? a : b;
 }
 
-// To the nearest integer, by std::nearbyint's rules for the mode of the host where `rounding` says so.
+double to_even(double value) {
+  const double down = std::floor(value), rest = value - down;
+  if (rest != 0.5) return rest < 0.5 ? down : down + 1;
+  return std::fmod(down, 2.0) == 0 ? down : down + 1;
+}
+
+// Rounded to an integer. The sign is kept by hand: where the host rounds down, its 0 - 0 is -0.
 double integral(double value, FpRounding rounding) {
   switch (rounding) {
     case kTiesAway:
-      return std::round(value);
-    case kTiesEven: {
-      const double down = std::floor(value), rest = value - down;
-      if (rest < 0.5) return std::copysign(down, value);
-      if (rest > 0.5) return std::copysign(down + 1, value);
-      return std::copysign(std::fmod(down, 2.0) == 0 ? down : down + 1, value);
-    }
+      return std::copysign(std::round(value), value);
+    case kTiesEven:
+      return std::copysign(to_even(value), value);
     case kUp:
-      return std::ceil(value);
+      return std::copysign(std::ceil(value), value);
     case kDown:
-      return std::floor(value);
+      return std::copysign(std::floor(value), value);
     case kToZero:
-      return std::trunc(value);
+      return std::copysign(std::trunc(value), value);
     default:
       return std::nearbyint(value);
   }
@@ -101,8 +103,12 @@ double integral(double value, FpRounding rounding) {
 
 }  // namespace
 
-float fp_flush(float value) { return std::fpclassify(value) == FP_SUBNORMAL ? std::copysign(0.0f, value) : value; }
-double fp_flush(double value) { return std::fpclassify(value) == FP_SUBNORMAL ? std::copysign(0.0, value) : value; }
+float fp_flush(float value) {
+  return std::fpclassify(value) == FP_SUBNORMAL ? std::copysign(0.0f, value) : value;
+}
+double fp_flush(double value) {
+  return std::fpclassify(value) == FP_SUBNORMAL ? std::copysign(0.0, value) : value;
+}
 
 float fp_nan(float a, float b, std::uint32_t fpscr) { return nan_of(a, b, fpscr); }
 double fp_nan(double a, double b, std::uint32_t fpscr) { return nan_of(a, b, fpscr); }
