@@ -153,6 +153,28 @@ inline void draw_state(Draw& draw, bool doubles, OracleCase& c) {
   if (draw.one_in(8)) c.fpscr |= 1u << 24;
 }
 
+// Neither jumps nor touches memory or what belongs to the system, nor SP (whose low bits the oracle keeps).
+inline bool is_straight(const Op& op) {
+  const Code code = op.code;
+  if (code == kMovToPc || code == kAddHigh || op.d == 13) return false;
+  return (code >= kAndImm && code <= kParallel) || (code >= kVaddF32 && code <= kVmrs);
+}
+
+// Several instructions in a row; `count` says how many. Returns their bytes.
+inline std::uint32_t draw_row(Draw& draw, const Variant& variant, std::uint16_t* code, std::uint32_t& count) {
+  std::uint32_t at = 0;
+  for (count = 0; at < kOracleSlotBytes / 2 - 3; ++count) {
+    Op op;
+    do {
+      draw_instruction(draw, variant, code + at);
+      op = decode({kOracleCode + 2 * at, variant, 0}, code[at], code[at + 1]);
+    } while (!is_straight(op));
+    at += op.halfwords;
+  }
+  code[at] = 0xE7FE;
+  return at * 2;
+}
+
 // What follows an IT instruction in its block: 16- and 32-bit forms that neither branch nor touch memory.
 inline std::uint32_t draw_block(Draw& draw, std::uint16_t* code) {
   const std::uint32_t condition = draw.below(14), mask = 1 + draw.below(15);
