@@ -153,11 +153,13 @@ inline void draw_state(Draw& draw, bool doubles, OracleCase& c) {
   if (draw.one_in(8)) c.fpscr |= 1u << 24;
 }
 
-// Neither jumps nor touches memory or what belongs to the system, nor SP (whose low bits the oracle keeps).
+// Neither jumps nor touches memory or what belongs to the system, nor SP (whose low bits the oracle keeps),
+// nor shows FPSCR's cumulative flags (which are not modelled).
 inline bool is_straight(const Op& op) {
   const Code code = op.code;
   if (code == kMovToPc || code == kAddHigh || op.d == 13) return false;
-  return (code >= kAndImm && code <= kParallel) || (code >= kVaddF32 && code <= kVmrs);
+  return (code >= kAndImm && code <= kParallel) ||
+         (code >= kVaddF32 && (code < kVmrs || (code == kVmrs && op.d == 15)));
 }
 
 // Several instructions in a row; `count` says how many. Returns their bytes.

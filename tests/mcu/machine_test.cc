@@ -189,6 +189,51 @@ TEST(MachineTest, ABusFaultWithoutAHandlerLocksUpAtTheVector) {
   EXPECT_EQ(small.machine.now(), 1000u);  // time goes on
 }
 
+TEST(MachineTest, OnACortexM0EveryFaultIsAHardFault) {
+  // movs r0, #1; ldr r1, [r0] (unaligned); udf. The handler steps over: its frame's PC is at sp + 24.
+  MachineConfig config;
+  config.variant = kCortexM0;
+  SmallMachine small({0x2001, 0x6801, 0xDE00, kForever, /* handler: */ 0x9806, 0x3002, 0x9006, 0x4770},
+                     config);
+  small.put(kFlashBase + 4 * kHardFault, (kCode + 8) | 1);
+  small.start();
+  small.machine.run_until(1000);
+  const MachineReport report = small.machine.report();
+  ASSERT_EQ(report.faults.size(), 2u);
+  EXPECT_EQ(report.faults[0].exception, kHardFault);
+  EXPECT_EQ(report.faults[0].status, kUnaligned);
+  EXPECT_EQ(report.faults[1].exception, kHardFault);
+  EXPECT_EQ(report.faults[1].status, kUndefinedInstruction);
+  EXPECT_EQ(small.r(15), kCode + 6);
+}
+
+TEST(MachineTest, LoadOfInterruptsIsTheirCyclesWithoutWhatPreemptsThem) {
+  // SysTick every 100 cycles: 12 to enter, 10 to leave, and its handler of 20 NOPs and BX.
+  std::vector<std::uint16_t> code = {kForever, kNopCode};
+  code.insert(code.end(), 20, kNopCode);
+  code.push_back(0x4770);
+  SmallMachine small(code);
+  small.put(kFlashBase + 4 * kSysTick, (kCode + 4) | 1);
+  small.start();
+  for (const auto& [address, value] : {std::pair{0xE000E014u, 99u}, {0xE000E018u, 0u}, {0xE000E010u, 7u}}) {
+    // By code, as DMA does not reach the core's registers: str r1, [r0]; b .
+    small.machine.cpu().reg.r[0] = address;
+    small.machine.cpu().reg.r[1] = value;
+    small.put(kRamBase, 0xE7FE6001);
+    small.machine.cpu().reg.r[15] = kRamBase;
+    small.machine.run_until(small.machine.now() + 10);
+  }
+  small.machine.run_until(100'000);
+  const MachineReport report = small.machine.report();
+  const InterruptLoad& load = report.exceptions.at(kSysTick);
+  EXPECT_NEAR(static_cast<double>(load.count), 1000.0, 2.0);
+  EXPECT_EQ(load.longest, 20u + 1u);
+  const double busy = static_cast<double>(load.busy) / static_cast<double>(load.count);
+  EXPECT_GE(busy, 21.0);
+  EXPECT_LE(busy, 21.0 + 10.0);  // leaving may be counted with it
+  EXPECT_EQ(report.thread_cycles + load.busy + report.sleep_cycles, small.machine.now());
+}
+
 TEST(MachineTest, TheMainStacksHighWaterMarkIsKept) {
   SmallMachine small({0xB5F0, 0xB088, 0xB008, 0xBDF0});  // push {r4-r7, lr}; sub sp, #32; add sp, #32; pop
   small.start();

@@ -103,7 +103,7 @@ bool high_registers(const DecodeContext& at, std::uint32_t h, Op& op) {  // 0100
   op.m = u8(bits(h, 6, 3));
   switch (bits(h, 9, 8)) {
     case 0:
-      op.code = op.d == 15 || op.m == 15 ? kAddHigh : kAddReg;
+      op.code = op.d == 13 || op.d == 15 || op.m == 15 ? kAddHigh : kAddReg;
       return !(op.d == 15 && (op.m == 15 || at.mid_it()));
     case 1:
       op.code = kCmpReg;

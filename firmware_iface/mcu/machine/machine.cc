@@ -241,16 +241,19 @@ void Machine::run_to(Cycles end, bool until_clock_changes) {
 }
 
 bool Machine::wakes() const {
+  if (sleeping_ == Sleep::kForEvent) {
+    constexpr std::uint32_t kEventOnPending = 1u << 4;  // SCR.SEVONPEND
+    if (cpu_.reg.event || ((scr_ & kEventOnPending) && nvic_.any_pending())) return true;
+    return nvic_.best(execution_priority()) != 0;
+  }
   // As if PRIMASK were clear (B1.5.19).
-  const int priority = nvic_.execution_priority(false, cpu_.reg.faultmask, cpu_.reg.basepri);
-  if (nvic_.best(priority) != 0) return true;
-  return sleeping_ == Sleep::kForEvent && cpu_.reg.event;
+  return nvic_.best(nvic_.execution_priority(false, cpu_.reg.faultmask, cpu_.reg.basepri)) != 0;
 }
 
 void Machine::sleep_until(Cycles end) {
   if (wakes()) {
+    if (sleeping_ == Sleep::kForEvent) cpu_.reg.event = 0;
     sleeping_ = Sleep::kNo;
-    cpu_.reg.event = 0;
     return;
   }
   account();
@@ -323,6 +326,8 @@ void Machine::note_unaligned(std::uint32_t) {
 
 MachineReport Machine::report() const {
   MachineReport result = report_;
+  const Cycles open = now() - accounted_;  // not yet booked
+  (frames_.empty() ? result.thread_cycles : result.exceptions[frames_.back().exception].busy) += open;
   result.lowest_main_sp = cpu_.lowest_sp[0];
   result.lowest_process_sp = cpu_.lowest_sp[1];
   result.main_stack_bytes = cpu_.lowest_sp[0] < initial_sp_ ? initial_sp_ - cpu_.lowest_sp[0] : 0;
