@@ -8,6 +8,7 @@
 #include "hil/scenario/scenario.h"
 #include "hil/scenario/scenario_rows.h"
 #include "hil/scenario/scenario_suite.h"
+#include "sim/core/random.h"
 
 namespace omnihil {
 namespace {
@@ -87,6 +88,27 @@ TEST(ScenarioReader, EveryProblemOfABadFileIsNamedWithItsLine) {
     EXPECT_EQ(r.problems.size(), expected) << entry.path();
   }
   EXPECT_GE(files, 5);
+}
+
+// Bytes changed, dropped and doubled at places that a counter picks: read or refused with a reason, no third.
+TEST(ScenarioReader, DamagedFilesAreReadOrRefusedWithAReason) {
+  constexpr std::string_view kBytes = "[]{}=\"\n.#0-9eE'x\\ ";
+  int refused = 0;
+  for (std::uint64_t n = 0; n < 2000; ++n) {
+    std::string text(kGood);
+    for (std::uint64_t k = 0; k < 3; ++k) {
+      const std::uint64_t bits = random_bits(1, n, k);
+      const std::size_t at = bits % text.size();
+      const char byte = kBytes[(bits >> 20) % kBytes.size()];
+      if ((bits >> 40) % 3 == 0) text[at] = byte;
+      if ((bits >> 40) % 3 == 1) text.erase(at, 1 + (bits >> 44) % 9);
+      if ((bits >> 40) % 3 == 2) text.insert(at, text.substr(at, 1 + (bits >> 44) % 40));
+    }
+    const ScenarioReading r = read_scenario(text, "damaged.toml");
+    EXPECT_NE(r.scenario.has_value(), !r.problems.empty()) << text;
+    refused += r.scenario ? 0 : 1;
+  }
+  EXPECT_GT(refused, 1000);
 }
 
 TEST(ScenarioReader, ShippedSuiteReadsAndShowsEveryStepAndCheck) {

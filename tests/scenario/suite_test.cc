@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "hil/scenario/scenario_suite.h"
@@ -40,6 +41,18 @@ void expect_all_pass(const SuiteOptions& o) {
 }
 
 TEST(ScenarioSuite, ReferenceFirmwarePassesAll) { expect_all_pass(options("")); }
+
+TEST(SlowScenarioSuite, ReferenceFirmwarePassesAllOnEveryShippedRobot) {
+  int robots = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(OMNIHIL_SOURCE_DIR "/models/robots")) {
+    SuiteOptions o = options("");
+    o.robot = entry.path().string();
+    SCOPED_TRACE(o.robot);
+    expect_all_pass(o);
+    ++robots;
+  }
+  EXPECT_GE(robots, 5);
+}
 
 TEST(ScenarioSuite, ReferenceLibraryGivesTheSameReportAsBuiltIn) {
   const std::string library =
