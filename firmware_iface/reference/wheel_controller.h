@@ -4,9 +4,9 @@
  *
  * k: torque constant (V s/rad), R: winding (ohm), tau_ff: torque the planned acceleration needs (N m), all at
  * the rotor. From the steady motor law u = k omega + R i, i = tau / k (eq. 7 with its speed factor).
- * The duty is limited to -1..1; while it is, the integral takes only what leads away from the limit: a wheel
- * held fast on the floor recovers without swinging over. Held for 1.2 s in the air and let go it reaches 3.5
- * times its target for 0.1 s (examples/scenarios/wheel/wind_up.toml): the integral may fill up to the supply.
+ * The duty is limited to -1..1; while it is, the integral takes only what leads away from the limit. It may still
+ * fill up to the supply: a wheel held for 1.2 s and let go reaches 3.5 times its target, on a stand and on the
+ * floor, and needs 0.2 s to come back (omnihil scenario run wheel/wind_up; without this rule 8 times).
  * Cannot: limit the current (the board's bridge does), nor know a wheel in the air from one on the floor.
  */
 #ifndef OMNIHIL_REFERENCE_WHEEL_CONTROLLER_H
