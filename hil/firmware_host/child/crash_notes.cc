@@ -18,7 +18,8 @@ constexpr std::uintptr_t kStackEnd_bytes = 1024 * 1024;  // beyond the limit, st
 
 void note(int signal, siginfo_t* info, void*) {
   const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
-  const bool memory = signal == SIGSEGV || signal == SIGBUS;
+  // si_code <= 0: raised by a program, and there is no address
+  const bool memory = (signal == SIGSEGV || signal == SIGBUS) && info->si_code > 0;
   if (memory) {
     const auto offset = state != nullptr ? state->offset_of(info->si_addr) : std::nullopt;
     const std::uintptr_t lowest = stack_top - stack_bytes;
