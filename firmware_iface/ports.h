@@ -18,6 +18,12 @@ class WheelBus {
   virtual RobotSensors read() = 0;                  // sampled at the instant of the call
 };
 
+// The shafts themselves, which no sensor shows as they are: for firmware whose sensors are emulated with it.
+struct RobotShafts {
+  double theta_rotor_rad[kWheels]{};
+  double omega_rotor_rad_s[kWheels]{};
+};
+
 class Firmware {
  public:
   virtual ~Firmware() = default;
@@ -31,6 +37,8 @@ class Firmware {
   virtual std::size_t radio_transmit(std::span<std::uint8_t> out) = 0;
   virtual bool set_gains(const RobotGains& gains) = 0;
   virtual RobotGains gains() const = 0;
+  // Right before each tick(), the same instant.
+  virtual void shafts(const RobotShafts&) {}
   virtual RobotDrive tick(const RobotSensors& sensors) = 0;
   virtual RobotFeedback feedback() const = 0;
   // Whether it sets the legs of three-phase bridges itself: motor_tick() is then called once per PWM period,

@@ -78,9 +78,13 @@ struct Session::Impl : RadioSink {
     RobotSample& sample = samples[i];
     sample.robot_id = id;
     sample.sensors = plant.read(static_cast<int>(i));
+    sample.truth = plant.truth(static_cast<int>(i));
+    RobotShafts shafts;
+    std::copy_n(sample.truth.theta_rotor_rad.begin(), kWheels, shafts.theta_rotor_rad);
+    std::copy_n(sample.truth.omega_rotor_rad_s.begin(), kWheels, shafts.omega_rotor_rad_s);
+    robot.shafts(shafts);
     sample.drive = robot.tick(sample.sensors);
     sample.feedback = robot.feedback();
-    sample.truth = plant.truth(static_cast<int>(i));
     sample.vision = plant.vision(static_cast<int>(i));
     if (const std::string broken = first_non_finite(sample); !broken.empty()) give_up(now_ns, id, broken);
     plant.write(static_cast<int>(i), sample.drive);

@@ -1,0 +1,183 @@
+#include "firmware_iface/mcu/board/board.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/i2c.h"
+#include "firmware_iface/mcu/stm32/spi.h"
+#include "firmware_iface/mcu/stm32/usart.h"
+
+namespace omnihil::mcu {
+namespace {
+constexpr std::uint32_t kWiresBase = 0x5FFF0000;  // no chip has anything here; wires only have events
+
+MachineConfig configuration(const BoardSpec& spec) {
+  MachineConfig config = machine_config(*spec.chip);
+  config.cpi_scale = spec.cpi_scale;
+  return config;
+}
+
+double clamp_ratio(double ratio) { return std::clamp(ratio, -1.0, 1.0); }
+}  // namespace
+
+McuBoard::McuBoard(const BoardSpec& spec, const ElfImage& image)
+    : spec_(spec), machine_(configuration(spec)), chip_(*spec.chip, machine_) {
+  chip_.context().clocks.hse_hz = spec.crystal_Hz;
+  attach(chip_, machine_);
+  wire_motors();
+  for (const DeviceEntry& entry : spec_.devices) wire_device(entry);
+  wire_analog();
+  for (const PinEntry& entry : spec_.pins) chip_.port(entry.pin.port)->drive(entry.pin.pin, entry.level);
+  wire_radio();
+  std::vector<std::string> problems;
+  if (!machine_.load(image, problems)) {
+    std::string all;
+    for (const std::string& problem : problems) all += (all.empty() ? "" : "\n") + problem;
+    throw std::invalid_argument(all);
+  }
+  for (const FlashEntry& entry : spec_.flash) {
+    std::vector<std::uint8_t> bytes;
+    for (const std::uint32_t word : entry.words) {
+      for (unsigned i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(word >> (8 * i)));
+    }
+    machine_.program_flash(entry.address, bytes);
+  }
+  machine_.power_on();
+  for (const Wired& wired : devices_) wired.device->reset();
+}
+
+McuBoard::~McuBoard() = default;
+
+void McuBoard::wire_motors() {
+  for (const MotorEntry& entry : spec_.motors) {
+    wires_.push_back(std::make_unique<MotorWire>(entry, chip_, [this] { return now_ns(); }));
+    if (!entry.encoder_timer.empty()) {
+      chip_.find<Timer>(entry.encoder_timer)->set_shaft([this, entry](std::int64_t at_ns) {
+        const std::int64_t counts = world_.encoder_counts(entry.wheel, at_ns);
+        return entry.encoder_sign < 0 ? -counts : counts;
+      });
+    }
+    if (entry.hall_pole_pairs == 0 || (entry.hall_timer.empty() && entry.hall_pins.empty())) continue;
+    halls_.push_back(std::make_unique<HallLines>(entry, chip_, machine_,
+                                                 [this]() -> const WorldState& { return world_; }));
+    machine_.attach(kWiresBase + 16 * static_cast<std::uint32_t>(halls_.size()), 4, *halls_.back());
+  }
+}
+
+DeviceWorld McuBoard::device_world(const DeviceEntry& entry) {
+  DeviceWorld world;
+  world.now_ns = [this] { return now_ns(); };
+  world.angle_rad = [this, entry](std::int64_t at_ns) {
+    const double rotor = world_.rotor_rad(entry.wheel, at_ns);
+    return entry.on_wheel_shaft ? rotor / world_.gear_ratio : rotor;
+  };
+  world.bus_voltage_V = [this](std::int64_t) { return world_.bus_voltage_V; };
+  world.bus_current_A = [this](std::int64_t) {
+    double sum_A = 0.0;
+    for (const auto& wire : wires_) {
+      const double current_A = world_.motor_current_A[static_cast<std::size_t>(wire->entry().wheel)];
+      sum_A += clamp_ratio(wire->now().duty_ratio) * current_A;  // what the bridge takes from the bus
+    }
+    return sum_A;
+  };
+  world.gyro_z_rad_s = [this](std::int64_t) { return world_.gyro_z_rad_s; };
+  world.accel_x_m_s2 = [this](std::int64_t) { return world_.accel_x_m_s2; };
+  world.accel_y_m_s2 = [this](std::int64_t) { return world_.accel_y_m_s2; };
+  world.settings = entry.settings;
+  return world;
+}
+
+void McuBoard::wire_device(const DeviceEntry& entry) {
+  devices_.push_back({entry.kind->make(device_world(entry)), entry});
+  Device* device = devices_.back().device.get();
+  if (SpiDevice* slave = device->spi()) {
+    Spi* bus = chip_.find<Spi>(entry.bus);
+    bus->connect(*slave);
+    // Selected while the pin is low; until the firmware makes it an output, a pull-up keeps it high.
+    GpioPort* port = chip_.port(entry.select->port);
+    const unsigned pin = entry.select->pin;
+    const auto follow = [bus, slave, port, pin] {
+      bus->select(*slave, port->mode(pin) == PinMode::kOutput && !port->output(pin));
+    };
+    port->on_output(pin, [follow](bool) { follow(); });
+    port->on_modes(follow);
+  }
+  if (I2cDevice* slave = device->i2c()) chip_.find<I2c>(entry.bus)->connect(*slave);
+  for (const std::string_view name : device->inputs()) {
+    const auto at = entry.pins.find(name);
+    if (at == entry.pins.end()) continue;
+    chip_.port(at->second.port)->on_output(at->second.pin, [device, name](bool level) {
+      device->input(name, level);
+    });
+  }
+  std::map<std::string, PinName, std::less<>> pins = entry.pins;
+  device->on_output([this, pins](std::string_view name, bool level) {
+    const auto at = pins.find(name);
+    if (at != pins.end()) chip_.port(at->second.port)->drive(at->second.pin, level);
+  });
+}
+
+void McuBoard::wire_analog() {
+  for (const std::string& name : chip_.names<Adc>())
+    chip_.find<Adc>(name)->reference_V = spec_.adc_reference_V;
+  for (const AnalogEntry& entry : spec_.analog) {
+    chip_.find<Adc>(entry.adc)->set_source(entry.channel, [this, entry](std::int64_t) {
+      double value = 0.0;
+      if (entry.signal == AnalogSignal::kBusVoltage) value = world_.bus_voltage_V;
+      if (entry.signal == AnalogSignal::kMotorCurrent) {
+        value = world_.motor_current_A[static_cast<std::size_t>(entry.wheel)];
+      }
+      return entry.offset_V + entry.volts_per_unit * value;
+    });
+  }
+}
+
+void McuBoard::wire_radio() {
+  if (spec_.radio_via.empty()) return;
+  radio_ = device(spec_.radio_via);
+  if (radio_ != nullptr) return;
+  serial_ = chip_.find<Usart>(spec_.radio_via);
+  serial_->on_transmit([this](std::uint8_t byte, Cycles end) {
+    sent_.push_back(byte);
+    sent_last_ns_ = machine_.to_ns(end);
+  });
+}
+
+void McuBoard::set_world(const WorldState& world) {
+  world_ = world;
+  for (const auto& hall : halls_) hall->world_changed();
+}
+
+MotorWire* McuBoard::wire(int wheel) const {
+  for (const auto& wire : wires_) {
+    if (wire->entry().wheel == wheel) return wire.get();
+  }
+  return nullptr;
+}
+
+Device* McuBoard::device(std::string_view name) const {
+  for (const Wired& wired : devices_) {
+    if (wired.entry.name == name) return wired.device.get();
+  }
+  return nullptr;
+}
+
+void McuBoard::radio_receive(std::span<const std::uint8_t> frame) {
+  if (radio_ != nullptr) radio_->air(frame);
+  if (serial_ != nullptr) serial_->feed(frame, now_ns());
+}
+
+bool McuBoard::radio_transmit(std::vector<std::uint8_t>& frame) {
+  if (radio_ != nullptr) return radio_->take_sent(frame);
+  if (serial_ == nullptr || sent_.empty()) return false;
+  // A gap of two frame times ends a packet (20 bit times).
+  const auto gap_ns = static_cast<std::int64_t>(20.0 * 1e9 / serial_->baud());
+  if (now_ns() - sent_last_ns_ < gap_ns) return false;
+  frame = std::move(sent_);
+  sent_.clear();
+  return true;
+}
+
+}  // namespace omnihil::mcu

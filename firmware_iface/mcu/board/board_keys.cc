@@ -1,0 +1,134 @@
+#include "firmware_iface/mcu/board/board_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace omnihil::mcu {
+namespace {
+std::string key_path(const std::string& path, std::string_view key) {
+  return path.empty() ? std::string(key) : path + "." + std::string(key);
+}
+
+std::string written(const toml::node& node) {
+  std::ostringstream out;
+  node.visit([&out](const auto& value) { out << value; });
+  std::string text = out.str();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  constexpr std::size_t kMost = 60;
+  return text.size() <= kMost ? text : text.substr(0, kMost) + " …";
+}
+}  // namespace
+
+std::string BoardProblem::text() const {
+  std::string out = line > 0 ? fmt::format("{}:{}: ", file, line) : fmt::format("{}: ", file);
+  if (!key.empty()) out += key;
+  if (!value.empty()) out += " = " + value;
+  if (!key.empty()) out += ": ";
+  out += what;
+  if (!allowed.empty()) out += "; allowed: " + allowed;
+  return out;
+}
+
+void BoardKeys::wrong(const toml::table& table, const std::string& path, std::string_view key,
+                      std::string what, std::string allowed) {
+  const toml::node* node = table.get(key);
+  const unsigned line = node != nullptr ? node->source().begin.line : table.source().begin.line;
+  problems_.push_back({file_, line, key_path(path, key), node != nullptr ? written(*node) : "",
+                       std::move(what), std::move(allowed)});
+}
+
+void BoardKeys::missing(const toml::table& table, const std::string& path, std::string_view key,
+                        std::string allowed) {
+  wrong(table, path, key, "missing", std::move(allowed));
+}
+
+void BoardKeys::only(const toml::table& table, const std::string& path,
+                     std::initializer_list<std::string_view> allowed) {
+  for (const auto& [key, node] : table) {
+    if (std::find(allowed.begin(), allowed.end(), key.str()) != allowed.end()) continue;
+    std::string list;
+    for (const std::string_view word : allowed) list += (list.empty() ? "" : ", ") + std::string(word);
+    problems_.push_back(
+        {file_, key.source().begin.line, key_path(path, key.str()), written(node), "unknown key", list});
+  }
+}
+
+std::optional<std::string> BoardKeys::text(const toml::table& table, const std::string& path,
+                                           std::string_view key) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto value = node->value_exact<std::string>()) return *value;
+  wrong(table, path, key, "not a text", "a text");
+  return std::nullopt;
+}
+
+std::optional<double> BoardKeys::number(const toml::table& table, const std::string& path,
+                                        std::string_view key, double lower, double upper) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return std::nullopt;
+  const std::string allowed = fmt::format("a number from {} to {}", lower, upper);
+  const auto value = node->is_number() ? node->value<double>() : std::nullopt;
+  if (!value || !std::isfinite(*value) || *value < lower || *value > upper) {
+    wrong(table, path, key, value ? "out of range" : "not a number", allowed);
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<std::int64_t> BoardKeys::whole(const toml::table& table, const std::string& path,
+                                             std::string_view key, std::int64_t lower, std::int64_t upper) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return std::nullopt;
+  const auto value = node->value_exact<std::int64_t>();
+  if (!value || *value < lower || *value > upper) {
+    wrong(table, path, key, value ? "out of range" : "not a whole number",
+          fmt::format("{} to {}", lower, upper));
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<bool> BoardKeys::flag(const toml::table& table, const std::string& path, std::string_view key) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto value = node->value_exact<bool>()) return *value;
+  wrong(table, path, key, "not a truth value", "true, false");
+  return std::nullopt;
+}
+
+std::vector<std::string> BoardKeys::texts(const toml::table& table, const std::string& path,
+                                          std::string_view key) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return {};
+  if (const auto one = node->value_exact<std::string>()) return {*one};
+  std::vector<std::string> all;
+  if (const toml::array* list = node->as_array()) {
+    for (const toml::node& item : *list) {
+      if (const auto value = item.value_exact<std::string>()) all.push_back(*value);
+    }
+    if (all.size() == list->size() && !all.empty()) return all;
+  }
+  wrong(table, path, key, "not a text or a list of texts", "\"TIM1.1\" or [\"TIM1.1\", \"TIM1.2\"]");
+  return {};
+}
+
+std::vector<std::pair<const toml::table*, std::string>> BoardKeys::tables(const toml::table& top,
+                                                                          std::string_view name) {
+  std::vector<std::pair<const toml::table*, std::string>> all;
+  const toml::node* node = top.get(name);
+  if (node == nullptr) return all;
+  const toml::array* list = node->as_array();
+  if (list == nullptr || !list->is_array_of_tables()) {
+    wrong(top, "", name, "not a list of tables", fmt::format("[[{}]]", name));
+    return all;
+  }
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    all.emplace_back(list->get(i)->as_table(), fmt::format("{}[{}]", name, i));
+  }
+  return all;
+}
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,42 @@
+// Walks the tables of a board file and collects what is wrong with each key.
+#pragma once
+#include <toml++/toml.h>
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_iface/mcu/board/board_problem.h"
+
+namespace omnihil::mcu {
+
+class BoardKeys {
+ public:
+  BoardKeys(std::string file, std::vector<BoardProblem>& problems)
+      : file_(std::move(file)), problems_(problems) {}
+
+  void only(const toml::table& table, const std::string& path,
+            std::initializer_list<std::string_view> allowed);
+  std::optional<std::string> text(const toml::table& table, const std::string& path, std::string_view key);
+  std::optional<double> number(const toml::table& table, const std::string& path, std::string_view key,
+                               double lower, double upper);
+  std::optional<std::int64_t> whole(const toml::table& table, const std::string& path, std::string_view key,
+                                    std::int64_t lower, std::int64_t upper);
+  std::optional<bool> flag(const toml::table& table, const std::string& path, std::string_view key);
+  // A text or a list of texts.
+  std::vector<std::string> texts(const toml::table& table, const std::string& path, std::string_view key);
+  void wrong(const toml::table& table, const std::string& path, std::string_view key, std::string what,
+             std::string allowed);
+  void missing(const toml::table& table, const std::string& path, std::string_view key, std::string allowed);
+  // The tables of `[[name]]`, each with its path; anything else is a problem.
+  std::vector<std::pair<const toml::table*, std::string>> tables(const toml::table& top,
+                                                                 std::string_view name);
+
+ private:
+  std::string file_;
+  std::vector<BoardProblem>& problems_;
+};
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,335 @@
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <set>
+
+#include "firmware_iface/mcu/board/board_keys.h"
+#include "firmware_iface/mcu/board/board_names.h"
+#include "firmware_iface/mcu/board/board_spec.h"
+#include "firmware_iface/mcu/stm32/device.h"
+#include "firmware_iface/robot_io.h"
+
+namespace omnihil::mcu {
+namespace {
+constexpr const char* kFormat = "omnihil-board/1";
+
+class Reader {
+ public:
+  Reader(const toml::table& top, const std::string& file, std::vector<BoardProblem>& problems)
+      : top_(top), keys_(file, problems) {}
+  BoardSpec read();
+
+ private:
+  void read_top();
+  void read_motor(const toml::table& t, const std::string& path);
+  void read_sensors(const toml::table& t, const std::string& path, MotorEntry& motor);
+  void read_device(const toml::table& t, const std::string& path);
+  void read_device_wires(const toml::table& t, const std::string& path, DeviceEntry& device);
+  void read_analog(const toml::table& t, const std::string& path);
+  void read_flash(const toml::table& t, const std::string& path);
+  void read_radio();
+  std::optional<PinName> pin(const toml::table& t, const std::string& path, std::string_view key);
+  std::optional<PinName> pin_word(const toml::table& t, const std::string& path, std::string_view key,
+                                  const std::string& word);
+  void claim(const toml::table& t, const std::string& path, std::string_view key, const std::string& what);
+
+  const toml::table& top_;
+  BoardKeys keys_;
+  BoardSpec spec_;
+  std::unique_ptr<BoardNames> names_;
+  std::set<std::string> claimed_;
+};
+
+// Each thing of the board serves one purpose.
+void Reader::claim(const toml::table& t, const std::string& path, std::string_view key,
+                   const std::string& what) {
+  if (!claimed_.insert(what).second) keys_.wrong(t, path, key, fmt::format("{} is used twice", what), "");
+}
+
+std::optional<PinName> Reader::pin_word(const toml::table& t, const std::string& path, std::string_view key,
+                                        const std::string& word) {
+  const auto parsed = parse_pin(word);
+  if (parsed && (!names_ || names_->has_pin(*parsed))) return parsed;
+  keys_.wrong(t, path, key, fmt::format("no pin \"{}\"", word), "pins of the chip, such as PA3");
+  return std::nullopt;
+}
+
+std::optional<PinName> Reader::pin(const toml::table& t, const std::string& path, std::string_view key) {
+  const auto word = keys_.text(t, path, key);
+  return word ? pin_word(t, path, key, *word) : std::nullopt;
+}
+
+void Reader::read_top() {
+  keys_.only(top_, "",
+             {"format", "name", "source", "chip", "crystal_Hz", "cpi_scale", "coupling_us", "adc_reference_V",
+              "radio", "motor", "device", "analog", "pin", "flash"});
+  if (const auto format = keys_.text(top_, "", "format"); !format || *format != kFormat) {
+    keys_.wrong(top_, "", "format", format ? "unknown" : "missing", kFormat);
+  }
+  spec_.name = keys_.text(top_, "", "name").value_or("");
+  if (spec_.name.empty()) keys_.missing(top_, "", "name", "a text");
+  std::string chips;
+  for (const ChipSpec* chip : all_chips()) {
+    chips += (chips.empty() ? "" : ", ") + std::string(chip->name);
+    for (const std::string_view variant : chip->variants) chips += ", " + std::string(variant);
+  }
+  if (const auto chip = keys_.text(top_, "", "chip")) {
+    spec_.chip = find_chip(*chip);
+    if (spec_.chip == nullptr) keys_.wrong(top_, "", "chip", "unknown", chips);
+  } else if (!top_.contains("chip")) {
+    keys_.missing(top_, "", "chip", chips);
+  }
+  if (spec_.chip != nullptr) names_ = std::make_unique<BoardNames>(*spec_.chip);
+  spec_.crystal_Hz = keys_.number(top_, "", "crystal_Hz", 1e6, 50e6).value_or(spec_.crystal_Hz);
+  spec_.cpi_scale = keys_.number(top_, "", "cpi_scale", 0.25, 10.0).value_or(spec_.cpi_scale);
+  spec_.coupling_ns =
+      1000 * keys_.whole(top_, "", "coupling_us", 10, 10'000).value_or(spec_.coupling_ns / 1000);
+  spec_.adc_reference_V = keys_.number(top_, "", "adc_reference_V", 0.5, 6.0).value_or(spec_.adc_reference_V);
+}
+
+void Reader::read_motor(const toml::table& t, const std::string& path) {
+  keys_.only(t, path,
+             {"wheel", "pwm", "inverted", "direction", "forward", "reversed", "enable", "encoder",
+              "encoder_reversed", "hall", "hall_pins", "pole_pairs"});
+  MotorEntry motor;
+  if (const auto wheel = keys_.whole(t, path, "wheel", 0, kWheels - 1)) {
+    motor.wheel = static_cast<int>(*wheel);
+    claim(t, path, "wheel", fmt::format("wheel {}", *wheel));
+  } else if (!t.contains("wheel")) {
+    keys_.missing(t, path, "wheel", "0 to 3");
+  }
+  for (const std::string& word : keys_.texts(t, path, "pwm")) {
+    const auto channel = parse_channel(word);
+    if (!channel || (names_ && !names_->has_channel(*channel))) {
+      keys_.wrong(
+          t, path, "pwm", fmt::format("no channel \"{}\"", word),
+          "channels such as TIM1.2, TIM1.2N of " + (names_ ? names_->timers() : std::string("the chip")));
+      continue;
+    }
+    claim(t, path, "pwm", word);
+    motor.pwm.push_back(*channel);
+  }
+  if (!t.contains("pwm")) keys_.missing(t, path, "pwm", "one channel, two of a bridge, or three phases");
+  if (motor.pwm.size() > 3) keys_.wrong(t, path, "pwm", "too many channels", "one, two or three");
+  motor.inverted = keys_.flag(t, path, "inverted").value_or(false);
+  motor.direction = pin(t, path, "direction");
+  if (motor.direction && motor.pwm.size() > 1) keys_.wrong(t, path, "direction", "goes with one channel", "");
+  if (const auto word = keys_.text(t, path, "forward")) {
+    motor.direction_high_is_forward = *word == "high";
+    if (*word != "high" && *word != "low") keys_.wrong(t, path, "forward", "unknown", "high, low");
+  }
+  motor.sign = keys_.flag(t, path, "reversed").value_or(false) ? -1.0 : 1.0;
+  motor.enable = pin(t, path, "enable");
+  read_sensors(t, path, motor);
+  spec_.motors.push_back(std::move(motor));
+}
+
+void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEntry& motor) {
+  motor.encoder_timer = keys_.text(t, path, "encoder").value_or("");
+  if (!motor.encoder_timer.empty()) {
+    if (names_ && !names_->has_timer(motor.encoder_timer, 2)) {
+      keys_.wrong(t, path, "encoder", "no timer with two inputs", names_->timers());
+    } else {
+      claim(t, path, "encoder", motor.encoder_timer + " inputs");
+    }
+  }
+  motor.encoder_sign = keys_.flag(t, path, "encoder_reversed").value_or(false) ? -1.0 : 1.0;
+  motor.hall_timer = keys_.text(t, path, "hall").value_or("");
+  if (!motor.hall_timer.empty()) {
+    if (names_ && !names_->has_timer(motor.hall_timer, 3)) {
+      keys_.wrong(t, path, "hall", "no timer with three inputs", names_->timers());
+    } else {
+      claim(t, path, "hall", motor.hall_timer + " inputs");
+    }
+  }
+  for (const std::string& word : keys_.texts(t, path, "hall_pins")) {
+    if (const auto p = pin_word(t, path, "hall_pins", word)) motor.hall_pins.push_back(*p);
+  }
+  if (t.contains("hall_pins") && motor.hall_pins.size() != 3) {
+    keys_.wrong(t, path, "hall_pins", "not three pins", "three pins: H1, H2, H3");
+  }
+  const bool hall = !motor.hall_timer.empty() || !motor.hall_pins.empty();
+  motor.hall_pole_pairs = static_cast<unsigned>(keys_.whole(t, path, "pole_pairs", 1, 60).value_or(0));
+  if (hall && !t.contains("pole_pairs")) keys_.missing(t, path, "pole_pairs", "1 to 60");
+}
+
+void Reader::read_device(const toml::table& t, const std::string& path) {
+  keys_.only(t, path, {"kind", "name", "bus", "select", "pins", "settings", "wheel", "shaft"});
+  DeviceEntry device;
+  std::string kinds;
+  for (const DeviceKind* kind : all_devices()) kinds += (kinds.empty() ? "" : ", ") + std::string(kind->name);
+  if (const auto kind = keys_.text(t, path, "kind")) {
+    device.kind = find_device(*kind);
+    if (device.kind == nullptr) keys_.wrong(t, path, "kind", "unknown", kinds);
+    device.name = *kind;
+  } else if (!t.contains("kind")) {
+    keys_.missing(t, path, "kind", kinds);
+  }
+  device.name = keys_.text(t, path, "name").value_or(device.name);
+  device.wheel = static_cast<int>(keys_.whole(t, path, "wheel", 0, kWheels - 1).value_or(0));
+  if (const auto shaft = keys_.text(t, path, "shaft")) {
+    device.on_wheel_shaft = *shaft == "wheel";
+    if (*shaft != "wheel" && *shaft != "rotor") keys_.wrong(t, path, "shaft", "unknown", "rotor, wheel");
+  }
+  if (device.kind != nullptr) read_device_wires(t, path, device);
+  claim(t, path, "name", "device " + device.name);
+  spec_.devices.push_back(std::move(device));
+}
+
+void Reader::read_device_wires(const toml::table& t, const std::string& path, DeviceEntry& device) {
+  const std::unique_ptr<Device> sample = device.kind->make(DeviceWorld{});
+  const bool spi = sample->spi() != nullptr;
+  device.bus = keys_.text(t, path, "bus").value_or("");
+  const bool known = names_ && (spi ? names_->has_spi(device.bus) : names_->has_i2c(device.bus));
+  if (names_ && !known) {
+    keys_.wrong(t, path, "bus", spi ? "not an SPI of the chip" : "not an I2C of the chip", names_->buses());
+  }
+  device.select = pin(t, path, "select");
+  if (spi && !t.contains("select")) keys_.missing(t, path, "select", "the pin that selects the chip");
+  if (const toml::node* node = t.get("pins")) {
+    const toml::table* pins = node->as_table();
+    if (pins == nullptr) keys_.wrong(t, path, "pins", "not a table", "{ irq = \"PB1\" }");
+    std::vector<std::string_view> allowed(sample->inputs().begin(), sample->inputs().end());
+    allowed.insert(allowed.end(), sample->outputs().begin(), sample->outputs().end());
+    for (const auto& [key, value] : pins != nullptr ? *pins : toml::table{}) {
+      const std::string name(key.str());
+      if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
+        keys_.wrong(*pins, path + ".pins", name, "the device has no such pin",
+                    fmt::format("{}", fmt::join(allowed, ", ")));
+      } else if (const auto p = pin(*pins, path + ".pins", name)) {
+        device.pins[name] = *p;
+      }
+    }
+  }
+  if (const toml::node* node = t.get("settings")) {
+    const toml::table* settings = node->as_table();
+    if (settings == nullptr) keys_.wrong(t, path, "settings", "not a table", "{ shunt_ohm = 0.01 }");
+    for (const auto& [key, value] : settings != nullptr ? *settings : toml::table{}) {
+      const std::string name(key.str());
+      const auto& known_settings = device.kind->settings;
+      if (std::find(known_settings.begin(), known_settings.end(), name) == known_settings.end()) {
+        keys_.wrong(*settings, path + ".settings", name, "the device has no such setting",
+                    fmt::format("{}", fmt::join(known_settings, ", ")));
+      } else if (const auto number = keys_.number(*settings, path + ".settings", name, -1e6, 1e6)) {
+        device.settings[name] = *number;
+      }
+    }
+  }
+}
+
+void Reader::read_analog(const toml::table& t, const std::string& path) {
+  keys_.only(t, path, {"adc", "channel", "signal", "wheel", "volts_per_unit", "offset_V"});
+  AnalogEntry analog;
+  analog.adc = keys_.text(t, path, "adc").value_or("");
+  if (names_ && !names_->has_adc(analog.adc)) {
+    keys_.wrong(t, path, "adc", t.contains("adc") ? "unknown" : "missing", names_->adcs());
+  }
+  analog.channel = static_cast<unsigned>(keys_.whole(t, path, "channel", 0, 31).value_or(0));
+  if (!t.contains("channel")) keys_.missing(t, path, "channel", "0 to 31");
+  const std::string signal = keys_.text(t, path, "signal").value_or("constant");
+  if (signal == "bus_voltage") {
+    analog.signal = AnalogSignal::kBusVoltage;
+  } else if (signal == "motor_current") {
+    analog.signal = AnalogSignal::kMotorCurrent;
+  } else if (signal != "constant") {
+    keys_.wrong(t, path, "signal", "unknown", "bus_voltage, motor_current, constant");
+  }
+  analog.wheel = static_cast<int>(keys_.whole(t, path, "wheel", 0, kWheels - 1).value_or(0));
+  analog.volts_per_unit = keys_.number(t, path, "volts_per_unit", -1e3, 1e3).value_or(0.0);
+  analog.offset_V = keys_.number(t, path, "offset_V", -100.0, 100.0).value_or(0.0);
+  claim(t, path, "channel", fmt::format("{} channel {}", analog.adc, analog.channel));
+  spec_.analog.push_back(analog);
+}
+
+void Reader::read_flash(const toml::table& t, const std::string& path) {
+  keys_.only(t, path, {"address", "words"});
+  FlashEntry flash;
+  std::uint32_t base = 0, bytes = 0xFFFFFFFF;
+  for (const MemorySpec& memory : spec_.chip != nullptr ? spec_.chip->memories : std::vector<MemorySpec>{}) {
+    if (memory.flash) base = memory.base, bytes = memory.bytes;
+  }
+  const std::int64_t end = std::int64_t{base} + bytes;
+  if (const auto address = keys_.whole(t, path, "address", base, end - 4)) {
+    flash.address = static_cast<std::uint32_t>(*address);
+    if (flash.address % 4 != 0) keys_.wrong(t, path, "address", "not a multiple of 4", "");
+  } else if (!t.contains("address")) {
+    keys_.missing(t, path, "address", "an address in flash");
+  }
+  const toml::array* words = t.get_as<toml::array>("words");
+  if (words == nullptr || words->empty()) {
+    keys_.wrong(t, path, "words", "not a list of words", "[0x3F800000, 12]");
+  } else {
+    for (const toml::node& node : *words) {
+      const auto word = node.value_exact<std::int64_t>();
+      if (!word || *word < 0 || *word > 0xFFFFFFFFLL) {
+        keys_.wrong(t, path, "words", "not all are words", "0 to 0xFFFFFFFF");
+        break;
+      }
+      flash.words.push_back(static_cast<std::uint32_t>(*word));
+    }
+    if (std::int64_t{flash.address} + 4 * static_cast<std::int64_t>(flash.words.size()) > end) {
+      keys_.wrong(t, path, "words", "reach beyond the end of flash", fmt::format("up to 0x{:08x}", end));
+    }
+  }
+  spec_.flash.push_back(std::move(flash));
+}
+
+void Reader::read_radio() {
+  const toml::node* node = top_.get("radio");
+  if (node == nullptr) return;
+  const toml::table* t = node->as_table();
+  if (t == nullptr) return keys_.wrong(top_, "", "radio", "not a table", "[radio]");
+  keys_.only(*t, "radio", {"format", "via"});
+  spec_.radio_format = keys_.text(*t, "radio", "format").value_or("");
+  if (spec_.radio_format.empty())
+    keys_.missing(*t, "radio", "format", "a radio format, see `omnihil formats`");
+  spec_.radio_via = keys_.text(*t, "radio", "via").value_or("");
+  bool found = names_ && names_->has_serial(spec_.radio_via);
+  for (const DeviceEntry& device : spec_.devices) {
+    if (device.name != spec_.radio_via || device.kind == nullptr) continue;
+    found = device.kind->make(DeviceWorld{})->is_radio();
+  }
+  if (!found) {
+    keys_.wrong(
+        *t, "radio", "via", t->contains("via") ? "no radio and no serial port of that name" : "missing",
+        "a [[device]] that is a radio, or " + (names_ ? names_->serials() : std::string("a serial port")));
+  }
+}
+
+BoardSpec Reader::read() {
+  read_top();
+  for (const auto& [t, path] : keys_.tables(top_, "motor")) read_motor(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "device")) read_device(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "analog")) read_analog(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "flash")) read_flash(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "pin")) {
+    keys_.only(*t, path, {"pin", "level"});
+    const auto p = pin(*t, path, "pin");
+    if (!t->contains("pin")) keys_.missing(*t, path, "pin", "a pin, such as PC13");
+    if (!t->contains("level")) keys_.missing(*t, path, "level", "true, false");
+    const auto level = keys_.flag(*t, path, "level");
+    if (p && level) spec_.pins.push_back({*p, *level});
+  }
+  read_radio();
+  return std::move(spec_);
+}
+}  // namespace
+
+std::optional<BoardSpec> read_board(std::string_view text, const std::string& file,
+                                    std::vector<BoardProblem>& problems) {
+  toml::table top;
+  try {
+    top = toml::parse(text, file);
+  } catch (const toml::parse_error& e) {
+    problems.push_back(
+        {file, e.source().begin.line, "", "", fmt::format("not TOML: {}", e.description()), ""});
+    return std::nullopt;
+  }
+  const std::size_t before = problems.size();
+  BoardSpec spec = Reader(top, file, problems).read();
+  if (problems.size() != before) return std::nullopt;
+  return spec;
+}
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,103 @@
+// What a board file says: the chip, and what hangs on its timers, pins and buses. For people:
+// docs/mcu-boards.md.
+//
+//   std::vector<BoardProblem> problems;
+//   std::optional<BoardSpec> spec = read_board(text, "boards/mine.toml", problems);
+//
+// The reader knows the chip: a timer, channel, pin or bus that the chip lacks is a problem, and so is
+// everything that two entries claim. All problems come at once.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_iface/mcu/board/board_problem.h"
+
+namespace omnihil::mcu {
+
+struct ChipSpec;
+struct DeviceKind;
+
+struct PinName {  // "PA3"
+  char port = 'A';
+  unsigned pin = 0;
+};
+
+struct ChannelName {  // "TIM1.3", its complementary output "TIM1.3N"
+  std::string timer;
+  unsigned channel = 0;  // from 0
+  bool complement = false;
+};
+
+// One motor: one channel with or without a direction pin, two channels (a bridge's halves), or three
+// (phases).
+struct MotorEntry {
+  int wheel = 0;
+  std::vector<ChannelName> pwm;
+  bool inverted = false;  // the driver's input is active low
+  std::optional<PinName> direction;
+  bool direction_high_is_forward = true;
+  double sign = 1.0;              // -1: the motor's leads are swapped
+  std::optional<PinName> enable;  // low: the bridge is off
+  std::string encoder_timer;      // empty: none
+  double encoder_sign = 1.0;
+  std::string hall_timer;          // empty: none; its channels 1 to 3
+  std::vector<PinName> hall_pins;  // the same lines as pins
+  unsigned hall_pole_pairs = 0;
+};
+
+struct DeviceEntry {
+  const DeviceKind* kind = nullptr;
+  std::string name;  // as the radio names it
+  std::string bus;   // "SPI1", "I2C2"
+  std::optional<PinName> select;
+  std::map<std::string, PinName, std::less<>> pins;
+  std::map<std::string, double, std::less<>> settings;
+  int wheel = 0;  // of an angle sensor
+  bool on_wheel_shaft = false;
+};
+
+enum class AnalogSignal : std::uint8_t { kConstant, kBusVoltage, kMotorCurrent };
+
+struct AnalogEntry {
+  std::string adc;
+  unsigned channel = 0;
+  AnalogSignal signal = AnalogSignal::kConstant;
+  int wheel = 0;
+  double volts_per_unit = 0.0, offset_V = 0.0;
+};
+
+struct PinEntry {
+  PinName pin;
+  bool level = false;
+};
+
+struct FlashEntry {
+  std::uint32_t address = 0;
+  std::vector<std::uint32_t> words;
+};
+
+struct BoardSpec {
+  std::string name;
+  const ChipSpec* chip = nullptr;
+  double crystal_Hz = 8e6;
+  double cpi_scale = 1.0;
+  std::int64_t coupling_ns = 250'000;  // the plant and the board meet this often
+  double adc_reference_V = 3.3;
+  std::string radio_format;  // empty: none
+  std::string radio_via;     // a device's name, or a serial port
+  std::vector<MotorEntry> motors;
+  std::vector<DeviceEntry> devices;
+  std::vector<AnalogEntry> analog;
+  std::vector<PinEntry> pins;
+  std::vector<FlashEntry> flash;
+};
+
+std::optional<BoardSpec> read_board(std::string_view text, const std::string& file,
+                                    std::vector<BoardProblem>& problems);
+
+}  // namespace omnihil::mcu

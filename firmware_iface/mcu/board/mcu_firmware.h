@@ -1,0 +1,66 @@
+// An unmodified image on an emulated board, as an omnihil::Firmware in lock-step with the plant.
+//
+//   auto firmware = std::make_unique<mcu::McuFirmware>(spec, image, robot_config);
+//   firmware->shafts(exact);  RobotDrive drive = firmware->tick(sensors);      // every coupling period
+//
+// tick() at t lets the board run from t to t + control_period_ns(), with shafts turning on at their speed,
+// and gives the mean of what the bridges did in that time, which the plant then holds for the same time: no
+// delay is added. The grid of ticks is absolute, so results do not depend on the loop step. Boards with
+// three-phase bridges set the legs at every PWM period (motor_tick()), from what their timers give at that
+// instant. Effects of the model on encoders act as the difference between sensed and exact counts at each
+// tick. Cannot represent: ripple within a coupling period, kicker and dribbler (they have no wires yet),
+// commands that do not come by radio (the image decodes frames itself).
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware_iface/mcu/board/board.h"
+#include "firmware_iface/ports.h"
+
+namespace omnihil::mcu {
+
+class McuFirmware final : public Firmware {
+ public:
+  // Throws std::invalid_argument if the image does not fit the chip.
+  McuFirmware(const BoardSpec& spec, const ElfImage& image, const RobotConfig& config);
+
+  std::string_view name() const override { return name_; }
+  std::string_view radio_format() const override { return board_.spec().radio_format; }
+  std::int64_t control_period_ns() const override { return board_.spec().coupling_ns; }
+  void command(const RobotCommand&, std::int64_t) override { ++commands_ignored_; }
+  void radio_receive(std::span<const std::uint8_t> frame, std::int64_t now_ns) override;
+  std::size_t radio_transmit(std::span<std::uint8_t> out) override;
+  bool set_gains(const RobotGains&) override { return false; }
+  RobotGains gains() const override { return {}; }
+  void shafts(const RobotShafts& exact) override { exact_ = exact; }
+  RobotDrive tick(const RobotSensors& sensors) override;
+  RobotFeedback feedback() const override { return feedback_; }
+  bool drives_phases() const override { return phases_; }
+  MotorDrive motor_tick(const MotorSensors& sensors) override;
+
+  McuBoard& board() { return board_; }
+  const McuBoard& board() const { return board_; }
+  std::uint64_t commands_ignored() const { return commands_ignored_; }
+
+ private:
+  void look(const RobotSensors& sensors);
+
+  std::string name_;
+  RobotConfig config_;
+  McuBoard board_;
+  bool phases_ = false;
+  RobotShafts exact_{};
+  WorldState world_;
+  RobotFeedback feedback_{};
+  std::uint64_t commands_ignored_ = 0;
+};
+
+// What the run of an image has shown: unmodelled registers, null pointers, faults, stack, load. For people,
+// line by line; empty when there is nothing to say.
+std::vector<std::string> board_report(const McuBoard& board, const ElfImage& image);
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,58 @@
+// From timer channels and pins to what a motor's bridge does: now, and on the mean of an interval.
+//
+//   MotorWire wire(entry, chip, [&] { return machine.to_ns(machine.now()); });
+//   wire.begin(t0_ns);  machine.run_until_ns(t1_ns);
+//   BridgeDrive mean = wire.end(t1_ns);         // duty weighted by the time it was held, changes at their
+//   instants
+//
+// One channel and a direction pin: duty with that sign. One channel alone: both halves in turn, 2 d - 1. Two
+// channels: the difference of the halves. Three: phases, each leg from its channel and the complementary one.
+// A channel that is off (no MOE, not enabled) leaves the motor to coast; so does the enable pin when low.
+// Cannot represent: pins that are not set to their timer (their mode is not looked at), dead time's effect on
+// voltage.
+#pragma once
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "firmware_iface/mcu/board/board_spec.h"
+#include "firmware_iface/mcu/stm32/chip.h"
+#include "firmware_iface/mcu/stm32/timer.h"
+#include "firmware_iface/robot_io.h"
+
+namespace omnihil::mcu {
+
+struct BridgeDrive {
+  bool driven = false;      // else: coast
+  double duty_ratio = 0.0;  // -1 .. 1 of the bus voltage
+};
+
+class MotorWire {
+ public:
+  MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int64_t()> now_ns);
+  MotorWire(const MotorWire&) = delete;
+
+  const MotorEntry& entry() const { return entry_; }
+  bool phases() const { return entry_.pwm.size() == 3; }
+  void begin(std::int64_t at_ns);
+  BridgeDrive end(std::int64_t at_ns);
+  BridgeDrive now() const;
+  // The legs of a three-phase bridge, as omnihil_motor_drive has them.
+  void legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) const;
+
+ private:
+  void changed();
+  void pass(std::int64_t at_ns);
+  TimerPin pin(std::size_t i) const;
+  bool enabled() const { return !enable_ || enable_->output(entry_.enable->pin); }
+
+  MotorEntry entry_;
+  std::function<std::int64_t()> now_ns_;
+  std::vector<Timer*> timers_;
+  GpioPort *direction_ = nullptr, *enable_ = nullptr;
+  BridgeDrive held_;
+  std::int64_t since_ns_ = 0;
+  double driven_ns_ = 0.0, duty_ns_ = 0.0;
+};
+
+}  // namespace omnihil::mcu
