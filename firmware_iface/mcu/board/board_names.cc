@@ -57,6 +57,7 @@ class BoardNames::Nothing final : public System {
   std::string_view reset_cause() const override { return "power-on"; }
   std::uint32_t bus_read(std::uint32_t, unsigned) override { return 0; }
   void bus_write(std::uint32_t, unsigned, std::uint32_t) override {}
+  void map_at_zero(std::uint32_t) override {}
   void program_flash(std::uint32_t, std::span<const std::uint8_t>) override {}
   void report_unmodelled(std::string_view, std::string_view) override {}
 };

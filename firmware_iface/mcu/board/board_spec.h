@@ -86,7 +86,7 @@ struct BoardSpec {
   const ChipSpec* chip = nullptr;
   double crystal_Hz = 8e6;
   double cpi_scale = 1.0;
-  std::int64_t coupling_ns = 250'000;  // the plant and the board meet this often
+  std::int64_t coupling_ns = 500'000;  // the plant and the board meet this often
   double adc_reference_V = 3.3;
   std::string radio_format;  // empty: none
   std::string radio_via;     // a device's name, or a serial port

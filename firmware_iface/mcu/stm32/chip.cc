@@ -37,6 +37,9 @@ MachineConfig machine_config(const ChipSpec& spec) {
       if (memory.base == 0) config.flash_at_zero = false;
     }
   }
+  for (const auto& [name, base] : spec.aliases) {
+    config.aliases.emplace_back(name == "sram" ? "ram" : std::string(name), base);
+  }
   return config;
 }
 

@@ -39,7 +39,7 @@ struct ChipSpec {
   Variant core = kCortexM4F;
   double reset_hz = 16e6;
   std::vector<MemorySpec> memories;
-  unsigned interrupts = 82;
+  std::vector<std::pair<std::string_view, std::uint32_t>> aliases = {};  // of a memory, at another base
   void (*build)(Chip& chip) = nullptr;
 };
 

@@ -6,7 +6,7 @@ namespace omnihil::mcu {
 namespace {
 enum : std::uint16_t { kImr = 0x00, kEmr = 0x04, kRtsr = 0x08, kFtsr = 0x0C, kSwier = 0x10, kPr = 0x14 };
 
-constexpr RegisterInfo kSyscfg[] = {{0x00, "MEMRMP", 0, 0xFFFFFFFF, 0x7},
+constexpr RegisterInfo kSyscfg[] = {{0x00, "MEMRMP", 0, 0xFFFFFFFF, 0x704},
                                     {0x04, "PMC"},
                                     {0x08, "EXTICR1", 0, 0xFFFF},
                                     {0x0C, "EXTICR2", 0, 0xFFFF},
@@ -25,6 +25,15 @@ Syscfg::Syscfg(ChipContext& context) : RegisterBlock("SYSCFG", context.system, k
 std::uint32_t Syscfg::load(std::uint32_t offset) {
   const std::uint32_t v = value(offset);
   return offset == 0x20 ? v | (v & 1u) << 8 : v;  // compensation cell ready
+}
+
+void Syscfg::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  const std::uint32_t before = value(0) & 3u;
+  keep(offset, written, lanes);
+  const std::uint32_t mode = value(0) & 3u;
+  if (offset != 0 || mode == before) return;
+  constexpr std::uint32_t kShown[] = {0x08000000u, 0x1FFF0000u, 0x08000000u, 0x20000000u};
+  system().map_at_zero(kShown[mode]);
 }
 
 Exti::Exti(const Syscfg& syscfg, std::vector<ExtiVector> vectors, ChipContext& context)

@@ -18,8 +18,10 @@ class Syscfg final : public RegisterBlock {
   explicit Syscfg(ChipContext& context);
   unsigned port_of(unsigned line) const { return value(0x08 + 4 * (line / 4)) >> (4 * (line % 4)) & 15u; }
 
+  // MEM_MODE is followed: 0 flash, 1 system memory, 3 SRAM at address 0 (not on F7, whose bits mean others).
  protected:
   std::uint32_t load(std::uint32_t offset) override;
+  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 };
 
 struct ExtiVector {

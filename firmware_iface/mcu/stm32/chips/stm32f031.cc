@@ -72,7 +72,6 @@ const ChipSpec& chip_stm32f031() {
       .core = kCortexM0,
       .reset_hz = 8e6,
       .memories = {{"flash", 0x08000000, 32 * 1024, true}, {"sram", 0x20000000, 4 * 1024}},
-      .interrupts = 32,
       .build = build};
   return spec;
 }

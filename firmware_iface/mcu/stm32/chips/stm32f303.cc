@@ -148,7 +148,6 @@ const ChipSpec& chip_stm32f303() {
                              .memories = {{"flash", 0x08000000, 256 * 1024, true},
                                           {"sram", 0x20000000, 40 * 1024},
                                           {"ccm", 0x10000000, 8 * 1024}},
-                             .interrupts = 82,
                              .build = build};
   return spec;
 }

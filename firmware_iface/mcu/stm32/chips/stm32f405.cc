@@ -55,7 +55,6 @@ const ChipSpec& chip_stm32f405() {
                                           {"sram", 0x20000000, 128 * 1024},
                                           {"ccm", 0x10000000, 64 * 1024},
                                           {"backup", 0x40024000, 4096}},
-                             .interrupts = 82,
                              .build = build};
   return spec;
 }

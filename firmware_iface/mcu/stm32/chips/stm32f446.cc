@@ -54,7 +54,6 @@ const ChipSpec& chip_stm32f446() {
                              .memories = {{"flash", 0x08000000, 512 * 1024, true},
                                           {"sram", 0x20000000, 128 * 1024},
                                           {"backup", 0x40024000, 4096}},
-                             .interrupts = 97,
                              .build = build};
   return spec;
 }

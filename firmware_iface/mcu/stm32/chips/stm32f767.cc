@@ -64,7 +64,7 @@ const ChipSpec& chip_stm32f767() {
                                           {"itcm", 0x00000000, 16 * 1024},
                                           {"sram", 0x20000000, 512 * 1024},
                                           {"backup", 0x40024000, 4096}},
-                             .interrupts = 110,
+                             .aliases = {{"flash", 0x00200000}},
                              .build = build};
   return spec;
 }

@@ -166,9 +166,9 @@ const ChipSpec& chip_stm32g474() {
                              .variants = {"stm32g473", "stm32g483", "stm32g484"},
                              .core = kCortexM4F,
                              .memories = {{"flash", 0x08000000, 512 * 1024, true},
-                                          {"sram", 0x20000000, 128 * 1024},
-                                          {"ccm", 0x10000000, 32 * 1024}},
-                             .interrupts = 102,
+                                          {"sram", 0x20000000, 96 * 1024},
+                                          {"ccm", 0x20018000, 32 * 1024}},
+                             .aliases = {{"ccm", 0x10000000}},
                              .build = build};
   return spec;
 }

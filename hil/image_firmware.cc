@@ -1,0 +1,77 @@
+#include "hil/image_firmware.h"
+
+#include <memory>
+#include <utility>
+
+#include "firmware_iface/mcu/board/mcu_firmware.h"
+#include "hil/session_checks.h"
+#include "hil/text_file.h"
+
+namespace omnihil {
+namespace {
+struct Image {
+  mcu::BoardSpec board;
+  mcu::ElfImage elf;
+};
+
+class ImageFirmware final : public Firmware {
+ public:
+  ImageFirmware(std::shared_ptr<const Image> image, const RobotConfig& config)
+      : image_(std::move(image)), mcu_(image_->board, image_->elf, config) {}
+
+  std::string_view name() const override { return mcu_.name(); }
+  std::string_view radio_format() const override { return mcu_.radio_format(); }
+  std::int64_t control_period_ns() const override { return mcu_.control_period_ns(); }
+  void command(const RobotCommand& c, std::int64_t now_ns) override { mcu_.command(c, now_ns); }
+  void radio_receive(std::span<const std::uint8_t> f, std::int64_t now_ns) override {
+    mcu_.radio_receive(f, now_ns);
+  }
+  std::size_t radio_transmit(std::span<std::uint8_t> out) override { return mcu_.radio_transmit(out); }
+  bool set_gains(const RobotGains& gains) override { return mcu_.set_gains(gains); }
+  RobotGains gains() const override { return mcu_.gains(); }
+  void shafts(const RobotShafts& exact) override { mcu_.shafts(exact); }
+  RobotDrive tick(const RobotSensors& sensors) override { return mcu_.tick(sensors); }
+  RobotFeedback feedback() const override { return mcu_.feedback(); }
+  bool drives_phases() const override { return mcu_.drives_phases(); }
+  MotorDrive motor_tick(const MotorSensors& sensors) override { return mcu_.motor_tick(sensors); }
+  std::vector<std::string> report() const { return board_report(mcu_.board(), image_->elf); }
+
+ private:
+  std::shared_ptr<const Image> image_;
+  mcu::McuFirmware mcu_;
+};
+}  // namespace
+
+Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file) {
+  std::vector<std::string> problems;
+  auto image = std::make_shared<Image>();
+  std::string error;
+  const std::string bytes = read_text_file(image_file, error);
+  if (!error.empty()) {
+    problems.push_back("firmware " + image_file + ": " + error);
+  } else {
+    std::vector<std::string> found;
+    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    mcu::read_elf(std::span(data, bytes.size()), image->elf, found);
+    for (const std::string& problem : found) problems.push_back("firmware " + image_file + ": " + problem);
+  }
+  const std::string text = read_text_file(board_file, error);
+  if (!error.empty()) {
+    problems.push_back("board " + board_file + ": " + error);
+  } else {
+    std::vector<mcu::BoardProblem> found;
+    if (auto board = mcu::read_board(text, board_file, found)) image->board = std::move(*board);
+    for (const mcu::BoardProblem& problem : found) problems.push_back(problem.text());
+  }
+  throw_problems(problems);
+  return [image](const RobotConfig& config) -> std::unique_ptr<Firmware> {
+    return std::make_unique<ImageFirmware>(image, config);
+  };
+}
+
+std::vector<std::string> image_report(const Firmware& firmware) {
+  const auto* image = dynamic_cast<const ImageFirmware*>(&firmware);
+  return image != nullptr ? image->report() : std::vector<std::string>{};
+}
+
+}  // namespace omnihil

@@ -1,0 +1,174 @@
+// Board files: what is right is read, what is wrong is named with its place, all of it at once.
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+#include "firmware_iface/mcu/board/board_spec.h"
+#include "firmware_iface/mcu/stm32/chip.h"
+
+namespace omnihil::mcu {
+namespace {
+
+const std::string kGood = R"(format = "omnihil-board/1"
+name = "test"
+chip = "STM32F407"
+
+[[motor]]
+wheel = 0
+pwm = "TIM8.1"
+inverted = true
+direction = "PE1"
+forward = "low"
+encoder = "TIM3"
+
+[[motor]]
+wheel = 2
+pwm = ["TIM1.1", "TIM1.2"]
+reversed = true
+
+[[device]]
+kind = "nrf24l01"
+name = "radio"
+bus = "SPI1"
+select = "PA4"
+pins = { ce = "PB0", irq = "PB1" }
+
+[[device]]
+kind = "ina219"
+bus = "I2C1"
+settings = { shunt_ohm = 0.01 }
+
+[[analog]]
+adc = "ADC1"
+channel = 3
+signal = "bus_voltage"
+volts_per_unit = 0.1
+
+[[pin]]
+pin = "PC13"
+level = true
+
+[[flash]]
+address = 0x08060000
+words = [1, 0xFFFFFFFF]
+
+[radio]
+format = "ulaval-hermes"
+via = "radio"
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(BoardReader, ReadsWhatTheFileSays) {
+  std::vector<BoardProblem> problems;
+  const auto spec = read_board(kGood, "b.toml", problems);
+  for (const BoardProblem& p : problems) ADD_FAILURE() << p.text();
+  ASSERT_TRUE(spec);
+  EXPECT_EQ(spec->chip->name, "stm32f405");
+  ASSERT_EQ(spec->motors.size(), 2u);
+  EXPECT_EQ(spec->motors[0].pwm[0].timer, "TIM8");
+  EXPECT_TRUE(spec->motors[0].inverted);
+  EXPECT_FALSE(spec->motors[0].direction_high_is_forward);
+  EXPECT_EQ(spec->motors[1].sign, -1.0);
+  ASSERT_EQ(spec->devices.size(), 2u);
+  EXPECT_EQ(spec->devices[0].pins.at("irq").port, 'B');
+  EXPECT_EQ(spec->devices[1].settings.at("shunt_ohm"), 0.01);
+  EXPECT_EQ(spec->flash[0].words[1], 0xFFFFFFFFu);
+  EXPECT_EQ(spec->radio_via, "radio");
+}
+
+struct Broken {
+  const char *from, *to, *key, *what;
+};
+
+TEST(BoardReader, NamesEveryKindOfMistakeWithItsLineAndKey) {
+  const Broken kCases[] = {
+      {"omnihil-board/1", "omnihil-board/9", "format", "unknown"},
+      {"STM32F407", "STM32F999", "chip", "unknown"},
+      {"wheel = 2", "wheel = 4", "motor[1].wheel", "out of range"},
+      {"wheel = 2", "wheel = 0", "motor[1].wheel", "used twice"},
+      {"wheel = 2", "wheel = 1.5", "motor[1].wheel", "not a whole number"},
+      {"\"TIM8.1\"", "\"TIM8.5\"", "motor[0].pwm", "no channel"},
+      {"\"TIM8.1\"", "\"TIM77.1\"", "motor[0].pwm", "no channel"},
+      {"\"TIM8.1\"", "\"TIM3.1N\"", "motor[0].pwm", "no channel"},
+      {"\"TIM8.1\"", "\"TIM1.1\"", "motor[1].pwm", "used twice"},
+      {"\"TIM8.1\"", "7", "motor[0].pwm", "not a text"},
+      {"\"PE1\"", "\"PZ1\"", "motor[0].direction", "no pin"},
+      {"\"PE1\"", "\"PE16\"", "motor[0].direction", "no pin"},
+      {"\"low\"", "\"left\"", "motor[0].forward", "unknown"},
+      {"encoder = \"TIM3\"", "encoder = \"TIM6\"", "motor[0].encoder", "no timer"},
+      {"reversed = true", "reversed = 1", "motor[1].reversed", "not a truth value"},
+      {"reversed = true", "hall = \"TIM4\"", "motor[1].pole_pairs", "missing"},
+      {"reversed = true", "revesed = true", "motor[1].revesed", "unknown key"},
+      {"\"nrf24l01\"", "\"nrf25\"", "device[0].kind", "unknown"},
+      {"\"SPI1\"", "\"I2C1\"", "device[0].bus", "not an SPI"},
+      {"select = \"PA4\"\n", "", "device[0].select", "missing"},
+      {"ce = \"PB0\"", "cs = \"PB0\"", "device[0].pins.cs", "no such pin"},
+      {"shunt_ohm = 0.01", "shunt = 0.01", "device[1].settings.shunt", "no such setting"},
+      {"\"ADC1\"", "\"ADC9\"", "analog[0].adc", "unknown"},
+      {"\"bus_voltage\"", "\"voltage\"", "analog[0].signal", "unknown"},
+      {"volts_per_unit = 0.1", "volts_per_unit = nan", "analog[0].volts_per_unit", "out of range"},
+      {"level = true", "level = \"high\"", "pin[0].level", "not a truth value"},
+      {"0x08060000", "0x20000000", "flash[0].address", "out of range"},
+      {"0x08060000", "0x08060002", "flash[0].address", "multiple of 4"},
+      {"0xFFFFFFFF", "0x1FFFFFFFF", "flash[0].words", "not all are words"},
+      {"via = \"radio\"", "via = \"ina219\"", "radio.via", "no radio"},
+  };
+  for (const Broken& c : kCases) {
+    const std::string text = replaced(kGood, c.from, c.to);
+    std::vector<BoardProblem> problems;
+    EXPECT_FALSE(read_board(text, "b.toml", problems)) << c.to;
+    bool found = false;
+    for (const BoardProblem& p : problems) {
+      found = found || (p.key == c.key && p.what.find(c.what) != std::string::npos);
+      EXPECT_GT(p.line, 0u) << p.text();
+      EXPECT_EQ(p.text().substr(0, 7), "b.toml:");
+    }
+    EXPECT_TRUE(found) << c.from << " -> " << c.to << ": " << (problems.empty() ? "" : problems[0].text());
+  }
+}
+
+TEST(BoardReader, CollectsAllMistakesOfAFile) {
+  std::string text = replaced(kGood, "\"TIM8.1\"", "\"TIM9.3\"");
+  text = replaced(text, "\"SPI1\"", "\"SPI9\"");
+  text = replaced(text, "wheel = 2", "wheel = 9");
+  std::vector<BoardProblem> problems;
+  EXPECT_FALSE(read_board(text, "b.toml", problems));
+  EXPECT_EQ(problems.size(), 3u);
+}
+
+TEST(BoardReader, TextThatIsNoTomlIsOneProblemWithItsLine) {
+  std::vector<BoardProblem> problems;
+  EXPECT_FALSE(read_board("format = \"omnihil-board/1\"\nname = \n", "b.toml", problems));
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].line, 2u);
+}
+
+TEST(BoardReader, SurvivesAThousandMutations) {
+  std::mt19937 random(7);
+  int refused = 0;
+  for (int i = 0; i < 1000; ++i) {
+    std::string text = kGood;
+    for (unsigned n = 0; n < 1 + random() % 4; ++n) {
+      const std::size_t at = random() % text.size();
+      if (random() % 3 == 0) {
+        text.erase(at, random() % 20);
+      } else {
+        text[at] = static_cast<char>(random() % 256);
+      }
+    }
+    std::vector<BoardProblem> problems;
+    const auto spec = read_board(text, "b.toml", problems);
+    EXPECT_EQ(spec.has_value(), problems.empty());
+    refused += spec ? 0 : 1;
+  }
+  EXPECT_GT(refused, 500);
+}
+
+}  // namespace
+}  // namespace omnihil::mcu

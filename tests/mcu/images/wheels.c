@@ -1,0 +1,81 @@
+/* Four wheels at constant speed: PI loops at 1 kHz on encoder timers 2 to 5, PWM of timer 1 with direction pins.
+ * Rotor speeds come from a page of flash that the board file presets; serial port 1 echoes what it receives. */
+#include "image.h"
+
+#define RCC 0x40023800u
+#define GPIOE 0x40021000u
+#define TIM1 0x40010000u
+#define TIM6 0x40001000u
+#define USART1 0x40011000u
+#define PARAMETERS 0x08060000u /* counts per turn, then the four speeds in rad/s of the rotor */
+
+static const uint32_t encoders[4] = {0x40000000u, 0x40000400u, 0x40000800u, 0x40000C00u};
+static const float control_period_s = 1e-3f;
+volatile uint32_t periods;
+volatile float speeds[4];
+
+static void start_clock(void) {
+  REG(RCC) |= 1u << 16;
+  while (!(REG(RCC) & 1u << 17)) {
+  }
+  REG(RCC + 4) = 8u | 336u << 6 | 1u << 22 | 7u << 24;
+  REG(RCC) |= 1u << 24;
+  while (!(REG(RCC) & 1u << 25)) {
+  }
+  REG(0x40023C00) = 5;
+  REG(RCC + 8) = 2u | 5u << 10 | 4u << 13; /* 168 MHz, APB1 42, APB2 84 */
+  while ((REG(RCC + 8) >> 2 & 3) != 2) {
+  }
+}
+
+static void start_outputs(void) {
+  REG(GPIOE) = 0x55u; /* directions: outputs 0 to 3 */
+  REG(TIM1 + 0x2C) = 8399;
+  REG(TIM1 + 0x18) = 0x6868;
+  REG(TIM1 + 0x1C) = 0x6868;
+  REG(TIM1 + 0x20) = 0x1111;
+  REG(TIM1 + 0x44) = 1u << 15;
+  REG(TIM1 + 0x14) = 1;
+  REG(TIM1) = 1u << 7 | 1;
+  for (int i = 0; i < 4; ++i) {
+    REG(encoders[i] + 0x08) = 3;
+    REG(encoders[i]) = 1;
+  }
+  REG(TIM6 + 0x28) = 83; /* 1 us */
+  REG(TIM6 + 0x2C) = 999;
+  REG(TIM6 + 0x14) = 1;
+  REG(TIM6 + 0x10) = 0;
+  REG(TIM6) = 1;
+  REG(USART1 + 8) = 84;
+  REG(USART1 + 0x0C) = 1u << 13 | 1u << 3 | 1u << 2;
+}
+
+static void echo(void) {
+  if (REG(USART1) & 1u << 5) REG(USART1 + 4) = REG(USART1 + 4);
+}
+
+int main(void) {
+  const volatile float *parameters = (const volatile float *)PARAMETERS;
+  float integral[4] = {0, 0, 0, 0};
+  uint16_t last[4] = {0, 0, 0, 0};
+  start_clock();
+  start_outputs();
+  for (;;) {
+    while (!(REG(TIM6 + 0x10) & 1)) echo();
+    REG(TIM6 + 0x10) = 0;
+    ++periods;
+    for (int i = 0; i < 4; ++i) {
+      uint16_t count = (uint16_t)REG(encoders[i] + 0x24);
+      float speed = (float)(int16_t)(count - last[i]) * (6.2831853f / parameters[0] / control_period_s);
+      last[i] = count;
+      speeds[i] += 0.3f * (speed - speeds[i]);
+      float error = parameters[1 + i] - speeds[i];
+      float duty = 0.002f * error + integral[i];
+      if ((duty < 1.0f || error < 0) && (duty > -1.0f || error > 0)) integral[i] += 0.05f * error * control_period_s;
+      if (duty > 1.0f) duty = 1.0f;
+      if (duty < -1.0f) duty = -1.0f;
+      REG(GPIOE + 0x18) = duty >= 0 ? 1u << i : 1u << (16 + i);
+      REG(TIM1 + 0x34 + 4 * (uint32_t)i) = (uint32_t)((duty < 0 ? -duty : duty) * 8400.0f);
+    }
+  }
+}
