@@ -11,6 +11,7 @@
 
 #include "firmware_iface/firmware_checks.h"
 #include "hil/clock.h"
+#include "hil/image_firmware.h"
 #include "hil/pty_transport.h"
 #include "hil/recording_header.h"
 #include "hil/recording_writer.h"
@@ -229,6 +230,11 @@ ServeEnd Bench::run(RecordingHeader header) {
   if (end == ServeEnd::kDone && writer_ && writer_->error()) end = ServeEnd::kIo;
   if (!options_.quiet) {
     fmt::print("{}", final_report(status()));
+    for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
+      for (const std::string& line : image_report(session_.firmware(static_cast<int>(i)))) {
+        fmt::print("  robot {:<11}{}\n", session_.config().robot_ids[i], line);
+      }
+    }
     if (writer_ && !writer_->error()) {
       fmt::print("  recording        {} ({} bytes)\n", options_.record, writer_->bytes_written());
     }

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "hil/firmware_host/guarded_firmware.h"
+#include "hil/image_firmware.h"
 #include "hil/reference_firmware.h"
 #include "hil/session_checks.h"
 #include "hil/text_file.h"
@@ -26,6 +27,17 @@ std::string why_no_library(const std::string& text) {
   if (head.e_type == ET_DYN) return {};
   return fmt::format("is an ELF file of type {} for machine {}; needed: a shared object of this computer",
                      head.e_type, head.e_machine);
+}
+
+// An image for a microcontroller: a 32-bit ARM executable.
+bool is_image(const std::string& file) {
+  std::string error;
+  const std::string text = read_text_file(file, error);
+  Elf32_Ehdr head{};
+  if (!error.empty() || text.size() < sizeof head) return false;
+  std::memcpy(&head, text.data(), sizeof head);
+  return std::memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 && head.e_type == ET_EXEC &&
+         head.e_machine == EM_ARM;
 }
 
 std::vector<std::string> problems_of(const FirmwareChoice& choice) {
@@ -66,6 +78,13 @@ Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const Session
       throw_problems({fmt::format("board {}: needs --firmware IMAGE beside it", choice.board)});
     }
     return reference_firmware_for(session);
+  }
+  if (is_image(choice.file)) {
+    if (choice.board.empty()) {
+      throw_problems(
+          {fmt::format("firmware {}: a microcontroller image; needs --board FILE beside it", choice.file)});
+    }
+    return image_firmware(choice.file, choice.board);
   }
   throw_problems(problems_of(choice));
   return library_maker(choice, session);

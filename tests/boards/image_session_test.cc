@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "hil/firmware_host/open_firmware.h"
 #include "hil/image_firmware.h"
 #include "hil/model_store.h"
 #include "hil/session_setup.h"
@@ -54,6 +55,13 @@ TEST_F(ImageOnBoard, GivesTheSameBitsWhateverTheLoopStep) {
     EXPECT_EQ(one.omega_rotor_rad_s, other.omega_rotor_rad_s);
     EXPECT_EQ(one.theta_rotor_rad, other.theta_rotor_rad);
   }
+}
+
+TEST_F(ImageOnBoard, IsOpenedByWhatTheUserNames) {
+  const SessionConfig config = one_robot(1'000'000);
+  Session session(config, open_firmware({.file = kImage, .board = kBoard}, config));
+  EXPECT_EQ(session.firmware(0).name(), "image on four wheels, STM32F405 (stm32f405)");
+  EXPECT_THROW(open_firmware({.file = kImage}, config), std::invalid_argument);
 }
 
 TEST_F(ImageOnBoard, FilesThatCannotBeUsedAreAllNamed) {
