@@ -59,9 +59,12 @@ TEST_F(ImageOnBoard, GivesTheSameBitsWhateverTheLoopStep) {
 
 TEST_F(ImageOnBoard, IsOpenedByWhatTheUserNames) {
   const SessionConfig config = one_robot(1'000'000);
-  Session session(config, open_firmware({.file = kImage, .board = kBoard}, config));
+  FirmwareChoice choice;
+  choice.file = kImage;
+  EXPECT_THROW(open_firmware(choice, config), std::invalid_argument);  // no board
+  choice.board = kBoard;
+  Session session(config, open_firmware(choice, config));
   EXPECT_EQ(session.firmware(0).name(), "image on four wheels, STM32F405 (stm32f405)");
-  EXPECT_THROW(open_firmware({.file = kImage}, config), std::invalid_argument);
 }
 
 TEST_F(ImageOnBoard, FilesThatCannotBeUsedAreAllNamed) {
