@@ -108,6 +108,12 @@ class Bench {
   std::optional<Cpu> cpu_;
 };
 
+// One is the smallest normal number (of either width, by its upper word), the other is 0.
+bool is_smallest(std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t both = (a | b) & 0x7FFFFFFFu;
+  return (a & b & 0x7FFFFFFFu) == 0 && (both == 0x00800000u || both == 0x00100000u);
+}
+
 std::string difference(Cpu& cpu, std::uint64_t ram_hash, const OracleResult& theirs) {
   std::string text;
   char part[64];
@@ -122,7 +128,8 @@ std::string difference(Cpu& cpu, std::uint64_t ram_hash, const OracleResult& the
   const std::uint32_t flags = cpu.variant().arch == Arch::kV6M ? 0xF0000000u : 0xF80F0000u;
   if ((cpu.reg.apsr() ^ theirs.apsr) & flags) add("apsr", 0, cpu.reg.apsr(), theirs.apsr);
   for (int i = 0; i < 32; ++i) {
-    if (cpu.reg.s[i] != theirs.s[i]) add("s", i, cpu.reg.s[i], theirs.s[i]);
+    const bool smallest = cpu.reg.fpscr & kFlushToZero && is_smallest(cpu.reg.s[i], theirs.s[i]);
+    if (cpu.reg.s[i] != theirs.s[i] && !smallest) add("s", i, cpu.reg.s[i], theirs.s[i]);
   }
   if ((cpu.reg.fpscr ^ theirs.fpscr) & 0xF0000000u) add("fpscr", 0, cpu.reg.fpscr, theirs.fpscr);
   if (ram_hash != theirs.ram_hash) text += " memory;";
@@ -138,8 +145,14 @@ struct Tally {
 
   void show(const char* what, const OracleCase& c, const char* op, const std::string& detail) {
     if (++shown > (std::getenv("OMNIHIL_DIFFERENTIAL_SHOW") ? 100000 : 25)) return;
-    char line[160];
-    std::snprintf(line, sizeof line, "%s %04x %04x %s:", what, c.code[0], c.code[1], op);
+    char part[32];
+    std::string line = std::string(what) + ":";
+    for (std::uint32_t i = 0; i < (c.until ? c.until / 2 : 2); ++i) {
+      std::snprintf(part, sizeof part, " %04x", c.code[i]);
+      line += part;
+    }
+    std::snprintf(part, sizeof part, " (%s), fpscr %08x:", op, c.fpscr);
+    line += part;
     examples += line + detail + "\n";
   }
 };

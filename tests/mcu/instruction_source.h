@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware_iface/mcu/core/decode.h"
+#include "firmware_iface/mcu/core/fp.h"
 #include "tests/mcu/unicorn/oracle_protocol.h"
 
 namespace omnihil::mcu {
@@ -133,6 +134,9 @@ inline std::uint32_t draw_float(Draw& draw) {
   }
 }
 
+// The oracle rounds it by FPSCR, the manual to nearest: compared in that mode alone.
+inline bool is_from_fixed(Code code) { return code == kVcvtFromFixedF32 || code == kVcvtFromFixedF64; }
+
 inline void draw_state(Draw& draw, bool doubles, OracleCase& c) {
   for (std::uint32_t& r : c.r) r = draw_value(draw);
   c.r[13] = kOracleRam + 0x1800 + 8 * draw.below(0x80);
@@ -150,14 +154,18 @@ inline void draw_state(Draw& draw, bool doubles, OracleCase& c) {
   }
   c.fpscr = draw.one_in(4) ? draw.below(8) << 22 & 0x02C00000u : 0;
   if (draw.one_in(8)) c.fpscr |= 1u << 25;
-  if (draw.one_in(8)) c.fpscr |= 1u << 24;
+  const Code code = decode({kOracleCode, kCortexM7, 0}, c.code[0], c.code[1]).code;
+  if (c.until == 0 && is_from_fixed(code)) c.fpscr &= ~0x00C00000u;
+  // Flushing differs where a result rounds up to the smallest normal number, see fp_flush(): kept out of
+  // rows.
+  if (c.until == 0 && draw.one_in(8)) c.fpscr |= kFlushToZero;
 }
 
 // Neither jumps nor touches memory or what belongs to the system, nor SP (whose low bits the oracle keeps),
 // nor shows FPSCR's cumulative flags (which are not modelled).
 inline bool is_straight(const Op& op) {
   const Code code = op.code;
-  if (code == kMovToPc || code == kAddHigh || op.d == 13) return false;
+  if (code == kMovToPc || code == kAddHigh || op.d == 13 || is_from_fixed(code)) return false;
   return (code >= kAndImm && code <= kParallel) ||
          (code >= kVaddF32 && (code < kVmrs || (code == kVmrs && op.d == 15)));
 }

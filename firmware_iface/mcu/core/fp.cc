@@ -1,6 +1,7 @@
 #include "firmware_iface/mcu/core/fp.h"
 
 #include <bit>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 
@@ -185,6 +186,15 @@ float fp_narrow(double value, std::uint32_t fpscr) {
   const std::uint32_t narrow = static_cast<std::uint32_t>(raw >> 32 & 0x80000000u) | 0x7FC00000u |
                                static_cast<std::uint32_t>(raw >> 29 & 0x003FFFFF);
   return std::bit_cast<float>(narrow);
+}
+
+float fp_nearest(double value) {
+  const int mode = std::fegetround();
+  if (mode == FE_TONEAREST) return static_cast<float>(value);
+  std::fesetround(FE_TONEAREST);
+  const volatile float result = static_cast<float>(value);  // before the mode is put back
+  std::fesetround(mode);
+  return result;
 }
 
 double fp_widen(float value, std::uint32_t fpscr) {

@@ -41,6 +41,7 @@ std::uint32_t fp_to_int(double value, bool is_unsigned, unsigned bits, FpRoundin
 std::uint16_t fp_to_half(double value, std::uint32_t fpscr);
 double fp_from_half(std::uint16_t value, std::uint32_t fpscr);
 float fp_narrow(double value, std::uint32_t fpscr);
+float fp_nearest(double value);  // whatever FPSCR says of rounding: fixed point becomes floating point so
 double fp_widen(float value, std::uint32_t fpscr);
 
 }  // namespace omnihil::mcu

@@ -72,6 +72,9 @@ OracleEnd end_of(uc_err error, const std::uint16_t* code) {
 OracleResult run(uc_engine* uc, OracleCase& c, std::uint32_t pc) {
   std::memcpy(ram.data(), ram_before.data(), kOracleRamBytes);
   const bool sets_monitor = (c.code[0] & 0xFF70) == 0xE850 || (c.code[0] & 0xFFF0) == 0xE8D0;
+  // Written once with other modes: Unicorn takes up a rounding mode only where FPSCR changes.
+  std::uint32_t other_modes = c.fpscr ^ 0x03C00000u;
+  uc_reg_write(uc, UC_ARM_REG_FPSCR, &other_modes);
   Transfer in = common(c.r, c.s, &c.fpscr);
   std::uint32_t xpsr = 0x01000000u | c.apsr;
   in.add(UC_ARM_REG_XPSR_NZCVQG, &xpsr);
