@@ -271,9 +271,9 @@ void print(const char* name, const Tally& t) {
   std::printf("%s", t.examples.c_str());
 }
 
-class SlowOracle : public ::testing::TestWithParam<const Variant*> {};
+class OracleTest : public ::testing::TestWithParam<const Variant*> {};
 
-TEST_P(SlowOracle, LeavesTheSameStateAfterEveryInstructionThatBothExecute) {
+TEST_P(OracleTest, StateIsTheSameAfterWhatBothExecute) {
   const Variant& variant = *GetParam();
   Oracle oracle(variant.name.data());
   if (!oracle.present()) GTEST_SKIP() << "unicorn_oracle is not built: libunicorn-dev is not installed";
@@ -289,7 +289,7 @@ TEST_P(SlowOracle, LeavesTheSameStateAfterEveryInstructionThatBothExecute) {
   EXPECT_GT(tally.compared, tally.drawn / 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, SlowOracle, ::testing::Values(&kCortexM4F, &kCortexM7, &kCortexM0),
+INSTANTIATE_TEST_SUITE_P(Variants, OracleTest, ::testing::Values(&kCortexM4F, &kCortexM7, &kCortexM0),
                          [](const auto& of) {
                            std::string name(of.param->name);
                            std::erase(name, '-');

@@ -15,8 +15,8 @@ namespace omnihil::mcu {
 
 inline constexpr std::uint32_t kOracleFlash = 0x08000000, kOracleFlashBytes = 1 << 20;
 inline constexpr std::uint32_t kOracleRam = 0x20000000, kOracleRamBytes = 16 << 10;
-inline constexpr std::uint32_t kOracleSlotBytes = 32;  // of code a case can have
-inline constexpr std::uint32_t kOracleCode = kOracleFlash + 0x1000;
+inline constexpr std::uint32_t kOracleSlotBytes = 32;                // of code a case can have
+inline constexpr std::uint32_t kOracleCode = kOracleFlash + 0x2000;  // no literal reaches below 0x1000
 
 enum class OracleEnd : std::uint32_t { kRan, kUndefined, kMemory, kException };
 

@@ -18,6 +18,7 @@ namespace omnihil::mcu {
 namespace {
 
 constexpr std::uint32_t kClearMonitor = kOracleFlash + 0x100;  // a CLREX
+constexpr std::uint32_t kFirstFp = kOracleFlash + 0x200;       // VMOV.F32 S0, S0
 alignas(4096) std::uint8_t flash[kOracleFlashBytes];
 alignas(4096) OracleRam ram, ram_before;
 
@@ -31,6 +32,7 @@ uc_engine* open_engine(const char* variant) {
   if (uc_ctl_set_cpu_model(uc, model) != UC_ERR_OK) std::exit(3);
   uc_mem_map_ptr(uc, kOracleFlash, kOracleFlashBytes, UC_PROT_READ | UC_PROT_EXEC, flash);
   uc_mem_map_ptr(uc, kOracleRam, kOracleRamBytes, UC_PROT_ALL, ram.data());
+  uc_emu_start(uc, kFirstFp | 1, 0, 0, 1);  // the first FP instruction makes a context and so resets FPSCR
   return uc;
 }
 
@@ -72,9 +74,6 @@ OracleEnd end_of(uc_err error, const std::uint16_t* code) {
 OracleResult run(uc_engine* uc, OracleCase& c, std::uint32_t pc) {
   std::memcpy(ram.data(), ram_before.data(), kOracleRamBytes);
   const bool sets_monitor = (c.code[0] & 0xFF70) == 0xE850 || (c.code[0] & 0xFFF0) == 0xE8D0;
-  // Written once with other modes: Unicorn takes up a rounding mode only where FPSCR changes.
-  std::uint32_t other_modes = c.fpscr ^ 0x03C00000u;
-  uc_reg_write(uc, UC_ARM_REG_FPSCR, &other_modes);
   Transfer in = common(c.r, c.s, &c.fpscr);
   std::uint32_t xpsr = 0x01000000u | c.apsr;
   in.add(UC_ARM_REG_XPSR_NZCVQG, &xpsr);
@@ -98,6 +97,8 @@ int serve(const char* variant) {
   constexpr std::uint8_t kClrex[] = {0xBF, 0xF3, 0x2F, 0x8F};
   for (std::uint32_t i = 0; i < kOracleFlashBytes; i += 2) flash[i + 1] = 0xBF;  // NOP
   std::memcpy(flash + (kClearMonitor - kOracleFlash), kClrex, 4);
+  constexpr std::uint8_t kVmov[] = {0xB0, 0xEE, 0x40, 0x0A};
+  std::memcpy(flash + (kFirstFp - kOracleFlash), kVmov, 4);
   uc_engine* uc = open_engine(variant);
   OracleBatch batch;
   std::vector<OracleCase> cases;
