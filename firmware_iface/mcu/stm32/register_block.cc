@@ -17,7 +17,10 @@ RegisterBlock::RegisterBlock(std::string name, System& system, std::span<const R
     : Peripheral(std::move(name)), system_(system), registers_(registers) {
   std::size_t last = 0;
   for (const RegisterInfo& r : registers) last = std::max<std::size_t>(last, r.offset);
-  values_.assign(last / 4 + 1, 0);
+  // A word for every offset of a block of the usual size: variants of one block look at registers that not
+  // all have.
+  constexpr std::size_t kUsualBytes = 0x400;
+  values_.assign(std::max(last / 4 + 1, kUsualBytes / 4), 0);
   index_.assign(last / 4 + 1, 0);
   for (std::size_t i = 0; i < registers.size(); ++i) {
     index_[registers[i].offset / 4u] = static_cast<std::uint8_t>(i + 1);
