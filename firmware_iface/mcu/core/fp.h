@@ -12,11 +12,11 @@
 namespace omnihil::mcu {
 
 enum FpRounding : unsigned { kTiesAway = 0, kTiesEven = 1, kUp = 2, kDown = 3, kByFpscr = 4, kToZero = 5 };
-inline constexpr std::uint32_t kDefaultNan = 1u << 25;    // FPSCR.DN
+inline constexpr std::uint32_t kDefaultNan = 1u << 25;   // FPSCR.DN
 inline constexpr std::uint32_t kFlushToZero = 1u << 24;  // FPSCR.FZ
 
-// A denormal number as a zero of its sign. Results are flushed after rounding, the core's before: a product or quotient
-// that rounds up to the smallest normal number stays.
+// A denormal number as a zero of its sign. Results are flushed after rounding, the core's before: a product
+// or quotient that rounds up to the smallest normal number stays.
 float fp_flush(float value);
 double fp_flush(double value);
 
