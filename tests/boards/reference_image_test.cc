@@ -1,0 +1,154 @@
+// The reference firmware as an image for its board: the same sources as the host build, the same behaviour.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+
+#include "firmware_iface/mcu/board/mcu_firmware.h"
+#include "hil/image_firmware.h"
+#include "hil/model_store.h"
+#include "hil/replay_hash.h"
+#include "hil/scenario/scenario_run.h"
+#include "hil/scenario/scenario_suite.h"
+#include "hil/session_checks.h"
+#include "hil/session_setup.h"
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+namespace {
+const std::string kImage = OMNIHIL_BUILD_DIR "/images/omni_reference_f405.elf";
+const std::string kBoard = OMNIHIL_SOURCE_DIR "/boards/omni_reference_f405.toml";
+const std::string kSuite = OMNIHIL_SOURCE_DIR "/examples/scenarios";
+const std::vector<std::string> kModels = {OMNIHIL_SOURCE_DIR "/models"};
+constexpr int kRobot = 1;  // in the board's flash page
+constexpr std::uint32_t kPage = 0x08060000;
+
+SessionConfig one_robot() {
+  SessionSetup setup;
+  setup.model = load_robot_model("omni_default", kModels).bundle;
+  setup.radio_format = "ulaval-hermes";
+  setup.robot_ids = {kRobot};
+  setup.plant.physics = Physics::kPlanar;
+  return session_config(setup);
+}
+
+SuiteOptions options(bool image) {
+  SuiteOptions o;
+  if (image) o.firmware.file = kImage, o.firmware.board = kBoard;
+  o.model_folders = kModels;
+  return o;
+}
+
+Scenario scenario(const std::string& name) {
+  SuiteReading suite = read_suite({kSuite + "/" + name}, "");
+  EXPECT_EQ(suite.problems, std::vector<std::string>{});
+  return suite.scenarios.at(0);
+}
+
+struct ReferenceImage : testing::Test {
+  void SetUp() override {
+    if (!std::filesystem::exists(kImage)) GTEST_SKIP() << "no arm-none-eabi-gcc: the image was not built";
+  }
+};
+
+struct Hashed : SessionObserver {
+  OutputHash hash;
+  std::vector<std::uint8_t> to_host;
+  void dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override {
+    hash.dongle_bytes(now_ns, bytes);
+    to_host.insert(to_host.end(), bytes.begin(), bytes.end());
+  }
+  void robot_tick(std::int64_t now_ns, const RobotSample& sample) override {
+    hash.robot_tick(now_ns, sample);
+  }
+};
+
+// 0.3 s with a body velocity every 10 ms.
+struct Drive {
+  std::string hash;
+  double omega_rotor_rad_s = 0.0;
+  std::vector<std::string> report;
+};
+Drive drive() {
+  Session session(one_robot(), image_firmware(kImage, kBoard));
+  Hashed seen;
+  session.set_observer(&seen);
+  RobotCommand command{};
+  command.mode = OMNIHIL_MODE_BODY_VELOCITY;
+  command.v_forward_m_s = 0.5;
+  std::vector<std::uint8_t> packet, out;
+  for (int step = 0; step < 300; ++step) {
+    packet.clear();
+    if (step % 10 == 0) find_radio_format("ulaval-hermes")->encode_command(command, kRobot, packet);
+    session.step(packet, out);
+  }
+  return {seen.hash.hex(), session.plant().truth(0).omega_rotor_rad_s[0], image_report(session.firmware(0))};
+}
+
+TEST_F(ReferenceImage, BootsDrivesByRadioAndUsesNothingThatIsNotModelled) {
+  const Drive once = drive();
+  EXPECT_LT(once.omega_rotor_rad_s, -5.0);  // the front left wheel turns backward
+  EXPECT_EQ(once.report, std::vector<std::string>{});
+}
+
+TEST_F(ReferenceImage, TwoRunsHaveOneHash) { EXPECT_EQ(drive().hash, drive().hash); }
+
+TEST_F(ReferenceImage, PageInTheBoardFileIsTheDefaultRobot) {
+  std::ifstream file(kBoard);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  std::vector<mcu::BoardProblem> problems;
+  const auto board = mcu::read_board(text, kBoard, problems);
+  ASSERT_TRUE(board.has_value());
+  ASSERT_EQ(board->flash.size(), 1u);
+  EXPECT_EQ(board->flash[0].address, kPage);
+  const RobotConfig c = robot_config(one_robot().robots.at(0), kRobot);
+  std::vector<std::uint32_t> expected{0x494E4D4F, kRobot};
+  for (const double value : {c.wheel_angle_rad[0], c.wheel_angle_rad[1], c.wheel_angle_rad[2],
+                             c.wheel_angle_rad[3], c.wheel_radius_m, c.wheel_center_radius_m, c.gear_ratio,
+                             c.encoder_counts_per_rotor_turn, c.bus_voltage_nominal_V, c.motor_resistance_ohm,
+                             c.motor_torque_constant_Nm_per_A, c.command_timeout_s}) {
+    expected.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+  }
+  EXPECT_EQ(board->flash[0].words, expected);
+}
+
+TEST_F(ReferenceImage, PassesTheWholeShippedSuite) {
+  const SuiteReading suite = read_suite({kSuite}, "");
+  ASSERT_GE(suite.scenarios.size(), 15u);
+  for (const Scenario& s : suite.scenarios) {
+    for (const CheckResult& r : run_one(s, options(true)).results) {
+      EXPECT_TRUE(r.passed) << s.file << ": " << failure_line(r);
+    }
+  }
+}
+
+// rms of the difference over rms of the speed, wheel by wheel; the host build ticks every millisecond, the
+// image is looked at twice as often.
+TEST_F(ReferenceImage, HostBuildAndImageGiveTheSameWheelSpeedsWithinOnePercent) {
+  for (const char* name : {"wheel/speed_step.toml", "wheel/brown_out.toml", "robot/drive_forward.toml"}) {
+    const Scenario s = scenario(name);
+    const SessionConfig config = one_robot();
+    const ScenarioRun host = run_scenario(s, config, open_firmware({}, config));
+    const ScenarioRun image = run_scenario(s, config, image_firmware(kImage, kBoard));
+    EXPECT_EQ(image.commands, host.commands);
+    for (std::size_t w = 0; w < kWheels; ++w) {
+      const auto a = host.trace.column("omega_wheel_rad_s", w),
+                 b = image.trace.column("omega_wheel_rad_s", w);
+      ASSERT_GE(b.size(), 2 * a.size() - 1);
+      double off = 0.0, all = 0.0;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        ASSERT_NEAR(host.trace.time_s()[i], image.trace.time_s()[2 * i], 1e-9);
+        off += (a[i] - b[2 * i]) * (a[i] - b[2 * i]);
+        all += a[i] * a[i];
+      }
+      RecordProperty(std::string(name) + " wheel " + std::to_string(w), std::to_string(std::sqrt(off / all)));
+      EXPECT_LE(std::sqrt(off / all), 0.01) << name << " wheel " << w;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace omnihil
