@@ -34,6 +34,7 @@ class ImageFirmware final : public Firmware {
   RobotFeedback feedback() const override { return mcu_.feedback(); }
   bool drives_phases() const override { return mcu_.drives_phases(); }
   MotorDrive motor_tick(const MotorSensors& sensors) override { return mcu_.motor_tick(sensors); }
+  std::uint64_t missed_control_periods() const override { return mcu_.missed_control_periods(); }
   std::string_view failure() const override {
     return mcu_.board().machine().stopped() ? "the emulated core has locked up" : std::string_view{};
   }

@@ -23,7 +23,7 @@ const std::string kImage = OMNIHIL_BUILD_DIR "/images/omni_reference_f405.elf";
 const std::string kBoard = OMNIHIL_SOURCE_DIR "/boards/omni_reference_f405.toml";
 const std::string kSuite = OMNIHIL_SOURCE_DIR "/examples/scenarios";
 const std::vector<std::string> kModels = {OMNIHIL_SOURCE_DIR "/models"};
-constexpr int kRobot = 1;  // in the board's flash page
+constexpr int kRobot = 1;
 constexpr std::uint32_t kPage = 0x08060000;
 
 SessionConfig one_robot() {
@@ -94,6 +94,84 @@ TEST_F(ReferenceImage, BootsDrivesByRadioAndUsesNothingThatIsNotModelled) {
   EXPECT_EQ(once.report, std::vector<std::string>{});
 }
 
+TEST_F(ReferenceImage, AnswersOverTheRadioAsTheRobotThatItsSwitchesSay) {
+  SessionConfig config = one_robot();
+  config.robots.push_back(config.robots[0]);
+  config.robot_ids = {kRobot, 5};
+  Session session(config, image_firmware(kImage, kBoard));
+  std::vector<std::uint8_t> out;
+  for (int step = 0; step < 50; ++step) {
+    // COBS of 01 FE robot 00 sum: a ping; the answer 01 robot 00 01 sum
+    const std::vector<std::uint8_t> ping{4, 1, 0xFE, 5, 2, 1 + 0xFE + 5 - 256, 0};
+    session.step(step == 10 ? std::span<const std::uint8_t>(ping) : std::span<const std::uint8_t>{}, out);
+  }
+  EXPECT_EQ(out, (std::vector<std::uint8_t>{3, 1, 5, 3, 1, 1 + 5 + 1, 0}));
+}
+
+TEST_F(ReferenceImage, ControlInterruptTakesLessThanHalfAPeriodAndTheCoreSleepsOtherwise) {
+  std::ifstream elf_file(kImage, std::ios::binary), board_file(kBoard);
+  const std::string bytes((std::istreambuf_iterator<char>(elf_file)), {});
+  const std::string text((std::istreambuf_iterator<char>(board_file)), {});
+  mcu::ElfImage elf;
+  std::vector<std::string> broken;
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  ASSERT_TRUE(mcu::read_elf(std::span(data, bytes.size()), elf, broken));
+  std::vector<mcu::BoardProblem> problems;
+  mcu::McuFirmware firmware(*mcu::read_board(text, kBoard, problems), elf,
+                            robot_config(one_robot().robots.at(0), kRobot));
+  RobotCommand command{};
+  command.mode = OMNIHIL_MODE_BODY_VELOCITY;
+  command.v_forward_m_s = 0.5;
+  std::vector<std::uint8_t> frame;
+  find_radio_format("ulaval-hermes")->encode_command(command, kRobot, frame);
+  RobotSensors sensors{};
+  sensors.bus_voltage_V = 22.2;
+  for (int tick = 0; tick < 1000; ++tick, sensors.now_us += 500) {
+    if (tick % 20 == 0) firmware.radio_receive(frame, static_cast<std::int64_t>(sensors.now_us) * 1000);
+    firmware.tick(sensors);
+  }
+  constexpr int kTim6 = 16 + 54;
+  constexpr double kCore_Hz = 168e6, kHalfPeriod_s = 0.5e-3;
+  const mcu::MachineReport report = firmware.board().machine().report();
+  const mcu::InterruptLoad& control = report.exceptions.at(kTim6);
+  EXPECT_NEAR(static_cast<double>(control.count), 500.0, 1.0);
+  EXPECT_LT(static_cast<double>(control.longest) / kCore_Hz, kHalfPeriod_s);
+  EXPECT_GT(report.sleep_cycles, report.thread_cycles);
+  EXPECT_EQ(firmware.missed_control_periods(), 0u);
+  RecordProperty("longest_us", std::to_string(static_cast<double>(control.longest) / kCore_Hz * 1e6));
+  RecordProperty("mean_us", std::to_string(static_cast<double>(control.busy) /
+                                           static_cast<double>(control.count) / kCore_Hz * 1e6));
+  RecordProperty("stack_bytes", static_cast<int>(report.main_stack_bytes));
+}
+
+struct BrokenImage {
+  const char* image;
+  const char* scenario;
+  const char* check;
+};
+class BrokenReferenceImage : public testing::TestWithParam<BrokenImage> {};
+
+TEST_P(BrokenReferenceImage, FailsTheMatchingCheckAlone) {
+  SuiteOptions o = options(true);
+  o.firmware.file = OMNIHIL_BUILD_DIR "/images/reference_" + std::string(GetParam().image) + ".elf";
+  if (!std::filesystem::exists(o.firmware.file)) GTEST_SKIP() << "no arm-none-eabi-gcc: no image";
+  for (const std::string name : {"direction", "wind_up", "radio_silence", "control_period"}) {
+    bool passed = true;
+    for (const CheckResult& r : run_one(scenario("wheel/" + name + ".toml"), o).results) {
+      passed = passed && r.passed;
+      EXPECT_TRUE(r.passed || r.name == GetParam().check) << failure_line(r);
+    }
+    EXPECT_EQ(passed, name != GetParam().scenario) << name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, BrokenReferenceImage,
+                         testing::Values(BrokenImage{"sign_error", "direction", "commanded_sign"},
+                                         BrokenImage{"unlimited_integrator", "wind_up", "wind_up"},
+                                         BrokenImage{"no_timeout", "radio_silence", "stops_after_silence"},
+                                         BrokenImage{"over_run", "control_period", "control_periods"}),
+                         [](const auto& of) { return std::string(of.param.image); });
+
 TEST_F(ReferenceImage, TwoRunsHaveOneHash) { EXPECT_EQ(drive().hash, drive().hash); }
 
 TEST_F(ReferenceImage, PageInTheBoardFileIsTheDefaultRobot) {
@@ -105,7 +183,7 @@ TEST_F(ReferenceImage, PageInTheBoardFileIsTheDefaultRobot) {
   ASSERT_EQ(board->flash.size(), 1u);
   EXPECT_EQ(board->flash[0].address, kPage);
   const RobotConfig c = robot_config(one_robot().robots.at(0), kRobot);
-  std::vector<std::uint32_t> expected{0x494E4D4F, kRobot};
+  std::vector<std::uint32_t> expected{0x494E4D4F};
   for (const double value : {c.wheel_angle_rad[0], c.wheel_angle_rad[1], c.wheel_angle_rad[2],
                              c.wheel_angle_rad[3], c.wheel_radius_m, c.wheel_center_radius_m, c.gear_ratio,
                              c.encoder_counts_per_rotor_turn, c.bus_voltage_nominal_V, c.motor_resistance_ohm,

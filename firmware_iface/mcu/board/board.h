@@ -35,6 +35,7 @@ class McuBoard {
   Machine& machine() { return machine_; }
   const Machine& machine() const { return machine_; }
   Chip& chip() { return chip_; }
+  const Chip& chip() const { return chip_; }
   std::int64_t now_ns() const { return machine_.to_ns(machine_.now()); }
   void set_world(const WorldState& world);
   void run_until_ns(std::int64_t end_ns) { machine_.run_until_ns(end_ns); }

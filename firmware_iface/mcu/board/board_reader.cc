@@ -23,6 +23,7 @@ class Reader {
  private:
   void read_top();
   void read_motor(const toml::table& t, const std::string& path);
+  void read_pin(const toml::table& t, const std::string& path);
   void read_sensors(const toml::table& t, const std::string& path, MotorEntry& motor);
   void read_device(const toml::table& t, const std::string& path);
   void read_device_wires(const toml::table& t, const std::string& path, DeviceEntry& device);
@@ -63,7 +64,7 @@ std::optional<PinName> Reader::pin(const toml::table& t, const std::string& path
 void Reader::read_top() {
   keys_.only(top_, "",
              {"format", "name", "source", "chip", "crystal_Hz", "cpi_scale", "coupling_us", "adc_reference_V",
-              "radio", "motor", "device", "analog", "pin", "flash"});
+              "control_timer", "radio", "motor", "device", "analog", "pin", "flash"});
   if (const auto format = keys_.text(top_, "", "format"); !format || *format != kFormat) {
     keys_.wrong(top_, "", "format", format ? "unknown" : "missing", kFormat);
   }
@@ -86,6 +87,10 @@ void Reader::read_top() {
   spec_.coupling_ns =
       1000 * keys_.whole(top_, "", "coupling_us", 10, 10'000).value_or(spec_.coupling_ns / 1000);
   spec_.adc_reference_V = keys_.number(top_, "", "adc_reference_V", 0.5, 6.0).value_or(spec_.adc_reference_V);
+  spec_.control_timer = keys_.text(top_, "", "control_timer").value_or("");
+  if (!spec_.control_timer.empty() && names_ && !names_->has_timer(spec_.control_timer, 0)) {
+    keys_.wrong(top_, "", "control_timer", "no such timer", names_->timers());
+  }
 }
 
 void Reader::read_motor(const toml::table& t, const std::string& path) {
@@ -297,6 +302,19 @@ void Reader::read_radio() {
   }
 }
 
+// An input that never changes: a level, or a bit of the robot's number.
+void Reader::read_pin(const toml::table& t, const std::string& path) {
+  keys_.only(t, path, {"pin", "level", "robot_id_bit"});
+  const auto p = pin(t, path, "pin");
+  if (!t.contains("pin")) keys_.missing(t, path, "pin", "a pin, such as PC13");
+  if (t.contains("level") == t.contains("robot_id_bit")) {
+    keys_.missing(t, path, "level", "level = true, false, or robot_id_bit = 0 to 7: one of the two");
+  }
+  const auto level = keys_.flag(t, path, "level");
+  const auto id_bit = keys_.whole(t, path, "robot_id_bit", 0, 7);
+  if (p) spec_.pins.push_back({*p, level.value_or(false), static_cast<int>(id_bit.value_or(-1))});
+}
+
 BoardSpec Reader::read() {
   read_top();
   for (const auto& [t, path] : keys_.tables(top_, "motor")) read_motor(*t, path);
@@ -304,12 +322,7 @@ BoardSpec Reader::read() {
   for (const auto& [t, path] : keys_.tables(top_, "analog")) read_analog(*t, path);
   for (const auto& [t, path] : keys_.tables(top_, "flash")) read_flash(*t, path);
   for (const auto& [t, path] : keys_.tables(top_, "pin")) {
-    keys_.only(*t, path, {"pin", "level"});
-    const auto p = pin(*t, path, "pin");
-    if (!t->contains("pin")) keys_.missing(*t, path, "pin", "a pin, such as PC13");
-    if (!t->contains("level")) keys_.missing(*t, path, "level", "true, false");
-    const auto level = keys_.flag(*t, path, "level");
-    if (p && level) spec_.pins.push_back({*p, *level});
+    read_pin(*t, path);
   }
   read_radio();
   return std::move(spec_);

@@ -74,6 +74,7 @@ struct AnalogEntry {
 struct PinEntry {
   PinName pin;
   bool level = false;
+  int robot_id_bit = -1;  // not negative: this bit of the robot's number instead
 };
 
 struct FlashEntry {
@@ -88,8 +89,9 @@ struct BoardSpec {
   double cpi_scale = 1.0;
   std::int64_t coupling_ns = 500'000;  // the plant and the board meet this often
   double adc_reference_V = 3.3;
-  std::string radio_format;  // empty: none
-  std::string radio_via;     // a device's name, or a serial port
+  std::string control_timer;  // whose update starts a control period; empty: not said
+  std::string radio_format;   // empty: none
+  std::string radio_via;      // a device's name, or a serial port
   std::vector<MotorEntry> motors;
   std::vector<DeviceEntry> devices;
   std::vector<AnalogEntry> analog;

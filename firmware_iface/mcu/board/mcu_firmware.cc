@@ -10,6 +10,11 @@ McuFirmware::McuFirmware(const BoardSpec& spec, const ElfImage& image, const Rob
     : name_(fmt::format("image on {} ({})", spec.name, spec.chip->name)),
       config_(config),
       board_(spec, image) {
+  for (const PinEntry& entry : spec.pins) {  // the switches that say which robot this is
+    if (entry.robot_id_bit < 0) continue;
+    const bool level = (config.robot_id >> entry.robot_id_bit & 1u) != 0;
+    board_.chip().port(entry.pin.port)->drive(entry.pin.pin, level);
+  }
   for (const MotorEntry& motor : spec.motors) phases_ = phases_ || motor.pwm.size() == 3;
   world_.gear_ratio = config.gear_ratio;
   world_.encoder_counts_per_rotor_turn = config.encoder_counts_per_rotor_turn;
@@ -94,6 +99,11 @@ MotorDrive McuFirmware::motor_tick(const MotorSensors& sensors) {
     }
   }
   return drive;
+}
+
+std::uint64_t McuFirmware::missed_control_periods() const {
+  const std::string& name = board_.spec().control_timer;
+  return name.empty() ? 0 : board_.chip().find<Timer>(name)->updates_lost();
 }
 
 std::vector<std::string> board_report(const McuBoard& board, const ElfImage& image) {

@@ -41,6 +41,8 @@ class McuFirmware final : public Firmware {
   RobotFeedback feedback() const override { return feedback_; }
   bool drives_phases() const override { return phases_; }
   MotorDrive motor_tick(const MotorSensors& sensors) override;
+  // Updates of the board's control timer that came before the image had taken the last one.
+  std::uint64_t missed_control_periods() const override;
 
   McuBoard& board() { return board_; }
   const McuBoard& board() const { return board_; }

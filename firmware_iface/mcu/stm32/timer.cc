@@ -194,8 +194,11 @@ void Timer::skip_periods(std::uint64_t whole) {
     return;
   }
   const std::uint64_t every = spec_.advanced ? value(kRcr) + 1u : 1u;
-  repeat_left_ = every - 1 - (ends - repeat_left_ - 1) % every;
-  if ((value(kCr1) & kUdis) == 0) raise(kUpdate);
+  const std::uint64_t after_first = ends - repeat_left_ - 1;
+  repeat_left_ = every - 1 - after_first % every;
+  if ((value(kCr1) & kUdis) != 0) return;
+  updates_lost_ += after_first / every + (value(kSr) & kUpdate);
+  raise(kUpdate);
 }
 
 void Timer::boundary() {
@@ -217,6 +220,7 @@ void Timer::update_event(bool by_software) {
   }
   if (!by_software && (value(kBdtr) & kAoe) != 0 && !break_high_) value(kBdtr) |= kMoe;
   if (!by_software || (cr1 & kUrs) == 0) {
+    if (!by_software) updates_lost_ += value(kSr) & kUpdate;
     raise(kUpdate);
     if ((value(kDier) & kUpdateDma) != 0) context_.dma.pulse(dma_update_);
   }

@@ -69,6 +69,8 @@ class Timer final : public RegisterBlock, public TriggerSink {
   TimerOutput output(unsigned channel) const;
   bool reference(unsigned channel) const;  // OCxREF now
   double period_s() const;                 // (PSC + 1) periods of the count
+  // Update events, software's own aside, that found the flag of the one before still set.
+  std::uint64_t updates_lost() const { return updates_lost_; }
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
@@ -126,6 +128,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   bool timer_input(unsigned input) const;
 
   TimerSpec spec_;
+  std::uint64_t updates_lost_ = 0;
   ChipContext& context_;
   ClockRatio clock_;
   CounterLaw law_;                              // of the active ARR

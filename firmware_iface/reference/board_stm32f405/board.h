@@ -12,6 +12,7 @@
  *   battery                   ADC1 channel 10, PC0, behind 1:11
  *   radio                     USART1, PA9 and PA10, 1 Mbaud
  *   control period            TIM6, 1 ms
+ *   robot's number            PC6 to PC9, four switches, high: 1
  *   robot's configuration     flash sector 7, 0x08060000 (robot_page.h)
  *
  * Pin numbers and alternate functions: DS8626, table 9. boards/omni_reference_f405.toml says the same to the
@@ -41,6 +42,8 @@ double board_battery_V(void);   /* waits for it */
 void board_radio_init(void);
 size_t board_radio_take(uint8_t* bytes, size_t capacity); /* what came in since */
 int board_radio_send(const uint8_t* bytes, size_t count); /* 0: no room, nothing sent */
+
+uint32_t board_robot_id(void); /* 0 to 15 */
 
 void board_tick_start(uint32_t period_us); /* board_tick() from now on, by interrupt */
 void board_tick(void);                     /* main.c */

@@ -1,4 +1,5 @@
-/* 168 MHz from the crystal (RM0090 6.3.2: f = 8 MHz / 8 * 336 / 2), and the periodic interrupt. */
+/* 168 MHz from the crystal (RM0090 6.3.2: f = 8 MHz / 8 * 336 / 2), the periodic interrupt, and the switches.
+ */
 #include "firmware_iface/reference/board_stm32f405/board.h"
 #include "firmware_iface/reference/board_stm32f405/stm32f405.h"
 
@@ -36,6 +37,8 @@ void board_tick_start(uint32_t period_us) {
   STM32_NVIC_ISER[STM32_IRQ_TIM6 / 32] = 1u << (STM32_IRQ_TIM6 % 32);
   timer->CR1 = STM32_TIM_CEN;
 }
+
+uint32_t board_robot_id(void) { return STM32_GPIOC->IDR >> 6 & 0xFu; } /* inputs since reset */
 
 void TIM6_Handler(void) {
   STM32_TIM6->SR = ~(uint32_t)STM32_TIM_UIF;
