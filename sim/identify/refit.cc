@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/core/effect_reader.h"
 #include "sim/core/effect_registry.h"
 
 namespace omnihil {
@@ -44,6 +45,20 @@ EffectUse near_neutral(const EffectUse& use) {
   return out;
 }
 
+// At the sizes that such effects usually have: where neither what the screening says nor the neighbourhood of
+// nothing leads anywhere.
+EffectUse usual(const EffectUse& use, bool linear) {
+  EffectUse out = use;
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    const EffectParam& row = use.entry->info->params[i];
+    if (row.role != ParamRole::kStrength) continue;
+    const ParamRange range = param_range(row, linear);
+    const double scale = row.upper != 0.0 ? range.upper / row.upper : 1.0;
+    out.values[i] = std::clamp(row.neutral + (row.typical - row.neutral) * scale, range.lower, range.upper);
+  }
+  return out;
+}
+
 double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& child) {
   if (!child.finite) return 1e300;
   return energy_ratio((*setup.uses)[0], parent.residual[0], child.residual[0]);
@@ -75,13 +90,14 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   Fitted best = fit_from(setup, with, unknowns, 1);
   const double expected = 1.0 - 0.5 * effect.share;
   double ratio = fit_ratio(setup, parent, best);
-  if (ratio > expected && !(setup.stop && setup.stop())) {
-    const Candidate weak = with_use(parent.fit.model, near_neutral(effect.start));
-    Fitted second = fit_from(setup, weak, unknowns_with_priors(weak, *setup.nominal), 1);
-    const double second_ratio = fit_ratio(setup, parent, second);
-    if (second_ratio < ratio) {
-      best = std::move(second);
-      ratio = second_ratio;
+  for (const EffectUse& other : {near_neutral(effect.start), usual(effect.start, with.file.linear)}) {
+    if (ratio <= expected || (setup.stop && setup.stop())) break;
+    const Candidate start = with_use(parent.fit.model, other);
+    Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
+    const double next_ratio = fit_ratio(setup, parent, next);
+    if (next_ratio < ratio) {
+      best = std::move(next);
+      ratio = next_ratio;
     }
   }
   if (ratio > 1.0) {
