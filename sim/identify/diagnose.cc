@@ -25,6 +25,7 @@ constexpr double kShort = 0.02;  // of the error energy, that a fit of the same 
 constexpr int kMostRestarts = 2;
 constexpr int kMostRepeats = 3;
 constexpr double kWorthAnother = 0.005;  // fall of the error energy
+constexpr double kRobustLoss = 1.2;  // error energy over that of least squares: more, and a fit went astray
 
 class Diagnosing {
  public:
@@ -189,8 +190,11 @@ class Diagnosing {
     say("last fit", 0.88);
     bool added = !out_.effects.empty();
     if (added && !stopped_) {
-      Fitted last = refit_as_it_is(bench_.setup(false, stop()), current_.fit.model, 1);
-      if (last.finite && energy_ratio(bench_.uses()[0], current_.residual[0], last.residual[0]) < 1.01)
+      // What the model has is settled; a few runs that it cannot explain shall not bend its numbers.
+      RefitSetup setup = bench_.setup(false, stop());
+      setup.robust = true;
+      const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);
+      if (last.finite && energy_ratio(bench_.uses()[0], current_.residual[0], last.residual[0]) < kRobustLoss)
         current_ = last;
     }
     Leftover rest = leftover();

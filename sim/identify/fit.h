@@ -40,8 +40,9 @@ struct FitOptions {
   int max_iterations = 30;
   int starts = 1;  // further starts are drawn from the priors
   std::uint64_t seed = 1;
-  bool profile = false;        // walk along flat directions instead of trusting the covariance
-  bool quick = false;          // rough covariance only: for rankings
+  bool profile = false;  // walk along flat directions instead of trusting the covariance
+  bool quick = false;    // rough covariance only: for rankings
+  bool robust = false;   // large residuals pull linearly (fit_problem.h): for the last word on numbers
   std::function<bool()> stop{};  // true: give up early with what is known
 };
 

@@ -9,7 +9,8 @@
 namespace omnihil {
 namespace {
 
-constexpr double kHuber = 6.0;  // sizes
+constexpr double kHuber = 6.0;          // sizes
+constexpr double kRobustHuber = 1.345;  // of sizes by the median
 
 // Residual of one signal, whitened, zero where it was not measured.
 Eigen::VectorXd residual_of(const ComparedSignal& signal, const std::vector<double>& model) {
@@ -20,6 +21,14 @@ Eigen::VectorXd residual_of(const ComparedSignal& signal, const std::vector<doub
   for (std::size_t k = 0; k < r.size(); ++k)
     out[static_cast<Eigen::Index>(k)] = std::isfinite(signal.measured[k]) ? r[k] : 0.0;
   return out;
+}
+
+// Of a Gaussian, its sigma; half of the values say it, however far the others are.
+double size_by_median(std::vector<double> sizes) {
+  if (sizes.empty()) return 0.0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return 1.4826 * *middle;
 }
 
 // 1 + 2 sum of autocorrelations, up to a window of five such times (Sokal). Gaps count as zero.
@@ -40,8 +49,8 @@ double autocorrelation_time(const Eigen::VectorXd& r) {
 }  // namespace
 
 FitProblem::FitProblem(const Predictor& predictor, const Candidate& candidate,
-                       const std::vector<Unknown>& unknowns, int jobs)
-    : predictor_(predictor), candidate_(candidate), unknowns_(unknowns), jobs_(jobs) {
+                       const std::vector<Unknown>& unknowns, int jobs, bool robust)
+    : predictor_(predictor), candidate_(candidate), unknowns_(unknowns), jobs_(jobs), robust_(robust) {
   for (int run = 0; run < predictor.run_count(); ++run) {
     if (predictor.run(run).use == Use::kFit && !predictor.compared(run).empty()) runs_.push_back(run);
   }
@@ -75,6 +84,7 @@ bool FitProblem::reweigh(const Eigen::VectorXd& x) {
     double square = 0.0, count = 0.0, noise = 0.0, time = 0.0;
   };
   std::map<std::string, Sum> sums;
+  std::map<std::string, std::vector<double>> all_sizes;
   for (int pass = 0; pass < 3; ++pass) {  // the size without what is beyond six sizes
     std::map<std::string, Sum> next;
     for (std::size_t n = 0; n < runs_.size(); ++n) {
@@ -92,6 +102,7 @@ bool FitProblem::reweigh(const Eigen::VectorXd& x) {
             continue;
           sum.square += r[k] * r[k];
           count += 1.0;
+          if (robust_ && pass == 0) all_sizes[compared[s].name].push_back(std::abs(r[k]));
         }
         sum.count += count;
         sum.noise += count * compared[s].whitened_sigma * compared[s].whitened_sigma;
@@ -103,7 +114,8 @@ bool FitProblem::reweigh(const Eigen::VectorXd& x) {
   weights_.clear();
   for (const auto& [name, sum] : sums) {
     if (!(sum.count > 0.0)) continue;
-    const double size = std::sqrt(std::max(sum.square, sum.noise) / sum.count);
+    double size = std::sqrt(std::max(sum.square, sum.noise) / sum.count);
+    if (robust_) size = std::max(size_by_median(all_sizes[name]), std::sqrt(sum.noise / sum.count));
     weights_[name] = {.size = size > 0.0 ? size : 1.0,
                       .autocorrelation = std::max(1.0, sum.time / sum.count),
                       .samples = sum.count};
@@ -120,6 +132,7 @@ FitProblem::RunPart FitProblem::part(int run, const Prediction& values,
     out.gradient = Eigen::VectorXd::Zero(n);
     out.information = Eigen::MatrixXd::Zero(n, n);
   }
+  const double huber = robust_ ? kRobustHuber : kHuber;
   const std::vector<ComparedSignal>& compared = predictor_.compared(run);
   for (std::size_t s = 0; s < compared.size() && out.finite; ++s) {
     const auto found = weights_.find(compared[s].name);
@@ -132,8 +145,8 @@ FitProblem::RunPart FitProblem::part(int run, const Prediction& values,
       const bool known = std::isfinite(compared[s].measured[static_cast<std::size_t>(k)]);
       // rho(z) = z within, 2 c sqrt(z) - c^2 beyond; rho' = c / a
       out.cost +=
-          known ? 0.5 * (a <= kHuber ? a * a : 2.0 * kHuber * a - kHuber * kHuber) / w.autocorrelation : 0.0;
-      weight[k] = known ? std::sqrt((a <= kHuber ? 1.0 : kHuber / a) / w.autocorrelation) : 0.0;
+          known ? 0.5 * (a <= huber ? a * a : 2.0 * huber * a - huber * huber) / w.autocorrelation : 0.0;
+      weight[k] = known ? std::sqrt((a <= huber ? 1.0 : huber / a) / w.autocorrelation) : 0.0;
     }
     if (strides.empty()) continue;
     Eigen::MatrixXd j(r.size(), n);

@@ -8,8 +8,10 @@
 // m) / p)^2, r whitened (predictor.h). s_c: the larger of the signal's noise and its residual's size, so that
 // no signal drowns the others where the model is far off; t_c: the residual's autocorrelation time in
 // samples, so that data and priors are weighed as what they tell. rho: Huber's, linear beyond six sizes: a
-// rare glitch pulls with bounded force, and no sample of a model that is merely wrong is touched. Sources:
-// Huber 1964; Sokal 1997 (autocorrelation time).
+// rare glitch pulls with bounded force, and no sample of a model that is merely wrong is touched. `robust`:
+// linear beyond 1.345 sizes, sizes by the median, so that a run whose conditions are known wrongly does not
+// bend the numbers of all others; 95 % as efficient as least squares where the residual is Gaussian. Sources:
+// Huber 1964; Holland, Welsch 1977 (1.345); Sokal 1997 (autocorrelation time).
 #pragma once
 #include <Eigen/Core>
 #include <map>
@@ -37,7 +39,7 @@ struct SignalWeight {
 class FitProblem {
  public:
   FitProblem(const Predictor& predictor, const Candidate& candidate, const std::vector<Unknown>& unknowns,
-             int jobs);
+             int jobs, bool robust = false);
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   bool empty() const { return runs_.empty(); }
@@ -65,6 +67,7 @@ class FitProblem {
   Candidate candidate_;
   std::vector<Unknown> unknowns_;
   int jobs_ = 1;
+  bool robust_ = false;
   std::vector<int> runs_;
   std::map<std::string, SignalWeight> weights_;
 };

@@ -30,6 +30,7 @@ Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::
   options.seed = setup.seed;
   options.quick = setup.quick;
   options.profile = !setup.quick;
+  options.robust = setup.robust;
   options.stop = setup.stop;
   const Candidate start = with_values(candidate, unknowns, values);
   return fitted(*setup.uses, *setup.seen, fit(*setup.predictor, start, unknowns, options), setup.jobs);

@@ -202,5 +202,23 @@ TEST(Fit, StopsWhenAsked) {
   EXPECT_EQ(r.parameters.size(), unknowns_of(model()).size());
 }
 
+TEST(Fit, RobustlyARunWithAnotherLoadHardlyBendsTheNumbersOfAll) {
+  const Candidate truth = model();
+  Dataset d = bench(truth, {.runs = 6});
+  d.runs.back() = bench(changed(truth, {{"load.inertia_kg_m2", 7e-5}}), {.runs = 6}).runs.back();
+  const auto predictor = make_predictor(d, truth, {});
+  const auto inertia_error = [&](bool robust) {
+    FitOptions options;
+    options.robust = robust;
+    const FitResult r = fit(*predictor, truth, unknowns_of(truth), options);
+    // no gear: rotor and load turn together, 1e-5 and 5e-5
+    return std::abs(value_at(r.model, "motor.rotor_inertia_kg_m2").value_or(NAN) +
+                    value_at(r.model, "load.inertia_kg_m2").value_or(NAN) - 6e-5);
+  };
+  const double squared = inertia_error(false);
+  EXPECT_GT(squared, 0.01 * 6e-5);
+  EXPECT_LT(inertia_error(true), 0.5 * squared);
+}
+
 }  // namespace
 }  // namespace omnihil

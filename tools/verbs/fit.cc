@@ -128,6 +128,9 @@ void add_verb_fit(CLI::App& app, VerbResult& result) {
       ->type_name("MODEL");
   verb->add_option("--json", a->json, "result as JSON (omnihil-fit/1); - : to stdout, in place of the text")
       ->type_name("OUT");
+  verb->add_flag(
+      "--robust", a->options.robust,
+      "large residuals pull linearly, not squared: a few runs that the model cannot explain count less");
   verb->add_option("--starts", a->options.starts,
                    "starts; all but the first are drawn from the model file's tolerances")
       ->check(CLI::Range(1, 100))
