@@ -307,9 +307,9 @@ void Reader::read_pin(const toml::table& t, const std::string& path) {
   keys_.only(t, path, {"pin", "level", "robot_id_bit"});
   const auto p = pin(t, path, "pin");
   if (!t.contains("pin")) keys_.missing(t, path, "pin", "a pin, such as PC13");
-  if (t.contains("level") == t.contains("robot_id_bit")) {
-    keys_.missing(t, path, "level", "level = true, false, or robot_id_bit = 0 to 7: one of the two");
-  }
+  const bool has_level = t.contains("level"), has_bit = t.contains("robot_id_bit");
+  if (!has_level && !has_bit) keys_.missing(t, path, "level", "true, false, or instead a robot_id_bit");
+  if (has_level && has_bit) keys_.wrong(t, path, "robot_id_bit", "beside a level", "one of the two");
   const auto level = keys_.flag(t, path, "level");
   const auto id_bit = keys_.whole(t, path, "robot_id_bit", 0, 7);
   if (p) spec_.pins.push_back({*p, level.value_or(false), static_cast<int>(id_bit.value_or(-1))});
