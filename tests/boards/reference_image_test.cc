@@ -72,8 +72,8 @@ struct Drive {
   double omega_rotor_rad_s = 0.0;
   std::vector<std::string> report;
 };
-Drive drive() {
-  Session session(one_robot(), image_firmware(kImage, kBoard));
+Drive drive(const std::string& image = kImage) {
+  Session session(one_robot(), image_firmware(image, kBoard));
   Hashed seen;
   session.set_observer(&seen);
   RobotCommand command{};
@@ -106,6 +106,13 @@ TEST_F(ReferenceImage, AnswersOverTheRadioAsTheRobotThatItsSwitchesSay) {
     session.step(step == 10 ? std::span<const std::uint8_t>(ping) : std::span<const std::uint8_t>{}, out);
   }
   EXPECT_EQ(out, (std::vector<std::uint8_t>{3, 1, 5, 3, 1, 1 + 5 + 1, 0}));
+}
+
+TEST_F(ReferenceImage, WatchdogEndsAHangAfterTwentyMilliseconds) {
+  const Drive hung = drive(OMNIHIL_BUILD_DIR "/images/reference_hangs.elf");
+  ASSERT_EQ(hung.report.size(), 1u);  // 0.2 s and 20 ms, and not a second time within 0.3 s
+  EXPECT_NE(hung.report[0].find("reset by"), std::string::npos) << hung.report[0];
+  EXPECT_NE(hung.report[0].find("at 0.2"), std::string::npos) << hung.report[0];
 }
 
 TEST_F(ReferenceImage, ControlInterruptTakesLessThanHalfAPeriodAndTheCoreSleepsOtherwise) {

@@ -11,7 +11,7 @@
  *   encoder of motor 0..3     TIM2 (PA15, PB3), TIM3 (PB4, PB5), TIM4 (PD12, PD13), TIM5 (PA0, PA1)
  *   battery                   ADC1 channel 10, PC0, behind 1:11
  *   radio                     USART1, PA9 and PA10, 1 Mbaud
- *   control period            TIM6, 1 ms
+ *   control period            TIM6, 1 ms; the independent watchdog after 20 ms without one
  *   robot's number            PC6 to PC9, four switches, high: 1
  *   robot's configuration     flash sector 7, 0x08060000 (robot_page.h)
  *
@@ -42,6 +42,9 @@ double board_battery_V(void);   /* waits for it */
 void board_radio_init(void);
 size_t board_radio_take(uint8_t* bytes, size_t capacity); /* what came in since */
 int board_radio_send(const uint8_t* bytes, size_t count); /* 0: no room, nothing sent */
+
+void board_watchdog_start(void);
+void board_watchdog_feed(void); /* at least every 14 ms */
 
 uint32_t board_robot_id(void); /* 0 to 15 */
 

@@ -37,6 +37,7 @@ void board_tick(void) {
   board_motors_drive(&drive);
   answer_radio();
   now_us += api->control_period_us;
+  board_watchdog_feed();
 }
 
 int main(void) {
@@ -50,6 +51,7 @@ int main(void) {
     board_encoders_init();
     board_battery_init();
     board_radio_init();
+    board_watchdog_start();
     board_tick_start(api->control_period_us);
   }
   for (;;) __asm volatile("wfi"); /* a robot without a page stays here, its bridges off */

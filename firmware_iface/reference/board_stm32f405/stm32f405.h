@@ -30,11 +30,16 @@ typedef struct {
   stm32_register SR, CR1, CR2, SMPR1, SMPR2, JOFR[4], HTR, LTR, SQR1, SQR2, SQR3, JSQR, JDR[4], DR;
 } stm32_adc;
 
+typedef struct {
+  stm32_register KR, PR, RLR, SR;
+} stm32_watchdog;
+
 #define STM32_TIM2 ((stm32_timer *)0x40000000u)
 #define STM32_TIM3 ((stm32_timer *)0x40000400u)
 #define STM32_TIM4 ((stm32_timer *)0x40000800u)
 #define STM32_TIM5 ((stm32_timer *)0x40000C00u)
 #define STM32_TIM6 ((stm32_timer *)0x40001000u)
+#define STM32_IWDG ((stm32_watchdog *)0x40003000u)
 #define STM32_TIM1 ((stm32_timer *)0x40010000u)
 #define STM32_USART1 ((stm32_usart *)0x40011000u)
 #define STM32_ADC1 ((stm32_adc *)0x40012000u)
