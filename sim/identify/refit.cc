@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "sim/core/effect_reader.h"
 #include "sim/core/effect_registry.h"
 
 namespace omnihil {
 namespace {
+
+constexpr double kWorthAThirdStart = 0.2;  // of the error energy, as the screening promises
 
 // Numbers of a candidate by path; what `start` does not name stays.
 void start_at(std::vector<Unknown>& unknowns, const std::vector<Unknown>& paths,
@@ -91,8 +94,11 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   Fitted best = fit_from(setup, with, unknowns, 1);
   const double expected = 1.0 - 0.5 * effect.share;
   double ratio = fit_ratio(setup, parent, best);
-  for (const EffectUse& other : {near_neutral(effect.start), usual(effect.start, with.file.linear)}) {
+  const std::initializer_list<EffectUse> starts = {near_neutral(effect.start),
+                                                   usual(effect.start, with.file.linear)};
+  for (const EffectUse& other : starts) {
     if (ratio <= expected || (setup.stop && setup.stop())) break;
+    if (&other != starts.begin() && effect.share < kWorthAThirdStart) break;
     const Candidate start = with_use(parent.fit.model, other);
     Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
     const double next_ratio = fit_ratio(setup, parent, next);
