@@ -82,6 +82,23 @@ TEST(BoardReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(spec->radio_via, "radio");
 }
 
+TEST(BoardReader, ReadsThePhasesAndHallLinesOfAThreePhaseBoard) {
+  const std::string text =
+      replaced(kGood, "pwm = [\"TIM1.1\", \"TIM1.2\"]", R"(pwm = ["TIM1.1", "TIM1.2", "TIM1.3"]
+pwm_low = ["TIM1.1N", "TIM1.2N", "TIM1.3N"]
+hall = "TIM4"
+hall_inverted = true
+pole_pairs = 8)");
+  std::vector<BoardProblem> problems;
+  const auto spec = read_board(text, "b.toml", problems);
+  for (const BoardProblem& p : problems) ADD_FAILURE() << p.text();
+  ASSERT_TRUE(spec);
+  ASSERT_EQ(spec->motors[1].pwm_low.size(), 3u);
+  EXPECT_TRUE(spec->motors[1].pwm_low[2].complement);
+  EXPECT_EQ(spec->motors[1].pwm_low[2].channel, 2u);
+  EXPECT_TRUE(spec->motors[1].hall_inverted);
+}
+
 struct Broken {
   const char *from, *to, *key, *what;
 };
@@ -93,6 +110,7 @@ TEST(BoardReader, NamesEveryKindOfMistakeWithItsLineAndKey) {
       {"wheel = 2", "wheel = 4", "motor[1].wheel", "out of range"},
       {"wheel = 2", "wheel = 0", "motor[1].wheel", "used twice"},
       {"wheel = 2", "wheel = 1.5", "motor[1].wheel", "not a whole number"},
+      {"reversed = true", "pwm_low = [\"TIM1.1N\"]", "motor[1].pwm_low", "not the lower gates"},
       {"\"TIM8.1\"", "\"TIM8.5\"", "motor[0].pwm", "no channel"},
       {"\"TIM8.1\"", "\"TIM77.1\"", "motor[0].pwm", "no channel"},
       {"\"TIM8.1\"", "\"TIM3.1N\"", "motor[0].pwm", "no channel"},

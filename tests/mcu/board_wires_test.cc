@@ -63,22 +63,74 @@ TEST(MotorWire, HalvesOfABridgeSubtractAndSwitchedOffOnesCoast) {
   EXPECT_FALSE(wire->now().driven);
 }
 
-TEST(MotorWire, LegsFollowBothOutputsOfAChannel) {
+const std::vector<ChannelName> kPhases = {{"TIM1", 0, false}, {"TIM1", 1, false}, {"TIM1", 2, false}};
+const std::vector<ChannelName> kLowGates = {{"TIM1", 0, true}, {"TIM1", 1, true}, {"TIM1", 2, true}};
+
+TEST(MotorWire, LegsFollowTheGatesOfBothSwitches) {
   WireBench b;
   MotorEntry entry;
-  entry.pwm = {{"TIM1", 0, false}, {"TIM1", 1, false}, {"TIM1", 2, false}};
+  entry.pwm = kPhases;
+  entry.pwm_low = kLowGates;
   const auto wire = b.wire(entry);
   b.set("TIM1", 0x34, 250);
   b.set("TIM1", 0x38, 1000);
   b.set("TIM1", 0x20, 0x5 | 0x4 << 4);  // pair; lower switch alone; off
-  b.set("TIM1", 0x18, 0x4060);          // channel 2 forced low: its complement follows the reference
+  b.set("TIM1", 0x18, 0x5060);          // channel 2 forced high: its lower switch alone follows the reference
   std::uint32_t leg[kLegs];
   double duty[kLegs];
   wire->legs(leg, duty);
   EXPECT_EQ(leg[0], static_cast<std::uint32_t>(OMNIHIL_LEG_PWM));
   EXPECT_DOUBLE_EQ(duty[0], 0.25);
   EXPECT_EQ(leg[1], static_cast<std::uint32_t>(OMNIHIL_LEG_LOW));
+  EXPECT_DOUBLE_EQ(duty[1], 1.0);
   EXPECT_EQ(leg[2], static_cast<std::uint32_t>(OMNIHIL_LEG_OFF));
+}
+
+TEST(MotorWire, DeadTimeIsLeftToTheBridge) {
+  WireBench b;
+  MotorEntry entry;
+  entry.pwm = kPhases;
+  entry.pwm_low = kLowGates;
+  const auto wire = b.wire(entry);
+  b.set("TIM1", 0x34, 250);
+  b.set("TIM1", 0x20, 0x5);
+  b.set("TIM1", 0x44, 1u << 15 | 20);  // 20 of 1000 ticks
+  EXPECT_LT(b.chip.find<Timer>("TIM1")->output(0).main.high_ratio, 0.25);
+  std::uint32_t leg[kLegs];
+  double duty[kLegs];
+  wire->legs(leg, duty);
+  EXPECT_DOUBLE_EQ(duty[0], 0.25);
+}
+
+// Six-step's floating phase: the channel is enabled and forced low, its complement is off.
+TEST(MotorWire, AForcedLowUpperGateFloatsWhereTheLowerHasItsOwnAndGroundsWhereTheDriverMakesIt) {
+  WireBench b;
+  MotorEntry entry;
+  entry.pwm = kPhases;
+  const auto driver = b.wire(entry);
+  entry.pwm_low = kLowGates;
+  const auto gates = b.wire(entry);
+  b.set("TIM1", 0x20, 0x1);
+  b.set("TIM1", 0x18, 0x6040);
+  std::uint32_t leg[kLegs];
+  double duty[kLegs];
+  gates->legs(leg, duty);
+  EXPECT_EQ(leg[0], static_cast<std::uint32_t>(OMNIHIL_LEG_OFF));
+  driver->legs(leg, duty);
+  EXPECT_EQ(leg[0], static_cast<std::uint32_t>(OMNIHIL_LEG_PWM));
+  EXPECT_DOUBLE_EQ(duty[0], 0.0);
+}
+
+TEST(HallLines, InvertedSensorsShowTheComplement) {
+  ChipBench b("stm32f405");
+  WorldState world;
+  MotorEntry entry;
+  entry.hall_pins = {{'A', 0}, {'A', 1}, {'A', 2}};
+  entry.hall_pole_pairs = 8;
+  entry.hall_inverted = true;
+  HallLines lines(entry, b.chip, b.system, [&]() -> const WorldState& { return world; });
+  lines.world_changed();
+  EXPECT_EQ(b.get("GPIOA", 0x10) & 7, HallLines::code(0.0) ^ 7u);
 }
 
 TEST(HallLines, EdgesComeAtTheirInstantsInTheForwardOrder) {

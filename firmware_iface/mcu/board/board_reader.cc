@@ -23,6 +23,7 @@ class Reader {
  private:
   void read_top();
   void read_motor(const toml::table& t, const std::string& path);
+  std::vector<ChannelName> channels(const toml::table& t, const std::string& path, std::string_view key);
   void read_pin(const toml::table& t, const std::string& path);
   void read_sensors(const toml::table& t, const std::string& path, MotorEntry& motor);
   void read_device(const toml::table& t, const std::string& path);
@@ -93,10 +94,27 @@ void Reader::read_top() {
   }
 }
 
+std::vector<ChannelName> Reader::channels(const toml::table& t, const std::string& path,
+                                          std::string_view key) {
+  std::vector<ChannelName> found;
+  for (const std::string& word : keys_.texts(t, path, key)) {
+    const auto channel = parse_channel(word);
+    if (!channel || (names_ && !names_->has_channel(*channel))) {
+      keys_.wrong(
+          t, path, key, fmt::format("no channel \"{}\"", word),
+          "channels such as TIM1.2, TIM1.2N of " + (names_ ? names_->timers() : std::string("the chip")));
+      continue;
+    }
+    claim(t, path, key, word);
+    found.push_back(*channel);
+  }
+  return found;
+}
+
 void Reader::read_motor(const toml::table& t, const std::string& path) {
   keys_.only(t, path,
-             {"wheel", "pwm", "inverted", "direction", "forward", "reversed", "enable", "encoder",
-              "encoder_reversed", "hall", "hall_pins", "pole_pairs"});
+             {"wheel", "pwm", "pwm_low", "inverted", "direction", "forward", "reversed", "enable", "encoder",
+              "encoder_reversed", "hall", "hall_pins", "hall_inverted", "pole_pairs"});
   MotorEntry motor;
   if (const auto wheel = keys_.whole(t, path, "wheel", 0, kWheels - 1)) {
     motor.wheel = static_cast<int>(*wheel);
@@ -104,16 +122,11 @@ void Reader::read_motor(const toml::table& t, const std::string& path) {
   } else if (!t.contains("wheel")) {
     keys_.missing(t, path, "wheel", "0 to 3");
   }
-  for (const std::string& word : keys_.texts(t, path, "pwm")) {
-    const auto channel = parse_channel(word);
-    if (!channel || (names_ && !names_->has_channel(*channel))) {
-      keys_.wrong(
-          t, path, "pwm", fmt::format("no channel \"{}\"", word),
-          "channels such as TIM1.2, TIM1.2N of " + (names_ ? names_->timers() : std::string("the chip")));
-      continue;
-    }
-    claim(t, path, "pwm", word);
-    motor.pwm.push_back(*channel);
+  motor.pwm = channels(t, path, "pwm");
+  motor.pwm_low = channels(t, path, "pwm_low");
+  if (t.contains("pwm_low") && (motor.pwm_low.size() != 3 || motor.pwm.size() != 3)) {
+    keys_.wrong(t, path, "pwm_low", "not the lower gates of three phases",
+                "three channels beside three of pwm");
   }
   if (!t.contains("pwm")) keys_.missing(t, path, "pwm", "one channel, two of a bridge, or three phases");
   if (motor.pwm.size() > 3) keys_.wrong(t, path, "pwm", "too many channels", "one, two or three");
@@ -154,6 +167,7 @@ void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEn
   if (t.contains("hall_pins") && motor.hall_pins.size() != 3) {
     keys_.wrong(t, path, "hall_pins", "not three pins", "three pins: H1, H2, H3");
   }
+  motor.hall_inverted = keys_.flag(t, path, "hall_inverted").value_or(false);
   const bool hall = !motor.hall_timer.empty() || !motor.hall_pins.empty();
   motor.hall_pole_pairs = static_cast<unsigned>(keys_.whole(t, path, "pole_pairs", 1, 60).value_or(0));
   if (hall && !t.contains("pole_pairs")) keys_.missing(t, path, "pole_pairs", "1 to 60");

@@ -38,7 +38,8 @@ struct ChannelName {  // "TIM1.3", its complementary output "TIM1.3N"
 struct MotorEntry {
   int wheel = 0;
   std::vector<ChannelName> pwm;
-  bool inverted = false;  // the driver's input is active low
+  std::vector<ChannelName> pwm_low = {};  // of three phases: the lower switches' own gates, as wired
+  bool inverted = false;                  // the driver's input is active low
   std::optional<PinName> direction;
   bool direction_high_is_forward = true;
   double sign = 1.0;              // -1: the motor's leads are swapped
@@ -48,6 +49,7 @@ struct MotorEntry {
   std::string hall_timer;          // empty: none; its channels 1 to 3
   std::vector<PinName> hall_pins;  // the same lines as pins
   unsigned hall_pole_pairs = 0;
+  bool hall_inverted = false;  // the sensors pull their lines low where the plant's are high
 };
 
 struct DeviceEntry {

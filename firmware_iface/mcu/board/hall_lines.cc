@@ -33,6 +33,7 @@ unsigned HallLines::code(double theta_elec_rad) {
 }
 
 void HallLines::show(unsigned code) {
+  if (entry_.hall_inverted) code ^= 7u;
   const unsigned changed = code ^ shown_;
   shown_ = code;
   for (unsigned x = 0; x < 3; ++x) {

@@ -10,6 +10,7 @@ MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int
     timers_.push_back(chip.find<Timer>(channel.timer));
     timers_.back()->on_output([this] { changed(); });
   }
+  for (const ChannelName& channel : entry_.pwm_low) low_timers_.push_back(chip.find<Timer>(channel.timer));
   if (entry_.direction) {
     direction_ = chip.port(entry_.direction->port);
     direction_->on_output(entry_.direction->pin, [this](bool) { changed(); });
@@ -20,9 +21,9 @@ MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int
   }
 }
 
-TimerPin MotorWire::pin(std::size_t i) const {
-  const TimerOutput out = timers_[i]->output(entry_.pwm[i].channel);
-  TimerPin pin = entry_.pwm[i].complement ? out.complement : out.main;
+TimerPin MotorWire::pin(Timer& timer, const ChannelName& channel) const {
+  const TimerOutput out = timer.output(channel.channel);
+  TimerPin pin = channel.complement ? out.complement : out.main;
   if (entry_.inverted && pin.drive != TimerPin::Drive::kOff) pin.high_ratio = 1.0 - pin.high_ratio;
   return pin;
 }
@@ -68,25 +69,28 @@ BridgeDrive MotorWire::end(std::int64_t at_ns) {
 }
 
 void MotorWire::legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) const {
-  using Drive = TimerPin::Drive;
   for (std::size_t x = 0; x < timers_.size() && x < kLegs; ++x) {
     leg[x] = OMNIHIL_LEG_OFF;
     duty_ratio[x] = 0.0;
     if (!enabled()) continue;
     const TimerPin high = pin(x);
-    const TimerPin low = timers_[x]->output(entry_.pwm[x].channel).complement;
-    const bool high_on = high.drive != Drive::kOff, low_on = low.drive != Drive::kOff;
-    if (high_on && low_on) {
-      const bool both_idle = high.high_ratio <= 0.0 && low.high_ratio <= 0.0;
-      const bool only_high = low.drive == Drive::kSteady && low.high_ratio <= 0.0;
-      leg[x] = both_idle ? OMNIHIL_LEG_OFF : only_high ? OMNIHIL_LEG_HIGH : OMNIHIL_LEG_PWM;
-      duty_ratio[x] = high.high_ratio;
-    } else if (high_on) {  // no complementary output: the driver makes it of the one input
+    if (low_timers_.empty()) {
+      if (high.drive == TimerPin::Drive::kOff) continue;
       leg[x] = OMNIHIL_LEG_PWM;
       duty_ratio[x] = high.high_ratio;
-    } else if (low_on) {
+      continue;
+    }
+    const double upper = high.high_ratio;  // 0 of a pin that is off
+    const double lower = pin(*low_timers_[x], entry_.pwm_low[x]).high_ratio;
+    if (upper > 0.0 && lower > 0.0) {  // both shares are short by the same dead time
+      leg[x] = OMNIHIL_LEG_PWM;
+      duty_ratio[x] = 0.5 * (upper + 1.0 - lower);
+    } else if (upper > 0.0) {
+      leg[x] = OMNIHIL_LEG_HIGH;
+      duty_ratio[x] = upper;
+    } else if (lower > 0.0) {
       leg[x] = OMNIHIL_LEG_LOW;
-      duty_ratio[x] = low.high_ratio;
+      duty_ratio[x] = lower;
     }
   }
   if (entry_.sign >= 0 || timers_.size() < 3) return;

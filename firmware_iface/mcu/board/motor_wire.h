@@ -6,10 +6,12 @@
 //   instants
 //
 // One channel and a direction pin: duty with that sign. One channel alone: both halves in turn, 2 d - 1. Two
-// channels: the difference of the halves. Three: phases, each leg from its channel and the complementary one.
-// A channel that is off (no MOE, not enabled) leaves the motor to coast; so does the enable pin when low.
-// Cannot represent: pins that are not set to their timer (their mode is not looked at), dead time's effect on
-// voltage.
+// channels: the difference of the halves. Three: phases. With gates of the lower switches on pins of their
+// own (pwm_low) a leg is what both pins say, a pin that is off being held low by its resistor; without, the
+// driver makes the lower switch's signal of the one input. The dead time that the timer cuts off both is left
+// to the model's bridge, which has its own. A channel that is off (no MOE, not enabled) leaves the motor to
+// coast; so does the enable pin when low. Cannot represent: pins that are not set to their timer (their mode
+// is not looked at), both gates of a leg high at once.
 #pragma once
 #include <array>
 #include <functional>
@@ -43,12 +45,13 @@ class MotorWire {
  private:
   void changed();
   void pass(std::int64_t at_ns);
-  TimerPin pin(std::size_t i) const;
+  TimerPin pin(Timer& timer, const ChannelName& channel) const;
+  TimerPin pin(std::size_t i) const { return pin(*timers_[i], entry_.pwm[i]); }
   bool enabled() const { return !enable_ || enable_->output(entry_.enable->pin); }
 
   MotorEntry entry_;
   std::function<std::int64_t()> now_ns_;
-  std::vector<Timer*> timers_;
+  std::vector<Timer*> timers_, low_timers_;
   GpioPort *direction_ = nullptr, *enable_ = nullptr;
   BridgeDrive held_;
   std::int64_t since_ns_ = 0;
