@@ -1,12 +1,10 @@
 // SSL A-Team's wheel motor controller, unmodified, on its board: the registers and replies that it gave in
 // another emulator, and its speed loop closed on the switched bridge and motor.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "hil/model_store.h"
-#include "sim/phase/hall_sensors.h"
-#include "sim/phase/switched_drive.h"
+#include "tests/boards/motor_on_board.h"
 #include "tests/boards/third_party.h"
 
 namespace omnihil {
@@ -78,65 +76,26 @@ TEST_F(AteamWheel, GivesTheRegistersAndRepliesOfTheOtherEmulatorRowByRow) {
   }
 }
 
-// The board on a motor of its own: bridge, windings, rotor, Hall sensors, encoder and shunt; once per PWM
-// period the board sees the shaft and the bridge what the timer says.
-struct MotorOnBoard {
-  static constexpr double kBus_V = 24.0;
-  mcu::McuBoard& board;
-  SwitchedDrive drive;
-  SwitchedState x{};
-  PhaseFlow flow{};
-  double bus_current_A = 0.0;
-
-  MotorOnBoard(mcu::McuBoard& b, const MotorParams& motor, double load_inertia_kg_m2)
-      : board(b),
-        drive(make_switched_drive(
-            phase_motor_of(motor, Commutation::kBlock, {.shape = BackEmfShape::kTrapezoid}),
-            {.pwm_frequency_Hz = 48e6 / (2 * 999),
-             .dead_time_s = 7 / 48e6,
-             .switch_resistance_ohm = 0.012,
-             .diode_forward_V = 0.8},
-            {.extra_inertia_kg_m2 = load_inertia_kg_m2})) {}
-
-  void period(double tau_load_Nm) {
-    mcu::WorldState world;
-    world.at_ns = board.now_ns();
-    world.bus_voltage_V = kBus_V;
-    world.encoder_counts_per_rotor_turn = 4000;
-    world.theta_rotor_rad[0] = x.motor.theta_rotor_rad;
-    world.omega_rotor_rad_s[0] = x.motor.omega_rotor_rad_s;
-    world.motor_current_A[0] = std::abs(bus_current_A);
-    board.set_world(world);
-    std::uint32_t leg[kLegs];
-    double duty[kLegs];
-    board.wire(0)->legs(leg, duty);
-    BridgeCommand command{};
-    for (std::size_t n = 0; n < 3; ++n) {
-      const LegState on = leg[n] == OMNIHIL_LEG_LOW ? LegState::kLow : LegState::kHigh;
-      if (leg[n] != OMNIHIL_LEG_OFF)
-        command[n] = {on, leg[n] == OMNIHIL_LEG_PWM ? LegState::kLow : LegState::kOff, duty[n]};
-    }
-    const PeriodSample sample =
-        advance_period(drive, x, command, {.bus_voltage_V = kBus_V, .tau_load_Nm = tau_load_Nm}, 0.5, flow);
-    bus_current_A = *std::max_element(sample.current_A.begin(), sample.current_A.end());
-    periods += 1;
-    board.run_until_ns(static_cast<std::int64_t>(std::llround(periods * drive.period_s * 1e9)));
-  }
-  std::int64_t periods = 0;
-};
-
 // Its filter and gains leave a ripple of some rad/s on a rotor without a wheel, here as on the other
 // emulator: reached is what holds on the mean of the last second.
 TEST_F(AteamWheel, SlowClosesItsSpeedLoopOnTheThreePhaseMotor) {
   const StoredModel df45 = load_model("nanotec_df45", {OMNIHIL_SOURCE_DIR "/models"});
   ASSERT_TRUE(df45.model);
   const auto board = this->board();
-  MotorOnBoard motor(*board, df45.model->motor, 0.0);
+  const Inverter bridge{.pwm_frequency_Hz = 48e6 / (2 * 999),
+                        .dead_time_s = 7 / 48e6,
+                        .switch_resistance_ohm = 0.012,
+                        .diode_forward_V = 0.8};
+  const PhaseMotor<double> windings =
+      phase_motor_of(df45.model->motor, Commutation::kBlock, {.shape = BackEmfShape::kTrapezoid});
+  MotorsOnBoard bench(*board, 24.0, 4000);
+  bench.add({.wheel = 0, .drive = make_switched_drive(windings, bridge, {}), .load_Nm = 0.01});
+  const MotorOnBoard& motor = bench.motors[0];
   std::vector<std::uint8_t> frame;
   std::int64_t next_command_ns = 0;
   double turned_rad = 0.0;
   for (const float setpoint_rad_s : {100.0f, -200.0f, 40.0f}) {
-    const double turn_before_rad = motor.x.motor.theta_rotor_rad;
+    const double turn_before_rad = motor.theta_rad();
     const std::int64_t end_ns = board->now_ns() + 5'000'000'000, last_ns = end_ns - 1'000'000'000;
     double from_rad = 0.0, from_s = 0.0;
     float reported_rad_s = 0.0f;
@@ -145,26 +104,27 @@ TEST_F(AteamWheel, SlowClosesItsSpeedLoopOnTheThreePhaseMotor) {
         board->radio_receive(motion_command(kVelocity, setpoint_rad_s));
         next_command_ns += 10'000'000;
       }
-      motor.period(0.01 * std::tanh(motor.x.motor.omega_rotor_rad_s));  // 10 mNm of friction
+      bench.period();
       while (board->radio_transmit(frame)) reported_rad_s = from_bytes<float>(frame, 24);
       if (from_s == 0.0 && board->now_ns() >= last_ns) {
         from_s = 1e-9 * static_cast<double>(board->now_ns());
-        from_rad = motor.x.motor.theta_rotor_rad;
+        from_rad = motor.theta_rad();
       }
     }
     // clockwise, the firmware's positive, is the plant's negative rotation on this board
     const double seconds = 1e-9 * static_cast<double>(board->now_ns()) - from_s;
-    const double mean_rad_s = -(motor.x.motor.theta_rotor_rad - from_rad) / seconds;
+    const double mean_rad_s = -(motor.theta_rad() - from_rad) / seconds;
     std::printf("commanded %g rad/s: reached %.2f, reported %.2f\n", setpoint_rad_s, mean_rad_s,
                 reported_rad_s);
     EXPECT_NEAR(mean_rad_s, setpoint_rad_s, 0.03 * std::abs(setpoint_rad_s));
     EXPECT_NEAR(reported_rad_s, setpoint_rad_s, 0.03 * std::abs(setpoint_rad_s));
-    turned_rad += std::abs(motor.x.motor.theta_rotor_rad - turn_before_rad);
+    turned_rad += std::abs(motor.theta_rad() - turn_before_rad);
   }
   EXPECT_EQ(word(*board, "slipped_control_frame_count"), 0u);
   // It counts as an error every commutation whose Hall value is not the next one: all 1 kHz ones, at an
   // unchanged value, and none of the 48 a turn that the Hall edges cause.
-  const double cycles = 1e-6 * static_cast<double>(board->now_ns()), edges = turned_rad / 6.283 * 48;
+  const double cycles = 1e-6 * static_cast<double>(board->now_ns()),
+               edges = turned_rad / (2 * std::numbers::pi) * 48;
   EXPECT_GT(edges, 10000);
   EXPECT_NEAR(word(*board, "hall_transition_error_count"), cycles, 0.01 * edges);
 }
