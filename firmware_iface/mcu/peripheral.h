@@ -66,8 +66,16 @@ class Peripheral {
   virtual std::uint32_t read(std::uint32_t offset, unsigned bytes) = 0;
   virtual void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) = 0;
   // The next instant at which it acts by itself; run_events() is then called with now() at that instant.
-  virtual Cycles next_event() const { return kNever; }
+  virtual Cycles next_event() const {
+    ever_acts_ = false;  // a block that acts at all answers this itself
+    return kNever;
+  }
   virtual void run_events() {}
+  // False: of a kind that has no events at all, and need not be asked for the next one.
+  bool ever_acts() const {
+    static_cast<void>(next_event());
+    return ever_acts_;
+  }
   // The core clock changes at now(); what is counted in core cycles ahead must be counted anew.
   virtual void clock_changed() {}
   // Until when a read of `offset` gives what it would give now and changes nothing; a loop that polls it can
@@ -76,6 +84,7 @@ class Peripheral {
 
  private:
   std::string name_;
+  mutable bool ever_acts_ = true;
 };
 
 // Who is told of stores to the flash's addresses (the flash controller); without one they are reported and

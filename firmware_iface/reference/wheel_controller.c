@@ -1,8 +1,9 @@
 #include "firmware_iface/reference/wheel_controller.h"
 
-#include <math.h>
-
-static float clamp(float value, float limit) { return fmaxf(-limit, fminf(limit, value)); }
+/* By comparisons, which a core without a maximum instruction does in two; fmaxf() is a call there. */
+static float clamp(float value, float limit) {
+  return value > limit ? limit : value < -limit ? -limit : value;
+}
 
 float wheel_loop_update(wheel_loop* loop, const wheel_gains* gains, const motor_constants* motor,
                         const wheel_loop_input* input) {

@@ -12,8 +12,10 @@ void wheel_encoder_update(wheel_encoder* encoder, const encoder_setup* setup, in
     encoder->primed = 1;
     return;
   }
-  float raw_rad_s = (float)delta * setup->rad_per_count / dt_s;
-  if (fabsf(raw_rad_s) > setup->omega_rotor_max_rad_s) {
+  /* more than 32 bits is no rotation; the rest is narrowed, as 64 bits to float is a long calculation on a
+   * small core */
+  float raw_rad_s = (float)(int32_t)delta * setup->rad_per_count / dt_s;
+  if (delta != (int32_t)delta || fabsf(raw_rad_s) > setup->omega_rotor_max_rad_s) {
     ++encoder->jumps;
     ++encoder->jumps_now;
     return;

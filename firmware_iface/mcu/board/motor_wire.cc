@@ -22,8 +22,7 @@ MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int
 }
 
 TimerPin MotorWire::pin(Timer& timer, const ChannelName& channel) const {
-  const TimerOutput out = timer.output(channel.channel);
-  TimerPin pin = channel.complement ? out.complement : out.main;
+  TimerPin pin = timer.pin(channel.channel, channel.complement);
   if (entry_.inverted && pin.drive != TimerPin::Drive::kOff) pin.high_ratio = 1.0 - pin.high_ratio;
   return pin;
 }

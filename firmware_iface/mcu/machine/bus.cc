@@ -150,12 +150,20 @@ bool Machine::read_word(std::uint32_t address, std::uint32_t& value) {
   return true;
 }
 
-bool Machine::write_word(std::uint32_t address, std::uint32_t value) {
+bool Machine::write_words(std::uint32_t address, std::span<const std::uint32_t> words) {
   const MemoryRegion* region = memory_.find(address);
-  if (!region || !region->writable()) return false;
-  std::uint8_t raw[4];
-  std::memcpy(raw, &value, 4);
-  return memory_.write(address, raw);
+  if (region && region->writable() && words.size_bytes() <= region->base + region->size - address) {
+    return memory_.write(address, {reinterpret_cast<const std::uint8_t*>(words.data()), words.size_bytes()});
+  }
+  for (const std::uint32_t word : words) {
+    region = memory_.find(address);
+    if (!region || !region->writable()) return false;
+    std::uint8_t raw[4];
+    std::memcpy(raw, &word, 4);
+    if (!memory_.write(address, raw)) return false;
+    address += 4;
+  }
+  return true;
 }
 
 std::uint32_t Machine::bus_read(std::uint32_t address, unsigned bytes) {

@@ -4,21 +4,31 @@ namespace omnihil::mcu {
 namespace {
 
 constexpr std::uint64_t kFsPerNs = 1'000'000, kFsPerSecond = 1'000'000'000'000'000;
+constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
 
 }  // namespace
 
 void CoreClock::change(Cycles at, std::uint64_t hz) {
   if (stretches_.empty()) {
-    stretches_.push_back({at, hz, 0});
+    stretches_.push_back({at, hz, 0, 0, 0});
   } else if (stretches_.back().hz != hz) {
-    stretches_.push_back({at, hz, to_fs(stretches_.back(), at)});
+    const Wide fs = to_fs(stretches_.back(), at);
+    stretches_.push_back(
+        {at, hz, fs, static_cast<std::uint64_t>(fs / kFsPerNs), static_cast<std::uint64_t>(fs % kFsPerNs)});
   }
 }
 
 std::int64_t CoreClock::to_ns(Cycles at) const {
   std::size_t i = stretches_.size() - 1;
   while (i > 0 && stretches_[i].begin > at) --i;
-  return static_cast<std::int64_t>(to_fs(stretches_[i], at) / kFsPerNs);
+  // In 64 bits, which is several times faster: seconds s, then ns and fs of the rest r < hz < 1.8e10.
+  //   floor(r 1e15 / hz) = 1e6 floor(r 1e9 / hz) + floor(1e6 (r 1e9 mod hz) / hz)
+  const Stretch& stretch = stretches_[i];
+  const std::uint64_t cycles = at - stretch.begin, s = cycles / stretch.hz, r = cycles % stretch.hz;
+  const std::uint64_t ns = r * kNsPerSecond / stretch.hz;
+  const std::uint64_t fs = (r * kNsPerSecond - ns * stretch.hz) * kFsPerNs / stretch.hz;
+  return static_cast<std::int64_t>(stretch.begin_ns + s * kNsPerSecond + ns +
+                                   (stretch.begin_rest_fs + fs) / kFsPerNs);
 }
 
 Cycles CoreClock::from_ns(std::int64_t at_ns) const {

@@ -29,6 +29,7 @@ class CoreClock {
     Cycles begin;
     std::uint64_t hz;
     Wide begin_fs;
+    std::uint64_t begin_ns, begin_rest_fs;  // the same, in two parts
   };
   Wide to_fs(const Stretch& stretch, Cycles at) const {
     return stretch.begin_fs + Wide{at - stretch.begin} * 1'000'000'000'000'000u / stretch.hz;

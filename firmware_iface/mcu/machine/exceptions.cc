@@ -1,5 +1,6 @@
 // Exception entry, return and faults of the machine (DDI 0403E.e B1.5.6 to B1.5.15).
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "firmware_iface/mcu/machine/machine.h"
@@ -11,6 +12,7 @@ constexpr int kReturnCycles = 10, kTailChainCycles = 6;
 constexpr std::uint32_t kStackAlign = 1u << 9, kNonBaseThread = 1u << 0;
 constexpr std::uint32_t kAlignedBit = 1u << 9;  // of the stacked xPSR
 constexpr int kBasicWords = 8, kFpWords = 18;
+constexpr int kFpStored = 17;  // the last one is reserved
 
 }  // namespace
 
@@ -43,15 +45,15 @@ bool Machine::push_frame() {
   const std::uint32_t shifted = align ? R.r[13] & 4 : 0;
   const std::uint32_t frame = (R.r[13] - bytes) & (align ? ~7u : ~3u);
   const std::uint32_t xpsr = (cpu_.xpsr() & ~kAlignedBit) | (shifted ? kAlignedBit : 0);
-  const std::uint32_t basic[kBasicWords] = {R.r[0], R.r[1], R.r[2], R.r[3], R.r[12], R.r[14], R.r[15], xpsr};
+  std::uint32_t words[kBasicWords + kFpStored] = {R.r[0],  R.r[1],  R.r[2],  R.r[3],
+                                                  R.r[12], R.r[14], R.r[15], xpsr};
   R.r[13] = frame;
-  bool stored = true;
-  for (std::uint32_t i = 0; i < kBasicWords && stored; ++i) stored = write_word(frame + 4 * i, basic[i]);
   if (fp) {
-    for (std::uint32_t i = 0; i < 16 && stored; ++i) stored = write_word(frame + 32 + 4 * i, R.s[i]);
-    stored = stored && write_word(frame + 96, R.fpscr);
+    std::copy_n(R.s, 16, words + kBasicWords);
+    words[kBasicWords + 16] = R.fpscr;
     fpcar_ = frame + 32;
   }
+  const bool stored = write_words(frame, std::span(words).first(fp ? kBasicWords + kFpStored : kBasicWords));
   const int which = R.uses_psp() ? 1 : 0;
   cpu_.lowest_sp[which] = std::min(cpu_.lowest_sp[which], frame);
   return stored;
@@ -110,11 +112,9 @@ bool Machine::pop_frame(std::uint32_t exception_return) {
   const bool thread = exception_return & 8, fp = !(exception_return & 0x10);
   if (thread && (exception_return & 4)) std::swap(R.r[13], R.other_sp);
   const std::uint32_t frame = R.r[13];
-  std::uint32_t basic[kBasicWords] = {}, extended[kFpWords] = {};
-  bool loaded = frame % 4 == 0;
-  for (std::uint32_t i = 0; i < kBasicWords && loaded; ++i) loaded = read_word(frame + 4 * i, basic[i]);
-  for (std::uint32_t i = 0; fp && i < kFpWords && loaded; ++i)
-    loaded = read_word(frame + 32 + 4 * i, extended[i]);
+  std::uint32_t basic[kBasicWords + kFpWords] = {};
+  const std::size_t bytes = 4 * (kBasicWords + (fp ? kFpWords : 0));
+  const bool loaded = frame % 4 == 0 && memory_.read(frame, {reinterpret_cast<std::uint8_t*>(basic), bytes});
   R.control &= kUnprivileged;
   if (thread && (exception_return & 4)) R.control |= kUseProcessStack;
   if (!loaded) {
@@ -129,8 +129,8 @@ bool Machine::pop_frame(std::uint32_t exception_return) {
   R.set_apsr(xpsr);
   R.ipsr = xpsr & 0x1FF;
   if (fp) {
-    std::copy_n(extended, 16, R.s);
-    R.fpscr = extended[16];
+    std::copy_n(basic + kBasicWords, 16, R.s);
+    R.fpscr = basic[kBasicWords + 16];
     R.control |= kFpContextActive;
   }
   R.r[13] = frame + 4u * (kBasicWords + (fp ? kFpWords : 0)) + (xpsr & kAlignedBit ? 4 : 0);

@@ -36,6 +36,10 @@ void Machine::attach(std::uint32_t base, std::uint32_t size, Peripheral& periphe
   const auto at = std::lower_bound(slots_.begin(), slots_.end(), base,
                                    [](const Slot& slot, std::uint32_t value) { return slot.base < value; });
   slots_.insert(at, {base, size, &peripheral});
+  eventful_.clear();
+  for (const Slot& slot : slots_) {
+    if (slot.peripheral->ever_acts()) eventful_.push_back(slot.peripheral);
+  }
 }
 
 bool Machine::load(const ElfImage& image, std::vector<std::string>& problems) {
@@ -165,7 +169,7 @@ void Machine::set_irq(int irq, bool high) {
 Cycles Machine::next_event() {
   if (next_event_known_) return next_event_;
   Cycles next = systick_.next_event();
-  for (const Slot& slot : slots_) next = std::min(next, slot.peripheral->next_event());
+  for (const Peripheral* peripheral : eventful_) next = std::min(next, peripheral->next_event());
   next_event_ = next;
   next_event_known_ = true;
   return next;
@@ -176,12 +180,11 @@ void Machine::run_due_events() {
   for (int rounds = 0; next_event() <= due; ++rounds) {
     event_at_ = next_event_;
     if (systick_.advance(event_at_)) pend(kSysTick);
-    for (const Slot& slot : slots_) {
-      if (slot.peripheral->next_event() > event_at_) continue;
-      slot.peripheral->run_events();
+    for (Peripheral* peripheral : eventful_) {
+      if (peripheral->next_event() > event_at_) continue;
+      peripheral->run_events();
       if (rounds > kEventsAtOneInstant) {
-        report_unmodelled(slot.peripheral->name(),
-                          "its next event stays in the past: the machine is stopped");
+        report_unmodelled(peripheral->name(), "its next event stays in the past: the machine is stopped");
         lock_up();
         event_at_ = kNever;
         return;

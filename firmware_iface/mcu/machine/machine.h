@@ -118,7 +118,8 @@ class Machine final : public System, private CpuBus {
   bool write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t value);
   bool bit_band(std::uint32_t address, std::uint32_t& target, unsigned& bit) const;
   bool read_word(std::uint32_t address, std::uint32_t& value);  // stack frames, vectors
-  bool write_word(std::uint32_t address, std::uint32_t value);
+  // Up to the first word that no RAM takes; false if there is one.
+  bool write_words(std::uint32_t address, std::span<const std::uint32_t> words);
 
   // system_control.cc
   std::uint32_t read_system(std::uint32_t offset);
@@ -172,6 +173,7 @@ class Machine final : public System, private CpuBus {
   SysTick systick_;
   CoreClock clock_;
   std::vector<Slot> slots_;
+  std::vector<Peripheral*> eventful_;  // of them, those that ever have an event; in the same order
   std::size_t last_slot_ = 0;
   std::map<std::uint32_t, std::uint32_t> unknown_;  // words written to where no model is
   std::map<std::pair<std::string, std::string>, std::size_t> unmodelled_index_;

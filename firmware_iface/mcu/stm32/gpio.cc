@@ -33,6 +33,7 @@ void GpioPort::reset() {
     value(kModer) = 0x00000280u;
     value(kPupdr) = 0x00000100u;
   }
+  note_modes();
   changed();
 }
 
@@ -40,24 +41,24 @@ unsigned GpioPort::alternate(unsigned pin) const {
   return value(kAfrl + 4 * (pin / 8)) >> (4 * (pin % 8)) & 15u;
 }
 
-std::uint32_t GpioPort::levels() const {
-  std::uint32_t outputs = 0, pulled = 0;
+// Which pins are outputs, and which have a pull-up: of MODER and PUPDR, whenever these are written.
+void GpioPort::note_modes() {
+  outputs_ = pulled_ = 0;
   for (unsigned pin = 0; pin < 16; ++pin) {
-    if (mode(pin) == PinMode::kOutput) outputs |= 1u << pin;
-    if ((value(kPupdr) >> (2 * pin) & 3u) == 1) pulled |= 1u << pin;
+    if (mode(pin) == PinMode::kOutput) outputs_ |= 1u << pin;
+    if ((value(kPupdr) >> (2 * pin) & 3u) == 1) pulled_ |= 1u << pin;
   }
-  const std::uint32_t idle = (driven_ & driven_high_) | (~driven_ & pulled);
-  return ((outputs & value(kOdr)) | (~outputs & idle)) & 0xFFFFu;
+}
+
+std::uint32_t GpioPort::levels() const {
+  const std::uint32_t idle = (driven_ & driven_high_) | (~driven_ & pulled_);
+  return ((outputs_ & value(kOdr)) | (~outputs_ & idle)) & 0xFFFFu;
 }
 
 bool GpioPort::level(unsigned pin) const { return (levels() >> pin & 1u) != 0; }
 
 void GpioPort::changed() {
-  const std::uint32_t levels_now = levels();
-  std::uint32_t outputs = 0;
-  for (unsigned pin = 0; pin < 16; ++pin) {
-    if (mode(pin) == PinMode::kOutput) outputs |= value(kOdr) & (1u << pin);
-  }
+  const std::uint32_t levels_now = levels(), outputs = outputs_ & value(kOdr);
   const std::uint32_t moved = levels_now ^ seen_levels_, given = outputs ^ seen_outputs_;
   seen_levels_ = levels_now;
   seen_outputs_ = outputs;
@@ -95,6 +96,7 @@ void GpioPort::store(std::uint32_t offset, std::uint32_t written, std::uint32_t 
     odr &= ~(written & 0xFFFFu);
   } else {
     keep(offset, written, lanes);
+    if (offset == kModer || offset == kPupdr) note_modes();
   }
   changed();
   if (offset != kModer && offset != kAfrl && offset != kAfrl + 4) return;

@@ -48,9 +48,11 @@ class GpioPort final : public RegisterBlock {
 
  private:
   void changed();
+  void note_modes();
   std::uint32_t levels() const;
 
   unsigned port_;
+  std::uint32_t outputs_ = 0, pulled_ = 0;  // of the registers, a bit per pin
   std::uint32_t driven_ = 0, driven_high_ = 0;
   std::uint32_t seen_levels_ = 0, seen_outputs_ = 0;
   std::vector<std::pair<unsigned, std::function<void(bool)>>> listeners_;

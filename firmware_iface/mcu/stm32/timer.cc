@@ -422,7 +422,20 @@ void Timer::store_dma_burst(std::uint32_t written) {
   if (at < kBdtr) store(at, written, 0xFFFFFFFFu);
 }
 
+// A compare value that waits for the next update event changes nothing until then: no need to look at more
+// than whether that event has come since the last look.
+bool Timer::store_preload(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  if (offset < kCcr1 || offset >= kCcr1 + 16 || encoder()) return false;
+  const unsigned c = (offset - kCcr1) / 4;
+  if (captures(c) || !bit(value(kCcmr1 + 4 * (c / 2)), 3 + 8 * (c % 2))) return false;
+  if (running_ && ticks_at(now()) >= done_ + law_.to_boundary(position())) sync();
+  keep(offset, spec_.bits32 ? written : written & 0xFFFFu, lanes);
+  plan();
+  return true;
+}
+
 void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  if (store_preload(offset, written, lanes)) return;
   sync();
   const bool burst_register = offset == (spec_.new_layout ? kNewDmar : kDmar);
   if (burst_register) return store_dma_burst(written);
@@ -466,11 +479,12 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
       keep(offset, written, lanes);
       break;
   }
+  bool acts = offset != kSr && offset != kDier && offset != kCnt;  // on the outputs, at once
   if (offset >= kCcr1 && offset < kCcr1 + 16) {
     const unsigned c = (offset - kCcr1) / 4;
     if (!spec_.bits32) value(offset) &= 0xFFFFu;
-    const bool preload = bit(value(kCcmr1 + 4 * (c / 2)), 3 + 8 * (c % 2));
-    if (!captures(c) && !preload) ccr_[c] = value(offset);
+    acts = !captures(c);
+    if (acts) ccr_[c] = value(offset);
   }
   if (offset == kCcmr1 || offset == kCcmr2) {
     for (unsigned c = 0; c < kChannels; ++c) {
@@ -480,7 +494,7 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
   if (offset == kSmcr || offset == kCr2 || offset == kCcmr1 || offset == kCcmr2) listen_to_triggers();
   look_at_references();
   plan();
-  if (offset != kSr && offset != kDier && offset != kCnt) outputs_changed();
+  if (acts) outputs_changed();
 }
 
 }  // namespace omnihil::mcu

@@ -66,6 +66,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void set_input(unsigned channel, bool level);
   void break_input(bool level);
   void on_output(std::function<void()> listener) { listeners_.push_back(std::move(listener)); }
+  TimerPin pin(unsigned channel, bool complement) const;  // one side of output()
   TimerOutput output(unsigned channel) const;
   bool reference(unsigned channel) const;  // OCxREF now
   double period_s() const;                 // (PSC + 1) periods of the count
@@ -99,6 +100,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void update_irqs();
   void generate(std::uint32_t events);
   void store_dma_burst(std::uint32_t written);
+  bool store_preload(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes);
   // timer_output.cc
   unsigned output_mode(unsigned channel) const;
   bool captures(unsigned channel) const;
@@ -110,7 +112,6 @@ class Timer final : public RegisterBlock, public TriggerSink {
   bool wants_edges(unsigned channel) const;
   Cycles next_match(unsigned channel) const;
   Cycles next_edge(unsigned channel) const;
-  TimerPin pin(unsigned channel, bool complement) const;
   double dead_ticks() const;
   void outputs_changed();
   void commutate();
