@@ -1,17 +1,15 @@
-// Words and figures of a report: escaped text, numbers as a reader wants them, the verdict in a sentence.
+// Words and figures of a report: numbers as a reader wants them, the verdict in a sentence.
 //
-//   escaped("<b>5 & 6</b>");             // "&lt;b&gt;5 &amp; 6&lt;/b&gt;"
 //   figure(0.0012345);                   // "0.00123"
 //   verdict_sentence(diagnosis);         // "The model lacks cogging: with it the held-out error of …"
 #pragma once
 #include <string>
 #include <string_view>
 
+#include "hil/markup.h"
 #include "sim/identify/diagnosis.h"
 
 namespace omnihil {
-
-std::string escaped(std::string_view text);
 
 // Three significant digits; "∞" and "–" for what is not a number.
 std::string figure(double value);

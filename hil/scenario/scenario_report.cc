@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "hil/markup.h"
+
 namespace omnihil {
 namespace {
 
@@ -24,29 +26,6 @@ std::string detail(const CheckResult& r) {
     if (!r.note.empty()) text += (text.empty() ? "" : ": ") + r.note;
   }
   return text;
-}
-
-std::string xml(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20 || c == '\n') out += c;
-    }
-  }
-  return out;
 }
 
 }  // namespace
@@ -98,18 +77,19 @@ std::string junit_xml(std::span<const ScenarioOutcome> outcomes) {
   for (const ScenarioOutcome& o : outcomes) {
     out +=
         fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\">\n",
-                    xml(o.scenario.title), o.results.size(), failed_of(o.results), o.scenario.duration_s);
+                    escaped(o.scenario.title), o.results.size(), failed_of(o.results), o.scenario.duration_s);
     out += fmt::format("    <properties><property name=\"firmware\" value=\"{}\"/></properties>\n",
-                       xml(o.firmware));
+                       escaped(o.firmware));
     for (const CheckResult& r : o.results) {
       const std::string name = r.wheel < 0 ? r.name : fmt::format("{} wheel {}", r.name, r.wheel);
       out += fmt::format("    <testcase classname=\"{}\" name=\"{}\" file=\"{}\" line=\"{}\" time=\"{:.3f}\"",
-                         xml(o.scenario.file), xml(name), xml(o.scenario.file), r.line, r.to_s - r.from_s);
+                         escaped(o.scenario.file), escaped(name), escaped(o.scenario.file), r.line,
+                         r.to_s - r.from_s);
       if (r.passed) {
         out += "/>\n";
         continue;
       }
-      const std::string line = xml(failure_line(r));
+      const std::string line = escaped(failure_line(r));
       out += fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n", line, line);
     }
     out += "  </testsuite>\n";

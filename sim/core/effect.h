@@ -78,6 +78,16 @@ enum ClaimBit : std::uint32_t {
   kFlatAtNeutral = 1u << 4,
 };
 
+// What a numerical treatment has to know of a law, besides its equation.
+enum NumericsBit : std::uint32_t {
+  kNumericsPlain = 0,
+  kStiff = 1u << 0,    // faster than a millisecond: short sub-steps
+  kRipples = 1u << 1,  // goes round many times a turn: a long sub-step feels its mean alone, and too early
+  kImpacts = 1u << 2,  // parts meet and leave: exact derivatives multiply up from one impact to the next
+  kDelays = 1u << 3,   // its strength is a delay of the command
+  kHidesDelays = 1u << 4,  // a limit behind a delay: the delay's derivative is zero behind it
+};
+
 enum RigsBit : std::uint32_t { kOnAxis = 1u << 0, kOnRobot = 1u << 1, kOnBoth = 3u };
 
 // How good the sensors are, for the smallest size of an effect that they can show.
@@ -112,6 +122,7 @@ struct EffectInfo {
   // Of the first strength, by the simple estimator that `visible` names; null: `visible` says why not.
   double (*min_visible)(const SensorSet&) = nullptr;
   std::uint32_t claims = kClaimNone;
+  std::uint32_t numerics = kNumericsPlain;
   std::uint32_t rigs = kOnBoth;
   std::span<const EffectParam> params;
   std::span<const EffectState> states{};

@@ -148,7 +148,7 @@ ParamRange param_range(const EffectParam& row, bool linear) {
                      key.find("_Nm") != std::string::npos;
   const bool speed = linear && row.unit == "rad/s";
   const double scale = force ? kForceOverTorque_per_m : (speed ? kTravelOverAngle_m_per_rad : 1.0);
-  return {row.lower * scale, row.upper * scale, row.prior_scale * scale};
+  return {row.lower * scale, row.upper * scale, row.prior_scale * scale, scale};
 }
 
 std::string allowed_range(const EffectParam& row, bool linear) {

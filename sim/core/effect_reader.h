@@ -38,6 +38,7 @@ struct ParamRange {
   double lower = 0.0;
   double upper = 0.0;
   double prior_scale = 0.0;
+  double scale = 1.0;  // over the row's own numbers (linear_scale.h)
 };
 ParamRange param_range(const EffectParam& row, bool linear);
 

@@ -83,6 +83,7 @@ struct Backlash {
       .visible = "two counts of an encoder on the output",
       .min_visible = [](const SensorSet& s) { return 2.0 * 6.283185307179586 / s.counts_per_turn; },
       .claims = kOdd,
+      .numerics = kStiff | kImpacts,
       .params = kParams,
       .plot = {.excitation = "creep", .x = "time", .y = "velocity", .from_s = 0.0, .to_s = 16.0},
   };

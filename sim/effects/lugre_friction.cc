@@ -87,6 +87,7 @@ struct LugreFriction {
       .min_visible =
           [](const SensorSet& s) { return 0.03 * 3.0 * s.current_sigma_A * std::sqrt(2.0 / s.rate_Hz); },
       .claims = kOdd,
+      .numerics = kStiff,
       .params = kParams,
       .states = kStates,
       .plot = {.excitation = "creep", .x = "duty", .y = "velocity", .from_s = 0.0, .to_s = 16.0},

@@ -45,6 +45,7 @@ struct ShaftCompliance {
             return 1.0 / (6.3e-6 * omega_rad_s * omega_rad_s);
           },
       .claims = kOdd,
+      .numerics = kStiff,
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.35, .to_s = 0.6},
   };

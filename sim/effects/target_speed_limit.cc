@@ -43,6 +43,7 @@ struct TargetSpeedLimit {
             return 3.0 / s.rate_Hz;
           },
       .claims = kOdd | kFlatAtNeutral,
+      .numerics = kHidesDelays,
       .params = kParams,
       .states = kStates,
       .plot = {.excitation = "servo", .x = "time", .y = "position", .from_s = 0.0, .to_s = 2.0},

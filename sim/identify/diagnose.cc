@@ -23,8 +23,6 @@ constexpr double kAfterNull = 0.16;
 constexpr double kAfterRounds = 0.85;
 constexpr double kShort = 0.02;  // of the error energy, that a fit of the same model may miss
 constexpr int kMostRestarts = 2;
-constexpr int kMostRepeats = 3;
-constexpr double kWorthAnother = 0.005;  // fall of the error energy
 constexpr double kRobustLoss = 1.2;  // error energy over that of least squares: more, and a fit went astray
 
 class Diagnosing {
@@ -149,23 +147,11 @@ class Diagnosing {
 
   void take(const Round& round) {
     const Contender& best = round.contenders[static_cast<std::size_t>(round.chosen)];
-    current_ = best.fitted;
-    settle_in();
+    // The next round would explain what the short refits of this one left on its way.
+    current_ = settled(bench_.setup(true, stop()), best.fitted);
     if (!best.screened.extends) out_.effects.push_back(best.screened.name);
     add_step(best.screened.name, current_, compare(bench_.predictor(), current_.fit.model));
     note_twins(round, out_);
-  }
-
-  // The refits of a round are short; the one that stays goes on from where it is, or the next round would
-  // explain what is still on its way.
-  void settle_in() {
-    for (int k = 0; k < kMostRepeats && !stopped_; ++k) {
-      Fitted further = refit_as_it_is(bench_.setup(true, stop()), current_.fit.model, 1);
-      if (!further.finite) return;
-      const double ratio = energy_ratio(bench_.uses()[0], current_.residual[0], further.residual[0]);
-      if (ratio < 1.0) current_ = std::move(further);
-      if (ratio > 1.0 - kWorthAnother) return;
-    }
   }
 
   // An effect that later ones made superfluous goes.

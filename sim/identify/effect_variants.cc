@@ -29,17 +29,11 @@ int phase_of(const EffectInfo& info, std::size_t strength) {
   return -1;
 }
 
-// Forces of a linear axis are a thousand times larger than torques of a motor, as their bounds are.
-double row_scale(const EffectParam& row, bool linear) {
-  const double upper = param_range(row, linear).upper;
-  return row.upper != 0.0 ? upper / row.upper : 1.0;
-}
-
 void add_columns(const EffectInfo& info, std::size_t row_index, bool linear, EffectVariant& variant) {
   const EffectParam& row = info.params[row_index];
   VariantColumn column;
   column.row = static_cast<int>(row_index);
-  column.size = (row.typical - row.neutral) * row_scale(row, linear);
+  column.size = (row.typical - row.neutral) * param_range(row, linear).scale;
   column.two_sided = row.lower < row.neutral && row.neutral < row.upper;
   if (column.size == 0.0) return;
   column.phase_row = phase_of(info, row_index);

@@ -50,33 +50,18 @@ Seeded seeded(const Candidate& c, const Run& run, std::span<const Unknown> unkno
   return out;
 }
 
-bool needs_short_steps(const Candidate& c) {
-  return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
-    const bool stiff = use.entry->info->place == Place::kShaft || use.entry->info->id == "lugre_friction";
-    return stiff && !is_neutral(use);  // at neutral it is its parent, to the last digit
-  });
-}
-
-// Laws that go round many times a turn: a long sub-step feels only their mean, and that too early.
-bool has_ripple(const Candidate& c) {
-  return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
-    return (use.entry->info->id == "cogging" || use.entry->info->id == "torque_ripple") && !is_neutral(use);
-  });
-}
-
-// Flanks that meet and part: exact derivatives multiply up from one impact to the next.
-bool has_play(const Candidate& c) {
-  return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
-    return use.entry->info->id == "backlash" && !is_neutral(use);
+// Is there an effect of this kind that acts? At neutral it is as if it were not there, to the last digit.
+bool acts(const Candidate& c, std::uint32_t numerics) {
+  return std::any_of(c.effects.begin(), c.effects.end(), [&](const EffectUse& use) {
+    return (use.entry->info->numerics & numerics) != 0 && !is_neutral(use);
   });
 }
 
 // A delay whose derivative a limit behind it hides (predictor_axis.h).
 bool is_hidden_delay(const Candidate& c, const Unknown& u) {
-  if (u.path != "actuator_delay.delay_s") return false;
-  return std::any_of(c.effects.begin(), c.effects.end(), [](const EffectUse& use) {
-    return use.entry->info->id == "target_speed_limit" && !is_neutral(use);
-  });
+  if (u.effect < 0 || !acts(c, kHidesDelays)) return false;
+  const EffectInfo& info = *c.effects[static_cast<std::size_t>(u.effect)].entry->info;
+  return (info.numerics & kDelays) != 0 && static_cast<std::size_t>(u.row) == first_strength(info);
 }
 
 class AxisPredictor : public Predictor {
@@ -135,7 +120,7 @@ class AxisPredictor : public Predictor {
         p.values.push_back(std::move(values));
       }
     }
-    const bool play = has_play(own);
+    const bool play = acts(own, kImpacts);
     for (std::size_t u = 0; u < unknowns.size() && rows > 0; ++u) {
       if (is_known(run(n), unknowns[u].path)) continue;
       if (is_hidden_delay(own, unknowns[u])) {
@@ -198,8 +183,8 @@ class AxisPredictor : public Predictor {
   const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
   double step_for(const Candidate& c) const {
     constexpr double kRippleStep_s = 200e-6;
-    if (needs_short_steps(c)) return std::min(step_s_, options_.step_s);
-    return has_ripple(c) ? std::min(step_s_, std::max(options_.step_s, kRippleStep_s)) : step_s_;
+    if (acts(c, kStiff)) return std::min(step_s_, options_.step_s);
+    return acts(c, kRipples) ? std::min(step_s_, std::max(options_.step_s, kRippleStep_s)) : step_s_;
   }
 
   Prediction predict_at(const Candidate& candidate, int n, double step_s) const {

@@ -57,8 +57,8 @@ EffectUse usual(const EffectUse& use, bool linear) {
     const EffectParam& row = use.entry->info->params[i];
     if (row.role != ParamRole::kStrength) continue;
     const ParamRange range = param_range(row, linear);
-    const double scale = row.upper != 0.0 ? range.upper / row.upper : 1.0;
-    out.values[i] = std::clamp(row.neutral + (row.typical - row.neutral) * scale, range.lower, range.upper);
+    out.values[i] =
+        std::clamp(row.neutral + (row.typical - row.neutral) * range.scale, range.lower, range.upper);
   }
   return out;
 }
@@ -120,6 +120,18 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
 
 Fitted refit_as_it_is(const RefitSetup& setup, const Candidate& model, int starts) {
   return fit_from(setup, model, unknowns_with_priors(model, *setup.nominal), starts);
+}
+
+Fitted settled(const RefitSetup& setup, Fitted model) {
+  constexpr int kMostRepeats = 3;
+  constexpr double kWorthAnother = 0.005;  // fall of the error energy
+  for (int k = 0; k < kMostRepeats && model.finite && !(setup.stop && setup.stop()); ++k) {
+    Fitted further = refit_as_it_is(setup, model.fit.model, 1);
+    const double ratio = fit_ratio(setup, model, further);
+    if (ratio < 1.0) model = std::move(further);
+    if (ratio > 1.0 - kWorthAnother) break;
+  }
+  return model;
 }
 
 }  // namespace omnihil

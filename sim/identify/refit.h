@@ -34,4 +34,8 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
 // The same model once more, thoroughly: covariance, flat directions, several starts.
 Fitted refit_as_it_is(const RefitSetup& setup, const Candidate& model, int starts);
 
+// Again from its own end until that is worth no more (at most three times): a fit weighs signals by what they
+// leave at its start, and those of a search are short. Never worse than `model`.
+Fitted settled(const RefitSetup& setup, Fitted model);
+
 }  // namespace omnihil

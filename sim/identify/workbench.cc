@@ -10,8 +10,6 @@ namespace {
 constexpr int kReplicates = 12;
 constexpr int kThoroughIterations = 30;
 constexpr int kQuickIterations = 12;
-constexpr int kMostRepeats = 3;
-constexpr double kWorthAnother = 0.005;  // fall of the error energy
 
 }  // namespace
 
@@ -42,15 +40,7 @@ RefitSetup Workbench::setup(bool quick, const std::function<bool()>& stop) const
 }
 
 bool Workbench::fit_base(const std::function<bool()>& stop) {
-  base_ = refit_as_it_is(setup(false, stop), nominal_, 1);
-  // A fit weighs signals by what they leave at its start; from its own end it may go further.
-  for (int k = 0; k < kMostRepeats && base_.finite && !stop(); ++k) {
-    Fitted again = refit_as_it_is(setup(false, stop), base_.fit.model, 1);
-    if (!again.finite) break;
-    const double ratio = energy_ratio(uses_[0], base_.residual[0], again.residual[0]);
-    if (ratio < 1.0) base_ = std::move(again);
-    if (ratio > 1.0 - kWorthAnother) break;
-  }
+  base_ = settled(setup(false, stop), refit_as_it_is(setup(false, stop), nominal_, 1));
   return base_.finite && !uses_[0].empty();
 }
 

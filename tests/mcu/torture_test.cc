@@ -2,6 +2,7 @@
 #include "tests/mcu/images/torture.h"
 
 #include <cstdio>
+#include <ostream>
 
 #include "tests/mcu/image_bench.h"
 
@@ -13,6 +14,8 @@ struct Build {
   const Variant* variant;
   const char* qemu_machine;  // one with this core and this memory map; null: none
 };
+void PrintTo(const Build& build, std::ostream* out) { *out << build.image; }
+
 constexpr Build kBuilds[] = {
     {"torture_m0_os", &kCortexM0, nullptr},           {"torture_m3_o0", &kCortexM3, "netduino2"},
     {"torture_m3_o2", &kCortexM3, "netduino2"},       {"torture_m4_soft_os", &kCortexM4, "netduinoplus2"},

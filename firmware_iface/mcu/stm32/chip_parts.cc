@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "firmware_iface/mcu/stm32/bxcan.h"
 #include "firmware_iface/mcu/stm32/watchdog.h"
 
 namespace omnihil::mcu {
@@ -207,6 +208,43 @@ void add_adcs_f4(Chip& chip, const AdcTriggers& triggers) {
     }
     chip.add(0x40012000u + 0x100u * static_cast<unsigned>(n - 1), 0x100, std::move(adc));
   }
+}
+
+void add_common_f4(Chip& chip, std::string_view ports, std::uint32_t flash_bytes) {
+  ChipContext& context = chip.context();
+  chip.add(0x40023800, 0x400, make_rcc(RccFamily::kF4, context));
+  chip.add(0x40007000, 0x400, make_pwr(PwrFamily::kF4, context));
+  chip.add(0x40023C00, 0x400, std::make_unique<Flash>(FlashFamily::kF4, flash_bytes, 16384, 4, context));
+  add_ports(chip, ports, 0x40020000);
+  add_exti(chip, 0x40013C00, 0x40013800, usual_exti_vectors());
+  add_dma_f4(chip);
+  add_timers_f4(chip, true);
+  add_adcs_f4(chip, adc_triggers_f4());
+  const Bus one = Bus::kApb1, two = Bus::kApb2;
+  add_usart(chip, 0x40011000, {.number = 1, .name = "USART1", .bus = two, .irq = 37});
+  add_usart(chip, 0x40004400, {.number = 2, .name = "USART2", .bus = one, .irq = 38});
+  add_usart(chip, 0x40004800, {.number = 3, .name = "USART3", .bus = one, .irq = 39});
+  add_usart(chip, 0x40004C00, {.number = 4, .name = "UART4", .bus = one, .irq = 52});
+  add_usart(chip, 0x40005000, {.number = 5, .name = "UART5", .bus = one, .irq = 53});
+  add_usart(chip, 0x40011400, {.number = 6, .name = "USART6", .bus = two, .irq = 71});
+  add_spi(chip, 0x40013000, {.name = "SPI1", .bus = two, .irq = 35});
+  add_spi(chip, 0x40003800, {.name = "SPI2", .bus = one, .irq = 36});
+  add_spi(chip, 0x40003C00, {.name = "SPI3", .bus = one, .irq = 51});
+  add_i2c(chip, 0x40005400, {.name = "I2C1", .irq_event = 31, .irq_error = 32});
+  add_i2c(chip, 0x40005800, {.name = "I2C2", .irq_event = 33, .irq_error = 34});
+  add_i2c(chip, 0x40005C00, {.name = "I2C3", .irq_event = 72, .irq_error = 73});
+  BxCan& can1 = chip.add(0x40006400, 0x400,
+                         std::make_unique<BxCan>("CAN1", std::array{19, 20, 21, 22}, 28u, nullptr, context));
+  chip.add(0x40006800, 0x400,
+           std::make_unique<BxCan>("CAN2", std::array{63, 64, 65, 66}, 0u, &can1, context));
+  add_watchdogs(chip, 7, 2);
+  add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
+  add_stored(chip, 0x40007400, 0x400, "DAC");
+  add_stored(chip, 0x40012C00, 0x400, "SDIO");
+  add_stored(chip, 0x40023000, 0x400, "CRC");
+  // GRSTCTL: AHB idle, core reset and FIFO flushes done
+  add_stored(chip, 0x50000000, 0x20000, "OTG_FS", {{0x10, 0x80000000, 0x31}});
+  add_stored(chip, 0x40040000, 0x20000, "OTG_HS", {{0x10, 0x80000000, 0x31}});
 }
 
 }  // namespace omnihil::mcu

@@ -45,6 +45,9 @@ void add_dma_f4(Chip& chip);
 void add_timers_f4(Chip& chip, bool timers_6_to_14);
 AdcTriggers adc_triggers_f4();
 AdcTriggers adc_triggers_f7();
+// Clocks, power, flash, ports, EXTI, the above, serial ports 1 to 6, SPI 1 to 3, I2C 1 to 3, both bxCAN and
+// what the two F4 chips merely keep.
+void add_common_f4(Chip& chip, std::string_view ports, std::uint32_t flash_bytes);
 void add_adcs_f4(Chip& chip, const AdcTriggers& triggers);
 // ADC12 of F3 and G4; ADC34 of F3.
 AdcTriggers adc_triggers_f3();

@@ -8,6 +8,19 @@ void Rcc::reset() {
   apply();
 }
 
+void Rcc::select(std::uint32_t wanted, bool ready, double hz) {
+  constexpr double kSlowest_hz = 1e5;  // of a source that is meant
+  if (wanted == hsi_) {
+    ready = true, hz = clocks().hsi_hz;  // switched on by the hardware when it is asked for
+  }
+  if (!ready || hz < kSlowest_hz) {
+    system().report_unmodelled(name(), "CFGR selects a clock that is off or of no frequency; it stays");
+    return;
+  }
+  selected_ = wanted;
+  sysclk_hz_ = hz;
+}
+
 std::uint32_t Rcc::reset_flags() const {
   if (flags_cleared_) return 0;
   constexpr std::uint32_t kPin = 1u << 26, kPower = 1u << 27, kSoftware = 1u << 28;

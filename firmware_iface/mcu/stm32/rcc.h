@@ -20,8 +20,15 @@ enum class RccFamily { kF0, kF3, kF4, kF7, kG4 };
 
 class Rcc : public RegisterBlock {
  public:
-  Rcc(std::span<const RegisterInfo> registers, ChipContext& context)
-      : RegisterBlock("RCC", context.system, registers), context_(context) {}
+  // `hsi` is the code that selects the internal oscillator, the source after a reset.
+  Rcc(std::span<const RegisterInfo> registers, ChipContext& context, std::uint32_t hsi, double hsi_hz)
+      : RegisterBlock("RCC", context.system, registers),
+        hsi_(hsi),
+        selected_(hsi),
+        sysclk_hz_(hsi_hz),
+        context_(context) {
+    context.clocks.hsi_hz = hsi_hz;
+  }
   void reset() override;
 
  protected:
@@ -36,9 +43,18 @@ class Rcc : public RegisterBlock {
   static std::uint32_t apb_divider(std::uint32_t code);  // PPREx
   // Fills in HCLK, APB buses and their timers.
   static ClockState buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, std::uint32_t apb2);
+  // Makes `wanted` (the code of SW) the system clock of `hz` if that source runs; if not, what was stays and
+  // it is reported.
+  void select(std::uint32_t wanted, bool ready, double hz);
+  // CFGR's SWS: the source in use.
+  std::uint32_t selected() const { return selected_; }
+  double sysclk_hz() const { return sysclk_hz_; }
   bool flags_cleared_ = false;
 
  private:
+  std::uint32_t hsi_;
+  std::uint32_t selected_;
+  double sysclk_hz_;
   ChipContext& context_;
 };
 

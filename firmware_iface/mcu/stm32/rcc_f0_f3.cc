@@ -34,8 +34,7 @@ constexpr RegisterInfo kRegisters[] = {
 
 class RccF0F3 final : public Rcc {
  public:
-  RccF0F3(bool f3, ChipContext& context) : Rcc(kRegisters, context), f3_(f3) {
-    clocks().hsi_hz = 8e6;
+  RccF0F3(bool f3, ChipContext& context) : Rcc(kRegisters, context, 0, 8e6), f3_(f3) {
     clocks().lsi_hz = 40e3;
   }
 
@@ -46,7 +45,7 @@ class RccF0F3 final : public Rcc {
       case kCr:
         return v | (v & 0x01010001u) << 1;
       case kCfgr:
-        return v | selected_ << 2;
+        return v | selected() << 2;
       case kCr2:
       case kBdcr:
         return v | (v & 0x00010001u) << 1;
@@ -74,26 +73,19 @@ class RccF0F3 final : public Rcc {
   ClockState tree() override {
     const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
     const bool ready = wanted < 3 && bit(cr, wanted == 0 ? 0 : wanted == 1 ? 16 : 24);
-    if (ready || wanted == 0) {
-      selected_ = wanted;
-      sysclk_hz_ = wanted == 0 ? clocks().hsi_hz : wanted == 1 ? clocks().hse_hz : pll_hz();
-    } else {
-      system().report_unmodelled(name(), "CFGR selects a clock that is off; it stays");
-    }
+    select(wanted, ready, wanted == 1 ? clocks().hse_hz : pll_hz());
     const std::uint32_t apb1 = apb_divider(field(cfgr, 8, 3));
     const std::uint32_t apb2 = f3_ ? apb_divider(field(cfgr, 11, 3)) : apb1;  // F0 has one APB
     const std::uint32_t ahb = ahb_divider(field(cfgr, 4, 4));
-    ClockState state = buses(sysclk_hz_, ahb, apb1, apb2);
+    ClockState state = buses(sysclk_hz(), ahb, apb1, apb2);
     // TIM1SW, TIM8SW: twice the PLL, where SYSCLK is the PLL and AHB is not divided (RM0316 §9.2.10)
-    state.fast_timers_on = f3_ && (value(kCfgr3) & 0x300u) != 0 && selected_ == 2 && ahb == 1;
+    state.fast_timers_on = f3_ && (value(kCfgr3) & 0x300u) != 0 && selected() == 2 && ahb == 1;
     state.fast_timers = {2, 1};
     return state;
   }
 
  private:
   bool f3_;
-  std::uint32_t selected_ = 0;
-  double sysclk_hz_ = 8e6;
 };
 }  // namespace
 

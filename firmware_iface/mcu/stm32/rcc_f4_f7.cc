@@ -46,7 +46,7 @@ constexpr RegisterInfo kRegisters[] = {
 
 class RccF4F7 final : public Rcc {
  public:
-  RccF4F7(ChipContext& context) : Rcc(kRegisters, context) { clocks().hsi_hz = 16e6; }
+  RccF4F7(ChipContext& context) : Rcc(kRegisters, context, 0, 16e6) {}
 
  protected:
   std::uint32_t load(std::uint32_t offset) override {
@@ -55,7 +55,7 @@ class RccF4F7 final : public Rcc {
       case kCr:  // HSI, HSE, PLL, PLLI2S, PLLSAI: each ready bit follows its switch
         return v | (v & 0x15010001u) << 1;
       case kCfgr:
-        return v | selected_ << 2;
+        return v | selected() << 2;
       case kBdcr:
         return v | (v & 1u) << 1;
       case kCsr:
@@ -84,28 +84,15 @@ class RccF4F7 final : public Rcc {
   ClockState tree() override {
     const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
     const bool ready = bit(cr, wanted == 0 ? 0 : wanted == 1 ? 16 : 24);
-    const double hz = wanted == 0 ? clocks().hsi_hz : wanted == 1 ? clocks().hse_hz : pll_hz();
-    if (ready && hz >= 1e5) {
-      selected_ = wanted;
-      sysclk_hz_ = hz;
-    } else if (wanted != 0) {
-      system().report_unmodelled(name(), "CFGR selects a clock that is off or of no frequency; it stays");
-    } else {
-      selected_ = 0;
-      sysclk_hz_ = clocks().hsi_hz;
-    }
+    select(wanted, ready, wanted == 1 ? clocks().hse_hz : pll_hz());
     const std::uint32_t apb1 = apb_divider(field(cfgr, 10, 3)), apb2 = apb_divider(field(cfgr, 13, 3));
-    ClockState state = buses(sysclk_hz_, ahb_divider(field(cfgr, 4, 4)), apb1, apb2);
+    ClockState state = buses(sysclk_hz(), ahb_divider(field(cfgr, 4, 4)), apb1, apb2);
     if (bit(value(kDckCfgr), 24)) {  // TIMPRE: up to four times PCLK, at most HCLK
       state.timers[1].div = apb1 <= 4 ? 1 : apb1 / 4;
       state.timers[2].div = apb2 <= 4 ? 1 : apb2 / 4;
     }
     return state;
   }
-
- private:
-  std::uint32_t selected_ = 0;
-  double sysclk_hz_ = 16e6;
 };
 }  // namespace
 

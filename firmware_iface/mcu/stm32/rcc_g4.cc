@@ -40,7 +40,7 @@ constexpr RegisterInfo kRegisters[] = {
 
 class RccG4 final : public Rcc {
  public:
-  RccG4(ChipContext& context) : Rcc(kRegisters, context) { clocks().hsi_hz = 16e6; }
+  RccG4(ChipContext& context) : Rcc(kRegisters, context, 1, 16e6) {}
 
  protected:
   std::uint32_t load(std::uint32_t offset) override {
@@ -49,7 +49,7 @@ class RccG4 final : public Rcc {
       case kCr:
         return v | (v & 0x01010000u) << 1 | (v & 0x100u) << 2;
       case kCfgr:
-        return v | selected_ << 2;
+        return v | selected() << 2;
       case kBdcr:
       case kCrrcr:
         return v | (v & 1u) << 1;
@@ -76,20 +76,10 @@ class RccG4 final : public Rcc {
   ClockState tree() override {
     const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
     const bool ready = bit(cr, wanted == 1 ? 8 : wanted == 2 ? 16 : 24) && wanted != 0;
-    const double hz = wanted == 1 ? clocks().hsi_hz : wanted == 2 ? clocks().hse_hz : pll_hz();
-    if (ready && hz >= 1e5) {
-      selected_ = wanted;
-      sysclk_hz_ = hz;
-    } else {
-      system().report_unmodelled(name(), "CFGR selects a clock that is off or of no frequency; it stays");
-    }
-    return buses(sysclk_hz_, ahb_divider(field(cfgr, 4, 4)), apb_divider(field(cfgr, 8, 3)),
+    select(wanted, ready, wanted == 2 ? clocks().hse_hz : pll_hz());
+    return buses(sysclk_hz(), ahb_divider(field(cfgr, 4, 4)), apb_divider(field(cfgr, 8, 3)),
                  apb_divider(field(cfgr, 11, 3)));
   }
-
- private:
-  std::uint32_t selected_ = 1;
-  double sysclk_hz_ = 16e6;
 };
 }  // namespace
 
