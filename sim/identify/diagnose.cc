@@ -108,6 +108,7 @@ class Diagnosing {
         }
       }
       take(round);
+      if (!rest_is_structure(leftover())) return;
       from = to;
     }
   }
@@ -208,6 +209,8 @@ class Diagnosing {
                        options_.seed, options_.jobs);
   }
 
+  // By the measure of a model without any effect: less is what an adequate model leaves, and to search on
+  // there finds laws that bend to the noise.
   bool rest_is_structure(const Leftover& rest) const { return structure_remains(rest, false); }
 
   // What is left may be noise that an effect makes. Its strength was found without the fit, which sees means.
