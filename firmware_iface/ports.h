@@ -5,7 +5,9 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "firmware_iface/robot_io.h"
 
@@ -49,6 +51,8 @@ class Firmware {
   virtual std::string_view failure() const { return {}; }
   // Control periods that were due and did not run, where this side can count them (an emulated image).
   virtual std::uint64_t missed_control_periods() const { return 0; }
+  // What it has to say for itself after a run (counts of its wire, of its chip), a line each.
+  virtual std::vector<std::string> report() const { return {}; }
 };
 
 }  // namespace omnihil

@@ -38,7 +38,7 @@ class ImageFirmware final : public Firmware {
   std::string_view failure() const override {
     return mcu_.board().machine().stopped() ? "the emulated core has locked up" : std::string_view{};
   }
-  std::vector<std::string> report() const { return board_report(mcu_.board(), image_->elf); }
+  std::vector<std::string> report() const override { return board_report(mcu_.board(), image_->elf); }
 
  private:
   std::shared_ptr<const Image> image_;
@@ -71,11 +71,6 @@ Session::FirmwareMaker image_firmware(const std::string& image_file, const std::
   return [image](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     return std::make_unique<ImageFirmware>(image, config);
   };
-}
-
-std::vector<std::string> image_report(const Firmware& firmware) {
-  const auto* image = dynamic_cast<const ImageFirmware*>(&firmware);
-  return image != nullptr ? image->report() : std::vector<std::string>{};
 }
 
 }  // namespace omnihil

@@ -13,7 +13,4 @@ namespace omnihil {
 
 Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file);
 
-// What the emulation has to say about a robot's image after a run, a line each; empty for other firmware.
-std::vector<std::string> image_report(const Firmware& firmware);
-
 }  // namespace omnihil

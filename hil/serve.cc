@@ -11,7 +11,6 @@
 
 #include "firmware_iface/firmware_checks.h"
 #include "hil/clock.h"
-#include "hil/image_firmware.h"
 #include "hil/pty_transport.h"
 #include "hil/recording_header.h"
 #include "hil/recording_writer.h"
@@ -231,7 +230,7 @@ ServeEnd Bench::run(RecordingHeader header) {
   if (!options_.quiet) {
     fmt::print("{}", final_report(status()));
     for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
-      for (const std::string& line : image_report(session_.firmware(static_cast<int>(i)))) {
+      for (const std::string& line : session_.firmware(static_cast<int>(i)).report()) {
         fmt::print("  robot {:<11}{}\n", session_.config().robot_ids[i], line);
       }
     }

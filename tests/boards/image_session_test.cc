@@ -31,7 +31,7 @@ RobotTruth run(std::int64_t step_ns, double duration_s, std::vector<std::string>
   Session session(one_robot(step_ns), image_firmware(kImage, kBoard));
   std::vector<std::uint8_t> out;
   while (session.now_ns() < static_cast<std::int64_t>(duration_s * 1e9)) session.step({}, out);
-  if (report != nullptr) *report = image_report(session.firmware(0));
+  if (report != nullptr) *report = session.firmware(0).report();
   return session.plant().truth(0);
 }
 

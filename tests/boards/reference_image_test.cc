@@ -85,7 +85,7 @@ Drive drive(const std::string& image = kImage) {
     if (step % 10 == 0) find_radio_format("ulaval-hermes")->encode_command(command, kRobot, packet);
     session.step(packet, out);
   }
-  return {seen.hash.hex(), session.plant().truth(0).omega_rotor_rad_s[0], image_report(session.firmware(0))};
+  return {seen.hash.hex(), session.plant().truth(0).omega_rotor_rad_s[0], session.firmware(0).report()};
 }
 
 TEST_F(ReferenceImage, BootsDrivesByRadioAndUsesNothingThatIsNotModelled) {

@@ -59,5 +59,8 @@ SCRIPT_TEST(PhaseClientTest, "phase_client.py", field_oriented_control_follows_a
 SCRIPT_TEST(PhaseClientTest, "phase_client.py", six_step_control_follows_a_velocity)
 SCRIPT_TEST(RemClientTest, "rem_client.py", one_metre_per_second_forward)
 SCRIPT_TEST(HostStreamTest, "hermes_stream.py", real_host_drives_six_robots_with_no_frame_refused)
+SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py", bad_words_are_all_named)
+SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py",
+            odrive_reaches_the_commanded_speed_and_stops_when_the_watchdog_expires)
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/bus_port/bus_firmware.h"
 #include "hil/effect_overrides.h"
 #include "hil/model_store.h"
 #include "hil/recording_header.h"
@@ -39,6 +40,7 @@ struct Words {  // as the user gave them
   SessionSetup setup;
   ServeOptions options;
   FirmwareChoice firmware;
+  MotorBusChoice motor_bus;
 };
 
 void complain(const std::string& lines) { std::fprintf(stderr, "omnihil serve:\n%s\n", lines.c_str()); }
@@ -64,6 +66,12 @@ std::string understand(Words& words) {
   if (words.baud > 0) words.options.baud = words.baud;
   if (words.options.strict && !words.options.real_time) {
     problems.push_back("--strict: of no meaning with --clock free");
+  }
+  if (words.motor_bus.bus.empty() != words.motor_bus.port.empty()) {
+    problems.push_back("--motor-bus and --bus-port belong together");
+  }
+  if (!words.motor_bus.bus.empty() && !words.firmware.file.empty()) {
+    problems.push_back("--motor-bus and --firmware: a robot has one or the other");
   }
   if (words.no_pacing && words.baud > 0) problems.push_back("--no-pacing and --baud contradict each other");
   if (!words.options.quiet) {
@@ -93,8 +101,9 @@ int run(Words& words) {
     RecordingHeader header = recording_header(words.setup, program_commit());
     header.sample_every = words.sample_every;
     const SessionConfig config = session_config(words.setup);
-    const ServeEnd end =
-        serve(config, open_firmware(words.firmware, config), std::move(header), words.options);
+    const Session::FirmwareMaker maker = words.motor_bus.bus.empty() ? open_firmware(words.firmware, config)
+                                                                     : bus_firmware(words.motor_bus, config);
+    const ServeEnd end = serve(config, maker, std::move(header), words.options);
     switch (end) {
       case ServeEnd::kDone:
         return kExitOk;
@@ -112,6 +121,24 @@ int run(Words& words) {
     return kExitBadInput;
   }
   return kExitDiverged;
+}
+
+void add_bus_options(CLI::App& verb, MotorBusChoice& choice) {
+  verb.add_option("--motor-bus", choice.bus,
+                  "no firmware: the robot is its motor controllers on a bus, odrive for one "
+                  "(docs/motor-buses.md)");
+  verb.add_option(
+      "--bus-port", choice.port,
+      "the bus's wire: can:vcan0, slcan:./can, fdcanusb:./can, uart:./motor; {id} is the robot's");
+  verb.add_option("--bus-shaft", choice.shaft, "a turn on the bus is one of the rotor or the wheel")
+      ->capture_default_str();
+  verb.add_option("--bus-order", choice.order, "wheel of the model that is motor 0, 1, 2, 3 of the bus")
+      ->capture_default_str();
+  verb.add_option("--bus-first-id", choice.first_id, "node id of motor 0 (default: the bus's own)")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_option("--bus-watchdog", choice.watchdog_ms,
+                  "ms without a command after which a motor stops; 0: never (default: the device's own)")
+      ->check(CLI::NonNegativeNumber);
 }
 
 }  // namespace
@@ -132,6 +159,7 @@ void add_verb_serve(CLI::App& app, VerbResult& result) {
       ->check(CLI::IsMember({"blue", "yellow"}))
       ->capture_default_str();
   add_firmware_options(*verb, w.firmware);
+  add_bus_options(*verb, w.motor_bus);
   verb->add_option("--record", w.options.record, "write a recording to this file");
   verb->add_option("--sample-every", w.sample_every,
                    "of each robot's control ticks, record every Nth (bytes are all recorded)")

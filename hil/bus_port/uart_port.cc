@@ -1,0 +1,92 @@
+#include "hil/bus_port/uart_port.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "hil/pty_transport.h"
+
+namespace omnihil {
+namespace {
+
+struct Line {
+  std::unique_ptr<PtyTransport> transport;
+  std::vector<std::uint8_t> burst;
+  std::vector<std::uint8_t> waiting;  // for the host
+};
+constexpr std::size_t kQueue_bytes = 16'384;  // of a host that does not read
+
+class UartPtys final : public FramePort {
+ public:
+  std::string open(const std::string& path, int lines);
+  bool read(BusFrame& frame) override;
+  bool write(const BusFrame& frame) override;
+  std::string_view failure() const override { return failure_; }
+
+ private:
+  bool take_burst(std::size_t i, BusFrame& frame);
+
+  std::vector<Line> lines_;
+  std::size_t next_ = 0;  // the line whose turn it is in this poll
+  std::string failure_;
+};
+
+std::string UartPtys::open(const std::string& path, int lines) {
+  std::string problem;
+  for (int i = 0; i < lines && problem.empty(); ++i) {
+    Line line;
+    line.transport = PtyTransport::open(path + std::to_string(i), problem);
+    if (line.transport) lines_.push_back(std::move(line));
+  }
+  return problem;
+}
+
+// A poll asks every line once; then it says that nothing waits.
+bool UartPtys::read(BusFrame& frame) {
+  while (next_ < lines_.size()) {
+    if (take_burst(next_++, frame)) return true;
+  }
+  next_ = 0;
+  return false;
+}
+
+bool UartPtys::take_burst(std::size_t i, BusFrame& frame) {
+  Line& line = lines_[i];
+  const std::size_t before = line.burst.size();
+  const std::error_code error = line.transport->read(line.burst, BusFrame::kCapacity - before);
+  if (error) failure_ = std::string(line.transport->url()) + ": " + error.message();
+  if (line.transport->take_host_closed()) {
+    line.burst.clear();
+    line.waiting.clear();
+  }
+  const bool idle = line.burst.size() == before;
+  if (line.burst.empty() || (!idle && line.burst.size() < BusFrame::kCapacity)) return false;
+  frame = BusFrame{};
+  frame.id = static_cast<std::uint32_t>(i);
+  frame.size = static_cast<std::uint8_t>(line.burst.size());
+  std::copy(line.burst.begin(), line.burst.end(), frame.data.begin());
+  line.burst.clear();
+  return true;
+}
+
+bool UartPtys::write(const BusFrame& frame) {
+  Line& line = lines_[frame.id];
+  if (!line.transport->host_present() || line.waiting.size() > kQueue_bytes) return false;
+  line.waiting.insert(line.waiting.end(), frame.data.begin(), frame.data.begin() + frame.size);
+  std::error_code error;
+  const std::size_t sent = line.transport->write(line.waiting, error);
+  if (error) failure_ = std::string(line.transport->url()) + ": " + error.message();
+  line.waiting.erase(line.waiting.begin(), line.waiting.begin() + static_cast<std::ptrdiff_t>(sent));
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<FramePort> open_uart_ptys(const std::string& path, int lines, std::string& problem) {
+  auto port = std::make_unique<UartPtys>();
+  problem = port->open(path, lines);
+  if (!problem.empty()) return nullptr;
+  return port;
+}
+
+}  // namespace omnihil
