@@ -4,6 +4,7 @@
 //
 // Cannot: lose frames on the air, or repeat the radio's mistaking of a new frame for a repetition (the robot
 // acts once on each frame; the second transmission only takes its time).
+#include <algorithm>
 #include <cassert>
 
 #include "protocols/dongles/dongles.h"
@@ -57,7 +58,10 @@ class HermesDongle final : public RadioLink {
     }
   }
 
-  void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
+  // Radios send payloads of one length: what stands behind the delimiter is padding.
+  void robot_frame(int robot_id, std::span<const std::uint8_t> payload, std::int64_t now_ns) override {
+    const auto delimiter = std::find(payload.begin(), payload.end(), std::uint8_t{0});
+    const auto frame = delimiter == payload.end() ? payload : payload.first(delimiter - payload.begin() + 1);
     const DecodeResult result = format_.decode(frame);
     PacketError error = result.error;
     if (error == PacketError::kNone && result.values.message->direction == Direction::kToRobot) {

@@ -169,6 +169,18 @@ TEST(HermesDongleTest, FirmwaresOwnAnswerGoesToTheHostAndALateOneDoesNot) {
   EXPECT_EQ(bench.link->from_robots().bad[static_cast<std::size_t>(PacketError::kOverrun)], 1u);
 }
 
+TEST(HermesDongleTest, PaddingBehindAnAnswerIsNotPassedOn) {
+  Bench bench = make_bench({4}, true);
+  const Bytes answer = bench.encode("PING_RESPONSE", {{"robot", 4}});
+  Bytes payload = answer;
+  payload.resize(hermes::kPayloadBytes, 0x5A);
+  bench.write(bench.encode("PING_REQUEST", {{"robot", 4}}));
+  bench.run_to(2 * kMs);
+  bench.link->robot_frame(4, payload, bench.now_ns);
+  bench.run_to(4 * kMs);
+  EXPECT_EQ(bench.to_host, answer);
+}
+
 TEST(HermesDongleTest, AnswerBeforeItsRequestOrFromAnotherRobotIsNotTaken) {
   Bench bench = make_bench({4, 5}, true);
   bench.write(bench.encode("PING_REQUEST", {{"robot", 4}}));
