@@ -124,7 +124,7 @@ TEST_F(UlavalRobot, AnswersItsBatteryVoltageByRadio) {
 // What a real board never shows: the time base's interrupt uses a timer handle before it is set up.
 TEST_F(UlavalRobot, ReportsTheNullPointerOfItsFirstInterrupts) {
   std::string all;
-  for (const std::string& line : image_report(session_->firmware(0))) all += line + "\n";
+  for (const std::string& line : session_->firmware(0).report()) all += line + "\n";
   EXPECT_NE(all.find("accesses through null pointers, first at"), std::string::npos) << all;
   EXPECT_NE(all.find("HAL_TIM_IRQHandler"), std::string::npos) << all;
   EXPECT_EQ(all.find("fault"), std::string::npos) << all;
