@@ -81,10 +81,10 @@ enum ClaimBit : std::uint32_t {
 // What a numerical treatment has to know of a law, besides its equation.
 enum NumericsBit : std::uint32_t {
   kNumericsPlain = 0,
-  kStiff = 1u << 0,    // faster than a millisecond: short sub-steps
-  kRipples = 1u << 1,  // goes round many times a turn: a long sub-step feels its mean alone, and too early
-  kImpacts = 1u << 2,  // parts meet and leave: exact derivatives multiply up from one impact to the next
-  kDelays = 1u << 3,   // its strength is a delay of the command
+  kStiff = 1u << 0,        // faster than a millisecond: short sub-steps
+  kFine = 1u << 1,         // changes within a sample: many times a turn, or a part of a sample late
+  kImpacts = 1u << 2,      // parts meet and leave: exact derivatives multiply up from one impact to the next
+  kDelays = 1u << 3,       // its strength is a delay of the command
   kHidesDelays = 1u << 4,  // a limit behind a delay: the delay's derivative is zero behind it
 };
 

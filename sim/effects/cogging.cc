@@ -107,7 +107,7 @@ struct Cogging {
             return 3e-5 * 48 * 2.0 * speed_step_rad_s / std::sqrt(s.rate_Hz * s.duration_s);
           },
       .claims = kConservative,
-      .numerics = kRipples,
+      .numerics = kFine,
       .params = kParams,
       .plot = {.excitation = "turn", .x = "rotor_angle", .y = "load_torque", .from_s = 0.0, .to_s = 4.0},
   };

@@ -30,6 +30,7 @@ struct SamplingDelay {
       .visible = "a tenth of a sample with steps of full duty",
       .min_visible = [](const SensorSet& s) { return 0.1 / s.rate_Hz; },
       .claims = kOdd,
+      .numerics = kFine,
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.0, .to_s = 0.6},
   };

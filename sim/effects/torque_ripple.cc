@@ -69,7 +69,7 @@ struct TorqueRipple {
             return 3e-5 * 48 * 2.0 / 0.02 * speed_step_rad_s / std::sqrt(s.rate_Hz * s.duration_s);
           },
       .claims = kOdd,
-      .numerics = kRipples,
+      .numerics = kFine,
       .params = kParams,
       .plot = {.excitation = "creep", .x = "time", .y = "motor_current", .from_s = 0.5, .to_s = 2.0},
   };

@@ -182,9 +182,9 @@ class AxisPredictor : public Predictor {
 
   const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
   double step_for(const Candidate& c) const {
-    constexpr double kRippleStep_s = 200e-6;
+    constexpr double kFineStep_s = 200e-6;
     if (acts(c, kStiff)) return std::min(step_s_, options_.step_s);
-    return acts(c, kRipples) ? std::min(step_s_, std::max(options_.step_s, kRippleStep_s)) : step_s_;
+    return acts(c, kFine) ? std::min(step_s_, std::max(options_.step_s, kFineStep_s)) : step_s_;
   }
 
   Prediction predict_at(const Candidate& candidate, int n, double step_s) const {
