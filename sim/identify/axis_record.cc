@@ -127,6 +127,9 @@ double AxisRecord::speed_near(std::size_t k) const {
   const bool at_rest_by_counts = !counts.empty() && k + 20 < size() && counts[k] == counts[k + 20];
   if (at_rest_by_counts) return 0.0;
   if (!near.empty() && std::isfinite(velocity[k])) {
+    // Where the speed itself moves on in these few samples, their median is that of a later instant.
+    constexpr double kMoves = 6.0;  // sigmas
+    if (std::abs(near.back() - near.front()) > kMoves * velocity_sigma_rad_s) return near.front();
     std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2), near.end());
     return near[near.size() / 2];
   }
@@ -162,6 +165,9 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
   }
   r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
   r.velocity = as_measured(run.signal("velocity"), r.first_row);
+  const Channel* speed = dataset.channel("velocity");
+  const double stated_rad_s = speed != nullptr ? speed->sigma : 0.0;
+  r.velocity_sigma_rad_s = stated_rad_s > 0.0 ? stated_rad_s : estimate_noise(r.velocity).sigma;
   r.position = as_measured(run.signal("position"), r.first_row);
   r.counts = as_measured(run.signal("encoder"), r.first_row);
   r.current = as_measured(run.signal("motor_current"), r.first_row);

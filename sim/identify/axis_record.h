@@ -24,7 +24,8 @@ struct AxisRecord {
   std::vector<double> velocity, position, counts, current, temperature, bus_measured_V;
   std::size_t bus_left_out = 0;  // readings that no supply gives (bus_voltage.h)
   double counts_per_output_rad = 0.0;
-  double gear_ratio = 1.0;  // nominal
+  double velocity_sigma_rad_s = 0.0;  // stated, or estimated from differences
+  double gear_ratio = 1.0;            // nominal
 
   std::size_t size() const { return time_s.size(); }
   bool gap_before(std::size_t k) const;
