@@ -99,6 +99,9 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
   solver.function_tolerance = options.quick ? 1e-4 : 1e-6;
   solver.parameter_tolerance = options.quick ? 1e-5 : 1e-7;
   solver.initial_trust_region_radius = 1e3;
+  // With bounds each step is followed by a line search; by halves, or each trial would cost the derivatives.
+  solver.line_search_interpolation_type = ceres::BISECTION;
+  solver.max_num_line_search_step_size_iterations = 4;
   solver.logging_type = ceres::SILENT;
   solver.num_threads = 1;
   Stopper stopper(options.stop);

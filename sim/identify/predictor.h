@@ -14,12 +14,12 @@
 //             with the one that was given, filtered alike: drives by torque or current, benches that impose
 //             the speed, and runs of kind "steady".
 // Where the bus voltage is measured it is the drive's input, and its drop about the run's mean is compared as
-// well (the level drifts with the battery). Of a position servo the position is compared, not the speed that the
-// servo makes of it. A run of an axis starts at its first row with a drive input;
-// after a gap of more than ten periods it starts anew from the measured speed. An axis that is driven by duty
-// or voltage at points of kind "steady" compares the input that each point needs. A rig "robot" is run
-// forward in a body that follows the measured pose slowly enough not to hide an error. Pure functions of
-// their arguments: predictions may run on several threads at once.
+// well (the level drifts with the battery). Of a position servo the position is compared, not the speed that
+// the servo makes of it. A run of an axis starts at its first row with a drive input; after a gap of more
+// than ten periods it starts anew from the measured speed. An axis that is driven by duty or voltage at
+// points of kind "steady" compares the input that each point needs. A rig "robot" is run forward in a body
+// that follows the measured pose slowly enough not to hide an error. Pure functions of their arguments:
+// predictions may run on several threads at once.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>

@@ -32,7 +32,7 @@ Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::
   options.starts = starts;
   options.seed = setup.seed;
   options.quick = setup.quick;
-  options.profile = !setup.quick;
+  options.profile = setup.profile && !setup.quick;
   options.robust = setup.robust;
   options.stop = setup.stop;
   const Candidate start = with_values(candidate, unknowns, values);

@@ -22,6 +22,7 @@ struct RefitSetup {
   int jobs = 1;
   int max_iterations = 12;
   bool quick = true;           // rough covariance: for rankings
+  bool profile = true;         // FitOptions, where not quick
   bool robust = false;         // FitOptions
   std::function<bool()> stop;  // true: give up early
 };

@@ -40,7 +40,11 @@ RefitSetup Workbench::setup(bool quick, const std::function<bool()>& stop) const
 }
 
 bool Workbench::fit_base(const std::function<bool()>& stop) {
-  base_ = settled(setup(false, stop), refit_as_it_is(setup(false, stop), nominal_, 1));
+  RefitSetup thorough = setup(false, stop);
+  thorough.profile = false;
+  base_ = settled(thorough, refit_as_it_is(thorough, nominal_, 1));
+  thorough.profile = true;  // once, where it ends
+  if (base_.finite && !stop()) base_ = refit_as_it_is(thorough, base_.fit.model, 1);
   return base_.finite && !uses_[0].empty();
 }
 
