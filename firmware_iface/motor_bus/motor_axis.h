@@ -56,8 +56,9 @@ class MotorAxis {
   double torque_limit_Nm() const { return current_limit_A_ * torque_constant_ * ratio_; }
   double speed_gain_p() const { return p_ * ratio_ * ratio_; }
   double speed_gain_i() const { return i_ * ratio_ * ratio_; }
-  // Volts per rad/s of the rotor, which is N m per A.
-  double torque_constant_Nm_per_A() const { return torque_constant_; }
+  // Of the shaft; the motor's torque constant is both, one over the gear ratio or times it.
+  double back_emf_V_s_per_rad() const { return torque_constant_ * ratio_; }
+  double torque_shaft_Nm_per_A() const { return torque_constant_ * ratio_; }
   double duty_ratio() const { return duty_; }
   bool driving() const { return mode_ == OMNIHIL_DRIVE_DUTY; }
 

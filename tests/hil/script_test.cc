@@ -62,5 +62,7 @@ SCRIPT_TEST(HostStreamTest, "hermes_stream.py", real_host_drives_six_robots_with
 SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py", bad_words_are_all_named)
 SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py",
             odrive_reaches_the_commanded_speed_and_stops_when_the_watchdog_expires)
+SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py", ateam_main_board_drives_four_uarts)
+SCRIPT_TEST(SlowMotorBusClientTest, "motor_bus_client.py", odrive_and_moteus_run_over_socketcan)
 
 }  // namespace
