@@ -10,6 +10,7 @@
 #include "hil/firmware_host/guarded_firmware.h"
 #include "hil/image_firmware.h"
 #include "hil/reference_firmware.h"
+#include "hil/remote/remote_firmware.h"
 #include "hil/session_checks.h"
 #include "hil/text_file.h"
 #include "sim/robot/electric_model.h"
@@ -78,6 +79,13 @@ Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const Session
       throw_problems({fmt::format("board {}: needs --firmware IMAGE beside it", choice.board)});
     }
     return reference_firmware_for(session);
+  }
+  if (is_remote_url(choice.file)) {
+    if (!choice.board.empty()) {
+      throw_problems({fmt::format("board {}: belongs to a microcontroller image; a board on the desk has none",
+                                  choice.board)});
+    }
+    return remote_firmware({.url = choice.file, .lock_step = choice.virtual_time}, session);
   }
   if (is_image(choice.file)) {
     if (choice.board.empty()) {

@@ -6,6 +6,7 @@
 //   (empty)            the reference firmware that the robot's model asks for, in this process
 //   a shared object    of this computer: by the C ABI (omnihil_firmware.h), each robot in a process of its
 //   own
+//   serial:DEVICE[,BAUD]  a board on the desk (hil/remote/remote_firmware.h)
 //   a microcontroller image (32-bit ARM executable) with its board file: emulated, one board per robot
 #pragma once
 #include <string>
@@ -19,6 +20,7 @@ struct FirmwareChoice {
   std::string file;          // empty: the reference firmware
   std::string board;         // board file of a microcontroller image
   double deadline_s = 10.0;  // of wall time: a call that takes longer hangs
+  bool virtual_time = true;  // false: the run is paced by wall time, so a board on the desk is not waited for
 };
 
 // Throws std::invalid_argument, all problems in one text; the maker does, too, when a robot is refused.

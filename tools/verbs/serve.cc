@@ -101,6 +101,7 @@ int run(Words& words) {
     RecordingHeader header = recording_header(words.setup, program_commit());
     header.sample_every = words.sample_every;
     const SessionConfig config = session_config(words.setup);
+    words.firmware.virtual_time = !words.options.real_time;
     const Session::FirmwareMaker maker = words.motor_bus.bus.empty() ? open_firmware(words.firmware, config)
                                                                      : bus_firmware(words.motor_bus, config);
     const ServeEnd end = serve(config, maker, std::move(header), words.options);
