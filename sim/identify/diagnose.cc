@@ -78,7 +78,10 @@ class Diagnosing {
   }
 
   std::function<bool()> stop() {
-    return [this] { return stopped_.load(); };
+    return [this] {
+      if (options_.stop && options_.stop()) stopped_ = true;
+      return stopped_.load();
+    };
   }
 
   // A fault of the data that would be taken for physics.
@@ -108,7 +111,7 @@ class Diagnosing {
         }
       }
       take(round);
-      if (!rest_is_structure(leftover())) return;
+      if (!worth_another_round()) return;
       from = to;
     }
   }
@@ -209,8 +212,14 @@ class Diagnosing {
                        options_.seed, options_.jobs);
   }
 
-  // By the measure of a model without any effect: less is what an adequate model leaves, and to search on
-  // there finds laws that bend to the noise.
+  // Less than what an adequate model leaves: to search on there finds laws that bend to the noise.
+  bool worth_another_round() {
+    const std::size_t u = bench_.uses()[1].empty() ? 0 : 1;
+    return structure_in(bench_.uses()[u], bench_.null(), bench_.kinds(), current_.residual[u]) ||
+           rest_is_structure(leftover());
+  }
+
+  // By the measure of a model without any effect.
   bool rest_is_structure(const Leftover& rest) const { return structure_remains(rest, false); }
 
   // What is left may be noise that an effect makes. Its strength was found without the fit, which sees means.

@@ -112,6 +112,7 @@ struct DiagnoseOptions {
   int jobs = 1;
   int max_effects = 6;
   std::function<bool(const DiagnosisProgress&)> progress;  // false: stop with what is known
+  std::function<bool()> stop;  // asked within every fit, from several threads; true: the same
 };
 
 Diagnosis diagnose(const Dataset& dataset, const Candidate& nominal, const DiagnoseOptions& options);

@@ -63,6 +63,17 @@ bool structure_remains(const Leftover& rest, bool effects_added) {
   return !effects_added || rest.unexplained > kUnexplained;
 }
 
+bool structure_in(const Evidence& evidence, const NullModel& null, const SignalKinds& kinds,
+                  const Eigen::VectorXd& residual) {
+  if (evidence.empty() || residual.size() != evidence.size()) return false;
+  const Eigen::VectorXd excess = excess_of(evidence, null, kinds, residual);
+  const Eigen::VectorXd floor = null.floor(evidence.use()), spread = null.spread(evidence.use());
+  for (Eigen::Index k = 0; k < excess.size(); ++k) {
+    if (excess[k] >= kStructure && excess[k] * floor[k] > kSpreads * spread[k]) return true;
+  }
+  return false;
+}
+
 std::string leftover_sentence(const Leftover& rest, bool effects_added) {
   const std::string size = fmt::format(
       "the error energy of {} is {:.0f} % above what the sensors' noise alone would leave "

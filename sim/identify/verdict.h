@@ -29,6 +29,10 @@ Leftover leftover_of(const Predictor& predictor, const SignalKinds& kinds, const
                      const Candidate& last, std::uint64_t seed, int jobs);
 
 bool structure_remains(const Leftover& rest, bool effects_added);
+// The same question of a whitened residual: what a coarse sensor's noise hides from the eye may stand out
+// there.
+bool structure_in(const Evidence& evidence, const NullModel& null, const SignalKinds& kinds,
+                  const Eigen::VectorXd& residual);
 std::string leftover_sentence(const Leftover& rest, bool effects_added);
 
 }  // namespace omnihil

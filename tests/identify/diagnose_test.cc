@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <nlohmann/json.hpp>
 
 #include "hil/diagnosis_json.h"
@@ -115,6 +116,42 @@ TEST(SlowDiagnoseTest, ProbabilitiesNeverSumToMoreThanOne) {
 TEST(SlowDiagnoseTest, NeverNamesAerodynamicDrag) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({})));
   for (const RankedEffect& r : d.ranking) EXPECT_EQ(r.effect.find("aero"), std::string::npos);
+}
+
+// The search ends where what is left is what an adequate model leaves: no law is bent to the noise.
+TEST(SlowDiagnoseTest, NamesNoSecondEffectWhereOneIsHidden) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({"cogging.amplitude_Nm=0.008"})));
+  EXPECT_EQ(d.effects, std::vector<std::string>{"cogging"}) << reasons(d);
+  EXPECT_EQ(d.ladder.size(), 3u);  // nominal, base refitted, cogging
+}
+
+// Of the first residual the smaller one is a few per cent; of what the larger leaves, most.
+TEST(SlowDiagnoseTest, AMaskedEffectIsNamedOnceTheLargerOneIsIn) {
+  const Diagnosis d =
+      diagnosed(simulated_bench(steps_with({"constant_load.torque_Nm=0.05", "cogging.amplitude_Nm=0.008"})));
+  ASSERT_GE(d.effects.size(), 2u) << reasons(d);
+  EXPECT_EQ(d.effects[0], "constant_load");
+  EXPECT_EQ(d.effects[1], "cogging");
+}
+
+// Friction that differs by direction is symmetric friction and a constant load: in one posture the same.
+TEST(SlowDiagnoseTest, AsymmetryAndAConstantLoadAreASet) {
+  const Diagnosis d = diagnosed(simulated_bench(steps_with({"friction_asymmetry.coulomb_ratio=0.5"})));
+  ASSERT_FALSE(d.effects.empty()) << reasons(d);
+  const bool either = d.effects.front() == "friction_asymmetry" || d.effects.front() == "constant_load";
+  EXPECT_TRUE(either) << d.effects.front();
+  EXPECT_TRUE(same_set(d, "friction_asymmetry", "constant_load")) << reasons(d);
+}
+
+TEST(SlowDiagnoseTest, AStopIsHeardInsideTheBaseFit) {
+  const Bench bench = simulated_bench(steps_with({"cogging.amplitude_Nm=0.008"}));
+  DiagnoseOptions options;
+  std::atomic<int> asked{0};
+  options.stop = [&] { return ++asked > 2; };
+  const Diagnosis d = diagnose(bench.dataset, bench.nominal, options);
+  EXPECT_FALSE(d.complete);
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_LT(asked.load(), 20);
 }
 
 TEST(SlowDiagnoseTest, SaysWhatItKnowsWhenItIsStopped) {

@@ -61,6 +61,7 @@ int run(const Arguments& a) {
       line.show(p.doing, p.share);
       return !StopSignals::requested();
     };
+    options.stop = [] { return StopSignals::requested(); };
     diagnosis = diagnose(*reading.dataset, *reading.nominal, options);
     elapsed_s = line.elapsed_s();
   }

@@ -1,0 +1,105 @@
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli.h"
+
+extern char** environ;
+
+namespace omnihil {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Twelve seconds at a simulated bench with cogging in it, and the model without.
+class SlowDiagnoseVerb : public CliTest {
+ protected:
+  void SetUp() override {
+    CliTest::SetUp();
+    if (IsSkipped()) return;
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("omnihil-diagnose-") + test->name());
+    fs::remove_all(folder_);
+    const Ran made = run_omnihil(
+        "sim maxon_ec45_flat_50w --excite steps prbs --amplitude 0.3 --duration 4 --with "
+        "cogging.amplitude_Nm=0.008 --out" +
+        shell(folder_));
+    ASSERT_EQ(made.exit_code, 0) << made.text;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  Ran verb(const std::string& name, const std::string& more) {
+    return run_omnihil(name + shell(folder_) + more);
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(SlowDiagnoseVerb, FromTheVerdictToTheMendedModel) {
+  const Ran first =
+      verb("diagnose", "--json" + shell(folder_ / "d.json") + "--report" + shell(folder_ / "d.html"));
+  ASSERT_EQ(first.exit_code, 0) << first.text;
+  EXPECT_TRUE(first.says("Verdict: effect: cogging")) << first.text;
+  const nlohmann::json j = nlohmann::json::parse(text_of(folder_ / "d.json"));
+  EXPECT_EQ(j["verdict"], "effect");
+  EXPECT_GT(fs::file_size(folder_ / "d.html"), 10000u);
+  const std::string before = text_of(folder_ / "model.toml");
+  const Ran add = verb("add", "cogging --write" + shell(folder_ / "model.toml"));
+  EXPECT_EQ(add.exit_code, 0) << add.text;
+  EXPECT_TRUE(add.says("Useful: ")) << add.text;
+  EXPECT_EQ(text_of(folder_ / "model.toml.1"), before);
+  EXPECT_EQ(verb("add", "cogging").exit_code, 2);  // the model has it already
+}
+
+TEST_F(SlowDiagnoseVerb, AddRefusesWhatMakesNoDifferenceAndWritesNothing) {
+  const std::string before = text_of(folder_ / "model.toml");
+  const Ran add = verb("add", "sample_jitter --write" + shell(folder_ / "model.toml"));
+  EXPECT_NE(add.exit_code, 0) << add.text;
+  EXPECT_EQ(text_of(folder_ / "model.toml"), before);
+  EXPECT_FALSE(fs::exists(folder_ / "model.toml.1"));
+}
+
+TEST_F(SlowDiagnoseVerb, WhatIsNoEffectIsNamedWithANearOne) {
+  const Ran add = verb("add", "coging");
+  EXPECT_EQ(add.exit_code, 2);
+  EXPECT_TRUE(add.says("cogging")) << add.text;
+}
+
+// Ctrl-C early: exit code 130, what is known is said, no model is written.
+TEST_F(SlowDiagnoseVerb, AnInterruptEndsItWithWhatIsKnown) {
+  const fs::path said = folder_ / "said.txt", model = folder_ / "mended.toml";
+  const std::string data = folder_.string(), write = model.string();
+  const std::string command = "exec '" OMNIHIL_PROGRAM "' diagnose '" + data + "' --write '" + write +
+                              "' > '" + said.string() + "' 2>&1";
+  std::string shell_name = "/bin/sh", option = "-c", script = command;
+  char* arguments[] = {shell_name.data(), option.data(), script.data(), nullptr};
+  pid_t child = -1;
+  ASSERT_EQ(posix_spawn(&child, "/bin/sh", nullptr, nullptr, arguments, environ), 0);
+  // the dataset is read once it catches the signal
+  for (;;) {
+    std::ifstream status("/proc/" + std::to_string(child) + "/status");
+    std::string line, caught;
+    while (std::getline(status, line)) {
+      if (line.starts_with("SigCgt:")) caught = line.substr(7);
+    }
+    if (!caught.empty() && (std::stoull(caught, nullptr, 16) >> (SIGINT - 1) & 1u) != 0) break;
+    ASSERT_EQ(waitpid(child, nullptr, WNOHANG), 0) << text_of(said);
+  }
+  ::kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130) << text_of(said);
+  EXPECT_NE(text_of(said).find("Error, step by step"), std::string::npos) << text_of(said);
+  EXPECT_FALSE(fs::exists(model));
+}
+
+}  // namespace
+}  // namespace omnihil
