@@ -97,9 +97,10 @@ class FrameQueue {
 class FramePort {
  public:
   virtual ~FramePort() = default;
-  virtual bool read(BusFrame& frame) = 0;                         // false: nothing waits
-  virtual bool write(const BusFrame& frame) = 0;                  // false: not taken (counted by the caller)
-  virtual std::string_view failure() const { return {}; }         // why the wire is gone; empty: it is not
+  virtual bool read(BusFrame& frame) = 0;                  // false: nothing waits
+  virtual bool write(const BusFrame& frame) = 0;           // false: not taken (counted by the caller)
+  virtual std::string_view failure() const { return {}; }  // why the wire is gone; empty: it is not
+  virtual int handle() const { return -1; }  // readable when frames wait; -1: there is none to watch
   virtual std::vector<std::string> report() const { return {}; }  // after a run, a line each
 };
 

@@ -29,6 +29,7 @@ class SocketCanPort final : public FramePort {
   bool read(BusFrame& frame) override;
   bool write(const BusFrame& frame) override;
   std::string_view failure() const override { return failure_; }
+  int handle() const override { return socket_; }
 
  private:
   void note(int why);

@@ -6,7 +6,7 @@
 //   (empty)            the reference firmware that the robot's model asks for, in this process
 //   a shared object    of this computer: by the C ABI (omnihil_firmware.h), each robot in a process of its
 //   own
-//   serial:DEVICE[,BAUD]  a board on the desk (hil/remote/remote_firmware.h)
+//   serial:DEVICE[,BAUD], can:INTERFACE, canfd:INTERFACE  a board on the desk (hil/remote/remote_firmware.h)
 //   a microcontroller image (32-bit ARM executable) with its board file: emulated, one board per robot
 #pragma once
 #include <string>

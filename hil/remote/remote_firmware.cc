@@ -6,27 +6,35 @@
 #include <charconv>
 
 #include "hil/clock.h"
+#include "hil/remote/can_line.h"
 #include "hil/session_checks.h"
 
 namespace omnihil {
 namespace {
 
-constexpr std::string_view kScheme = "serial:";
+constexpr std::string_view kSerial = "serial:", kCan = "can:", kCanFd = "canfd:";
 constexpr int kDefaultBaud = 921'600;                   // 1 kHz of both frames takes 640 kbit/s
 constexpr std::int64_t kDriveTimeout_ns = 50'000'000;   // real time
 constexpr std::int64_t kReplyTimeout_ns = 100'000'000;  // lock-step
 constexpr int kMaxMissedInARow = 20;                    // lock-step: 2 s of wall time
 
 struct Url {
-  std::string device;
+  bool serial = true;
+  std::string device;  // of CAN: the whole text
   int baud = kDefaultBaud;
 };
 
 std::string read_url(const std::string& text, Url& url) {
-  const std::string rest = text.substr(kScheme.size());
+  url.serial = text.starts_with(kSerial);
+  if (text.ends_with(':'))
+    return "no device; such as serial:/dev/ttyACM0, serial:/dev/ttyUSB0,921600 or can:can0";
+  if (!url.serial) {
+    url.device = text;
+    return {};
+  }
+  const std::string rest = text.substr(kSerial.size());
   const std::size_t comma = rest.find(',');
   url.device = rest.substr(0, comma);
-  if (url.device.empty()) return "no device; such as serial:/dev/ttyACM0 or serial:/dev/ttyUSB0,921600";
   if (comma == std::string::npos) return {};
   const char* const end = rest.data() + rest.size();
   const auto [stop, error] = std::from_chars(rest.data() + comma + 1, end, url.baud);
@@ -46,7 +54,9 @@ double ms(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
 
 }  // namespace
 
-bool is_remote_url(const std::string& text) { return text.starts_with(kScheme); }
+bool is_remote_url(const std::string& text) {
+  return text.starts_with(kSerial) || text.starts_with(kCan) || text.starts_with(kCanFd);
+}
 
 Session::FirmwareMaker remote_firmware(const RemoteChoice& choice, const SessionConfig& session) {
   std::vector<std::string> problems;
@@ -64,12 +74,13 @@ Session::FirmwareMaker remote_firmware(const RemoteChoice& choice, const Session
   return [choice, url](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     const std::string device = with_id(url.device, config.robot_id);
     std::string problem;
-    std::unique_ptr<ByteLine> line = open_byte_line(device, url.baud, problem);
-    if (!line) throw_problems({"firmware serial:" + problem});
+    std::unique_ptr<ByteLine> line =
+        url.serial ? open_byte_line(device, url.baud, problem) : open_can_line(device, problem);
+    if (!line) throw_problems({"firmware: " + problem});
     RemoteLink link(std::move(line));
     RemoteHello hello;
     if (!link.hello(config, hello, problem))
-      throw_problems({fmt::format("firmware serial:{}: {}", device, problem)});
+      throw_problems({fmt::format("firmware {}: {}", device, problem)});
     return std::make_unique<RemoteFirmware>(std::move(link), std::move(hello), choice.lock_step);
   };
 }

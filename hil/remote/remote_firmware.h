@@ -1,5 +1,5 @@
-// A real board on the desk as the firmware of a robot: sensors go out over a serial line, the drive comes
-// back.
+// A real board on the desk as the firmware of a robot: sensors go out over a serial line or CAN, the
+// drive comes back.
 //
 //   Session session(config, remote_firmware({.url = "serial:/dev/ttyACM0,921600"}, config));
 //
@@ -21,7 +21,7 @@
 namespace omnihil {
 
 struct RemoteChoice {
-  std::string url;         // "serial:DEVICE[,BAUD]"; {id} in it is the robot's number
+  std::string url;  // "serial:DEVICE[,BAUD]", "can:INTERFACE", "canfd:INTERFACE"; {id}: the robot's number
   bool lock_step = false;  // virtual time
 };
 

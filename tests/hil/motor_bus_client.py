@@ -130,6 +130,19 @@ def moteus_on_vcan0():
     assert report.code == 0 and ", 0 refused" in report.text, report.text
 
 
+def board_on_vcan0():
+    """Likewise: a board with the shim on CAN drives the plant through a scenario."""
+    program = os.environ["OMNIHIL_PROGRAM"]
+    build = os.path.dirname(os.path.dirname(program))
+    source = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    board = subprocess.Popen([os.path.join(build, "tests/remote/board/emulated_board"), "--can", "vcan0"])
+    run = subprocess.run([program, "scenario", "run", os.path.join(source, "examples/scenarios/wheel/speed_step.toml"),
+                          "--firmware", "can:vcan0"], capture_output=True, text=True, check=False)
+    board.kill()
+    board.wait()
+    assert run.returncode == 0 and "emulated board" in run.stdout, run.stdout + run.stderr
+
+
 INIT = """#!/bin/sh
 mount -t proc proc /proc; mount -t sysfs sys /sys; mount -t tmpfs dev /dev || exit 1
 mknod /dev/null c 1 3; mknod /dev/zero c 1 5; mknod /dev/urandom c 1 9
@@ -173,8 +186,8 @@ def under_a_kernel_with_can(*names):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def odrive_and_moteus_run_over_socketcan():
-    under_a_kernel_with_can("odrive_on_vcan0", "moteus_on_vcan0")
+def odrive_moteus_and_a_board_run_over_socketcan():
+    under_a_kernel_with_can("odrive_on_vcan0", "moteus_on_vcan0", "board_on_vcan0")
 
 
 def ateam_main_board_drives_four_uarts():

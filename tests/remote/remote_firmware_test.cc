@@ -156,6 +156,14 @@ TEST(RemoteFirmwareTest, in_real_time_answers_serve_the_next_period_and_silence_
   EXPECT_TRUE(run.remote->failure().empty());
 }
 
+TEST(RemoteFirmwareTest, a_device_that_goes_away_is_a_failure_with_its_name) {
+  const EmulatedBoard board("--exit-after 101");
+  OneRobot run(lock_step(board));
+  run.drive_ms(110);
+  EXPECT_NE(run.remote->failure().find("is gone: /dev/pts/"), std::string::npos) << run.remote->failure();
+  EXPECT_EQ(run.remote->link().counts().drives, 100U);
+}
+
 std::string refusal(const std::string& url, const SessionConfig& config) {
   try {
     Session session(config, remote_firmware({.url = url, .lock_step = true}, config));

@@ -1,16 +1,24 @@
 // A board for the tests: the shim and the reference wheel controller in a process of their own, at a pty.
 //
-//   emulated_board [--corrupt N] [--cut N] [--skip N] [--silent-after N] [--mute]
+//   emulated_board [--corrupt N] [--cut N] [--skip N] [--silent-after N] [--exit-after N] [--mute] [--can
+//   INTERFACE]
 //
 // Prints the path of the pty that the bench opens. Every N-th frame it sends has a flipped bit (corrupt),
-// lacks its last three bytes (cut) or is not sent (skip); after N answers it says nothing more
-// (silent-after); it never says anything (mute). It ends when the bench closes the line.
+// lacks its last three bytes (cut) or is not sent (skip); after N frames it says nothing more (silent-after)
+// or is gone, as if unplugged (exit-after); it never says anything (mute). It ends when the bench closes the
+// line. With --can it sits on a CAN interface instead, and ends when nothing comes for 5 s.
 #include <fcntl.h>
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
 #include <poll.h>
 #include <stdlib.h>
+#include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
@@ -23,17 +31,50 @@
 namespace {
 
 struct Faults {
-  long corrupt = 0, cut = 0, skip = 0, silent_after = 0;
+  long corrupt = 0, cut = 0, skip = 0, silent_after = 0, exit_after = 0;
   bool mute = false;
 };
 
 struct Port {
   int fd = -1;
+  bool can = false;
   Faults faults;
   long frames = 0;
 };
 
 bool every(long n, long count) { return n > 0 && count % n == 0; }
+
+constexpr canid_t kFromBench = 0x7E0, kToBench = 0x7E8;
+
+// As many CAN frames as the bytes need. A full queue is waited for: the loop has nothing else to do.
+void write_can(int fd, const std::vector<std::uint8_t>& bytes) {
+  for (std::size_t at = 0; at < bytes.size(); at += CAN_MAX_DLEN) {
+    can_frame frame{};
+    frame.can_id = kToBench;
+    frame.can_dlc = static_cast<std::uint8_t>(std::min<std::size_t>(CAN_MAX_DLEN, bytes.size() - at));
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), frame.can_dlc, frame.data);
+    while (::write(fd, &frame, sizeof frame) < 0 && errno == ENOBUFS) ::usleep(100);
+  }
+}
+
+ssize_t read_can(int fd, std::uint8_t* out) {
+  pollfd watched{.fd = fd, .events = POLLIN, .revents = 0};
+  can_frame frame{};
+  do {
+    if (::poll(&watched, 1, 5000) <= 0 || ::read(fd, &frame, sizeof frame) < 0) return -1;
+  } while (frame.can_id != kFromBench);
+  std::copy_n(frame.data, frame.can_dlc, out);
+  return frame.can_dlc;
+}
+
+int open_can(const char* interface) {
+  const int fd = ::socket(PF_CAN, SOCK_RAW, CAN_RAW);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(::if_nametoindex(interface));
+  if (fd < 0 || ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return -1;
+  return fd;
+}
 
 void write_port(void* context, const std::uint8_t* bytes, std::size_t count) {
   Port& port = *static_cast<Port*>(context);
@@ -43,6 +84,8 @@ void write_port(void* context, const std::uint8_t* bytes, std::size_t count) {
   std::vector<std::uint8_t> out(bytes, bytes + count);
   if (every(f.corrupt, n)) out[count / 2] ^= 0x10;
   if (every(f.cut, n)) out.resize(count - 3);
+  if (f.exit_after > 0 && n > f.exit_after) std::exit(0);
+  if (port.can) return write_can(port.fd, out);
   if (::write(port.fd, out.data(), out.size()) < 0) std::perror("emulated_board: write");
 }
 
@@ -141,20 +184,25 @@ int main(int argc, char** argv) {
     if (word == "--corrupt") port.faults.corrupt = value;
     if (word == "--cut") port.faults.cut = value;
     if (word == "--skip") port.faults.skip = value;
+    if (word == "--can") {
+      port.fd = open_can(argv[i]);
+      port.can = true;
+    }
+    if (word == "--exit-after") port.faults.exit_after = value;
     if (word == "--silent-after") port.faults.silent_after = value;
   }
-  port.fd = open_pty();
+  if (!port.can) port.fd = open_pty();
   if (port.fd < 0) return 3;
-  std::printf("%s\n", ::ptsname(port.fd));
+  if (!port.can) std::printf("%s\n", ::ptsname(port.fd));
   std::fflush(stdout);
   Board board;
   omnihil_remote_init(&board.remote, "emulated board", "", 1000, write_port, &port);
   bool seen = false;
   std::uint8_t bytes[512];
   while (true) {
-    const ssize_t n = ::read(port.fd, bytes, sizeof bytes);
+    const ssize_t n = port.can ? read_can(port.fd, bytes) : ::read(port.fd, bytes, sizeof bytes);
     if (n <= 0) {  // EIO: nobody has it open, yet or any more
-      if (seen) return 0;
+      if (seen || port.can) return 0;
       ::usleep(1000);
       continue;
     }
