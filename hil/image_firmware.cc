@@ -36,9 +36,19 @@ class ImageFirmware final : public Firmware {
   MotorDrive motor_tick(const MotorSensors& sensors) override { return mcu_.motor_tick(sensors); }
   std::uint64_t missed_control_periods() const override { return mcu_.missed_control_periods(); }
   std::string_view failure() const override {
-    return mcu_.board().machine().stopped() ? "the emulated core has locked up" : std::string_view{};
+    for (int b = 0; b < mcu_.boards(); ++b) {
+      if (mcu_.board(b).machine().stopped()) return "the emulated core has locked up";
+    }
+    return {};
   }
-  std::vector<std::string> report() const override { return board_report(mcu_.board(), image_->elf); }
+  std::vector<std::string> report() const override {
+    std::vector<std::string> lines;
+    for (int b = 0; b < mcu_.boards(); ++b) {
+      const std::string whose = mcu_.boards() > 1 ? "board " + std::to_string(b) + ": " : "";
+      for (const std::string& line : board_report(mcu_.board(b), image_->elf)) lines.push_back(whose + line);
+    }
+    return lines;
+  }
 
  private:
   std::shared_ptr<const Image> image_;

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "hil/image_firmware.h"
 #include "hil/model_store.h"
+#include "hil/session_setup.h"
 #include "tests/boards/motor_on_board.h"
 #include "tests/boards/third_party.h"
 
@@ -24,6 +26,10 @@ std::vector<std::uint8_t> motion_command(unsigned control_type, float setpoint) 
 
 struct AteamWheel : ThirdPartyImage {
   AteamWheel() : ThirdPartyImage("ateam-wheel.elf", "ateam_wheel_f031.toml") {}
+  void SetUp() override {
+    ThirdPartyImage::SetUp();
+    if (spec_) spec_->radio_via = "USART1";  // here the test is the main board
+  }
   // The command each 10 ms up to `end_ns`; replies as they come.
   std::vector<std::vector<std::uint8_t>> talk(mcu::McuBoard& board, const std::vector<std::uint8_t>& command,
                                               std::int64_t end_ns) {
@@ -162,6 +168,42 @@ TEST_F(AteamWheel, AnswersWithItsGains) {
   EXPECT_EQ(from_bytes<float>(reply, 24), 0.1f);
   EXPECT_EQ(from_bytes<float>(reply, 28), 20.0f);
   EXPECT_EQ(from_bytes<float>(reply, 32), 1.0f);
+}
+
+// Four of them in a robot, told by the main board's packets what the host's body velocity asks of each wheel.
+TEST_F(AteamWheel, SlowFourBoardsDriveTheRobotWithinThreePercent) {
+  SessionSetup setup;
+  setup.model = load_robot_model("ateam_2025", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
+  setup.radio_format = "ulaval-hermes";
+  setup.robot_ids = {0};
+  setup.plant.physics = Physics::kPlanar;
+  Session session(session_config(setup), image_firmware(third_party_image(image_file_), board_file_));
+  constexpr double kForward_m_s = 0.8, kLeft_m_s = 0.3, kAngle_deg[] = {60, 135, 225, 300}, kRadius_m = 0.030;
+  const auto move = hermes_packet("SPEED_MOVE", {{"vx", kForward_m_s}, {"vy", kLeft_m_s}});
+  double forward_m_s = 0.0, left_m_s = 0.0, wheel_rad_s[kWheels] = {};
+  constexpr int kSteps = 4000, kLast = 1000;
+  for (int i = 0; i < kSteps; ++i) {
+    std::vector<std::uint8_t> out;
+    session.step(i % 20 == 0 && i > 200 ? move : std::vector<std::uint8_t>{}, out);
+    if (i < kSteps - kLast) continue;
+    const RobotTruth t = session.plant().truth(0);
+    forward_m_s += t.v_forward_m_s / kLast;
+    left_m_s += t.v_left_m_s / kLast;
+    for (std::size_t w = 0; w < kWheels; ++w) wheel_rad_s[w] += t.omega_wheel_rad_s[w] / kLast;
+  }
+  std::printf("commanded %.1f %.1f m/s: reached %.3f %.3f m/s, wheels", kForward_m_s, kLeft_m_s, forward_m_s,
+              left_m_s);
+  const double size_m_s = std::hypot(kForward_m_s, kLeft_m_s);
+  EXPECT_NEAR(forward_m_s, kForward_m_s, 0.03 * size_m_s);
+  EXPECT_NEAR(left_m_s, kLeft_m_s, 0.03 * size_m_s);
+  for (std::size_t w = 0; w < kWheels; ++w) {
+    const double angle_rad = kAngle_deg[w] * std::numbers::pi / 180;
+    const double commanded_rad_s =
+        (-kForward_m_s * std::sin(angle_rad) + kLeft_m_s * std::cos(angle_rad)) / kRadius_m;
+    EXPECT_NEAR(wheel_rad_s[w], commanded_rad_s, 0.03 * std::abs(commanded_rad_s)) << w;
+    std::printf(" %+.2f (%+.2f)", wheel_rad_s[w], commanded_rad_s);
+  }
+  std::printf(" rad/s\n");
 }
 
 }  // namespace

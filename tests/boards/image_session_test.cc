@@ -1,9 +1,11 @@
 // An image of our own on an emulated board drives the simulated robot, in lock-step.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 #include "hil/firmware_host/open_firmware.h"
@@ -54,6 +56,26 @@ TEST_F(ImageOnBoard, GivesTheSameBitsWhateverTheLoopStep) {
     const RobotTruth other = run(step_ns, 0.3);
     EXPECT_EQ(one.omega_rotor_rad_s, other.omega_rotor_rad_s);
     EXPECT_EQ(one.theta_rotor_rad, other.theta_rotor_rad);
+  }
+}
+
+// The image controls four wheels; here each of four boards has but its first motor wired.
+TEST_F(ImageOnBoard, SeveralBoardsDriveOneWheelEach) {
+  std::ifstream file(kBoard);
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  const std::size_t second = text.find("[[motor]]", text.find("[[motor]]") + 1),
+                    end = text.find("[[analog]]");
+  text.erase(second, end - second);
+  text.insert(text.find("coupling_us"), "boards_per_robot = 4\n");
+  const auto path =
+      std::filesystem::temp_directory_path() / ("omnihil-boards-" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(path) << text;
+  Session session(one_robot(1'000'000), image_firmware(kImage, path.string()));
+  std::filesystem::remove(path);
+  std::vector<std::uint8_t> out;
+  while (session.now_ns() < 1'500'000'000) session.step({}, out);
+  for (const double omega : session.plant().truth(0).omega_rotor_rad_s) {
+    EXPECT_NEAR(omega, kRotor_rad_s, 0.01 * kRotor_rad_s);
   }
 }
 

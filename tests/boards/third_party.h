@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/board/mcu_firmware.h"
+#include "protocols/radio_format.h"
 
 namespace omnihil {
 
@@ -50,6 +51,19 @@ T from_bytes(const std::vector<std::uint8_t>& bytes, std::size_t at) {
 template <typename T>
 void put_bytes(std::vector<std::uint8_t>& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+// What the host writes to its dongle for robot 0.
+inline std::vector<std::uint8_t> hermes_packet(
+    const std::string& name, const std::vector<std::pair<std::string, double>>& fields = {}) {
+  const RadioFormat* format = find_radio_format("ulaval-hermes");
+  Values values;
+  values.message = format->find(name);
+  values.set("robot", 0);
+  for (const auto& [field, value] : fields) values.set(field, value);
+  std::vector<std::uint8_t> bytes;
+  EXPECT_EQ(format->encode(values, bytes).error, PacketError::kNone) << name;
+  return bytes;
 }
 
 class ThirdPartyImage : public testing::Test {

@@ -7,24 +7,10 @@
 #include "hil/image_firmware.h"
 #include "hil/model_store.h"
 #include "hil/session_setup.h"
-#include "protocols/radio_format.h"
 #include "tests/boards/third_party.h"
 
 namespace omnihil {
 namespace {
-
-using Fields = std::vector<std::pair<std::string, double>>;
-
-std::vector<std::uint8_t> packet(const std::string& name, const Fields& fields = {}) {
-  const RadioFormat* format = find_radio_format("ulaval-hermes");
-  Values values;
-  values.message = format->find(name);
-  values.set("robot", 0);
-  for (const auto& [field, value] : fields) values.set(field, value);
-  std::vector<std::uint8_t> bytes;
-  EXPECT_EQ(format->encode(values, bytes).error, PacketError::kNone) << name;
-  return bytes;
-}
 
 struct UlavalRobot : ThirdPartyImage {
   UlavalRobot() : ThirdPartyImage("ulaval-f407.elf", "ulaval_delta_f407.toml") {}
@@ -61,8 +47,8 @@ struct Move {
 TEST_F(UlavalRobot, ReachesEveryCommandedSpeedWithinThreePercent) {
   constexpr double kRadius_m = 0.0785, kWheelRadius_m = 0.033, kAngle_deg[] = {60, 141, -141, -60};
   for (const Move& m : {Move{1.0, 0, 0}, Move{0, 0.6, 0}, Move{0, 0, 10.0}, Move{-0.7, -0.4, 0}}) {
-    const auto move =
-        packet("SPEED_MOVE", {{"vx", m.v_forward_m_s}, {"vy", m.v_left_m_s}, {"vtheta", m.omega_body_rad_s}});
+    const auto move = hermes_packet(
+        "SPEED_MOVE", {{"vx", m.v_forward_m_s}, {"vy", m.v_left_m_s}, {"vtheta", m.omega_body_rad_s}});
     run(2.5, move);
     Move mean{0, 0, 0};
     double wheel_rad_s[kWheels] = {};
@@ -95,7 +81,7 @@ TEST_F(UlavalRobot, ReachesEveryCommandedSpeedWithinThreePercent) {
 }
 
 TEST_F(UlavalRobot, BrakesWhenTheRadioFallsSilent) {
-  run(1.5, packet("SPEED_MOVE", {{"vx", 1.0}}));
+  run(1.5, hermes_packet("SPEED_MOVE", {{"vx", 1.0}}));
   EXPECT_GT(session_->plant().truth(0).v_forward_m_s, 0.9);
   run(2.5);
   EXPECT_LT(std::abs(session_->plant().truth(0).v_forward_m_s), 0.02);
@@ -110,7 +96,7 @@ TEST_F(UlavalRobot, AnswersItsBatteryVoltageByRadio) {
     std::vector<std::uint8_t> bytes;
   } replies;
   session_->set_observer(&replies);
-  session_->step(packet("GET_BATTERIE"), out_);
+  session_->step(hermes_packet("GET_BATTERIE"), out_);
   run(0.1);
   const RadioFormat* format = find_radio_format("ulaval-hermes");
   ASSERT_FALSE(replies.bytes.empty());

@@ -99,6 +99,58 @@ pole_pairs = 8)");
   EXPECT_TRUE(spec->motors[1].hall_inverted);
 }
 
+const std::string kWheelBoard = R"(format = "omnihil-board/1"
+name = "test"
+chip = "STM32F303RB"
+boards_per_robot = 2
+
+[[motor]]
+wheel = 0
+pwm = ["TIM1.1", "TIM1.2", "TIM1.3"]
+
+[[motor]]
+wheel = 1
+pwm = ["TIM8.1", "TIM8.2", "TIM8.3"]
+
+[[flash]]
+address = 0x0801F000
+words = [7, 8]
+board_number_at = 1
+
+[wheel_commands]
+dialect = "ibis-orion-can"
+via = "CAN1"
+reversed = true
+)";
+
+TEST(BoardReader, ReadsABoardThatIsSeveralTimesInARobot) {
+  std::vector<BoardProblem> problems;
+  const auto spec = read_board(kWheelBoard, "b.toml", problems);
+  for (const BoardProblem& p : problems) ADD_FAILURE() << p.text();
+  ASSERT_TRUE(spec);
+  EXPECT_EQ(spec->boards_per_robot, 2);
+  EXPECT_EQ(spec->flash[0].board_number_at, 1);
+  EXPECT_NE(spec->wheel_commands.dialect, nullptr);
+  EXPECT_EQ(spec->wheel_commands.via, "CAN1");
+  EXPECT_EQ(spec->wheel_commands.sign, -1.0);
+}
+
+TEST(BoardReader, NamesWhatIsWrongWithWheelBoards) {
+  const char* const kCases[][3] = {{"boards_per_robot = 2", "boards_per_robot = 3", "boards_per_robot"},
+                                   {"wheel = 1", "wheel = 3", "boards_per_robot"},
+                                   {"board_number_at = 1", "board_number_at = 2", "flash[0].board_number_at"},
+                                   {"ibis-orion-can", "ibis", "wheel_commands.dialect"},
+                                   {"\"CAN1\"", "\"USART1\"", "wheel_commands.via"},
+                                   {"ibis-orion-can", "ateam-stspin-2025", "wheel_commands.via"}};
+  for (const auto& [from, to, key] : kCases) {
+    std::vector<BoardProblem> problems;
+    EXPECT_FALSE(read_board(replaced(kWheelBoard, from, to), "b.toml", problems)) << to;
+    ASSERT_EQ(problems.size(), 1u) << to;
+    EXPECT_NE(problems[0].text().find(key), std::string::npos) << problems[0].text();
+    EXPECT_GT(problems[0].line, 0) << to;
+  }
+}
+
 struct Broken {
   const char *from, *to, *key, *what;
 };

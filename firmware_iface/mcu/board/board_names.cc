@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
 #include "firmware_iface/mcu/stm32/spi.h"
 #include "firmware_iface/mcu/stm32/timer.h"
@@ -80,6 +81,7 @@ bool BoardNames::has_adc(const std::string& name) const { return chip_->find<Adc
 bool BoardNames::has_spi(const std::string& name) const { return chip_->find<Spi>(name) != nullptr; }
 bool BoardNames::has_i2c(const std::string& name) const { return chip_->find<I2c>(name) != nullptr; }
 bool BoardNames::has_serial(const std::string& name) const { return chip_->find<Usart>(name) != nullptr; }
+bool BoardNames::has_can(const std::string& name) const { return chip_->find<CanPort>(name) != nullptr; }
 std::string BoardNames::timers() const { return join(chip_->names<Timer>()); }
 std::string BoardNames::adcs() const { return join(chip_->names<Adc>()); }
 std::string BoardNames::serials() const { return join(chip_->names<Usart>()); }

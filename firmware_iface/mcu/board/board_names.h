@@ -28,6 +28,7 @@ class BoardNames {
   bool has_spi(const std::string& name) const;
   bool has_i2c(const std::string& name) const;
   bool has_serial(const std::string& name) const;
+  bool has_can(const std::string& name) const;
   std::string timers() const;  // "TIM1, TIM2, …"
   std::string buses() const;
   std::string adcs() const;

@@ -7,6 +7,7 @@
 #include "firmware_iface/mcu/board/board_keys.h"
 #include "firmware_iface/mcu/board/board_names.h"
 #include "firmware_iface/mcu/board/board_spec.h"
+#include "firmware_iface/mcu/board/wheel_dialect.h"
 #include "firmware_iface/mcu/stm32/device.h"
 #include "firmware_iface/robot_io.h"
 
@@ -31,6 +32,7 @@ class Reader {
   void read_analog(const toml::table& t, const std::string& path);
   void read_flash(const toml::table& t, const std::string& path);
   void read_radio();
+  void read_wheel_commands();
   std::optional<PinName> pin(const toml::table& t, const std::string& path, std::string_view key);
   std::optional<PinName> pin_word(const toml::table& t, const std::string& path, std::string_view key,
                                   const std::string& word);
@@ -65,7 +67,8 @@ std::optional<PinName> Reader::pin(const toml::table& t, const std::string& path
 void Reader::read_top() {
   keys_.only(top_, "",
              {"format", "name", "source", "chip", "crystal_Hz", "cpi_scale", "coupling_us", "adc_reference_V",
-              "control_timer", "radio", "motor", "device", "analog", "pin", "flash"});
+              "control_timer", "boards_per_robot", "wheel_commands", "radio", "motor", "device", "analog",
+              "pin", "flash"});
   if (const auto format = keys_.text(top_, "", "format"); !format || *format != kFormat) {
     keys_.wrong(top_, "", "format", format ? "unknown" : "missing", kFormat);
   }
@@ -262,7 +265,7 @@ void Reader::read_analog(const toml::table& t, const std::string& path) {
 }
 
 void Reader::read_flash(const toml::table& t, const std::string& path) {
-  keys_.only(t, path, {"address", "words"});
+  keys_.only(t, path, {"address", "words", "board_number_at"});
   FlashEntry flash;
   std::uint32_t base = 0, bytes = 0xFFFFFFFF;
   for (const MemorySpec& memory : spec_.chip != nullptr ? spec_.chip->memories : std::vector<MemorySpec>{}) {
@@ -291,6 +294,11 @@ void Reader::read_flash(const toml::table& t, const std::string& path) {
       keys_.wrong(t, path, "words", "reach beyond the end of flash", fmt::format("up to 0x{:08x}", end));
     }
   }
+  const auto last_word = static_cast<std::int64_t>(flash.words.size()) - 1;
+  if (last_word >= 0) {
+    flash.board_number_at =
+        static_cast<int>(keys_.whole(t, path, "board_number_at", 0, last_word).value_or(-1));
+  }
   spec_.flash.push_back(std::move(flash));
 }
 
@@ -313,6 +321,45 @@ void Reader::read_radio() {
     keys_.wrong(
         *t, "radio", "via", t->contains("via") ? "no radio and no serial port of that name" : "missing",
         "a [[device]] that is a radio, or " + (names_ ? names_->serials() : std::string("a serial port")));
+  }
+}
+
+// Wheels 0 to n - 1 on the first board, n to 2 n - 1 on the second, and so on.
+void Reader::read_wheel_commands() {
+  const auto motors = static_cast<int>(spec_.motors.size());
+  const auto boards = keys_.whole(top_, "", "boards_per_robot", 1, kWheels);
+  spec_.boards_per_robot = static_cast<int>(boards.value_or(1));
+  if (spec_.boards_per_robot > 1 && spec_.boards_per_robot * motors > kWheels) {
+    keys_.wrong(top_, "", "boards_per_robot", "more wheels than a robot has",
+                fmt::format("{} wheels", kWheels));
+  }
+  for (const MotorEntry& motor : spec_.motors) {
+    if (spec_.boards_per_robot == 1 || motor.wheel < motors) continue;
+    keys_.wrong(top_, "", "boards_per_robot",
+                fmt::format("the board's motors are not wheels 0 to {}", motors - 1),
+                "wheels counted from 0 on each board");
+  }
+  const toml::node* node = top_.get("wheel_commands");
+  if (node == nullptr) return;
+  const toml::table* t = node->as_table();
+  if (t == nullptr) return keys_.wrong(top_, "", "wheel_commands", "not a table", "[wheel_commands]");
+  if (top_.contains("radio")) keys_.wrong(top_, "", "wheel_commands", "beside [radio]", "one of the two");
+  keys_.only(*t, "wheel_commands", {"dialect", "via", "reversed"});
+  std::string dialects;
+  for (const WheelDialect* d : all_wheel_dialects())
+    dialects += (dialects.empty() ? "" : ", ") + std::string(d->name);
+  WheelCommands& commands = spec_.wheel_commands;
+  commands.dialect = find_wheel_dialect(keys_.text(*t, "wheel_commands", "dialect").value_or(""));
+  if (commands.dialect == nullptr) {
+    keys_.wrong(*t, "wheel_commands", "dialect", t->contains("dialect") ? "unknown" : "missing", dialects);
+  }
+  commands.via = keys_.text(*t, "wheel_commands", "via").value_or("");
+  commands.sign = keys_.flag(*t, "wheel_commands", "reversed").value_or(false) ? -1.0 : 1.0;
+  if (commands.dialect == nullptr || !names_) return;
+  const bool can = commands.dialect->on_can;
+  if (can ? !names_->has_can(commands.via) : !names_->has_serial(commands.via)) {
+    keys_.wrong(*t, "wheel_commands", "via", can ? "not a CAN of the chip" : "not a serial port of the chip",
+                can ? "CAN1, … as the chip has them" : names_->serials());
   }
 }
 
@@ -339,6 +386,7 @@ BoardSpec Reader::read() {
     read_pin(*t, path);
   }
   read_radio();
+  read_wheel_commands();
   return std::move(spec_);
 }
 }  // namespace

@@ -21,6 +21,7 @@ namespace omnihil::mcu {
 
 struct ChipSpec;
 struct DeviceKind;
+struct WheelDialect;
 
 struct PinName {  // "PA3"
   char port = 'A';
@@ -82,6 +83,14 @@ struct PinEntry {
 struct FlashEntry {
   std::uint32_t address = 0;
   std::vector<std::uint32_t> words;
+  int board_number_at = -1;  // not negative: this word is the board's number instead
+};
+
+// A board that drives wheels as the robot's main board tells it, which the bench stands in for.
+struct WheelCommands {
+  const WheelDialect* dialect = nullptr;  // null: none
+  std::string via;                        // a serial port or a CAN
+  double sign = 1.0;                      // -1: its forward is the plant's backward
 };
 
 struct BoardSpec {
@@ -94,6 +103,8 @@ struct BoardSpec {
   std::string control_timer;  // whose update starts a control period; empty: not said
   std::string radio_format;   // empty: none
   std::string radio_via;      // a device's name, or a serial port
+  int boards_per_robot = 1;   // of several, each drives the next wheels
+  WheelCommands wheel_commands;
   std::vector<MotorEntry> motors;
   std::vector<DeviceEntry> devices;
   std::vector<AnalogEntry> analog;

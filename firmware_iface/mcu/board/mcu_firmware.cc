@@ -3,17 +3,34 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "firmware_iface/mcu/board/wheel_dialect.h"
+#include "firmware_iface/mcu/stm32/usart.h"
 
 namespace omnihil::mcu {
 
+namespace {
+// The board's number in the words that are preset after the image.
+BoardSpec numbered(BoardSpec spec, int number) {
+  for (FlashEntry& entry : spec.flash) {
+    if (entry.board_number_at < 0) continue;
+    entry.words[static_cast<std::size_t>(entry.board_number_at)] = static_cast<std::uint32_t>(number);
+  }
+  return spec;
+}
+}  // namespace
+
 McuFirmware::McuFirmware(const BoardSpec& spec, const ElfImage& image, const RobotConfig& config)
-    : name_(fmt::format("image on {} ({})", spec.name, spec.chip->name)),
-      config_(config),
-      board_(spec, image) {
-  for (const PinEntry& entry : spec.pins) {  // the switches that say which robot this is
-    if (entry.robot_id_bit < 0) continue;
-    const bool level = (config.robot_id >> entry.robot_id_bit & 1u) != 0;
-    board_.chip().port(entry.pin.port)->drive(entry.pin.pin, level);
+    : name_(fmt::format("image on {} ({})", spec.name, spec.chip->name)), config_(config), spec_(spec) {
+  if (spec.boards_per_robot > 1) wheels_per_board_ = static_cast<int>(spec.motors.size());
+  for (int b = 0; b < spec.boards_per_robot; ++b) {
+    boards_.push_back(std::make_unique<McuBoard>(numbered(spec, b), image));
+    for (const PinEntry& entry : spec.pins) {  // the switches that say which robot this is
+      if (entry.robot_id_bit < 0) continue;
+      const bool level = (config.robot_id >> entry.robot_id_bit & 1u) != 0;
+      boards_.back()->chip().port(entry.pin.port)->drive(entry.pin.pin, level);
+    }
   }
   for (const MotorEntry& motor : spec.motors) phases_ = phases_ || motor.pwm.size() == 3;
   world_.gear_ratio = config.gear_ratio;
@@ -21,16 +38,77 @@ McuFirmware::McuFirmware(const BoardSpec& spec, const ElfImage& image, const Rob
   world_.bus_voltage_V = config.bus_voltage_nominal_V;
 }
 
+MotorWire* McuFirmware::wire(int wheel) const {
+  const auto board = static_cast<std::size_t>(wheel / wheels_per_board_);
+  return board < boards_.size() ? boards_[board]->wire(wheel % wheels_per_board_) : nullptr;
+}
+
 void McuFirmware::radio_receive(std::span<const std::uint8_t> frame, std::int64_t) {
-  board_.radio_receive(frame);
+  for (const auto& board : boards_) board->radio_receive(frame);
 }
 
 std::size_t McuFirmware::radio_transmit(std::span<std::uint8_t> out) {
   std::vector<std::uint8_t> frame;
-  if (!board_.radio_transmit(frame)) return 0;
-  const std::size_t n = std::min(frame.size(), out.size());
-  std::copy_n(frame.begin(), n, out.begin());
-  return n;
+  for (const auto& board : boards_) {
+    if (!board->radio_transmit(frame)) continue;
+    const std::size_t n = std::min(frame.size(), out.size());
+    std::copy_n(frame.begin(), n, out.begin());
+    return n;
+  }
+  return 0;
+}
+
+void McuFirmware::command(const RobotCommand& command, std::int64_t now_ns) {
+  const bool speeds = command.mode != OMNIHIL_MODE_WHEEL_DUTY;
+  if (spec_.wheel_commands.dialect == nullptr || !speeds) ++commands_ignored_;
+  command_ = command;
+  command_at_ns_ = now_ns;
+  commanded_ = speeds;
+}
+
+// Eq. (5): rim speed = -v_x sin a + v_y cos a + R omega.
+std::array<double, kWheels> McuFirmware::commanded_wheels_rad_s(std::int64_t now_ns) const {
+  constexpr std::int64_t kForget_ns = 250'000'000;
+  std::array<double, kWheels> omega_rad_s{};
+  if (!commanded_ || now_ns - command_at_ns_ > kForget_ns) return omega_rad_s;
+  for (std::size_t w = 0; w < kWheels; ++w) {
+    if (command_.mode == OMNIHIL_MODE_WHEEL_SPEED) omega_rad_s[w] = command_.omega_wheel_rad_s[w];
+    if (command_.mode != OMNIHIL_MODE_BODY_VELOCITY) continue;
+    const double angle_rad = config_.wheel_angle_rad[w];
+    const double rim_m_s = -command_.v_forward_m_s * std::sin(angle_rad) +
+                           command_.v_left_m_s * std::cos(angle_rad) +
+                           command_.omega_body_rad_s * config_.wheel_center_radius_m;
+    omega_rad_s[w] = rim_m_s / config_.wheel_radius_m;
+  }
+  return omega_rad_s;
+}
+
+// What the main board says to each of its boards, on its own period.
+void McuFirmware::speak(std::int64_t now_ns) {
+  const WheelCommands& to = spec_.wheel_commands;
+  if (to.dialect == nullptr || now_ns % to.dialect->period_ns != 0) return;
+  std::array<double, kWheels> speeds_rad_s = commanded_wheels_rad_s(now_ns);
+  for (double& speed : speeds_rad_s) speed *= to.sign * config_.gear_ratio;  // of the motor
+  for (std::size_t b = 0; b < boards_.size(); ++b) {
+    const auto n = std::min(static_cast<std::size_t>(wheels_per_board_), spec_.motors.size());
+    WheelWords words;
+    to.dialect->speak(static_cast<int>(b), std::span(speeds_rad_s).subspan(b * n, n), words);
+    McuBoard& board = *boards_[b];
+    if (!words.serial.empty()) board.chip().find<Usart>(to.via)->feed(words.serial, board.now_ns());
+    for (const CanFrame& frame : words.can) board.chip().find<CanPort>(to.via)->receive(frame);
+  }
+}
+
+void McuFirmware::show_world() {
+  for (std::size_t b = 0; b < boards_.size(); ++b) {
+    WorldState seen = world_;
+    for (std::size_t w = b * static_cast<std::size_t>(wheels_per_board_), i = 0; w < kWheels; ++w, ++i) {
+      seen.theta_rotor_rad[i] = world_.theta_rotor_rad[w];
+      seen.omega_rotor_rad_s[i] = world_.omega_rotor_rad_s[w];
+      seen.motor_current_A[i] = world_.motor_current_A[w];
+    }
+    boards_[b]->set_world(seen);
+  }
 }
 
 // The world at this tick. Where the sensed count differs from the exact one (an effect of the model), the
@@ -52,11 +130,12 @@ void McuFirmware::look(const RobotSensors& sensors) {
   world_.gyro_z_rad_s = sensors.gyro_z_rad_s;
   world_.accel_x_m_s2 = sensors.accel_x_m_s2;
   world_.accel_y_m_s2 = sensors.accel_y_m_s2;
-  board_.set_world(world_);
+  show_world();
 }
 
 RobotDrive McuFirmware::tick(const RobotSensors& sensors) {
   look(sensors);
+  speak(world_.at_ns);
   RobotDrive drive{};
   feedback_ = {};
   feedback_.now_us = sensors.now_us;
@@ -66,19 +145,19 @@ RobotDrive McuFirmware::tick(const RobotSensors& sensors) {
   }
   if (phases_) {  // the image runs on from PWM period to PWM period
     for (std::size_t w = 0; w < kWheels; ++w) {
-      if (board_.wire(static_cast<int>(w)) != nullptr) drive.mode[w] = OMNIHIL_DRIVE_PHASES;
+      if (wire(static_cast<int>(w)) != nullptr) drive.mode[w] = OMNIHIL_DRIVE_PHASES;
     }
     return drive;
   }
-  const std::int64_t from_ns = world_.at_ns, to_ns = from_ns + board_.spec().coupling_ns;
+  const std::int64_t from_ns = world_.at_ns, to_ns = from_ns + spec_.coupling_ns;
   for (int w = 0; w < kWheels; ++w) {
-    if (MotorWire* wire = board_.wire(w)) wire->begin(from_ns);
+    if (MotorWire* motor = wire(w)) motor->begin(from_ns);
   }
-  board_.run_until_ns(to_ns);
+  for (const auto& board : boards_) board->run_until_ns(to_ns);
   for (int w = 0; w < kWheels; ++w) {
-    MotorWire* wire = board_.wire(w);
-    if (wire == nullptr) continue;
-    const BridgeDrive mean = wire->end(to_ns);
+    MotorWire* motor = wire(w);
+    if (motor == nullptr) continue;
+    const BridgeDrive mean = motor->end(to_ns);
     const auto i = static_cast<std::size_t>(w);
     drive.mode[i] = mean.driven ? OMNIHIL_DRIVE_DUTY : OMNIHIL_DRIVE_COAST;
     drive.duty_ratio[i] = mean.duty_ratio;
@@ -89,21 +168,23 @@ RobotDrive McuFirmware::tick(const RobotSensors& sensors) {
 
 MotorDrive McuFirmware::motor_tick(const MotorSensors& sensors) {
   const auto now_ns = static_cast<std::int64_t>(sensors.now_ns);
-  board_.run_until_ns(now_ns);
+  for (const auto& board : boards_) board->run_until_ns(now_ns);
   world_.bus_voltage_V = sensors.bus_voltage_V;
-  board_.set_world(world_);
+  show_world();
   MotorDrive drive{};
   for (int w = 0; w < kWheels; ++w) {
-    if (const MotorWire* wire = board_.wire(w)) {
-      wire->legs(drive.leg[static_cast<std::size_t>(w)], drive.leg_duty_ratio[static_cast<std::size_t>(w)]);
+    if (const MotorWire* motor = wire(w)) {
+      motor->legs(drive.leg[static_cast<std::size_t>(w)], drive.leg_duty_ratio[static_cast<std::size_t>(w)]);
     }
   }
   return drive;
 }
 
 std::uint64_t McuFirmware::missed_control_periods() const {
-  const std::string& name = board_.spec().control_timer;
-  return name.empty() ? 0 : board_.chip().find<Timer>(name)->updates_lost();
+  if (spec_.control_timer.empty()) return 0;
+  std::uint64_t missed = 0;
+  for (const auto& board : boards_) missed += board->chip().find<Timer>(spec_.control_timer)->updates_lost();
+  return missed;
 }
 
 std::vector<std::string> board_report(const McuBoard& board, const ElfImage& image) {

@@ -8,11 +8,15 @@
 // delay is added. The grid of ticks is absolute, so results do not depend on the loop step. Boards with
 // three-phase bridges set the legs at every PWM period (motor_tick()), from what their timers give at that
 // instant. Effects of the model on encoders act as the difference between sensed and exact counts at each
-// tick. Cannot represent: ripple within a coupling period, kicker and dribbler (they have no wires yet),
-// commands that do not come by radio (the image decodes frames itself).
+// tick. A robot may have several boards with the same image, each driving the next wheels. Commands reach the
+// image as radio frames, which it decodes itself, or as wheel speeds by eq. (5) in the words of its main
+// board (wheel_dialect.h); a command older than a quarter of a second is speed 0. Cannot represent: ripple
+// within a coupling period, kicker and dribbler (they have no wires yet), duties to boards that take wheel
+// commands.
 #pragma once
+#include <array>
 #include <cstdint>
-#include <deque>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,9 +33,9 @@ class McuFirmware final : public Firmware {
   McuFirmware(const BoardSpec& spec, const ElfImage& image, const RobotConfig& config);
 
   std::string_view name() const override { return name_; }
-  std::string_view radio_format() const override { return board_.spec().radio_format; }
-  std::int64_t control_period_ns() const override { return board_.spec().coupling_ns; }
-  void command(const RobotCommand&, std::int64_t) override { ++commands_ignored_; }
+  std::string_view radio_format() const override { return spec_.radio_format; }
+  std::int64_t control_period_ns() const override { return spec_.coupling_ns; }
+  void command(const RobotCommand& command, std::int64_t now_ns) override;
   void radio_receive(std::span<const std::uint8_t> frame, std::int64_t now_ns) override;
   std::size_t radio_transmit(std::span<std::uint8_t> out) override;
   bool set_gains(const RobotGains&) override { return false; }
@@ -44,16 +48,26 @@ class McuFirmware final : public Firmware {
   // Updates of the board's control timer that came before the image had taken the last one.
   std::uint64_t missed_control_periods() const override;
 
-  McuBoard& board() { return board_; }
-  const McuBoard& board() const { return board_; }
+  int boards() const { return static_cast<int>(boards_.size()); }
+  McuBoard& board(int i = 0) { return *boards_[static_cast<std::size_t>(i)]; }
+  const McuBoard& board(int i = 0) const { return *boards_[static_cast<std::size_t>(i)]; }
   std::uint64_t commands_ignored() const { return commands_ignored_; }
 
  private:
   void look(const RobotSensors& sensors);
+  void show_world();
+  void speak(std::int64_t now_ns);
+  std::array<double, kWheels> commanded_wheels_rad_s(std::int64_t now_ns) const;
+  MotorWire* wire(int wheel) const;  // of whichever board drives it; null: none
 
   std::string name_;
   RobotConfig config_;
-  McuBoard board_;
+  BoardSpec spec_;
+  int wheels_per_board_ = kWheels;
+  std::vector<std::unique_ptr<McuBoard>> boards_;
+  RobotCommand command_{};
+  std::int64_t command_at_ns_ = 0;
+  bool commanded_ = false;
   bool phases_ = false;
   RobotShafts exact_{};
   WorldState world_;
