@@ -14,7 +14,9 @@ float wheel_loop_update(wheel_loop* loop, const wheel_gains* gains, const motor_
   float rest_V =
       feedforward_V + gains->p_V_s_per_rad * error_rad_s - gains->d_V_s2_per_rad * input->accel_rad_s2;
 
-  float integral_V = clamp(loop->integral_V + gains->i_V_per_rad * error_rad_s * input->dt_s, input->bus_V);
+  float most_V =
+      input->integral_limit_ratio > 0.0f ? input->integral_limit_ratio * input->bus_V : input->bus_V;
+  float integral_V = clamp(loop->integral_V + gains->i_V_per_rad * error_rad_s * input->dt_s, most_V);
   float wanted_V = rest_V + integral_V;
   float given_V = clamp(wanted_V, input->bus_V);
   /* anti-windup: at the limit, keep the integral unless it leads away from the limit */

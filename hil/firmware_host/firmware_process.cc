@@ -11,8 +11,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <system_error>
+
+#include "hil/firmware_host/child_program.h"
 
 namespace omnihil {
 namespace {
@@ -21,36 +22,6 @@ constexpr const char* kProgram = "omnihil_firmware_process";
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::system_error(errno, std::generic_category(), "firmware process: " + what);
-}
-
-// Beside this program, where it was built, or on the search path.
-std::string program() {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path here = fs::read_symlink("/proc/self/exe", error);
-  for (const fs::path& path : {here.parent_path() / kProgram, fs::path(OMNIHIL_FIRMWARE_PROCESS)}) {
-    if (!error && ::access(path.c_str(), X_OK) == 0) return path.string();
-  }
-  return kProgram;
-}
-
-std::string signal_words(int signal) {
-  switch (signal) {
-    case SIGSEGV:
-      return "SIGSEGV, memory that is not its own";
-    case SIGBUS:
-      return "SIGBUS, memory that is not there";
-    case SIGFPE:
-      return "SIGFPE, division by zero of integers";
-    case SIGILL:
-      return "SIGILL, not an instruction";
-    case SIGABRT:
-      return "SIGABRT, it called abort()";
-    case SIGKILL:
-      return "it cut its connection to the bench";
-    default:
-      return fmt::format("signal {}", signal);
-  }
 }
 
 }  // namespace
@@ -74,7 +45,7 @@ void FirmwareProcess::start() {
   page_ = new (page) WirePage();
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) fail("socket pair");
-  const std::string path = program();
+  const std::string path = child_program(kProgram, OMNIHIL_FIRMWARE_PROCESS);
   const std::string socket_word = std::to_string(ends[1]), page_word = std::to_string(page_file);
   const char* words[] = {path.c_str(), socket_word.c_str(), page_word.c_str(), nullptr};
   child_ = ::fork();

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <map>
 
+#include "firmware_iface/mcu/avr/avr_image.h"
+#include "hil/avr/avr_firmware.h"
 #include "hil/firmware_host/guarded_firmware.h"
 #include "hil/image_firmware.h"
 #include "hil/reference_firmware.h"
@@ -30,15 +32,20 @@ std::string why_no_library(const std::string& text) {
                      head.e_type, head.e_machine);
 }
 
-// An image for a microcontroller: a 32-bit ARM executable.
-bool is_image(const std::string& file) {
+// An image for a microcontroller: a 32-bit ARM executable, an AVR one, or Intel HEX.
+enum class ImageKind { kNone, kArm, kAvr };
+ImageKind image_kind(const std::string& file) {
   std::string error;
   const std::string text = read_text_file(file, error);
+  if (!error.empty()) return ImageKind::kNone;
+  if (mcu::is_avr_image({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}))
+    return ImageKind::kAvr;
   Elf32_Ehdr head{};
-  if (!error.empty() || text.size() < sizeof head) return false;
+  if (text.size() < sizeof head) return ImageKind::kNone;
   std::memcpy(&head, text.data(), sizeof head);
-  return std::memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 && head.e_type == ET_EXEC &&
-         head.e_machine == EM_ARM;
+  const bool arm =
+      std::memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 && head.e_type == ET_EXEC && head.e_machine == EM_ARM;
+  return arm ? ImageKind::kArm : ImageKind::kNone;
 }
 
 std::vector<std::string> problems_of(const FirmwareChoice& choice) {
@@ -87,12 +94,13 @@ Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const Session
     }
     return remote_firmware({.url = choice.file, .lock_step = choice.virtual_time}, session);
   }
-  if (is_image(choice.file)) {
+  if (const ImageKind kind = image_kind(choice.file); kind != ImageKind::kNone) {
     if (choice.board.empty()) {
       throw_problems(
           {fmt::format("firmware {}: a microcontroller image; needs --board FILE beside it", choice.file)});
     }
-    return image_firmware(choice.file, choice.board);
+    return kind == ImageKind::kArm ? image_firmware(choice.file, choice.board)
+                                   : avr_firmware(choice.file, choice.board, choice.deadline_s);
   }
   throw_problems(problems_of(choice));
   return library_maker(choice, session);

@@ -8,6 +8,7 @@
 //   own
 //   serial:DEVICE[,BAUD], can:INTERFACE, canfd:INTERFACE  a board on the desk (hil/remote/remote_firmware.h)
 //   a microcontroller image (32-bit ARM executable) with its board file: emulated, one board per robot
+//   an AVR image (ELF or Intel HEX) with its board file: emulated by omnihil-avr, one board per wheel
 #pragma once
 #include <string>
 #include <vector>

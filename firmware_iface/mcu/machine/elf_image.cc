@@ -31,7 +31,7 @@ class Bytes {
   std::span<const std::uint8_t> file_;
 };
 
-void check_header(const Bytes& file, std::vector<std::string>& problems) {
+void check_header(const Bytes& file, ElfMachine machine, std::vector<std::string>& problems) {
   if (file.size() < kHeaderBytes) {
     problems.push_back(
         fmt::format("not an ELF file: {} bytes, the header alone has {}", file.size(), kHeaderBytes));
@@ -44,7 +44,11 @@ void check_header(const Bytes& file, std::vector<std::string>& problems) {
   if (file.u8(4) != 1) problems.push_back(fmt::format("ELF class is {}, allowed: 1 (32 bit)", file.u8(4)));
   if (file.u8(5) != 1)
     problems.push_back(fmt::format("byte order is {}, allowed: 1 (little-endian)", file.u8(5)));
-  if (file.u16(18) != 40) problems.push_back(fmt::format("machine is {}, allowed: 40 (ARM)", file.u16(18)));
+  const unsigned wanted = static_cast<unsigned>(machine);
+  if (file.u16(18) != wanted) {
+    problems.push_back(fmt::format("machine is {}, allowed: {} ({})", file.u16(18), wanted,
+                                   machine == ElfMachine::kArm ? "ARM" : "AVR"));
+  }
   if (file.u16(16) != 2) {
     problems.push_back(fmt::format("type is {}, allowed: 2 (executable); link it first", file.u16(16)));
   }
@@ -118,11 +122,12 @@ std::string ElfImage::function_at(std::uint32_t pc) const {
   return pc == after->first ? after->second : fmt::format("{}+0x{:x}", after->second, pc - after->first);
 }
 
-bool read_elf(std::span<const std::uint8_t> file, ElfImage& image, std::vector<std::string>& problems) {
+bool read_elf(std::span<const std::uint8_t> file, ElfImage& image, std::vector<std::string>& problems,
+              ElfMachine machine) {
   image = ElfImage{};
   const std::size_t before = problems.size();
   const Bytes bytes(file);
-  check_header(bytes, problems);
+  check_header(bytes, machine, problems);
   if (problems.size() != before) return false;
   image.entry = bytes.u32(24);
   std::vector<std::string> found;

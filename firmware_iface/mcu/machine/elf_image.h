@@ -5,8 +5,8 @@
 //   if (!read_elf(bytes, image, problems)) ...
 //   image.address_of("main")
 //
-// 32-bit, little-endian, ARM executables. Nothing in the file is trusted: every offset is checked. Symbols
-// are for reports and tests; a broken symbol table is no problem, the image then has fewer.
+// 32-bit, little-endian executables for ARM or AVR. Nothing in the file is trusted: every offset is checked.
+// Symbols are for reports and tests; a broken symbol table is no problem, the image then has fewer.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -33,6 +33,9 @@ struct ElfImage {
   std::string function_at(std::uint32_t pc) const;  // "name+0x12", empty when none is known
 };
 
-bool read_elf(std::span<const std::uint8_t> file, ElfImage& image, std::vector<std::string>& problems);
+enum class ElfMachine : std::uint16_t { kArm = 40, kAvr = 83 };
+
+bool read_elf(std::span<const std::uint8_t> file, ElfImage& image, std::vector<std::string>& problems,
+              ElfMachine machine = ElfMachine::kArm);
 
 }  // namespace omnihil::mcu

@@ -1,0 +1,26 @@
+// What an AVR is programmed with: flash and EEPROM, from an ELF file of avr-gcc or from Intel HEX.
+//
+//   AvrImage image;
+//   std::vector<std::string> problems;
+//   if (!read_avr_image(bytes, image, problems)) …
+//
+// ELF: segments by their load address, the EEPROM at 0x810000 as avr-gcc has it; fuses, lock bits and
+// signature are left out. HEX: flash alone, record types 0 to 5. Nothing in a file is trusted.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware_iface/mcu/machine/elf_image.h"
+
+namespace omnihil::mcu {
+
+struct AvrImage {
+  std::vector<ElfSegment> flash, eeprom;
+};
+
+bool is_avr_image(std::span<const std::uint8_t> file);
+bool read_avr_image(std::span<const std::uint8_t> file, AvrImage& image, std::vector<std::string>& problems);
+
+}  // namespace omnihil::mcu
