@@ -2,10 +2,9 @@
  * robot.
  *
  *   wheel_node_init(&node, &config, 2);                              // this board turns wheel 2
- *   for each byte of the radio: wheel_node_byte(&node, byte, now_us)
- *   every 2 ms: drive = wheel_node_control(&node, counts, bus_V)      // interrupt: 7000 cycles of an
- * ATmega328P if (node.plan_due) wheel_node_plan(&node)                        // main loop: 30000 cycles of
- * it
+ *   for each byte of the radio: wheel_node_byte(&node, byte);
+ *   every 2 ms: drive = wheel_node_control(&node, counts, bus_V);   // 9000 cycles of an ATmega328P
+ *   when node.plan_due: wheel_node_plan(&node);                     // 30000, in the main loop
  *
  * The same parts as the four-wheel firmware has (motion_reference, wheel_encoder, wheel_controller,
  * command_watchdog, radio_hermes), shared out so that an 8-bit core without a multiplier for floats keeps up:
