@@ -170,14 +170,35 @@ TEST_F(AteamWheel, AnswersWithItsGains) {
   EXPECT_EQ(from_bytes<float>(reply, 32), 1.0f);
 }
 
-// Four of them in a robot, told by the main board's packets what the host's body velocity asks of each wheel.
-TEST_F(AteamWheel, SlowFourBoardsDriveTheRobotWithinThreePercent) {
+SessionConfig ateam_robot(std::int64_t step_ns) {
   SessionSetup setup;
   setup.model = load_robot_model("ateam_2025", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
   setup.radio_format = "ulaval-hermes";
   setup.robot_ids = {0};
   setup.plant.physics = Physics::kPlanar;
-  Session session(session_config(setup), image_firmware(third_party_image(image_file_), board_file_));
+  setup.step_ns = step_ns;
+  return session_config(setup);
+}
+
+TEST_F(AteamWheel, SlowFourBoardsGiveTheSameBitsWhateverTheLoopStep) {
+  std::vector<RobotTruth> ends;
+  for (const std::int64_t step_ns : {1'000'000, 1'000'000, 5'000'000}) {
+    Session session(ateam_robot(step_ns), image_firmware(third_party_image(image_file_), board_file_));
+    std::vector<std::uint8_t> out;
+    while (session.now_ns() < 300'000'000) {
+      const bool says = session.now_ns() == 50'000'000;
+      session.step(says ? hermes_packet("SPEED_MOVE", {{"vx", 1.0}}) : std::vector<std::uint8_t>{}, out);
+    }
+    ends.push_back(session.plant().truth(0));
+    EXPECT_NE(ends.back().omega_rotor_rad_s[0], 0.0);
+    EXPECT_EQ(ends.back().omega_rotor_rad_s, ends.front().omega_rotor_rad_s) << step_ns;
+    EXPECT_EQ(ends.back().theta_rotor_rad, ends.front().theta_rotor_rad) << step_ns;
+  }
+}
+
+// Four of them in a robot, told by the main board's packets what the host's body velocity asks of each wheel.
+TEST_F(AteamWheel, SlowFourBoardsDriveTheRobotWithinThreePercent) {
+  Session session(ateam_robot(1'000'000), image_firmware(third_party_image(image_file_), board_file_));
   constexpr double kForward_m_s = 0.8, kLeft_m_s = 0.3, kAngle_deg[] = {60, 135, 225, 300}, kRadius_m = 0.030;
   const auto move = hermes_packet("SPEED_MOVE", {{"vx", kForward_m_s}, {"vy", kLeft_m_s}});
   double forward_m_s = 0.0, left_m_s = 0.0, wheel_rad_s[kWheels] = {};

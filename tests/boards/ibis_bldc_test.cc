@@ -111,6 +111,39 @@ TEST_F(IbisBoard, ACommandOfTheFirstMotorAloneIsNeverTaken) {
   EXPECT_NE(duty(), 900u);
 }
 
+// The robot's two boards differ in the number in their flash alone: each takes the commands of its own
+// motors, and the same command at the same angle gives the same registers.
+TEST_F(IbisBoard, TwoBoardsOfARobotTakeTheirOwnMotorsCommands) {
+  RobotConfig config{};
+  config.gear_ratio = 1.0;
+  config.wheel_radius_m = 0.028;
+  config.encoder_counts_per_rotor_turn = 4096;
+  mcu::McuFirmware firmware(*spec_, elf_, config);
+  ASSERT_EQ(firmware.boards(), 2);
+  RobotCommand command{};
+  command.mode = OMNIHIL_MODE_WHEEL_SPEED;
+  command.omega_wheel_rad_s[1] = command.omega_wheel_rad_s[3] = 5 * kTwoPi;
+  RobotSensors sensors{};
+  sensors.bus_voltage_V = 24.0;
+  while (sensors.now_us < 2'700'000) {
+    const auto now_ns = static_cast<std::int64_t>(sensors.now_us) * 1000;
+    if (sensors.now_us % 20'000 == 0) firmware.command(command, now_ns);
+    firmware.tick(sensors);
+    MotorSensors motors{};
+    motors.now_ns = static_cast<std::uint64_t>(now_ns) + 500'000;
+    motors.bus_voltage_V = 24.0;
+    firmware.motor_tick(motors);
+    sensors.now_us += 500;
+  }
+  EXPECT_EQ(firmware.commands_ignored(), 0u);
+  for (unsigned x = 0; x < 3; ++x) {
+    EXPECT_EQ(peek(firmware.board(0), "TIM1", 0x34 + 4 * x), 900u);  // wheels 0 and 2 stand
+    EXPECT_EQ(peek(firmware.board(1), "TIM1", 0x34 + 4 * x), 900u);
+    EXPECT_NE(peek(firmware.board(0), "TIM8", 0x34 + 4 * x), 900u);
+    EXPECT_EQ(peek(firmware.board(1), "TIM8", 0x34 + 4 * x), peek(firmware.board(0), "TIM8", 0x34 + 4 * x));
+  }
+}
+
 // MAD 4006 EEE, 200 rpm/V, 12 pole pairs; resistance, inductance and inertia are guesses, +-50 %.
 PhaseMotor<double> mad_4006() {
   MotorParams motor;
