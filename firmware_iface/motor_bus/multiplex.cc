@@ -40,7 +40,7 @@ class Reader {
     if (!take(kBytes[static_cast<std::size_t>(type)])) return v;
     switch (type) {
       case MultiplexType::kInt8:
-        v.integer = static_cast<std::int8_t>(data_[from]);
+        v.integer = data_[from] < 0x80 ? data_[from] : data_[from] - 0x100;
         break;
       case MultiplexType::kInt16:
         v.integer = static_cast<std::int16_t>(get_le<std::uint16_t>(data_, from));

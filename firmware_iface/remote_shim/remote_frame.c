@@ -1,4 +1,4 @@
-#include "firmware_iface/remote_shim/remote_frame.h"
+#include "remote_frame.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "firmware_iface/remote_shim/remote_shim.h"
+#include "remote_shim.h"
 
 #include <string.h>
 

@@ -18,7 +18,7 @@
  */
 #ifndef OMNIHIL_REMOTE_SHIM_H
 #define OMNIHIL_REMOTE_SHIM_H
-#include "firmware_iface/remote_shim/remote_frame.h"
+#include "remote_frame.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -52,6 +52,26 @@ TEST(OdriveTest, a_commanded_speed_is_reached_in_the_plant) {
   EXPECT_NEAR(get_f32(rig.wire->last(id(1, 0x09)), 4), 5.0, 0.02 * 5.0);
 }
 
+// Geared and direct, encoders that count backwards, drives of three phases: the same 0.5 m/s at the rims.
+TEST(OdriveTest, the_speed_loop_follows_on_every_shipped_robot) {
+  for (const char* model : {"omni_default", "omni_ec45_30w", "omni_foc", "roboteam_2024", "ulaval_delta"}) {
+    BusRig rig("odrive", {}, BusShaft::kWheel, model);
+    const double turns_s = 0.5 / (2.0 * 3.14159265358979 * rig.session->config().robots[0].wheel_radius_m);
+    BusFrame speed = can_frame(0, 8);
+    put_f32(speed, 0, turns_s);
+    arm(rig);
+    for (std::uint32_t node = 0; node < 4; ++node) {
+      speed.id = id(node, 0x0D);
+      rig.send(speed);
+    }
+    rig.run_ms(2500);
+    for (std::size_t w = 0; w < kWheels; ++w) {
+      EXPECT_NEAR(rig.rotor_turns_s(w), turns_s * rig.gear(), 0.02 * turns_s * rig.gear())
+          << model << " " << w;
+    }
+  }
+}
+
 TEST(OdriveTest, turns_may_be_those_of_the_wheel) {
   BusRig rig("odrive", {}, BusShaft::kWheel);
   arm(rig);
