@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 
 #include "sim/core/effect_reader.h"
 #include "sim/core/effect_registry.h"
@@ -63,6 +64,34 @@ EffectUse usual(const EffectUse& use, bool linear) {
   return out;
 }
 
+// Base parameters that these data do not determine, and that trade with nobody, have no reason to move
+// because an effect was added; where they end by chance, another kind of motion would pay for it.
+Fitted undetermined_stay(const RefitSetup& setup, const Fitted& parent, Fitted child) {
+  constexpr double kFree = 1.002;  // of the error energy: what going back may cost
+  std::vector<Unknown> moved;
+  std::vector<double> back;
+  for (std::size_t i = 0; i < child.fit.parameters.size() && i < child.fit.unknowns.size(); ++i) {
+    const ParameterEstimate& p = child.fit.parameters[i];
+    const std::optional<double> was = value_at(parent.fit.model, p.path);
+    if (p.identifiable || !p.trades_with.empty() || child.fit.unknowns[i].effect >= 0 || !was) continue;
+    if (*was == p.value) continue;
+    moved.push_back(child.fit.unknowns[i]);
+    back.push_back(*was);
+  }
+  if (moved.empty() || !child.finite) return child;
+  FitResult fit = child.fit;
+  fit.model = with_values(fit.model, moved, back);
+  for (ParameterEstimate& p : fit.parameters) {
+    for (std::size_t m = 0; m < moved.size(); ++m) {
+      if (p.path == moved[m].path) p.value = back[m];
+    }
+  }
+  Fitted stayed = fitted(*setup.uses, *setup.seen, std::move(fit), setup.jobs);
+  if (!stayed.finite || energy_ratio((*setup.uses)[0], child.residual[0], stayed.residual[0]) > kFree)
+    return child;
+  return stayed;
+}
+
 double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& child) {
   if (!child.finite) return 1e300;
   return energy_ratio((*setup.uses)[0], parent.residual[0], child.residual[0]);
@@ -107,6 +136,7 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
       ratio = next_ratio;
     }
   }
+  best = undetermined_stay(setup, parent, std::move(best));
   if (ratio > 1.0) {
     // The parent, with the effect neutral, is a member of the larger family.
     FitResult same = parent.fit;

@@ -8,6 +8,7 @@
 #include "sim/core/effect_registry.h"
 #include "sim/identify/add_effect.h"
 #include "sim/identify/diagnosis.h"
+#include "sim/identify/workbench.h"
 #include "simulated_bench.h"
 
 namespace omnihil {
@@ -132,6 +133,32 @@ TEST(SlowDiagnoseTest, AMaskedEffectIsNamedOnceTheLargerOneIsIn) {
   ASSERT_GE(d.effects.size(), 2u) << reasons(d);
   EXPECT_EQ(d.effects[0], "constant_load");
   EXPECT_EQ(d.effects[1], "cogging");
+}
+
+// Slow ramps say nothing of the inductance: adding an effect must not move it, or a faster extrapolation run
+// vetoes what the others show.
+TEST(SlowDiagnoseTest, WhatTheDataDoNotDetermineStaysWhereItWas) {
+  BenchRecipe recipe;
+  recipe.with = {"quadratic_drag.coefficient_Nm_s2_per_rad2=2e-7"};
+  recipe.excitations = {Excitation::kRamp, Excitation::kRamp};
+  recipe.duration_s = 6.0;
+  const Bench bench = simulated_bench(recipe);
+  Workbench work(bench.dataset, bench.nominal, {});
+  ASSERT_TRUE(work.fit_base([] { return false; }));
+  work.simulate();
+  std::vector<std::string> not_applicable;
+  const Round round = addition_round(work.search(not_applicable), work.base());
+  const std::string inductance = "motor.inductance_H";
+  int undetermined = 0;
+  for (const Contender& c : round.contenders) {
+    for (const ParameterEstimate& p : c.fitted.fit.parameters) {
+      if (p.path != inductance || p.identifiable || !p.trades_with.empty()) continue;
+      ++undetermined;
+      EXPECT_EQ(value_at(c.fitted.fit.model, inductance), value_at(work.base().fit.model, inductance))
+          << c.screened.name;
+    }
+  }
+  EXPECT_GT(undetermined, 0);
 }
 
 // Friction that differs by direction is symmetric friction and a constant load: in one posture the same.
