@@ -67,6 +67,7 @@ struct MotorBusKind {
   int default_first_id;       // -1: ids are fixed
   int max_first_id;           // such that all four fit
   double default_watchdog_s;  // 0: none
+  bool even_parity = false;   // UART
   std::unique_ptr<MotorBus> (*make)(const MotorBusContext& context);
 };
 

@@ -30,7 +30,7 @@ std::string with_id(std::string text, std::uint32_t id) {
 }
 
 bool fits(std::string_view scheme, BusCarrier carrier) {
-  if (carrier == BusCarrier::kUart) return scheme == "uart";
+  if (carrier == BusCarrier::kUart) return scheme == "uart" || scheme == "serial";
   return scheme == "can" || scheme == "slcan" || scheme == "fdcanusb";
 }
 
@@ -47,7 +47,21 @@ bool read_order(const std::string& text, std::array<std::uint8_t, kWheels>& orde
   return true;
 }
 
-std::unique_ptr<FramePort> open_wire(const Url& url, BusCarrier carrier, std::string& problem) {
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    parts.push_back(text.substr(from, comma - from));
+    from = comma + 1;
+  }
+  return parts;
+}
+
+std::unique_ptr<FramePort> open_wire(const Url& url, const MotorBusKind& kind, std::string& problem) {
+  const BusCarrier carrier = kind.carrier;
+  if (url.scheme == "serial") {
+    return open_uart_serial(split_list(url.rest), kind.bit_rate, kind.even_parity, problem);
+  }
   if (url.scheme == "can") return open_socketcan(url.rest, carrier, problem);
   if (url.scheme == "slcan") return AdapterPort::open(url.rest, url.scheme, make_slcan_adapter(), problem);
   if (url.scheme == "uart") return open_uart_ptys(url.rest, kWheels, problem);
@@ -66,9 +80,15 @@ void check_bus(const MotorBusChoice& choice, const MotorBusKind* kind, std::vect
   }
   const std::string scheme = split(choice.port).scheme;
   if (!fits(scheme, kind->carrier)) {
-    problems.push_back(fmt::format(
-        "motor bus port: \"{}\": {} runs over {}", choice.port, kind->id,
-        kind->carrier == BusCarrier::kUart ? "uart:PATH" : "can:INTERFACE, slcan:PATH or fdcanusb:PATH"));
+    problems.push_back(fmt::format("motor bus port: \"{}\": {} runs over {}", choice.port, kind->id,
+                                   kind->carrier == BusCarrier::kUart
+                                       ? "uart:PATH or serial:DEVICE,DEVICE,DEVICE,DEVICE"
+                                       : "can:INTERFACE, slcan:PATH or fdcanusb:PATH"));
+  }
+  const std::size_t devices = split_list(choice.port).size();
+  if (scheme == "serial" && devices != kWheels) {
+    problems.push_back(fmt::format("motor bus port: \"{}\": {} devices; needed: one per motor, {}",
+                                   choice.port, devices, kWheels));
   }
   if (choice.first_id >= 0 && (kind->default_first_id < 0 || choice.first_id > kind->max_first_id)) {
     problems.push_back(kind->default_first_id < 0
@@ -105,8 +125,7 @@ Session::FirmwareMaker bus_firmware(const MotorBusChoice& choice, const SessionC
   const BusShaft shaft = choice.shaft == "wheel" ? BusShaft::kWheel : BusShaft::kRotor;
   return [kind, setup, shaft, port = choice.port](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     std::string problem;
-    std::unique_ptr<FramePort> wire =
-        open_wire(split(with_id(port, config.robot_id)), kind->carrier, problem);
+    std::unique_ptr<FramePort> wire = open_wire(split(with_id(port, config.robot_id)), *kind, problem);
     if (!wire) throw_problems({"motor bus: " + problem});
     return std::make_unique<MotorBusFirmware>(*kind, setup, shaft, config, std::move(wire));
   };

@@ -7,6 +7,7 @@
 //   slcan:./can      a pty that is a LAWICEL USB-CAN stick to whoever opens it
 //   fdcanusb:./can   a pty that is an mjbots fdcanusb
 //   uart:./motor     ptys ./motor0 to ./motor3 (UART buses)
+//   serial:A,B,C,D   serial ports of this computer, one per motor (UART buses)
 //   {id}             in any of them stands for the robot's id: each robot has a wire of its own
 #pragma once
 #include <optional>

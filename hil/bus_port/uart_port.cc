@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "hil/bus_port/burst_cutter.h"
 #include "hil/pty_transport.h"
 
 namespace omnihil {
@@ -11,7 +12,7 @@ namespace {
 
 struct Line {
   std::unique_ptr<PtyTransport> transport;
-  std::vector<std::uint8_t> burst;
+  BurstCutter cutter;
   std::vector<std::uint8_t> waiting;  // for the host
 };
 constexpr std::size_t kQueue_bytes = 16'384;  // of a host that does not read
@@ -52,21 +53,16 @@ bool UartPtys::read(BusFrame& frame) {
 
 bool UartPtys::take_burst(std::size_t i, BusFrame& frame) {
   Line& line = lines_[i];
-  const std::size_t before = line.burst.size();
-  const std::error_code error = line.transport->read(line.burst, BusFrame::kCapacity - before);
-  if (error) failure_ = std::string(line.transport->url()) + ": " + error.message();
+  const auto append = [&](std::vector<std::uint8_t>& to, std::size_t limit) {
+    const std::error_code error = line.transport->read(to, limit);
+    if (error) failure_ = std::string(line.transport->url()) + ": " + error.message();
+  };
+  const bool whole = line.cutter.poll(append, static_cast<std::uint32_t>(i), frame);
   if (line.transport->take_host_closed()) {
-    line.burst.clear();
+    line.cutter.clear();
     line.waiting.clear();
   }
-  const bool idle = line.burst.size() == before;
-  if (line.burst.empty() || (!idle && line.burst.size() < BusFrame::kCapacity)) return false;
-  frame = BusFrame{};
-  frame.id = static_cast<std::uint32_t>(i);
-  frame.size = static_cast<std::uint8_t>(line.burst.size());
-  std::copy(line.burst.begin(), line.burst.end(), frame.data.begin());
-  line.burst.clear();
-  return true;
+  return whole;
 }
 
 bool UartPtys::write(const BusFrame& frame) {

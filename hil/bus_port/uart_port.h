@@ -1,7 +1,8 @@
-// The UARTs of a motor bus as ptys, one per motor: PATH0 to PATH3. A burst of bytes is a frame.
+// The UARTs of a motor bus, one per motor. A burst of bytes is a frame.
 //
 //   std::string problem;
-//   auto port = open_uart_ptys("./motor", 4, problem);       // ./motor0 … ./motor3
+//   auto port = open_uart_ptys("./motor", 4, problem);       // ptys ./motor0 ... ./motor3
+//   auto port = open_uart_serial({"/dev/ttyUSB0", "/dev/ttyUSB1", ...}, 2'000'000, true, problem);
 //
 // On the wire a burst ends where the line falls idle; here, where a poll (0.5 ms of the robot's time) brings
 // no more bytes. A burst longer than a frame may be is cut there. Parity and baud rate mean nothing on a pty.
@@ -9,11 +10,15 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "firmware_iface/motor_bus/bus_frame.h"
 
 namespace omnihil {
 
 std::unique_ptr<FramePort> open_uart_ptys(const std::string& path, int lines, std::string& problem);
+// Serial ports of this computer, 8 data bits, even parity or none; device i is motor i.
+std::unique_ptr<FramePort> open_uart_serial(const std::vector<std::string>& devices, int baud,
+                                            bool even_parity, std::string& problem);
 
 }  // namespace omnihil

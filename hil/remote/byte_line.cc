@@ -72,7 +72,7 @@ class SerialLine final : public LineBase {
   SerialLine(const SerialLine&) = delete;
   SerialLine& operator=(const SerialLine&) = delete;
 
-  std::string open(const std::string& device, int baud) {
+  std::string open(const std::string& device, const SerialMode& mode) {
     const auto reason = [&](const char* step, sp_return code) {
       return device + ": " + step + ": " +
              (code == SP_ERR_FAIL ? std::strerror(errno) : "not a serial port that libserialport knows");
@@ -82,9 +82,10 @@ class SerialLine final : public LineBase {
     code = sp_open(port_, SP_MODE_READ_WRITE);
     if (code != SP_OK) return reason("open", code);
     open_ = true;
-    if ((code = sp_set_baudrate(port_, baud)) != SP_OK) return reason("set the baud rate", code);
+    if ((code = sp_set_baudrate(port_, mode.baud)) != SP_OK) return reason("set the baud rate", code);
     if ((code = sp_set_bits(port_, 8)) != SP_OK) return reason("set 8 bits", code);
-    if ((code = sp_set_parity(port_, SP_PARITY_NONE)) != SP_OK) return reason("set no parity", code);
+    const sp_parity parity = mode.even_parity ? SP_PARITY_EVEN : SP_PARITY_NONE;
+    if ((code = sp_set_parity(port_, parity)) != SP_OK) return reason("set the parity", code);
     if ((code = sp_set_stopbits(port_, 1)) != SP_OK) return reason("set 1 stop bit", code);
     if ((code = sp_set_flowcontrol(port_, SP_FLOWCONTROL_NONE)) != SP_OK)
       return reason("no flow control", code);
@@ -162,8 +163,9 @@ std::unique_ptr<ByteLine> opened(const std::string& device, std::string& problem
 
 }  // namespace
 
-std::unique_ptr<ByteLine> open_byte_line(const std::string& device, int baud, std::string& problem) {
-  std::unique_ptr<ByteLine> line = opened<SerialLine>(device, problem, baud);
+std::unique_ptr<ByteLine> open_byte_line(const std::string& device, const SerialMode& mode,
+                                         std::string& problem) {
+  std::unique_ptr<ByteLine> line = opened<SerialLine>(device, problem, mode);
   if (line == nullptr && is_pty(device)) line = opened<PtyLine>(device, problem);
   return line;
 }

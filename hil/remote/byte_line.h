@@ -1,13 +1,13 @@
 // A serial line to a board: bytes both ways, never blocking except in wait().
 //
 //   std::string problem;
-//   auto line = open_byte_line("/dev/ttyACM0", 921600, problem);      // nullptr: `problem` says why
+//   auto line = open_byte_line("/dev/ttyACM0", {921600}, problem);      // nullptr: `problem` says why
 //   line->write(frame);
 //   line->wait(1'000'000);                                            // until bytes come, 1 ms at most
 //   std::size_t n = line->read(buffer);
 //
-// Real ports go through libserialport (8N1, no flow control). It refuses pseudo-terminals, so these are
-// opened by termios: emulated boards, socat relays.
+// Real ports go through libserialport (8 data bits, 1 stop bit, no flow control). It refuses
+// pseudo-terminals, so these are opened by termios: emulated boards, socat relays.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -27,6 +27,12 @@ class ByteLine {
   virtual std::string_view failure() const = 0;  // why the device is gone; empty: it is not
 };
 
-std::unique_ptr<ByteLine> open_byte_line(const std::string& device, int baud, std::string& problem);
+struct SerialMode {
+  int baud = 0;
+  bool even_parity = false;
+};
+
+std::unique_ptr<ByteLine> open_byte_line(const std::string& device, const SerialMode& mode,
+                                         std::string& problem);
 
 }  // namespace omnihil

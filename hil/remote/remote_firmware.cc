@@ -75,7 +75,7 @@ Session::FirmwareMaker remote_firmware(const RemoteChoice& choice, const Session
     const std::string device = with_id(url.device, config.robot_id);
     std::string problem;
     std::unique_ptr<ByteLine> line =
-        url.serial ? open_byte_line(device, url.baud, problem) : open_can_line(device, problem);
+        url.serial ? open_byte_line(device, {.baud = url.baud}, problem) : open_can_line(device, problem);
     if (!line) throw_problems({"firmware: " + problem});
     RemoteLink link(std::move(line));
     RemoteHello hello;

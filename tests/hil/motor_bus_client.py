@@ -2,12 +2,15 @@
 serial lines of UART buses. Run by script_test.cc."""
 import glob
 import os
+import pty
+import select
 import shutil
 import subprocess
 import struct
 import sys
 import tempfile
 import time
+import tty
 
 from bench import Bench, DEADLINE_S, Skip, main
 
@@ -190,25 +193,50 @@ def odrive_moteus_and_a_board_run_over_socketcan():
     under_a_kernel_with_can("odrive_on_vcan0", "moteus_on_vcan0", "board_on_vcan0")
 
 
+def drive_four_uarts(write, read):
+    """A main board that knows the layout alone: 52 bytes out to each motor, 56 back, until all turn at 30 rad/s."""
+    command = struct.pack("<B3xI I B3x f 32x", 0x21, 0, 2, 1, 30.0)
+    assert len(command) == 52
+    settled, speeds = 0, None
+    end_s = time.monotonic() + DEADLINE_S
+    while settled < 30 and time.monotonic() < end_s:
+        for m in range(4):
+            write(m, command)
+        replies = [read(m, 56) for m in range(4)]
+        assert all(len(reply) == 56 and reply[0] == 0x81 for reply in replies), replies
+        speeds = [struct.unpack_from("<f", reply, 24)[0] for reply in replies]
+        settled = settled + 1 if all(abs(speed - 30.0) < 0.6 for speed in speeds) else 0
+    assert settled == 30, speeds
+
+
 def ateam_main_board_drives_four_uarts():
-    """Four serial ports, 52 bytes out and 56 back, by a client that knows the layout alone."""
     import serial
     with served("ateam-uart-2025", "uart:{folder}/motor") as bench:
         ports = [serial.Serial(bench.path(f"motor{m}"), 2000000, timeout=DEADLINE_S) for m in range(4)]
-        command = struct.pack("<B3xI I B3x f 32x", 0x21, 0, 2, 1, 30.0)
-        assert len(command) == 52
-        settled = 0
-        end_s = time.monotonic() + DEADLINE_S
-        while settled < 30 and time.monotonic() < end_s:
-            for port in ports:
-                port.write(command)
-            replies = [port.read(56) for port in ports]
-            assert all(len(reply) == 56 and reply[0] == 0x81 for reply in replies), replies
-            speeds = [struct.unpack_from("<f", reply, 24)[0] for reply in replies]
-            settled = settled + 1 if all(abs(speed - 30.0) < 0.6 for speed in speeds) else 0
-        assert settled == 30, speeds
+        drive_four_uarts(lambda m, data: ports[m].write(data), lambda m, size: ports[m].read(size))
         for port in ports:
             port.close()
+        report = bench.stop()
+    assert report.code == 0, report.text
+
+
+def ateam_main_board_at_four_serial_ports():
+    """The bench opens the ports; the main board has the other ends."""
+    pairs = [pty.openpty() for _ in range(4)]
+    for master, slave in pairs:
+        tty.setraw(slave)
+
+    def read(m, size):
+        data = b""
+        while len(data) < size:
+            ready, _, _ = select.select([pairs[m][0]], [], [], DEADLINE_S)
+            assert ready, "the motor fell silent"
+            data += os.read(pairs[m][0], size - len(data))
+        return data
+
+    port = "serial:" + ",".join(os.ttyname(slave) for _, slave in pairs)
+    with served("ateam-uart-2025", port) as bench:
+        drive_four_uarts(lambda m, data: os.write(pairs[m][0], data), read)
         report = bench.stop()
     assert report.code == 0, report.text
 

@@ -130,7 +130,8 @@ void add_bus_options(CLI::App& verb, MotorBusChoice& choice) {
                   "(docs/motor-buses.md)");
   verb.add_option(
       "--bus-port", choice.port,
-      "the bus's wire: can:vcan0, slcan:./can, fdcanusb:./can, uart:./motor; {id} is the robot's");
+      "the bus's wire: can:vcan0, slcan:./can, fdcanusb:./can, uart:./motor or serial:A,B,C,D (a port "
+      "per motor); {id} is the robot's number");
   verb.add_option("--bus-shaft", choice.shaft, "a turn on the bus is one of the rotor or the wheel")
       ->capture_default_str();
   verb.add_option("--bus-order", choice.order, "wheel of the model that is motor 0, 1, 2, 3 of the bus")

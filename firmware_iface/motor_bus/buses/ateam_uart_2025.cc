@@ -179,6 +179,7 @@ extern const MotorBusKind kMotorBus_ateam_uart_2025{
     .default_first_id = -1,
     .max_first_id = -1,
     .default_watchdog_s = 0.1,
+    .even_parity = true,
     .make = make,
 };
 
