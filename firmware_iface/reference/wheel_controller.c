@@ -1,5 +1,7 @@
 #include "firmware_iface/reference/wheel_controller.h"
 
+static const float kIntegralShare = 0.5f;
+
 /* By comparisons, which a core without a maximum instruction does in two; fmaxf() is a call there. */
 static float clamp(float value, float limit) {
   return value > limit ? limit : value < -limit ? -limit : value;
@@ -14,8 +16,7 @@ float wheel_loop_update(wheel_loop* loop, const wheel_gains* gains, const motor_
   float rest_V =
       feedforward_V + gains->p_V_s_per_rad * error_rad_s - gains->d_V_s2_per_rad * input->accel_rad_s2;
 
-  float most_V =
-      input->integral_limit_ratio > 0.0f ? input->integral_limit_ratio * input->bus_V : input->bus_V;
+  float most_V = kIntegralShare * input->bus_V;
   float integral_V = clamp(loop->integral_V + gains->i_V_per_rad * error_rad_s * input->dt_s, most_V);
   float wanted_V = rest_V + integral_V;
   float given_V = clamp(wanted_V, input->bus_V);

@@ -5,10 +5,11 @@
  * k: torque constant (V s/rad), R: winding (ohm), tau_ff: torque the planned acceleration needs (N m), all at
  * the rotor. From the steady motor law u = k omega + R i, i = tau / k (eq. 7 with its speed factor).
  * The duty is limited to -1..1; while it is, the integral takes only what leads away from the limit. It may
- * still fill up to the supply: a wheel held for 1.2 s and let go reaches 3.5 times its target, on a stand and
- * on the floor, and needs 0.2 s to come back (omnihil scenario run wheel/wind_up; without this rule 8 times).
- * integral_limit_ratio sets that lower.
- * Cannot: limit the current (the board's bridge does), nor know a wheel in the air from one on the floor.
+ * fill up to half of the supply: what the winding of a strong motor drops at its largest current is a third
+ * of it, and more would only make a wheel that was held race when it is let go (omnihil scenario run
+ * wheel/wind_up: 1.7 times its target, 2.7 with encoders of 1024 counts, whose gains are lower; without these
+ * rules 8 times), which takes 0.2 s to come back. Cannot: limit the current (the board's bridge does), nor
+ * know a wheel in the air from one on the floor.
  */
 #ifndef OMNIHIL_REFERENCE_WHEEL_CONTROLLER_H
 #define OMNIHIL_REFERENCE_WHEEL_CONTROLLER_H
@@ -41,7 +42,6 @@ typedef struct wheel_loop_input {
   float torque_feedforward_Nm;
   float bus_V;
   float dt_s;
-  float integral_limit_ratio; /* of bus_V; 0: all of it */
 } wheel_loop_input;
 
 /* Returns the duty, -1..1. */

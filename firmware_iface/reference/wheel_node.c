@@ -9,9 +9,6 @@ static const float kPeriod_s = WHEEL_NODE_PERIOD_US * 1e-6f;
 static const float kPlan_s = WHEEL_NODE_PERIOD_US * WHEEL_NODE_PERIODS_PER_PLAN * 1e-6f;
 static const float kBusLow_V = 1.0f; /* below it a duty for a voltage makes no sense */
 static const float kStandstillRim_m_s = 0.02f;
-/* What the winding drops at 15 A is a third of the supply. More would only make a wheel that was held race:
- * with coarse encoders the gains are low, and it would take long to come down. */
-static const float kIntegralLimit = 0.5f;
 
 int wheel_node_init(wheel_node* node, const omnihil_robot_config* config, uint8_t wheel) {
   memset(node, 0, sizeof *node);
@@ -178,8 +175,7 @@ wheel_node_drive wheel_node_control(wheel_node* node, int64_t counts, float bus_
                                   .accel_rad_s2 = node->encoder.accel_rotor_rad_s2,
                                   .torque_feedforward_Nm = node->plan.torque_rotor_Nm,
                                   .bus_V = bus_V,
-                                  .dt_s = kPeriod_s,
-                                  .integral_limit_ratio = kIntegralLimit};
+                                  .dt_s = kPeriod_s};
   node->drive.duty_ratio = wheel_loop_update(&node->loop, &node->tuning.gains, &node->tuning.motor, &input);
   return node->drive;
 }

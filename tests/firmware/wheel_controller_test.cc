@@ -48,6 +48,14 @@ TEST(WheelLoop, IntegralStandsStillWhileTheDutyIsAtItsLimitAndUnwindsFreely) {
   EXPECT_NEAR(loop.integral_V, 5.0 - 2.0 * 100 * 1e-3, 1e-5);
 }
 
+TEST(WheelLoop, IntegralFillsToHalfOfTheSupplyAndNoFurther) {
+  wheel_loop loop{};
+  const wheel_loop_input slow = input(10.0f, 0.0f);  // 0.03 * 10 + 0.1 * 10 + 12 V: below the 24 V there
+  for (int n = 0; n < 2000; ++n) wheel_loop_update(&loop, &kGains, &kMotor, &slow);
+  EXPECT_EQ(loop.integral_V, 12.0f);
+  EXPECT_NEAR(loop.duty_ratio, (0.03 * 10 + 0.1 * 10 + 12.0) / 24.0, 1e-6);
+}
+
 TEST(WheelLoop, LimitsAreAlikeInBothDirections) {
   wheel_loop loop{};
   const wheel_loop_input held = input(-500.0f, 0.0f);
