@@ -8,9 +8,9 @@
  *   if (omnihil_remote_decode(&decoder, byte, &frame)) ...                       // frame.type, .payload
  *
  * Plain C99, no heap, used by both ends. CRC-16: polynomial 1021h, init FFFFh, most significant bit first, no
- * final XOR ("CRC-16/IBM-3740", check value 29B1h of "123456789"), sent low byte first. It sees every burst of up to
- * 16 bits; of other faults one in 65536 passes. COBS: Cheshire and Baker, IEEE/ACM Trans. Networking 7(2), 1999.
- * Byte tables of the payloads: docs/remote-mcu.md.
+ * final XOR ("CRC-16/IBM-3740", check value 29B1h of "123456789"), sent low byte first. It sees every burst
+ * of up to 16 bits; of other faults one in 65536 passes. COBS: Cheshire and Baker, IEEE/ACM Trans. Networking
+ * 7(2), 1999. Byte tables of the payloads: docs/remote-mcu.md.
  */
 #ifndef OMNIHIL_REMOTE_FRAME_H
 #define OMNIHIL_REMOTE_FRAME_H
@@ -23,8 +23,9 @@ extern "C" {
 
 #define OMNIHIL_REMOTE_VERSION 1u
 #define OMNIHIL_REMOTE_PAYLOAD_MAX 240u
-#define OMNIHIL_REMOTE_BODY_MAX (OMNIHIL_REMOTE_PAYLOAD_MAX + 5u)  /* type, sequence, CRC; below one COBS block */
-#define OMNIHIL_REMOTE_WIRE_MAX (OMNIHIL_REMOTE_BODY_MAX + 2u)     /* code byte, delimiter */
+#define OMNIHIL_REMOTE_BODY_MAX \
+  (OMNIHIL_REMOTE_PAYLOAD_MAX + 5u)                            /* type, sequence, CRC; below one COBS block */
+#define OMNIHIL_REMOTE_WIRE_MAX (OMNIHIL_REMOTE_BODY_MAX + 2u) /* code byte, delimiter */
 
 /* frame types; from the board they have bit 7 */
 enum {
@@ -53,7 +54,8 @@ typedef struct omnihil_remote_decoder {
 
 uint16_t omnihil_remote_crc16(const uint8_t* bytes, size_t count);
 /* Returns the bytes on the wire, 0 if the payload is too long. */
-size_t omnihil_remote_encode(uint8_t type, uint16_t sequence, const uint8_t* payload, size_t bytes, uint8_t* wire);
+size_t omnihil_remote_encode(uint8_t type, uint16_t sequence, const uint8_t* payload, size_t bytes,
+                             uint8_t* wire);
 /* Takes one byte; 1 when it ended a good frame. Bad ones are counted by cause and dropped. */
 int omnihil_remote_decode(omnihil_remote_decoder* decoder, uint8_t byte, omnihil_remote_frame* frame);
 

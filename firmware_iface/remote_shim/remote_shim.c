@@ -136,7 +136,9 @@ int omnihil_remote_tick(omnihil_remote* r) {
   return 1;
 }
 
-int32_t omnihil_remote_encoder(const omnihil_remote* r, int wheel) { return r->sensors.encoder_counts[wheel]; }
+int32_t omnihil_remote_encoder(const omnihil_remote* r, int wheel) {
+  return r->sensors.encoder_counts[wheel];
+}
 
 int omnihil_remote_take_command(omnihil_remote* r, omnihil_remote_command* command) {
   if (!r->command_new) return 0;

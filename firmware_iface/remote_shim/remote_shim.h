@@ -1,4 +1,5 @@
-/* The shim for a board on the desk: its PWM, encoder and radio calls, answered by the bench over a serial line.
+/* The shim for a board on the desk: its PWM, encoder and radio calls, answered by the bench over a serial
+ * line.
  *
  *   static omnihil_remote remote;
  *   omnihil_remote_init(&remote, "my robot", "", 1000, uart_write, &uart2);   // 1000 us control period
@@ -11,10 +12,10 @@
  *   }
  *
  * C99, no heap, no floating point beyond float, about 1 kB of RAM. One sender: omnihil_remote_done() and
- * omnihil_remote_radio_write() write frames, call them from one context. The write function takes all bytes or
- * queues them; it may block for as long as they take on the wire.
- * A board that falls behind gets the newest sensors and counts those it skipped. What it cannot do: motor_tick()
- * of three-phase bridges (a serial line is too slow for one exchange per PWM period).
+ * omnihil_remote_radio_write() write frames, call them from one context. The write function takes all bytes
+ * or queues them; it may block for as long as they take on the wire. A board that falls behind gets the
+ * newest sensors and counts those it skipped. What it cannot do: motor_tick() of three-phase bridges (a
+ * serial line is too slow for one exchange per PWM period).
  */
 #ifndef OMNIHIL_REMOTE_SHIM_H
 #define OMNIHIL_REMOTE_SHIM_H
@@ -45,7 +46,7 @@ typedef struct omnihil_remote_command {
 } omnihil_remote_command;
 
 typedef struct omnihil_remote_sensors {
-  uint32_t now_us; /* of the robot; wraps */
+  uint32_t now_us;                               /* of the robot; wraps */
   int32_t encoder_counts[OMNIHIL_REMOTE_WHEELS]; /* the low 32 bits: wraps */
   int16_t motor_current_mA[OMNIHIL_REMOTE_WHEELS];
   uint16_t bus_voltage_mV;

@@ -89,8 +89,8 @@ Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const Session
   }
   if (is_remote_url(choice.file)) {
     if (!choice.board.empty()) {
-      throw_problems({fmt::format("board {}: belongs to a microcontroller image; a board on the desk has none",
-                                  choice.board)});
+      throw_problems({fmt::format(
+          "board {}: belongs to a microcontroller image; a board on the desk has none", choice.board)});
     }
     return remote_firmware({.url = choice.file, .lock_step = choice.virtual_time}, session);
   }

@@ -29,7 +29,7 @@ struct ActuatorDelay {
       .visible = "a tenth of a sample with steps of full duty; a fiftieth with a good chirp",
       .min_visible = [](const SensorSet& s) { return 0.1 / s.rate_Hz; },
       .claims = kOdd,
-      .numerics = kDelays | kFine,
+      .numerics = kDelays,
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.35, .to_s = 0.6},
   };

@@ -69,8 +69,8 @@ ExperimentOptions options(double duration_s) {
 // Above a rotor's Stribeck speed its friction is a Coulomb friction of another size.
 TEST(Experiment, StribeckIsToldFromCoulombBySlowTurning) {
   const Candidate base = axis_candidate();
-  const std::vector<Rival> rivals = {
-      {"stribeck_friction", with(base, "stribeck_friction", {1e-5, 4.0, 2.0})}, {"base", base}};
+  const std::vector<Rival> rivals = {{"stribeck_friction", with(base, "stribeck_friction", {1e-5, 4.0, 2.0})},
+                                     {"base", base}};
   const Dataset fast = one_way_axis(0.5, 0.1, 0.5, rivals[0].model);
   const ExperimentPlan plan = plan_experiment(fast, rivals, {}, options(8.0));
   ASSERT_TRUE(plan.run) << plan.problem;

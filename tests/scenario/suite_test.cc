@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "hil/scenario/scenario_suite.h"
@@ -42,13 +43,32 @@ void expect_all_pass(const SuiteOptions& o) {
 
 TEST(ScenarioSuite, ReferenceFirmwarePassesAll) { expect_all_pass(options("")); }
 
-TEST(SlowScenarioSuite, ReferenceFirmwarePassesAllOnEveryShippedRobot) {
+// What the reference firmware does not pass, by robot. It guesses the inertia of a wheel (1e-5 kg m2, a
+// geared one); on direct drive the rim of A-Team's wheels is nine times that, so its gain stays too low and
+// its speed settles too late. Both robots have firmware of their own, which runs on them unmodified
+// (docs/mcu-third-party.md).
+const std::map<std::string, std::set<std::string>> kBeyondReference = {
+    {"ateam_2025", {"hot_winding", "pushed", "speed_step", "strafe_and_turn", "stuck_encoder"}},
+    {"ibis_orion", {"pushed"}},
+};
+
+TEST(SlowScenarioSuite, ReferenceFirmwarePassesAllOnEveryShippedRobotButWhereSaid) {
   int robots = 0;
   for (const auto& entry : std::filesystem::directory_iterator(OMNIHIL_SOURCE_DIR "/models/robots")) {
     SuiteOptions o = options("");
     o.robot = entry.path().string();
     SCOPED_TRACE(o.robot);
-    expect_all_pass(o);
+    std::set<std::string> failed;
+    std::string lines;
+    for (const ScenarioOutcome& outcome : run_suite(kSuite, o)) {
+      for (const CheckResult& r : outcome.results) {
+        if (r.passed) continue;
+        failed.insert(std::filesystem::path(outcome.scenario.file).stem().string());
+        lines += outcome.scenario.file + ": " + failure_line(r) + "\n";
+      }
+    }
+    const auto known = kBeyondReference.find(entry.path().stem().string());
+    EXPECT_EQ(failed, known == kBeyondReference.end() ? std::set<std::string>{} : known->second) << lines;
     ++robots;
   }
   EXPECT_GE(robots, 5);

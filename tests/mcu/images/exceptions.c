@@ -1,10 +1,11 @@
-/* Situations of the exception model. Which one is played is read from the probe; what happens is written to it. */
+/* Situations of the exception model. Which one is played is read from the probe; what happens is written to
+ * it. */
 #include "image.h"
 
 #define PROBE_SCENARIO REG(0x40000000)
 #define PROBE_LOG REG(0x40000004)
-#define PROBE_RAISE_AFTER REG(0x40000008) /* line 0 goes high so many cycles from now */
-#define PROBE_LINE REG(0x4000000C)        /* line 0 as written */
+#define PROBE_RAISE_AFTER REG(0x40000008)  /* line 0 goes high so many cycles from now */
+#define PROBE_LINE REG(0x4000000C)         /* line 0 as written */
 #define PROBE_SECOND_AFTER REG(0x40000010) /* line 1 likewise */
 #define log(value) (PROBE_LOG = (uint32_t)(value))
 
@@ -46,7 +47,8 @@ void SVC_Handler(void) { on_svc(); }
 void PendSV_Handler(void) { on_pendsv(); }
 void SysTick_Handler(void) { on_systick(); }
 
-/* Every fault: logs its number, CFSR, HFSR; then goes on behind the faulting instruction (of `step` bytes). */
+/* Every fault: logs its number, CFSR, HFSR; then goes on behind the faulting instruction (of `step` bytes).
+ */
 static volatile uint32_t step = 2;
 __attribute__((used)) static void fault(uint32_t *frame) {
   log(ICSR & 0x1FF);
@@ -58,8 +60,10 @@ __attribute__((used)) static void fault(uint32_t *frame) {
   frame[6] += step;
   frame[7] |= 1u << 24;
 }
-#define FAULT_HANDLER(name) \
-  __attribute__((naked)) void name(void) { __asm volatile("mrs r0, msp\npush {r4, lr}\nbl fault\npop {r4, pc}"); }
+#define FAULT_HANDLER(name)                                               \
+  __attribute__((naked)) void name(void) {                                \
+    __asm volatile("mrs r0, msp\npush {r4, lr}\nbl fault\npop {r4, pc}"); \
+  }
 FAULT_HANDLER(HardFault_Handler)
 FAULT_HANDLER(BusFault_Handler)
 FAULT_HANDLER(UsageFault_Handler)
@@ -154,7 +158,8 @@ static void drop_fp(void) { __asm volatile("mrs r0, control\nbic r0, #4\nmsr con
 static void use_fp(void) { __asm volatile("vmov.f32 s0, s0"); }
 static void use_psp(int on) {
   __asm volatile(
-      "msr psp, %0\nmrs r0, control\nbfi r0, %1, #1, #1\nmsr control, r0\nisb" ::"r"(process_stack + 62), "r"(on)
+      "msr psp, %0\nmrs r0, control\nbfi r0, %1, #1, #1\nmsr control, r0\nisb" ::"r"(process_stack + 62),
+      "r"(on)
       : "r0");
 }
 static void exc_returns(void) {
@@ -183,7 +188,8 @@ static void spoil_fp(void) {
   PROBE_LINE = 0;
   turns++;
   __asm volatile(
-      "vmov.f32 s0, #1.0\nvmov.f32 s1, s0\nvmov.f32 s7, s0\nvmov.f32 s8, s0\nvmov.f32 s15, s0\nvcmp.f32 s0, s1\n" ::
+      "vmov.f32 s0, #1.0\nvmov.f32 s1, s0\nvmov.f32 s7, s0\nvmov.f32 s8, s0\nvmov.f32 s15, s0\nvcmp.f32 s0, "
+      "s1\n" ::
           : "s0", "s1", "s7", "s8", "s15", "memory");
   PROBE_RAISE_AFTER = 37 + turns % 61;
 }
@@ -393,9 +399,11 @@ static void bit_band(void) {
 
 int main(void) {
   static const Action kScenarios[] = {
-      0,       nesting,  pend_in_handler, primask,      basepri, wfi_masked,   exc_returns, fp_context, fp_context_lost,
-      svc,     pendsv,   everywhere,      late_arrival, faults,  to_arm_state, lock_up,     level,      systick,
-      events,  cycles,   busy_wait,       null_pointer, unaligned, bit_band};
+      0,          nesting,      pend_in_handler, primask,         basepri,
+      wfi_masked, exc_returns,  fp_context,      fp_context_lost, svc,
+      pendsv,     everywhere,   late_arrival,    faults,          to_arm_state,
+      lock_up,    level,        systick,         events,          cycles,
+      busy_wait,  null_pointer, unaligned,       bit_band};
   kScenarios[PROBE_SCENARIO]();
   return 0;
 }

@@ -1,5 +1,5 @@
-/* The reference with a control interrupt that every 100th time takes 2.5 periods: of the two that come meanwhile the
- * timer's flag keeps one. */
+/* The reference with a control interrupt that every 100th time takes 2.5 periods: of the two that come
+ * meanwhile the timer's flag keeps one. */
 #include "tests/scenario/firmware/wrapped.h"
 
 static volatile uint32_t ticks;

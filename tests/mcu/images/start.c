@@ -1,4 +1,5 @@
-/* Vector table and start-up of the test images. Handlers are weak; `result` and `done` are what tests look at. */
+/* Vector table and start-up of the test images. Handlers are weak; `result` and `done` are what tests look
+ * at. */
 #include "image.h"
 
 volatile uint32_t result, done;
@@ -34,7 +35,23 @@ WEAK(IRQ1_Handler);
 WEAK(IRQ2_Handler);
 WEAK(IRQ3_Handler);
 
-__attribute__((section(".vectors"), used)) static void *const vectors[20] = {
-    &stack_top, Reset_Handler, NMI_Handler, HardFault_Handler, MemManage_Handler, BusFault_Handler, UsageFault_Handler,
-    0, 0, 0, 0, SVC_Handler, 0, 0, PendSV_Handler, SysTick_Handler,
-    IRQ0_Handler, IRQ1_Handler, IRQ2_Handler, IRQ3_Handler};
+__attribute__((section(".vectors"), used)) static void *const vectors[20] = {&stack_top,
+                                                                             Reset_Handler,
+                                                                             NMI_Handler,
+                                                                             HardFault_Handler,
+                                                                             MemManage_Handler,
+                                                                             BusFault_Handler,
+                                                                             UsageFault_Handler,
+                                                                             0,
+                                                                             0,
+                                                                             0,
+                                                                             0,
+                                                                             SVC_Handler,
+                                                                             0,
+                                                                             0,
+                                                                             PendSV_Handler,
+                                                                             SysTick_Handler,
+                                                                             IRQ0_Handler,
+                                                                             IRQ1_Handler,
+                                                                             IRQ2_Handler,
+                                                                             IRQ3_Handler};

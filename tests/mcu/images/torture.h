@@ -1,5 +1,5 @@
-/* Work of many kinds that ends in one checksum: compiled for the emulated core and for the host it must be the same.
- * C that is also C++. No contraction of a * b + c, no library function whose last bit is free. */
+/* Work of many kinds that ends in one checksum: compiled for the emulated core and for the host it must be
+ * the same. C that is also C++. No contraction of a * b + c, no library function whose last bit is free. */
 #pragma once
 #include <stddef.h>
 #include <stdint.h>
@@ -45,9 +45,11 @@ static void integers(Torture *t) {
     const int64_t swide = (int64_t)wide;
     mix(t, a / b), mix(t, a % b), mix(t, (uint32_t)(sa / sb)), mix(t, (uint32_t)(sa % sb));
     mix64(t, wide / (b >> 7 | 1u)), mix64(t, (uint64_t)(swide / sb)), mix64(t, (uint64_t)a * b);
-    mix64(t, (uint64_t)((int64_t)sa * sb)), mix64(t, wide >> (a & 31)), mix64(t, (uint64_t)(swide >> (b & 31)));
+    mix64(t, (uint64_t)((int64_t)sa * sb)), mix64(t, wide >> (a & 31)),
+        mix64(t, (uint64_t)(swide >> (b & 31)));
     mix(t, (uint32_t)(uint8_t)a + (uint32_t)(int8_t)b), mix(t, (uint32_t)(int16_t)a * (uint32_t)(uint16_t)b);
-    mix(t, (uint32_t)__builtin_clz(b) + (uint32_t)__builtin_popcount(a) + (uint32_t)__builtin_ctz(b << 3 | 8u));
+    mix(t,
+        (uint32_t)__builtin_clz(b) + (uint32_t)__builtin_popcount(a) + (uint32_t)__builtin_ctz(b << 3 | 8u));
     mix(t, __builtin_bswap32(a) ^ (a << (b & 31) | a >> (31 - (b & 31)) >> 1));
   }
 }
@@ -116,17 +118,28 @@ static void records(Torture *t) {
 
 static uint32_t dispatch(uint32_t op, uint32_t a, uint32_t b) {
   switch (op % 11u) {
-    case 0: return a + b;
-    case 1: return a - b;
-    case 2: return a ^ b;
-    case 3: return a & ~b;
-    case 4: return a | b;
-    case 5: return a << (b & 15u);
-    case 6: return a >> (b & 15u);
-    case 7: return (uint32_t)((int32_t)a >> (b & 15u));
-    case 8: return a * b;
-    case 9: return b == 0 ? a : a % b;
-    default: return (uint32_t)-(int32_t)(a >> 1);
+    case 0:
+      return a + b;
+    case 1:
+      return a - b;
+    case 2:
+      return a ^ b;
+    case 3:
+      return a & ~b;
+    case 4:
+      return a | b;
+    case 5:
+      return a << (b & 15u);
+    case 6:
+      return a >> (b & 15u);
+    case 7:
+      return (uint32_t)((int32_t)a >> (b & 15u));
+    case 8:
+      return a * b;
+    case 9:
+      return b == 0 ? a : a % b;
+    default:
+      return (uint32_t) - (int32_t)(a >> 1);
   }
 }
 static uint32_t ackermann(uint32_t m, uint32_t n) {

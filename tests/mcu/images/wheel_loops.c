@@ -1,5 +1,6 @@
-/* Four speed loops at 8 kHz on the board of the reference firmware, with its own wheel controller and tuning: what a fast
- * inner loop costs. Between two periods the core sleeps; with NEVER_SLEEPS it computes on in main(). */
+/* Four speed loops at 8 kHz on the board of the reference firmware, with its own wheel controller and tuning:
+ * what a fast inner loop costs. Between two periods the core sleeps; with NEVER_SLEEPS it computes on in
+ * main(). */
 #include "firmware_iface/reference/board_stm32f405/board.h"
 #include "firmware_iface/reference/board_stm32f405/robot_page.h"
 #include "firmware_iface/reference/board_stm32f405/stm32f405.h"

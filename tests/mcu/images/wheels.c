@@ -1,5 +1,6 @@
-/* Four wheels at constant speed: PI loops at 1 kHz on encoder timers 2 to 5, PWM of timer 1 with direction pins.
- * Rotor speeds come from a page of flash that the board file presets; serial port 1 echoes what it receives. */
+/* Four wheels at constant speed: PI loops at 1 kHz on encoder timers 2 to 5, PWM of timer 1 with direction
+ * pins. Rotor speeds come from a page of flash that the board file presets; serial port 1 echoes what it
+ * receives. */
 #include "image.h"
 
 #define RCC 0x40023800u
@@ -71,7 +72,8 @@ int main(void) {
       speeds[i] += 0.3f * (speed - speeds[i]);
       float error = parameters[1 + i] - speeds[i];
       float duty = 0.002f * error + integral[i];
-      if ((duty < 1.0f || error < 0) && (duty > -1.0f || error > 0)) integral[i] += 0.05f * error * control_period_s;
+      if ((duty < 1.0f || error < 0) && (duty > -1.0f || error > 0))
+        integral[i] += 0.05f * error * control_period_s;
       if (duty > 1.0f) duty = 1.0f;
       if (duty < -1.0f) duty = -1.0f;
       REG(GPIOE + 0x18) = duty >= 0 ? 1u << i : 1u << (16 + i);

@@ -13,15 +13,15 @@ enum {
   HANG,
   ABORT,
   EXIT,
-  BEHIND_STATE,   /* one byte behind its state block */
-  FAR_BEHIND,     /* a page behind it */
+  BEHIND_STATE, /* one byte behind its state block */
+  FAR_BEHIND,   /* a page behind it */
   DEEP_RECURSION,
   HANG_IN_INIT,
   CRASH_AT_LOAD,
   REFUSES,
-  LONG_FRAME,     /* radio_transmit claims more than it was given */
-  NOT_A_NUMBER,   /* a duty that is none */
-  PRINTS,         /* chatters on its standard output */
+  LONG_FRAME,   /* radio_transmit claims more than it was given */
+  NOT_A_NUMBER, /* a duty that is none */
+  PRINTS,       /* chatters on its standard output */
   BAD_TABLE
 };
 

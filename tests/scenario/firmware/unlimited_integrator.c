@@ -1,4 +1,5 @@
-/* The reference's speed loop with an integrator that nothing stops: it takes the place of wheel_controller.c. */
+/* The reference's speed loop with an integrator that nothing stops: it takes the place of wheel_controller.c.
+ */
 #include <math.h>
 
 #include "firmware_iface/reference/wheel_controller.h"
