@@ -58,9 +58,13 @@ std::vector<RobotModel> all_robots() {
     for (const ModelProblem& problem : reading.problems) ADD_FAILURE() << problem.text();
     if (!reading.model || !reading.model->robot) continue;
     robots.push_back(*reading.model->robot);
-    // a rounded angle makes a step of the bridge's voltage out of a difference in the last bit
+    // A rounded angle, and a bridge that commutes at Hall edges, make a step of the voltage out of a
+    // difference in the last bit: here the mechanics are compared.
     if (electrics_of(robots.back()).any()) {
-      set_electrics(robots.back(), [](ElectricModel& e) { e.angle.bits = 0; });
+      set_electrics(robots.back(), [](ElectricModel& e) {
+        e.angle.bits = 0;
+        if (e.kind == DriveKind::kSwitched) e.kind = DriveKind::kDq;
+      });
     }
   }
   return robots;
