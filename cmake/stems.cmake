@@ -9,3 +9,28 @@ function(omnihil_stems out dir)
   endforeach()
   set(${out} "${stems}" PARENT_SCOPE)
 endfunction()
+
+# omnihil_list(OUT.cc DIR HEADER NAMESPACE TYPE PREFIX FUNCTION): writes generated/OUT.cc, where FUNCTION gives PREFIX_stem()
+# of every DIR/stem.cc, in order of their names, each a `const TYPE&`.
+function(omnihil_list out dir header namespace type prefix function)
+  omnihil_stems(stems ${dir})
+  set(decls "")
+  set(rows "")
+  foreach(stem ${stems})
+    string(APPEND decls "const ${type}& ${prefix}_${stem}();\n")
+    string(APPEND rows "      &${prefix}_${stem}(),\n")
+  endforeach()
+  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${dir})
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/${out} @ONLY CONTENT
+"// Generated from the files in @folder@/.
+#include \"@header@\"
+namespace @namespace@ {
+@decls@
+std::span<const @type@* const> @function@() {
+  static const @type@* const kAll[] = {
+@rows@  };
+  return kAll;
+}
+}  // namespace @namespace@
+")
+endfunction()

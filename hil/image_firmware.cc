@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "firmware_iface/mcu/board/mcu_firmware.h"
-#include "hil/session_checks.h"
-#include "hil/text_file.h"
+#include "hil/image_files.h"
 
 namespace omnihil {
 namespace {
@@ -57,27 +56,15 @@ class ImageFirmware final : public Firmware {
 }  // namespace
 
 Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file) {
-  std::vector<std::string> problems;
   auto image = std::make_shared<Image>();
-  std::string error;
-  const std::string bytes = read_text_file(image_file, error);
-  if (!error.empty()) {
-    problems.push_back("firmware " + image_file + ": " + error);
-  } else {
-    std::vector<std::string> found;
-    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-    mcu::read_elf(std::span(data, bytes.size()), image->elf, found);
-    for (const std::string& problem : found) problems.push_back("firmware " + image_file + ": " + problem);
-  }
-  const std::string text = read_text_file(board_file, error);
-  if (!error.empty()) {
-    problems.push_back("board " + board_file + ": " + error);
-  } else {
-    std::vector<mcu::BoardProblem> found;
-    if (auto board = mcu::read_board(text, board_file, found)) image->board = std::move(*board);
-    for (const mcu::BoardProblem& problem : found) problems.push_back(problem.text());
-  }
-  throw_problems(problems);
+  read_image_files(
+      image_file, board_file,
+      [&](std::span<const std::uint8_t> bytes, std::vector<std::string>& problems) {
+        mcu::read_elf(bytes, image->elf, problems);
+      },
+      [&](const std::string& text, std::vector<mcu::BoardProblem>& problems) {
+        if (auto board = mcu::read_board(text, board_file, problems)) image->board = std::move(*board);
+      });
   return [image](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     return std::make_unique<ImageFirmware>(image, config);
   };

@@ -8,8 +8,7 @@
 #include <stdexcept>
 
 #include "hil/avr/avr_board.h"
-#include "hil/session_checks.h"
-#include "hil/text_file.h"
+#include "hil/image_files.h"
 
 namespace omnihil {
 namespace {
@@ -130,27 +129,15 @@ RobotDrive AvrFirmware::tick(const RobotSensors& sensors) {
 
 Session::FirmwareMaker avr_firmware(const std::string& image_file, const std::string& board_file,
                                     double deadline_s) {
-  std::vector<std::string> problems;
   auto image = std::make_shared<Image>();
-  std::string error;
-  const std::string bytes = read_text_file(image_file, error);
-  if (!error.empty()) {
-    problems.push_back("firmware " + image_file + ": " + error);
-  } else {
-    std::vector<std::string> found;
-    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-    mcu::read_avr_image(std::span(data, bytes.size()), image->bytes, found);
-    for (const std::string& problem : found) problems.push_back("firmware " + image_file + ": " + problem);
-  }
-  const std::string text = read_text_file(board_file, error);
-  if (!error.empty()) {
-    problems.push_back("board " + board_file + ": " + error);
-  } else {
-    std::vector<mcu::BoardProblem> found;
-    if (auto board = mcu::read_avr_board(text, board_file, found)) image->board = std::move(*board);
-    for (const mcu::BoardProblem& problem : found) problems.push_back(problem.text());
-  }
-  throw_problems(problems);
+  read_image_files(
+      image_file, board_file,
+      [&](std::span<const std::uint8_t> bytes, std::vector<std::string>& problems) {
+        mcu::read_avr_image(bytes, image->bytes, problems);
+      },
+      [&](const std::string& text, std::vector<mcu::BoardProblem>& problems) {
+        if (auto board = mcu::read_avr_board(text, board_file, problems)) image->board = std::move(*board);
+      });
   return [image, deadline_s](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     try {
       return std::make_unique<AvrFirmware>(image, config, deadline_s);

@@ -131,4 +131,15 @@ std::vector<std::pair<const toml::table*, std::string>> BoardKeys::tables(const 
   return all;
 }
 
+std::optional<toml::table> parse_board(std::string_view text, const std::string& file,
+                                       std::vector<BoardProblem>& problems) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& e) {
+    problems.push_back(
+        {file, e.source().begin.line, "", "", fmt::format("not TOML: {}", e.description()), ""});
+    return std::nullopt;
+  }
+}
+
 }  // namespace omnihil::mcu

@@ -39,4 +39,8 @@ class BoardKeys {
   std::vector<BoardProblem>& problems_;
 };
 
+// The text of a board file as TOML; what is not TOML is a problem with its line.
+std::optional<toml::table> parse_board(std::string_view text, const std::string& file,
+                                       std::vector<BoardProblem>& problems);
+
 }  // namespace omnihil::mcu

@@ -393,16 +393,10 @@ BoardSpec Reader::read() {
 
 std::optional<BoardSpec> read_board(std::string_view text, const std::string& file,
                                     std::vector<BoardProblem>& problems) {
-  toml::table top;
-  try {
-    top = toml::parse(text, file);
-  } catch (const toml::parse_error& e) {
-    problems.push_back(
-        {file, e.source().begin.line, "", "", fmt::format("not TOML: {}", e.description()), ""});
-    return std::nullopt;
-  }
   const std::size_t before = problems.size();
-  BoardSpec spec = Reader(top, file, problems).read();
+  const std::optional<toml::table> top = parse_board(text, file, problems);
+  if (!top) return std::nullopt;
+  BoardSpec spec = Reader(*top, file, problems).read();
   if (problems.size() != before) return std::nullopt;
   return spec;
 }
