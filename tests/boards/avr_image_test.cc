@@ -14,19 +14,18 @@
 #include "hil/avr/avr_firmware.h"
 #include "hil/firmware_host/open_firmware.h"
 #include "hil/model_store.h"
-#include "hil/replay_hash.h"
 #include "hil/scenario/scenario_run.h"
 #include "hil/scenario/scenario_suite.h"
 #include "hil/session_checks.h"
 #include "hil/session_setup.h"
 #include "protocols/radio_format.h"
+#include "tests/boards/image_suite.h"
 
 namespace omnihil {
 namespace {
 const std::string kImages = OMNIHIL_BUILD_DIR "/images/";
 const std::string kImage = kImages + "omni_reference_avr.hex";
 const std::string kBoard = OMNIHIL_SOURCE_DIR "/boards/omni_reference_avr.toml";
-const std::string kSuite = OMNIHIL_SOURCE_DIR "/examples/scenarios";
 const std::vector<std::string> kModels = {OMNIHIL_SOURCE_DIR "/models"};
 constexpr int kRobot = 5;
 constexpr double kDeadline_s = 60.0;
@@ -50,27 +49,11 @@ SuiteOptions options(const std::string& image = kImage) {
   return o;
 }
 
-Scenario scenario(const std::string& name) {
-  SuiteReading suite = read_suite({kSuite + "/" + name}, "");
-  EXPECT_EQ(suite.problems, std::vector<std::string>{});
-  return suite.scenarios.at(0);
-}
-
 struct AvrImages : testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(OMNIHIL_BUILD_DIR "/tools/omnihil-avr"))
       GTEST_SKIP() << "no simavr: omnihil-avr was not built";
     if (!std::filesystem::exists(kImage)) GTEST_SKIP() << "no avr-gcc: the image was not built";
-  }
-};
-
-struct Hashed : SessionObserver {
-  OutputHash hash;
-  void dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override {
-    hash.dongle_bytes(now_ns, bytes);
-  }
-  void robot_tick(std::int64_t now_ns, const RobotSample& sample) override {
-    hash.robot_tick(now_ns, sample);
   }
 };
 
@@ -144,31 +127,13 @@ TEST_F(AvrImages, SlowWheelLevelPartOfTheShippedSuitePasses) {
   }
 }
 
-struct Broken {
-  const char* image;
-  const char* scenario;
-  const char* check;
-};
-class SlowBrokenAvrImage : public AvrImages, public testing::WithParamInterface<Broken> {};
+class SlowBrokenAvrImage : public AvrImages, public testing::WithParamInterface<BrokenImage> {};
 
 TEST_P(SlowBrokenAvrImage, FailsTheMatchingCheckAlone) {
-  for (const std::string name : {"direction", "wind_up", "radio_silence", "control_period"}) {
-    bool passed = true;
-    const auto outcome =
-        run_one(scenario("wheel/" + name + ".toml"), options(kImages + "avr_" + GetParam().image + ".hex"));
-    for (const CheckResult& r : outcome.results) {
-      passed = passed && r.passed;
-      EXPECT_TRUE(r.passed || r.name == GetParam().check) << failure_line(r);
-    }
-    EXPECT_EQ(passed, name != GetParam().scenario) << name;
-  }
+  expect_only_its_check_fails(options(kImages + "avr_" + GetParam().image + ".hex"), GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Images, SlowBrokenAvrImage,
-                         testing::Values(Broken{"sign_error", "direction", "commanded_sign"},
-                                         Broken{"unlimited_integrator", "wind_up", "wind_up"},
-                                         Broken{"no_timeout", "radio_silence", "stops_after_silence"},
-                                         Broken{"over_run", "control_period", "control_periods"}),
+INSTANTIATE_TEST_SUITE_P(Images, SlowBrokenAvrImage, testing::ValuesIn(kBrokenImages),
                          [](const auto& of) { return std::string(of.param.image); });
 
 // rms of the difference over rms of the speed, wheel by wheel, at the instants that both have.
@@ -190,7 +155,7 @@ TEST_F(AvrImages, SlowHostBuildAndImageGiveTheSameWheelSpeedsWithinOnePercent) {
     return std::make_unique<HostFirmware>(omnihil_wheel_node_firmware(), config);
   };
   for (const char* name : {"wheel/speed_step.toml", "wheel/brown_out.toml"}) {
-    const Scenario s = scenario(name);
+    const Scenario s = shipped_scenario(name);
     const SessionConfig config = one_robot();
     const ScenarioRun host = run_scenario(s, config, nodes),
                       whole = run_scenario(s, config, open_firmware({}, config));

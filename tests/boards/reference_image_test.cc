@@ -10,18 +10,17 @@
 #include "firmware_iface/mcu/board/mcu_firmware.h"
 #include "hil/image_firmware.h"
 #include "hil/model_store.h"
-#include "hil/replay_hash.h"
 #include "hil/scenario/scenario_run.h"
 #include "hil/scenario/scenario_suite.h"
 #include "hil/session_checks.h"
 #include "hil/session_setup.h"
 #include "protocols/radio_format.h"
+#include "tests/boards/image_suite.h"
 
 namespace omnihil {
 namespace {
 const std::string kImage = OMNIHIL_BUILD_DIR "/images/omni_reference_f405.elf";
 const std::string kBoard = OMNIHIL_SOURCE_DIR "/boards/omni_reference_f405.toml";
-const std::string kSuite = OMNIHIL_SOURCE_DIR "/examples/scenarios";
 const std::vector<std::string> kModels = {OMNIHIL_SOURCE_DIR "/models"};
 constexpr int kRobot = 1;
 constexpr std::uint32_t kPage = 0x08060000;
@@ -42,27 +41,9 @@ SuiteOptions options(bool image) {
   return o;
 }
 
-Scenario scenario(const std::string& name) {
-  SuiteReading suite = read_suite({kSuite + "/" + name}, "");
-  EXPECT_EQ(suite.problems, std::vector<std::string>{});
-  return suite.scenarios.at(0);
-}
-
 struct ReferenceImage : testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(kImage)) GTEST_SKIP() << "no arm-none-eabi-gcc: the image was not built";
-  }
-};
-
-struct Hashed : SessionObserver {
-  OutputHash hash;
-  std::vector<std::uint8_t> to_host;
-  void dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override {
-    hash.dongle_bytes(now_ns, bytes);
-    to_host.insert(to_host.end(), bytes.begin(), bytes.end());
-  }
-  void robot_tick(std::int64_t now_ns, const RobotSample& sample) override {
-    hash.robot_tick(now_ns, sample);
   }
 };
 
@@ -151,32 +132,16 @@ TEST_F(ReferenceImage, ControlInterruptTakesLessThanHalfAPeriodAndTheCoreSleepsO
   RecordProperty("stack_bytes", static_cast<int>(report.main_stack_bytes));
 }
 
-struct BrokenImage {
-  const char* image;
-  const char* scenario;
-  const char* check;
-};
 class BrokenReferenceImage : public testing::TestWithParam<BrokenImage> {};
 
 TEST_P(BrokenReferenceImage, FailsTheMatchingCheckAlone) {
   SuiteOptions o = options(true);
   o.firmware.file = OMNIHIL_BUILD_DIR "/images/reference_" + std::string(GetParam().image) + ".elf";
   if (!std::filesystem::exists(o.firmware.file)) GTEST_SKIP() << "no arm-none-eabi-gcc: no image";
-  for (const std::string name : {"direction", "wind_up", "radio_silence", "control_period"}) {
-    bool passed = true;
-    for (const CheckResult& r : run_one(scenario("wheel/" + name + ".toml"), o).results) {
-      passed = passed && r.passed;
-      EXPECT_TRUE(r.passed || r.name == GetParam().check) << failure_line(r);
-    }
-    EXPECT_EQ(passed, name != GetParam().scenario) << name;
-  }
+  expect_only_its_check_fails(o, GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Images, BrokenReferenceImage,
-                         testing::Values(BrokenImage{"sign_error", "direction", "commanded_sign"},
-                                         BrokenImage{"unlimited_integrator", "wind_up", "wind_up"},
-                                         BrokenImage{"no_timeout", "radio_silence", "stops_after_silence"},
-                                         BrokenImage{"over_run", "control_period", "control_periods"}),
+INSTANTIATE_TEST_SUITE_P(Images, BrokenReferenceImage, testing::ValuesIn(kBrokenImages),
                          [](const auto& of) { return std::string(of.param.image); });
 
 TEST_F(ReferenceImage, TwoRunsHaveOneHash) { EXPECT_EQ(drive().hash, drive().hash); }
@@ -214,7 +179,7 @@ TEST_F(ReferenceImage, PassesTheWholeShippedSuite) {
 // image is looked at twice as often.
 TEST_F(ReferenceImage, HostBuildAndImageGiveTheSameWheelSpeedsWithinOnePercent) {
   for (const char* name : {"wheel/speed_step.toml", "wheel/brown_out.toml", "robot/drive_forward.toml"}) {
-    const Scenario s = scenario(name);
+    const Scenario s = shipped_scenario(name);
     const SessionConfig config = one_robot();
     const ScenarioRun host = run_scenario(s, config, open_firmware({}, config));
     const ScenarioRun image = run_scenario(s, config, image_firmware(kImage, kBoard));
