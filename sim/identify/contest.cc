@@ -38,6 +38,14 @@ double merit_of(const Contender& c, bool has_holdout) {
   return gain_of(c, has_holdout) * (1.0 - kPerNumber * std::max(0, numbers(c) - 1));
 }
 
+// The share of the sensors' noise in what the gain is counted of.
+double floor_of(const Search& search, const Fitted& parent, bool has_holdout) {
+  const auto share = [&](std::size_t use) {
+    return floor_share((*search.uses)[use], *search.null, parent.residual[use]);
+  };
+  return has_holdout ? 0.5 * (share(0) + share(1)) : share(0);
+}
+
 bool listed_twins(const EffectInfo& a, const EffectInfo& b) {
   return std::find(a.twins.begin(), a.twins.end(), b.id) != a.twins.end() ||
          std::find(b.twins.begin(), b.twins.end(), a.id) != b.twins.end();
@@ -93,8 +101,7 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
   if (round.contenders.empty() || !round.contenders.front().judgement.accepted) return;
   const Contender& best = round.contenders.front();
   const double most = gain_of(best, has_holdout);
-  const std::size_t use = has_holdout ? 1 : 0;
-  const double floor = floor_share((*search.uses)[use], *search.null, parent.residual[use]);
+  const double floor = floor_of(search, parent, has_holdout);
   std::vector<std::size_t> equals{0};
   std::size_t first = 0;  // of those that leave the same, the one with the fewest numbers
   for (std::size_t c = 1; c < round.contenders.size(); ++c) {

@@ -249,27 +249,32 @@ class AxisPredictor : public Predictor {
     }
   }
 
-  // Root mean square of (a - b) / noise, the largest of the signals.
+  // Root mean square of (a - b) / noise, the largest of the signals, as they are seen and whitened.
   double distance(int n, const Prediction& a, const Prediction& b) const {
     double largest = 0.0;
     for (std::size_t c = 0; c < a.values.size(); ++c) {
       const ComparedSignal& signal = compared(n)[c];
-      double square = 0.0, count = 0.0;
-      for (std::size_t k = 0; k < a.values[c].size(); ++k) {
-        const double d = a.values[c][k] - b.values[c][k];
-        if (!std::isfinite(d) || !std::isfinite(signal.measured[k])) continue;
-        square += d * d, count += 1.0;
-      }
-      if (count > 0.0 && signal.noise_sigma > 0.0)
-        largest = std::max(largest, std::sqrt(square / count) / signal.noise_sigma);
+      std::vector<double> d(a.values[c].size());
+      for (std::size_t k = 0; k < d.size(); ++k) d[k] = a.values[c][k] - b.values[c][k];
+      const auto size_of = [&](const std::vector<double>& v, double sigma) {
+        double square = 0.0, count = 0.0;
+        for (std::size_t k = 0; k < v.size(); ++k) {
+          if (!std::isfinite(v[k]) || !std::isfinite(signal.measured[k])) continue;
+          square += v[k] * v[k], count += 1.0;
+        }
+        return count > 0.0 && sigma > 0.0 ? std::sqrt(square / count) / sigma : 0.0;
+      };
+      largest = std::max(largest, size_of(d, signal.noise_sigma));
+      largest = std::max(largest, size_of(whitened(signal, d), signal.whitened_sigma));
     }
     return largest;
   }
 
   void choose_step() {
     step_s_ = options_.step_s;
-    constexpr double kTrial_s = 4.0;  // of a run are enough
-    constexpr double kShareOfNoise = 0.1;
+    constexpr double kTrial_s = 10.0;  // of a run are enough
+    // What is left of it in the error energy, 0.1 %, is below what an effect has to take to be named.
+    constexpr double kShareOfNoise = 0.03;
     double longest = options_.step_s;
     std::vector<AxisSetup> whole;
     for (AxisSetup& s : setups_) {

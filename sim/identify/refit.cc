@@ -64,32 +64,37 @@ EffectUse usual(const EffectUse& use, bool linear) {
   return out;
 }
 
+// The same model, one effect's strength changed by a factor.
+Candidate with_strength_times(const Candidate& model, const std::string& effect, double factor) {
+  Candidate out = model;
+  for (EffectUse& use : out.effects) {
+    if (use.entry->info->id != effect) continue;
+    const std::size_t row = first_strength(*use.entry->info);
+    const double neutral = use.entry->info->params[row].neutral;
+    use.values[row] = neutral + factor * (use.values[row] - neutral);
+  }
+  return out;
+}
+
 // Base parameters that these data do not determine, and that trade with nobody, have no reason to move
 // because an effect was added; where they end by chance, another kind of motion would pay for it.
 Fitted undetermined_stay(const RefitSetup& setup, const Fitted& parent, Fitted child) {
   constexpr double kFree = 1.002;  // of the error energy: what going back may cost
-  std::vector<Unknown> moved;
-  std::vector<double> back;
-  for (std::size_t i = 0; i < child.fit.parameters.size() && i < child.fit.unknowns.size(); ++i) {
-    const ParameterEstimate& p = child.fit.parameters[i];
+  const Fitted as_fitted = child;
+  for (std::size_t i = 0; i < as_fitted.fit.parameters.size() && as_fitted.finite; ++i) {
+    const ParameterEstimate& p = as_fitted.fit.parameters[i];
     const std::optional<double> was = value_at(parent.fit.model, p.path);
-    if (p.identifiable || !p.trades_with.empty() || child.fit.unknowns[i].effect >= 0 || !was) continue;
-    if (*was == p.value) continue;
-    moved.push_back(child.fit.unknowns[i]);
-    back.push_back(*was);
+    if (i >= as_fitted.fit.unknowns.size() || as_fitted.fit.unknowns[i].effect >= 0) break;
+    if (p.identifiable || !p.trades_with.empty() || !was || *was == p.value) continue;
+    FitResult fit = child.fit;
+    fit.model = with_values(fit.model, {&as_fitted.fit.unknowns[i], 1}, {&*was, 1});
+    fit.parameters[i].value = *was;
+    Fitted stayed = fitted(*setup.uses, *setup.seen, std::move(fit), setup.jobs);
+    const Evidence& evidence = (*setup.uses)[0];
+    if (stayed.finite && energy_ratio(evidence, as_fitted.residual[0], stayed.residual[0]) <= kFree)
+      child = std::move(stayed);
   }
-  if (moved.empty() || !child.finite) return child;
-  FitResult fit = child.fit;
-  fit.model = with_values(fit.model, moved, back);
-  for (ParameterEstimate& p : fit.parameters) {
-    for (std::size_t m = 0; m < moved.size(); ++m) {
-      if (p.path == moved[m].path) p.value = back[m];
-    }
-  }
-  Fitted stayed = fitted(*setup.uses, *setup.seen, std::move(fit), setup.jobs);
-  if (!stayed.finite || energy_ratio((*setup.uses)[0], child.residual[0], stayed.residual[0]) > kFree)
-    return child;
-  return stayed;
+  return child;
 }
 
 double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& child) {
@@ -129,6 +134,18 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
     if (ratio <= expected || (setup.stop && setup.stop())) break;
     if (&other != starts.begin() && effect.share < kWorthAThirdStart) break;
     const Candidate start = with_use(parent.fit.model, other);
+    Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
+    const double next_ratio = fit_ratio(setup, parent, next);
+    if (next_ratio < ratio) {
+      best = std::move(next);
+      ratio = next_ratio;
+    }
+  }
+  // Impacts make many small valleys: the first one that is deep enough need not be the deepest.
+  const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0;
+  for (const double factor : {0.5, 2.0}) {
+    if (!rugged || (setup.stop && setup.stop())) break;
+    const Candidate start = with_strength_times(best.fit.model, effect.name, factor);
     Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
     const double next_ratio = fit_ratio(setup, parent, next);
     if (next_ratio < ratio) {

@@ -119,7 +119,7 @@ TEST(AxisPredictor, DerivativesAreThoseOfTheValues) {
   Candidate c = model(
       "[effects.cogging]\namplitude_Nm = 0.002\n[effects.dead_time]\nvoltage_V = 0.2\n"
       "[effects.sampling_delay]\ndelay_s = 0.0021\n[effects.winding_heating]\n"
-      "temperature_coefficient_per_K = 0.004\n[effects.actuator_delay]\ndelay_s = 0.0033\n");
+      "temperature_coefficient_per_K = 0.004\n[effects.actuator_delay]\ndelay_s = 0.00333\n");
   const auto p = make_predictor(bench(model(), 600), c, {.step_s = 100e-6, .slave_angle = true});
   const std::vector<Unknown> unknowns = unknowns_of(c);
   ASSERT_GT(unknowns.size(), 8u);  // more than one stride
@@ -147,6 +147,23 @@ TEST(AxisPredictor, DerivativesAreThoseOfTheValues) {
       worst = off[off.size() * 95 / 100];
       EXPECT_LE(worst, 2e-3 * size + 1e-9) << unknowns[u].path << " " << p->compared(0)[s].name;
     }
+  }
+}
+
+// Otherwise an effect that asks for finer sub-steps and does nothing else lowers the error, and is named.
+TEST(AxisPredictor, FinerStepsMoveNoSignalByMoreThanItsNoiseHidesOnceItIsWhitened) {
+  const Candidate plain = model();
+  const auto p = make_predictor(bench(plain, 4000, 0.9), plain, {.step_s = 100e-6, .slave_angle = true});
+  const Candidate hardly = model("[effects.lugre_friction]\ncoulomb_torque_Nm = 1e-9\n");
+  const Prediction a = p->predict(plain, 0), b = p->predict(hardly, 0);
+  for (std::size_t c = 0; c < a.values.size(); ++c) {
+    const ComparedSignal& signal = p->compared(0)[c];
+    std::vector<double> d(a.values[c].size());
+    for (std::size_t k = 0; k < d.size(); ++k) d[k] = a.values[c][k] - b.values[c][k];
+    const std::vector<double> w = whitened(signal, d);
+    const std::vector<double> none(w.size(), 0.0);
+    EXPECT_LT(rms(w, none), 0.05 * signal.whitened_sigma) << signal.name;
+    EXPECT_GT(rms(w, none), 0.0) << signal.name;
   }
 }
 
