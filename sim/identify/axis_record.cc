@@ -114,6 +114,25 @@ std::vector<double> AxisRecord::angle() const {
   return out;
 }
 
+// theta_k = sum (t_i - t_{i-1}) (v_i + v_{i-1}) / 2; white noise of the speed makes it wander off by
+// sigma sqrt(dt T) in the time T, where a model's own angle is off by its speed's error times T.
+std::vector<double> AxisRecord::angle_by_speed() const {
+  constexpr double kMostWander_rad = 0.1;  // of the rotor, at the end of the record
+  if (velocity.empty() || size() < 2 || !angle().empty()) return {};
+  const double wander =
+      velocity_sigma_rad_s * std::sqrt(period_s * (time_s.back() - time_s.front())) * gear_ratio;
+  if (!(wander < kMostWander_rad) || !std::isfinite(velocity[0])) return {};
+  std::vector<double> out(size(), kMissing);
+  out[0] = 0.0;
+  std::size_t last = 0;
+  for (std::size_t k = 1; k < size() && !gap_before(k); ++k) {
+    if (!std::isfinite(velocity[k])) continue;
+    out[k] = out[last] + 0.5 * (velocity[k] + velocity[last]) * (time_s[k] - time_s[last]);
+    last = k;
+  }
+  return out;
+}
+
 double AxisRecord::speed_near(std::size_t k) const {
   constexpr std::size_t kSamples = 5;    // of a measured speed: their median
   constexpr double kSlopeSpan_s = 0.01;  // of positions

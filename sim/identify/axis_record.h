@@ -32,6 +32,10 @@ struct AxisRecord {
   // Position of the output from its sensor or its encoder; empty where it is not measured, or too coarse to
   // tell an angle (fewer than 200 counts per rotor turn).
   std::vector<double> angle() const;
+  // Where no angle is measured: angle of the output turned through since the first sample, from the measured
+  // speed. NaN from the first gap on; empty where the speed is not measured, or its noise adds up to more
+  // than a rotor angle means.
+  std::vector<double> angle_by_speed() const;
   // Speed of the output at sample k: measured, else from the positions around it; NaN where neither is known.
   double speed_near(std::size_t k) const;
 };

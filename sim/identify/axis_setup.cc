@@ -66,7 +66,8 @@ class ForwardSetup {
     in.encoder_counts_per_turn = channel("encoder").counts_per_rev;
     in.encoder_on_output = channel("encoder").on_output;
     const std::vector<double> angle = r_.angle();
-    if (in.kind != CommandKind::kPositionTarget) in.measured_position_rad = angle;
+    if (in.kind != CommandKind::kPositionTarget)
+      in.measured_position_rad = angle.empty() ? r_.angle_by_speed() : angle;
     for (const double a : angle) {
       if (!finite(a)) continue;
       in.initial_position_rad = a;

@@ -38,12 +38,10 @@ double merit_of(const Contender& c, bool has_holdout) {
   return gain_of(c, has_holdout) * (1.0 - kPerNumber * std::max(0, numbers(c) - 1));
 }
 
-// The share of the sensors' noise in what the gain is counted of.
-double floor_of(const Search& search, const Fitted& parent, bool has_holdout) {
-  const auto share = [&](std::size_t use) {
-    return floor_share((*search.uses)[use], *search.null, parent.residual[use]);
-  };
-  return has_holdout ? 0.5 * (share(0) + share(1)) : share(0);
+// The share of the sensors' noise in what that gain is counted of.
+double floor_of(const Contender& c, bool has_holdout) {
+  const double fit = c.judgement.fit.floor;
+  return has_holdout ? 0.5 * (fit + c.judgement.holdout.floor) : fit;
 }
 
 bool listed_twins(const EffectInfo& a, const EffectInfo& b) {
@@ -55,11 +53,13 @@ void give_probabilities(const Search& search, const Fitted& parent, Round& round
   const std::size_t use = (*search.uses)[1].empty() ? 0 : 1;
   const BlockBootstrap* bootstrap = search.judging.bootstrap[use];
   if (bootstrap == nullptr || bootstrap->empty() || round.contenders.empty()) return;
-  const Eigen::VectorXd weights = signal_weights((*search.uses)[use], *search.null, parent.residual[use]);
   std::vector<Eigen::VectorXd> draws;
   for (const Contender& c : round.contenders) {
-    draws.push_back(c.fitted.finite ? bootstrap->ratios(parent.residual[use], c.fitted.residual[use], weights)
-                                    : Eigen::VectorXd());
+    draws.emplace_back();
+    if (!c.fitted.finite) continue;
+    const Eigen::VectorXd &before = parent.residual[use], &after = c.fitted.residual[use];
+    draws.back() =
+        bootstrap->ratios(before, after, weights_for((*search.uses)[use], *search.null, before, after));
   }
   const Eigen::Index count = bootstrap->draws();
   for (Eigen::Index d = 0; d < count; ++d) {
@@ -101,7 +101,7 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
   if (round.contenders.empty() || !round.contenders.front().judgement.accepted) return;
   const Contender& best = round.contenders.front();
   const double most = gain_of(best, has_holdout);
-  const double floor = floor_of(search, parent, has_holdout);
+  const double floor = floor_of(best, has_holdout);
   std::vector<std::size_t> equals{0};
   std::size_t first = 0;  // of those that leave the same, the one with the fewest numbers
   for (std::size_t c = 1; c < round.contenders.size(); ++c) {
@@ -111,8 +111,8 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
     // Both may take nearly all, and yet one leave several times what the other leaves above the sensors'
     // floor.
     const double least = std::max(kLeastLeft * (1.0 - floor), kFloorError * floor);
-    const double left =
-        std::max(1.0 - gain_of(other, has_holdout) - floor, least) / std::max(1.0 - most - floor, least);
+    const double left = std::max(1.0 - gain_of(other, has_holdout) - floor_of(other, has_holdout), least) /
+                        std::max(1.0 - most - floor, least);
     const bool confused = listed_twins(*best.screened.entry->info, *other.screened.entry->info);
     const bool alike = likeness(best.screened, other.screened) > kTwinSignal;
     const bool same = lost < kSameGain && left < kSameLeft;

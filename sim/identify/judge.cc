@@ -155,6 +155,19 @@ Eigen::VectorXd signal_weights(const Evidence& evidence, const NullModel& null,
   return weights;
 }
 
+Eigen::VectorXd weights_for(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& parent,
+                            const Eigen::VectorXd& child) {
+  constexpr double kUnmoved = 1e-9;
+  const Eigen::VectorXd all = signal_weights(evidence, null, parent);
+  if (child.size() != parent.size()) return all;
+  const Eigen::VectorXd moved = evidence.mean_square(child - parent), size = evidence.mean_square(parent);
+  Eigen::VectorXd weights = all;
+  for (Eigen::Index k = 0; k < weights.size(); ++k) {
+    if (moved[k] <= kUnmoved * size[k]) weights[k] = 0.0;
+  }
+  return weights.sum() > 0.0 ? weights : all;
+}
+
 double energy_ratio(const Evidence& evidence, const Eigen::VectorXd& reference,
                     const Eigen::VectorXd& residual, const Eigen::VectorXd& weights) {
   const Eigen::VectorXd before = evidence.mean_square(reference), after = evidence.mean_square(residual);
@@ -180,10 +193,10 @@ double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Ei
   return signals > 0.0 ? std::sqrt(sum / signals) : 0.0;
 }
 
-double floor_share(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual) {
+double floor_share(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual,
+                   const Eigen::VectorXd& weights) {
   if (evidence.empty()) return 1.0;
   const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(residual);
-  const Eigen::VectorXd weights = signal_weights(evidence, null, residual);
   double sum = 0.0;
   for (Eigen::Index k = 0; k < square.size(); ++k) {
     if (square[k] > 0.0) sum += weights[k] * std::min(1.0, floor[k] / square[k]);
@@ -201,14 +214,16 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   std::array<UseGain*, kUses> gains{&out.fit, &out.holdout, &out.extrapolation};
   for (std::size_t u = 0; u < kUses; ++u) {
     if ((*context.uses)[u].empty()) continue;
-    const Eigen::VectorXd weights = signal_weights((*context.uses)[u], *context.null, parent.residual[u]);
+    const Evidence& evidence = (*context.uses)[u];
+    const Eigen::VectorXd weights =
+        weights_for(evidence, *context.null, parent.residual[u], child.residual[u]);
     *gains[u] = context.bootstrap[u]->gain(parent.residual[u], child.residual[u], weights);
+    gains[u]->floor = floor_share(evidence, *context.null, parent.residual[u], weights);
   }
   const Use decides = (*context.uses)[1].empty() ? Use::kFit : Use::kHoldout;
   const std::size_t d = static_cast<std::size_t>(decides);
   const UseGain& held = *gains[d];
-  const double above_floor = 1.0 - floor_share((*context.uses)[d], *context.null, parent.residual[d]);
-  const double needed = kMatters + kMattersAtFloor * (1.0 - above_floor);
+  const double needed = kMatters + kMattersAtFloor * held.floor;
   out.plain = 1.0 - held.ratio > kPlain && held.worst < 1.0;
   if (gain_over_chance < kChanceMargin) {
     out.why =

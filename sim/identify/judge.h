@@ -34,6 +34,7 @@ struct UseGain {
   double ratio = 1.0;
   double best = 1.0;   // 5 % of the draws are below
   double worst = 1.0;  // 95 % are below
+  double floor = 1.0;  // share of the sensors' own noise in the reference's energy
 };
 
 class BlockBootstrap {
@@ -59,6 +60,10 @@ double energy_ratio(const Evidence& evidence, const Eigen::VectorXd& reference,
 // does not water down what another one shows. At least kFloorWeight.
 Eigen::VectorXd signal_weights(const Evidence& evidence, const NullModel& null,
                                const Eigen::VectorXd& reference);
+// The same, for an addition: a signal that it leaves to the last digit as it was (a measured bus voltage
+// drives the model: no friction changes it) says nothing of it and counts nothing.
+Eigen::VectorXd weights_for(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& parent,
+                            const Eigen::VectorXd& child);
 // sqrt of the mean over signals of mean((residual / noise)^2)
 double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Eigen::VectorXd& residual);
 
@@ -79,7 +84,9 @@ struct JudgeContext {
 Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted& child,
                 const std::string& name, double gain_over_chance);
 
-// Share of the energy that is the sensors' own, mean over the signals; 1: nothing else is left.
-double floor_share(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual);
+// Share of the energy that is the sensors' own, mean over the signals with these weights; 1: nothing else is
+// left.
+double floor_share(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual,
+                   const Eigen::VectorXd& weights);
 
 }  // namespace omnihil

@@ -89,6 +89,42 @@ TEST(JudgeTest, RefusesWhatDoesNotMatter) {
   EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.99, 0.99, 1), "x", 100).accepted);
 }
 
+// A measured bus drives the model: what its supply does beside, no friction explains and none is judged by.
+TEST(JudgeTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
+  FakePredictor fake;
+  for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation}) {
+    fake.add(use, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
+    fake.add(use, noise_of(1.0, 6), std::vector<double>(kSamples, 0.0), 1.0, "bus_voltage");
+  }
+  const SignalKinds kinds = signal_kinds(fake);
+  const Uses uses{Evidence(fake, kinds, Use::kFit), Evidence(fake, kinds, Use::kHoldout),
+                  Evidence(fake, kinds, Use::kExtrapolation)};
+  NullModel null;
+  std::vector<BlockBootstrap> bootstrap;
+  for (std::size_t u = 0; u < kUses; ++u) {
+    null.mean_square[u] = Eigen::MatrixXd::Constant(2, 2, 0.01);
+    bootstrap.emplace_back(uses[u], 1);
+  }
+  const auto leaving = [&](double velocity, double bus) {
+    Fitted out;
+    out.finite = true;
+    for (std::size_t u = 0; u < kUses; ++u) {
+      std::vector<double> r = noise_of(velocity, 7);
+      for (const double v : noise_of(bus, 8)) r.push_back(v);
+      out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), 2 * kSamples);
+      out.as_seen[u] = uses[u].mean_square(out.residual[u]);
+    }
+    return out;
+  };
+  const JudgeContext context{
+      .uses = &uses, .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
+  const Judgement j = judge(context, leaving(1, 3), leaving(0.95, 3), "x", 100);
+  EXPECT_NEAR(j.holdout.ratio, 0.95 * 0.95, 1e-9);
+  EXPECT_NEAR(j.holdout.floor, 0.01, 1e-3);
+  // one that moves both is judged by both
+  EXPECT_GT(judge(context, leaving(1, 3), leaving(0.95, 3.1), "x", 100).holdout.ratio, 0.95);
+}
+
 TEST(JudgeTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
   const Court court;
   Fitted parent = court.leaving(1, 1, 1), child = court.leaving(0.7, 0.7, 0.7);
