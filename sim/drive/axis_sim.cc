@@ -11,7 +11,8 @@
 namespace omnihil {
 namespace {
 
-constexpr double kRecordStep_s = 0.5e-3;  // of the true motion, where timing effects look back
+constexpr double kRecordStep_s = 0.2e-3;  // of the true motion, where timing effects look back
+constexpr double kShortest_s = 1e-9;      // between two readings that a mean is taken over
 constexpr double kRecordSpan_s = 1.0;     // longer than any delay's upper bound
 
 template <typename T>
@@ -34,8 +35,9 @@ class AxisRun {
     last_supply_V_ = params.supply_voltage_V;
     slave(0);
     remember();
-    previous_ = instant(T(state_.now_s));
-    if (looks_back_) previous_ = instant(T(state_.now_s) - age(0));
+    previous_s_ = T(state_.now_s);
+    if (looks_back_) previous_s_ -= age(0);
+    previous_ = instant(previous_s_);
   }
 
   // From sample k to sample k + 1.
@@ -67,7 +69,8 @@ class AxisRun {
   AxisSample<T> sample(std::size_t k) {
     const auto& p = sim_.params();
     const double dt = k > 0 ? input_.time_s[k] - input_.time_s[k - 1] : 0.0;
-    const MotionPoint<T> seen = instant(looks_back_ ? T(state_.now_s) - age(k) : T(state_.now_s));
+    const T seen_s = looks_back_ ? T(state_.now_s) - age(k) : T(state_.now_s);
+    const MotionPoint<T> seen = instant(seen_s);
     AxisSample<T> s;
     s.time_s = input_.time_s[k];
     SensorPort<T> port = sense(k, dt, seen);
@@ -77,7 +80,10 @@ class AxisRun {
     // counts = angle of the encoder's shaft * counts per turn / 2 pi
     s.encoder_counts = port.encoder_angle_rad * port.encoder_turns_per_rotor_turn *
                        (input_.encoder_counts_per_turn / (2.0 * std::numbers::pi));
-    s.motor_current_A = dt > 0.0 ? (seen.charge_C - previous_.charge_C) / dt : state_.current_A;
+    // mean since the last reading was taken, whatever the stamps say
+    const T since_s = seen_s - previous_s_;
+    const bool moved_on = k > 0 && std::abs(value_of(since_s)) > kShortest_s;
+    s.motor_current_A = moved_on ? (seen.charge_C - previous_.charge_C) / since_s : state_.current_A;
     s.bus_voltage_V = last_.bus_voltage_V;
     s.supply_voltage_V = last_supply_V_;
     s.bus_current_A = last_.mean_bus_current_A;
@@ -88,6 +94,7 @@ class AxisRun {
     s.omega_rotor_rad_s = state_.omega_rotor_rad_s;
     s.held = last_.held;
     previous_ = seen;
+    previous_s_ = seen_s;
     return s;
   }
 
@@ -219,6 +226,7 @@ class AxisRun {
   bool alone_ = false;
   DriveResult<T> last_;
   MotionPoint<T> previous_;
+  T previous_s_ = T(0);  // its instant
   T charge_C_ = T(0);
   T last_supply_V_ = T(0);
   T travel_ahead_rad_ = T(0);  // the model's own travel, ahead of the slaved angle

@@ -43,6 +43,7 @@ struct SampleJitter {
             return step_rad / std::sqrt(12.0) / 100.0 * std::pow(8.0 / (s.rate_Hz * s.duration_s), 0.25);
           },
       .claims = kRandom,
+      .numerics = kFine,
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "encoder_error", .from_s = 0.0, .to_s = 2.0},
   };

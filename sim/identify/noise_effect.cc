@@ -22,8 +22,14 @@ constexpr int kLags = 10;
 
 // Sums of squares of one use, by signal and bin.
 struct Energies {
-  Eigen::VectorXd sum, count;
+  Eigen::VectorXd sum, count, fourth;
   Eigen::VectorXd mean() const { return sum.cwiseQuotient(count.cwiseMax(1.0)); }
+  // As many normal samples would tell the energy as well: var(r^2) = 2 sigma^4 makes 3 (sum r^2)^2 / sum r^4.
+  // Where a few edges are loud and the rest is still, they are few, whatever the bin holds (Kish 1965).
+  Eigen::VectorXd weight() const {
+    const Eigen::VectorXd normal = 3.0 * sum.cwiseAbs2().cwiseQuotient(fourth.cwiseMax(1e-300));
+    return normal.cwiseMin(count);
+  }
 };
 
 // A measured bus voltage is given to the model: what it leaves there is no noise of an effect.
@@ -42,7 +48,7 @@ class Binning {
   Energies energies(const Eigen::VectorXd& r) const {
     const auto kinds = static_cast<std::size_t>(evidence_->samples().size());
     const Eigen::Index size = static_cast<Eigen::Index>(tracks_.size() * kinds * kBins);
-    Energies e{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size)};
+    Energies e{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size)};
     for (std::size_t t = 0; t < tracks_.size(); ++t) {
       for (const Evidence::Part& part : evidence_->parts()) {
         if (!counts(*predictor_, part)) continue;
@@ -50,8 +56,10 @@ class Binning {
         for (Eigen::Index i = part.first; i < part.first + static_cast<Eigen::Index>(part.rows.size()); ++i) {
           const int bin = tracks_[t][static_cast<std::size_t>(i)];
           if (bin < 0 || !std::isfinite(r[i])) continue;
-          e.sum[static_cast<Eigen::Index>(row) + bin] += r[i] * r[i];
-          e.count[static_cast<Eigen::Index>(row) + bin] += 1.0;
+          const Eigen::Index at = static_cast<Eigen::Index>(row) + bin;
+          e.sum[at] += r[i] * r[i];
+          e.count[at] += 1.0;
+          e.fourth[at] += r[i] * r[i] * r[i] * r[i];
         }
       }
     }
@@ -161,13 +169,12 @@ class Trial {
 
   static double most_likely(const Energies& measured, const Eigen::VectorXd& own, const Eigen::VectorXd& more,
                             double power, double size) {
-    const Eigen::VectorXd energy = measured.mean();
+    const Eigen::VectorXd energy = measured.mean(), weight = measured.weight();
     const auto unlikely = [&](double factor) {
       double sum = 0.0;
       for (Eigen::Index b = 0; b < own.size(); ++b) {
         const double expected = own[b] + more[b] * factor;
-        if (measured.count[b] > 0.0 && expected > 0.0)
-          sum += measured.count[b] * (energy[b] / expected + std::log(expected));
+        if (weight[b] > 0.0 && expected > 0.0) sum += weight[b] * (energy[b] / expected + std::log(expected));
       }
       return sum;
     };
@@ -195,14 +202,14 @@ class Trial {
     const Eigen::VectorXd own = same ? fit_own : simulated(judge, bins, 0.0),
                           with = simulated(judge, bins, strength);
     double before = 0.0, after = 0.0, all = 0.0, floor = 0.0;
-    const Eigen::VectorXd energy = measured.mean();
+    const Eigen::VectorXd energy = measured.mean(), weight = measured.weight();
     for (Eigen::Index b = 0; b < own.size(); ++b) {
       // in units of the sensors' own, so that every signal counts; counts that stand still have none
       const double unit = std::max(own[b], 0.2 * own.segment(b - b % kBins, kBins).mean());
       if (!(unit > 0.0)) continue;
       const double n = measured.count[b];
-      before += n * std::pow((energy[b] - own[b]) / unit, 2);
-      after += n * std::pow((energy[b] - with[b]) / unit, 2);
+      before += weight[b] * std::pow((energy[b] - own[b]) / unit, 2);
+      after += weight[b] * std::pow((energy[b] - with[b]) / unit, 2);
       all += n * (energy[b] - own[b]) / unit;
       floor += n;
     }

@@ -60,5 +60,15 @@ TEST(SampleJitter, ShowsAsNoiseInProportionToTheSpeed) {
   }
 }
 
+// A mean over the time between two readings: where the current does not change, it does not matter when it is
+// read.
+TEST(SampleJitter, LeavesASteadyCurrentAlone) {
+  AxisInput in = held(CommandKind::kMotorCurrent, 1.5, 2.0);
+  in.imposed_velocity_rad_s.assign(in.time_s.size(), 20.0);
+  in.noise_seed = 3;
+  const auto out = run_axis(small_drive(), with({use_of("sample_jitter", {2e-4})}), in);
+  for (std::size_t n = 100; n < out.size(); ++n) EXPECT_NEAR(out[n].motor_current_A, 1.5, 1e-6) << n;
+}
+
 }  // namespace
 }  // namespace omnihil::test
