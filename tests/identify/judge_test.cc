@@ -76,6 +76,22 @@ TEST(JudgeTest, RefusesALossOnAnotherKindOfMotion) {
   EXPECT_NE(j.why.find("extrapolation"), std::string::npos) << j.why;
 }
 
+// Below what the simulated null leaves there, a rise is chance.
+TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatTheNullLeavesAsWell) {
+  Court court;
+  court.null.mean_square[2] = Eigen::MatrixXd::Constant(2, 1, 2.0);
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100).accepted);
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.6), "x", 100).accepted);
+}
+
+// Whitening weighs the slowest wandering most; what somebody sees of another kind of motion may yet be halved.
+TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsAFallAsItIsSeen) {
+  const Court court;
+  Fitted child = court.leaving(0.8, 0.8, 1.2);
+  child.as_seen[2] *= 0.5;
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), child, "x", 100).accepted);
+}
+
 TEST(JudgeTest, RefusesWhatChanceGivesAsWell) {
   const Court court;
   const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 0.8), "x", 1.1);
