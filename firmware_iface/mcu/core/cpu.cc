@@ -52,15 +52,17 @@ void Cpu::set_fpscr(std::uint32_t value) {
   const std::uint32_t old = reg.fpscr;
   reg.fpscr = value & kFpscrWritable;
   if ((old ^ value) & 0x00C00000u) std::fesetround(host_rounding(reg.fpscr));
+  fp_plain_ = fp_ready_ && !(reg.fpscr & kFlushToZero);
 }
 
 bool Cpu::fp_begin() {
   if (!fp_enabled) return false;
+  fp_ready_ = true;
   if (fp_automatic) {
     reg.control |= kFpContextActive;
     set_fpscr((reg.fpscr & ~0x07C00000u) | fpdscr);
   }
-  fp_ready_ = true;
+  fp_plain_ = !(reg.fpscr & kFlushToZero);
   return true;
 }
 
@@ -120,6 +122,9 @@ Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
     cycles += op.m;
   }
   op.cost = static_cast<std::uint16_t>(cycles * scale_);
+  op.entry = op.code;
+  if (op.code == kBcond) op.entry = static_cast<std::uint16_t>(kBranchEq + op.a);
+  if (op.condition < kAlways) op.entry = static_cast<std::uint16_t>(kIfEq + op.condition);
   return op;
 }
 
@@ -158,7 +163,10 @@ bool Cpu::go_to(std::uint32_t pc) {
   }
   if (code_->ops.empty()) {
     code_->ops.resize(code_->size / 2 + 2);
-    code_->ops[code_->size / 2].code = code_->ops[code_->size / 2 + 1].code = kOffEnd;
+    for (std::size_t i = code_->size / 2; i < code_->ops.size(); ++i) {
+      code_->ops[i].code = kOffEnd;
+      code_->ops[i].entry = kOffEnd;
+    }
   }
   return true;
 }
@@ -245,36 +253,36 @@ bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value,
 
 // A loop that comes round to the same registers without having changed anything will do so until something
 // outside changes: whole turns of it are skipped, which leaves every result as it would be.
-void Cpu::watch_loop(const Op* at, std::int64_t& left, std::uint64_t& count, std::int64_t end) {
+Cpu::Pace Cpu::watch_loop(const Op* at, Pace pace, std::int64_t end) {
   if (!watching_) {
     watching_ = true;
     changed_ = false;
     watch_.at = at;
     watch_.registers = reg;
-    watch_.left = left;
-    watch_.count = count;
+    watch_.pace = pace;
     watch_.limit = INT64_MAX;
     watch_.patience = 64;
     watch_.rest = 1;
-    return;
+    return pace;
   }
   watch_.rest = 1;
   const bool again = at == watch_.at;
-  if (!changed_ && !again && --watch_.patience > 0) return;
+  if (!changed_ && !again && --watch_.patience > 0) return pace;
   watching_ = false;
   if (changed_ || !again || !(watch_.registers == reg)) {
     watch_.pause = watch_.pause < 4096 ? watch_.pause * 2 : 4096;
     watch_.rest = watch_.pause;
-    return;
+    return pace;
   }
   watch_.rest = watch_.pause = 64;
-  const std::int64_t turn = watch_.left - left, now = end - left;
-  std::int64_t room = left - 1;
+  const std::int64_t turn = watch_.pace.left - pace.left, now = end - pace.left;
+  std::int64_t room = pace.left - 1;
   if (watch_.limit - now < room) room = watch_.limit - now;
   const std::int64_t turns = room > 0 ? room / turn : 0;
-  left -= turns * turn;
-  count += static_cast<std::uint64_t>(turns) * (count - watch_.count);
+  pace.left -= turns * turn;
+  pace.count += static_cast<std::uint64_t>(turns) * (pace.count - watch_.pace.count);
   statistics.skipped_subcycles += static_cast<std::uint64_t>(turns * turn);
+  return pace;
 }
 
 }  // namespace omnihil::mcu

@@ -14,6 +14,7 @@
 #include <cstdint>
 
 #include "firmware_iface/mcu/core/decode.h"
+#include "firmware_iface/mcu/core/fp.h"
 #include "firmware_iface/mcu/core/memory.h"
 #include "firmware_iface/mcu/core/registers.h"
 #include "firmware_iface/mcu/core/variant.h"
@@ -83,7 +84,10 @@ class Cpu {
   std::uint32_t special(std::uint32_t sysm) const;    // MRS
   std::uint32_t xpsr() { return reg.apsr() | reg.ipsr | 0x01000000u | it_to_xpsr(it_at(reg.r[15])); }
   // After a change of fp_enabled, fp_automatic or CONTROL.FPCA.
-  void fp_changed() { fp_ready_ = fp_enabled && ((reg.control & kFpContextActive) || !fp_automatic); }
+  void fp_changed() {
+    fp_ready_ = fp_enabled && ((reg.control & kFpContextActive) || !fp_automatic);
+    fp_plain_ = fp_ready_ && !(reg.fpscr & kFlushToZero);
+  }
   const Variant& variant() const { return variant_; }
   std::int64_t subcycles(int cycles) const { return cycles * scale_; }
 
@@ -104,11 +108,14 @@ class Cpu {
     std::uint8_t* data = nullptr;
     MemoryBlock* block = nullptr;
   };
+  struct Pace {  // of the loop: subcycles to the deadline, instructions done
+    std::int64_t left = 0;
+    std::uint64_t count = 0;
+  };
   struct Watch {
     const Op* at = nullptr;
     Registers registers;
-    std::int64_t left = 0;
-    std::uint64_t count = 0;
+    Pace pace;
     std::int64_t limit = 0;
     int patience = 0, rest = 64, pause = 64;
   };
@@ -119,6 +126,8 @@ class Cpu {
   Op make(std::uint32_t pc, std::uint8_t it) const;
   std::uint16_t halfword(std::uint32_t pc) const;
   bool holds(unsigned condition) const;
+  template <unsigned kCondition>
+  bool meets() const;  // holds(), known at compile time
   bool fp_begin();
   void write_special(std::uint32_t sysm, unsigned mask, std::uint32_t value);
   void change_masks(std::uint32_t imm);
@@ -130,7 +139,7 @@ class Cpu {
   bool invalid_access(std::uint32_t address, unsigned bytes, bool must_align);
   bool slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align);
   bool slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align);
-  void watch_loop(const Op* at, std::int64_t& left, std::uint64_t& count, std::int64_t end);
+  Pace watch_loop(const Op* at, Pace pace, std::int64_t end);
   template <class T>
   bool load(std::uint32_t address, T& value) const;
   template <class T>
@@ -141,7 +150,8 @@ class Cpu {
   CpuBus& bus_;
   std::int64_t scale_;  // 16ths of a cycle for one cycle of the table
   std::int64_t now_ = 0;
-  bool stop_requested_ = false, attention_ = false, fp_ready_ = false;
+  bool stop_requested_ = false, attention_ = false;
+  bool fp_ready_ = false, fp_plain_ = false;  // may be used; and needs no look at denormal numbers
   bool watching_ = false, changed_ = false;
   Window ram_, flash_, ccm_;
   MemoryRegion* code_ = nullptr;

@@ -17,12 +17,13 @@ std::uint32_t access_of(std::uint32_t size, bool load, bool is_signed) {
 // A load whose destination is the PC: a jump for a word, a preload hint otherwise.
 bool load_to_pc(const DecodeContext& at, std::uint32_t size, Op& op) {
   if (size == kWord) {
+    const std::uint8_t shift = op.a;  // of the register form
     op.a = u8(op.code >= kLdrLit    ? 4
               : op.code >= kLdrPost ? 3
               : op.code >= kLdrPre  ? 2
               : op.code >= kLdrReg  ? 1
                                     : 0);
-    op.d = op.a == 1 ? u8(op.spare) : u8(0);  // the register form's shift
+    op.d = op.a == 1 ? shift : u8(0);
     op.code = kLdrPc;
     return !at.mid_it();
   }
@@ -50,7 +51,7 @@ bool decode_single_access(const DecodeContext& at, std::uint32_t h, std::uint32_
     op.code = offset(kLdrImm, which);
   } else if (!bit(g, 11)) {
     op.m = u8(g & 15);
-    op.a = op.spare = u8(bits(g, 5, 4));
+    op.a = u8(bits(g, 5, 4));
     op.code = offset(kLdrReg, which);
     if (bits(g, 10, 6) != 0 || bad(op.m)) return false;
   } else {

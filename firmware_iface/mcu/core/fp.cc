@@ -128,8 +128,6 @@ double fp_round(double value, FpRounding rounding, std::uint32_t fpscr) {
   return is_nan(value) ? quiet(value, fpscr) : integral(value, rounding);
 }
 
-std::uint32_t fp_compare(double a, double b) { return (a == b ? 6u : a < b ? 8u : a > b ? 2u : 3u) << 28; }
-
 std::uint32_t fp_to_int(double value, bool is_unsigned, unsigned bits, FpRounding rounding) {
   if (is_nan(value)) return 0;
   const double whole = integral(value, rounding);

@@ -35,7 +35,10 @@ float fp_round(float value, FpRounding rounding, std::uint32_t fpscr);
 double fp_round(double value, FpRounding rounding, std::uint32_t fpscr);
 
 // N, Z, C, V of a comparison in bits 31 to 28.
-std::uint32_t fp_compare(double a, double b);
+template <class F>
+std::uint32_t fp_compare(F a, F b) {
+  return (a == b ? 6u : a < b ? 8u : a > b ? 2u : 3u) << 28;
+}
 // Saturating; NaN gives 0.
 std::uint32_t fp_to_int(double value, bool is_unsigned, unsigned bits, FpRounding rounding);
 std::uint16_t fp_to_half(double value, std::uint32_t fpscr);

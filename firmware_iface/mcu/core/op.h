@@ -21,10 +21,10 @@ struct Op {
   std::uint16_t cost = 0;                   // in 16ths of a cycle
   std::uint32_t imm = 0;                    // constant, branch target, register list
   std::uint8_t d = 0, n = 0, m = 0, a = 0;  // registers; `a` also a shift, a form, a condition
-  std::uint8_t condition = kAlways;         // of the IT block it stands in
+  std::uint8_t condition : 4 = kAlways;     // of the IT block it stands in
+  std::uint8_t halfwords : 4 = 1;           // in the upper half: masked, the bytes to the next slot
   std::uint8_t it = 0;                      // ITSTATE while it executes
-  std::uint8_t halfwords = 1;
-  std::uint8_t spare = 0;
+  std::uint16_t entry = kUndecoded;         // a Code: where the loop goes, for its condition or its code
 };
 static_assert(sizeof(Op) == 16);
 
