@@ -103,6 +103,7 @@ void Timer::reset() {
   seen_reference_.fill(0);
   ccer_ = 0;
   ccmr_.fill(0);
+  note_settings();
   shaft_zero_ = shaft_seen_ = 0;
   edges_left_.fill(0);
   transfer();
@@ -217,8 +218,12 @@ void Timer::update_event(bool by_software) {
     move_to(law_.way == CounterLaw::Way::kCentre ? position() : 0);
     value(kCr1) &= ~kCen;
     running_ = false;
+    pins_known_ = 0;
   }
-  if (!by_software && (value(kBdtr) & kAoe) != 0 && !break_high_) value(kBdtr) |= kMoe;
+  if (!by_software && (value(kBdtr) & kAoe) != 0 && !break_high_) {
+    value(kBdtr) |= kMoe;
+    pins_known_ = 0;
+  }
   if (!by_software || (cr1 & kUrs) == 0) {
     if (!by_software) updates_lost_ += value(kSr) & kUpdate;
     raise(kUpdate);
@@ -228,35 +233,34 @@ void Timer::update_event(bool by_software) {
   outputs_changed();
 }
 
-bool Timer::transfer_pending() const {
-  if (prescale_ != value(kPsc) + 1u || law_.arr != value(kArr)) return true;
-  for (unsigned c = 0; c < kChannels; ++c) {
-    if (!captures(c) && ccr_[c] != value(kCcr1 + 4 * c)) return true;
-  }
-  return false;
-}
-
 // Preload registers become active.
 void Timer::transfer() {
-  const std::uint64_t at = law_.count(position());
-  const bool down = law_.falling(position());
   if (prescale_ != value(kPsc) + 1u || law_.arr != value(kArr)) {
+    const std::uint64_t at = law_.count(position());
+    const bool down = law_.falling(position());
     const bool turning = law_.way == CounterLaw::Way::kCentre && at == law_.arr;
     move_to(0);
     prescale_ = value(kPsc) + 1u;
     law_.arr = value(kArr);
     if (law_.arr > 0)
       start_ = turning ? law_.arr : law_.way == CounterLaw::Way::kCentre ? law_.position(at, down) : 0;
+    pins_known_ = 0;
   }
   for (unsigned c = 0; c < kChannels; ++c) {
-    if (!captures(c)) ccr_[c] = value(kCcr1 + 4 * c);
+    if (captures(c) || ccr_[c] == value(kCcr1 + 4 * c)) continue;
+    ccr_[c] = value(kCcr1 + 4 * c);
+    pins_known_ = 0;
   }
   repeat_left_ = spec_.advanced ? value(kRcr) : 0;
-  if (law_.arr == 0) running_ = false;
+  if (law_.arr == 0) {
+    running_ = false;
+    pins_known_ = 0;
+  }
 }
 
 // After CR1, SMCR or ARR: way of counting, running or not.
 void Timer::follow_settings() {
+  pins_known_ = 0;
   const std::uint32_t cr1 = value(kCr1);
   const std::uint32_t count_now = count();
   const bool down = law_.falling(position());
@@ -284,12 +288,15 @@ void Timer::follow_settings() {
 }
 
 void Timer::raise(std::uint32_t flags) {
+  if ((value(kSr) & flags) == flags) return;
   value(kSr) |= flags;
   update_irqs();
 }
 
 void Timer::update_irqs() {
   const std::uint32_t on = value(kSr) & value(kDier);
+  if (on == asking_) return;
+  asking_ = on;
   irq_update_.set((on & kUpdate) != 0);
   irq_compare_.set((on & 0x1Eu) != 0);
   irq_break_.set((on & kBreak) != 0);
@@ -314,30 +321,6 @@ void Timer::clock_changed() {
   outputs_changed();
 }
 
-// The next instant that somebody waits for.
-void Timer::plan() {
-  next_ = kNever;
-  const std::uint32_t dier = value(kDier);
-  if (encoder()) {
-    constexpr std::int64_t kLook_ns = 50'000;  // how late an overflow interrupt may come
-    if ((dier & kUpdate) != 0 && (value(kCr1) & kCen) != 0) {
-      next_ = system().from_ns((system().to_ns(now()) / kLook_ns + 1) * kLook_ns);
-      if (next_ <= now()) next_ = now() + 1;
-    }
-    return;
-  }
-  if (!running_) return;
-  const bool update = (dier & (kUpdate | kUpdateDma)) != 0 || (value(kCr1) & kOpm) != 0 ||
-                      (field(value(kCr2), 4, 3) == 2 && context_.triggers.heard(trgo_)) ||
-                      (!listeners_.empty() && (transfer_pending() || (value(kBdtr) & kAoe) != 0));
-  if (update) next_ = after(law_.to_boundary(position()));
-  for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
-    if (wants_match(c)) next_ = std::min(next_, next_match(c));
-    if (wants_edges(c)) next_ = std::min(next_, next_edge(c));
-  }
-  if (next_ <= now()) next_ = now() + 1;  // ticks faster than the core clock
-}
-
 std::uint32_t Timer::load(std::uint32_t offset) {
   if (offset == kSr || offset == kCnt || offset == kCr1) sync();
   switch (offset) {
@@ -346,10 +329,7 @@ std::uint32_t Timer::load(std::uint32_t offset) {
       return (value(kCr1) & ~kDir) | (down ? kDir : 0u);
     }
     case kCnt:
-      if (!encoder()) return count();
-      return static_cast<std::uint32_t>(((unwrapped() % (static_cast<std::int64_t>(law_.arr) + 1)) +
-                                         static_cast<std::int64_t>(law_.arr) + 1) %
-                                        (static_cast<std::int64_t>(law_.arr) + 1));
+      return encoder() ? shaft_count() : count();
     case kDmar:
     case kNewDmar: {
       if (offset == kDmar && spec_.new_layout) break;  // CCR6
@@ -366,23 +346,6 @@ std::uint32_t Timer::load(std::uint32_t offset) {
     update_irqs();
   }
   return value(offset);
-}
-
-// Polled flags and counts: until the next end of the count, match or tick.
-Cycles Timer::stable_until(std::uint32_t offset) const {
-  offset &= ~3u;
-  const bool capturing = offset >= kCcr1 && offset < kCcr1 + 16 && captures((offset - kCcr1) / 4);
-  if (capturing || offset == kDmar || offset == kNewDmar) return 0;
-  if (offset != kCnt && offset != kSr && offset != kCr1) return kNever;
-  if (encoder()) return 0;
-  if (!running_) return kNever;
-  if (now() < anchor_) return 0;
-  if (offset == kCnt) return cycle_of(ticks_at(now()) + 1);
-  Cycles until = after(law_.to_boundary(position()));
-  for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
-    if (!captures(c)) until = std::min(until, next_match(c));
-  }
-  return until;
 }
 
 void Timer::generate(std::uint32_t events) {
@@ -410,6 +373,7 @@ void Timer::generate(std::uint32_t events) {
   if ((events & kTrigger) != 0) trigger_edge();
   if ((events & kBreak) != 0) {
     value(kBdtr) &= ~kMoe;
+    pins_known_ = 0;
     raise(kBreak);
     outputs_changed();
   }
@@ -479,7 +443,9 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
       keep(offset, written, lanes);
       break;
   }
+  if (offset == kCr2 || offset == kCcmr1 || offset == kCcmr2 || offset == kDier) note_settings();
   bool acts = offset != kSr && offset != kDier && offset != kCnt;  // on the outputs, at once
+  if (acts) pins_known_ = 0;
   if (offset >= kCcr1 && offset < kCcr1 + 16) {
     const unsigned c = (offset - kCcr1) / 4;
     if (!spec_.bits32) value(offset) &= 0xFFFFu;

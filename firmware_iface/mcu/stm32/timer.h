@@ -92,26 +92,31 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void boundary();
   void update_event(bool by_software);
   void transfer();
-  bool transfer_pending() const;
   void follow_settings();
-  void plan();
   Cycles after(std::uint64_t ticks) const { return cycle_of(done_ + ticks); }
   void raise(std::uint32_t flags);
   void update_irqs();
   void generate(std::uint32_t events);
   void store_dma_burst(std::uint32_t written);
   bool store_preload(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes);
-  // timer_output.cc
-  unsigned output_mode(unsigned channel) const;
-  bool captures(unsigned channel) const;
-  unsigned match_positions(unsigned channel, std::array<std::uint64_t, 2>& at) const;
-  void mark_matches(std::uint64_t ticks);
-  void matched(unsigned channel);
-  void look_at_references();
+  // timer_plan.cc
+  bool transfer_pending() const;
+  void plan();
   bool wants_match(unsigned channel) const;
   bool wants_edges(unsigned channel) const;
   Cycles next_match(unsigned channel) const;
   Cycles next_edge(unsigned channel) const;
+  // timer_output.cc
+  void note_settings();
+  unsigned output_mode(unsigned channel) const { return mode_[channel]; }
+  bool captures(unsigned channel) const { return (captures_ >> channel & 1u) != 0; }
+  bool acts_on_match(unsigned channel) const;
+  unsigned match_positions(unsigned channel, std::array<std::uint64_t, 2>& at) const;
+  void mark_matches(std::uint64_t ticks);
+  void matched(unsigned channel);
+  void look_at_references();
+  bool reference_at(unsigned channel, std::uint64_t position) const;
+  TimerPin work_out_pin(unsigned channel, bool complement) const;
   double dead_ticks() const;
   void outputs_changed();
   void commutate();
@@ -121,6 +126,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void sync_encoder();
   std::int64_t shaft_edges() const;
   std::int64_t unwrapped() const;
+  std::uint32_t shaft_count() const;
   void input_edge(unsigned input, bool level);
   bool selected_edge(unsigned channel, bool level) const;
   void capture(unsigned channel);
@@ -139,6 +145,11 @@ class Timer final : public RegisterBlock, public TriggerSink {
   std::array<char, kChannels> seen_reference_{};
   std::array<std::uint32_t, 2> ccmr_{};  // active where channels are commutated
   std::uint32_t ccer_ = 0;
+  std::array<std::uint8_t, kChannels> mode_{};  // of the outputs, active
+  std::uint32_t captures_ = 0, flag_only_ = 0;  // a bit per channel: an input; a match sets its flag alone
+  std::uint32_t asking_ = 0;                    // flags that hold an interrupt line
+  mutable std::array<TimerPin, 2 * kChannels> pins_{};  // while they are known: main, complement
+  mutable std::uint32_t pins_known_ = 0;
   bool running_ = false;
   Cycles anchor_ = 0;                   // when the counter stood at start_
   std::uint64_t start_ = 0, done_ = 0;  // position at the anchor; ticks since then that were dealt with

@@ -33,14 +33,23 @@ std::int64_t Timer::unwrapped() const {
   return (value(kCr1) & kCen) != 0 ? shaft_edges() - shaft_zero_ : shaft_seen_;
 }
 
+// Afterwards shaft_seen_ is unwrapped().
 void Timer::sync_encoder() {
   const std::int64_t turns = static_cast<std::int64_t>(law_.arr) + 1;
   const std::int64_t at = unwrapped();
   if (at == shaft_seen_) return;
   shaft_falling_ = at < shaft_seen_;
-  const bool wrapped = floor_div(at, turns) != floor_div(shaft_seen_, turns);
+  const bool wrapped = (turns & (turns - 1)) == 0 ? ((at ^ shaft_seen_) & -turns) != 0
+                                                  : floor_div(at, turns) != floor_div(shaft_seen_, turns);
   shaft_seen_ = at;
   if (wrapped && (value(kCr1) & kUdis) == 0) raise(kUpdate);
+}
+
+// CNT, after sync().
+std::uint32_t Timer::shaft_count() const {
+  const std::int64_t turns = static_cast<std::int64_t>(law_.arr) + 1;
+  if ((turns & (turns - 1)) == 0) return static_cast<std::uint32_t>(shaft_seen_ & (turns - 1));
+  return static_cast<std::uint32_t>((shaft_seen_ % turns + turns) % turns);
 }
 
 bool Timer::timer_input(unsigned input) const {
@@ -154,6 +163,7 @@ void Timer::break_input(bool level) {
   break_high_ = (bdtr & kBke) != 0 && level == ((bdtr & kBkp) != 0);
   if (!break_high_) return;
   value(kBdtr) &= ~kMoe;
+  pins_known_ = 0;
   raise(kBreak);
   outputs_changed();
 }

@@ -18,13 +18,21 @@ enum OutputMode : unsigned {
 };
 }
 
-unsigned Timer::output_mode(unsigned channel) const {
-  const std::uint32_t ccmr = commutates() ? ccmr_[channel / 2] : value(kCcmr1 + 4 * (channel / 2));
-  return field(ccmr, 4 + 8 * (channel % 2), 3);
+// After every change of CR2, CCMR or DIER: what they make of each channel. Pins are worked out anew.
+void Timer::note_settings() {
+  pins_known_ = 0;
+  captures_ = flag_only_ = 0;
+  for (unsigned c = 0; c < kChannels; ++c) {
+    const std::uint32_t ccmr = value(kCcmr1 + 4 * (c / 2)), active = commutates() ? ccmr_[c / 2] : ccmr;
+    mode_[c] = static_cast<std::uint8_t>(field(active, 4 + 8 * (c % 2), 3));
+    if (field(ccmr, 8 * (c % 2), 2) != 0) captures_ |= 1u << c;
+    const bool tells = c == 0 && field(value(kCr2), 4, 3) == 3;
+    if (!acts_on_match(c) && !tells && (value(kDier) & (kCompare1Dma << c)) == 0) flag_only_ |= 1u << c;
+  }
 }
 
-bool Timer::captures(unsigned channel) const {
-  return field(value(kCcmr1 + 4 * (channel / 2)), 8 * (channel % 2), 2) != 0;
+bool Timer::acts_on_match(unsigned channel) const {
+  return mode_[channel] >= kActiveOnMatch && mode_[channel] <= kToggle;
 }
 
 // Where in the period the counter equals CCR; the number of places.
@@ -48,8 +56,9 @@ unsigned Timer::match_positions(unsigned channel, std::array<std::uint64_t, 2>& 
 }
 
 void Timer::mark_matches(std::uint64_t ticks) {
+  const std::uint32_t raised = value(kSr) / kCompare1;
   for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
-    if (captures(c)) continue;
+    if (captures(c) || (flag_only_ & raised) >> c & 1u) continue;  // it captures, or nothing more can follow
     std::array<std::uint64_t, 2> at{};
     const unsigned n = match_positions(c, at);
     for (unsigned i = 0; i < n; ++i) {
@@ -77,16 +86,18 @@ void Timer::matched(unsigned channel) {
   if (channel == 0 && field(value(kCr2), 4, 3) == 3) context_.triggers.fire(trgo_, true);
 }
 
-bool Timer::reference(unsigned channel) const {
+bool Timer::reference(unsigned channel) const { return reference_at(channel, position()); }
+
+bool Timer::reference_at(unsigned channel, std::uint64_t at) const {
   switch (output_mode(channel)) {
     case kForceLow:
       return false;
     case kForceHigh:
       return true;
     case kPwm1:
-      return law_.pwm_active(position(), ccr_[channel]);
+      return law_.pwm_active(at, ccr_[channel]);
     case kPwm2:
-      return !law_.pwm_active(position(), ccr_[channel]);
+      return !law_.pwm_active(at, ccr_[channel]);
     default:
       return toggled_[channel] != 0;
   }
@@ -94,53 +105,18 @@ bool Timer::reference(unsigned channel) const {
 
 // Tells those who listen to output references of their edges.
 void Timer::look_at_references() {
+  if (spec_.channels == 0) return;
   const unsigned master = field(value(kCr2), 4, 3);
+  std::uint64_t at = position();
   for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
-    const bool level = law_.arr > 0 && reference(c);
+    const bool level = law_.arr > 0 && reference_at(c, at);
     if (level == (seen_reference_[c] != 0)) continue;
     seen_reference_[c] = level ? 1 : 0;
     if (context_.triggers.heard(compare_[c])) context_.triggers.fire(compare_[c], level);
     if (master == 4 + c) context_.triggers.fire(trgo_, level);
-    const unsigned mode = output_mode(c);
-    if (mode >= kActiveOnMatch && mode <= kToggle) outputs_changed();
+    if (acts_on_match(c)) outputs_changed();
+    at = position();  // the timer may have been its listener itself
   }
-}
-
-bool Timer::wants_match(unsigned c) const {
-  if (captures(c)) return false;
-  const unsigned mode = output_mode(c);
-  return (value(kDier) & (kCompare1 << c | kCompare1Dma << c)) != 0 ||
-         (c == 0 && field(value(kCr2), 4, 3) == 3 && context_.triggers.heard(trgo_)) ||
-         (mode >= kActiveOnMatch && mode <= kToggle && !listeners_.empty());
-}
-
-bool Timer::wants_edges(unsigned c) const {
-  if (captures(c)) return false;
-  return context_.triggers.heard(compare_[c]) ||
-         (field(value(kCr2), 4, 3) == 4 + c && context_.triggers.heard(trgo_));
-}
-
-Cycles Timer::next_match(unsigned channel) const {
-  std::array<std::uint64_t, 2> at{};
-  const unsigned n = match_positions(channel, at);
-  Cycles next = kNever;
-  for (unsigned i = 0; i < n; ++i) next = std::min(next, after(law_.to_position(position(), at[i])));
-  return next;
-}
-
-// Candidates for a change of the reference: the matches and the wrap.
-Cycles Timer::next_edge(unsigned channel) const {
-  const std::uint64_t ccr = ccr_[channel];
-  std::array<std::uint64_t, 3> at{0, 0, 0};
-  if (law_.way == CounterLaw::Way::kCentre) {
-    at[1] = std::min(ccr, law_.arr);
-    at[2] = 2 * law_.arr - at[1];
-  } else if (ccr <= law_.arr) {
-    at[1] = law_.way == CounterLaw::Way::kDown ? law_.arr - ccr : ccr;
-  }
-  Cycles next = kNever;
-  for (const std::uint64_t target : at) next = std::min(next, after(law_.to_position(position(), target)));
-  return next;
 }
 
 // Dead time in ticks of the timer's clock before its prescaler (RM0090 §17.4.18, DTG).
@@ -155,6 +131,15 @@ double Timer::dead_ticks() const {
 }
 
 TimerPin Timer::pin(unsigned c, bool complement) const {
+  const unsigned i = 2 * c + (complement ? 1 : 0);
+  if ((pins_known_ >> i & 1u) != 0) return pins_[i];
+  pins_[i] = work_out_pin(c, complement);
+  // Others may change with the count.
+  if (pins_[i].drive == TimerPin::Drive::kPwm) pins_known_ |= 1u << i;
+  return pins_[i];
+}
+
+TimerPin Timer::work_out_pin(unsigned c, bool complement) const {
   const std::uint32_t ccer = enable_bits(), bdtr = value(kBdtr), cr2 = value(kCr2);
   const bool on = bit(ccer, 4 * c), on_n = bit(ccer, 4 * c + 2);
   const bool inverted = bit(ccer, 4 * c + (complement ? 3 : 1));
@@ -195,6 +180,7 @@ void Timer::outputs_changed() {
 void Timer::commutate() {
   ccer_ = value(kCcer);
   ccmr_ = {value(kCcmr1), value(kCcmr2)};
+  note_settings();
   raise(kCom);
   if ((value(kDier) & kComDma) != 0) context_.dma.pulse(dma_com_);
   outputs_changed();
