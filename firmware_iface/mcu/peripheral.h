@@ -34,6 +34,8 @@ class System {
   virtual void set_irq(int irq, bool high) = 0;
   // next_event() of some peripheral has changed, or an exception may be due: look again after this access.
   virtual void reschedule() = 0;
+  // The same of one peripheral's alone, whose next_event() was `before`.
+  virtual void event_moved(Cycles /*before*/, Cycles /*after*/) { reschedule(); }
   // Reset of the whole chip at the end of this access or event, by the named cause.
   virtual void request_reset(std::string_view cause) = 0;
   // By what the chip was reset last: "power-on" or what request_reset() was given. For the reset flags.
@@ -41,8 +43,6 @@ class System {
   // Bus master access (DMA): as the core would, without its permission. `bytes` is 1, 2 or 4.
   virtual std::uint32_t bus_read(std::uint32_t address, unsigned bytes) = 0;
   virtual void bus_write(std::uint32_t address, unsigned bytes, std::uint32_t value) = 0;
-  // Changes the contents of the flash as they lie there, for the flash controller alone; no erased bits are
-  // looked at.
   // What address 0 shows from the next instruction on: flash, system memory or RAM by its base (the boot mode
   // of SYSCFG). On a core without VTOR the vectors move with it.
   virtual void map_at_zero(std::uint32_t base) = 0;
@@ -67,9 +67,12 @@ class Peripheral {
   virtual void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) = 0;
   // The next instant at which it acts by itself; run_events() is then called with now() at that instant.
   virtual Cycles next_event() const {
+    if (next_event_field_ != nullptr) return *next_event_field_;
     ever_acts_ = false;  // a block that acts at all answers this itself
     return kNever;
   }
+  // The same, without a call where it stands in a field.
+  Cycles upcoming() const { return next_event_field_ != nullptr ? *next_event_field_ : next_event(); }
   virtual void run_events() {}
   // False: of a kind that has no events at all, and need not be asked for the next one.
   bool ever_acts() const {
@@ -82,8 +85,13 @@ class Peripheral {
   // then be skipped up to there (or to the next event, whichever is first). 0: not known.
   virtual Cycles stable_until(std::uint32_t /*offset*/) const { return 0; }
 
+ protected:
+  // This member of the block is its next_event(), always.
+  void next_event_is(const Cycles& field) { next_event_field_ = &field; }
+
  private:
   std::string name_;
+  const Cycles* next_event_field_ = nullptr;
   mutable bool ever_acts_ = true;
 };
 

@@ -16,6 +16,7 @@ HallLines::HallLines(const MotorEntry& entry, Chip& chip, System& system,
       system_(system),
       world_(std::move(world)),
       timer_(chip.find<Timer>(entry.hall_timer)) {
+  next_event_is(next_);
   for (const PinName& pin : entry.hall_pins) pins_.emplace_back(chip.port(pin.port), pin.pin);
 }
 

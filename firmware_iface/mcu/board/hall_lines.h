@@ -22,7 +22,6 @@ class HallLines final : public Peripheral {
   void reset() override {}
   std::uint32_t read(std::uint32_t, unsigned) override { return 0; }
   void write(std::uint32_t, unsigned, std::uint32_t) override {}
-  Cycles next_event() const override { return next_; }
   void run_events() override;
   void clock_changed() override { plan(); }
   void world_changed();  // a new step of the plant has begun, at now()

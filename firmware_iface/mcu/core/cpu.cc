@@ -7,6 +7,7 @@
 namespace omnihil::mcu {
 namespace {
 
+constexpr std::uint32_t kDevices = 0x40000000, kDevicesSize = 0x20000000;  // peripherals (B3.1)
 constexpr std::uint32_t kFpscrWritable = 0xF7C0009F;
 
 int host_rounding(std::uint32_t fpscr) {
@@ -25,8 +26,11 @@ Cpu::Cpu(const Variant& variant, Memory& memory, CpuBus& bus, double cpi_scale)
 void Cpu::memory_changed() {
   code_ = nullptr;
   ram_ = flash_ = ccm_ = Window{};
+  devices_apart_ = true;
   for (const auto& region : memory_.regions()) {
     Window window{region->base, region->size, region->data(), region->block};
+    if (region->base + region->size > kDevices && region->base < kDevices + kDevicesSize)
+      devices_apart_ = false;
     if (!region->writable()) {
       if (!flash_.data) flash_ = window;
     } else if (!ram_.data) {
@@ -195,6 +199,11 @@ bool Cpu::invalid_access(std::uint32_t address, unsigned bytes, bool must_align)
 }
 
 bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align) {
+  if (address - kDevices < kDevicesSize && devices_apart_ && address % bytes == 0) {
+    if (bus_.read(address, bytes, value)) return true;
+    fault = {kPreciseBus | kBusAddressValid, address};
+    return false;
+  }
   if (invalid_access(address, bytes, must_align)) return false;
   const MemoryRegion* region = memory_.find(address);
   if (region && address - region->base <= region->size - bytes) {
@@ -222,6 +231,12 @@ bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value,
 }
 
 bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align) {
+  if (address - kDevices < kDevicesSize && devices_apart_ && address % bytes == 0) {
+    changed_ = true;
+    if (bus_.write(address, bytes, value)) return true;
+    fault = {kPreciseBus | kBusAddressValid, address};
+    return false;
+  }
   if (invalid_access(address, bytes, must_align)) return false;
   const MemoryRegion* region = memory_.find(address);
   if (region && region->writable() && address - region->base <= region->size - bytes) {

@@ -154,6 +154,7 @@ class Cpu {
   bool fp_ready_ = false, fp_plain_ = false;  // may be used; and needs no look at denormal numbers
   bool watching_ = false, changed_ = false;
   Window ram_, flash_, ccm_;
+  bool devices_apart_ = false;  // no memory lies among the peripherals
   MemoryRegion* code_ = nullptr;
   const Op* access_op_ = nullptr;
   Watch watch_;

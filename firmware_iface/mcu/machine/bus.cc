@@ -23,17 +23,16 @@ std::uint32_t part(std::uint32_t word, std::uint32_t address, unsigned bytes) {
 }  // namespace
 
 const Machine::Slot* Machine::slot_at(std::uint32_t address) {
-  if (last_slot_ < slots_.size() && in(address, slots_[last_slot_].base, slots_[last_slot_].size)) {
-    return &slots_[last_slot_];
-  }
+  const Slot*& recent = recent_slots_[address >> 10 & 255];  // blocks begin 1 KiB apart, most of them
+  if (recent != nullptr && in(address, recent->base, recent->size)) return recent;
   const auto after =
       std::upper_bound(slots_.begin(), slots_.end(), address,
                        [](std::uint32_t value, const Slot& slot) { return value < slot.base; });
   if (after == slots_.begin()) return nullptr;
   const auto slot = after - 1;
   if (!in(address, slot->base, slot->size)) return nullptr;
-  last_slot_ = static_cast<std::size_t>(slot - slots_.begin());
-  return &*slot;
+  recent = &*slot;
+  return recent;
 }
 
 bool Machine::bit_band(std::uint32_t address, std::uint32_t& target, unsigned& bit) const {

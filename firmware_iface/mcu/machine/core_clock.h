@@ -35,6 +35,8 @@ class CoreClock {
     return stretch.begin_fs + Wide{at - stretch.begin} * 1'000'000'000'000'000u / stretch.hz;
   }
   std::vector<Stretch> stretches_;
+  mutable Cycles asked_ = 0;  // last, of to_ns(): several ask at one instant
+  mutable std::int64_t answered_ns_ = -1;
 };
 
 }  // namespace omnihil::mcu

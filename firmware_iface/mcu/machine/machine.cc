@@ -36,6 +36,7 @@ void Machine::attach(std::uint32_t base, std::uint32_t size, Peripheral& periphe
   const auto at = std::lower_bound(slots_.begin(), slots_.end(), base,
                                    [](const Slot& slot, std::uint32_t value) { return slot.base < value; });
   slots_.insert(at, {base, size, &peripheral});
+  recent_slots_.fill(nullptr);
   eventful_.clear();
   for (const Slot& slot : slots_) {
     if (slot.peripheral->ever_acts()) eventful_.push_back(slot.peripheral);
@@ -143,11 +144,6 @@ void Machine::show_at_zero(std::uint32_t base) {
 
 // ---- time
 
-Cycles Machine::now() const {
-  if (event_at_ != kNever) return event_at_;
-  return static_cast<Cycles>((running_ ? cpu_.now() : now_) / kSubcycles);
-}
-
 void Machine::set_core_hz(double hz) {
   clock_.change(now(), static_cast<std::uint64_t>(std::llround(hz)));
   for (const Slot& slot : slots_) slot.peripheral->clock_changed();
@@ -156,6 +152,15 @@ void Machine::set_core_hz(double hz) {
 
 void Machine::reschedule() {
   next_event_known_ = false;
+  cpu_.stop_soon();
+}
+
+void Machine::event_moved(Cycles before, Cycles after) {
+  if (before > next_event_) {  // another one's was the first
+    next_event_ = std::min(next_event_, after);
+  } else {
+    next_event_known_ = false;
+  }
   cpu_.stop_soon();
 }
 
@@ -169,7 +174,7 @@ void Machine::set_irq(int irq, bool high) {
 Cycles Machine::next_event() {
   if (next_event_known_) return next_event_;
   Cycles next = systick_.next_event();
-  for (const Peripheral* peripheral : eventful_) next = std::min(next, peripheral->next_event());
+  for (const Peripheral* peripheral : eventful_) next = std::min(next, peripheral->upcoming());
   next_event_ = next;
   next_event_known_ = true;
   return next;
@@ -181,7 +186,7 @@ void Machine::run_due_events() {
     event_at_ = next_event_;
     if (systick_.advance(event_at_)) pend(kSysTick);
     for (Peripheral* peripheral : eventful_) {
-      if (peripheral->next_event() > event_at_) continue;
+      if (peripheral->upcoming() > event_at_) continue;
       peripheral->run_events();
       if (rounds > kEventsAtOneInstant) {
         report_unmodelled(peripheral->name(), "its next event stays in the past: the machine is stopped");

@@ -11,6 +11,7 @@
 // but `cpi_scale`. FP context is stacked at once (the lazy way shows in cycles alone). Not there: MPU, debug,
 // trace.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -80,13 +81,17 @@ class Machine final : public System, private CpuBus {
   const CoreClock& clock() const { return clock_; }
   bool sleeping() const { return sleeping_ != Sleep::kNo; }
 
-  Cycles now() const override;
+  Cycles now() const override {
+    if (event_at_ != kNever) return event_at_;
+    return static_cast<Cycles>(running_ ? cpu_.now() : now_) / kSubcycles;
+  }
   std::int64_t to_ns(Cycles at) const override { return clock_.to_ns(at); }
   Cycles from_ns(std::int64_t at_ns) const override { return clock_.from_ns(at_ns); }
   double core_hz() const override { return static_cast<double>(clock_.hz()); }
   void set_core_hz(double hz) override;
   void set_irq(int irq, bool high) override;
   void reschedule() override;
+  void event_moved(Cycles before, Cycles after) override;
   void request_reset(std::string_view cause) override;
   std::string_view reset_cause() const override { return reset_cause_; }
   std::uint32_t bus_read(std::uint32_t address, unsigned bytes) override;
@@ -173,8 +178,8 @@ class Machine final : public System, private CpuBus {
   SysTick systick_;
   CoreClock clock_;
   std::vector<Slot> slots_;
-  std::vector<Peripheral*> eventful_;  // of them, those that ever have an event; in the same order
-  std::size_t last_slot_ = 0;
+  std::vector<Peripheral*> eventful_;            // of them, those that ever have an event; in the same order
+  std::array<const Slot*, 256> recent_slots_{};  // by address; of those that share a place, the last one
   std::map<std::uint32_t, std::uint32_t> unknown_;  // words written to where no model is
   std::map<std::pair<std::string, std::string>, std::size_t> unmodelled_index_;
   FlashWrites* flash_writes_ = nullptr;

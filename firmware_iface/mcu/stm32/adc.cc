@@ -10,6 +10,7 @@ namespace omnihil::mcu {
 Adc::Adc(std::string name, std::span<const RegisterInfo> registers, const AdcTriggers& triggers,
          ChipContext& context)
     : RegisterBlock(std::move(name), context.system, registers), context_(context) {
+  next_event_is(phase_end_);
   const auto lines = [&context](const std::vector<std::string>& names, std::vector<int>& out) {
     for (const std::string& n : names) out.push_back(n.empty() ? -1 : context.triggers.source(n));
   };

@@ -31,7 +31,6 @@ class Adc : public RegisterBlock, public TriggerSink {
   Adc(std::string name, std::span<const RegisterInfo> registers, const AdcTriggers& triggers,
       ChipContext& context);
   void reset() override;
-  Cycles next_event() const override { return phase_end_; }
   void run_events() override;
   void triggered(int source, bool rising) override;
 

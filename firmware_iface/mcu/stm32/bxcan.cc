@@ -85,7 +85,9 @@ BxCan::BxCan(const std::string& name, std::array<int, 4> irqs, unsigned banks, B
       irq_tx_(context.irqs, irqs[0]),
       irq_rx0_(context.irqs, irqs[1]),
       irq_rx1_(context.irqs, irqs[2]),
-      irq_sce_(context.irqs, irqs[3]) {}
+      irq_sce_(context.irqs, irqs[3]) {
+  next_event_is(sent_at_);
+}
 
 void BxCan::reset() {
   RegisterBlock::reset();

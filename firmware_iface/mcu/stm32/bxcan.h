@@ -21,7 +21,6 @@ class BxCan final : public RegisterBlock, public CanPort {
   BxCan(const std::string& name, std::array<int, 4> irqs, unsigned banks, BxCan* filters,
         ChipContext& context);
   void reset() override;
-  Cycles next_event() const override { return sent_at_; }
   void run_events() override;
   void receive(const CanFrame& frame) override;
 

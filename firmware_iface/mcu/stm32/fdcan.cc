@@ -89,7 +89,9 @@ Fdcan::Fdcan(int number, std::pair<int, int> irqs, FdcanRam& ram, ChipContext& c
       ram_(ram),
       base_(0x350u * static_cast<unsigned>(number - 1)),
       irq0_(context.irqs, irqs.first),
-      irq1_(context.irqs, irqs.second) {}
+      irq1_(context.irqs, irqs.second) {
+  next_event_is(sent_at_);
+}
 
 void Fdcan::reset() {
   RegisterBlock::reset();

@@ -35,7 +35,6 @@ class Fdcan final : public RegisterBlock, public CanPort {
  public:
   Fdcan(int number, std::pair<int, int> irqs, FdcanRam& ram, ChipContext& context);
   void reset() override;
-  Cycles next_event() const override { return sent_at_; }
   void run_events() override;
   void receive(const CanFrame& frame) override;
 

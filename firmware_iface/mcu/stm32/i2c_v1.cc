@@ -22,14 +22,13 @@ constexpr std::uint32_t kMsl = 1, kBusy = 2, kTra = 4;
 
 class I2cV1 final : public I2c {
  public:
-  I2cV1(const I2cSpec& spec, ChipContext& context) : I2c(spec, kRegisters, context) {}
+  I2cV1(const I2cSpec& spec, ChipContext& context) : I2c(spec, kRegisters, context) { next_event_is(at_); }
 
   void reset() override {
     RegisterBlock::reset();
     idle();
     update();
   }
-  Cycles next_event() const override { return at_; }
   void run_events() override;
   Cycles stable_until(std::uint32_t offset) const override {
     return (offset & ~3u) == kDr || (offset & ~3u) == kSr2 ? 0 : kNever;

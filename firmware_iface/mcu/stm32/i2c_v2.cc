@@ -31,14 +31,13 @@ constexpr std::uint32_t kStart = 1u << 13, kStop = 1u << 14, kReload = 1u << 24,
 
 class I2cV2 final : public I2c {
  public:
-  I2cV2(const I2cSpec& spec, ChipContext& context) : I2c(spec, kRegisters, context) {}
+  I2cV2(const I2cSpec& spec, ChipContext& context) : I2c(spec, kRegisters, context) { next_event_is(at_); }
   void reset() override {
     RegisterBlock::reset();
     doing_ = Doing::kNothing;
     at_ = kNever;
     update();
   }
-  Cycles next_event() const override { return at_; }
   void run_events() override;
   Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == kRxdr ? 0 : kNever; }
 

@@ -47,9 +47,9 @@ std::uint32_t RegisterBlock::read(std::uint32_t offset, unsigned bytes) {
     report(offset, "read");
     return 0;
   }
-  const Cycles before = next_event();
+  const Cycles before = upcoming();
   const std::uint32_t word = load(offset & ~3u);
-  if (next_event() != before) system_.reschedule();
+  if (upcoming() != before) system_.event_moved(before, upcoming());
   return (word & lanes_of(offset, bytes)) >> (8 * (offset & 3u));
 }
 
@@ -65,9 +65,9 @@ void RegisterBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t va
     system_.report_unmodelled(
         name(), fmt::format("{}: bits 0x{:08X} have no effect", r->name, placed & r->no_effect));
   }
-  const Cycles before = next_event();
+  const Cycles before = upcoming();
   store(offset & ~3u, placed, lanes);
-  if (next_event() != before) system_.reschedule();
+  if (upcoming() != before) system_.event_moved(before, upcoming());
 }
 
 void RegisterBlock::keep(std::uint32_t offset, std::uint32_t value, std::uint32_t lanes) {

@@ -34,7 +34,9 @@ Spi::Spi(SpiSpec spec, ChipContext& context)
       context_(context),
       irq_(context.irqs, spec_.irq),
       dma_rx_(context.dma.line(spec_.name + "_RX")),
-      dma_tx_(context.dma.line(spec_.name + "_TX")) {}
+      dma_tx_(context.dma.line(spec_.name + "_TX")) {
+  next_event_is(frame_end_);
+}
 
 void Spi::reset() {
   RegisterBlock::reset();

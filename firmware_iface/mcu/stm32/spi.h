@@ -32,7 +32,6 @@ class Spi final : public RegisterBlock {
  public:
   Spi(SpiSpec spec, ChipContext& context);
   void reset() override;
-  Cycles next_event() const override { return frame_end_; }
   void run_events() override;
   Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x0C ? 0 : kNever; }
 

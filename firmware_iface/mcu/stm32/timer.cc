@@ -76,6 +76,7 @@ Timer::Timer(TimerSpec spec, ChipContext& context)
       irq_compare_(context.irqs, or_update(spec_.irq_compare, spec_)),
       irq_break_(context.irqs, or_update(spec_.irq_break, spec_)),
       irq_trigger_(context.irqs, or_update(spec_.irq_trigger, spec_)) {
+  next_event_is(next_);
   trgo_ = context.triggers.source(name() + "_TRGO");
   dma_update_ = context.dma.line(name() + "_UP");
   dma_trigger_ = context.dma.line(name() + "_TRIG");

@@ -55,7 +55,6 @@ class Timer final : public RegisterBlock, public TriggerSink {
   Timer(TimerSpec spec, ChipContext& context);
 
   void reset() override;
-  Cycles next_event() const override { return next_; }
   void run_events() override;
   void clock_changed() override;
   void triggered(int source, bool rising) override;

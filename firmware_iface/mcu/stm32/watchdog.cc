@@ -15,6 +15,7 @@ constexpr RegisterInfo kWwdg[] = {{0x00, "CR", 0x7F, 0xFF}, {0x04, "CFR", 0x7F, 
 class Iwdg final : public RegisterBlock {
  public:
   explicit Iwdg(ChipContext& context) : RegisterBlock("IWDG", context.system, kIwdg), context_(context) {
+    next_event_is(at_);
     context.clocks.listen(*this);
   }
   void reset() override {
@@ -23,7 +24,6 @@ class Iwdg final : public RegisterBlock {
     open_ = false;
     at_ = kNever;
   }
-  Cycles next_event() const override { return at_; }
   void clock_changed() override {
     at_ = deadline_ns_ < 0 ? kNever : std::max(now(), system().from_ns(deadline_ns_));
   }
@@ -76,6 +76,7 @@ class Wwdg final : public RegisterBlock {
         irq_(context.irqs, irq),
         tb_at_(at),
         tb_bits_(bits) {
+    next_event_is(at_);
     context.clocks.listen(*this);
   }
   void reset() override {
@@ -84,7 +85,6 @@ class Wwdg final : public RegisterBlock {
     at_ = kNever;
     irq_.set(false);
   }
-  Cycles next_event() const override { return at_; }
   void clock_changed() override {
     if (!on_) return;
     const std::uint32_t count = counter();
