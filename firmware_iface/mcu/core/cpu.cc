@@ -26,11 +26,14 @@ Cpu::Cpu(const Variant& variant, Memory& memory, CpuBus& bus, double cpi_scale)
 void Cpu::memory_changed() {
   code_ = nullptr;
   ram_ = flash_ = ccm_ = Window{};
-  devices_apart_ = true;
+  shared_begin_ = kDevices + kDevicesSize;
+  shared_end_ = kDevices;
   for (const auto& region : memory_.regions()) {
     Window window{region->base, region->size, region->data(), region->block};
-    if (region->base + region->size > kDevices && region->base < kDevices + kDevicesSize)
-      devices_apart_ = false;
+    if (region->base + region->size > kDevices && region->base < kDevices + kDevicesSize) {
+      shared_begin_ = std::min(shared_begin_, region->base);
+      shared_end_ = std::max(shared_end_, region->base + region->size);
+    }
     if (!region->writable()) {
       if (!flash_.data) flash_ = window;
     } else if (!ram_.data) {
@@ -198,8 +201,14 @@ bool Cpu::invalid_access(std::uint32_t address, unsigned bytes, bool must_align)
   return false;
 }
 
+// Certainly no memory, and aligned.
+inline bool Cpu::is_device(std::uint32_t address, unsigned bytes) const {
+  const bool shared = address >= shared_begin_ && address < shared_end_;
+  return address - kDevices < kDevicesSize && !shared && (address & (bytes - 1)) == 0;
+}
+
 bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align) {
-  if (address - kDevices < kDevicesSize && devices_apart_ && address % bytes == 0) {
+  if (is_device(address, bytes)) {
     if (bus_.read(address, bytes, value)) return true;
     fault = {kPreciseBus | kBusAddressValid, address};
     return false;
@@ -231,7 +240,7 @@ bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value,
 }
 
 bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align) {
-  if (address - kDevices < kDevicesSize && devices_apart_ && address % bytes == 0) {
+  if (is_device(address, bytes)) {
     changed_ = true;
     if (bus_.write(address, bytes, value)) return true;
     fault = {kPreciseBus | kBusAddressValid, address};

@@ -137,6 +137,7 @@ class Cpu {
     if (reg.r[13] < lowest_sp[which]) lowest_sp[which] = reg.r[13];
   }
   bool invalid_access(std::uint32_t address, unsigned bytes, bool must_align);
+  bool is_device(std::uint32_t address, unsigned bytes) const;
   bool slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align);
   bool slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align);
   Pace watch_loop(const Op* at, Pace pace, std::int64_t end);
@@ -154,7 +155,7 @@ class Cpu {
   bool fp_ready_ = false, fp_plain_ = false;  // may be used; and needs no look at denormal numbers
   bool watching_ = false, changed_ = false;
   Window ram_, flash_, ccm_;
-  bool devices_apart_ = false;  // no memory lies among the peripherals
+  std::uint32_t shared_begin_ = 0, shared_end_ = ~0u;  // where memory lies among the peripherals
   MemoryRegion* code_ = nullptr;
   const Op* access_op_ = nullptr;
   Watch watch_;
