@@ -71,7 +71,9 @@ class Peripheral {
     ever_acts_ = false;  // a block that acts at all answers this itself
     return kNever;
   }
-  // The same, without a call where it stands in a field.
+  // Where it always stands; null: next_event() has to be asked.
+  const Cycles* next_event_field() const { return next_event_field_; }
+  // next_event(), without a call where it stands in a field.
   Cycles upcoming() const { return next_event_field_ != nullptr ? *next_event_field_ : next_event(); }
   virtual void run_events() {}
   // False: of a kind that has no events at all, and need not be asked for the next one.

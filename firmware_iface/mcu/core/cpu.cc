@@ -119,6 +119,26 @@ std::uint16_t Cpu::halfword(std::uint32_t pc) const {
   return value;
 }
 
+namespace {
+// Of a branch to where its constant says.
+int near_entry(const Op& op) {
+  switch (op.code) {
+    case kB:
+      return kNearB;
+    case kBl:
+      return kNearBl;
+    case kCbz:
+      return kNearCbz;
+    case kCbnz:
+      return kNearCbnz;
+    case kBcond:
+      return kBranchEq + op.a;
+    default:
+      return kUndecoded;
+  }
+}
+}  // namespace
+
 Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
   const std::uint16_t first = halfword(pc);
   Op op = decode({pc, variant_, it}, first, is_wide(first) ? halfword(pc + 2) : std::uint16_t{0});
@@ -130,8 +150,15 @@ Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
   }
   op.cost = static_cast<std::uint16_t>(cycles * scale_);
   op.entry = op.code;
-  if (op.code == kBcond) op.entry = static_cast<std::uint16_t>(kBranchEq + op.a);
-  if (op.condition < kAlways) op.entry = static_cast<std::uint16_t>(kIfEq + op.condition);
+  if (op.condition < kAlways) {
+    op.entry = static_cast<std::uint16_t>(kIfEq + op.condition);
+  } else if (op.imm - code_->base < code_->size) {
+    const int near = near_entry(op);
+    if (near != kUndecoded) {
+      op.entry = static_cast<std::uint16_t>(near);
+      op.imm = static_cast<std::uint32_t>(static_cast<std::int32_t>(op.imm - pc) / 2);
+    }
+  }
   return op;
 }
 

@@ -107,6 +107,13 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     target = (address); \
     goto branch;        \
   } while (0)
+#define NEAR_BRANCH()             \
+  do {                            \
+    left -= taken;                \
+    op = cur + s32(cur->imm);     \
+    if (op <= cur) goto backward; \
+    NEXT;                         \
+  } while (0)
 #define INTERWORK(address) \
   do {                     \
     target = (address);    \
@@ -214,11 +221,7 @@ branch:
   left -= taken;
   if (target - code_base < code_size) [[likely]] {
     op = slots + (target - code_base) / 2;
-    if (op <= cur && fast_forward && --watch_.rest <= 0) {
-      const Pace pace = watch_loop(cur, {left, count}, end);
-      left = pace.left;
-      count = pace.count;
-    }
+    if (op <= cur) goto backward;
     NEXT;
   }
 relocate:
@@ -231,6 +234,14 @@ relocate:
   code_base = code_->base;
   code_size = code_->size;
   op = slots + (target - code_base) / 2;
+  NEXT;
+
+backward:
+  if (fast_forward && --watch_.rest <= 0) {
+    const Pace pace = watch_loop(cur, {left, count}, end);
+    left = pace.left;
+    count = pace.count;
+  }
   NEXT;
 
 faulted:

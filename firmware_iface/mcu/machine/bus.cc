@@ -22,17 +22,20 @@ std::uint32_t part(std::uint32_t word, std::uint32_t address, unsigned bytes) {
 
 }  // namespace
 
-const Machine::Slot* Machine::slot_at(std::uint32_t address) {
-  const Slot*& recent = recent_slots_[address >> 10 & 255];  // blocks begin 1 KiB apart, most of them
-  if (recent != nullptr && in(address, recent->base, recent->size)) return recent;
+inline const Machine::Slot* Machine::slot_at(std::uint32_t address) {
+  const Slot* recent = recent_slots_[address >> 10 & 255];  // blocks begin 1 KiB apart, most of them
+  return recent != nullptr && in(address, recent->base, recent->size) ? recent : find_slot(address);
+}
+
+const Machine::Slot* Machine::find_slot(std::uint32_t address) {
   const auto after =
       std::upper_bound(slots_.begin(), slots_.end(), address,
                        [](std::uint32_t value, const Slot& slot) { return value < slot.base; });
   if (after == slots_.begin()) return nullptr;
   const auto slot = after - 1;
   if (!in(address, slot->base, slot->size)) return nullptr;
-  recent = &*slot;
-  return recent;
+  recent_slots_[address >> 10 & 255] = &*slot;
+  return &*slot;
 }
 
 bool Machine::bit_band(std::uint32_t address, std::uint32_t& target, unsigned& bit) const {
@@ -46,19 +49,22 @@ bool Machine::bit_band(std::uint32_t address, std::uint32_t& target, unsigned& b
 }
 
 bool Machine::read(std::uint32_t address, unsigned bytes, std::uint32_t& value) {
-  if (const Slot* slot = slot_at(address)) {
-    const std::uint32_t offset = address - slot->base;
-    if (cpu_.watching()) {
-      const Cycles until = slot->peripheral->stable_until(offset);
-      if (until > now()) {
-        if (until != kNever) cpu_.limit_fast_forward(static_cast<std::int64_t>(until) * kSubcycles);
-      } else {
-        cpu_.spoil_fast_forward();
-      }
+  const Slot* slot = slot_at(address);
+  if (slot == nullptr) return read_elsewhere(address, bytes, value);
+  const std::uint32_t offset = address - slot->base;
+  if (cpu_.watching()) {
+    const Cycles until = slot->peripheral->stable_until(offset);
+    if (until > now()) {
+      if (until != kNever) cpu_.limit_fast_forward(static_cast<std::int64_t>(until) * kSubcycles);
+    } else {
+      cpu_.spoil_fast_forward();
     }
-    value = slot->peripheral->read(offset, bytes);
-    return true;
   }
+  value = slot->peripheral->read(offset, bytes);
+  return true;
+}
+
+bool Machine::read_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t& value) {
   std::uint32_t target = 0;
   unsigned bit = 0;
   if (bit_band(address, target, bit)) {
@@ -94,10 +100,13 @@ bool Machine::read_unknown(std::uint32_t address, unsigned bytes, std::uint32_t&
 }
 
 bool Machine::write(std::uint32_t address, unsigned bytes, std::uint32_t value) {
-  if (const Slot* slot = slot_at(address)) {
-    slot->peripheral->write(address - slot->base, bytes, value);
-    return true;
-  }
+  const Slot* slot = slot_at(address);
+  if (slot == nullptr) return write_elsewhere(address, bytes, value);
+  slot->peripheral->write(address - slot->base, bytes, value);
+  return true;
+}
+
+bool Machine::write_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t value) {
   std::uint32_t target = 0;
   unsigned bit = 0;
   if (bit_band(address, target, bit)) {

@@ -39,7 +39,9 @@ void Machine::attach(std::uint32_t base, std::uint32_t size, Peripheral& periphe
   recent_slots_.fill(nullptr);
   eventful_.clear();
   for (const Slot& slot : slots_) {
-    if (slot.peripheral->ever_acts()) eventful_.push_back(slot.peripheral);
+    if (slot.peripheral->ever_acts()) {
+      eventful_.push_back({slot.peripheral, slot.peripheral->next_event_field()});
+    }
   }
 }
 
@@ -174,7 +176,7 @@ void Machine::set_irq(int irq, bool high) {
 Cycles Machine::next_event() {
   if (next_event_known_) return next_event_;
   Cycles next = systick_.next_event();
-  for (const Peripheral* peripheral : eventful_) next = std::min(next, peripheral->upcoming());
+  for (const Eventful& one : eventful_) next = std::min(next, one.next());
   next_event_ = next;
   next_event_known_ = true;
   return next;
@@ -185,11 +187,11 @@ void Machine::run_due_events() {
   for (int rounds = 0; next_event() <= due; ++rounds) {
     event_at_ = next_event_;
     if (systick_.advance(event_at_)) pend(kSysTick);
-    for (Peripheral* peripheral : eventful_) {
-      if (peripheral->upcoming() > event_at_) continue;
-      peripheral->run_events();
+    for (const Eventful& one : eventful_) {
+      if (one.next() > event_at_) continue;
+      one.peripheral->run_events();
       if (rounds > kEventsAtOneInstant) {
-        report_unmodelled(peripheral->name(), "its next event stays in the past: the machine is stopped");
+        report_unmodelled(one.peripheral->name(), "its next event stays in the past: the machine is stopped");
         lock_up();
         event_at_ = kNever;
         return;

@@ -107,6 +107,11 @@ class Machine final : public System, private CpuBus {
     std::uint32_t base, size;
     Peripheral* peripheral;
   };
+  struct Eventful {
+    Peripheral* peripheral;
+    const Cycles* field;  // where its next event stands; null: it has to be asked
+    Cycles next() const { return field != nullptr ? *field : peripheral->next_event(); }
+  };
   struct Frame {  // of an exception being handled: for the load statistics
     int exception;
     Cycles entered;
@@ -119,6 +124,9 @@ class Machine final : public System, private CpuBus {
   void note_unaligned(std::uint32_t address) override;
 
   const Slot* slot_at(std::uint32_t address);
+  const Slot* find_slot(std::uint32_t address);
+  bool read_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t& value);
+  bool write_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t value);
   bool read_unknown(std::uint32_t address, unsigned bytes, std::uint32_t& value);
   bool write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t value);
   bool bit_band(std::uint32_t address, std::uint32_t& target, unsigned& bit) const;
@@ -178,7 +186,7 @@ class Machine final : public System, private CpuBus {
   SysTick systick_;
   CoreClock clock_;
   std::vector<Slot> slots_;
-  std::vector<Peripheral*> eventful_;            // of them, those that ever have an event; in the same order
+  std::vector<Eventful> eventful_;               // of them, those that ever have an event; in the same order
   std::array<const Slot*, 256> recent_slots_{};  // by address; of those that share a place, the last one
   std::map<std::uint32_t, std::uint32_t> unknown_;  // words written to where no model is
   std::map<std::pair<std::string, std::string>, std::size_t> unmodelled_index_;

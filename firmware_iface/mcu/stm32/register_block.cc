@@ -38,8 +38,12 @@ const RegisterInfo* RegisterBlock::info(std::uint32_t offset) const {
   return &registers_[index_[word] - 1u];
 }
 
-void RegisterBlock::report(std::uint32_t offset, const char* what) {
+[[gnu::noinline]] void RegisterBlock::report(std::uint32_t offset, const char* what) {
   system_.report_unmodelled(name(), fmt::format("register at offset 0x{:03X} {}", offset & ~3u, what));
+}
+
+[[gnu::noinline]] void RegisterBlock::report_no_effect(const RegisterInfo& r, std::uint32_t bits) {
+  system_.report_unmodelled(name(), fmt::format("{}: bits 0x{:08X} have no effect", r.name, bits));
 }
 
 std::uint32_t RegisterBlock::read(std::uint32_t offset, unsigned bytes) {
@@ -50,6 +54,7 @@ std::uint32_t RegisterBlock::read(std::uint32_t offset, unsigned bytes) {
   const Cycles before = upcoming();
   const std::uint32_t word = load(offset & ~3u);
   if (upcoming() != before) system_.event_moved(before, upcoming());
+  if (bytes == 4) return word;
   return (word & lanes_of(offset, bytes)) >> (8 * (offset & 3u));
 }
 
@@ -59,11 +64,10 @@ void RegisterBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t va
     report(offset, "written");
     return;
   }
-  const std::uint32_t lanes = lanes_of(offset, bytes);
+  const std::uint32_t lanes = bytes == 4 ? 0xFFFFFFFFu : lanes_of(offset, bytes);
   const std::uint32_t placed = value << (8 * (offset & 3u)) & lanes;
   if ((placed & r->no_effect & ~this->value(offset & ~3u)) != 0) {
-    system_.report_unmodelled(
-        name(), fmt::format("{}: bits 0x{:08X} have no effect", r->name, placed & r->no_effect));
+    report_no_effect(*r, placed & r->no_effect);
   }
   const Cycles before = upcoming();
   store(offset & ~3u, placed, lanes);

@@ -55,6 +55,7 @@ class RegisterBlock : public Peripheral {
  private:
   const RegisterInfo* info(std::uint32_t offset) const;
   void report(std::uint32_t offset, const char* what);
+  void report_no_effect(const RegisterInfo& info, std::uint32_t bits);
 
   System& system_;
   std::span<const RegisterInfo> registers_;

@@ -178,9 +178,9 @@ void Timer::sync() {
       done_ += step;
       boundary();
       end = ticks_at(now());
-      const std::uint64_t whole = end > done_ ? (end - done_) / law_.period() : 0;
+      if (!running_ || end < done_ + 2 * law_.period()) continue;
       const bool steady = (value(kCr1) & kUdis) != 0 || !transfer_pending();
-      if (running_ && whole > 1 && steady) skip_periods(whole);
+      if (steady) skip_periods((end - done_) / law_.period());
     }
   }
   look_at_references();
@@ -428,6 +428,7 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
     case kSmcr: {
       const std::uint32_t at = load(kCnt);
       keep(offset, written, lanes);
+      note_settings();
       if (encoder()) set_count(at);
       follow_settings();
       break;

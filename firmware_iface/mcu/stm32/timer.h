@@ -79,7 +79,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
  private:
   static constexpr unsigned kChannels = 4;
   // timer.cc
-  bool encoder() const;
+  bool encoder() const { return encoder_; }
   std::uint64_t position() const { return (start_ + done_) % law_.period(); }
   std::uint64_t ticks_at(Cycles at) const;
   Cycles cycle_of(std::uint64_t ticks) const;
@@ -101,15 +101,15 @@ class Timer final : public RegisterBlock, public TriggerSink {
   // timer_plan.cc
   bool transfer_pending() const;
   void plan();
-  bool wants_match(unsigned channel) const;
-  bool wants_edges(unsigned channel) const;
+  std::uint32_t awaited_matches() const;
+  std::uint32_t awaited_edges() const;
   Cycles next_match(unsigned channel) const;
   Cycles next_edge(unsigned channel) const;
   // timer_output.cc
   void note_settings();
   unsigned output_mode(unsigned channel) const { return mode_[channel]; }
   bool captures(unsigned channel) const { return (captures_ >> channel & 1u) != 0; }
-  bool acts_on_match(unsigned channel) const;
+  bool acts_on_match(unsigned channel) const { return (acting_ >> channel & 1u) != 0; }
   unsigned match_positions(unsigned channel, std::array<std::uint64_t, 2>& at) const;
   void mark_matches(std::uint64_t ticks);
   void matched(unsigned channel);
@@ -146,7 +146,9 @@ class Timer final : public RegisterBlock, public TriggerSink {
   std::uint32_t ccer_ = 0;
   std::array<std::uint8_t, kChannels> mode_{};  // of the outputs, active
   std::uint32_t captures_ = 0, flag_only_ = 0;  // a bit per channel: an input; a match sets its flag alone
-  std::uint32_t asking_ = 0;                    // flags that hold an interrupt line
+  std::uint32_t acting_ = 0, outputs_ = 0;      // its reference acts on matches; it is there, and no input
+  bool encoder_ = false;
+  std::uint32_t asking_ = 0;                            // flags that hold an interrupt line
   mutable std::array<TimerPin, 2 * kChannels> pins_{};  // while they are known: main, complement
   mutable std::uint32_t pins_known_ = 0;
   bool running_ = false;

@@ -8,11 +8,6 @@ namespace {
 std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 }  // namespace
 
-bool Timer::encoder() const {
-  const unsigned mode = field(value(kSmcr), 0, 3);
-  return mode >= 1 && mode <= 3 && !bit(value(kSmcr), 16);
-}
-
 void Timer::set_shaft(ShaftCount shaft) {
   shaft_ = std::move(shaft);
   shaft_zero_ = encoder() ? shaft_edges() : 0;

@@ -18,21 +18,21 @@ enum OutputMode : unsigned {
 };
 }
 
-// After every change of CR2, CCMR or DIER: what they make of each channel. Pins are worked out anew.
+// After every change of CR2, SMCR, CCMR or DIER: what they make of each channel. Pins are worked out anew.
 void Timer::note_settings() {
   pins_known_ = 0;
-  captures_ = flag_only_ = 0;
+  captures_ = flag_only_ = acting_ = 0;
   for (unsigned c = 0; c < kChannels; ++c) {
     const std::uint32_t ccmr = value(kCcmr1 + 4 * (c / 2)), active = commutates() ? ccmr_[c / 2] : ccmr;
     mode_[c] = static_cast<std::uint8_t>(field(active, 4 + 8 * (c % 2), 3));
     if (field(ccmr, 8 * (c % 2), 2) != 0) captures_ |= 1u << c;
+    if (mode_[c] >= kActiveOnMatch && mode_[c] <= kToggle) acting_ |= 1u << c;
     const bool tells = c == 0 && field(value(kCr2), 4, 3) == 3;
     if (!acts_on_match(c) && !tells && (value(kDier) & (kCompare1Dma << c)) == 0) flag_only_ |= 1u << c;
   }
-}
-
-bool Timer::acts_on_match(unsigned channel) const {
-  return mode_[channel] >= kActiveOnMatch && mode_[channel] <= kToggle;
+  outputs_ = ~captures_ & ((1u << std::min(spec_.channels, kChannels)) - 1u);
+  const unsigned slave = field(value(kSmcr), 0, 3);
+  encoder_ = slave >= 1 && slave <= 3 && !bit(value(kSmcr), 16);
 }
 
 // Where in the period the counter equals CCR; the number of places.
@@ -57,8 +57,9 @@ unsigned Timer::match_positions(unsigned channel, std::array<std::uint64_t, 2>& 
 
 void Timer::mark_matches(std::uint64_t ticks) {
   const std::uint32_t raised = value(kSr) / kCompare1;
-  for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
-    if (captures(c) || (flag_only_ & raised) >> c & 1u) continue;  // it captures, or nothing more can follow
+  const std::uint32_t rest = outputs_ & ~(flag_only_ & raised);  // of the others nothing more can follow
+  for (unsigned c = 0; rest >> c != 0; ++c) {
+    if ((rest >> c & 1u) == 0) continue;
     std::array<std::uint64_t, 2> at{};
     const unsigned n = match_positions(c, at);
     for (unsigned i = 0; i < n; ++i) {

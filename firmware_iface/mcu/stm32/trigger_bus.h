@@ -28,6 +28,7 @@ class TriggerBus {
       if (lines_[i].name == name) return static_cast<int>(i);
     }
     lines_.push_back({std::string(name), {}});
+    heard_.push_back(0);
     return static_cast<int>(lines_.size() - 1);
   }
   void listen(int source, TriggerSink& sink, bool on) {
@@ -39,9 +40,10 @@ class TriggerBus {
     } else {
       sinks.erase(at);
     }
+    heard_[static_cast<std::size_t>(source)] = sinks.empty() ? 0 : 1;
     system_.reschedule();
   }
-  bool heard(int source) const { return !lines_[static_cast<std::size_t>(source)].sinks.empty(); }
+  bool heard(int source) const { return heard_[static_cast<std::size_t>(source)] != 0; }
   void fire(int source, bool rising) {
     const auto sinks = lines_[static_cast<std::size_t>(source)].sinks;  // a sink may stop listening meanwhile
     for (TriggerSink* sink : sinks) sink->triggered(source, rising);
@@ -54,6 +56,7 @@ class TriggerBus {
   };
   System& system_;
   std::vector<Line> lines_;
+  std::vector<char> heard_;  // by line: somebody listens
 };
 
 }  // namespace omnihil::mcu

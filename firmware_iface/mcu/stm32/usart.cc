@@ -40,6 +40,7 @@ Usart::Usart(UsartSpec spec, ChipContext& context)
       irq_(context.irqs, spec_.irq),
       dma_rx_(context.dma.line(spec_.name + "_RX")),
       dma_tx_(context.dma.line(spec_.name + "_TX")) {
+  next_event_is(next_);
   context.clocks.listen(*this);
   Usart::reset();
 }
@@ -48,7 +49,8 @@ void Usart::reset() {
   RegisterBlock::reset();
   status_ = kTxe | kTc;
   status_read_ = holding_full_ = false;
-  transmit_end_ = idle_at_ = kNever;
+  schedule(transmit_end_, kNever);
+  schedule(idle_at_, kNever);
   update();
 }
 
@@ -80,18 +82,19 @@ void Usart::feed(std::span<const std::uint8_t> bytes, std::int64_t at_ns, double
 }
 
 void Usart::clock_changed() {
-  receive_at_ = waiting_.empty() ? kNever : std::max(now(), system().from_ns(waiting_.front().at_ns));
+  schedule(receive_at_,
+           waiting_.empty() ? kNever : std::max(now(), system().from_ns(waiting_.front().at_ns)));
 }
 
 void Usart::run_events() {
   if (transmit_end_ <= now()) {
     const Cycles end = transmit_end_;
     const auto byte = static_cast<std::uint8_t>(shifting_);
-    transmit_end_ = kNever;
+    schedule(transmit_end_, kNever);
     if (holding_full_) {
       shifting_ = holding_;
       holding_full_ = false;
-      transmit_end_ = end + frame_cycles();
+      schedule(transmit_end_, end + frame_cycles());
       status_ |= kTxe;
     } else {
       status_ |= kTc;
@@ -105,7 +108,7 @@ void Usart::run_events() {
     receive(byte);
   }
   if (idle_at_ <= now()) {
-    idle_at_ = kNever;
+    schedule(idle_at_, kNever);
     status_ |= kIdle;
   }
   update();
@@ -113,7 +116,7 @@ void Usart::run_events() {
 
 void Usart::receive(std::uint8_t byte) {
   if (!on(kRe)) return;
-  idle_at_ = now() + frame_cycles();
+  schedule(idle_at_, now() + frame_cycles());
   std::uint32_t data = byte;
   if ((cr1() & (kPce | kM)) == (kPce | kM)) {  // the parity bit is the ninth
     const bool odd = (__builtin_popcount(byte) & 1) != 0;
@@ -135,7 +138,7 @@ void Usart::transmit(std::uint32_t data) {
   status_ &= ~kTc;
   if (transmit_end_ == kNever) {
     shifting_ = data;
-    transmit_end_ = now() + frame_cycles();
+    schedule(transmit_end_, now() + frame_cycles());
   } else {
     holding_ = data;
     holding_full_ = true;
@@ -198,7 +201,7 @@ void Usart::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
 void Usart::control_changed() {
   if (bit(cr1(), spec_.v2 ? 0 : 13)) return;
   if (transmit_end_ == kNever) return;  // switched off in the middle of a frame: it is lost
-  transmit_end_ = kNever;
+  schedule(transmit_end_, kNever);
   holding_full_ = false;
   status_ |= kTxe | kTc;
 }

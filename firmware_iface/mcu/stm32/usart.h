@@ -34,7 +34,6 @@ class Usart final : public RegisterBlock {
  public:
   Usart(UsartSpec spec, ChipContext& context);
   void reset() override;
-  Cycles next_event() const override { return std::min({transmit_end_, receive_at_, idle_at_}); }
   void run_events() override;
   void clock_changed() override;
   Cycles stable_until(std::uint32_t offset) const override {
@@ -65,6 +64,10 @@ class Usart final : public RegisterBlock {
   Cycles bit_cycles() const;
   unsigned frame_bits() const;
   Cycles frame_cycles() const { return bit_cycles() * frame_bits(); }
+  void schedule(Cycles& which, Cycles at) {
+    which = at;
+    next_ = std::min({transmit_end_, receive_at_, idle_at_});
+  }
   void transmit(std::uint32_t data);
   void receive(std::uint8_t byte);
   void control_changed();
@@ -80,6 +83,7 @@ class Usart final : public RegisterBlock {
   std::uint32_t received_ = 0, shifting_ = 0, holding_ = 0;
   bool holding_full_ = false;
   Cycles transmit_end_ = kNever, receive_at_ = kNever, idle_at_ = kNever;
+  Cycles next_ = kNever;  // the first of them
   std::deque<Waiting> waiting_;
   std::function<void(std::uint8_t, Cycles)> on_transmit_;
   std::uint64_t overruns_ = 0;
