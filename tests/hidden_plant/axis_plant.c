@@ -58,14 +58,14 @@ static double flux_of(const Axis *a, const double *y) {
 }
 
 // Torque per ampere over back-EMF constant where commutation comes early by `advance_rad` when turning
-// forwards.
+// forwards, and late by it when turning backwards.
 static double advance_ratio(const Axis *a, const double *y) {
   const AxisParams *p = a->p;
   // The current of a phase needs the overlap angle to change over: it lags by half of it.
   const double overlap = p->pole_pairs * fabs(y[WR]) * p->inductance_H * fabs(y[I]) /
                          (a->ohm * fabs(y[I]) + fabs(a->flux * y[WR]) + 1e-6 +
                           p->pole_pairs * fabs(y[WR] * y[I]) * p->inductance_H);
-  return 1 + tan(p->advance_rad) * overlap;
+  return 1 + tan(p->advance_rad) * sign(y[WR]) * overlap;
 }
 
 static double bus_of(const Axis *a, const double *y) {
