@@ -100,13 +100,30 @@ bool is_whole_by_make(const EffectUse& use, const EffectParam& row) {
   return use.owner == nullptr && row.role == ParamRole::kShape && row.prior_scale == 0.0 && row.lower >= 1.0;
 }
 
+// A strength that a file gives without a tolerance is known exactly; the file says nothing of one that the
+// program has found, nor of one that it leaves out.
+bool is_stated(const EffectUse& use, std::size_t i) {
+  const EffectParam& row = use.entry->info->params[i];
+  const bool from_file = use.owner == nullptr && i < use.tolerances.size() && !use.tolerances[i];
+  return from_file && row.role != ParamRole::kShape && use.values[i] != row.neutral;
+}
+
+// With it its shapes, unless they have a tolerance of their own.
+bool is_known_shape(const EffectUse& use, std::size_t i) {
+  const std::span<const EffectParam> rows = use.entry->info->params;
+  if (rows[i].role != ParamRole::kShape || i >= use.tolerances.size() || use.tolerances[i]) return false;
+  std::size_t strength = i;
+  while (strength > 0 && rows[strength].role == ParamRole::kShape) --strength;
+  return is_stated(use, strength);
+}
+
 std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, bool linear) {
   const EffectParam& row = use.entry->info->params[i];
   const std::span<const EffectParam> rows = use.entry->info->params;
   constexpr double kNotGiven = -1.0;
   const double tolerance = i < use.tolerances.size() ? use.tolerances[i].value_or(kNotGiven) : kNotGiven;
   const ParamRange range = param_range(row, linear);
-  if (tolerance == 0.0) return std::nullopt;
+  if (tolerance == 0.0 || is_stated(use, i) || is_known_shape(use, i)) return std::nullopt;
   if (!(range.upper > range.lower) || is_whole_by_make(use, row)) return std::nullopt;
   if (row.role == ParamRole::kDetail && use.values[i] == row.neutral) return std::nullopt;
   const bool of_absent_detail = row.role == ParamRole::kShape && i > 0 &&
@@ -275,7 +292,17 @@ RobotModel robot_of(const Candidate& candidate) {
 }
 
 std::string candidate_text(const Candidate& candidate) {
-  return model_text(candidate.file, candidate.effects);
+  constexpr double kFound = 1.0;  // relative 1-sigma of what a fit has found: a start, not a belief
+  std::vector<EffectUse> effects = candidate.effects;
+  for (EffectUse& use : effects) {
+    if (!use.tolerances.empty() || use.owner != nullptr) continue;
+    use.tolerances.resize(use.values.size());
+    for (std::size_t i = 0; i < use.values.size(); ++i) {
+      const EffectParam& row = use.entry->info->params[i];
+      if (row.role != ParamRole::kShape && use.values[i] != row.neutral) use.tolerances[i] = kFound;
+    }
+  }
+  return model_text(candidate.file, effects);
 }
 
 }  // namespace omnihil

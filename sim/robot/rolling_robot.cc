@@ -44,6 +44,7 @@ struct RollingRobot<T>::Wheel {
   T lever_m = T(0);  // radius over gear
   T friction_up_Nm = T(0), friction_down_Nm = T(0);
   T added_torque_Nm = T(0);  // at the rotor, by forces of effects along the drive direction
+  T added_N = T(0);          // the same forces on the body: none on wheels that roll
   T lateral_N = T(0);
   T hub_free_m_s = T(0);  // rim speed of the body without this step's floor forces
   Grip<T> grip;
@@ -192,6 +193,11 @@ void RollingRobot<T>::ask_floor(const RollingState<T>& x, const RollingInput& in
     w.lever_m = port.wheel_radius_m / gear;
     w.lateral_N = port.force_lateral_N;
     w.added_torque_Nm = -w.lever_m * port.force_longitudinal_N;
+    if (p_.has_tyre) {
+      // the floor pushes the wheel, and through it the body
+      w.added_N = port.force_longitudinal_N;
+      for (Eigen::Index n = 0; n < 3; ++n) s.force(n) += rim_[i](n) * w.added_N;
+    }
     w.friction_up_Nm = w.friction_down_Nm = port.friction_wheel_Nm / gear;
     set_grip(x, i, hub_m_s, port, w);
     if (p_.has_lateral_tyre) {
@@ -407,8 +413,9 @@ void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput& in, Step& s
     const Wheel& w = s.wheel[i];
     DriveState<T>& state = x.drive[i];
     pushed += rim_answer_[i] * s.force_N[i];
-    floor_x += rim_[i](0) * s.force_N[i] + rim_[i](1) * w.lateral_N;
-    floor_y += rim_[i](1) * s.force_N[i] - rim_[i](0) * w.lateral_N;
+    const T drive_N = s.force_N[i] + w.added_N;
+    floor_x += rim_[i](0) * drive_N + rim_[i](1) * w.lateral_N;
+    floor_y += rim_[i](1) * drive_N - rim_[i](0) * w.lateral_N;
     const T departed = s.omega_end[i] - w.omega_foreseen;
     state.current_A -= w.end_answer * departed;
     x.charge_C[i] += s.h * (w.drive.mean_current_A - 0.5 * w.mean_answer * departed);

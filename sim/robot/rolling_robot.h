@@ -21,9 +21,9 @@
 //   tyre's curve over s / (scale + v_c), scale = extremum slip times max(|v|, |rim|, floor) for a tyre, 0
 //   without.
 // Order 2 in the step where wheels roll, 1 where they slip. A force that an effect adds along the wheel's
-// drive direction (roller_ripple) turns the wheel only: on a wheel that rolls, a force at the point of
-// contact does no work. Cannot represent: what the planar plant cannot, and play or compliance between rotor
-// and wheel.
+// drive direction (roller_ripple) acts on wheel and body where there is a tyre, as in the plant. Without one
+// it turns the wheel only: on a wheel that rolls, a force at the point of contact does no work. Cannot
+// represent: what the planar plant cannot, and play or compliance between rotor and wheel.
 #pragma once
 #include <Eigen/Core>
 #include <memory>

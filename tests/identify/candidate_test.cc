@@ -28,7 +28,7 @@ voltage_V = 24
 [effects.coulomb_friction]
 torque_Nm = { value = 0.002, tolerance = 0.5 }
 [effects.cogging]
-amplitude_Nm = 0.001
+amplitude_Nm = { value = 0.001, tolerance = 0.2 }
 [effects.expression.drag]
 adds_to = "torque_Nm"
 formula = "-a*omega_rotor_rad_s*abs(omega_rotor_rad_s)"
@@ -66,10 +66,36 @@ TEST(Candidate, PriorIsTheTolerance) {
   ASSERT_NE(c, nullptr);
   EXPECT_DOUBLE_EQ(c->prior_mean, 0.002);
   EXPECT_DOUBLE_EQ(c->prior_sigma, 0.002 * 0.5);
-  const Unknown* a = find(all, "cogging.amplitude_Nm");
+  const std::vector<Unknown> added = unknowns_of(with_effect(read(kAxis), *find_effect("dead_time")));
+  const Unknown* a = find(added, "dead_time.voltage_V");
   ASSERT_NE(a, nullptr);
   EXPECT_EQ(a->prior_mean, 0.0);
   EXPECT_GT(a->prior_sigma, 0.0);
+}
+
+// "A bare number means known exactly": friction that was measured with the wheels lifted is none that a fit
+// may move, or it hides what the floor takes.
+TEST(Candidate, AStrengthWithoutAToleranceIsKnown) {
+  std::string text(kAxis);
+  for (const std::string given : {"{ value = 0.002, tolerance = 0.5 }", "{ value = 0.001, tolerance = 0.2 }"})
+    text.replace(text.find(given), given.size(), "0.002");
+  const Candidate bare = read(text);
+  const std::vector<Unknown> all = unknowns_of(bare);
+  EXPECT_EQ(find(all, "coulomb_friction.torque_Nm"), nullptr);
+  EXPECT_EQ(find(all, "cogging.amplitude_Nm"), nullptr);
+  EXPECT_EQ(find(all, "cogging.phase_rad"), nullptr);
+  EXPECT_NE(find(all, "motor.resistance_ohm"), nullptr);
+  EXPECT_NE(find(unknowns_of(read(candidate_text(bare))), "motor.resistance_ohm"), nullptr);
+  EXPECT_EQ(find(unknowns_of(read(candidate_text(bare))), "cogging.amplitude_Nm"), nullptr);
+}
+
+TEST(Candidate, WhatASearchFoundIsFittedAgainFromItsFile) {
+  Candidate c = with_effect(read(kAxis), *find_effect("dead_time"));
+  ASSERT_EQ(set_value(c, "dead_time.voltage_V", 0.3), "");
+  const std::vector<Unknown> again = unknowns_of(read(candidate_text(c)));
+  ASSERT_NE(find(again, "dead_time.voltage_V"), nullptr);
+  EXPECT_EQ(find(again, "dead_time.voltage_V")->start, 0.3);
+  EXPECT_NE(find(again, "dead_time.current_width_A"), nullptr);
 }
 
 TEST(Candidate, TextReadsBackWithTheSameNumbers) {
@@ -101,7 +127,7 @@ mass_kg = { value = 95, tolerance = 0.1 }
 [motor]
 viscous_friction_N_s_per_m = { value = 200, tolerance = 1 }
 [effects.coulomb_friction]
-torque_N = 20
+torque_N = { value = 20, tolerance = 0.5 }
 [effects.friction_asymmetry]
 viscous_ratio = 0.1
 )x");

@@ -117,9 +117,11 @@ TEST(AxisPredictor, WhiteningLeavesTheRoundingOfPositions) {
 
 TEST(AxisPredictor, DerivativesAreThoseOfTheValues) {
   Candidate c = model(
-      "[effects.cogging]\namplitude_Nm = 0.002\n[effects.dead_time]\nvoltage_V = 0.2\n"
-      "[effects.sampling_delay]\ndelay_s = 0.0021\n[effects.winding_heating]\n"
-      "temperature_coefficient_per_K = 0.004\n[effects.actuator_delay]\ndelay_s = 0.00333\n");
+      "[effects.cogging]\namplitude_Nm = { value = 0.002, tolerance = 1 }\n"
+      "[effects.dead_time]\nvoltage_V = { value = 0.2, tolerance = 1 }\n"
+      "[effects.sampling_delay]\ndelay_s = { value = 0.0021, tolerance = 1 }\n[effects.winding_heating]\n"
+      "temperature_coefficient_per_K = { value = 0.004, tolerance = 1 }\n"
+      "[effects.actuator_delay]\ndelay_s = { value = 0.00333, tolerance = 1 }\n");
   const auto p = make_predictor(bench(model(), 600), c, {.step_s = 100e-6, .slave_angle = true});
   const std::vector<Unknown> unknowns = unknowns_of(c);
   ASSERT_GT(unknowns.size(), 8u);  // more than one stride
