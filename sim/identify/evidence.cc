@@ -145,10 +145,15 @@ Eigen::VectorXd Evidence::measured_by(const Predictor& other) const {
 }
 
 Eigen::VectorXd Evidence::predicted(const Candidate& candidate, int jobs) const {
+  return predicted_by(*predictor_, candidate, jobs);
+}
+
+Eigen::VectorXd Evidence::predicted_by(const Predictor& predictor, const Candidate& candidate,
+                                       int jobs) const {
   std::vector<std::vector<std::vector<double>>> values(runs_.size());
   std::vector<char> finite(runs_.size(), 1);
   parallel_for(jobs, static_cast<int>(runs_.size()), [&](int r) {
-    Prediction p = predictor_->predict(candidate, runs_[static_cast<std::size_t>(r)]);
+    Prediction p = predictor.predict(candidate, runs_[static_cast<std::size_t>(r)]);
     finite[static_cast<std::size_t>(r)] = p.finite ? 1 : 0;
     values[static_cast<std::size_t>(r)] = std::move(p.values);
   });

@@ -59,6 +59,8 @@ class Evidence {
   Eigen::VectorXd residual(const Candidate& candidate, int jobs = 1) const;
   Eigen::VectorXd residual_of(const Eigen::VectorXd& predicted) const { return measured_ - predicted; }
   Eigen::MatrixXd derivatives(const Candidate& candidate, std::span<const Unknown> unknowns, int jobs) const;
+  // The same by another predictor of the same dataset.
+  Eigen::VectorXd predicted_by(const Predictor& predictor, const Candidate& candidate, int jobs = 1) const;
   // What another predictor of the same dataset has measured, in this order (NaN: it has not).
   Eigen::VectorXd measured_by(const Predictor& other) const;
 

@@ -6,6 +6,20 @@
 #include "sim/identify/parallel.h"
 
 namespace omnihil {
+namespace {
+
+// A robot's model follows the measured heading and place (predictor_robot.h): those of its own world, or the
+// way that the fitted model strays from the measured one would count as noise.
+bool follows_its_place(const Predictor& predictor) {
+  for (int run = 0; run < predictor.run_count(); ++run) {
+    for (const ComparedSignal& s : predictor.compared(run)) {
+      if (s.name.starts_with("gyro") || s.name.starts_with("vision")) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
 
 Eigen::VectorXd NullModel::floor(Use use) const {
   const Eigen::MatrixXd& m = mean_square[static_cast<std::size_t>(use)];
@@ -27,6 +41,7 @@ NullModel simulate_null(const Predictor& predictor, const Candidate& truth,
   NullModel null;
   null.fit_noise.resize(static_cast<std::size_t>(replicates));
   std::array<Eigen::VectorXd, kUses> model;
+  const bool follows = follows_its_place(predictor);
   for (std::size_t u = 0; u < kUses; ++u) {
     if (!uses[u].empty()) model[u] = uses[u].predicted(truth, jobs);
     null.mean_square[u] = Eigen::MatrixXd::Zero(replicates, uses[u].samples().size());
@@ -36,7 +51,10 @@ NullModel simulate_null(const Predictor& predictor, const Candidate& truth,
         predictor.simulated(truth, random_bits(seed, stream_of("null"), static_cast<std::uint64_t>(k)));
     for (std::size_t u = 0; u < kUses; ++u) {
       if (uses[u].empty() || model[u].size() != uses[u].size()) continue;
-      Eigen::VectorXd noise = uses[u].measured_by(*world) - model[u];
+      Eigen::VectorXd noise = uses[u].measured_by(*world);
+      const Eigen::VectorXd own = follows ? uses[u].predicted_by(*world, truth) : model[u];
+      if (own.size() != noise.size()) continue;
+      noise -= own;
       noise = noise.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
       null.mean_square[u].row(k) = uses[u].mean_square(noise).transpose();
       if (u == static_cast<std::size_t>(Use::kFit))

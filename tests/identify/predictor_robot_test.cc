@@ -6,6 +6,7 @@
 #include "hil/dataset_reader.h"
 #include "sim/identify/comparison.h"
 #include "sim/identify/fit.h"
+#include "sim/identify/null_model.h"
 #include "tests/identify/robot_world.h"
 
 namespace omnihil::test {
@@ -49,6 +50,23 @@ TEST(PredictorRobot, TheModelThatMadeTheDataLeavesTheNoise) {
     for (const auto& [signal, error] : errors(*world, truth)) {
       EXPECT_NEAR(error, 1.0, 0.15) << signal << ", bus measured: " << bus;
     }
+  }
+}
+
+// A robot whose motors differ strays by metres from the way of a model that does not know it. The null of
+// that model is what its sensors leave, wherever the robot went.
+TEST(PredictorRobot, TheNullIsWhatSensorsLeaveHoweverFarTheRobotStrayed) {
+  const Candidate nominal = robot_candidate(), truth = with_typical(nominal, {"motor_mismatch"});
+  const auto strayed = world_of(truth, false);
+  ASSERT_GT(errors(*strayed, nominal)["vision_theta"], 3.0);
+  const SignalKinds kinds = signal_kinds(*strayed);
+  const std::array<Evidence, kUses> uses{Evidence(*strayed, kinds, Use::kFit),
+                                         Evidence(*strayed, kinds, Use::kHoldout),
+                                         Evidence(*strayed, kinds, Use::kExtrapolation)};
+  const NullModel null = simulate_null(*strayed, nominal, uses, 3, 3, 2);
+  for (int k = 0; k < kinds.count(); ++k) {
+    const auto n = static_cast<std::size_t>(k);
+    EXPECT_NEAR(std::sqrt(null.floor(Use::kFit)[k]) / kinds.noise_sigma[n], 1.0, 0.15) << kinds.name[n];
   }
 }
 
