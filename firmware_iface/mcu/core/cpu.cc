@@ -196,7 +196,7 @@ bool Cpu::go_to(std::uint32_t pc) {
     }
   }
   if (code_->ops.empty()) {
-    code_->ops.resize(code_->size / 2 + 2);
+    code_->ops.make(code_->size / 2 + 2);
     for (std::size_t i = code_->size / 2; i < code_->ops.size(); ++i) {
       code_->ops[i].code = kOffEnd;
       code_->ops[i].entry = kOffEnd;
@@ -208,7 +208,7 @@ bool Cpu::go_to(std::uint32_t pc) {
 void Cpu::resume_it(std::uint32_t pc, std::uint8_t it) {
   if (!go_to(pc)) return;
   const Op& op = code_->ops[(pc - code_->base) / 2];
-  if (op.code == kUndecoded ? it != 0 : op.it != it) fill(pc, it);
+  if (op.entry == kUndecoded ? it != 0 : op.it != it) fill(pc, it);
 }
 
 std::uint8_t Cpu::it_at(std::uint32_t pc) {

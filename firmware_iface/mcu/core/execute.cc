@@ -2,9 +2,9 @@
 // GNU extension; measured: two thirds of the host's instructions of a switch in a loop). The cases are in
 // execute_*.inc, by group.
 //
-// Inside of the cases: R are the registers, `cur` the operation, `op` the slot to run next, `left` the
-// subcycles to the deadline. A case ends with NEXT, with a jump (BRANCH, INTERWORK) or by leaving (LEAVE,
-// FAULT).
+// Inside of the cases: R are the registers, `cur` the operation, `left` the subcycles from its start to the
+// deadline, less one: below zero nothing is left. A case ends with NEXT, with a jump (BRANCH, INTERWORK) or
+// by leaving (LEAVE, FAULT).
 #include <cmath>
 
 #include "firmware_iface/mcu/core/cpu.h"
@@ -81,16 +81,21 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
 #define CASE(code) entry_##code:
 #define START()                 \
   do {                          \
-    cur = op;                   \
-    op = cur + cur->halfwords;  \
-    left -= cur->cost;          \
     ++count;                    \
     goto* kEntries[cur->entry]; \
   } while (0)
-#define NEXT                         \
-  do {                               \
-    if (left <= 0) goto out_of_time; \
-    START();                         \
+#define GO_TO(slot)                 \
+  do {                              \
+    left -= cur->cost;              \
+    cur = (slot);                   \
+    if (left < 0) goto out_of_time; \
+    START();                        \
+  } while (0)
+// By a branch, not by a sum: the host then need not wait for this slot to know the next one.
+#define NEXT                                 \
+  do {                                       \
+    if (cur->halfwords == 2) GO_TO(cur + 2); \
+    GO_TO(cur + 1);                          \
   } while (0)
 #define LEAVE(reason) \
   do {                \
@@ -107,12 +112,20 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     target = (address); \
     goto branch;        \
   } while (0)
-#define NEAR_BRANCH()             \
-  do {                            \
-    left -= taken;                \
-    op = cur + s32(cur->imm);     \
-    if (op <= cur) goto backward; \
-    NEXT;                         \
+#define NEAR_BRANCH()                           \
+  do {                                          \
+    left -= taken;                              \
+    if (s32(cur->imm) <= 0) goto near_backward; \
+    GO_TO(cur + s32(cur->imm));                 \
+  } while (0)
+// Before a jump backwards, which closes a loop.
+#define WATCH()                                                              \
+  do {                                                                       \
+    if (fast_forward && --watch_.rest <= 0) {                                \
+      const Pace pace = watch_loop(cur, {left + 1 - cur->cost, count}, end); \
+      left = pace.left - 1 + cur->cost;                                      \
+      count = pace.count;                                                    \
+    }                                                                        \
   } while (0)
 #define INTERWORK(address) \
   do {                     \
@@ -120,16 +133,20 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     goto interwork;        \
   } while (0)
 #define PC_OF(slot) (code_base + static_cast<std::uint32_t>((slot)-slots) * 2)
-// What a bus access may want to know, and what it may ask for.
-#define BUS(call)                      \
-  do {                                 \
-    now_ = end - (left + cur->cost);   \
-    access_op_ = cur;                  \
-    if (!(call)) goto faulted;         \
-    if (stop_requested_ && left > 0) { \
-      end -= left;                     \
-      left = 0;                        \
-    }                                  \
+// What a bus access may want to know, and what it may ask for: that this instruction is the last one.
+#define REQUEST_CHECK()                         \
+  do {                                          \
+    if (stop_requested_ && left >= cur->cost) { \
+      end -= left + 1 - cur->cost;              \
+      left = cur->cost - 1;                     \
+    }                                           \
+  } while (0)
+#define BUS(call)              \
+  do {                         \
+    now_ = end - left - 1;     \
+    access_op_ = cur;          \
+    if (!(call)) goto faulted; \
+    REQUEST_CHECK();           \
   } while (0)
 #define LOAD_ALIGNED(type, value, address, must_align)         \
   type value;                                                  \
@@ -148,13 +165,6 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     }                                                                               \
   } while (0)
 #define STORE(type, address, value) STORE_ALIGNED(type, address, value, false)
-#define REQUEST_CHECK()                \
-  do {                                 \
-    if (stop_requested_ && left > 0) { \
-      end -= left;                     \
-      left = 0;                        \
-    }                                  \
-  } while (0)
 #define RD R.r[cur->d]
 #define RN R.r[cur->n]
 #define RM R.r[cur->m]
@@ -169,7 +179,7 @@ Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
   };
   Registers& R = reg;
   Stop stop = Stop::kDeadline;
-  std::int64_t end = deadline, left = deadline - now;
+  std::int64_t end = deadline, left = deadline - now - 1;
   std::uint64_t count = 0;
   std::uint32_t target = R.r[15];
   const std::int64_t taken = scale_ * kTakenBranchCycles;
@@ -179,15 +189,14 @@ Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
   if (!go_to(target)) return Stop::kFault;
   Op* slots = code_->ops.data();
   std::uint32_t code_base = code_->base, code_size = code_->size;
-  const Op* op = slots + (target - code_base) / 2;
-  const Op* cur = op;
+  const Op* cur = slots + (target - code_base) / 2;
 
-  NEXT;
+  if (left < 0) goto out_of_time;
+  START();
   CASE(kUndecoded)
   fill(PC_OF(cur), 0);
-  op = cur;
   --count;
-  NEXT;
+  START();
   CASE(kOffEnd)  // memory may go on behind it
   target = PC_OF(cur);
   --count;
@@ -210,49 +219,49 @@ interwork:
     LEAVE(Stop::kExceptionReturn);
   }
   if (!(target & 1)) {
-    op = cur;
-    R.r[15] = target;
     fault = {kInvalidState, 0};
-    stop = Stop::kFault;
-    goto finished;
+    goto lost;
   }
 branch:
   target &= ~1u;
   left -= taken;
   if (target - code_base < code_size) [[likely]] {
-    op = slots + (target - code_base) / 2;
-    if (op <= cur) goto backward;
-    NEXT;
+    const Op* to = slots + (target - code_base) / 2;
+    if (to <= cur) WATCH();
+    GO_TO(to);
   }
 relocate:
-  if (!go_to(target)) {
-    R.r[15] = target;
-    stop = Stop::kFault;
-    goto finished;
-  }
+  if (!go_to(target)) goto lost;
+  left -= cur->cost;
   slots = code_->ops.data();
   code_base = code_->base;
   code_size = code_->size;
-  op = slots + (target - code_base) / 2;
-  NEXT;
+  cur = slots + (target - code_base) / 2;
+  if (left < 0) goto out_of_time;
+  START();
 
-backward:
-  if (fast_forward && --watch_.rest <= 0) {
-    const Pace pace = watch_loop(cur, {left, count}, end);
-    left = pace.left;
-    count = pace.count;
-  }
-  NEXT;
+near_backward:
+  WATCH();
+  GO_TO(cur + s32(cur->imm));
 
-faulted:
-  op = cur;
+lost:
+  left -= cur->cost;
+  R.r[15] = target;
   stop = Stop::kFault;
-out_of_time:
+  goto stopped;
+faulted:
+  stop = Stop::kFault;
+stay:
+  left -= cur->cost;
+  goto out_of_time;
 leave:
-  R.r[15] = PC_OF(op);
-finished:
+  left -= cur->cost;
+  cur += cur->halfwords;
+out_of_time:
+  R.r[15] = PC_OF(cur);
+stopped:
   statistics.instructions += count;
-  now_ = end - left;
+  now_ = end - left - 1;
   return stop;
 }
 

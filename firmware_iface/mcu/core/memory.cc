@@ -95,7 +95,10 @@ void Memory::invalidate(MemoryBlock& block, std::uint32_t begin, std::uint32_t s
   const std::uint32_t first = (begin - std::min(begin, kReachBack)) / 2, last = (begin + size - 1) / 2;
   for (const auto& region : regions_) {
     if (region->block != &block || region->ops.empty()) continue;
-    for (std::uint32_t i = first; i <= last && i < region->size / 2; ++i) region->ops[i] = Op{};
+    for (std::uint32_t i = first; i <= last && i < region->size / 2; ++i) {
+      region->ops[i].entry = kUndecoded;  // its store may be the one that runs
+      region->ops[i].it = 0;
+    }
   }
 }
 

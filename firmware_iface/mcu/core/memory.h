@@ -10,7 +10,9 @@
 // invalidate()).
 #pragma once
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
+#include <new>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,10 +30,37 @@ struct MemoryBlock {
   std::uint32_t code_begin = 0, code_size = 0;  // where decoded code lies, as offsets
 };
 
+// The decoded code of a region: zeroes at first, which is kUndecoded, in pages that the host gives when they
+// are used.
+class OpTable {
+ public:
+  bool empty() const { return size_ == 0; }
+  std::size_t size() const { return size_; }
+  Op* data() const { return ops_.get(); }
+  Op& operator[](std::size_t i) const { return ops_.get()[i]; }
+  void make(std::size_t size) {
+    ops_.reset(static_cast<Op*>(std::calloc(size, sizeof(Op))));
+    if (!ops_) throw std::bad_alloc();
+    size_ = size;
+  }
+  void clear() {
+    ops_.reset();
+    size_ = 0;
+  }
+
+ private:
+  struct Free {
+    void operator()(Op* ops) const { std::free(ops); }
+  };
+  std::unique_ptr<Op, Free> ops_;
+  std::size_t size_ = 0;
+};
+static_assert(kUndecoded == 0);
+
 struct MemoryRegion {
   std::uint32_t base = 0, size = 0;
   MemoryBlock* block = nullptr;
-  std::vector<Op> ops;  // empty until code runs from here; two more at the end that lead out
+  OpTable ops;  // empty until code runs from here; two more at the end that lead out
 
   std::uint8_t* data() const { return block->bytes.data(); }
   bool writable() const { return block->kind != kFlash; }

@@ -11,11 +11,11 @@ constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
 void CoreClock::change(Cycles at, std::uint64_t hz) {
   answered_ns_ = -1;
   if (stretches_.empty()) {
-    stretches_.push_back({at, hz, 0, 0, 0});
+    stretches_.push_back({at, hz, 0, 0, 0, ~std::uint64_t{0} / hz});
   } else if (stretches_.back().hz != hz) {
     const Wide fs = to_fs(stretches_.back(), at);
-    stretches_.push_back(
-        {at, hz, fs, static_cast<std::uint64_t>(fs / kFsPerNs), static_cast<std::uint64_t>(fs % kFsPerNs)});
+    stretches_.push_back({at, hz, fs, static_cast<std::uint64_t>(fs / kFsPerNs),
+                          static_cast<std::uint64_t>(fs % kFsPerNs), ~std::uint64_t{0} / hz});
   }
 }
 
@@ -26,9 +26,12 @@ std::int64_t CoreClock::to_ns(Cycles at) const {
   // In 64 bits, which is several times faster: seconds s, then ns and fs of the rest r < hz < 1.8e10.
   //   floor(r 1e15 / hz) = 1e6 floor(r 1e9 / hz) + floor(1e6 (r 1e9 mod hz) / hz)
   const Stretch& stretch = stretches_[i];
-  const std::uint64_t cycles = at - stretch.begin, s = cycles / stretch.hz, r = cycles % stretch.hz;
-  const std::uint64_t ns = r * kNsPerSecond / stretch.hz;
-  const std::uint64_t fs = (r * kNsPerSecond - ns * stretch.hz) * kFsPerNs / stretch.hz;
+  std::uint64_t r = at - stretch.begin;
+  const std::uint64_t s = divide(r, stretch);
+  r *= kNsPerSecond;
+  const std::uint64_t ns = divide(r, stretch);
+  r *= kFsPerNs;
+  const std::uint64_t fs = divide(r, stretch);
   asked_ = at;
   answered_ns_ = static_cast<std::int64_t>(stretch.begin_ns + s * kNsPerSecond + ns +
                                            (stretch.begin_rest_fs + fs) / kFsPerNs);

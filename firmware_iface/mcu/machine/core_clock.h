@@ -30,9 +30,18 @@ class CoreClock {
     std::uint64_t hz;
     Wide begin_fs;
     std::uint64_t begin_ns, begin_rest_fs;  // the same, in two parts
+    std::uint64_t inverse;                  // 2^64 / hz, rounded down
   };
   Wide to_fs(const Stretch& stretch, Cycles at) const {
     return stretch.begin_fs + Wide{at - stretch.begin} * 1'000'000'000'000'000u / stretch.hz;
+  }
+  // value / hz; `value` becomes the rest.
+  static std::uint64_t divide(std::uint64_t& value, const Stretch& stretch) {
+    auto quotient =
+        static_cast<std::uint64_t>(Wide{value} * stretch.inverse >> 64);  // too small by 2 at most
+    value -= quotient * stretch.hz;
+    for (; value >= stretch.hz; value -= stretch.hz) ++quotient;
+    return quotient;
   }
   std::vector<Stretch> stretches_;
   mutable Cycles asked_ = 0;  // last, of to_ns(): several ask at one instant

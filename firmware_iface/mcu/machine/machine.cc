@@ -154,10 +154,12 @@ void Machine::set_core_hz(double hz) {
 
 void Machine::reschedule() {
   next_event_known_ = false;
+  ++announced_;
   cpu_.stop_soon();
 }
 
 void Machine::event_moved(Cycles before, Cycles after) {
+  ++announced_;
   if (before > next_event_) {  // another one's was the first
     next_event_ = std::min(next_event_, after);
   } else {
@@ -182,23 +184,32 @@ Cycles Machine::next_event() {
   return next;
 }
 
+// The next one is found on the way, unless what runs announces that it has moved others'.
 void Machine::run_due_events() {
   const Cycles due = static_cast<Cycles>(now_ / kSubcycles);
   for (int rounds = 0; next_event() <= due; ++rounds) {
+    const std::uint64_t announced = announced_;
     event_at_ = next_event_;
     if (systick_.advance(event_at_)) pend(kSysTick);
+    Cycles next = systick_.next_event();
     for (const Eventful& one : eventful_) {
-      if (one.next() > event_at_) continue;
-      one.peripheral->run_events();
-      if (rounds > kEventsAtOneInstant) {
-        report_unmodelled(one.peripheral->name(), "its next event stays in the past: the machine is stopped");
-        lock_up();
-        event_at_ = kNever;
-        return;
+      Cycles at = one.next();
+      if (at <= event_at_) {
+        one.peripheral->run_events();
+        if (rounds > kEventsAtOneInstant) {
+          report_unmodelled(one.peripheral->name(),
+                            "its next event stays in the past: the machine is stopped");
+          lock_up();
+          event_at_ = kNever;
+          return;
+        }
+        at = one.next();
       }
+      next = std::min(next, at);
     }
     event_at_ = kNever;
-    next_event_known_ = false;
+    next_event_ = next;
+    next_event_known_ = announced == announced_;
   }
 }
 

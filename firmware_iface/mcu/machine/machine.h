@@ -196,6 +196,7 @@ class Machine final : public System, private CpuBus {
   std::int64_t now_ = 0;      // in subcycles
   Cycles event_at_ = kNever;  // the instant of the events that are being run
   Cycles next_event_ = 0;
+  std::uint64_t announced_ = 0;  // how often an event has been said to have moved
   bool running_ = false, next_event_known_ = false, locked_up_ = false;
   Sleep sleeping_ = Sleep::kNo;
   std::string reset_cause_ = "power-on";

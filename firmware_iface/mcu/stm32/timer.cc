@@ -115,11 +115,13 @@ void Timer::reset() {
 
 std::uint64_t Timer::ticks_at(Cycles at) const {
   if (at <= anchor_) return kNoTicks;
-  return (at - anchor_) * clock_.mul / (prescale_ * clock_.div);
+  const std::uint64_t clocks = (at - anchor_) * clock_.mul, each = prescale_ * clock_.div;
+  return each == 1 ? clocks : clocks / each;  // a division waits longer than all the rest takes
 }
 
 Cycles Timer::cycle_of(std::uint64_t ticks) const {
-  return anchor_ + (ticks * prescale_ * clock_.div + clock_.mul - 1) / clock_.mul;
+  const std::uint64_t clocks = ticks * prescale_ * clock_.div;
+  return anchor_ + (clock_.mul == 1 ? clocks : (clocks + clock_.mul - 1) / clock_.mul);
 }
 
 double Timer::period_s() const {
