@@ -21,6 +21,8 @@ constexpr double kMattersAtFloor = 0.05;
 constexpr double kChanceMargin = 2.0;  // gain over the most that the null's replicates gave
 constexpr double kPlain = 0.3;         // of the held-out error energy
 constexpr double kSeen = 0.015;        // fall of some signal's error energy, noise included
+constexpr double kSeenWhitened =
+    0.1;  // or of the whitened: a coarse encoder hides what its count still tells
 constexpr double kFloorWeight = 0.05;
 constexpr double kExtrapolationLoss = 0.03;
 constexpr double kSignificant_sigmas = 2.0;
@@ -267,7 +269,8 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
                   decides == Use::kHoldout ? "held-out" : "fit", 100.0 * (held.ratio - 1.0))
             : fmt::format("it takes {:.1f} % of the held-out error energy; {:.1f} % would matter",
                           100.0 * (1.0 - held.ratio), 100.0 * needed);
-  } else if (const double seen = gain_as_seen(parent.as_seen[d], child.as_seen[d]); seen < kSeen) {
+  } else if (const double seen = gain_as_seen(parent.as_seen[d], child.as_seen[d]);
+             seen < kSeen && 1.0 - held.ratio < kSeenWhitened) {
     out.why =
         fmt::format("no signal's error falls by more than {:.1f} % in energy as it is seen", 100.0 * seen);
   } else if (held.worst > 1.0) {
