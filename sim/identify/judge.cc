@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -94,12 +95,34 @@ bool misused_bound(const ParameterEstimate& p, const EffectParam* row) {
   return !row->name.starts_with("phase") && row->name != "exponent";
 }
 
+// Strengths together: those that trade with each other (four ratios against the scale that they share with a
+// base parameter) may each be uncertain where what parts them is not. Wald's statistic, 95 % of chi-square.
+bool told_together(const FitResult& child, const std::vector<Eigen::Index>& rows,
+                   const std::vector<double>& away) {
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  if (n < 2 || rows.back() >= child.covariance.rows()) return false;
+  const Eigen::VectorXd d = Eigen::Map<const Eigen::VectorXd>(away.data(), n);
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      covariance(i, j) =
+          child.covariance(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(j)]);
+    }
+  }
+  constexpr double kPerFurther = 1.9;  // of the quantile, per further strength
+  const double asked = kSignificant_sigmas * kSignificant_sigmas + kPerFurther * static_cast<double>(n - 1);
+  return d.dot(covariance.ldlt().solve(d)) > asked;
+}
+
 // Numbers of the effect that no drive has; empty: none. `plain`: it takes so much that its strength is no
 // question, however it trades against its own shapes.
 std::string unphysical(const FitResult& child, const std::string& name, bool plain) {
   const EffectEntry* entry = find_effect(name);
   bool strong = entry == nullptr;
-  for (const ParameterEstimate& p : child.parameters) {
+  std::vector<Eigen::Index> strengths;
+  std::vector<double> away;
+  for (std::size_t n = 0; n < child.parameters.size(); ++n) {
+    const ParameterEstimate& p = child.parameters[n];
     if (!p.path.starts_with(name + ".")) continue;
     const std::string key = p.path.substr(name.size() + 1);
     const EffectParam* row = nullptr;
@@ -117,7 +140,10 @@ std::string unphysical(const FitResult& child, const std::string& name, bool pla
     // With what the file knows of the base: where the data fix ratios alone (speed without current), the
     // scale of every torque comes from the tolerances.
     if (size > kSignificant_sigmas * p.sigma || p.sigma <= 0.0) strong = strong || size > 0.0;
+    strengths.push_back(static_cast<Eigen::Index>(n));
+    away.push_back(p.value - row->neutral);
   }
+  strong = strong || told_together(child, strengths, away);
   return strong || plain ? "" : "its strength is not told from zero";
 }
 

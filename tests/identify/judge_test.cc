@@ -84,7 +84,8 @@ TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatTheNullLeavesAsWell) {
   EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.6), "x", 100).accepted);
 }
 
-// Whitening weighs the slowest wandering most; what somebody sees of another kind of motion may yet be halved.
+// Whitening weighs the slowest wandering most; what somebody sees of another kind of motion may yet be
+// halved.
 TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsAFallAsItIsSeen) {
   const Court court;
   Fitted child = court.leaving(0.8, 0.8, 1.2);
@@ -179,6 +180,28 @@ TEST(JudgeTest, RefusesAStrengthThatIsNotToldFromZero) {
   p.sigma = 8e-5;
   child.fit.parameters = {p};
   EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), child, "lugre_friction", 100).accepted);
+}
+
+// Four wheels' ratios share their scale with the wheels' radius: each is known to 4 parts in a thousand, what
+// parts them to one in ten thousand.
+TEST(JudgeTest, StrengthsThatTradeWithEachOtherAreToldFromZeroTogether) {
+  const Court court;
+  Fitted child = court.leaving(0.9, 0.9, 0.9);
+  const std::vector<double> ratios = {0.999, 1.002, 1.0, 0.999};
+  constexpr double kShared = 4e-3, kOwn = 1e-4;
+  for (std::size_t i = 0; i < 4; ++i) {
+    ParameterEstimate p;
+    p.path = "wheel_radius_mismatch.ratio_" + std::to_string(i + 1);
+    p.value = ratios[i];
+    p.sigma = kShared;
+    child.fit.parameters.push_back(p);
+  }
+  child.fit.covariance = Eigen::MatrixXd::Constant(4, 4, kShared * kShared);
+  child.fit.covariance.diagonal().array() += kOwn * kOwn;
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100).accepted);
+  // a common scale alone is the wheels' radius
+  for (ParameterEstimate& p : child.fit.parameters) p.value = 1.002;
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100).accepted);
 }
 
 TEST(BlockBootstrapTest, AGainInOneMomentAloneIsUncertain) {
