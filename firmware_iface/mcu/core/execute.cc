@@ -92,10 +92,10 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     START();                        \
   } while (0)
 // By a branch, not by a sum: the host then need not wait for this slot to know the next one.
-#define NEXT                                 \
-  do {                                       \
-    if (cur->halfwords == 2) GO_TO(cur + 2); \
-    GO_TO(cur + 1);                          \
+#define NEXT                                       \
+  do {                                             \
+    if ((cur->halfwords & 2) != 0) GO_TO(cur + 2); \
+    GO_TO(cur + 1);                                \
   } while (0)
 #define LEAVE(reason) \
   do {                \

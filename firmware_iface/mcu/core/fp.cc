@@ -131,7 +131,7 @@ double fp_round(double value, FpRounding rounding, std::uint32_t fpscr) {
 std::uint32_t fp_to_int(double value, bool is_unsigned, unsigned bits, FpRounding rounding) {
   if (is_nan(value)) return 0;
   const double whole = integral(value, rounding);
-  const double high = std::ldexp(1.0, static_cast<int>(is_unsigned ? bits : bits - 1)) - 1;
+  const double high = static_cast<double>((std::uint64_t{1} << (is_unsigned ? bits : bits - 1)) - 1);
   const double low = is_unsigned ? 0.0 : -high - 1;
   const double held = whole > high ? high : whole < low ? low : whole;
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(held));
