@@ -34,8 +34,8 @@ class System {
   virtual void set_irq(int irq, bool high) = 0;
   // next_event() of some peripheral has changed, or an exception may be due: look again after this access.
   virtual void reschedule() = 0;
-  // The same of one peripheral's alone, whose next_event() was `before`.
-  virtual void event_moved(Cycles /*before*/, Cycles /*after*/) { reschedule(); }
+  // The same of that of one peripheral alone, which stands in `field` and was `before`.
+  virtual void event_moved(const Cycles* /*field*/, Cycles /*before*/) { reschedule(); }
   // Reset of the whole chip at the end of this access or event, by the named cause.
   virtual void request_reset(std::string_view cause) = 0;
   // By what the chip was reset last: "power-on" or what request_reset() was given. For the reset flags.

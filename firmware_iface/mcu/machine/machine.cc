@@ -40,7 +40,8 @@ void Machine::attach(std::uint32_t base, std::uint32_t size, Peripheral& periphe
   eventful_.clear();
   for (const Slot& slot : slots_) {
     if (slot.peripheral->ever_acts()) {
-      eventful_.push_back({slot.peripheral, slot.peripheral->next_event_field()});
+      const Cycles* field = slot.peripheral->next_event_field();
+      eventful_.push_back({slot.peripheral, field, field == nullptr});
     }
   }
 }
@@ -129,7 +130,7 @@ void Machine::do_reset() {
   cpu_.reg.r[15] = start & ~1u;
   cpu_.set_attention(false);
   if (!(start & 1)) lock_up();
-  next_event_known_ = false;
+  next_event_known_ = armed_known_ = false;
 }
 
 void Machine::map_at_zero(std::uint32_t base) {
@@ -153,19 +154,22 @@ void Machine::set_core_hz(double hz) {
 }
 
 void Machine::reschedule() {
-  next_event_known_ = false;
+  next_event_known_ = armed_known_ = false;
   ++announced_;
   cpu_.stop_soon();
 }
 
-void Machine::event_moved(Cycles before, Cycles after) {
+void Machine::event_moved(const Cycles* field, Cycles before) {
   ++announced_;
-  if (before > next_event_) {  // another one's was the first
-    next_event_ = std::min(next_event_, after);
+  cpu_.stop_soon();
+  const auto is_it = [field](const Eventful& one) { return one.field == field; };
+  if (field == nullptr || std::none_of(armed_.begin(), armed_.end(), is_it)) {
+    next_event_known_ = armed_known_ = false;
+  } else if (before > next_event_) {  // another one's was the first
+    next_event_ = std::min(next_event_, *field);
   } else {
     next_event_known_ = false;
   }
-  cpu_.stop_soon();
 }
 
 void Machine::set_irq(int irq, bool high) {
@@ -175,10 +179,20 @@ void Machine::set_irq(int irq, bool high) {
   cpu_.stop_soon();
 }
 
+void Machine::look_who_is_armed() {
+  armed_.clear();
+  for (Eventful& one : eventful_) {
+    one.armed = one.armed || one.next() != kNever;
+    if (one.armed) armed_.push_back(one);
+  }
+  armed_known_ = true;
+}
+
 Cycles Machine::next_event() {
   if (next_event_known_) return next_event_;
+  if (!armed_known_) look_who_is_armed();
   Cycles next = systick_.next_event();
-  for (const Eventful& one : eventful_) next = std::min(next, one.next());
+  for (const Eventful& one : armed_) next = std::min(next, one.next());
   next_event_ = next;
   next_event_known_ = true;
   return next;
@@ -192,7 +206,7 @@ void Machine::run_due_events() {
     event_at_ = next_event_;
     if (systick_.advance(event_at_)) pend(kSysTick);
     Cycles next = systick_.next_event();
-    for (const Eventful& one : eventful_) {
+    for (const Eventful& one : armed_) {
       Cycles at = one.next();
       if (at <= event_at_) {
         one.peripheral->run_events();

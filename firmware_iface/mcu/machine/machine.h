@@ -91,7 +91,7 @@ class Machine final : public System, private CpuBus {
   void set_core_hz(double hz) override;
   void set_irq(int irq, bool high) override;
   void reschedule() override;
-  void event_moved(Cycles before, Cycles after) override;
+  void event_moved(const Cycles* field, Cycles before) override;
   void request_reset(std::string_view cause) override;
   std::string_view reset_cause() const override { return reset_cause_; }
   std::uint32_t bus_read(std::uint32_t address, unsigned bytes) override;
@@ -110,6 +110,7 @@ class Machine final : public System, private CpuBus {
   struct Eventful {
     Peripheral* peripheral;
     const Cycles* field;  // where its next event stands; null: it has to be asked
+    bool armed;
     Cycles next() const { return field != nullptr ? *field : peripheral->next_event(); }
   };
   struct Frame {  // of an exception being handled: for the load statistics
@@ -173,6 +174,7 @@ class Machine final : public System, private CpuBus {
   void run_to(Cycles end, bool until_clock_changes);
   void run_due_events();
   Cycles next_event();
+  void look_who_is_armed();
   void handle(Stop stop);
   bool wakes() const;
   void sleep_until(Cycles end);
@@ -186,8 +188,9 @@ class Machine final : public System, private CpuBus {
   SysTick systick_;
   CoreClock clock_;
   std::vector<Slot> slots_;
-  std::vector<Eventful> eventful_;               // of them, those that ever have an event; in the same order
-  std::array<const Slot*, 256> recent_slots_{};  // by address; of those that share a place, the last one
+  std::vector<Eventful> eventful_;  // of them, those that may ever have an event; in the same order
+  std::vector<Eventful> armed_;     // of them, those that have had one: the others need not be looked at
+  std::array<const Slot*, 256> recent_slots_{};     // by address; of those that share a place, the last one
   std::map<std::uint32_t, std::uint32_t> unknown_;  // words written to where no model is
   std::map<std::pair<std::string, std::string>, std::size_t> unmodelled_index_;
   FlashWrites* flash_writes_ = nullptr;
@@ -197,7 +200,7 @@ class Machine final : public System, private CpuBus {
   Cycles event_at_ = kNever;  // the instant of the events that are being run
   Cycles next_event_ = 0;
   std::uint64_t announced_ = 0;  // how often an event has been said to have moved
-  bool running_ = false, next_event_known_ = false, locked_up_ = false;
+  bool running_ = false, next_event_known_ = false, armed_known_ = false, locked_up_ = false;
   Sleep sleeping_ = Sleep::kNo;
   std::string reset_cause_ = "power-on";
   std::string reset_wanted_;

@@ -53,7 +53,7 @@ std::uint32_t RegisterBlock::read(std::uint32_t offset, unsigned bytes) {
   }
   const Cycles before = upcoming();
   const std::uint32_t word = load(offset & ~3u);
-  if (upcoming() != before) system_.event_moved(before, upcoming());
+  if (upcoming() != before) system_.event_moved(next_event_field(), before);
   if (bytes == 4) return word;
   return (word & lanes_of(offset, bytes)) >> (8 * (offset & 3u));
 }
@@ -71,7 +71,7 @@ void RegisterBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t va
   }
   const Cycles before = upcoming();
   store(offset & ~3u, placed, lanes);
-  if (upcoming() != before) system_.event_moved(before, upcoming());
+  if (upcoming() != before) system_.event_moved(next_event_field(), before);
 }
 
 void RegisterBlock::keep(std::uint32_t offset, std::uint32_t value, std::uint32_t lanes) {
