@@ -30,11 +30,10 @@ std::int64_t CoreClock::to_ns(Cycles at) const {
   const std::uint64_t s = divide(r, stretch);
   r *= kNsPerSecond;
   const std::uint64_t ns = divide(r, stretch);
-  r *= kFsPerNs;
-  const std::uint64_t fs = divide(r, stretch);
+  // begin_rest_fs + floor(1e6 r / hz) >= 1e6, without the division
+  const bool carry = r * kFsPerNs >= (kFsPerNs - stretch.begin_rest_fs) * stretch.hz;
   asked_ = at;
-  answered_ns_ = static_cast<std::int64_t>(stretch.begin_ns + s * kNsPerSecond + ns +
-                                           (stretch.begin_rest_fs + fs) / kFsPerNs);
+  answered_ns_ = static_cast<std::int64_t>(stretch.begin_ns + s * kNsPerSecond + ns + (carry ? 1 : 0));
   return answered_ns_;
 }
 

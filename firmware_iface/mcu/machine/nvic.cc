@@ -59,6 +59,7 @@ int Nvic::best(int execution_priority) const {
   if (pending_count_ == 0) return 0;
   int found = 0, found_priority = execution_priority, found_full = kLowest;
   for (std::size_t i = 0; i < pending_.size(); ++i) {
+    if (pending_[i] == 0) continue;
     for (std::uint32_t rest = pending_[i] & enabled_[i]; rest; rest &= rest - 1) {
       const int e = static_cast<int>(i) * 32 + std::countr_zero(rest);
       const int priority = group_priority(e), full = e <= kHardFault ? priority : priority_[index(e)];

@@ -184,6 +184,8 @@ void Timer::sync() {
       const bool steady = (value(kCr1) & kUdis) != 0 || !transfer_pending();
       if (steady) skip_periods((end - done_) / law_.period());
     }
+    // Counted from here on, so that position() need not divide; exact where ticks are whole cycles.
+    if (running_ && clock_.mul == 1 && done_ >= law_.period()) move_to(position());
   }
   look_at_references();
 }

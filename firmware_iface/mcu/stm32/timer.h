@@ -80,7 +80,10 @@ class Timer final : public RegisterBlock, public TriggerSink {
   static constexpr unsigned kChannels = 4;
   // timer.cc
   bool encoder() const { return encoder_; }
-  std::uint64_t position() const { return (start_ + done_) % law_.period(); }
+  std::uint64_t position() const {
+    const std::uint64_t at = start_ + done_, period = law_.period();
+    return at < period ? at : at % period;
+  }
   std::uint64_t ticks_at(Cycles at) const;
   Cycles cycle_of(std::uint64_t ticks) const;
   std::uint32_t count() const;
