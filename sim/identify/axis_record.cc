@@ -145,6 +145,17 @@ double AxisRecord::speed_near(std::size_t k) const {
   }
   const bool at_rest_by_counts = !counts.empty() && k + 20 < size() && counts[k] == counts[k + 20];
   if (at_rest_by_counts) return 0.0;
+  const auto slope = [&] {
+    std::size_t end = k;
+    while (end < size() && (end < k + 8 || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
+    return first_slope(time_s, way, k, end) / per_rad;
+  };
+  // n counts tell a slope to count / (span sqrt(n)): often far better than what a noisy speed says at once.
+  const double slope_sigma = 1.0 / per_rad / kSlopeSpan_s / std::sqrt(std::max(1.0, kSlopeSpan_s / period_s));
+  constexpr double kBetter = 5.0;
+  if (!counts.empty() && velocity_sigma_rad_s > kBetter * slope_sigma) {
+    if (const double by_counts = slope(); std::isfinite(by_counts)) return by_counts;
+  }
   if (!near.empty() && std::isfinite(velocity[k])) {
     // Where the speed itself moves on in these few samples, their median is that of a later instant.
     constexpr double kMoves = 6.0;  // sigmas
@@ -152,10 +163,7 @@ double AxisRecord::speed_near(std::size_t k) const {
     std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2), near.end());
     return near[near.size() / 2];
   }
-  if (way.empty()) return kMissing;
-  std::size_t end = k;
-  while (end < size() && (end < k + 8 || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
-  return first_slope(time_s, way, k, end) / per_rad;
+  return way.empty() ? kMissing : slope();
 }
 
 AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, const Run& run) {

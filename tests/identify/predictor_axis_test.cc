@@ -101,6 +101,22 @@ TEST(AxisPredictor, TheTrueModelLeavesTheRoundingOfCountsOnly) {
   EXPECT_LT(rms(p->compared(0)[1].measured, y.values[1]), 0.1 * 0.03);
 }
 
+// Ten milliseconds of fine counts say that it stands still; one noisy reading of a speed sensor says 2 rad/s.
+TEST(AxisPredictor, StartsAtTheSpeedOfTheCountsWhereThoseTellItBetter) {
+  const Candidate truth = model();
+  Dataset d = bench(truth, 1500);
+  d.channels.push_back({.signal = "velocity", .column = "", .unit = "rad/s", .sigma = 1.0});
+  std::vector<double>& speed = d.runs[0].signals["velocity"];
+  const std::vector<double>& counts = d.runs[0].signals["encoder"];
+  for (std::size_t k = 0; k < counts.size(); ++k) speed.push_back(k % 2 == 0 ? 2.0 : -2.0);
+  for (std::size_t k = 0; k < 20; ++k) d.runs[0].signals["duty"][k] = 0.1;
+  for (std::size_t k = 0; k < 25; ++k) d.runs[0].signals["encoder"][k] = static_cast<double>(k / 20);
+  const auto p = make_predictor(d, truth, {});
+  const Prediction y = p->predict(truth, 0);
+  EXPECT_EQ(p->compared(0)[0].name, "velocity");
+  EXPECT_NEAR(y.values[0][0], 0.0, 0.1);
+}
+
 TEST(AxisPredictor, WhiteningLeavesTheRoundingOfPositions) {
   const Candidate truth = model();
   const auto p = make_predictor(bench(truth, 4000), truth, {});
