@@ -134,7 +134,7 @@ TEST_F(ExceptionTest, EntryTakesTwelveCyclesFromTheCause) {
   ImageBench bench("exceptions");
   bench.probe.scenario = kEvents;
   ASSERT_TRUE(bench.run());
-  const InterruptLoad& load = bench.machine.report().exceptions.at(kFirstIrq);
+  const InterruptLoad load = bench.machine.report().exceptions.at(kFirstIrq);
   EXPECT_EQ(load.count, 1u);
   EXPECT_EQ(load.longest_latency, 12u);  // raised while asleep
 }
