@@ -12,8 +12,6 @@ namespace omnihil {
 namespace {
 
 constexpr double kWorthAThirdStart = 0.2;  // of the error energy, as the screening promises
-constexpr double kWorthUnbending = 0.1;
-constexpr double kBent_sigmas = 3.0;  // of a base parameter's tolerance
 
 // Numbers of a candidate by path; what `start` does not name stays.
 void start_at(std::vector<Unknown>& unknowns, const std::vector<Unknown>& paths,
@@ -64,28 +62,6 @@ EffectUse usual(const EffectUse& use, bool linear) {
         std::clamp(row.neutral + (row.typical - row.neutral) * range.scale, range.lower, range.upper);
   }
   return out;
-}
-
-// Has a base parameter left its tolerance, to make up for what is missing?
-bool bent(const FitResult& fit) {
-  for (std::size_t i = 0; i < fit.parameters.size() && i < fit.unknowns.size(); ++i) {
-    const ParameterEstimate& p = fit.parameters[i];
-    if (fit.unknowns[i].effect < 0 && p.prior_sigma > 0.0 && std::abs(p.drift_sigmas) > kBent_sigmas)
-      return true;
-  }
-  return false;
-}
-
-// Base parameters back to what the nominal model believes.
-Candidate as_believed(const Candidate& model, const Candidate& nominal) {
-  std::vector<Unknown> base;
-  std::vector<double> means;
-  for (const Unknown& u : unknowns_with_priors(model, nominal)) {
-    if (u.effect >= 0 || u.prior_sigma <= 0.0) continue;
-    base.push_back(u);
-    means.push_back(std::clamp(u.prior_mean, u.lower, u.upper));
-  }
-  return with_values(model, base, means);
 }
 
 // The same model, one effect's strength changed by a factor.
@@ -152,28 +128,30 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   Fitted best = fit_from(setup, with, unknowns, 1);
   const double expected = 1.0 - 0.5 * effect.share;
   double ratio = fit_ratio(setup, parent, best);
-  const auto stopped = [&] { return setup.stop && setup.stop(); };
-  const auto attempt = [&](const Candidate& start) {
+  const std::initializer_list<EffectUse> starts = {near_neutral(effect.start),
+                                                   usual(effect.start, with.file.linear)};
+  for (const EffectUse& other : starts) {
+    if (ratio <= expected || (setup.stop && setup.stop())) break;
+    if (&other != starts.begin() && effect.share < kWorthAThirdStart) break;
+    const Candidate start = with_use(parent.fit.model, other);
     Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
     const double next_ratio = fit_ratio(setup, parent, next);
-    if (next_ratio >= ratio) return;
-    best = std::move(next);
-    ratio = next_ratio;
-  };
-  const EffectUse usual_size = usual(effect.start, with.file.linear);
-  const std::initializer_list<EffectUse> starts = {near_neutral(effect.start), usual_size};
-  for (const EffectUse& other : starts) {
-    if (ratio <= expected || stopped()) break;
-    if (&other != starts.begin() && effect.share < kWorthAThirdStart) break;
-    attempt(with_use(parent.fit.model, other));
+    if (next_ratio < ratio) {
+      best = std::move(next);
+      ratio = next_ratio;
+    }
   }
-  // A base that was bent to do the effect's work holds a fit in its own valley, where the effect has none.
-  if (effect.share > kWorthUnbending && bent(parent.fit) && !stopped())
-    attempt(with_use(as_believed(parent.fit.model, *setup.nominal), usual_size));
   // Impacts make many small valleys: the first one that is deep enough need not be the deepest.
   const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0;
   for (const double factor : {0.5, 2.0}) {
-    if (rugged && !stopped()) attempt(with_strength_times(best.fit.model, effect.name, factor));
+    if (!rugged || (setup.stop && setup.stop())) break;
+    const Candidate start = with_strength_times(best.fit.model, effect.name, factor);
+    Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
+    const double next_ratio = fit_ratio(setup, parent, next);
+    if (next_ratio < ratio) {
+      best = std::move(next);
+      ratio = next_ratio;
+    }
   }
   best = undetermined_stay(setup, parent, std::move(best));
   if (ratio > 1.0) {
