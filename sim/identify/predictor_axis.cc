@@ -273,8 +273,8 @@ class AxisPredictor : public Predictor {
   void choose_step() {
     step_s_ = options_.step_s;
     constexpr double kTrial_s = 10.0;  // of a run are enough
-    // What is left of it in the error energy, 0.1 %, is below what an effect has to take to be named.
-    constexpr double kShareOfNoise = 0.03;
+    // In the error energy 0.5 %: a sixth of what an effect has to take to be named.
+    constexpr double kShareOfNoise = 0.07;
     double longest = options_.step_s;
     std::vector<AxisSetup> whole;
     for (AxisSetup& s : setups_) {
