@@ -142,7 +142,7 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
     }
   }
   // Impacts make many small valleys: the first one that is deep enough need not be the deepest.
-  const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0;
+  const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0 && ratio < 1.0 - kWorthAThirdStart;
   for (const double factor : {0.5, 2.0}) {
     if (!rugged || (setup.stop && setup.stop())) break;
     const Candidate start = with_strength_times(best.fit.model, effect.name, factor);
