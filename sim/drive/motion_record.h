@@ -4,8 +4,9 @@
 //   MotionPoint<Jet> p = record.at(t - age);      // derivative with respect to the age included
 //
 // Angle by cubic Hermite interpolation (its slope is the speed), the others linearly. Before the first point
-// the axis was at rest there.
+// the axis moved at that point's speed.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -31,12 +32,10 @@ class MotionRecord {
 
   void push(const MotionPoint<T>& p) {
     points_.push_back(p);
-    // Forget what is too old, in large portions so that it costs nothing.
-    if (points_.size() > 4096) {
-      std::size_t keep = 0;
-      while (keep + 2 < points_.size() && points_[keep + 1].time_s < p.time_s - span_s_) ++keep;
-      points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(keep));
-    }
+    // Forget what is too old in portions of half, so that a long span costs no more per point than a short one.
+    const std::size_t half = points_.size() / 2;
+    if (points_.size() > 4096 && points_[half].time_s < p.time_s - span_s_)
+      points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(half - 1));
   }
 
   MotionPoint<T> at(const T& time_s) const {
@@ -47,9 +46,9 @@ class MotionRecord {
       rest.theta_rad += (time_s - first.time_s) * first.omega_rad_s;
       return rest;
     }
-    std::size_t i = points_.size() - 1;
-    while (i > 0 && points_[i].time_s > t) --i;
-    if (i + 1 == points_.size()) --i;
+    const auto after = std::partition_point(points_.begin(), points_.end() - 1,
+                                            [&](const MotionPoint<T>& p) { return p.time_s <= t; });
+    const std::size_t i = static_cast<std::size_t>(after - points_.begin()) - 1;
     const MotionPoint<T>&a = points_[i], &b = points_[i + 1];
     const double h = b.time_s - a.time_s;
     const T s = (time_s - a.time_s) / h, r = 1.0 - s;
