@@ -62,7 +62,8 @@ struct CommutationMisalignment {
     const T reactive_V = double(port.pole_pairs) * port.inductance_H * speed * current;
     const T all_V = port.resistance_ohm * current + port.back_emf_V_s_per_rad * speed + reactive_V;
     T lag = T(0);
-    if (value_of(all_V) > 0.0) lag = sign_of(port.omega_rotor_rad_s) * reactive_V / all_V;
+    constexpr double kAtRest_V = 1e-9;
+    if (value_of(all_V) > kAtRest_V) lag = sign_of(port.omega_rotor_rad_s) * reactive_V / all_V;
     const T cosine = cos_of(p[kAngle]);
     port.torque_constant_Nm_per_A *= cosine + sin_of(p[kAngle]) * lag;
     port.back_emf_V_s_per_rad *= cosine;

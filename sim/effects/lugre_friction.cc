@@ -1,5 +1,6 @@
 // LuGre friction: bristles that bend before they slide, so that a rotor creeps elastically before it breaks
 // away.
+#include <algorithm>
 #include <cmath>
 
 #include "sim/core/effect_entry.h"
@@ -111,7 +112,10 @@ struct LugreFriction {
     const T before = x[kDeflection];
     T& z = x[kDeflection];
     T bending = T(0);  // dz/dtheta, mean over the way
-    if (value_of(way) != 0.0) {
+    // Less than this share of the bristles' length is differences of nearly equal numbers: its limit instead.
+    constexpr double kShortest = 1e-8, kLeastLevel_Nm = 1e-20;
+    const double length = std::max(value_of(level), kLeastLevel_Nm);
+    if (value_of(p[kStiffness]) * std::abs(value_of(way)) > kShortest * length) {
       // Exact for a level held over the way: z -> z_s + (z - z_s) exp(-s0 |way| / g), z_s = g sgn(way) / s0
       const T sliding = sign_of(way) * level / p[kStiffness];
       z = sliding;
@@ -120,8 +124,9 @@ struct LugreFriction {
         if (value_of(bent) < 700.0) z += (before - sliding) * exp(-bent);
       }
       bending = (z - before) / way;
-    } else if (value_of(level) > 0.0) {
-      bending = 1.0 - p[kStiffness] * z * sign_of(omega) / level;
+    } else if (value_of(level) > kLeastLevel_Nm) {
+      bending = 1.0 - p[kStiffness] * z * sign_of(value_of(way) != 0.0 ? way : omega) / level;
+      z += bending * way;
     }
     x[kAngle] = port.theta_rotor_rad;
     x[kStarted] = T(1);

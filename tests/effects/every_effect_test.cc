@@ -87,6 +87,21 @@ TEST_P(EveryEffect, StaysFiniteAtItsBounds) {
   }
 }
 
+// A drive that starts from rest passes through the smallest numbers there are, where 1 / x is no number.
+TEST_P(EveryEffect, StaysFiniteNextToRest) {
+  const std::vector<Jet> at = as_jets(typical_use(entry()).values, 0);
+  for (const double motion : {1e-150, 1e-300, 1e-311, 0.0}) {
+    for_each_place<Jet>(entry(), [&](auto function, auto port) {
+      for (std::uint64_t n = 0; n < 20; ++n) {
+        for (const auto& c : changes(applied<Jet>(entry(), function, port, at, n, 1.0, motion))) {
+          EXPECT_TRUE(std::isfinite(c.value.a)) << "motion times " << motion;
+          EXPECT_TRUE(std::isfinite(c.value.v[0])) << "motion times " << motion;
+        }
+      }
+    });
+  }
+}
+
 TEST_P(EveryEffect, ChangesNothingAtNeutralBitForBit) {
   const std::vector<EffectUse> uses{neutral_use(entry())};
   EXPECT_TRUE(EffectSet<double>(uses).none());

@@ -16,7 +16,10 @@ namespace omnihil::test {
 struct Draw {
   std::uint64_t seed = 0;
   mutable std::uint64_t counter = 0;
-  double operator()(double from, double to) const { return from + (to - from) * uniform(seed, 7, counter++); }
+  double motion = 1.0;  // what goes both ways (speed, current) times this
+  double operator()(double from, double to) const {
+    return (from + (to - from) * uniform(seed, 7, counter++)) * (from == -to ? motion : 1.0);
+  }
 };
 
 template <typename T>
@@ -250,9 +253,9 @@ void for_each_place(const EffectEntry& entry, Visit visit) {
 // One call of one law on the contents number `seed`; states start at their initial values.
 template <typename T, typename Function, typename Port>
 Port applied(const EffectEntry& entry, Function function, Port port, std::span<const T> params,
-             std::uint64_t seed, double sign = 1.0) {
+             std::uint64_t seed, double sign = 1.0, double motion = 1.0) {
   CommandHistory history;
-  fill(port, Draw{seed}, sign, history);
+  fill(port, Draw{.seed = seed, .motion = motion}, sign, history);
   std::vector<T> states;
   for (const EffectState& s : entry.info->states) states.push_back(T(s.initial));
   function(entry.context, law_params(entry, params).data(), states.data(), port);
