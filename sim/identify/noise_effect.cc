@@ -132,7 +132,10 @@ class Trial {
     double size = row.typical;
     for (int pass = 0; pass < kPasses; ++pass) {
       const double below = std::max(0.5 * size, 1e-12 * row.typical);
-      const Eigen::VectorXd more = simulated(fit, bins, size) - own, less = simulated(fit, bins, below) - own;
+      Eigen::VectorXd more = simulated(fit, bins, size), less = simulated(fit, bins, below);
+      if (more.size() == 0 || less.size() == 0) return std::nullopt;
+      more -= own;
+      less -= own;
       const double total = more.dot(measured.count), part = less.dot(measured.count);
       double power = 2.0;
       if (total > 0.0 && part > 0.0 && below < size) power = std::log(total / part) / std::log(size / below);
@@ -158,10 +161,12 @@ class Trial {
 
   // Mean energies by bin of what the model's sensors would show with this strength.
   Eigen::VectorXd simulated(const Evidence& evidence, const Binning& bins, double strength) const {
-    const Eigen::VectorXd expected = evidence.predicted(*search_.model);
+    const Eigen::VectorXd predicted = evidence.predicted(*search_.model);
     Eigen::VectorXd mean;
     for (int k = 0; k < kReplicates; ++k) {
-      const Eigen::VectorXd e = bins.energies(evidence.measured_by(*world(strength, k)) - expected).mean();
+      const Eigen::VectorXd left = left_in(*world(strength, k), evidence, *search_.model, predicted);
+      if (left.size() == 0) return left;
+      const Eigen::VectorXd e = bins.energies(left).mean();
       mean = k == 0 ? e : Eigen::VectorXd(mean + e);
     }
     return mean / kReplicates;
@@ -201,6 +206,7 @@ class Trial {
     const Energies measured = same ? fit_measured : bins.energies(residual);
     const Eigen::VectorXd own = same ? fit_own : simulated(judge, bins, 0.0),
                           with = simulated(judge, bins, strength);
+    if (own.size() == 0 || with.size() == 0) return std::nullopt;
     double before = 0.0, after = 0.0, all = 0.0, floor = 0.0;
     const Eigen::VectorXd energy = measured.mean(), weight = measured.weight();
     for (Eigen::Index b = 0; b < own.size(); ++b) {
@@ -217,7 +223,8 @@ class Trial {
         .use = at(strength), .strength = {}, .explained = before > 0.0 ? 1.0 - after / before : 0.0};
     if (all < kExcess * floor || out.explained < kExplained) return std::nullopt;
     const Eigen::VectorXd drawn =
-        judge.measured_by(*world(strength, kReplicates)) - judge.predicted(*search_.model);
+        left_in(*world(strength, kReplicates), judge, *search_.model, judge.predicted(*search_.model));
+    if (drawn.size() == 0) return std::nullopt;
     const Eigen::VectorXd apart = autocorrelations(*search_.predictor, judge, residual) -
                                   autocorrelations(*search_.predictor, judge, drawn);
     // A correlation from n samples scatters by 1 / sqrt(n); where few are loud, few count (Kish 1965).

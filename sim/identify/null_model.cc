@@ -35,26 +35,30 @@ Eigen::VectorXd NullModel::spread(Use use) const {
   return (off.array().square().colwise().sum() / static_cast<double>(m.rows() - 1)).sqrt().transpose();
 }
 
+Eigen::VectorXd left_in(const Predictor& world, const Evidence& evidence, const Candidate& model,
+                        const Eigen::VectorXd& predicted) {
+  const Eigen::VectorXd own = follows_its_place(world) ? evidence.predicted_by(world, model) : predicted;
+  return own.size() == evidence.size() ? Eigen::VectorXd(evidence.measured_by(world) - own)
+                                       : Eigen::VectorXd();
+}
+
 NullModel simulate_null(const Predictor& predictor, const Candidate& truth,
                         const std::array<Evidence, kUses>& uses, std::uint64_t seed, int replicates,
                         int jobs) {
   NullModel null;
   null.fit_noise.resize(static_cast<std::size_t>(replicates));
-  std::array<Eigen::VectorXd, kUses> model;
-  const bool follows = follows_its_place(predictor);
+  std::array<Eigen::VectorXd, kUses> predicted;
   for (std::size_t u = 0; u < kUses; ++u) {
-    if (!uses[u].empty()) model[u] = uses[u].predicted(truth, jobs);
+    if (!uses[u].empty()) predicted[u] = uses[u].predicted(truth, jobs);
     null.mean_square[u] = Eigen::MatrixXd::Zero(replicates, uses[u].samples().size());
   }
   parallel_for(jobs, replicates, [&](int k) {
     const std::unique_ptr<Predictor> world =
         predictor.simulated(truth, random_bits(seed, stream_of("null"), static_cast<std::uint64_t>(k)));
     for (std::size_t u = 0; u < kUses; ++u) {
-      if (uses[u].empty() || model[u].size() != uses[u].size()) continue;
-      Eigen::VectorXd noise = uses[u].measured_by(*world);
-      const Eigen::VectorXd own = follows ? uses[u].predicted_by(*world, truth) : model[u];
-      if (own.size() != noise.size()) continue;
-      noise -= own;
+      if (uses[u].empty()) continue;
+      Eigen::VectorXd noise = left_in(*world, uses[u], truth, predicted[u]);
+      if (noise.size() == 0) continue;
       noise = noise.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
       null.mean_square[u].row(k) = uses[u].mean_square(noise).transpose();
       if (u == static_cast<std::size_t>(Use::kFit))

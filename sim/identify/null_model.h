@@ -27,6 +27,11 @@ struct NullModel {
   Eigen::VectorXd spread(Use use) const;
 };
 
+// What a model leaves of what a simulated world has measured, in the evidence's order; empty: not finite.
+// `predicted`: by the model, for the recording's own inputs (a robot's model follows those of the world).
+Eigen::VectorXd left_in(const Predictor& world, const Evidence& evidence, const Candidate& model,
+                        const Eigen::VectorXd& predicted);
+
 NullModel simulate_null(const Predictor& predictor, const Candidate& truth,
                         const std::array<Evidence, kUses>& uses, std::uint64_t seed, int replicates,
                         int jobs);

@@ -8,9 +8,10 @@
 namespace omnihil {
 namespace {
 
-constexpr double kStructure = 0.10;    // of the null's energy
-constexpr double kUnexplained = 0.20;  // of what the baseline left above the null
-constexpr double kSpreads = 5.0;       // of the null's replicates
+constexpr double kStructure = 0.10;  // of the null's energy
+// ... of what the baseline left above the null. The right law in another form leaves a few per cent.
+constexpr double kUnexplained = 0.10;
+constexpr double kSpreads = 5.0;  // of the null's replicates
 
 // Excess of each signal's energy over the null's.
 Eigen::VectorXd excess_of(const Evidence& evidence, const NullModel& null, const SignalKinds& kinds,

@@ -44,7 +44,8 @@ TEST_F(RealDiagnosis, SlowLinearAxisEndsAtHalfThePublishedForceError) {
 TEST_F(RealDiagnosis, SlowServoHasASpeedLimitADelayAndLoadDependentFriction) {
   const RealSet servo("kscale_sts3215");
   const Diagnosis d = diagnosed(servo);
-  EXPECT_EQ(d.verdict, Verdict::kEffect);
+  // A fifth of what the base model left is still there, far above an encoder's noise: said, not hidden.
+  EXPECT_EQ(d.verdict, Verdict::kUnknown);
   for (const char* effect : {"target_speed_limit", "actuator_delay", "load_dependent_friction"})
     EXPECT_TRUE(found(d, effect)) << effect;
   EXPECT_LE(servo.mean_absolute(d.final_fit.model, Use::kHoldout, "position"), 16e-3);
