@@ -26,6 +26,18 @@ TEST(CoreClockTest, FromNsIsTheFirstCycleNotBefore) {
   }
 }
 
+// time(c) >= t and time(c - 1) < t; both ends in whole nanoseconds, rounded down by to_ns().
+TEST(CoreClockTest, FromNsIsTheFirstCycleNotBeforeAfterAChangeBetweenTwoNanoseconds) {
+  CoreClock clock(72'000'000);
+  clock.change(7, 168'000'000);   // at 97.2 ns
+  clock.change(18, 275'000'000);  // at 162.7 ns
+  for (std::int64_t ns = 163; ns < 5'000'000'000; ns += 1 + ns / 3) {
+    const Cycles at = clock.from_ns(ns);
+    EXPECT_GE(clock.to_ns(at), ns);
+    EXPECT_LT(clock.to_ns(at - 1), ns);
+  }
+}
+
 TEST(CoreClockTest, ADayDoesNotDrift) {
   const CoreClock clock(168'000'000);
   constexpr std::uint64_t kDay_s = 86'400;

@@ -54,10 +54,11 @@ void McuBoard::wire_motors() {
   for (const MotorEntry& entry : spec_.motors) {
     wires_.push_back(std::make_unique<MotorWire>(entry, chip_, [this] { return now_ns(); }));
     if (!entry.encoder_timer.empty()) {
-      chip_.find<Timer>(entry.encoder_timer)->set_shaft([this, entry](std::int64_t at_ns) {
-        const std::int64_t counts = world_.encoder_counts(entry.wheel, at_ns);
-        return entry.encoder_sign < 0 ? -counts : counts;
-      });
+      chip_.find<Timer>(entry.encoder_timer)
+          ->set_shaft([this, wheel = entry.wheel, sign = entry.encoder_sign](std::int64_t at_ns) {
+            const std::int64_t counts = world_.encoder_counts(wheel, at_ns);
+            return sign < 0 ? -counts : counts;
+          });
     }
     if (entry.hall_pole_pairs == 0 || (entry.hall_timer.empty() && entry.hall_pins.empty())) continue;
     halls_.push_back(std::make_unique<HallLines>(entry, chip_, machine_,

@@ -6,18 +6,19 @@ namespace omnihil::mcu {
 
 MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int64_t()> now_ns)
     : entry_(entry), now_ns_(std::move(now_ns)) {
+  const auto pin_changed = [this](bool) { changed(now_ns_()); };
   for (const ChannelName& channel : entry_.pwm) {
     timers_.push_back(chip.find<Timer>(channel.timer));
-    timers_.back()->on_output([this] { changed(); });
+    timers_.back()->on_output([this](std::int64_t at_ns) { changed(at_ns); });
   }
   for (const ChannelName& channel : entry_.pwm_low) low_timers_.push_back(chip.find<Timer>(channel.timer));
   if (entry_.direction) {
     direction_ = chip.port(entry_.direction->port);
-    direction_->on_output(entry_.direction->pin, [this](bool) { changed(); });
+    direction_->on_output(entry_.direction->pin, pin_changed);
   }
   if (entry_.enable) {
     enable_ = chip.port(entry_.enable->port);
-    enable_->on_output(entry_.enable->pin, [this](bool) { changed(); });
+    enable_->on_output(entry_.enable->pin, pin_changed);
   }
 }
 
@@ -37,7 +38,7 @@ BridgeDrive MotorWire::now() const {
     return {true, entry_.sign * (first.high_ratio - second.high_ratio)};
   }
   if (direction_ == nullptr) return {true, entry_.sign * (2.0 * first.high_ratio - 1.0)};
-  const bool forward = direction_->output(entry_.direction->pin) == entry_.direction_high_is_forward;
+  const bool forward = directed() == entry_.direction_high_is_forward;
   return {true, entry_.sign * (forward ? first.high_ratio : -first.high_ratio)};
 }
 
@@ -49,16 +50,35 @@ void MotorWire::pass(std::int64_t at_ns) {
   duty_ns_ += held_ns * held_.duty_ratio;
 }
 
-void MotorWire::changed() {
-  if (phases()) return;
-  pass(now_ns_());
+// What now() would give is held_: nothing that it is made of has moved since.
+bool MotorWire::still() const {
+  return held_pwm_ && held_version_ == pins_version() && held_directed_ == directed() && enabled();
+}
+
+void MotorWire::hold() {
   held_ = now();
+  held_pwm_ = held_.driven;
+  for (std::size_t i = 0; i < timers_.size() && held_pwm_; ++i) {
+    held_pwm_ = pin(i).drive == TimerPin::Drive::kPwm;
+  }
+  held_directed_ = directed();
+  held_version_ = pins_version();
+}
+
+void MotorWire::changed(std::int64_t at_ns) {
+  if (phases()) return;
+  pass(at_ns);
+  if (!still()) hold();
 }
 
 void MotorWire::begin(std::int64_t at_ns) {
   since_ns_ = at_ns;
   driven_ns_ = duty_ns_ = 0.0;
-  held_ = phases() ? BridgeDrive{} : now();
+  if (phases()) {
+    held_ = {};
+  } else if (!still()) {
+    hold();
+  }
 }
 
 BridgeDrive MotorWire::end(std::int64_t at_ns) {

@@ -43,17 +43,27 @@ class MotorWire {
   void legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) const;
 
  private:
-  void changed();
+  void changed(std::int64_t at_ns);
+  void hold();
+  bool still() const;
   void pass(std::int64_t at_ns);
   TimerPin pin(Timer& timer, const ChannelName& channel) const;
   TimerPin pin(std::size_t i) const { return pin(*timers_[i], entry_.pwm[i]); }
   bool enabled() const { return !enable_ || enable_->output(entry_.enable->pin); }
+  bool directed() const { return direction_ != nullptr && direction_->output(entry_.direction->pin); }
+  std::uint32_t pins_version() const {
+    std::uint32_t sum = 0;
+    for (const Timer* timer : timers_) sum += timer->pins_version();
+    return sum;
+  }
 
   MotorEntry entry_;
   std::function<std::int64_t()> now_ns_;
   std::vector<Timer*> timers_, low_timers_;
   GpioPort *direction_ = nullptr, *enable_ = nullptr;
   BridgeDrive held_;
+  bool held_pwm_ = false, held_directed_ = false;  // held_ is of PWM pins alone; of this direction ...
+  std::uint32_t held_version_ = 0;                 // ... and of this version of them
   std::int64_t since_ns_ = 0;
   double driven_ns_ = 0.0, duty_ns_ = 0.0;
 };

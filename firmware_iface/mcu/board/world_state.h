@@ -26,8 +26,9 @@ struct WorldState {
   }
   std::int64_t encoder_counts(int wheel, std::int64_t now_ns) const {
     constexpr double kTwoPi = 6.283185307179586;
-    return static_cast<std::int64_t>(
-        std::floor(rotor_rad(wheel, now_ns) * encoder_counts_per_rotor_turn / kTwoPi));
+    const double counts = rotor_rad(wheel, now_ns) * encoder_counts_per_rotor_turn / kTwoPi;
+    const auto whole = static_cast<std::int64_t>(counts);  // towards zero, made floor
+    return whole - (static_cast<double>(whole) > counts ? 1 : 0);
   }
 };
 

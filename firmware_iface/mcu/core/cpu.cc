@@ -42,6 +42,20 @@ void Cpu::memory_changed() {
       ccm_ = window;
     }
   }
+  leave_code_out();
+}
+
+void Cpu::leave_code_out() {
+  store_ = ram_;
+  if (ram_.block == nullptr || ram_.block->code_size == 0) return;
+  const std::uint32_t begin = ram_.block->code_begin, end = (begin + ram_.block->code_size + 3) & ~3u;
+  if (ram_.size - end < begin) {
+    store_.size = begin;
+  } else {
+    store_.base += end;
+    store_.data += end;
+    store_.size -= end;
+  }
 }
 
 Stop Cpu::run(std::int64_t now, std::int64_t deadline) {
@@ -120,7 +134,7 @@ std::uint16_t Cpu::halfword(std::uint32_t pc) const {
 }
 
 namespace {
-// Of a branch to where its constant says.
+// Of a branch to where its constant says, of a load from there.
 int near_entry(const Op& op) {
   switch (op.code) {
     case kB:
@@ -144,7 +158,8 @@ Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
   Op op = decode({pc, variant_, it}, first, is_wide(first) ? halfword(pc + 2) : std::uint16_t{0});
   int cycles = op_cycles(op.code);
   if (op.code == kLdm || op.code == kStm || op.code == kPush || op.code == kPopPc) {
-    cycles += std::popcount(op.imm & 0xFFFF);
+    op.m = static_cast<std::uint8_t>(std::popcount(op.imm & 0xFFFF));
+    cycles += op.m;
   } else if (op.code == kVldm || op.code == kVstm) {
     cycles += op.m;
   }
@@ -157,9 +172,23 @@ Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
     if (near != kUndecoded) {
       op.entry = static_cast<std::uint16_t>(near);
       op.imm = static_cast<std::uint32_t>(static_cast<std::int32_t>(op.imm - pc) / 2);
+    } else if ((op.code == kLdrLit || (op.code == kVldrS && op.n == 15)) && is_near_constant(op.imm)) {
+      op.entry = op.code == kLdrLit ? kNearLdr : kNearVldr;
+      op.imm -= code_->base;
     }
   }
+  if (op.condition == kAlways && (op.code == kVcmpF32 || op.code == kVcmpZeroF32) &&
+      halfword(pc + 4) == 0xEEF1 && halfword(pc + 6) == 0xFA10) {  // VMRS APSR_nzcv, FPSCR
+    op.entry = op.code == kVcmpF32 ? kVcmpFlags : kVcmpZeroFlags;
+    op.imm = static_cast<std::uint32_t>(op_cycles(kVmrs) * scale_);
+  }
   return op;
+}
+
+// A word of the memory that code runs from, where load() would find it too.
+bool Cpu::is_near_constant(std::uint32_t address) const {
+  const bool seen = code_->base == ram_.base || code_->base == flash_.base || code_->base == ccm_.base;
+  return seen && address % 4 == 0 && address - code_->base <= code_->size - 4;
 }
 
 void Cpu::fill(std::uint32_t pc, std::uint8_t it) {
@@ -171,7 +200,9 @@ void Cpu::fill(std::uint32_t pc, std::uint8_t it) {
     Op& op = region.ops[at / 2];
     op = make(pc, it);
     // In whole words: a store of any size that touches them is then noticed.
-    const std::uint32_t begin = at & ~3u, end = at + 4u, code_end = block.code_begin + block.code_size;
+    const bool two = op.entry == kVcmpFlags || op.entry == kVcmpZeroFlags;
+    const std::uint32_t begin = at & ~3u, end = at + (two ? 8u : 4u);
+    const std::uint32_t code_end = block.code_begin + block.code_size;
     if (block.code_size == 0) {
       block.code_begin = begin;
       block.code_size = end - begin;
@@ -183,6 +214,7 @@ void Cpu::fill(std::uint32_t pc, std::uint8_t it) {
     it = is_it(first) && op.code == kNop ? static_cast<std::uint8_t>(first & 0xFF) : it_next(it);
     pc += 2u * op.halfwords;
   } while (it != 0);
+  if (&block == ram_.block) leave_code_out();
 }
 
 bool Cpu::go_to(std::uint32_t pc) {

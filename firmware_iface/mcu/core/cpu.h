@@ -106,7 +106,7 @@ class Cpu {
   struct Window {  // a region as the fast paths see it
     std::uint32_t base = 0, size = 0;
     std::uint8_t* data = nullptr;
-    MemoryBlock* block = nullptr;
+    const MemoryBlock* block = nullptr;
   };
   struct Pace {  // of the loop: subcycles to the deadline, instructions done
     std::int64_t left = 0;
@@ -141,6 +141,9 @@ class Cpu {
   bool slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align);
   bool slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align);
   Pace watch_loop(const Op* at, Pace pace, std::int64_t end);
+  void leave_code_out();  // of store_
+  bool is_near_constant(std::uint32_t address) const;
+  static std::uint8_t* words_in(const Window& window, std::uint32_t address, std::uint32_t bytes);
   template <class T>
   bool load(std::uint32_t address, T& value) const;
   template <class T>
@@ -155,6 +158,7 @@ class Cpu {
   bool fp_ready_ = false, fp_plain_ = false;  // may be used; and needs no look at denormal numbers
   bool watching_ = false, changed_ = false;
   Window ram_, flash_, ccm_;
+  Window store_;                                       // of ram_, the larger part without code
   std::uint32_t shared_begin_ = 0, shared_end_ = ~0u;  // where memory lies among the peripherals
   MemoryRegion* code_ = nullptr;
   const Op* access_op_ = nullptr;

@@ -40,12 +40,17 @@ inline bool Cpu::load(std::uint32_t address, T& value) const {
 
 template <class T>
 inline bool Cpu::store(std::uint32_t address, T value) {
-  const std::uint32_t at = address - ram_.base;
-  if (at >= ram_.size || (address & (sizeof(T) - 1)) || at - ram_.block->code_begin < ram_.block->code_size)
-    return false;
-  if (watching_ && std::memcmp(ram_.data + at, &value, sizeof(T)) != 0) changed_ = true;
-  std::memcpy(ram_.data + at, &value, sizeof(T));
+  const std::uint32_t at = address - store_.base;
+  if (at >= store_.size || (address & (sizeof(T) - 1))) return false;
+  if (watching_ && std::memcmp(store_.data + at, &value, sizeof(T)) != 0) changed_ = true;
+  std::memcpy(store_.data + at, &value, sizeof(T));
   return true;
+}
+
+// Of a list of words that lie in a window, all of them; else null.
+inline std::uint8_t* Cpu::words_in(const Window& window, std::uint32_t address, std::uint32_t bytes) {
+  const std::uint32_t at = address - window.base;
+  return at < window.size && bytes <= window.size - at && address % 4 == 0 ? window.data + at : nullptr;
 }
 
 // Of the condition as it is encoded (DDI 0403E.e A7.3).
@@ -79,10 +84,11 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
 }  // namespace
 
 #define CASE(code) entry_##code:
-#define START()                 \
-  do {                          \
-    ++count;                    \
-    goto* kEntries[cur->entry]; \
+#define CAREFUL_CASE(code) careful_##code:
+#define START()                \
+  do {                         \
+    ++count;                   \
+    goto* entries[cur->entry]; \
   } while (0)
 #define GO_TO(slot)                 \
   do {                              \
@@ -97,6 +103,7 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     if ((cur->halfwords & 2) != 0) GO_TO(cur + 2); \
     GO_TO(cur + 1);                                \
   } while (0)
+#define NEXT_WIDE GO_TO(cur + 2)  // where no encoding of the operation is narrow
 #define LEAVE(reason) \
   do {                \
     stop = reason;    \
@@ -133,6 +140,8 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     goto interwork;        \
   } while (0)
 #define PC_OF(slot) (code_base + static_cast<std::uint32_t>((slot)-slots) * 2)
+// After whatever may have changed what the FPU may be used for.
+#define CHOOSE_ENTRIES() (entries = fp_plain_ ? kEntries : kCarefulEntries)
 // What a bus access may want to know, and what it may ask for: that this instruction is the last one.
 #define REQUEST_CHECK()                         \
   do {                                          \
@@ -140,6 +149,7 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
       end -= left + 1 - cur->cost;              \
       left = cur->cost - 1;                     \
     }                                           \
+    CHOOSE_ENTRIES();                           \
   } while (0)
 #define BUS(call)              \
   do {                         \
@@ -177,6 +187,16 @@ Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
 #include "firmware_iface/mcu/core/op_codes.inc"
 #undef OP
   };
+  // The same while the FPU may not be used yet, or flushes denormal numbers.
+  static const void* const kCarefulEntries[] = {
+#define OP(name, cycles) &&entry_k##name,
+#define FP_OP(name, cycles) &&fp_first,
+#define FLUSHING_OP(name, cycles) &&careful_k##name,
+#include "firmware_iface/mcu/core/op_codes.inc"
+#undef OP
+  };
+  const void* const* entries = nullptr;
+  CHOOSE_ENTRIES();
   Registers& R = reg;
   Stop stop = Stop::kDeadline;
   std::int64_t end = deadline, left = deadline - now - 1;
@@ -189,6 +209,7 @@ Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
   if (!go_to(target)) return Stop::kFault;
   Op* slots = code_->ops.data();
   std::uint32_t code_base = code_->base, code_size = code_->size;
+  const std::uint8_t* code_data = code_->data();
   const Op* cur = slots + (target - code_base) / 2;
 
   if (left < 0) goto out_of_time;
@@ -236,6 +257,7 @@ relocate:
   slots = code_->ops.data();
   code_base = code_->base;
   code_size = code_->size;
+  code_data = code_->data();
   cur = slots + (target - code_base) / 2;
   if (left < 0) goto out_of_time;
   START();

@@ -1,5 +1,6 @@
 // What the programmer sees of a Cortex-M: registers, flags, special registers (DDI 0403E.e, B1.4).
 #pragma once
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -10,10 +11,21 @@ static_assert(std::endian::native == std::endian::little, "memory of the emulate
 
 enum Control : std::uint32_t { kUnprivileged = 1, kUseProcessStack = 2, kFpContextActive = 4 };
 
-struct Registers {
+// Flags lie as what they are worked out from: N is bit 31 of n, Z is z == 0; c and v are 0 or 1.
+struct Flags {
+  std::uint32_t n = 0, z = 1, c = 0, v = 0;
+  bool operator==(const Flags&) const = default;
+};
+// By N, Z, C, V as four bits.
+inline constexpr auto kFlags = [] {
+  std::array<Flags, 16> all{};
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = {i >> 3 << 31, ~i & 4, i >> 1 & 1, i & 1};
+  return all;
+}();
+
+struct Registers : Flags {
   std::uint32_t r[16] = {};  // r[13]: the stack pointer in use; r[15]: the next instruction, bit 0 clear
-  // Flags lie as what they are worked out from: N is bit 31 of n, Z is z == 0; c, v, q are 0 or 1.
-  std::uint32_t n = 0, z = 1, c = 0, v = 0, q = 0, ge = 0;
+  std::uint32_t q = 0, ge = 0;
   std::uint32_t other_sp = 0;  // the stack pointer not in use
   std::uint32_t control = 0, primask = 0, basepri = 0, faultmask = 0;
   std::uint32_t ipsr = 0;  // the exception being handled, 0 in thread mode
@@ -31,12 +43,7 @@ struct Registers {
   std::uint32_t apsr() const {
     return (n & 0x80000000u) | (z == 0 ? 0x40000000u : 0) | c << 29 | v << 28 | q << 27 | ge << 16;
   }
-  void set_nzcv(std::uint32_t value) {
-    n = value;
-    z = ~value & 0x40000000u;
-    c = value >> 29 & 1;
-    v = value >> 28 & 1;
-  }
+  void set_nzcv(std::uint32_t value) { static_cast<Flags&>(*this) = kFlags[value >> 28]; }
   void set_apsr(std::uint32_t value) {
     set_nzcv(value);
     q = value >> 27 & 1;

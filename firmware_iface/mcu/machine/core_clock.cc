@@ -3,7 +3,7 @@
 namespace omnihil::mcu {
 namespace {
 
-constexpr std::uint64_t kFsPerNs = 1'000'000, kFsPerSecond = 1'000'000'000'000'000;
+constexpr std::uint64_t kFsPerNs = 1'000'000;
 constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
 
 }  // namespace
@@ -43,8 +43,13 @@ Cycles CoreClock::from_ns(std::int64_t at_ns) const {
   std::size_t i = stretches_.size() - 1;
   while (i > 0 && stretches_[i].begin_fs > at_fs) --i;
   const Stretch& stretch = stretches_[i];
-  const Wide cycles = ((at_fs - stretch.begin_fs) * stretch.hz + kFsPerSecond - 1) / kFsPerSecond;
-  return stretch.begin + static_cast<Cycles>(cycles);
+  // In 64 bits, as in to_ns(): ceil((1e6 t - begin_rest_fs) hz / 1e15) with t = 1e9 s + r ns, since
+  //   ceil((1e6 a - b) / 1e15) = ceil((a - floor(b / 1e6)) / 1e9)
+  const std::uint64_t t = static_cast<std::uint64_t>(at_ns) - stretch.begin_ns;
+  const std::uint64_t seconds = t / kNsPerSecond * stretch.hz, a = t % kNsPerSecond * stretch.hz;
+  const std::uint64_t b = stretch.begin_rest_fs * stretch.hz / kFsPerNs;
+  const Cycles begin = stretch.begin + seconds;
+  return a > b ? begin + (a - b - 1) / kNsPerSecond + 1 : begin - (b - a) / kNsPerSecond;
 }
 
 }  // namespace omnihil::mcu

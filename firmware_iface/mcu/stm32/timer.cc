@@ -101,7 +101,7 @@ void Timer::reset() {
   start_ = done_ = repeat_left_ = 0;
   ccr_.fill(0);
   toggled_.fill(0);
-  seen_reference_.fill(0);
+  seen_references_ = 0;
   ccer_ = 0;
   ccmr_.fill(0);
   note_settings();
@@ -223,11 +223,11 @@ void Timer::update_event(bool by_software) {
     move_to(law_.way == CounterLaw::Way::kCentre ? position() : 0);
     value(kCr1) &= ~kCen;
     running_ = false;
-    pins_known_ = 0;
+    forget_pins();
   }
   if (!by_software && (value(kBdtr) & kAoe) != 0 && !break_high_) {
     value(kBdtr) |= kMoe;
-    pins_known_ = 0;
+    forget_pins();
   }
   if (!by_software || (cr1 & kUrs) == 0) {
     if (!by_software) updates_lost_ += value(kSr) & kUpdate;
@@ -240,7 +240,7 @@ void Timer::update_event(bool by_software) {
 
 // Preload registers become active.
 void Timer::transfer() {
-  if (prescale_ != value(kPsc) + 1u || law_.arr != value(kArr)) {
+  if ((preloaded_ >> kChannels & 1u) != 0) {
     const std::uint64_t at = law_.count(position());
     const bool down = law_.falling(position());
     const bool turning = law_.way == CounterLaw::Way::kCentre && at == law_.arr;
@@ -249,23 +249,25 @@ void Timer::transfer() {
     law_.arr = value(kArr);
     if (law_.arr > 0)
       start_ = turning ? law_.arr : law_.way == CounterLaw::Way::kCentre ? law_.position(at, down) : 0;
-    pins_known_ = 0;
+    forget_pins();
   }
-  for (unsigned c = 0; c < kChannels; ++c) {
-    if (captures(c) || ccr_[c] == value(kCcr1 + 4 * c)) continue;
-    ccr_[c] = value(kCcr1 + 4 * c);
-    pins_known_ = 0;
+  if (preloaded_ != 0) {
+    for (unsigned c = 0; c < kChannels; ++c) {
+      if ((preloaded_ >> c & 1u) != 0) ccr_[c] = value(kCcr1 + 4 * c);
+    }
+    forget_pins(preloaded_);
+    preloaded_ = 0;
   }
   repeat_left_ = spec_.advanced ? value(kRcr) : 0;
   if (law_.arr == 0) {
     running_ = false;
-    pins_known_ = 0;
+    forget_pins();
   }
 }
 
 // After CR1, SMCR or ARR: way of counting, running or not.
 void Timer::follow_settings() {
-  pins_known_ = 0;
+  forget_pins();
   const std::uint32_t cr1 = value(kCr1);
   const std::uint32_t count_now = count();
   const bool down = law_.falling(position());
@@ -285,6 +287,7 @@ void Timer::follow_settings() {
       start_ = law_.position(count_now, down);
       if (count_now > arr) set_count(count_now);
     }
+    note_preloads();
   }
   if (runs == running_) return;
   if (running_) move_to(position());
@@ -378,7 +381,7 @@ void Timer::generate(std::uint32_t events) {
   if ((events & kTrigger) != 0) trigger_edge();
   if ((events & kBreak) != 0) {
     value(kBdtr) &= ~kMoe;
-    pins_known_ = 0;
+    forget_pins();
     raise(kBreak);
     outputs_changed();
   }
@@ -397,9 +400,15 @@ bool Timer::store_preload(std::uint32_t offset, std::uint32_t written, std::uint
   if (offset < kCcr1 || offset >= kCcr1 + 16 || encoder()) return false;
   const unsigned c = (offset - kCcr1) / 4;
   if (captures(c) || !bit(value(kCcmr1 + 4 * (c / 2)), 3 + 8 * (c % 2))) return false;
-  if (running_ && ticks_at(now()) >= done_ + law_.to_boundary(position())) sync();
-  keep(offset, spec_.bits32 ? written : written & 0xFFFFu, lanes);
-  plan();
+  const bool ended = running_ && ticks_at(now()) >= done_ + law_.to_boundary(position());
+  if (ended) sync();
+  std::uint32_t& preload = value(offset);
+  preload = (preload & ~lanes) | ((spec_.bits32 ? written : written & 0xFFFFu) & lanes);
+  const bool waited = transfer_pending();
+  preloaded_ = (preloaded_ & ~(1u << c)) | (ccr_[c] != preload ? 1u << c : 0u);
+  const bool planned = !ended && update_alone_ && waited == transfer_pending() && next_ > now() &&
+                       heard_then_ == context_.triggers.version();
+  if (!planned) plan();
   return true;
 }
 
@@ -451,7 +460,7 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
   }
   if (offset == kCr2 || offset == kCcmr1 || offset == kCcmr2 || offset == kDier) note_settings();
   bool acts = offset != kSr && offset != kDier && offset != kCnt;  // on the outputs, at once
-  if (acts) pins_known_ = 0;
+  if (acts) forget_pins();
   if (offset >= kCcr1 && offset < kCcr1 + 16) {
     const unsigned c = (offset - kCcr1) / 4;
     if (!spec_.bits32) value(offset) &= 0xFFFFu;
@@ -463,6 +472,7 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
       if (!captures(c) && !bit(value(kCcmr1 + 4 * (c / 2)), 3 + 8 * (c % 2))) ccr_[c] = value(kCcr1 + 4 * c);
     }
   }
+  note_preloads();
   if (offset == kSmcr || offset == kCr2 || offset == kCcmr1 || offset == kCcmr2) listen_to_triggers();
   look_at_references();
   plan();

@@ -64,7 +64,14 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void set_shaft(ShaftCount shaft);
   void set_input(unsigned channel, bool level);
   void break_input(bool level);
-  void on_output(std::function<void()> listener) { listeners_.push_back(std::move(listener)); }
+  void on_output(std::function<void()> listener) {
+    on_output([listener = std::move(listener)](std::int64_t) { listener(); });
+  }
+  void on_output(std::function<void(std::int64_t now_ns)> listener) {
+    listeners_.push_back(std::move(listener));
+  }
+  // While this number stays, a pin that is kPwm stays what it is.
+  std::uint32_t pins_version() const { return pins_version_; }
   TimerPin pin(unsigned channel, bool complement) const;  // one side of output()
   TimerOutput output(unsigned channel) const;
   bool reference(unsigned channel) const;  // OCxREF now
@@ -102,10 +109,11 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void store_dma_burst(std::uint32_t written);
   bool store_preload(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes);
   // timer_plan.cc
-  bool transfer_pending() const;
+  bool transfer_pending() const { return preloaded_ != 0; }
+  void note_preloads();
   void plan();
   std::uint32_t awaited_matches() const;
-  std::uint32_t awaited_edges() const;
+  std::uint32_t heard_edges() const;
   Cycles next_match(unsigned channel) const;
   Cycles next_edge(unsigned channel) const;
   // timer_output.cc
@@ -117,7 +125,15 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void mark_matches(std::uint64_t ticks);
   void matched(unsigned channel);
   void look_at_references();
+  void reference_moved(unsigned channel, bool level);
   bool reference_at(unsigned channel, std::uint64_t position) const;
+  std::uint32_t references_at(std::uint64_t position) const;
+  void forget_pins(std::uint32_t channels = ~0u) {
+    for (unsigned c = 0; c < kChannels; ++c) {
+      if ((channels >> c & 1u) != 0) pins_known_ &= ~(3u << 2 * c);
+    }
+    ++pins_version_;
+  }
   TimerPin work_out_pin(unsigned channel, bool complement) const;
   double dead_ticks() const;
   void outputs_changed();
@@ -144,7 +160,8 @@ class Timer final : public RegisterBlock, public TriggerSink {
   std::uint64_t prescale_ = 1;                  // active PSC + 1
   std::array<std::uint64_t, kChannels> ccr_{};  // active
   std::array<char, kChannels> toggled_{};       // OCxREF of the modes that act on matches
-  std::array<char, kChannels> seen_reference_{};
+  std::uint32_t seen_references_ = 0;           // a bit per channel, at the last look
+  std::uint32_t preloaded_ = 0;  // what waits for the next update: a bit per channel, kChannels: PSC or ARR
   std::array<std::uint32_t, 2> ccmr_{};  // active where channels are commutated
   std::uint32_t ccer_ = 0;
   std::array<std::uint8_t, kChannels> mode_{};  // of the outputs, active
@@ -154,11 +171,14 @@ class Timer final : public RegisterBlock, public TriggerSink {
   std::uint32_t asking_ = 0;                            // flags that hold an interrupt line
   mutable std::array<TimerPin, 2 * kChannels> pins_{};  // while they are known: main, complement
   mutable std::uint32_t pins_known_ = 0;
+  std::uint32_t pins_version_ = 0;
   bool running_ = false;
   Cycles anchor_ = 0;                   // when the counter stood at start_
   std::uint64_t start_ = 0, done_ = 0;  // position at the anchor; ticks since then that were dealt with
   std::uint64_t repeat_left_ = 0;
   Cycles next_ = kNever;
+  bool update_alone_ = false;     // next_ is the next update or never, and ...
+  std::uint32_t heard_then_ = 0;  // ... the triggers' version when that was found
   ShaftCount shaft_;
   std::int64_t shaft_zero_ = 0, shaft_seen_ = 0;
   bool shaft_falling_ = false;
@@ -166,7 +186,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   std::array<unsigned, kChannels> edges_left_{};  // of the input prescalers
   bool break_high_ = false;
   unsigned burst_ = 0;
-  std::vector<std::function<void()>> listeners_;
+  std::vector<std::function<void(std::int64_t)>> listeners_;
   int trgo_ = 0;
   std::array<int, kChannels> compare_{}, dma_channel_{};
   std::vector<int> internal_;

@@ -158,7 +158,7 @@ void Timer::break_input(bool level) {
   break_high_ = (bdtr & kBke) != 0 && level == ((bdtr & kBkp) != 0);
   if (!break_high_) return;
   value(kBdtr) &= ~kMoe;
-  pins_known_ = 0;
+  forget_pins();
   raise(kBreak);
   outputs_changed();
 }

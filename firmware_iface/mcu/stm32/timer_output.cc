@@ -20,7 +20,7 @@ enum OutputMode : unsigned {
 
 // After every change of CR2, SMCR, CCMR or DIER: what they make of each channel. Pins are worked out anew.
 void Timer::note_settings() {
-  pins_known_ = 0;
+  forget_pins();
   captures_ = flag_only_ = acting_ = 0;
   for (unsigned c = 0; c < kChannels; ++c) {
     const std::uint32_t ccmr = value(kCcmr1 + 4 * (c / 2)), active = commutates() ? ccmr_[c / 2] : ccmr;
@@ -33,6 +33,7 @@ void Timer::note_settings() {
   outputs_ = ~captures_ & ((1u << std::min(spec_.channels, kChannels)) - 1u);
   const unsigned slave = field(value(kSmcr), 0, 3);
   encoder_ = slave >= 1 && slave <= 3 && !bit(value(kSmcr), 16);
+  note_preloads();
 }
 
 // Where in the period the counter equals CCR; the number of places.
@@ -104,20 +105,37 @@ bool Timer::reference_at(unsigned channel, std::uint64_t at) const {
   }
 }
 
+// A bit per channel.
+std::uint32_t Timer::references_at(std::uint64_t at) const {
+  if (law_.arr == 0) return 0;
+  std::uint32_t levels = 0;
+  for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
+    if (reference_at(c, at)) levels |= 1u << c;
+  }
+  return levels;
+}
+
 // Tells those who listen to output references of their edges.
 void Timer::look_at_references() {
   if (spec_.channels == 0) return;
-  const unsigned master = field(value(kCr2), 4, 3);
-  std::uint64_t at = position();
-  for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
-    const bool level = law_.arr > 0 && reference_at(c, at);
-    if (level == (seen_reference_[c] != 0)) continue;
-    seen_reference_[c] = level ? 1 : 0;
-    if (context_.triggers.heard(compare_[c])) context_.triggers.fire(compare_[c], level);
-    if (master == 4 + c) context_.triggers.fire(trgo_, level);
-    if (acts_on_match(c)) outputs_changed();
-    at = position();  // the timer may have been its listener itself
+  const std::uint32_t levels = references_at(position()), moved = levels ^ seen_references_;
+  if (moved == 0) return;
+  if ((moved & (acting_ | heard_edges())) == 0) {  // nobody asks
+    seen_references_ = levels;
+    return;
   }
+  for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
+    // A listener may be the timer itself, and move it.
+    const bool level = (references_at(position()) >> c & 1u) != 0;
+    if (level != ((seen_references_ >> c & 1u) != 0)) reference_moved(c, level);
+  }
+}
+
+void Timer::reference_moved(unsigned c, bool level) {
+  seen_references_ ^= 1u << c;
+  if (context_.triggers.heard(compare_[c])) context_.triggers.fire(compare_[c], level);
+  if (field(value(kCr2), 4, 3) == 4 + c) context_.triggers.fire(trgo_, level);
+  if (acts_on_match(c)) outputs_changed();
 }
 
 // Dead time in ticks of the timer's clock before its prescaler (RM0090 §17.4.18, DTG).
@@ -174,7 +192,9 @@ TimerOutput Timer::output(unsigned channel) const {
 }
 
 void Timer::outputs_changed() {
-  for (const auto& listener : listeners_) listener();
+  if (listeners_.empty()) return;
+  const std::int64_t now_ns = system().to_ns(now());
+  for (const auto& listener : listeners_) listener(now_ns);
 }
 
 // COM event: preloaded enables and modes of all channels become active (six-step commutation).

@@ -5,12 +5,12 @@
 namespace omnihil::mcu {
 using namespace timer_registers;
 
-bool Timer::transfer_pending() const {
-  if (prescale_ != value(kPsc) + 1u || law_.arr != value(kArr)) return true;
+// After every change of a preload register, of what it is preloaded for, or of which channels are inputs.
+void Timer::note_preloads() {
+  preloaded_ = prescale_ != value(kPsc) + 1u || law_.arr != value(kArr) ? 1u << kChannels : 0u;
   for (unsigned c = 0; c < kChannels; ++c) {
-    if (!captures(c) && ccr_[c] != value(kCcr1 + 4 * c)) return true;
+    if (!captures(c) && ccr_[c] != value(kCcr1 + 4 * c)) preloaded_ |= 1u << c;
   }
-  return false;
 }
 
 // A bit for each channel whose matches, or edges of its reference, somebody waits for.
@@ -21,14 +21,14 @@ std::uint32_t Timer::awaited_matches() const {
   return wanted & outputs_;
 }
 
-std::uint32_t Timer::awaited_edges() const {
+std::uint32_t Timer::heard_edges() const {
   std::uint32_t wanted = 0;
   for (unsigned c = 0; c < kChannels; ++c) {
     if (context_.triggers.heard(compare_[c])) wanted |= 1u << c;
   }
   const unsigned master = field(value(kCr2), 4, 3);
   if (master >= 4 && context_.triggers.heard(trgo_)) wanted |= 1u << (master - 4);
-  return wanted & outputs_;
+  return wanted;
 }
 
 Cycles Timer::next_match(unsigned channel) const {
@@ -57,6 +57,8 @@ Cycles Timer::next_edge(unsigned channel) const {
 // The next instant that somebody waits for.
 void Timer::plan() {
   next_ = kNever;
+  update_alone_ = true;
+  heard_then_ = context_.triggers.version();
   const std::uint32_t dier = value(kDier);
   if (encoder()) {
     constexpr std::int64_t kLook_ns = 50'000;  // how late an overflow interrupt may come
@@ -72,7 +74,8 @@ void Timer::plan() {
                       (!listeners_.empty() && (transfer_pending() || (value(kBdtr) & kAoe) != 0));
   if (update) next_ = after(law_.to_boundary(position()));
   if (outputs_ != 0) {
-    const std::uint32_t matches = awaited_matches(), edges = awaited_edges();
+    const std::uint32_t matches = awaited_matches(), edges = heard_edges() & outputs_;
+    update_alone_ = (matches | edges) == 0;
     for (unsigned c = 0; (matches | edges) >> c != 0; ++c) {
       if ((matches >> c & 1u) != 0) next_ = std::min(next_, next_match(c));
       if ((edges >> c & 1u) != 0) next_ = std::min(next_, next_edge(c));

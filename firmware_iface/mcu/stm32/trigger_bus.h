@@ -41,8 +41,10 @@ class TriggerBus {
       sinks.erase(at);
     }
     heard_[static_cast<std::size_t>(source)] = sinks.empty() ? 0 : 1;
+    ++version_;
     system_.reschedule();
   }
+  std::uint32_t version() const { return version_; }  // another one: somebody began or ceased to listen
   bool heard(int source) const { return heard_[static_cast<std::size_t>(source)] != 0; }
   void fire(int source, bool rising) {
     const auto sinks = lines_[static_cast<std::size_t>(source)].sinks;  // a sink may stop listening meanwhile
@@ -57,6 +59,7 @@ class TriggerBus {
   System& system_;
   std::vector<Line> lines_;
   std::vector<char> heard_;  // by line: somebody listens
+  std::uint32_t version_ = 0;
 };
 
 }  // namespace omnihil::mcu

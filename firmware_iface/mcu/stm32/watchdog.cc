@@ -42,8 +42,8 @@ class Iwdg final : public RegisterBlock {
     }
     const std::uint32_t key = written & 0xFFFFu;
     if (key == 0xAAAA && deadline_ns_ >= 0) {
-      const bool early = deadline_ns_ - system().to_ns(now()) > counts_ns(value(0x10) + 1);
-      if (value(0x10) < value(0x08) && early) {
+      const bool windowed = value(0x10) < value(0x08);
+      if (windowed && deadline_ns_ - system().to_ns(now()) > counts_ns(value(0x10) + 1)) {
         return system().request_reset("IWDG");
       }
       feed();
