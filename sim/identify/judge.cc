@@ -21,6 +21,9 @@ constexpr double kSeen = 0.015;        // fall of some signal's error energy, no
 // ... or of the whitened: a coarse encoder hides from the eye what its count still tells
 constexpr double kSeenWhitened = 0.1;
 constexpr double kExtrapolationLoss = 0.03;
+// ... unless what is left of the held-out energy times the rise is below this: where two effects made up for
+// each other, the first one to come in raises the error of the motion that they did so in.
+constexpr double kOutweighed = 0.5;
 
 // The largest relative fall of one signal's error energy, as somebody sees it who looks at the signal.
 double gain_as_seen(const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {
@@ -118,7 +121,7 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   } else if (held.worst > 1.0) {
     out.why = "its gain comes from a few moments of the held-out runs alone";
   } else if (const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
-             rise > kExtrapolationLoss) {
+             rise > kExtrapolationLoss && held.ratio * (1.0 + rise) > kOutweighed) {
     out.why = fmt::format("it raises the error energy of the extrapolation runs by {:.0f} %", 100.0 * rise);
   } else if (out.why = unsound(parent.fit, child.fit, name, out.plain); out.why.empty()) {
     out.accepted = true;

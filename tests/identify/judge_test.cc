@@ -84,6 +84,14 @@ TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatTheNullLeavesAsWell) {
   EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.6), "x", 100).accepted);
 }
 
+// The first of two effects that made up for each other raises the error of the motion in which they did so.
+TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsSmallBesideTheHeldOutFall) {
+  const Court court;
+  // energies: 0.16 * 1.44 = 0.23 of both kinds of motion left; 0.16 * 3.61 = 0.58
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.4, 0.4, 1.2), "x", 100).accepted);
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.4, 0.4, 1.9), "x", 100).accepted);
+}
+
 // Whitening weighs the slowest wandering most; what somebody sees of another kind of motion may yet be
 // halved.
 TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsAFallAsItIsSeen) {
