@@ -7,6 +7,7 @@ namespace omnihil {
 namespace {
 
 struct WheelSlip {
+  static constexpr double kSoft_m_s = 0.01;  // v_s: a stiffer contact than this begins to be the base model's
   enum Param { kCompliance, kGrip };
   static constexpr EffectParam kParams[] = {
       {.name = "compliance_m_s",
@@ -33,7 +34,7 @@ struct WheelSlip {
       .title = "Wheel slip",
       .equation =
           "v_slide = v_rim - v_hub; force = load f(v_slide / (v_0 + v_c)), full grip at v_0 + v_c, |f| "
-          "<= mu; v_0 of the base model",
+          "<= mu; v_0 of the base model; below v_c = 10 mm/s mu comes in with v_c",
       .source =
           "Pacejka, Tire and Vehicle Dynamics, 3rd ed. 2012 (stiffness, peak and sliding); the "
           "sliding speed in place of its slip ratio is our choice, for starts from rest",
@@ -61,10 +62,16 @@ struct WheelSlip {
   template <typename T>
   static void apply(const T* p, T*, ContactPort<T>& port) {
     port.slip_speed_m_s += p[kCompliance];
-    // Without compliance the effect is not there, and its grip limits nothing.
-    if (value_of(p[kCompliance]) <= 0.0) return;
+    // Without compliance the effect is not there, and its grip limits nothing: 1 / mu comes in over v_s.
     const double base = value_of(port.grip_coefficient);
-    if (base == 0.0 || value_of(p[kGrip]) < base) port.grip_coefficient = p[kGrip];
+    if (value_of(p[kCompliance]) <= 0.0 || (base > 0.0 && value_of(p[kGrip]) >= base)) return;
+    if (value_of(p[kCompliance]) >= kSoft_m_s) {
+      port.grip_coefficient = p[kGrip];
+      return;
+    }
+    const T share = p[kCompliance] / kSoft_m_s;
+    const T limit = base > 0.0 ? T(1.0 / port.grip_coefficient) : T(0);  // of infinite grip
+    port.grip_coefficient = 1.0 / (limit + (1.0 / p[kGrip] - limit) * share);
   }
 };
 

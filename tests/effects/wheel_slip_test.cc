@@ -17,6 +17,17 @@ TEST(WheelSlip, LimitsNothingWithoutCompliance) {
   EXPECT_EQ(port.grip_coefficient, 0.0);
 }
 
+// 1 / mu = 1 / mu_0 + (1 / mu_1 - 1 / mu_0) v_c / (10 mm/s), so that a fit feels where the effect begins.
+TEST(WheelSlip, ComesInWithoutAJump) {
+  ContactPort<double> port;
+  EXPECT_NEAR(called("wheel_slip", {0.005, 0.6}, port).grip_coefficient, 1.2, 1e-12);
+  port.grip_coefficient = 0.75;
+  EXPECT_NEAR(called("wheel_slip", {0.005, 0.5}, port).grip_coefficient, 2.0 / (1.0 / 0.75 + 1.0 / 0.5),
+              1e-12);
+  EXPECT_NEAR(called("wheel_slip", {1e-9, 0.5}, port).grip_coefficient, 0.75, 1e-6);
+  EXPECT_NEAR(called("wheel_slip", {0.01 - 1e-9, 0.5}, port).grip_coefficient, 0.5, 1e-6);
+}
+
 TEST(WheelSlip, KeepsTheSmallerGrip) {
   ContactPort<double> port;
   port.grip_coefficient = 0.4;
