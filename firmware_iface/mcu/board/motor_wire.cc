@@ -5,7 +5,7 @@
 namespace omnihil::mcu {
 
 MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int64_t()> now_ns)
-    : entry_(entry), now_ns_(std::move(now_ns)) {
+    : entry_(entry), now_ns_(std::move(now_ns)), phases_(entry.pwm.size() == 3) {
   const auto pin_changed = [this](bool) { changed(now_ns_()); };
   for (const ChannelName& channel : entry_.pwm) {
     timers_.push_back(chip.find<Timer>(channel.timer));
@@ -62,7 +62,7 @@ void MotorWire::hold() {
     held_pwm_ = pin(i).drive == TimerPin::Drive::kPwm;
   }
   held_directed_ = directed();
-  held_version_ = pins_version();
+  if (held_pwm_) held_version_ = pins_version();
 }
 
 void MotorWire::changed(std::int64_t at_ns) {

@@ -35,7 +35,7 @@ class MotorWire {
   MotorWire(const MotorWire&) = delete;
 
   const MotorEntry& entry() const { return entry_; }
-  bool phases() const { return entry_.pwm.size() == 3; }
+  bool phases() const { return phases_; }
   void begin(std::int64_t at_ns);
   BridgeDrive end(std::int64_t at_ns);
   BridgeDrive now() const;
@@ -52,15 +52,15 @@ class MotorWire {
   bool enabled() const { return !enable_ || enable_->output(entry_.enable->pin); }
   bool directed() const { return direction_ != nullptr && direction_->output(entry_.direction->pin); }
   std::uint32_t pins_version() const {
-    std::uint32_t sum = 0;
-    for (const Timer* timer : timers_) sum += timer->pins_version();
-    return sum;
+    return timers_.size() < 2 ? timers_[0]->pins_version()
+                              : timers_[0]->pins_version() + timers_[1]->pins_version();
   }
 
   MotorEntry entry_;
   std::function<std::int64_t()> now_ns_;
   std::vector<Timer*> timers_, low_timers_;
   GpioPort *direction_ = nullptr, *enable_ = nullptr;
+  bool phases_ = false;
   BridgeDrive held_;
   bool held_pwm_ = false, held_directed_ = false;  // held_ is of PWM pins alone; of this direction ...
   std::uint32_t held_version_ = 0;                 // ... and of this version of them

@@ -8,7 +8,7 @@ namespace omnihil::mcu {
 namespace {
 
 constexpr std::uint32_t kDevices = 0x40000000, kDevicesSize = 0x20000000;  // peripherals (B3.1)
-constexpr std::uint32_t kFpscrWritable = 0xF7C0009F;
+constexpr std::uint32_t kFpscrWritable = 0xF7C0009F, kRoundingMode = 3u << 22;
 
 int host_rounding(std::uint32_t fpscr) {
   constexpr int kModes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
@@ -59,20 +59,27 @@ void Cpu::leave_code_out() {
 }
 
 Stop Cpu::run(std::int64_t now, std::int64_t deadline) {
-  const int mode = host_rounding(reg.fpscr), host = mode == FE_TONEAREST ? mode : std::fegetround();
-  if (mode != FE_TONEAREST) std::fesetround(mode);
   fp_changed();
   watching_ = false;
   watch_.rest = watch_.rest < 2 ? 2 : watch_.rest;
+  if ((reg.fpscr & kRoundingMode) != 0) return run_rounded(now, deadline);
   const Stop stop = execute(now, deadline);
-  if (mode != FE_TONEAREST || reg.fpscr & 0x00C00000u) std::fesetround(host);
+  if ((reg.fpscr & kRoundingMode) != 0) std::fesetround(FE_TONEAREST);
+  return stop;
+}
+
+Stop Cpu::run_rounded(std::int64_t now, std::int64_t deadline) {
+  const int host = std::fegetround();
+  std::fesetround(host_rounding(reg.fpscr));
+  const Stop stop = execute(now, deadline);
+  std::fesetround(host);
   return stop;
 }
 
 void Cpu::set_fpscr(std::uint32_t value) {
   const std::uint32_t old = reg.fpscr;
   reg.fpscr = value & kFpscrWritable;
-  if ((old ^ value) & 0x00C00000u) std::fesetround(host_rounding(reg.fpscr));
+  if ((old ^ value) & kRoundingMode) std::fesetround(host_rounding(reg.fpscr));
   fp_plain_ = fp_ready_ && !(reg.fpscr & kFlushToZero);
 }
 
@@ -266,12 +273,23 @@ inline bool Cpu::is_device(std::uint32_t address, unsigned bytes) const {
   return address - kDevices < kDevicesSize && !shared && (address & (bytes - 1)) == 0;
 }
 
+bool Cpu::bus_fault(std::uint32_t address) {
+  fault = {kPreciseBus | kBusAddressValid, address};
+  return false;
+}
+
 bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align) {
-  if (is_device(address, bytes)) {
-    if (bus_.read(address, bytes, value)) return true;
-    fault = {kPreciseBus | kBusAddressValid, address};
-    return false;
-  }
+  if (!is_device(address, bytes)) return far_load(address, bytes, value, must_align);
+  return bus_.read(address, bytes, value) || bus_fault(address);
+}
+
+bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align) {
+  if (!is_device(address, bytes)) return far_store(address, bytes, value, must_align);
+  changed_ = true;
+  return bus_.write(address, bytes, value) || bus_fault(address);
+}
+
+bool Cpu::far_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align) {
   if (invalid_access(address, bytes, must_align)) return false;
   const MemoryRegion* region = memory_.find(address);
   if (region && address - region->base <= region->size - bytes) {
@@ -280,11 +298,7 @@ bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value,
     if (address < 4096) bus_.note_null(address, false);
     return true;
   }
-  if (address % bytes == 0) {
-    if (bus_.read(address, bytes, value)) return true;
-    fault = {kPreciseBus | kBusAddressValid, address};
-    return false;
-  }
+  if (address % bytes == 0) return bus_.read(address, bytes, value) || bus_fault(address);
   if (!region) {  // device memory takes no unaligned access
     fault = {kUnaligned, address};
     return false;
@@ -298,13 +312,7 @@ bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value,
   return true;
 }
 
-bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align) {
-  if (is_device(address, bytes)) {
-    changed_ = true;
-    if (bus_.write(address, bytes, value)) return true;
-    fault = {kPreciseBus | kBusAddressValid, address};
-    return false;
-  }
+bool Cpu::far_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align) {
   if (invalid_access(address, bytes, must_align)) return false;
   const MemoryRegion* region = memory_.find(address);
   if (region && region->writable() && address - region->base <= region->size - bytes) {
@@ -322,9 +330,7 @@ bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value,
       fault = {kUnaligned, address};
       return false;
     }
-    if (bus_.write(address, bytes, value)) return true;
-    fault = {kPreciseBus | kBusAddressValid, address};
-    return false;
+    return bus_.write(address, bytes, value) || bus_fault(address);
   }
   for (unsigned i = 0; i < bytes; ++i) {
     if (!slow_store(address + i, 1, value >> (8 * i) & 255, false)) return false;

@@ -121,7 +121,8 @@ class Cpu {
   };
 
   Stop execute(std::int64_t now, std::int64_t deadline);
-  bool go_to(std::uint32_t pc);  // sets code_; false: a fault
+  Stop run_rounded(std::int64_t now, std::int64_t deadline);  // in another mode than to nearest
+  bool go_to(std::uint32_t pc);                               // sets code_; false: a fault
   void fill(std::uint32_t pc, std::uint8_t it);
   Op make(std::uint32_t pc, std::uint8_t it) const;
   std::uint16_t halfword(std::uint32_t pc) const;
@@ -138,8 +139,11 @@ class Cpu {
   }
   bool invalid_access(std::uint32_t address, unsigned bytes, bool must_align);
   bool is_device(std::uint32_t address, unsigned bytes) const;
+  bool bus_fault(std::uint32_t address);
   bool slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align);
   bool slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align);
+  bool far_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align);
+  bool far_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align);
   Pace watch_loop(const Op* at, Pace pace, std::int64_t end);
   void leave_code_out();  // of store_
   bool is_near_constant(std::uint32_t address) const;

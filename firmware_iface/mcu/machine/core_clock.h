@@ -44,8 +44,13 @@ class CoreClock {
     return quotient;
   }
   std::vector<Stretch> stretches_;
+  std::int64_t find_ns(Cycles at) const;
+  std::int64_t ns_from(Cycles begin, std::uint64_t begin_ns, const Stretch& stretch, Cycles at) const;
   mutable Cycles asked_ = 0;  // last, of to_ns(): several ask at one instant
   mutable std::int64_t answered_ns_ = -1;
+  // Of the last stretch, a whole number of seconds from its begin: most ask within the second after it.
+  mutable Cycles second_ = 0;
+  mutable std::uint64_t second_ns_ = 0;
 };
 
 }  // namespace omnihil::mcu

@@ -33,7 +33,7 @@ void Machine::account() {
   if (frames_.empty()) {
     report_.thread_cycles += spent;
   } else {
-    report_.exceptions[frames_.back().exception].busy += spent;
+    frames_.back().load->busy += spent;
   }
 }
 
@@ -88,7 +88,7 @@ void Machine::enter_handler(std::uint32_t exception_return) {
   InterruptLoad& load = report_.exceptions[e];
   ++load.count;
   load.longest_latency = std::max(load.longest_latency, at - std::min(at, nvic_.pended_at(e)));
-  frames_.push_back({e, at});
+  frames_.push_back({e, at, &load});
   nvic_.activate(e);
   R.ipsr = static_cast<std::uint32_t>(e);
   R.r[14] = exception_return;
@@ -149,7 +149,7 @@ void Machine::return_from(std::uint32_t exception_return) {
   const bool allowed = to_thread ? !nested || (ccr_ & kNonBaseThread) : nested;
   account();
   if (!frames_.empty() && frames_.back().exception == e) {
-    InterruptLoad& load = report_.exceptions[e];
+    InterruptLoad& load = *frames_.back().load;
     load.longest = std::max(load.longest, now() - frames_.back().entered);
     frames_.pop_back();
   }

@@ -83,6 +83,7 @@ void Machine::power_on() {
   unmodelled_index_.clear();
   clock_ = CoreClock(static_cast<std::uint64_t>(std::llround(config_.reset_hz)));
   report_ = MachineReport{};
+  frames_.clear();
   cpu_.statistics = CpuStatistics{};
   now_ = 0;
   accounted_ = 0;
@@ -199,7 +200,7 @@ Cycles Machine::next_event() {
 }
 
 // The next one is found on the way, unless what runs announces that it has moved others'.
-void Machine::run_due_events() {
+void Machine::run_events_due() {
   const Cycles due = static_cast<Cycles>(now_ / kSubcycles);
   for (int rounds = 0; next_event() <= due; ++rounds) {
     const std::uint64_t announced = announced_;
@@ -279,8 +280,9 @@ bool Machine::wakes() const {
   if (sleeping_ == Sleep::kForEvent) {
     constexpr std::uint32_t kEventOnPending = 1u << 4;  // SCR.SEVONPEND
     if (cpu_.reg.event || ((scr_ & kEventOnPending) && nvic_.any_pending())) return true;
-    return nvic_.best(execution_priority()) != 0;
+    return nvic_.any_pending() && nvic_.best(execution_priority()) != 0;
   }
+  if (!nvic_.any_pending()) return false;
   // As if PRIMASK were clear (B1.5.19).
   return nvic_.best(nvic_.execution_priority(false, cpu_.reg.faultmask, cpu_.reg.basepri)) != 0;
 }

@@ -116,6 +116,7 @@ class Machine final : public System, private CpuBus {
   struct Frame {  // of an exception being handled: for the load statistics
     int exception;
     Cycles entered;
+    InterruptLoad* load;  // in the report
   };
 
   // CpuBus
@@ -172,7 +173,10 @@ class Machine final : public System, private CpuBus {
 
   // machine.cc
   void run_to(Cycles end, bool until_clock_changes);
-  void run_due_events();
+  void run_due_events() {
+    if (!next_event_known_ || next_event_ <= static_cast<Cycles>(now_) / kSubcycles) run_events_due();
+  }
+  void run_events_due();
   Cycles next_event();
   void look_who_is_armed();
   void handle(Stop stop);

@@ -15,6 +15,7 @@ void Nvic::reset() {
   active_list_.clear();
   enabled_[0] = 0xFFFF & ~(1u << kMemManage | 1u << kBusFault | 1u << kUsageFault);
   pending_count_ = 0;
+  pending_words_ = 0;
   prigroup_ = 0;
 }
 
@@ -30,6 +31,7 @@ void Nvic::set_line(int irq, bool high, Cycles now) {
 void Nvic::set_pending(int e, Cycles now) {
   if (pending(e)) return;
   pending_[word(e)] |= 1u << (e & 31);
+  pending_words_ |= 1u << word(e);
   pended_at_[index(e)] = now;
   ++pending_count_;
 }
@@ -37,6 +39,7 @@ void Nvic::set_pending(int e, Cycles now) {
 void Nvic::clear_pending(int e) {
   if (!pending(e)) return;
   pending_[word(e)] &= ~(1u << (e & 31));
+  if (pending_[word(e)] == 0) pending_words_ &= ~(1u << word(e));
   --pending_count_;
 }
 
@@ -58,8 +61,8 @@ int Nvic::group_priority(int e) const {
 int Nvic::best(int execution_priority) const {
   if (pending_count_ == 0) return 0;
   int found = 0, found_priority = execution_priority, found_full = kLowest;
-  for (std::size_t i = 0; i < pending_.size(); ++i) {
-    if (pending_[i] == 0) continue;
+  for (std::uint32_t words = pending_words_; words; words &= words - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(words));
     for (std::uint32_t rest = pending_[i] & enabled_[i]; rest; rest &= rest - 1) {
       const int e = static_cast<int>(i) * 32 + std::countr_zero(rest);
       const int priority = group_priority(e), full = e <= kHardFault ? priority : priority_[index(e)];

@@ -68,6 +68,7 @@ class Nvic {
   std::array<Cycles, kExceptions> pended_at_{};
   std::vector<int> active_list_;
   int pending_count_ = 0;
+  std::uint32_t pending_words_ = 0;  // a bit for each of pending_ that is not 0
   unsigned prigroup_ = 0;
 };
 

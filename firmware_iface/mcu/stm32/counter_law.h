@@ -42,8 +42,8 @@ struct CounterLaw {
     return (target % p + p - position - 1) % p + 1;
   }
   // PWM mode 1: active while CNT < CCR counting up, while CNT <= CCR counting down.
-  bool pwm_active(std::uint64_t position, std::uint64_t ccr) const {
-    return falling(position) ? count(position) <= ccr : count(position) < ccr;
+  static bool pwm_active(bool falling, std::uint64_t count, std::uint64_t ccr) {
+    return falling ? count <= ccr : count < ccr;
   }
   // Share of the period for which pwm_active().
   double pwm_ratio(std::uint64_t ccr) const {

@@ -90,6 +90,7 @@ std::uint32_t GpioPort::load(std::uint32_t offset) { return offset == kIdr ? lev
 
 void GpioPort::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
   std::uint32_t& odr = value(kOdr);
+  const std::uint32_t before = odr;
   if (offset == kBsrr) {
     odr = (odr & ~(written >> 16)) | (written & 0xFFFFu);  // set wins over reset
   } else if (offset == kBrr) {
@@ -98,6 +99,7 @@ void GpioPort::store(std::uint32_t offset, std::uint32_t written, std::uint32_t 
     keep(offset, written, lanes);
     if (offset == kModer || offset == kPupdr) note_modes();
   }
+  if (odr == before && (offset == kBsrr || offset == kBrr)) return;
   changed();
   if (offset != kModer && offset != kAfrl && offset != kAfrl + 4) return;
   for (const auto& listener : on_modes_) listener();

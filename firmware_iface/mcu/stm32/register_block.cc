@@ -21,10 +21,10 @@ RegisterBlock::RegisterBlock(std::string name, System& system, std::span<const R
   // all have.
   constexpr std::size_t kUsualBytes = 0x400;
   values_.assign(std::max(last / 4 + 1, kUsualBytes / 4), 0);
-  index_.assign(last / 4 + 1, 0);
-  for (std::size_t i = 0; i < registers.size(); ++i) {
-    index_[registers[i].offset / 4u] = static_cast<std::uint8_t>(i + 1);
-    values_[registers[i].offset / 4u] = registers[i].reset;
+  rows_.assign(last / 4 + 1, nullptr);
+  for (const RegisterInfo& r : registers) {
+    rows_[r.offset / 4u] = &r;
+    values_[r.offset / 4u] = r.reset;
   }
 }
 
@@ -32,10 +32,9 @@ void RegisterBlock::reset() {
   for (const RegisterInfo& r : registers_) value(r.offset) = r.reset;
 }
 
-const RegisterInfo* RegisterBlock::info(std::uint32_t offset) const {
+inline const RegisterInfo* RegisterBlock::info(std::uint32_t offset) const {
   const std::uint32_t word = offset >> 2;
-  if (word >= index_.size() || index_[word] == 0) return nullptr;
-  return &registers_[index_[word] - 1u];
+  return word < rows_.size() ? rows_[word] : nullptr;
 }
 
 [[gnu::noinline]] void RegisterBlock::report(std::uint32_t offset, const char* what) {
@@ -64,9 +63,12 @@ void RegisterBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t va
     report(offset, "written");
     return;
   }
-  const std::uint32_t lanes = bytes == 4 ? 0xFFFFFFFFu : lanes_of(offset, bytes);
-  const std::uint32_t placed = value << (8 * (offset & 3u)) & lanes;
-  if ((placed & r->no_effect & ~this->value(offset & ~3u)) != 0) {
+  std::uint32_t lanes = 0xFFFFFFFFu, placed = value;
+  if (bytes != 4) [[unlikely]] {
+    lanes = lanes_of(offset, bytes);
+    placed = value << (8 * (offset & 3u)) & lanes;
+  }
+  if ((placed & r->no_effect & ~this->value(offset)) != 0) [[unlikely]] {
     report_no_effect(*r, placed & r->no_effect);
   }
   const Cycles before = upcoming();

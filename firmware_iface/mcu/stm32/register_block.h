@@ -60,7 +60,7 @@ class RegisterBlock : public Peripheral {
   System& system_;
   std::span<const RegisterInfo> registers_;
   std::vector<std::uint32_t> values_;
-  std::vector<std::uint8_t> index_;  // offset / 4 -> place in the table + 1
+  std::vector<const RegisterInfo*> rows_;  // by offset / 4; null where the table has none
 };
 
 inline bool bit(std::uint32_t word, unsigned at) { return (word >> at & 1u) != 0; }

@@ -165,8 +165,7 @@ void Timer::set_count(std::uint32_t count) {
 }
 
 // Deals with everything that happened since the last time, in order.
-void Timer::sync() {
-  if (encoder()) return sync_encoder();
+void Timer::sync_count() {
   if (running_) {
     std::uint64_t end = ticks_at(now());
     while (done_ < end && running_) {
@@ -218,7 +217,11 @@ void Timer::boundary() {
 void Timer::update_event(bool by_software) {
   const std::uint32_t cr1 = value(kCr1);
   if ((cr1 & kUdis) != 0) return;
-  transfer();
+  if (preloaded_ != 0 || law_.arr == 0) {
+    transfer();
+  } else {
+    repeat_left_ = spec_.advanced ? value(kRcr) : 0;
+  }
   if (!by_software && (cr1 & kOpm) != 0) {
     move_to(law_.way == CounterLaw::Way::kCentre ? position() : 0);
     value(kCr1) &= ~kCen;
@@ -400,15 +403,19 @@ bool Timer::store_preload(std::uint32_t offset, std::uint32_t written, std::uint
   if (offset < kCcr1 || offset >= kCcr1 + 16 || encoder()) return false;
   const unsigned c = (offset - kCcr1) / 4;
   if (captures(c) || !bit(value(kCcmr1 + 4 * (c / 2)), 3 + 8 * (c % 2))) return false;
-  const bool ended = running_ && ticks_at(now()) >= done_ + law_.to_boundary(position());
-  if (ended) sync();
+  const Cycles at = now();
+  const bool waited = transfer_pending();
+  // The next update is ahead where it is what next_ says.
+  const bool planned = update_alone_ && next_ > at && heard_then_ == context_.triggers.version();
+  bool ended = false;
+  if (running_ && !(planned && next_ != kNever)) {
+    ended = ticks_at(at) >= done_ + law_.to_boundary(position());
+    if (ended) sync();
+  }
   std::uint32_t& preload = value(offset);
   preload = (preload & ~lanes) | ((spec_.bits32 ? written : written & 0xFFFFu) & lanes);
-  const bool waited = transfer_pending();
   preloaded_ = (preloaded_ & ~(1u << c)) | (ccr_[c] != preload ? 1u << c : 0u);
-  const bool planned = !ended && update_alone_ && waited == transfer_pending() && next_ > now() &&
-                       heard_then_ == context_.triggers.version();
-  if (!planned) plan();
+  if (ended || !planned || waited != transfer_pending()) plan();
   return true;
 }
 

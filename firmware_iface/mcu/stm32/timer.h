@@ -96,7 +96,14 @@ class Timer final : public RegisterBlock, public TriggerSink {
   std::uint32_t count() const;
   void set_count(std::uint32_t count);
   void move_to(std::uint64_t position);  // from the last tick on
-  void sync();
+  void sync() {
+    if (encoder()) {
+      sync_encoder();
+    } else {
+      sync_count();
+    }
+  }
+  void sync_count();
   void skip_periods(std::uint64_t whole);
   void boundary();
   void update_event(bool by_software);
@@ -114,6 +121,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void plan();
   std::uint32_t awaited_matches() const;
   std::uint32_t heard_edges() const;
+  std::uint32_t find_heard_edges() const;
   Cycles next_match(unsigned channel) const;
   Cycles next_edge(unsigned channel) const;
   // timer_output.cc
@@ -126,7 +134,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void matched(unsigned channel);
   void look_at_references();
   void reference_moved(unsigned channel, bool level);
-  bool reference_at(unsigned channel, std::uint64_t position) const;
+  bool reference_of(unsigned channel, bool falling, std::uint64_t count) const;
   std::uint32_t references_at(std::uint64_t position) const;
   void forget_pins(std::uint32_t channels = ~0u) {
     for (unsigned c = 0; c < kChannels; ++c) {
@@ -177,8 +185,9 @@ class Timer final : public RegisterBlock, public TriggerSink {
   std::uint64_t start_ = 0, done_ = 0;  // position at the anchor; ticks since then that were dealt with
   std::uint64_t repeat_left_ = 0;
   Cycles next_ = kNever;
-  bool update_alone_ = false;     // next_ is the next update or never, and ...
-  std::uint32_t heard_then_ = 0;  // ... the triggers' version when that was found
+  bool update_alone_ = false;                              // next_ is the next update or never, and ...
+  std::uint32_t heard_then_ = 0;                           // ... the triggers' version when that was found
+  mutable std::uint32_t heard_ = 0, heard_version_ = ~0u;  // heard_edges() at a version of the triggers
   ShaftCount shaft_;
   std::int64_t shaft_zero_ = 0, shaft_seen_ = 0;
   bool shaft_falling_ = false;

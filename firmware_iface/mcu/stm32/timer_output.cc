@@ -33,6 +33,7 @@ void Timer::note_settings() {
   outputs_ = ~captures_ & ((1u << std::min(spec_.channels, kChannels)) - 1u);
   const unsigned slave = field(value(kSmcr), 0, 3);
   encoder_ = slave >= 1 && slave <= 3 && !bit(value(kSmcr), 16);
+  heard_version_ = ~context_.triggers.version();
   note_preloads();
 }
 
@@ -88,18 +89,20 @@ void Timer::matched(unsigned channel) {
   if (channel == 0 && field(value(kCr2), 4, 3) == 3) context_.triggers.fire(trgo_, true);
 }
 
-bool Timer::reference(unsigned channel) const { return reference_at(channel, position()); }
+bool Timer::reference(unsigned channel) const {
+  return reference_of(channel, law_.falling(position()), law_.count(position()));
+}
 
-bool Timer::reference_at(unsigned channel, std::uint64_t at) const {
+inline bool Timer::reference_of(unsigned channel, bool falling, std::uint64_t count) const {
   switch (output_mode(channel)) {
     case kForceLow:
       return false;
     case kForceHigh:
       return true;
     case kPwm1:
-      return law_.pwm_active(at, ccr_[channel]);
+      return law_.pwm_active(falling, count, ccr_[channel]);
     case kPwm2:
-      return !law_.pwm_active(at, ccr_[channel]);
+      return !law_.pwm_active(falling, count, ccr_[channel]);
     default:
       return toggled_[channel] != 0;
   }
@@ -108,9 +111,11 @@ bool Timer::reference_at(unsigned channel, std::uint64_t at) const {
 // A bit per channel.
 std::uint32_t Timer::references_at(std::uint64_t at) const {
   if (law_.arr == 0) return 0;
+  const bool falling = law_.falling(at);
+  const std::uint64_t count = law_.count(at);
   std::uint32_t levels = 0;
   for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
-    if (reference_at(c, at)) levels |= 1u << c;
+    if (reference_of(c, falling, count)) levels |= 1u << c;
   }
   return levels;
 }

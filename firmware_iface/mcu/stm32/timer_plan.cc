@@ -22,6 +22,14 @@ std::uint32_t Timer::awaited_matches() const {
 }
 
 std::uint32_t Timer::heard_edges() const {
+  if (heard_version_ != context_.triggers.version()) {
+    heard_ = find_heard_edges();
+    heard_version_ = context_.triggers.version();
+  }
+  return heard_;
+}
+
+std::uint32_t Timer::find_heard_edges() const {
   std::uint32_t wanted = 0;
   for (unsigned c = 0; c < kChannels; ++c) {
     if (context_.triggers.heard(compare_[c])) wanted |= 1u << c;
