@@ -6,8 +6,8 @@
 // Signals and their meaning are those of the measurement format (docs/effects/README.md): the command of
 // sample k is held until sample k + 1; motor_current is the mean over the period that ends at its sample;
 // position, velocity and load_torque belong to the output shaft. Samples need not be evenly spaced. Sensor
-// effects act per sample; timing effects look back at a record of the true motion every 0.2 ms (or sub-step), so
-// a measurement's age has an exact derivative. Encoder counts come unrounded (sensor_chain.h rounds them).
+// effects act per sample; timing effects look back at a record of the true motion every 0.2 ms (or sub-step),
+// so a measurement's age has an exact derivative. Encoder counts come unrounded (sensor_chain.h rounds them).
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -32,7 +32,8 @@ class MotionRecord {
 
   void push(const MotionPoint<T>& p) {
     points_.push_back(p);
-    // Forget what is too old in portions of half, so that a long span costs no more per point than a short one.
+    // Forget what is too old in portions of half, so that a long span costs no more per point than a short
+    // one.
     const std::size_t half = points_.size() / 2;
     if (points_.size() > 4096 && points_[half].time_s < p.time_s - span_s_)
       points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(half - 1));

@@ -5,9 +5,9 @@
 //   Candidate moved = with_values(c, u, x);
 //
 // A base number is an unknown when its file gives it a tolerance (its prior: normal, relative 1-sigma; cut to
-// the row's bounds); a bare number is known exactly, a strength of an effect and its shapes like any other. Of
-// an effect that the program has added every strength is an unknown, a shape where it has a range to move in,
-// a detail only where it is not neutral; not what its file gives a tolerance of 0, and no shape that is a
+// the row's bounds); a bare number is known exactly, a strength of an effect and its shapes like any other.
+// Of an effect that the program has added every strength is an unknown, a shape where it has a range to move
+// in, a detail only where it is not neutral; not what its file gives a tolerance of 0, and no shape that is a
 // whole number by construction (orders, pulses per turn: flat from 1 on). Priors of effects: effect.h, or the
 // file's own tolerance where it gives one; what a search has found is written with a tolerance of 1.
 #pragma once
