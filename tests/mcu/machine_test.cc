@@ -85,6 +85,42 @@ TEST(MachineTest, TimeGoesByTheTableOfCycles) {
   EXPECT_EQ(small.machine.now(), 3u);
 }
 
+// Each round changes the instruction three places ahead of its store into a longer or a shorter one.
+TEST(MachineTest, CodeThatChangesWhatFollowsTakesTheTimeOfWhatItBecomes) {
+  // 1: strh r1, [r0]; eors r1, r2; nop; ldr r3, [r4] or movs r3, #1; adds r5, #1; b 1b
+  constexpr std::uint32_t kLdr = 0x6823, kMovs = 0x2301, kAt = kRamBase + 0x100;
+  constexpr Cycles kTwoRounds = 2 * (1 + 1 + 1 + 1 + (1 + kTakenBranchCycles)) + 2 + 1;
+  for (const Cycles quantum : {Cycles{1}, Cycles{7}, 1000 * kTwoRounds}) {
+    SmallMachine small({kForever});
+    small.start();
+    small.put(kAt, 0x40518001);
+    small.put(kAt + 4, kLdr << 16 | 0xBF00);
+    small.put(kAt + 8, 0xE7F93501);
+    Registers& reg = small.machine.cpu().reg;
+    reg.r[0] = kAt + 6;
+    reg.r[1] = kMovs;
+    reg.r[2] = kLdr ^ kMovs;
+    reg.r[4] = kRamBase;
+    reg.r[15] = kAt;
+    for (Cycles at = quantum; at < 1000 * kTwoRounds; at += quantum) small.machine.run_until(at);
+    small.machine.run_until(1000 * kTwoRounds);
+    EXPECT_EQ(small.r(5), 2000u) << quantum;
+    EXPECT_EQ(small.r(15), kAt) << quantum;
+    EXPECT_EQ(small.machine.report().instructions, 2000u * 6u) << quantum;
+  }
+}
+
+// A row of more instructions than are added up at once.
+TEST(MachineTest, ALongRowOfInstructionsStopsAtEveryInstant) {
+  SmallMachine small(std::vector<std::uint16_t>(5000, kNopCode));
+  for (const Cycles end : {Cycles{1}, Cycles{127}, Cycles{128}, Cycles{129}, Cycles{300}, Cycles{4999}}) {
+    small.start();
+    small.machine.run_until(end);
+    EXPECT_EQ(small.r(15), kCode + 2 * end);
+    EXPECT_EQ(small.machine.report().instructions, end);
+  }
+}
+
 TEST(MachineTest, CpiScaleStretchesEveryCost) {
   SmallMachine small(std::vector<std::uint16_t>(400, kNopCode), {.cpi_scale = 1.25});
   small.start();

@@ -28,12 +28,15 @@ TimerPin MotorWire::pin(Timer& timer, const ChannelName& channel) const {
   return pin;
 }
 
-BridgeDrive MotorWire::now() const {
+BridgeDrive MotorWire::work_out(bool& pwm) const {
+  pwm = false;
   if (!enabled() || timers_.empty()) return {};
   const TimerPin first = pin(0);
   if (first.drive == TimerPin::Drive::kOff) return {};
+  pwm = first.drive == TimerPin::Drive::kPwm;
   if (timers_.size() == 2) {
     const TimerPin second = pin(1);
+    pwm = pwm && second.drive == TimerPin::Drive::kPwm;
     if (second.drive == TimerPin::Drive::kOff) return {};
     return {true, entry_.sign * (first.high_ratio - second.high_ratio)};
   }
@@ -51,16 +54,12 @@ void MotorWire::pass(std::int64_t at_ns) {
 }
 
 // What now() would give is held_: nothing that it is made of has moved since.
-bool MotorWire::still() const {
+inline bool MotorWire::still() const {
   return held_pwm_ && held_version_ == pins_version() && held_directed_ == directed() && enabled();
 }
 
 void MotorWire::hold() {
-  held_ = now();
-  held_pwm_ = held_.driven;
-  for (std::size_t i = 0; i < timers_.size() && held_pwm_; ++i) {
-    held_pwm_ = pin(i).drive == TimerPin::Drive::kPwm;
-  }
+  held_ = work_out(held_pwm_);
   held_directed_ = directed();
   if (held_pwm_) held_version_ = pins_version();
 }

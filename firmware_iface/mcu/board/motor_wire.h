@@ -38,12 +38,16 @@ class MotorWire {
   bool phases() const { return phases_; }
   void begin(std::int64_t at_ns);
   BridgeDrive end(std::int64_t at_ns);
-  BridgeDrive now() const;
+  BridgeDrive now() const {
+    bool pwm;
+    return work_out(pwm);
+  }
   // The legs of a three-phase bridge, as omnihil_motor_drive has them.
   void legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) const;
 
  private:
   void changed(std::int64_t at_ns);
+  BridgeDrive work_out(bool& pwm) const;  // pwm: of pins that are PWM alone
   void hold();
   bool still() const;
   void pass(std::int64_t at_ns);

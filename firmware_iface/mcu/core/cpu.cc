@@ -158,6 +158,36 @@ int near_entry(const Op& op) {
       return kUndecoded;
   }
 }
+// It may jump, or end the run.
+bool ends_row(const Op& op) {
+  switch (op.code) {
+    case kUndefined:
+    case kNoCoprocessor:
+    case kB:
+    case kBcond:
+    case kBl:
+    case kBx:
+    case kBlx:
+    case kCbz:
+    case kCbnz:
+    case kTbb:
+    case kTbh:
+    case kSvc:
+    case kBkpt:
+    case kWfi:
+    case kWfe:
+    case kLdrPc:
+    case kPopPc:
+    case kMovToPc:
+      return true;
+    case kLdm:
+      return (op.imm & 0x8000) != 0;
+    case kAddHigh:
+      return op.d == 15;
+    default:
+      return false;
+  }
+}
 }  // namespace
 
 Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
@@ -171,25 +201,29 @@ Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
     cycles += op.m;
   }
   op.cost = static_cast<std::uint16_t>(cycles * scale_);
-  op.entry = op.code;
-  if (op.condition < kAlways) {
-    op.entry = static_cast<std::uint16_t>(kIfEq + op.condition);
-  } else if (op.imm - code_->base < code_->size) {
-    const int near = near_entry(op);
-    if (near != kUndecoded) {
-      op.entry = static_cast<std::uint16_t>(near);
-      op.imm = static_cast<std::uint32_t>(static_cast<std::int32_t>(op.imm - pc) / 2);
-    } else if ((op.code == kLdrLit || (op.code == kVldrS && op.n == 15)) && is_near_constant(op.imm)) {
-      op.entry = op.code == kLdrLit ? kNearLdr : kNearVldr;
-      op.imm -= code_->base;
-    }
-  }
-  if (op.condition == kAlways && (op.code == kVcmpF32 || op.code == kVcmpZeroF32) &&
-      halfword(pc + 4) == 0xEEF1 && halfword(pc + 6) == 0xFA10) {  // VMRS APSR_nzcv, FPSCR
-    op.entry = op.code == kVcmpF32 ? kVcmpFlags : kVcmpZeroFlags;
-    op.imm = static_cast<std::uint32_t>(op_cycles(kVmrs) * scale_);
-  }
+  op.entry = static_cast<std::uint16_t>(op.condition < kAlways ? kIfEq + op.condition : int{op.code});
+  op.last = ends_row(op);
   return op;
+}
+
+// Instead of its own code's entry a shorter one, where there is one.
+void Cpu::shorten(Op& op, std::uint32_t pc) const {
+  if (op.condition < kAlways || op.it != 0) return;
+  const bool compares = op.code == kVcmpF32 || op.code == kVcmpZeroF32;
+  const Op& next = (&op)[2];
+  if (compares && next.code == kVmrs && next.d == 15 && next.entry == kVmrs) {
+    op.entry = op.code == kVcmpF32 ? kVcmpFlags : kVcmpZeroFlags;
+  }
+  if (op.imm - code_->base >= code_->size) return;
+  const int near = near_entry(op);
+  if (near != kUndecoded) {
+    op.entry = static_cast<std::uint16_t>(near);
+    op.imm = static_cast<std::uint32_t>(static_cast<std::int32_t>(op.imm - pc) / 2 *
+                                        static_cast<std::int32_t>(sizeof(Op)));
+  } else if ((op.code == kLdrLit || (op.code == kVldrS && op.n == 15)) && is_near_constant(op.imm)) {
+    op.entry = op.code == kLdrLit ? kNearLdr : kNearVldr;
+    op.imm -= code_->base;
+  }
 }
 
 // A word of the memory that code runs from, where load() would find it too.
@@ -198,30 +232,61 @@ bool Cpu::is_near_constant(std::uint32_t address) const {
   return seen && address % 4 == 0 && address - code_->base <= code_->size - 4;
 }
 
+// From pc on to the end of its row, or to what is decoded already, and to the end of its IT block.
 void Cpu::fill(std::uint32_t pc, std::uint8_t it) {
   MemoryRegion& region = *code_;
-  MemoryBlock& block = *region.block;
-  do {
-    const std::uint32_t at = pc - region.base;
-    if (at >= region.size) return;
-    Op& op = region.ops[at / 2];
+  row_.clear();
+  while (pc - region.base < region.size) {
+    Op& op = region.ops[(pc - region.base) / 2];
+    if (!row_.empty() && it == 0 && op.entry != kUndecoded && op.it == 0) break;
+    const Op before = op;
     op = make(pc, it);
-    // In whole words: a store of any size that touches them is then noticed.
-    const bool two = op.entry == kVcmpFlags || op.entry == kVcmpZeroFlags;
-    const std::uint32_t begin = at & ~3u, end = at + (two ? 8u : 4u);
-    const std::uint32_t code_end = block.code_begin + block.code_size;
-    if (block.code_size == 0) {
-      block.code_begin = begin;
-      block.code_size = end - begin;
-    } else {
-      block.code_begin = std::min(block.code_begin, begin);
-      block.code_size = std::max(end, code_end) - block.code_begin;
-    }
+    op.known = before.known;
+    op.charged = before.charged;
+    op.charged_count = before.charged_count;
+    note_code(*region.block, pc - region.base);
+    row_.push_back(&op);
     const std::uint16_t first = halfword(pc);
     it = is_it(first) && op.code == kNop ? static_cast<std::uint8_t>(first & 0xFF) : it_next(it);
     pc += 2u * op.halfwords;
-  } while (it != 0);
-  if (&block == ram_.block) leave_code_out();
+    if (op.last && it == 0) break;
+  }
+  add_up_row();
+  if (region.block == ram_.block) leave_code_out();
+}
+
+// In whole words, and twice as far as the longest one reaches (two may be one entry): a store of any size
+// that touches them is then noticed.
+void Cpu::note_code(MemoryBlock& block, std::uint32_t at) {
+  const std::uint32_t begin = at & ~3u, end = at + 8, code_end = block.code_begin + block.code_size;
+  block.code_begin = block.code_size == 0 ? begin : std::min(block.code_begin, begin);
+  block.code_size = (block.code_size == 0 ? end : std::max(end, code_end)) - block.code_begin;
+}
+
+// What each operation of the row is charged with, from the last one back.
+void Cpu::add_up_row() {
+  constexpr unsigned kMost = 128, kLongest = 0x8000;  // of one row; longer ones are cut
+  for (std::size_t i = row_.size(); i-- > 0;) {
+    Op& op = *row_[i];
+    Op& next = (&op)[op.halfwords];
+    const bool whole = next.charged_count < kMost && next.charged < kLongest;
+    if (!op.last && !whole && i + 1 < row_.size() && !next.known) {
+      next.charged = next.charged_count = 0;
+      next.entry = kResync;
+    }
+    op.rest = static_cast<std::uint16_t>(op.cost + (op.last ? 0 : next.charged));
+    op.count = static_cast<std::uint8_t>(1 + (op.last ? 0 : next.charged_count));
+    if (op.known && (op.charged != op.rest || op.charged_count != op.count)) op.entry = kResync;
+    if (!op.known) {
+      op.charged = op.rest;
+      op.charged_count = op.count;
+    }
+  }
+  for (Op* op : row_) {
+    op->known = 1;
+    if (op->entry != kResync)
+      shorten(*op, code_->base + static_cast<std::uint32_t>(op - code_->ops.data()) * 2);
+  }
 }
 
 bool Cpu::go_to(std::uint32_t pc) {

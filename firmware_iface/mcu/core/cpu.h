@@ -12,6 +12,7 @@
 // exception flags, flush-to-zero, alternative half precision.
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "firmware_iface/mcu/core/decode.h"
 #include "firmware_iface/mcu/core/fp.h"
@@ -125,6 +126,9 @@ class Cpu {
   bool go_to(std::uint32_t pc);                               // sets code_; false: a fault
   void fill(std::uint32_t pc, std::uint8_t it);
   Op make(std::uint32_t pc, std::uint8_t it) const;
+  void shorten(Op& op, std::uint32_t pc) const;
+  void add_up_row();
+  static void note_code(MemoryBlock& block, std::uint32_t at);
   std::uint16_t halfword(std::uint32_t pc) const;
   bool holds(unsigned condition) const;
   template <unsigned kCondition>
@@ -165,6 +169,7 @@ class Cpu {
   Window store_;                                       // of ram_, the larger part without code
   std::uint32_t shared_begin_ = 0, shared_end_ = ~0u;  // where memory lies among the peripherals
   MemoryRegion* code_ = nullptr;
+  std::vector<Op*> row_;  // that is being decoded
   const Op* access_op_ = nullptr;
   Watch watch_;
 };

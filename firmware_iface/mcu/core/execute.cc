@@ -2,9 +2,10 @@
 // GNU extension; measured: two thirds of the host's instructions of a switch in a loop). The cases are in
 // execute_*.inc, by group.
 //
-// Inside of the cases: R are the registers, `cur` the operation, `left` the subcycles from its start to the
-// deadline, less one: below zero nothing is left. A case ends with NEXT, with a jump (BRANCH, INTERWORK) or
-// by leaving (LEAVE, FAULT).
+// Inside of the cases: R are the registers, `cur` the operation, `left` the subcycles from the end of its row
+// (op.h) to the deadline, less one: below zero the row does not fit, and each of its operations is looked at
+// before it runs (kSteps). `count` are the operations to the end of the row. A case ends with NEXT, with a
+// jump (BRANCH, INTERWORK), with NEXT_ROW if it might have jumped, or by leaving (LEAVE, FAULT).
 #include <cmath>
 
 #include "firmware_iface/mcu/core/cpu.h"
@@ -85,17 +86,10 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
 
 #define CASE(code) entry_##code:
 #define CAREFUL_CASE(code) careful_##code:
-#define START()                \
+#define GO_TO(slot)            \
   do {                         \
-    ++count;                   \
+    cur = (slot);              \
     goto* entries[cur->entry]; \
-  } while (0)
-#define GO_TO(slot)                 \
-  do {                              \
-    left -= cur->cost;              \
-    cur = (slot);                   \
-    if (left < 0) goto out_of_time; \
-    START();                        \
   } while (0)
 // By a branch, not by a sum: the host then need not wait for this slot to know the next one.
 #define NEXT                                       \
@@ -104,6 +98,16 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     GO_TO(cur + 1);                                \
   } while (0)
 #define NEXT_WIDE GO_TO(cur + 2)  // where no encoding of the operation is narrow
+// A row begins here.
+#define ENTER_ROW(slot)             \
+  do {                              \
+    cur = (slot);                   \
+    left -= cur->charged;           \
+    count += cur->charged_count;    \
+    if (left < 0) entries = kSteps; \
+    goto* entries[cur->entry];      \
+  } while (0)
+#define NEXT_ROW ENTER_ROW(cur + cur->halfwords)
 #define LEAVE(reason) \
   do {                \
     stop = reason;    \
@@ -119,20 +123,21 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     target = (address); \
     goto branch;        \
   } while (0)
+#define NEAR_TARGET() reinterpret_cast<const Op*>(reinterpret_cast<const std::uint8_t*>(cur) + s32(cur->imm))
 #define NEAR_BRANCH()                           \
   do {                                          \
     left -= taken;                              \
     if (s32(cur->imm) <= 0) goto near_backward; \
-    GO_TO(cur + s32(cur->imm));                 \
+    ENTER_ROW(NEAR_TARGET());                   \
   } while (0)
 // Before a jump backwards, which closes a loop.
-#define WATCH()                                                              \
-  do {                                                                       \
-    if (fast_forward && --watch_.rest <= 0) {                                \
-      const Pace pace = watch_loop(cur, {left + 1 - cur->cost, count}, end); \
-      left = pace.left - 1 + cur->cost;                                      \
-      count = pace.count;                                                    \
-    }                                                                        \
+#define WATCH()                                                  \
+  do {                                                           \
+    if (fast_forward && --watch_.rest <= 0) {                    \
+      const Pace pace = watch_loop(cur, {left + 1, count}, end); \
+      left = pace.left - 1;                                      \
+      count = pace.count;                                        \
+    }                                                            \
   } while (0)
 #define INTERWORK(address) \
   do {                     \
@@ -140,23 +145,28 @@ std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << w
     goto interwork;        \
   } while (0)
 #define PC_OF(slot) (code_base + static_cast<std::uint32_t>((slot)-slots) * 2)
-// After whatever may have changed what the FPU may be used for.
-#define CHOOSE_ENTRIES() (entries = fp_plain_ ? kEntries : kCarefulEntries)
-// What a bus access may want to know, and what it may ask for: that this instruction is the last one.
-#define REQUEST_CHECK()                         \
-  do {                                          \
-    if (stop_requested_ && left >= cur->cost) { \
-      end -= left + 1 - cur->cost;              \
-      left = cur->cost - 1;                     \
-    }                                           \
-    CHOOSE_ENTRIES();                           \
+// After whatever may have changed what the FPU may be used for, or the time that is left.
+#define CHOOSE_ENTRIES()                            \
+  do {                                              \
+    codes = fp_plain_ ? kEntries : kCarefulEntries; \
+    entries = left < 0 ? kSteps : codes;            \
   } while (0)
-#define BUS(call)              \
-  do {                         \
-    now_ = end - left - 1;     \
-    access_op_ = cur;          \
-    if (!(call)) goto faulted; \
-    REQUEST_CHECK();           \
+// What a bus access may want to know, and what it may ask for: that this instruction is the last one.
+#define REQUEST_CHECK()                                           \
+  do {                                                            \
+    if (stop_requested_ && left + cur->rest >= cur->cost) {       \
+      const std::int64_t over = left + cur->rest + 1 - cur->cost; \
+      end -= over;                                                \
+      left -= over;                                               \
+      CHOOSE_ENTRIES();                                           \
+    }                                                             \
+  } while (0)
+#define BUS(call)                      \
+  do {                                 \
+    now_ = end - left - cur->rest - 1; \
+    access_op_ = cur;                  \
+    if (!(call)) goto faulted;         \
+    REQUEST_CHECK();                   \
   } while (0)
 #define LOAD_ALIGNED(type, value, address, must_align)         \
   type value;                                                  \
@@ -195,12 +205,17 @@ Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
 #include "firmware_iface/mcu/core/op_codes.inc"
 #undef OP
   };
-  const void* const* entries = nullptr;
-  CHOOSE_ENTRIES();
+  // Near the deadline: whether there is time for this operation.
+  static const void* const kSteps[] = {
+#define OP(name, cycles) &&step,
+#include "firmware_iface/mcu/core/op_codes.inc"
+#undef OP
+  };
   Registers& R = reg;
   Stop stop = Stop::kDeadline;
   std::int64_t end = deadline, left = deadline - now - 1;
   std::uint64_t count = 0;
+  const void *const *codes = nullptr, *const *entries = nullptr;
   std::uint32_t target = R.r[15];
   const std::int64_t taken = scale_ * kTakenBranchCycles;
   stop_requested_ = false;
@@ -212,15 +227,26 @@ Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
   const std::uint8_t* code_data = code_->data();
   const Op* cur = slots + (target - code_base) / 2;
 
-  if (left < 0) goto out_of_time;
-  START();
-  CASE(kUndecoded)
-  fill(PC_OF(cur), 0);
-  --count;
-  START();
+  CHOOSE_ENTRIES();
+  ENTER_ROW(cur);
+step:
+  if (left + cur->charged < 0) goto out_of_time;
+  goto* codes[cur->entry >= kVcmpFlags ? int{cur->code} : int{cur->entry}];  // two in one are taken apart
+  CASE(kUndecoded) {
+    const Op before = *cur;
+    fill(PC_OF(cur), 0);
+    left += before.charged - cur->charged;
+    count += static_cast<std::uint64_t>(cur->charged_count) - before.charged_count;
+    CHOOSE_ENTRIES();
+    GO_TO(cur);
+  }
+  CASE(kResync)
+  left += cur->charged - cur->rest;
+  count += static_cast<std::uint64_t>(cur->count) - cur->charged_count;
+  CHOOSE_ENTRIES();
+  goto* codes[cur->condition < kAlways ? kIfEq + cur->condition : int{cur->code}];
   CASE(kOffEnd)  // memory may go on behind it
   target = PC_OF(cur);
-  --count;
   goto relocate;
   CASE(kUndefined)
   FAULT(kUndefinedInstruction);
@@ -249,37 +275,37 @@ branch:
   if (target - code_base < code_size) [[likely]] {
     const Op* to = slots + (target - code_base) / 2;
     if (to <= cur) WATCH();
-    GO_TO(to);
+    ENTER_ROW(to);
   }
 relocate:
   if (!go_to(target)) goto lost;
-  left -= cur->cost;
   slots = code_->ops.data();
   code_base = code_->base;
   code_size = code_->size;
   code_data = code_->data();
-  cur = slots + (target - code_base) / 2;
-  if (left < 0) goto out_of_time;
-  START();
+  ENTER_ROW(slots + (target - code_base) / 2);
 
 near_backward:
   WATCH();
-  GO_TO(cur + s32(cur->imm));
+  ENTER_ROW(NEAR_TARGET());
 
 lost:
-  left -= cur->cost;
   R.r[15] = target;
   stop = Stop::kFault;
   goto stopped;
 faulted:
   stop = Stop::kFault;
+  left += cur->rest - cur->cost;
+  count -= cur->count - 1u;
 stay:
-  left -= cur->cost;
-  goto out_of_time;
+  R.r[15] = PC_OF(cur);
+  goto stopped;
 leave:
-  left -= cur->cost;
-  cur += cur->halfwords;
+  R.r[15] = PC_OF(cur + cur->halfwords);
+  goto stopped;
 out_of_time:
+  left += cur->charged;
+  count -= cur->charged_count;
   R.r[15] = PC_OF(cur);
 stopped:
   statistics.instructions += count;

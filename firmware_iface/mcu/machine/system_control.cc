@@ -251,6 +251,7 @@ void Machine::apply_control() {
   cpu_.fp_enabled = access == 3 || (access == 1 && cpu_.reg.privileged());
   cpu_.fp_automatic = fpccr_ >> 31;
   cpu_.fp_changed();
+  cpu_.stop_soon();
 }
 
 std::uint32_t Machine::read_debug(std::uint32_t address) {

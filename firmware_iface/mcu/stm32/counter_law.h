@@ -49,7 +49,9 @@ struct CounterLaw {
   double pwm_ratio(std::uint64_t ccr) const {
     const std::uint64_t all = way == Way::kCentre ? arr : arr + 1;
     const std::uint64_t active = way == Way::kDown ? ccr + 1 : ccr;
-    return active >= all ? 1.0 : static_cast<double>(active) / static_cast<double>(all);
+    if (active >= all) return 1.0;
+    return static_cast<double>(static_cast<std::int64_t>(active)) /
+           static_cast<double>(static_cast<std::int64_t>(all));  // both below 2^33: signed converts faster
   }
 };
 

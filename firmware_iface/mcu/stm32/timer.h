@@ -72,7 +72,10 @@ class Timer final : public RegisterBlock, public TriggerSink {
   }
   // While this number stays, a pin that is kPwm stays what it is.
   std::uint32_t pins_version() const { return pins_version_; }
-  TimerPin pin(unsigned channel, bool complement) const;  // one side of output()
+  TimerPin pin(unsigned channel, bool complement) const {  // one side of output()
+    const unsigned i = 2 * channel + (complement ? 1 : 0);
+    return (pins_known_ >> i & 1u) != 0 ? pins_[i] : find_pin(channel, complement);
+  }
   TimerOutput output(unsigned channel) const;
   bool reference(unsigned channel) const;  // OCxREF now
   double period_s() const;                 // (PSC + 1) periods of the count
@@ -142,6 +145,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
     }
     ++pins_version_;
   }
+  TimerPin find_pin(unsigned channel, bool complement) const;
   TimerPin work_out_pin(unsigned channel, bool complement) const;
   double dead_ticks() const;
   void outputs_changed();

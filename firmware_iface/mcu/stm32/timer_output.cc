@@ -154,9 +154,8 @@ double Timer::dead_ticks() const {
   return unit * 16.0 * (32 + (dtg & 0x1Fu));
 }
 
-TimerPin Timer::pin(unsigned c, bool complement) const {
+TimerPin Timer::find_pin(unsigned c, bool complement) const {
   const unsigned i = 2 * c + (complement ? 1 : 0);
-  if ((pins_known_ >> i & 1u) != 0) return pins_[i];
   pins_[i] = work_out_pin(c, complement);
   // Others may change with the count.
   if (pins_[i].drive == TimerPin::Drive::kPwm) pins_known_ |= 1u << i;
