@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <optional>
 
 #include "sim/core/effect_reader.h"
@@ -12,6 +11,8 @@ namespace omnihil {
 namespace {
 
 constexpr double kWorthAThirdStart = 0.2;  // of the error energy, as the screening promises
+constexpr double kWorthAFourthStart = 0.1;
+constexpr double kBent_sigmas = 4.0;  // of a base parameter's tolerance
 
 // Numbers of a candidate by path; what `start` does not name stays.
 void start_at(std::vector<Unknown>& unknowns, const std::vector<Unknown>& paths,
@@ -76,6 +77,22 @@ Candidate with_strength_times(const Candidate& model, const std::string& effect,
   return out;
 }
 
+// Has the base model gone where nobody believes it to be, and is it sure of that?
+bool is_bent(const FitResult& fit) {
+  return std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const ParameterEstimate& p) {
+    return p.prior_sigma > 0.0 && p.identifiable && std::abs(p.drift_sigmas) > kBent_sigmas;
+  });
+}
+
+// The base parameters as the model file believes them.
+Candidate believed(const Candidate& model, const Candidate& nominal) {
+  std::vector<Unknown> base = unknowns_with_priors(model, nominal);
+  std::erase_if(base, [](const Unknown& u) { return u.effect >= 0 || u.prior_sigma <= 0.0; });
+  std::vector<double> values;
+  for (const Unknown& u : base) values.push_back(u.prior_mean);
+  return with_values(model, base, values);
+}
+
 // Base parameters that these data do not determine, and that trade with nobody, have no reason to move
 // because an effect was added; where they end by chance, another kind of motion would pay for it.
 Fitted undetermined_stay(const RefitSetup& setup, const Fitted& parent, Fitted child) {
@@ -128,30 +145,25 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   Fitted best = fit_from(setup, with, unknowns, 1);
   const double expected = 1.0 - 0.5 * effect.share;
   double ratio = fit_ratio(setup, parent, best);
-  const std::initializer_list<EffectUse> starts = {near_neutral(effect.start),
-                                                   usual(effect.start, with.file.linear)};
-  for (const EffectUse& other : starts) {
-    if (ratio <= expected || (setup.stop && setup.stop())) break;
-    if (&other != starts.begin() && effect.share < kWorthAThirdStart) break;
-    const Candidate start = with_use(parent.fit.model, other);
+  const auto stopped = [&] { return setup.stop && setup.stop(); };
+  const auto also_from = [&](const Candidate& start) {
     Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
     const double next_ratio = fit_ratio(setup, parent, next);
-    if (next_ratio < ratio) {
-      best = std::move(next);
-      ratio = next_ratio;
-    }
-  }
+    if (next_ratio >= ratio) return;
+    best = std::move(next);
+    ratio = next_ratio;
+  };
+  const EffectUse usual_size = usual(effect.start, with.file.linear);
+  if (ratio > expected && !stopped()) also_from(with_use(parent.fit.model, near_neutral(effect.start)));
+  if (ratio > expected && effect.share >= kWorthAThirdStart && !stopped())
+    also_from(with_use(parent.fit.model, usual_size));
+  // A base that bent to imitate the effect holds it near nothing: the two together from what is believed.
+  if (ratio > expected && effect.share >= kWorthAFourthStart && is_bent(parent.fit) && !stopped())
+    also_from(with_use(believed(parent.fit.model, *setup.nominal), usual_size));
   // Impacts make many small valleys: the first one that is deep enough need not be the deepest.
   const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0 && ratio < 1.0 - kWorthAThirdStart;
   for (const double factor : {0.5, 2.0}) {
-    if (!rugged || (setup.stop && setup.stop())) break;
-    const Candidate start = with_strength_times(best.fit.model, effect.name, factor);
-    Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
-    const double next_ratio = fit_ratio(setup, parent, next);
-    if (next_ratio < ratio) {
-      best = std::move(next);
-      ratio = next_ratio;
-    }
+    if (rugged && !stopped()) also_from(with_strength_times(best.fit.model, effect.name, factor));
   }
   best = undetermined_stay(setup, parent, std::move(best));
   if (ratio > 1.0) {
