@@ -82,6 +82,26 @@ std::uint64_t unsigned_product(std::uint32_t a, std::uint32_t b) { return std::u
 std::uint64_t pair(std::uint32_t high, std::uint32_t low) { return std::uint64_t{high} << 32 | low; }
 std::uint32_t mask_of(std::uint32_t width) { return width >= 32 ? ~0u : (1u << width) - 1; }
 
+// x + y z, rounded once; without a call where the host can.
+#if defined(__x86_64__)
+const bool kHostFuses = __builtin_cpu_supports("fma");
+float fuse(float x, float y, float z) {
+  if (!kHostFuses) return std::fma(y, z, x);
+  asm("vfmadd231ss %2, %1, %0" : "+x"(x) : "x"(y), "x"(z));
+  return x;
+}
+double fuse(double x, double y, double z) {
+  if (!kHostFuses) return std::fma(y, z, x);
+  asm("vfmadd231sd %2, %1, %0" : "+x"(x) : "x"(y), "x"(z));
+  return x;
+}
+#else
+template <class F>
+F fuse(F x, F y, F z) {
+  return std::fma(y, z, x);
+}
+#endif
+
 }  // namespace
 
 #define CASE(code) entry_##code:

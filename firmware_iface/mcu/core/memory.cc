@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 
 namespace omnihil::mcu {
 namespace {
@@ -46,6 +47,11 @@ MemoryRegion* Memory::find(std::uint32_t address) {
 }
 
 bool Memory::read(std::uint32_t address, std::span<std::uint8_t> bytes) {
+  const MemoryRegion* whole = find(address);
+  if (whole && bytes.size() <= whole->size - (address - whole->base)) {  // most are
+    std::memcpy(bytes.data(), whole->data() + (address - whole->base), bytes.size());
+    return true;
+  }
   while (!bytes.empty()) {
     const MemoryRegion* region = find(address);
     if (!region) return false;

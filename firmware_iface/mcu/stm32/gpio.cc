@@ -21,6 +21,7 @@ constexpr RegisterInfo kPort[] = {
 
 GpioPort::GpioPort(unsigned port, ChipContext& context)
     : RegisterBlock(std::string("GPIO") + static_cast<char>('A' + port), context.system, kPort), port_(port) {
+  next_event_is(kNever);
   GpioPort::reset();
 }
 

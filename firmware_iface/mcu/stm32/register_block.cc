@@ -46,31 +46,40 @@ inline const RegisterInfo* RegisterBlock::info(std::uint32_t offset) const {
 }
 
 std::uint32_t RegisterBlock::read(std::uint32_t offset, unsigned bytes) {
-  if (info(offset) == nullptr) {
+  if (info(offset) == nullptr) [[unlikely]] {
     report(offset, "read");
     return 0;
   }
   const Cycles before = upcoming();
   const std::uint32_t word = load(offset & ~3u);
   if (upcoming() != before) system_.event_moved(next_event_field(), before);
-  if (bytes == 4) return word;
+  if (bytes == 4) [[likely]]
+    return word;
   return (word & lanes_of(offset, bytes)) >> (8 * (offset & 3u));
 }
 
 void RegisterBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t value) {
   const RegisterInfo* r = info(offset);
+  if (r == nullptr || bytes != 4 || (value & r->no_effect) != 0) [[unlikely]] {
+    write_checked(offset, bytes, value);
+    return;
+  }
+  const Cycles* field = next_event_field();
+  if (field == &kNever) return store(offset, value, 0xFFFFFFFFu);
+  const Cycles before = field != nullptr ? *field : next_event();
+  store(offset, value, 0xFFFFFFFFu);
+  if (upcoming() != before) system_.event_moved(field, before);
+}
+
+[[gnu::noinline]] void RegisterBlock::write_checked(std::uint32_t offset, unsigned bytes,
+                                                    std::uint32_t value) {
+  const RegisterInfo* r = info(offset);
   if (r == nullptr) {
     report(offset, "written");
     return;
   }
-  std::uint32_t lanes = 0xFFFFFFFFu, placed = value;
-  if (bytes != 4) [[unlikely]] {
-    lanes = lanes_of(offset, bytes);
-    placed = value << (8 * (offset & 3u)) & lanes;
-  }
-  if ((placed & r->no_effect & ~this->value(offset)) != 0) [[unlikely]] {
-    report_no_effect(*r, placed & r->no_effect);
-  }
+  const std::uint32_t lanes = lanes_of(offset, bytes), placed = value << (8 * (offset & 3u)) & lanes;
+  if ((placed & r->no_effect & ~this->value(offset)) != 0) report_no_effect(*r, placed & r->no_effect);
   const Cycles before = upcoming();
   store(offset & ~3u, placed, lanes);
   if (upcoming() != before) system_.event_moved(next_event_field(), before);

@@ -54,6 +54,8 @@ class RegisterBlock : public Peripheral {
 
  private:
   const RegisterInfo* info(std::uint32_t offset) const;
+  // Narrow, of a register that is not there, or of a bit without effect.
+  void write_checked(std::uint32_t offset, unsigned bytes, std::uint32_t value);
   void report(std::uint32_t offset, const char* what);
   void report_no_effect(const RegisterInfo& info, std::uint32_t bits);
 
