@@ -256,7 +256,7 @@ static void hold_for_step(Axis *a, double t) {  // what changes slower than a st
   a->ohm = p->resistance_ohm * (1 + p->copper_per_K * a->winding_K) + (a->contact_open ? p->contact_ohm : 0);
   a->flux = p->flux_Vs * (1 - p->magnet_per_K * a->magnet_K);
   a->cap_A = p->current_cap_A;
-  if (p->derating_A_per_K > 0) {
+  if (p->derating_A_per_K > 0 && a->winding_K > p->derating_from_K) {  // no limit while it is cold
     const double cap =
         p->derating_full_A - p->derating_A_per_K * soft_plus(a->winding_K - p->derating_from_K, 1);
     a->cap_A = cap > 0.05 * p->derating_full_A ? cap : 0.05 * p->derating_full_A;

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """The hidden axis against formulas a reader can check: energy, steady speed, time constants, step size, determinism."""
 import math
+import types
 import unittest
 
+import axis_effects
 import plant
 
 # A drive without friction: everything in closed form.
@@ -81,6 +83,16 @@ class AxisPlantTest(unittest.TestCase):
         self.assertLess(forwards["current"][-1], 0.99 * -backwards["current"][-1])
         mirrored, _ = speeds(dict(params, advance_rad=-0.3), [-0.8] * 3000)
         self.assertAlmostEqual(mirrored["current"][-1], -forwards["current"][-1], delta=1e-6)
+
+    def test_a_derating_drive_has_no_limit_while_it_is_cold(self):
+        rig = types.SimpleNamespace(stall_A=20 / BARE["resistance_ohm"], believed=BARE)
+        hidden = axis_effects.BY_ID["thermal_derating"].hide(1e-9, {"from_K": 15}, rig)
+        reversed_at_speed = [1.0] * 1000 + [-1.0] * 1000
+        cold, _ = speeds(dict(BARE, **hidden), reversed_at_speed)
+        free, _ = speeds(BARE, reversed_at_speed)
+        self.assertLess(min(free["current"]), -1.5 * rig.stall_A)
+        for a, b in zip(cold["current"], free["current"]):
+            self.assertAlmostEqual(a, b, delta=1e-6)
 
     def test_half_the_step_changes_nothing_that_can_be_seen(self):
         wave = [0.5 * math.sin(2 * math.pi * (0.5 + k * 1e-3) * k * 1e-3) for k in range(6000)]
