@@ -1,6 +1,8 @@
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -76,12 +78,17 @@ TEST_F(SlowDiagnoseVerb, WhatIsNoEffectIsNamedWithANearOne) {
 TEST_F(SlowDiagnoseVerb, AnInterruptEndsItWithWhatIsKnown) {
   const fs::path said = folder_ / "said.txt", model = folder_ / "mended.toml";
   const std::string data = folder_.string(), write = model.string();
-  const std::string command = "exec '" OMNIHIL_PROGRAM "' diagnose '" + data + "' --write '" + write +
-                              "' > '" + said.string() + "' 2>&1";
-  std::string shell_name = "/bin/sh", option = "-c", script = command;
-  char* arguments[] = {shell_name.data(), option.data(), script.data(), nullptr};
+  std::string program = OMNIHIL_PROGRAM, name = "diagnose", data = folder_, option = "--write", write = model;
+  char* arguments[] = {program.data(), name.data(), data.data(), option.data(), write.data(), nullptr};
+  posix_spawn_file_actions_t output;
+  posix_spawn_file_actions_init(&output);
+  posix_spawn_file_actions_addopen(&output, STDOUT_FILENO, said.c_str(), O_WRONLY | O_CREAT, 0644);
+  posix_spawn_file_actions_adddup2(&output, STDOUT_FILENO, STDERR_FILENO);
   pid_t child = -1;
-  ASSERT_EQ(posix_spawn(&child, "/bin/sh", nullptr, nullptr, arguments, environ), 0);
+  // no shell between: some catch the signal too
+  const int failed = posix_spawn(&child, OMNIHIL_PROGRAM, &output, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&output);
+  ASSERT_EQ(failed, 0);
   // the dataset is read once it catches the signal
   for (;;) {
     std::ifstream status("/proc/" + std::to_string(child) + "/status");
