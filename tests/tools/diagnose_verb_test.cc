@@ -77,8 +77,8 @@ TEST_F(SlowDiagnoseVerb, WhatIsNoEffectIsNamedWithANearOne) {
 // Ctrl-C early: exit code 130, what is known is said, no model is written.
 TEST_F(SlowDiagnoseVerb, AnInterruptEndsItWithWhatIsKnown) {
   const fs::path said = folder_ / "said.txt", model = folder_ / "mended.toml";
-  const std::string data = folder_.string(), write = model.string();
-  std::string program = OMNIHIL_PROGRAM, name = "diagnose", data = folder_, option = "--write", write = model;
+  std::string data = folder_.string(), write = model.string();
+  std::string program = OMNIHIL_PROGRAM, name = "diagnose", option = "--write";
   char* arguments[] = {program.data(), name.data(), data.data(), option.data(), write.data(), nullptr};
   posix_spawn_file_actions_t output;
   posix_spawn_file_actions_init(&output);
@@ -86,7 +86,7 @@ TEST_F(SlowDiagnoseVerb, AnInterruptEndsItWithWhatIsKnown) {
   posix_spawn_file_actions_adddup2(&output, STDOUT_FILENO, STDERR_FILENO);
   pid_t child = -1;
   // no shell between: some catch the signal too
-  const int failed = posix_spawn(&child, OMNIHIL_PROGRAM, &output, nullptr, arguments, environ);
+  const int failed = posix_spawn(&child, program.c_str(), &output, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&output);
   ASSERT_EQ(failed, 0);
   // the dataset is read once it catches the signal
