@@ -70,7 +70,7 @@ UseGain BlockBootstrap::gain(const Eigen::VectorXd& reference, const Eigen::Vect
 
 Eigen::VectorXd weights_for(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& parent,
                             const Eigen::VectorXd& child) {
-  const Eigen::VectorXd all = signal_weights(evidence, null, parent);
+  Eigen::VectorXd all = signal_weights(evidence, null, parent);
   if (child.size() != parent.size()) return all;
   const Eigen::VectorXd moved = evidence.mean_square(child - parent), size = evidence.mean_square(parent);
   Eigen::VectorXd weights = all;

@@ -164,7 +164,7 @@ class Trial {
     const Eigen::VectorXd predicted = evidence.predicted(*search_.model);
     Eigen::VectorXd mean;
     for (int k = 0; k < kReplicates; ++k) {
-      const Eigen::VectorXd left = left_in(*world(strength, k), evidence, *search_.model, predicted);
+      Eigen::VectorXd left = left_in(*world(strength, k), evidence, *search_.model, predicted);
       if (left.size() == 0) return left;
       const Eigen::VectorXd e = bins.energies(left).mean();
       mean = k == 0 ? e : Eigen::VectorXd(mean + e);

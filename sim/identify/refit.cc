@@ -27,6 +27,7 @@ void start_at(std::vector<Unknown>& unknowns, const std::vector<Unknown>& paths,
 Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::vector<Unknown>& unknowns,
                 int starts) {
   std::vector<double> values;
+  values.reserve(unknowns.size());
   for (const Unknown& u : unknowns) values.push_back(u.start);
   FitOptions options;
   options.jobs = setup.jobs;
@@ -89,6 +90,7 @@ Candidate believed(const Candidate& model, const Candidate& nominal) {
   std::vector<Unknown> base = unknowns_with_priors(model, nominal);
   std::erase_if(base, [](const Unknown& u) { return u.effect >= 0 || u.prior_sigma <= 0.0; });
   std::vector<double> values;
+  values.reserve(base.size());
   for (const Unknown& u : base) values.push_back(u.prior_mean);
   return with_values(model, base, values);
 }

@@ -188,6 +188,7 @@ F fuse(F x, F y, F z) {
     if (!(call)) goto faulted;         \
     REQUEST_CHECK();                   \
   } while (0)
+// NOLINTBEGIN(bugprone-macro-parentheses): a type takes none
 #define LOAD_ALIGNED(type, value, address, must_align)         \
   type value;                                                  \
   do {                                                         \
@@ -197,6 +198,7 @@ F fuse(F x, F y, F z) {
       value = static_cast<type>(word);                         \
     }                                                          \
   } while (0)
+// NOLINTEND(bugprone-macro-parentheses)
 #define LOAD(type, value, address) LOAD_ALIGNED(type, value, address, false)
 #define STORE_ALIGNED(type, address, value, must_align)                             \
   do {                                                                              \
