@@ -37,13 +37,16 @@ bool counts(const Predictor& predictor, const Evidence::Part& part) {
   return predictor.compared(part.run)[static_cast<std::size_t>(part.signal)].name != "bus_voltage";
 }
 
-// Which bin each sample is in, for two tracks at once: [sample], -1 in none.
+// Which bin each sample is in, for two tracks at once: [sample], -1 in none; and what the model says there.
 class Binning {
  public:
   Binning(const Predictor& predictor, const Evidence& evidence, const Candidate& model)
-      : predictor_(&predictor), evidence_(&evidence) {
+      : predictor_(&predictor), evidence_(&evidence), predicted_(evidence.predicted(model)) {
     for (const char* name : {"speed", "acceleration"}) tracks_.push_back(bins(evidence.track(model, name)));
   }
+
+  const Evidence& evidence() const { return *evidence_; }
+  const Eigen::VectorXd& predicted() const { return predicted_; }
 
   Energies energies(const Eigen::VectorXd& r) const {
     const auto kinds = static_cast<std::size_t>(evidence_->samples().size());
@@ -87,6 +90,7 @@ class Binning {
 
   const Predictor* predictor_;
   const Evidence* evidence_;
+  Eigen::VectorXd predicted_;
   std::vector<std::vector<int>> tracks_;
 };
 
@@ -124,15 +128,16 @@ class Trial {
     const Uses& seen = *search_.seen;
     const Evidence& fit = seen[0];
     const Binning bins(*search_.predictor, fit, *search_.model);
-    const Energies measured = bins.energies(fit.residual(*search_.model));
-    const Eigen::VectorXd own = simulated(fit, bins, 0.0);
+    if (bins.predicted().size() != fit.size()) return std::nullopt;
+    const Energies measured = bins.energies(fit.residual_of(bins.predicted()));
+    const Eigen::VectorXd own = simulated(bins, 0.0);
     if (own.size() == 0) return std::nullopt;
     const EffectParam& row = entry_.info->params[row_];
     // A power law about a first guess, then about what that says.
     double size = row.typical;
     for (int pass = 0; pass < kPasses; ++pass) {
       const double below = std::max(0.5 * size, 1e-12 * row.typical);
-      Eigen::VectorXd more = simulated(fit, bins, size), less = simulated(fit, bins, below);
+      Eigen::VectorXd more = simulated(bins, size), less = simulated(bins, below);
       if (more.size() == 0 || less.size() == 0) return std::nullopt;
       more -= own;
       less -= own;
@@ -160,11 +165,10 @@ class Trial {
   }
 
   // Mean energies by bin of what the model's sensors would show with this strength.
-  Eigen::VectorXd simulated(const Evidence& evidence, const Binning& bins, double strength) const {
-    const Eigen::VectorXd predicted = evidence.predicted(*search_.model);
+  Eigen::VectorXd simulated(const Binning& bins, double strength) const {
     Eigen::VectorXd mean;
     for (int k = 0; k < kReplicates; ++k) {
-      Eigen::VectorXd left = left_in(*world(strength, k), evidence, *search_.model, predicted);
+      Eigen::VectorXd left = left_in(*world(strength, k), bins.evidence(), *search_.model, bins.predicted());
       if (left.size() == 0) return left;
       const Eigen::VectorXd e = bins.energies(left).mean();
       mean = k == 0 ? e : Eigen::VectorXd(mean + e);
@@ -202,10 +206,10 @@ class Trial {
     const Evidence& judge = seen[1].empty() ? seen[0] : seen[1];
     const bool same = seen[1].empty();
     const Binning bins = same ? fit_bins : Binning(*search_.predictor, judge, *search_.model);
-    const Eigen::VectorXd residual = judge.residual(*search_.model);
+    if (bins.predicted().size() != judge.size()) return std::nullopt;
+    const Eigen::VectorXd residual = judge.residual_of(bins.predicted());
     const Energies measured = same ? fit_measured : bins.energies(residual);
-    const Eigen::VectorXd own = same ? fit_own : simulated(judge, bins, 0.0),
-                          with = simulated(judge, bins, strength);
+    const Eigen::VectorXd own = same ? fit_own : simulated(bins, 0.0), with = simulated(bins, strength);
     if (own.size() == 0 || with.size() == 0) return std::nullopt;
     double before = 0.0, after = 0.0, all = 0.0, floor = 0.0;
     const Eigen::VectorXd energy = measured.mean(), weight = measured.weight();
@@ -223,7 +227,7 @@ class Trial {
         .use = at(strength), .strength = {}, .explained = before > 0.0 ? 1.0 - after / before : 0.0};
     if (all < kExcess * floor || out.explained < kExplained) return std::nullopt;
     const Eigen::VectorXd drawn =
-        left_in(*world(strength, kReplicates), judge, *search_.model, judge.predicted(*search_.model));
+        left_in(*world(strength, kReplicates), judge, *search_.model, bins.predicted());
     if (drawn.size() == 0) return std::nullopt;
     const Eigen::VectorXd apart = autocorrelations(*search_.predictor, judge, residual) -
                                   autocorrelations(*search_.predictor, judge, drawn);

@@ -26,7 +26,7 @@ TEST_P(EveryChip, SurvivesRandomAccessesToAllItsBlocks) {
   std::mt19937 random(1234);
   for (const std::string& name : b.chip.names<Timer>()) {
     b.chip.find<Timer>(name)->set_shaft([](std::int64_t at_ns) { return at_ns / 700; });
-    b.chip.find<Timer>(name)->on_output([] {});
+    b.chip.find<Timer>(name)->on_output([](std::int64_t) {});
   }
   for (int i = 0; i < kAccesses; ++i) {
     const auto& block = b.chip.blocks()[random() % b.chip.blocks().size()];

@@ -36,7 +36,7 @@ struct TimerTest : testing::Test {
     ClockState state;
     state.hclk_hz = 16e6;
     context.clocks.set(state);
-    timer.on_output([this] { last_output_at = system.now(); });
+    timer.on_output([this](std::int64_t) { last_output_at = system.now(); });
   }
   void set(std::uint32_t offset, std::uint32_t value) { system.write(kBase + offset, value); }
   std::uint32_t get(std::uint32_t offset) { return system.read(kBase + offset); }

@@ -1,4 +1,4 @@
-// `omnihil play`: a recorded host's stream into a serial device at its own times, as an AI host would.
+// `omnihil play`: a recorded host's stream into a serial device at its own times, as the host sent it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -280,9 +280,9 @@ bool Machine::wakes() const {
   if (sleeping_ == Sleep::kForEvent) {
     constexpr std::uint32_t kEventOnPending = 1u << 4;  // SCR.SEVONPEND
     if (cpu_.reg.event || ((scr_ & kEventOnPending) && nvic_.any_pending())) return true;
-    return nvic_.any_pending() && nvic_.best(execution_priority()) != 0;
   }
-  if (!nvic_.any_pending()) return false;
+  if (!nvic_.any_pending()) return false;  // before priorities are worked out
+  if (sleeping_ == Sleep::kForEvent) return nvic_.best(execution_priority()) != 0;
   // As if PRIMASK were clear (B1.5.19).
   return nvic_.best(nvic_.execution_priority(false, cpu_.reg.faultmask, cpu_.reg.basepri)) != 0;
 }

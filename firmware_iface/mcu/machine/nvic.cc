@@ -14,7 +14,6 @@ void Nvic::reset() {
   pended_at_.fill(0);
   active_list_.clear();
   enabled_[0] = 0xFFFF & ~(1u << kMemManage | 1u << kBusFault | 1u << kUsageFault);
-  pending_count_ = 0;
   pending_words_ = 0;
   prigroup_ = 0;
 }
@@ -33,14 +32,12 @@ void Nvic::set_pending(int e, Cycles now) {
   pending_[word(e)] |= 1u << (e & 31);
   pending_words_ |= 1u << word(e);
   pended_at_[index(e)] = now;
-  ++pending_count_;
 }
 
 void Nvic::clear_pending(int e) {
   if (!pending(e)) return;
   pending_[word(e)] &= ~(1u << (e & 31));
   if (pending_[word(e)] == 0) pending_words_ &= ~(1u << word(e));
-  --pending_count_;
 }
 
 void Nvic::set_enabled(int e, bool on) {
@@ -59,7 +56,6 @@ int Nvic::group_priority(int e) const {
 }
 
 int Nvic::best(int execution_priority) const {
-  if (pending_count_ == 0) return 0;
   int found = 0, found_priority = execution_priority, found_full = kLowest;
   for (std::uint32_t words = pending_words_; words; words &= words - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(words));

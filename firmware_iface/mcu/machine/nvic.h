@@ -45,7 +45,7 @@ class Nvic {
   std::uint8_t priority(int e) const { return priority_[index(e)]; }
   unsigned group() const { return prigroup_; }
   Cycles pended_at(int e) const { return pended_at_[index(e)]; }
-  bool any_pending() const { return pending_count_ != 0; }
+  bool any_pending() const { return pending_words_ != 0; }
   int active_count() const { return static_cast<int>(active_list_.size()); }
   std::uint32_t pending_word(int i) const { return pending_[static_cast<std::size_t>(i)]; }
 
@@ -67,7 +67,6 @@ class Nvic {
   std::array<std::uint8_t, kExceptions> priority_{};
   std::array<Cycles, kExceptions> pended_at_{};
   std::vector<int> active_list_;
-  int pending_count_ = 0;
   std::uint32_t pending_words_ = 0;  // a bit for each of pending_ that is not 0
   unsigned prigroup_ = 0;
 };

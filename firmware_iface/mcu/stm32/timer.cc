@@ -217,11 +217,7 @@ void Timer::boundary() {
 void Timer::update_event(bool by_software) {
   const std::uint32_t cr1 = value(kCr1);
   if ((cr1 & kUdis) != 0) return;
-  if (preloaded_ != 0 || law_.arr == 0) {
-    transfer();
-  } else {
-    repeat_left_ = spec_.advanced ? value(kRcr) : 0;
-  }
+  transfer();
   if (!by_software && (cr1 & kOpm) != 0) {
     move_to(law_.way == CounterLaw::Way::kCentre ? position() : 0);
     value(kCr1) &= ~kCen;

@@ -1,9 +1,10 @@
 // A timer: counter, PWM with complementary outputs, capture, encoder, master and slave.
 //
 //   Timer timer({.number = 1, .bus = Bus::kApb2, .channels = 4, .advanced = true, …}, context);
-//   timer.on_output([&] { … timer.output(0).high_ratio … });     // duty changes, at the instant they act
-//   timer.set_shaft([&](std::int64_t at_ns) { return counts; }); // encoder inputs: quadrature counts over
-//   time timer.set_input(0, true);                                    // a Hall edge on channel 1, now
+//   timer.on_output([&](std::int64_t now_ns) { … timer.output(0).high_ratio … });     // duty changes, at the
+//   instant they act timer.set_shaft([&](std::int64_t at_ns) { return counts; }); // encoder inputs:
+//   quadrature counts over time timer.set_input(0, true);                                    // a Hall edge
+//   on channel 1, now
 //
 // Law: reference manuals RM0090 §17-20, RM0316 §20-23, RM0440 §29-31. Counter, flags and outputs are worked
 // out from the core clock when they are looked at; only instants that somebody listens to are scheduled. The
@@ -64,9 +65,6 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void set_shaft(ShaftCount shaft);
   void set_input(unsigned channel, bool level);
   void break_input(bool level);
-  void on_output(std::function<void()> listener) {
-    on_output([listener = std::move(listener)](std::int64_t) { listener(); });
-  }
   void on_output(std::function<void(std::int64_t now_ns)> listener) {
     listeners_.push_back(std::move(listener));
   }
