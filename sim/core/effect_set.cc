@@ -19,13 +19,13 @@ bool absent(const EffectInfo& info, std::span<const T> values) {
   return true;
 }
 
+}  // namespace
+
 double start_of(const EffectParam& row, const DriveParams<double>* drive) {
   if (row.start_for != nullptr && drive != nullptr) return row.start_for(*drive);
   const bool linear_speed = drive != nullptr && drive->linear && row.unit == "rad/s";
   return linear_speed ? row.typical * kTravelOverAngle_m_per_rad : row.typical;
 }
-
-}  // namespace
 
 EffectUse neutral_use(const EffectEntry& entry, const DriveParams<double>* drive) {
   EffectUse use{.entry = &entry, .values = {}, .tolerances = {}, .name = {}, .owner = {}};

@@ -1,9 +1,8 @@
 // Backlash: play between rotor and output, in which no torque passes; beyond it flanks that give a little.
 #include <cmath>
-#include <numbers>
 
 #include "sim/core/effect_entry.h"
-#include "sim/drive/drive_params.h"
+#include "sim/drive/two_masses.h"
 
 namespace omnihil {
 namespace {
@@ -11,27 +10,18 @@ namespace {
 constexpr double kContactMode_Hz = 150.0;  // both masses against each other: estimate, of shafts 20 to 200 Hz
 constexpr double kContactLoss = 0.5;       // of critical damping: guess, a factor of 3 either way
 
-// Both masses in parallel, at the output.
-double reduced_inertia_kg_m2(const DriveParams<double>& drive) {
-  const double rotor = drive.rotor_inertia_kg_m2 * drive.gear_ratio * drive.gear_ratio;
-  const double sum = rotor + drive.load_inertia_kg_m2;
-  return sum > 0.0 ? rotor * drive.load_inertia_kg_m2 / sum : 0.0;
-}
-
 struct Backlash {
   enum Param { kGap, kCompliance, kDamping };
   static constexpr double kCompliance_rad_per_Nm = 0.03;  // kContactMode_Hz with 1.2e-4 and 4.6e-5 kg m2
   static constexpr double kDamping_Nm_s_per_rad = 0.03;   // kContactLoss with the above
 
-  // c = 1 / (J (2 pi f)^2)
   static double compliance_of(const DriveParams<double>& drive) {
-    const double inertia = reduced_inertia_kg_m2(drive), rate = 2.0 * std::numbers::pi * kContactMode_Hz;
-    return inertia > 0.0 ? 1.0 / (inertia * rate * rate) : kCompliance_rad_per_Nm;
+    const double compliance = mode_compliance_rad_per_Nm(drive, kContactMode_Hz);
+    return compliance > 0.0 ? compliance : kCompliance_rad_per_Nm;
   }
-  // d = 2 zeta J (2 pi f)
   static double damping_of(const DriveParams<double>& drive) {
-    const double inertia = reduced_inertia_kg_m2(drive), rate = 2.0 * std::numbers::pi * kContactMode_Hz;
-    return inertia > 0.0 ? 2.0 * kContactLoss * inertia * rate : kDamping_Nm_s_per_rad;
+    const double damping = mode_damping_Nm_s_per_rad(drive, kContactMode_Hz, kContactLoss);
+    return damping > 0.0 ? damping : kDamping_Nm_s_per_rad;
   }
 
   static constexpr EffectParam kParams[] = {

@@ -1,30 +1,46 @@
 // Compliance of shaft, belt or gear: rotor and output are two masses with a spring between.
 #include "sim/core/effect_entry.h"
+#include "sim/drive/two_masses.h"
 
 namespace omnihil {
 namespace {
 
 struct ShaftCompliance {
   enum Param { kCompliance, kDamping };
+  static constexpr double kMode_Hz = 140.0;  // both masses against each other: estimate, of 20 to 200 Hz
+  static constexpr double kLoss = 0.1;       // of critical damping: guess, a factor of 3 either way
+  static constexpr double kCompliance_rad_per_Nm = 0.2;  // kMode_Hz with 9e-6 and 2e-5 kg m2
+  static constexpr double kDamping_Nm_s_per_rad = 1e-3;  // kLoss with the above
+
+  static double compliance_of(const DriveParams<double>& drive) {
+    const double compliance = mode_compliance_rad_per_Nm(drive, kMode_Hz);
+    return compliance > 0.0 ? compliance : kCompliance_rad_per_Nm;
+  }
+  static double damping_of(const DriveParams<double>& drive) {
+    const double damping = mode_damping_Nm_s_per_rad(drive, kMode_Hz, kLoss);
+    return damping > 0.0 ? damping : kDamping_Nm_s_per_rad;
+  }
+
   static constexpr EffectParam kParams[] = {
       {.name = "compliance_rad_per_Nm",
        .unit = "rad/(N m)",
-       .typical = 0.2,  // first mode of 140 Hz with 9e-6 and 2e-5 kg m2 (estimate: 20 to 200 Hz)
+       .typical = kCompliance_rad_per_Nm,
        .lower = 0,
        .upper = 100,
        .prior_scale = 0.5,
        .what = "twist per torque, at the output",
-       .how = "hold the rotor, load the output with a known torque, read the twist; or the resonance"},
+       .how = "hold the rotor, load the output with a known torque, read the twist; or the resonance",
+       .start_for = compliance_of},
       {.name = "damping_Nm_s_per_rad",
        .unit = "N m s/rad",
        .role = ParamRole::kShape,
        .neutral = kNoNeutral,
-       .typical = 0.0005,  // 4 % of critical with the above: guess, a factor of 3 either way
+       .typical = kDamping_Nm_s_per_rad,
        .lower = 0,
        .upper = 100,
-       .prior_scale = 0.001,
        .what = "torque per rate of twist, at the output",
-       .how = "decay of the ringing after a step"},
+       .how = "decay of the ringing after a step",
+       .start_for = damping_of},
   };
   static constexpr EffectInfo kInfo{
       .id = "shaft_compliance",

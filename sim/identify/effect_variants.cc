@@ -29,11 +29,12 @@ int phase_of(const EffectInfo& info, std::size_t strength) {
   return -1;
 }
 
-void add_columns(const EffectInfo& info, std::size_t row_index, bool linear, EffectVariant& variant) {
+void add_columns(const EffectInfo& info, std::size_t row_index, const Candidate& candidate,
+                 EffectVariant& variant) {
   const EffectParam& row = info.params[row_index];
   VariantColumn column;
   column.row = static_cast<int>(row_index);
-  column.size = (row.typical - row.neutral) * param_range(row, linear).scale;
+  column.size = visible_size(row, candidate);
   column.two_sided = row.lower < row.neutral && row.neutral < row.upper;
   if (column.size == 0.0) return;
   column.phase_row = phase_of(info, row_index);
@@ -88,7 +89,7 @@ std::vector<double> shape_grid(const EffectParam& row, double start, const Candi
   } else if (row.unit == "A" && scale.top_current_A > 0.0) {
     for (const double share : {0.02, 0.1}) grid.push_back(share * scale.top_current_A);
   } else if (row.unit == "degC") {
-    grid = {40.0, 60.0, 80.0};
+    grid = {35.0, 40.0, 47.0, 58.0, 75.0};  // ever wider above ambient
   } else if (row.unit == "J/K" && scale.duration_s > 0.0) {
     grid = {start, 4.0 * start, 16.0 * start};
   } else {
@@ -106,6 +107,16 @@ std::vector<std::size_t> rows_of_role(const EffectInfo& info, ParamRole role) {
   return rows;
 }
 
+// A ringing at one frequency is nothing like one at twice it: no line leads from one size to another.
+void add_stiffer(std::vector<EffectVariant>& variants) {
+  constexpr double kStiffer = 0.2;
+  const std::size_t count = variants.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    variants.push_back(variants[i]);
+    for (VariantColumn& c : variants.back().columns) c.size *= kStiffer;
+  }
+}
+
 // A shape that belongs to a detail has no influence while that is neutral.
 bool belongs_to_detail(const EffectInfo& info, std::size_t row) {
   while (row > 0 && info.params[row].role == ParamRole::kShape) --row;
@@ -113,6 +124,13 @@ bool belongs_to_detail(const EffectInfo& info, std::size_t row) {
 }
 
 }  // namespace
+
+double visible_size(const EffectParam& row, const Candidate& candidate) {
+  if (row.start_for == nullptr)
+    return (row.typical - row.neutral) * param_range(row, candidate.file.linear).scale;
+  const DriveParams<double> drive = drive_of(candidate);
+  return row.start_for(drive) - row.neutral;
+}
 
 std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate& candidate,
                                        const DataScale& scale) {
@@ -134,13 +152,15 @@ std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate
   }
   for (EffectVariant& v : variants) {
     for (const std::size_t row : rows_of_role(info, ParamRole::kStrength)) {
-      add_columns(info, row, candidate.file.linear, v);
+      add_columns(info, row, candidate, v);
     }
   }
+  if (info.place == Place::kShaft) add_stiffer(variants);
   return variants;
 }
 
-std::vector<EffectVariant> extensions_of(const EffectUse& use, const DataScale& scale) {
+std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& candidate,
+                                          const DataScale& scale) {
   std::vector<EffectVariant> variants;
   const EffectInfo& info = *use.entry->info;
   const bool series = info.id == "cogging";
@@ -154,7 +174,7 @@ std::vector<EffectVariant> extensions_of(const EffectUse& use, const DataScale& 
       if (!shows && row > 5) continue;
     }
     EffectVariant v{.shape = use, .columns = {}};
-    add_columns(info, row, false, v);
+    add_columns(info, row, candidate, v);
     variants.push_back(std::move(v));
   }
   return variants;
@@ -183,7 +203,7 @@ std::vector<EffectVariant> cogging_series(const EffectEntry& entry, const Candid
     for (std::size_t i = 0; i < count; ++i) {
       const int k = orders[i] / common;
       const std::size_t row = k == 1 ? 0 : 3 + 2 * (static_cast<std::size_t>(k) - 2);
-      add_columns(*entry.info, row, candidate.file.linear, v);
+      add_columns(*entry.info, row, candidate, v);
     }
     variants.push_back(std::move(v));
   }

@@ -32,11 +32,10 @@ AxisInput revealing_record(const EffectInfo& info, const SensorSet& sensors) {
   return in;
 }
 
-DriveParams<double> watched_drive(const EffectInfo& info) {
+DriveParams<double> watched_drive() {
   DriveParams<double> p = small_drive();
   p.coulomb_friction_Nm = 0.003;
   p.servo_kp_duty_per_rad = 2.0;
-  if (info.id == "thermal_derating") p.current_limit_A = 4.0;  // a limit that can fall
   return p;
 }
 
@@ -54,7 +53,7 @@ std::vector<T> seen(const std::vector<AxisSample<T>>& samples, const SensorSet& 
 
 // Changes of the record with the base parameters, that the effect itself stands for excepted.
 Eigen::MatrixXd explained_by_base(const EffectInfo& info, const AxisInput& in, const SensorSet& sensors) {
-  DriveParams<Jet> p = drive_params_as<Jet>(watched_drive(info));
+  DriveParams<Jet> p = drive_params_as<Jet>(watched_drive());
   Jet* const unknowns[kBaseParameters] = {&p.resistance_ohm,     &p.inductance_H,
                                           &p.load_inertia_kg_m2, &p.torque_constant_Nm_per_A,
                                           &p.supply_voltage_V,   &p.viscous_friction_Nm_s_per_rad,
@@ -76,10 +75,11 @@ TEST_P(EveryEffect, IsVisibleAtThreeTimesItsSmallestVisibleSize) {
   if (info().min_visible == nullptr || (info().rigs & kOnAxis) == 0) return;
   const SensorSet sensors;
   const AxisInput in = revealing_record(info(), sensors);
-  const DriveParams<double> drive = watched_drive(info());
+  const DriveParams<double> drive = watched_drive();
   EffectUse use = neutral_use(entry(), &drive);
   const std::size_t row = first_strength(info());
   use.values[row] += 3.0 * info().min_visible(sensors);
+  if (info().id == "thermal_derating") use.values[2] = 4.0;  // a full current that the record reaches
   const auto without = seen(run_axis(drive, nothing(), in), sensors);
   const auto with_it = seen(run_axis(drive, with({use}), in), sensors);
   Eigen::VectorXd difference(without.size()), noise(without.size());

@@ -419,14 +419,18 @@ EFFECTS = [
         scale="amps",
         shows=("hard", "shuttle"),
         needs=("heating",),
-        shape=lambda rng, r: {"from_K": rng.uniform(10, 25)},
+        shape=lambda rng, r: {"from_K": rng.uniform(10, 25), "full": rng.uniform(0.85, 1.1)},
         hide=lambda m, s, r: {
             "derating_A_per_K": m,
             "derating_from_K": s["from_K"],
-            "derating_full_A": r.stall_A,
+            "derating_full_A": s["full"] * r.stall_A,
             "current_cap_ohm": 12 * r.believed["resistance_ohm"],
         },
-        oracle=lambda m, s, r: {"current_drop_A_per_K": m, "above_degC": 25 + s["from_K"]},
+        oracle=lambda m, s, r: {
+            "current_drop_A_per_K": m,
+            "above_degC": 25 + s["from_K"],
+            "full_current_A": s["full"] * r.stall_A,
+        },
     ),
     Effect(
         "back_emf_missing",

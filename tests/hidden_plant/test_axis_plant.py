@@ -86,7 +86,7 @@ class AxisPlantTest(unittest.TestCase):
 
     def test_a_derating_drive_has_no_limit_while_it_is_cold(self):
         rig = types.SimpleNamespace(stall_A=20 / BARE["resistance_ohm"], believed=BARE)
-        hidden = axis_effects.BY_ID["thermal_derating"].hide(1e-9, {"from_K": 15}, rig)
+        hidden = axis_effects.BY_ID["thermal_derating"].hide(1e-9, {"from_K": 15, "full": 1}, rig)
         reversed_at_speed = [1.0] * 1000 + [-1.0] * 1000
         cold, _ = speeds(dict(BARE, **hidden), reversed_at_speed)
         free, _ = speeds(BARE, reversed_at_speed)
