@@ -17,6 +17,8 @@ constexpr double kListedLeft =
     20.0;  // effects that are known to be confused: their forms differ from the truth's
 constexpr double kTwinSignal = 0.98;  // cosine of signals that no refit can part
 constexpr double kNothing = 0.01;     // gain below which a draw goes to "none"
+constexpr double kLeastToPart = 0.03;  // of the error energy: smaller gains are told apart by this much, not by their own size
+constexpr double kUndecided = 0.1;    // share of the bootstrap's draws that an effect wins: it may be meant instead
 constexpr std::size_t kMostTwins = 3;
 
 int numbers(const Contender& c) {
@@ -103,11 +105,13 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
   const double most = gain_of(best, has_holdout);
   const double floor = floor_of(best, has_holdout);
   std::vector<std::size_t> equals{0};
-  std::size_t first = 0;  // of those that leave the same, the one with the fewest numbers
+  const auto marked = [&](const Contender& c) { return search.predictor->carries_mark_of(*c.screened.entry); };
+  // Of those that leave the same, the one whose mark the readings carry, else the one with the fewest numbers.
+  std::size_t first = 0;
   for (std::size_t c = 1; c < round.contenders.size(); ++c) {
     const Contender& other = round.contenders[c];
     if (!other.judgement.accepted || other.screened.extends) continue;
-    const double lost = (most - gain_of(other, has_holdout)) / most;
+    const double lost = (most - gain_of(other, has_holdout)) / std::max(most, kLeastToPart);
     // Both may take nearly all, and yet one leave several times what the other leaves above the sensors'
     // floor.
     const double least = std::max(kLeastLeft * (1.0 - floor), kFloorError * floor);
@@ -117,11 +121,13 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
     const bool alike = likeness(best.screened, other.screened) > kTwinSignal;
     const bool same = lost < kSameGain && left < kSameLeft;
     const bool twin = lost < kTwinGain && ((confused && left < kListedLeft) || (alike && left < kTwinLeft));
-    if (same || twin) equals.push_back(c);
-    const bool fewer = numbers(other) < numbers(round.contenders[first]);
-    if (left < kSameLeft && fewer && equals.back() == c && equals.size() <= kMostTwins) first = c;
+    if (!same && !twin && other.probability < kUndecided) continue;
+    equals.push_back(c);
+    const Contender& leader = round.contenders[first];
+    const bool simpler = left < kSameLeft && numbers(other) < numbers(leader) && equals.size() <= kMostTwins;
+    if (marked(other) || (simpler && !marked(leader))) first = c;
   }
-  if (equals.size() > kMostTwins) equals.resize(kMostTwins);
+  while (equals.size() > kMostTwins) equals.erase(equals.back() == first ? equals.end() - 2 : equals.end() - 1);
   std::rotate(round.contenders.begin(), round.contenders.begin() + static_cast<std::ptrdiff_t>(first),
               round.contenders.begin() + static_cast<std::ptrdiff_t>(first) + 1);
   round.chosen = 0;

@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "sim/identify/candidate.h"
+#include "sim/identify/counted_speed.h"
 #include "sim/identify/dataset.h"
 
 namespace omnihil {
@@ -44,6 +45,7 @@ struct ComparedSignal {
   double noise_sigma = 0.0;      // per sample, after the chain's own filters: stated, or estimated
   bool noise_is_stated = false;
   double quantum = 0.0;  // of a counting sensor, in the signal's unit; 0: none
+  CountedSpeed counted{};  // of a speed that is pulses over a window
   // The noise of differenced counts or positions is blue: successive errors cancel. See whitened().
   double whitening_s = 0.0;     // 0: the noise is white as it is
   double whitened_sigma = 0.0;  // of whitened(), per sample; noise_sigma where whitening_s is 0
@@ -88,6 +90,8 @@ class Predictor {
   virtual std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const = 0;
   // Can this effect act on this rig and drive input at all; "" or why not ("needs a measured current").
   virtual std::string applies(const EffectEntry& entry) const = 0;
+  // Do the readings themselves, one by one, show that this effect made them?
+  virtual bool carries_mark_of(const EffectEntry&) const { return false; }
 };
 
 // Residuals (or derivatives of predictions) of one signal, filtered so that its sensor noise is white: what a

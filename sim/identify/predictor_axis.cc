@@ -85,6 +85,13 @@ class AxisPredictor : public Predictor {
   std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
     return axis_regimes(setup(n), with_known(candidate, run(n).known), step_for(candidate));
   }
+  bool carries_mark_of(const EffectEntry& effect) const override {
+    const auto is_counted = [](const ComparedSignal& c) { return c.counted.window_s > 0.0; };
+    return effect.info->id == "hall_speed_estimator" &&
+           std::any_of(setups_.begin(), setups_.end(), [&](const AxisSetup& s) {
+             return std::any_of(s.compared.begin(), s.compared.end(), is_counted);
+           });
+  }
   std::string applies(const EffectEntry& entry) const override {
     return axis_effect_refusal(entry, *dataset_, *nominal_);
   }
@@ -323,7 +330,9 @@ class AxisPredictor : public Predictor {
       const std::uint64_t stream = stream_of(signal.name) + static_cast<std::uint64_t>(n) * 1000003;
       const auto draw = [&](std::size_t k) { return gaussian(seed, stream, k); };
       const std::vector<double> pattern = signal.measured;
-      if (signal.whitening_s > 0.0) {
+      if (signal.counted.window_s > 0.0) {
+        add_counting_noise(signal.counted, signal.time_s, p.values[c], uniform(seed, stream, 1u << 30));
+      } else if (signal.whitening_s > 0.0) {
         differenced_noise(s, signal, p.values[c], uniform(seed, stream, 1u << 30), draw);
       } else if (s.method == Method::kInverse && !s.steady && !s.filter.sections.empty()) {
         add_band_noise(s, signal, p.values[c], draw);
@@ -360,10 +369,18 @@ class AxisPredictor : public Predictor {
     return p;
   }
 
-  // With what effects draw by chance; the seed goes again.
+  // With what effects draw by chance; the seed goes again. A counted speed has the noise of its own count, however
+  // the truth says that it is made.
   Prediction as_drawn(const Candidate& truth, int n) {
+    AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     Prediction p = predict(truth, n);
-    setups_[static_cast<std::size_t>(n)].input.noise_seed.reset();
+    s.input.noise_seed.reset();
+    const auto is_counted = [](const ComparedSignal& c) { return c.counted.window_s > 0.0; };
+    if (std::none_of(s.compared.begin(), s.compared.end(), is_counted)) return p;
+    Prediction quiet = predict(truth, n);
+    for (std::size_t c = 0; c < s.compared.size(); ++c) {
+      if (is_counted(s.compared[c])) p.values[c] = std::move(quiet.values[c]);
+    }
     return p;
   }
 

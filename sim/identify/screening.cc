@@ -277,7 +277,7 @@ std::vector<Screened> screen(const ScreeningTask& task, const std::vector<const 
 std::vector<Screened> screen_extensions(const ScreeningTask& task) {
   std::vector<Screened> out;
   for (const EffectUse& use : task.model->effects) {
-    const std::vector<EffectVariant> variants = extensions_of(use, task.scale);
+    const std::vector<EffectVariant> variants = extensions_of(use, *task.model, task.scale);
     if (variants.empty()) continue;
     Screened s = finished(task, use.entry, best_of(task, variants));
     s.name = effect_name(use);

@@ -1,0 +1,30 @@
+// A measured speed that was counted: pulses of a motor's Hall sensors within a window, over the window.
+//
+//   CountedSpeed c = counted_speed(values, quantum, period_s, pulse_rad);   // pulse: of the output, by pole pairs
+//   if (c.window_s > 0.0) add_counting_noise(c, time_s, values, start);     // what counting adds to a true speed
+//
+// Mark: every reading is a multiple of one step q, and pulse / q is a time that such firmware counts for. Law: the
+// reading's error is that of the angle rounded to pulses at both ends of the window, over the window; its
+// variance 2 (pulse / w)^2 / 12, and its integral never exceeds a pulse (Ohmae and others, IEEE Trans. Ind.
+// Electron. 29(3), 1982). Validity: pulses evenly spaced, their number known (six per electrical turn). Cannot: a
+// reading that was filtered afterwards, a step that is that of a number format.
+#pragma once
+#include <vector>
+
+namespace omnihil {
+
+struct CountedSpeed {
+  double window_s = 0.0;  // 0: it was not counted
+  double pulse_rad = 0.0;
+
+  double noise_sigma() const;           // of a reading
+  double integrated_sigma_rad() const;  // of the angle behind it
+};
+
+CountedSpeed counted_speed(const std::vector<double>& values, double quantum, double period_s, double pulse_rad);
+
+// `start`: where the first angle lies between two pulses, 0 to 1. Missing readings (NaN) stay.
+void add_counting_noise(const CountedSpeed& counted, const std::vector<double>& time_s,
+                        std::vector<double>& values, double start);
+
+}  // namespace omnihil

@@ -1,0 +1,131 @@
+#include "sim/identify/contest.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fake_predictor.h"
+#include "sim/core/effect_registry.h"
+#include "sim/core/random.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kSamples = 4000;
+
+class MarkedPredictor : public FakePredictor {
+ public:
+  std::string mark;
+  bool carries_mark_of(const EffectEntry& effect) const override { return effect.info->id == mark; }
+};
+
+// One run to fit and one held out, of noise; contenders that leave shares of it.
+struct Ring {
+  MarkedPredictor fake;
+  SignalKinds kinds;
+  std::unique_ptr<Uses> uses;
+  NullModel null;
+  std::vector<BlockBootstrap> bootstrap;
+  Search search;
+  Fitted parent;
+  Round round;
+
+  Ring() {
+    for (const Use use : {Use::kFit, Use::kHoldout}) {
+      fake.add(use, std::vector<double>(kSamples, 1.0), std::vector<double>(kSamples, 0.0));
+    }
+    kinds = signal_kinds(fake);
+    uses = std::make_unique<Uses>(Uses{Evidence(fake, kinds, Use::kFit), Evidence(fake, kinds, Use::kHoldout),
+                                       Evidence(fake, kinds, Use::kExtrapolation)});
+    for (std::size_t u = 0; u < kUses; ++u) {
+      null.mean_square[u] = Eigen::MatrixXd::Constant(2, 1, 0.01);
+      bootstrap.emplace_back((*uses)[u], 1);
+    }
+    search.predictor = &fake;
+    search.kinds = &kinds;
+    search.uses = uses.get();
+    search.null = &null;
+    search.judging = {.uses = uses.get(), .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
+    parent = leaving(1.0, 1.0);
+  }
+
+  // Root mean squares of the run's two halves.
+  static Fitted leaving(double first, double second) {
+    Fitted out;
+    out.finite = true;
+    for (std::size_t u = 0; u < 2; ++u) {
+      out.residual[u] = Eigen::VectorXd::Constant(kSamples, first);
+      out.residual[u].tail(kSamples / 2).setConstant(second);
+    }
+    return out;
+  }
+
+  void enter(const std::string& effect, Fitted fitted) {
+    Contender c;
+    c.screened.entry = find_effect(effect);
+    c.screened.name = effect;
+    c.fitted = std::move(fitted);
+    c.judgement = judge(search.judging, parent, c.fitted, "x", 100.0);
+    EXPECT_TRUE(c.judgement.accepted) << c.judgement.why;
+    round.contenders.push_back(std::move(c));
+  }
+
+  std::string winner() {
+    settle(search, parent, round);
+    return round.chosen < 0 ? "" : round.contenders[static_cast<std::size_t>(round.chosen)].screened.name;
+  }
+
+  std::vector<std::string> twins() const {
+    std::vector<std::string> names;
+    for (const int t : round.twins) names.push_back(round.contenders[static_cast<std::size_t>(t)].screened.name);
+    return names;
+  }
+};
+
+TEST(ContestTest, TheOneThatLeavesLeastWins) {
+  Ring ring;
+  ring.enter("cogging", Ring::leaving(0.8, 0.8));
+  ring.enter("dead_time", Ring::leaving(0.5, 0.5));
+  EXPECT_EQ(ring.winner(), "dead_time");
+  EXPECT_TRUE(ring.twins().empty());
+}
+
+// Firmware's delay explains a hair more; but the readings are multiples of a pulse.
+TEST(ContestTest, OfThoseThatLeaveTheSameTheOneWhoseMarkTheReadingsCarryWins) {
+  Ring ring;
+  ring.enter("sampling_delay", Ring::leaving(0.500, 0.500));
+  ring.enter("hall_speed_estimator", Ring::leaving(0.502, 0.502));
+  EXPECT_EQ(ring.winner(), "sampling_delay");
+  Ring marked;
+  marked.fake.mark = "hall_speed_estimator";
+  marked.enter("sampling_delay", Ring::leaving(0.500, 0.500));
+  marked.enter("hall_speed_estimator", Ring::leaving(0.502, 0.502));
+  EXPECT_EQ(marked.winner(), "hall_speed_estimator");
+  EXPECT_EQ(marked.twins(), std::vector<std::string>{"sampling_delay"});
+  Ring far;
+  far.fake.mark = "hall_speed_estimator";
+  far.enter("sampling_delay", Ring::leaving(0.5, 0.5));
+  far.enter("hall_speed_estimator", Ring::leaving(0.8, 0.8));
+  EXPECT_EQ(far.winner(), "sampling_delay");
+}
+
+// Each explains another half of the record: which is the better one depends on the draw.
+TEST(ContestTest, WhatSomeDrawsPreferIsATwin) {
+  Ring ring;
+  ring.enter("constant_load", Ring::leaving(0.50, 0.62));
+  ring.enter("back_emf_missing", Ring::leaving(0.62, 0.51));
+  EXPECT_EQ(ring.winner(), "constant_load");
+  EXPECT_EQ(ring.twins(), std::vector<std::string>{"back_emf_missing"});
+}
+
+TEST(ContestTest, NamesThreeThatCannotBeToldApartAndNoMore) {
+  Ring ring;
+  ring.fake.mark = "shaft_compliance";
+  for (const char* name : {"cogging", "imbalance", "gravity_load", "dead_time", "shaft_compliance"})
+    ring.enter(name, Ring::leaving(0.5, 0.5));
+  EXPECT_EQ(ring.winner(), "shaft_compliance");
+  EXPECT_EQ(ring.twins().size(), 2u);
+}
+
+}  // namespace
+}  // namespace omnihil
