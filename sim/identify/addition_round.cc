@@ -58,8 +58,9 @@ std::vector<const EffectEntry*> not_yet(const Search& search, const Candidate& m
   return out;
 }
 
-// Which of the screened are refitted: the largest shares, and whoever is largest in a regime.
-std::vector<std::size_t> nominees(const std::vector<Screened>& screened) {
+// Which of the screened are refitted: the largest shares, whoever is largest in a regime, and whose mark the
+// readings carry.
+std::vector<std::size_t> nominees(const std::vector<Screened>& screened, const Predictor& predictor) {
   std::vector<std::size_t> order, out;
   for (std::size_t i = 0; i < screened.size(); ++i) {
     const Screened& s = screened[i];
@@ -69,8 +70,11 @@ std::vector<std::size_t> nominees(const std::vector<Screened>& screened) {
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return screened[a].share > screened[b].share; });
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    if (screened[i].tried && predictor.carries_mark_of(*screened[i].entry)) out.push_back(i);
+  }
   for (const std::size_t i : order) {
-    if (out.size() < kMostRefits - 1) out.push_back(i);
+    if (out.size() < kMostRefits - 1 && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
   }
   const auto corner = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return screened[a].best_regime_share < screened[b].best_regime_share;
@@ -78,6 +82,11 @@ std::vector<std::size_t> nominees(const std::vector<Screened>& screened) {
   if (corner != order.end() && std::find(out.begin(), out.end(), *corner) == out.end())
     out.push_back(*corner);
   return out;
+}
+
+// Its gain over what chance gives: the most that it gave this effect, or half the most that it gave any.
+double over_chance(const Screened& s, double chance_of_any) {
+  return s.gain / std::max({s.null_gain, 0.5 * chance_of_any, 1e-300});
 }
 
 double chance_of(const std::vector<Screened>& screened) {
@@ -88,11 +97,12 @@ double chance_of(const std::vector<Screened>& screened) {
 
 void refit_nominees(const Search& search, const Fitted& parent, const std::vector<std::size_t>& chosen,
                     Round& round) {
-  round.contenders.resize(chosen.size());
+  const std::size_t before = round.contenders.size();
+  round.contenders.resize(before + chosen.size());
   std::atomic<int> done{0};
   std::atomic<bool> stopped{false};
   parallel_for(search.jobs, static_cast<int>(chosen.size()), [&](int n) {
-    Contender& c = round.contenders[static_cast<std::size_t>(n)];
+    Contender& c = round.contenders[before + static_cast<std::size_t>(n)];
     c.screened = round.screened[chosen[static_cast<std::size_t>(n)]];
     if (stopped) return;
     RefitSetup setup{.predictor = search.predictor,
@@ -102,12 +112,32 @@ void refit_nominees(const Search& search, const Fitted& parent, const std::vecto
                      .seed = search.seed,
                      .stop = [&] { return stopped.load(); }};
     c.fitted = refit(setup, parent, c.screened);
-    const double over_chance = c.screened.gain / std::max(round.chance_gain, 1e-300);
-    c.judgement = judge(search.judging, parent, c.fitted, c.screened.name, over_chance);
+    c.judgement = judge(search.judging, parent, c.fitted, c.screened.name,
+                        over_chance(c.screened, round.chance_gain));
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (search.progress && !search.progress("refitting " + c.screened.name, share)) stopped = true;
   });
   round.stopped = stopped;
+}
+
+// Effects that are known to be confused with the leading contender, and were not refitted: the screening is
+// linear, and theirs may be the form that it sees worst.
+std::vector<std::size_t> twins_of_leader(const Round& round) {
+  const Contender* leader = nullptr;
+  for (const Contender& c : round.contenders) {
+    if (!c.judgement.accepted || c.screened.extends) continue;
+    if (leader == nullptr || c.judgement.fit.ratio < leader->judgement.fit.ratio) leader = &c;
+  }
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; leader != nullptr && i < round.screened.size(); ++i) {
+    const Screened& s = round.screened[i];
+    const bool known = std::any_of(round.contenders.begin(), round.contenders.end(),
+                                   [&](const Contender& c) { return c.screened.name == s.name; });
+    const auto& twins = leader->screened.entry->info->twins;
+    if (s.tried && !s.extends && !known && std::find(twins.begin(), twins.end(), s.name) != twins.end())
+      out.push_back(i);
+  }
+  return out;
 }
 
 std::string unseen(const Screened& s, double chance) {
@@ -205,7 +235,8 @@ Round screening_round(const Search& search, const Fitted& parent,
 Round addition_round(const Search& search, const Fitted& parent) {
   Round round = screening_round(search, parent, not_yet(search, parent.fit.model));
   round.stopped = search.progress && !search.progress("screening", 0.5);
-  if (!round.stopped) refit_nominees(search, parent, nominees(round.screened), round);
+  if (!round.stopped) refit_nominees(search, parent, nominees(round.screened, *search.predictor), round);
+  if (!round.stopped) refit_nominees(search, parent, twins_of_leader(round), round);
   settle(search, parent, round);
   make_ranking(search, parent, round);
   return round;

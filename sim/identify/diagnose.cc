@@ -10,6 +10,7 @@
 #include "sim/identify/effect_variants.h"
 #include "sim/identify/next_experiment.h"
 #include "sim/identify/noise_effect.h"
+#include "sim/identify/soundness.h"
 #include "sim/identify/unknown_structure.h"
 #include "sim/identify/verdict.h"
 #include "sim/identify/workbench.h"
@@ -212,10 +213,12 @@ class Diagnosing {
                        options_.seed, options_.jobs);
   }
 
-  // Less than what an adequate model leaves: to search on there finds laws that bend to the noise.
+  // Less than what an adequate model leaves: to search on there finds laws that bend to the noise. But a base
+  // parameter that nobody believes hides something, however well it does so.
   bool worth_another_round() {
     const std::size_t u = bench_.uses()[1].empty() ? 0 : 1;
-    return structure_in(bench_.uses()[u], bench_.null(), bench_.kinds(), current_.residual[u]) ||
+    return bend_of(current_.fit).sigmas > kBent_sigmas ||
+           structure_in(bench_.uses()[u], bench_.null(), bench_.kinds(), current_.residual[u]) ||
            rest_is_structure(leftover());
   }
 

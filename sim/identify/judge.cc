@@ -24,6 +24,10 @@ constexpr double kExtrapolationLoss = 0.03;
 // ... unless what is left of the held-out energy times the rise is below this: where two effects made up for
 // each other, the first one to come in raises the error of the motion that they did so in.
 constexpr double kOutweighed = 0.5;
+// A base parameter that is bent beyond kBent_sigmas stands for something: what lets it come back within this, at
+// no more error, has a better claim.
+constexpr double kStraight_sigmas = 2.0;
+constexpr double kNoMore = 0.01;  // of the held-out error energy
 
 // The largest relative fall of one signal's error energy, as somebody sees it who looks at the signal.
 double gain_as_seen(const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {
@@ -49,17 +53,25 @@ double rise_above_null(const Evidence& evidence, const NullModel& null, const Ei
   return weights.sum() > 0.0 ? sum / weights.sum() : 0.0;
 }
 
-// Of the extrapolation runs; 0 where the bootstrap does not see one, or where the signals as they are seen
-// fall.
+// Of the extrapolation runs; 0 where the bootstrap does not see one, or where nobody would who looks at the
+// signals: the slowest part of a residual, whitened, tells of a last digit of a base parameter.
 double extrapolation_rise(const JudgeContext& context, const Fitted& parent, const Fitted& child,
                           const UseGain& gain) {
   const Evidence& evidence = (*context.uses)[2];
   if (evidence.empty() || gain.best <= 1.0) return 0.0;
   const Eigen::VectorXd weights = weights_for(evidence, *context.null, parent.residual[2], child.residual[2]);
-  const double seen = weights.dot(child.as_seen[2].cwiseQuotient(parent.as_seen[2].cwiseMax(1e-300)));
-  if (seen < (1.0 - kExtrapolationLoss) * weights.sum()) return 0.0;
+  if (gain_as_seen(child.as_seen[2], parent.as_seen[2]) < kSeen) return 0.0;
   return std::min(gain.ratio - 1.0,
                   rise_above_null(evidence, *context.null, parent.residual[2], child.residual[2]));
+}
+
+// Why an addition that gains little is believed all the same; empty: it is not.
+std::string straightens(const Fitted& parent, const Fitted& child, const Judgement& gains, double held_ratio) {
+  const Bend before = bend_of(parent.fit), after = bend_of(child.fit);
+  if (before.sigmas < kBent_sigmas || after.sigmas > kStraight_sigmas) return "";
+  if (held_ratio > 1.0 + kNoMore || gains.fit.ratio > 1.0 + kNoMore) return "";
+  return fmt::format("{} comes back to what the model file says ({:.1f} of its tolerances off without it), at no more error",
+                     before.path, before.sigmas);
 }
 
 }  // namespace
@@ -100,7 +112,14 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   const UseGain& held = *gains[d];
   const double needed = kMatters + kMattersAtFloor * held.floor;
   out.plain = 1.0 - held.ratio > kPlain && held.worst < 1.0;
-  if (gain_over_chance < kChanceMargin) {
+  const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
+  std::string against = unsound(parent.fit, child.fit, name, out.plain);
+  if (against.empty()) against = lost_in_the_clock(child.fit, name, context.rate_Hz);
+  if (std::string why = straightens(parent, child, out, held.ratio);
+      !why.empty() && rise <= kExtrapolationLoss && against.empty()) {
+    out.accepted = true;
+    out.why = std::move(why);
+  } else if (gain_over_chance < kChanceMargin) {
     out.why =
         fmt::format("its gain is {:.1f} times what chance gives in the simulated null", gain_over_chance);
   } else if (1.0 - out.fit.ratio < 0.5 * kMatters) {
@@ -120,10 +139,9 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
         fmt::format("no signal's error falls by more than {:.1f} % in energy as it is seen", 100.0 * seen);
   } else if (held.worst > 1.0) {
     out.why = "its gain comes from a few moments of the held-out runs alone";
-  } else if (const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
-             rise > kExtrapolationLoss && held.ratio * (1.0 + rise) > kOutweighed) {
+  } else if (rise > kExtrapolationLoss && held.ratio * (1.0 + rise) > kOutweighed) {
     out.why = fmt::format("it raises the error energy of the extrapolation runs by {:.0f} %", 100.0 * rise);
-  } else if (out.why = unsound(parent.fit, child.fit, name, out.plain); out.why.empty()) {
+  } else if (out.why = against; out.why.empty()) {
     out.accepted = true;
     out.why = fmt::format("held-out error energy falls by {:.1f} %", 100.0 * (1.0 - held.ratio));
   }

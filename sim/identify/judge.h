@@ -37,6 +37,7 @@ struct JudgeContext {
   const Uses* uses = nullptr;
   const NullModel* null = nullptr;
   std::array<const BlockBootstrap*, kUses> bootstrap{};
+  double rate_Hz = 0.0;  // of the samples; 0: not known
 };
 
 // `null_gain_ratio`: the screening's gain over the most that chance gave (above 1: more than chance).

@@ -6,13 +6,13 @@
 
 #include "sim/core/effect_reader.h"
 #include "sim/core/effect_registry.h"
+#include "sim/identify/soundness.h"
 
 namespace omnihil {
 namespace {
 
 constexpr double kWorthAThirdStart = 0.2;  // of the error energy, as the screening promises
 constexpr double kWorthAFourthStart = 0.1;
-constexpr double kBent_sigmas = 4.0;  // of a base parameter's tolerance
 
 // Numbers of a candidate by path; what `start` does not name stays.
 void start_at(std::vector<Unknown>& unknowns, const std::vector<Unknown>& paths,
@@ -54,14 +54,13 @@ EffectUse near_neutral(const EffectUse& use) {
 
 // At the sizes that such effects usually have: where neither what the screening says nor the neighbourhood of
 // nothing leads anywhere.
-EffectUse usual(const EffectUse& use, bool linear) {
+EffectUse usual(const EffectUse& use, const Candidate& model) {
   EffectUse out = use;
   for (std::size_t i = 0; i < out.values.size(); ++i) {
     const EffectParam& row = use.entry->info->params[i];
     if (row.role != ParamRole::kStrength) continue;
-    const ParamRange range = param_range(row, linear);
-    out.values[i] =
-        std::clamp(row.neutral + (row.typical - row.neutral) * range.scale, range.lower, range.upper);
+    const ParamRange range = param_range(row, model.file.linear);
+    out.values[i] = std::clamp(row.neutral + visible_size(row, model), range.lower, range.upper);
   }
   return out;
 }
@@ -76,13 +75,6 @@ Candidate with_strength_times(const Candidate& model, const std::string& effect,
     use.values[row] = neutral + factor * (use.values[row] - neutral);
   }
   return out;
-}
-
-// Has the base model gone where nobody believes it to be, and is it sure of that?
-bool is_bent(const FitResult& fit) {
-  return std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const ParameterEstimate& p) {
-    return p.prior_sigma > 0.0 && p.identifiable && std::abs(p.drift_sigmas) > kBent_sigmas;
-  });
 }
 
 // The base parameters as the model file believes them.
@@ -155,12 +147,12 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
     best = std::move(next);
     ratio = next_ratio;
   };
-  const EffectUse usual_size = usual(effect.start, with.file.linear);
+  const EffectUse usual_size = usual(effect.start, with);
   if (ratio > expected && !stopped()) also_from(with_use(parent.fit.model, near_neutral(effect.start)));
   if (ratio > expected && effect.share >= kWorthAThirdStart && !stopped())
     also_from(with_use(parent.fit.model, usual_size));
   // A base that bent to imitate the effect holds it near nothing: the two together from what is believed.
-  if (ratio > expected && effect.share >= kWorthAFourthStart && is_bent(parent.fit) && !stopped())
+  if (ratio > expected && effect.share >= kWorthAFourthStart && bend_of(parent.fit).sigmas > kBent_sigmas && !stopped())
     also_from(with_use(believed(parent.fit.model, *setup.nominal), usual_size));
   // Impacts make many small valleys: the first one that is deep enough need not be the deepest.
   const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0 && ratio < 1.0 - kWorthAThirdStart;

@@ -93,6 +93,33 @@ std::string unphysical(const FitResult& child, const std::string& name, bool pla
 
 }  // namespace
 
+Bend bend_of(const FitResult& fit) {
+  Bend worst;
+  for (const ParameterEstimate& p : fit.parameters) {
+    if (p.prior_sigma <= 0.0 || !p.identifiable || find_effect(p.path.substr(0, p.path.find('.'))) != nullptr)
+      continue;
+    if (std::abs(p.drift_sigmas) > worst.sigmas)
+      worst = {.sigmas = std::abs(p.drift_sigmas), .path = p.path};
+  }
+  return worst;
+}
+
+std::string lost_in_the_clock(const FitResult& child, const std::string& name, double rate_Hz) {
+  constexpr double kOfVisible = 0.05;
+  const EffectEntry* entry = find_effect(name);
+  if (entry == nullptr || entry->info->min_visible == nullptr || rate_Hz <= 0.0) return "";
+  const EffectParam& row = entry->info->params[first_strength(*entry->info)];
+  if (row.unit != "s" && row.unit != "H") return "";
+  const double visible = entry->info->min_visible({.rate_Hz = rate_Hz});
+  for (const ParameterEstimate& p : child.parameters) {
+    if (p.path != name + "." + std::string(row.name)) continue;
+    if (std::abs(p.value - row.neutral) >= kOfVisible * visible) continue;
+    return fmt::format("{} = {:.2g} {} is lost in the clock: at {:g} Hz such an effect is seen from {:.2g} {}", p.path,
+                       p.value, p.unit, rate_Hz, visible, p.unit);
+  }
+  return "";
+}
+
 std::string unsound(const FitResult& parent, const FitResult& child, const std::string& name, bool plain) {
   const std::string why = unphysical(child, name, plain);
   return why.empty() ? pushed_out(parent, child) : why;

@@ -11,6 +11,21 @@
 
 namespace omnihil {
 
+// How far the base model is from what its file says: the largest drift of a parameter of motor, load or supply
+// that the data determine, in its tolerances.
+struct Bend {
+  double sigmas = 0.0;
+  std::string path;
+};
+Bend bend_of(const FitResult& fit);
+
+// Above this a base parameter stands for something else: nobody's data sheet is that wrong.
+inline constexpr double kBent_sigmas = 4.0;
+
+// Is an effect's time (a delay, an inductance) so far below what its page calls visible at this rate that a
+// model's sub-steps and a clock's last digits make as much? Empty: no.
+std::string lost_in_the_clock(const FitResult& child, const std::string& name, double rate_Hz);
+
 // `plain`: the addition takes so much that its strength is no question, however it trades against its shapes.
 std::string unsound(const FitResult& parent, const FitResult& child, const std::string& name, bool plain);
 

@@ -11,6 +11,17 @@ constexpr int kReplicates = 12;
 constexpr int kThoroughIterations = 30;
 constexpr int kQuickIterations = 12;
 
+// Of the first run that has samples at a rate.
+double rate_Hz(const Predictor& predictor) {
+  for (int run = 0; run < predictor.run_count(); ++run) {
+    for (const ComparedSignal& s : predictor.compared(run)) {
+      const double span_s = s.time_s.size() > 1 ? s.time_s.back() - s.time_s.front() : 0.0;
+      if (span_s > 0.0) return static_cast<double>(s.time_s.size() - 1) / span_s;
+    }
+  }
+  return 0.0;
+}
+
 }  // namespace
 
 Workbench::Workbench(const Dataset& dataset, const Candidate& nominal, const WorkbenchOptions& options)
@@ -63,8 +74,10 @@ Search Workbench::search(std::vector<std::string>& not_applicable) const {
   search.uses = &uses_;
   search.seen = &seen_;
   search.null = &null_;
-  search.judging = {
-      .uses = &uses_, .null = &null_, .bootstrap = {&bootstrap_[0], &bootstrap_[1], &bootstrap_[2]}};
+  search.judging = {.uses = &uses_,
+                    .null = &null_,
+                    .bootstrap = {&bootstrap_[0], &bootstrap_[1], &bootstrap_[2]},
+                    .rate_Hz = rate_Hz(*predictor_)};
   search.seed = options_.seed;
   search.jobs = options_.jobs;
   for (const EffectEntry* e : all_effects()) {

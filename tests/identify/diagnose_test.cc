@@ -53,6 +53,19 @@ TEST(SlowDiagnoseTest, NamesPlay) {
   EXPECT_EQ(d.effects, std::vector<std::string>{"backlash"}) << reasons(d);
 }
 
+// Stiff against a heavy load, well damped: fifty times stiffer than the page's example.
+TEST(SlowDiagnoseTest, NamesAStiffShaftBeforeAHeavyLoad) {
+  BenchRecipe recipe = steps_with(
+      {"shaft_compliance.compliance_rad_per_Nm=0.0068", "shaft_compliance.damping_Nm_s_per_rad=0.029"});
+  recipe.excitations = {Excitation::kChirp, Excitation::kSteps, Excitation::kChirp};
+  recipe.model = kWheelModel;
+  const std::string light = "inertia_kg_m2 = { value = 4.6e-5", ratio = "ratio = 3.0";
+  recipe.model.replace(recipe.model.find(light), light.size(), "inertia_kg_m2 = { value = 8e-4");
+  recipe.model.replace(recipe.model.find(ratio), ratio.size(), "ratio = 10");
+  const Diagnosis d = diagnosed(simulated_bench(recipe));
+  EXPECT_EQ(d.effects, std::vector<std::string>{"shaft_compliance"}) << reasons(d);
+}
+
 // The duty reaches 0.6, the limit stands at 0.585: no smaller cut changes anything.
 TEST(SlowDiagnoseTest, NamesALimitThatIsHardlyReached) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({"duty_limit.cut=0.415"})));
