@@ -151,9 +151,13 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   if (ratio > expected && !stopped()) also_from(with_use(parent.fit.model, near_neutral(effect.start)));
   if (ratio > expected && effect.share >= kWorthAThirdStart && !stopped())
     also_from(with_use(parent.fit.model, usual_size));
-  // A base that bent to imitate the effect holds it near nothing: the two together from what is believed.
-  if (ratio > expected && effect.share >= kWorthAFourthStart && bend_of(parent.fit).sigmas > kBent_sigmas && !stopped())
+  // A base that bent to imitate the effect holds it near nothing, or stays bent beside it: the two together from
+  // what is believed, the effect at its usual size or as it was found.
+  const auto is_bent = [](const Fitted& f) { return bend_of(f.fit).sigmas > kBent_sigmas; };
+  if (ratio > expected && effect.share >= kWorthAFourthStart && is_bent(parent) && !stopped())
     also_from(with_use(believed(parent.fit.model, *setup.nominal), usual_size));
+  if (is_bent(parent) && best.finite && is_bent(best) && !stopped())
+    also_from(believed(best.fit.model, *setup.nominal));
   // Impacts make many small valleys: the first one that is deep enough need not be the deepest.
   const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0 && ratio < 1.0 - kWorthAThirdStart;
   for (const double factor : {0.5, 2.0}) {
