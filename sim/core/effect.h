@@ -77,6 +77,7 @@ enum ClaimBit : std::uint32_t {
   // At neutral no signal changes with its strength to first order (a limit that nothing reaches, a square).
   // A fit that starts there alone never leaves: give it a second start away from neutral.
   kFlatAtNeutral = 1u << 4,
+  kCountsPulses = 1u << 5,  // makes a speed of pulses; its first parameter says how many there are in a turn
 };
 
 // What a numerical treatment has to know of a law, besides its equation.

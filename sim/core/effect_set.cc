@@ -22,7 +22,8 @@ bool absent(const EffectInfo& info, std::span<const T> values) {
 }  // namespace
 
 double start_of(const EffectParam& row, const DriveParams<double>* drive) {
-  if (row.start_for != nullptr && drive != nullptr) return row.start_for(*drive);
+  if (row.start_for != nullptr && drive != nullptr)
+    return std::clamp(row.start_for(*drive), row.lower, row.upper);
   const bool linear_speed = drive != nullptr && drive->linear && row.unit == "rad/s";
   return linear_speed ? row.typical * kTravelOverAngle_m_per_rad : row.typical;
 }

@@ -60,7 +60,7 @@ struct HallSpeedEstimator {
           "against the slope of the measured position by w; with no seed of noise the lag alone",
       .visible = "a lag of a fifth of a sample with steps of full duty",
       .min_visible = [](const SensorSet& s) { return 0.2 / s.rate_Hz; },
-      .claims = kRandom,
+      .claims = kRandom | kCountsPulses,
       .params = kParams,
       .states = kStates,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.3, .to_s = 0.7},

@@ -122,19 +122,18 @@ void refit_nominees(const Search& search, const Fitted& parent, const std::vecto
 
 // Effects that are known to be confused with the leading contender, and were not refitted: the screening is
 // linear, and theirs may be the form that it sees worst.
-std::vector<std::size_t> twins_of_leader(const Round& round) {
+std::vector<std::size_t> twins_of_leader(const Round& round, bool has_holdout) {
   const Contender* leader = nullptr;
   for (const Contender& c : round.contenders) {
     if (!c.judgement.accepted || c.screened.extends) continue;
-    if (leader == nullptr || c.judgement.fit.ratio < leader->judgement.fit.ratio) leader = &c;
+    if (leader == nullptr || merit_of(c, has_holdout) > merit_of(*leader, has_holdout)) leader = &c;
   }
   std::vector<std::size_t> out;
   for (std::size_t i = 0; leader != nullptr && i < round.screened.size(); ++i) {
     const Screened& s = round.screened[i];
     const bool known = std::any_of(round.contenders.begin(), round.contenders.end(),
                                    [&](const Contender& c) { return c.screened.name == s.name; });
-    const auto& twins = leader->screened.entry->info->twins;
-    if (s.tried && !s.extends && !known && std::find(twins.begin(), twins.end(), s.name) != twins.end())
+    if (s.tried && !s.extends && !known && listed_twins(*leader->screened.entry->info, *s.entry->info))
       out.push_back(i);
   }
   return out;
@@ -236,7 +235,7 @@ Round addition_round(const Search& search, const Fitted& parent) {
   Round round = screening_round(search, parent, not_yet(search, parent.fit.model));
   round.stopped = search.progress && !search.progress("screening", 0.5);
   if (!round.stopped) refit_nominees(search, parent, nominees(round.screened, *search.predictor), round);
-  if (!round.stopped) refit_nominees(search, parent, twins_of_leader(round), round);
+  if (!round.stopped) refit_nominees(search, parent, twins_of_leader(round, !(*search.uses)[1].empty()), round);
   settle(search, parent, round);
   make_ranking(search, parent, round);
   return round;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "sim/drive/axis_signal.h"
 #include "sim/identify/axis_inverse.h"
@@ -15,7 +14,6 @@ namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWhitening_s = 0.25;  // slower errors of a differenced position are weighed less: a choice
 
 bool finite(double v) { return std::isfinite(v); }
 
@@ -39,8 +37,8 @@ std::vector<double> differenced(const AxisRecord& r, const std::vector<double>& 
 
 class ForwardSetup {
  public:
-  ForwardSetup(const Dataset& dataset, const Candidate& nominal, const AxisRecord& record, AxisSetup& setup)
-      : dataset_(dataset), drive_(drive_of(nominal)), r_(record), s_(setup) {}
+  ForwardSetup(const Dataset& dataset, const AxisRecord& record, AxisSetup& setup)
+      : dataset_(dataset), r_(record), s_(setup) {}
 
   void make() {
     drive();
@@ -121,19 +119,6 @@ class ForwardSetup {
     c.whitened_sigma = position_sigma * std::sqrt(2.0 / (1.0 + std::exp(-dt / kWhitening_s)));
   }
 
-  // A speed that Hall sensors gave, six pulses per electrical turn.
-  void be_counted(ComparedSignal& c) const {
-    if (drive_.pole_pairs <= 0 || dataset_.linear) return;
-    const double pulse_rad = 2.0 * std::numbers::pi / (6.0 * drive_.pole_pairs) / drive_.gear_ratio;
-    const CountedSpeed counted = counted_speed(c.measured, c.quantum, r_.period_s, pulse_rad);
-    if (counted.window_s <= 0.0) return;
-    c.counted = counted;
-    c.noise_is_stated = true;  // by the pulses
-    c.noise_sigma = counted.noise_sigma();
-    c.whitening_s = kWhitening_s;
-    c.whitened_sigma = counted.integrated_sigma_rad();
-  }
-
   // A servo holds an angle: that is compared, from its own sensor or from the encoder.
   void servo_motion(const std::string& position_unit, const std::string& speed_unit) {
     if (!r_.position.empty()) {
@@ -157,8 +142,7 @@ class ForwardSetup {
     }
     const bool has_speed = !r_.velocity.empty();
     if (has_speed) {
-      be_counted(
-          add("velocity", speed_unit, AxisOutput::kVelocity, r_.velocity, channel("velocity").sigma));
+      add("velocity", speed_unit, AxisOutput::kVelocity, r_.velocity, channel("velocity").sigma);
     }
     const std::string differences = has_speed ? "encoder_velocity" : "velocity";
     if (!r_.counts.empty()) {
@@ -200,7 +184,6 @@ class ForwardSetup {
   }
 
   const Dataset& dataset_;
-  DriveParams<double> drive_;
   const AxisRecord& r_;
   AxisSetup& s_;
 };
@@ -243,7 +226,7 @@ AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, cons
   } else if (setup.method == Method::kInverse) {
     make_inverse_setup(dataset, record, setup);
   } else {
-    ForwardSetup(dataset, nominal, record, setup).make();
+    ForwardSetup(dataset, record, setup).make();
     setup.velocity = smoothed_velocity(record);
     setup.position = record.angle();
     setup.measured_current = record.current;

@@ -17,6 +17,8 @@
 
 namespace omnihil {
 
+inline constexpr double kWhitening_s = 0.25;  // slower errors of a differenced position weigh less: a choice
+
 // What of an AxisSample a compared signal is.
 enum class AxisOutput : std::uint8_t {
   kVelocity,

@@ -117,7 +117,8 @@ bool is_known_shape(const EffectUse& use, std::size_t i) {
   return is_stated(use, strength);
 }
 
-std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, bool linear) {
+std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const Candidate& candidate) {
+  const bool linear = candidate.file.linear;
   const EffectParam& row = use.entry->info->params[i];
   const std::span<const EffectParam> rows = use.entry->info->params;
   constexpr double kNotGiven = -1.0;
@@ -143,7 +144,12 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, bool 
     u.prior_mean = use.values[i];
     u.prior_sigma = tolerance * std::abs(use.values[i]);
   }
-  const double typical = row.role == ParamRole::kShape ? row.typical : row.typical - row.neutral;
+  // Where the drive decides what is usual, it decides how far a belief reaches.
+  const DriveParams<double> drive = drive_of(candidate);
+  const double usual = row.start_for != nullptr ? start_of(row, &drive) : row.typical;
+  if (row.start_for != nullptr && row.typical != 0.0 && tolerance <= 0.0)
+    u.prior_sigma *= std::abs(usual / row.typical);
+  const double typical = row.role == ParamRole::kShape ? usual : usual - row.neutral;
   u.scale = std::abs(typical) * size;
   if (u.scale == 0.0)
     u.scale = range.prior_scale > 0.0 ? range.prior_scale : 0.1 * (range.upper - range.lower);
@@ -186,7 +192,7 @@ std::vector<Unknown> unknowns_of(const Candidate& candidate) {
   for (std::size_t e = 0; e < candidate.effects.size(); ++e) {
     const EffectUse& use = candidate.effects[e];
     for (std::size_t i = 0; i < use.values.size(); ++i) {
-      auto u = effect_unknown(use, i, candidate.file.linear);
+      auto u = effect_unknown(use, i, candidate);
       if (!u) continue;
       u->effect = static_cast<int>(e);
       unknowns.push_back(std::move(*u));

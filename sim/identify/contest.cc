@@ -17,7 +17,7 @@ constexpr double kListedLeft =
     20.0;  // effects that are known to be confused: their forms differ from the truth's
 constexpr double kTwinSignal = 0.98;  // cosine of signals that no refit can part
 constexpr double kNothing = 0.01;     // gain below which a draw goes to "none"
-constexpr double kLeastToPart = 0.03;  // of the error energy: smaller gains are told apart by this much, not by their own size
+constexpr double kLeastToPart = 0.03;  // of the error energy: smaller gains are told apart as if they were this
 constexpr double kUndecided = 0.1;    // share of the bootstrap's draws that an effect wins: it may be meant instead
 constexpr std::size_t kMostTwins = 3;
 
@@ -35,20 +35,10 @@ double gain_of(const Contender& c, bool has_holdout) {
   return has_holdout ? 0.5 * (fit + 1.0 - c.judgement.holdout.ratio) : fit;
 }
 
-// The same, less a little for every further number: a law of many numbers bends to what it does not mean.
-double merit_of(const Contender& c, bool has_holdout) {
-  return gain_of(c, has_holdout) * (1.0 - kPerNumber * std::max(0, numbers(c) - 1));
-}
-
 // The share of the sensors' noise in what that gain is counted of.
 double floor_of(const Contender& c, bool has_holdout) {
   const double fit = c.judgement.fit.floor;
   return has_holdout ? 0.5 * (fit + c.judgement.holdout.floor) : fit;
-}
-
-bool listed_twins(const EffectInfo& a, const EffectInfo& b) {
-  return std::find(a.twins.begin(), a.twins.end(), b.id) != a.twins.end() ||
-         std::find(b.twins.begin(), b.twins.end(), a.id) != b.twins.end();
 }
 
 void give_probabilities(const Search& search, const Fitted& parent, Round& round) {
@@ -85,6 +75,16 @@ void give_probabilities(const Search& search, const Fitted& parent, Round& round
 }
 
 }  // namespace
+
+double merit_of(const Contender& c, bool has_holdout) {
+  const double gain = gain_of(c, has_holdout);
+  return gain - kPerNumber * std::max(0, numbers(c) - 1) * std::abs(gain);
+}
+
+bool listed_twins(const EffectInfo& a, const EffectInfo& b) {
+  return std::find(a.twins.begin(), a.twins.end(), b.id) != a.twins.end() ||
+         std::find(b.twins.begin(), b.twins.end(), a.id) != b.twins.end();
+}
 
 double likeness(const Screened& a, const Screened& b) {
   if (a.signal.size() == 0 || a.signal.size() != b.signal.size()) return 0.0;
@@ -125,7 +125,7 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
     equals.push_back(c);
     const Contender& leader = round.contenders[first];
     const bool simpler = left < kSameLeft && numbers(other) < numbers(leader) && equals.size() <= kMostTwins;
-    if (marked(other) || (simpler && !marked(leader))) first = c;
+    if ((same || twin) && (marked(other) || (simpler && !marked(leader)))) first = c;
   }
   while (equals.size() > kMostTwins) equals.erase(equals.back() == first ? equals.end() - 2 : equals.end() - 1);
   std::rotate(round.contenders.begin(), round.contenders.begin() + static_cast<std::ptrdiff_t>(first),

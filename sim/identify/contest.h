@@ -14,6 +14,13 @@ namespace omnihil {
 
 void settle(const Search& search, const Fitted& parent, Round& round);
 
+// The gain that decides (held-out runs and fit runs alike; without held-out runs the latter), less a little for every
+// further number: a law of many numbers bends to what it does not mean.
+double merit_of(const Contender& c, bool has_holdout);
+
+// Does either one's page name the other?
+bool listed_twins(const EffectInfo& a, const EffectInfo& b);
+
 // Cosine between the signals of two screened effects, both beside the base parameters.
 double likeness(const Screened& a, const Screened& b);
 

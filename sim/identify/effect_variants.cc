@@ -129,7 +129,7 @@ double visible_size(const EffectParam& row, const Candidate& candidate) {
   if (row.start_for == nullptr)
     return (row.typical - row.neutral) * param_range(row, candidate.file.linear).scale;
   const DriveParams<double> drive = drive_of(candidate);
-  return row.start_for(drive) - row.neutral;
+  return start_of(row, &drive) - row.neutral;
 }
 
 std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate& candidate,
@@ -155,7 +155,7 @@ std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate
       add_columns(info, row, candidate, v);
     }
   }
-  if (info.place == Place::kShaft) add_stiffer(variants);
+  if (info.params[first_strength(info)].unit == "rad/(N m)") add_stiffer(variants);
   return variants;
 }
 

@@ -15,19 +15,15 @@ namespace {
 constexpr double kMatters = 0.03;
 // More where the sensors' noise is most of what is left: a gain of a few per cent of noise is no effect.
 constexpr double kMattersAtFloor = 0.05;
-constexpr double kChanceMargin = 2.0;  // gain over the most that the null's replicates gave
+constexpr double kChanceMargin = 2.0;  // gain over what chance gives (addition_round.cc)
 constexpr double kPlain = 0.3;         // of the held-out error energy
-constexpr double kSeen = 0.015;        // fall of some signal's error energy, noise included
+constexpr double kSeen = 0.015;        // change of some signal's error energy, noise included, that one sees
 // ... or of the whitened: a coarse encoder hides from the eye what its count still tells
 constexpr double kSeenWhitened = 0.1;
 constexpr double kExtrapolationLoss = 0.03;
 // ... unless what is left of the held-out energy times the rise is below this: where two effects made up for
 // each other, the first one to come in raises the error of the motion that they did so in.
 constexpr double kOutweighed = 0.5;
-// A base parameter that is bent beyond kBent_sigmas stands for something: what lets it come back within this, at
-// no more error, has a better claim.
-constexpr double kStraight_sigmas = 2.0;
-constexpr double kNoMore = 0.01;  // of the held-out error energy
 
 // The largest relative fall of one signal's error energy, as somebody sees it who looks at the signal.
 double gain_as_seen(const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {
@@ -59,19 +55,20 @@ double extrapolation_rise(const JudgeContext& context, const Fitted& parent, con
                           const UseGain& gain) {
   const Evidence& evidence = (*context.uses)[2];
   if (evidence.empty() || gain.best <= 1.0) return 0.0;
-  const Eigen::VectorXd weights = weights_for(evidence, *context.null, parent.residual[2], child.residual[2]);
-  if (gain_as_seen(child.as_seen[2], parent.as_seen[2]) < kSeen) return 0.0;
+  const bool known_as_seen = child.as_seen[2].size() > 0 && parent.as_seen[2].size() > 0;
+  if (known_as_seen && gain_as_seen(child.as_seen[2], parent.as_seen[2]) < kSeen) return 0.0;
   return std::min(gain.ratio - 1.0,
                   rise_above_null(evidence, *context.null, parent.residual[2], child.residual[2]));
 }
 
 // Why an addition that gains little is believed all the same; empty: it is not.
 std::string straightens(const Fitted& parent, const Fitted& child, const Judgement& gains, double held_ratio) {
-  const Bend before = bend_of(parent.fit), after = bend_of(child.fit);
-  if (before.sigmas < kBent_sigmas || after.sigmas > kStraight_sigmas) return "";
+  if (!straightened(parent.fit, child.fit)) return "";
   if (held_ratio > 1.0 + kNoMore || gains.fit.ratio > 1.0 + kNoMore) return "";
-  return fmt::format("{} comes back to what the model file says ({:.1f} of its tolerances off without it), at no more error",
-                     before.path, before.sigmas);
+  const Bend before = bend_of(parent.fit);
+  return fmt::format(
+      "{} comes back to what the model file says ({:.1f} of its tolerances off without it), at no more error",
+      before.path, before.sigmas);
 }
 
 }  // namespace

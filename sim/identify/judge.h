@@ -40,7 +40,7 @@ struct JudgeContext {
   double rate_Hz = 0.0;  // of the samples; 0: not known
 };
 
-// `null_gain_ratio`: the screening's gain over the most that chance gave (above 1: more than chance).
+// `gain_over_chance`: the screening's gain over what the simulated null's replicates gave.
 Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted& child,
                 const std::string& name, double gain_over_chance);
 

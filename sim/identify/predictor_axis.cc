@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "sim/core/effect_registry.h"
 #include "sim/core/random.h"
 #include "sim/drive/axis_model.h"
 #include "sim/identify/axis_outputs.h"
@@ -74,6 +76,7 @@ class AxisPredictor : public Predictor {
       setups_.push_back(make_axis_setup(*dataset_, *nominal_, run));
       if (!options_.slave_angle) setups_.back().input.measured_position_rad.clear();
     }
+    find_counted_speed();
     share_noise();
     choose_step();
   }
@@ -85,13 +88,7 @@ class AxisPredictor : public Predictor {
   std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
     return axis_regimes(setup(n), with_known(candidate, run(n).known), step_for(candidate));
   }
-  bool carries_mark_of(const EffectEntry& effect) const override {
-    const auto is_counted = [](const ComparedSignal& c) { return c.counted.window_s > 0.0; };
-    return effect.info->id == "hall_speed_estimator" &&
-           std::any_of(setups_.begin(), setups_.end(), [&](const AxisSetup& s) {
-             return std::any_of(s.compared.begin(), s.compared.end(), is_counted);
-           });
-  }
+  bool carries_mark_of(const EffectEntry& effect) const override { return counter_ == &effect; }
   std::string applies(const EffectEntry& entry) const override {
     return axis_effect_refusal(entry, *dataset_, *nominal_);
   }
@@ -233,6 +230,46 @@ class AxisPredictor : public Predictor {
     }
   }
 
+  // A measured speed that was counted from pulses was so in all runs: decided on all readings together.
+  void find_counted_speed() {
+    const DriveParams<double> drive = drive_of(*nominal_);
+    if (drive.pole_pairs <= 0 || drive.linear) return;
+    std::vector<ComparedSignal*> speeds;
+    std::vector<double> readings;
+    double quantum = 0.0, period_s = 0.0;
+    for (AxisSetup& s : setups_) {
+      for (std::size_t c = 0; c < s.compared.size(); ++c) {
+        if (s.steady || s.method != Method::kForward || s.outputs[c] != AxisOutput::kVelocity) continue;
+        ComparedSignal& signal = s.compared[c];
+        speeds.push_back(&signal);
+        readings.push_back(std::numeric_limits<double>::quiet_NaN());
+        readings.insert(readings.end(), signal.measured.begin(), signal.measured.end());
+        if (signal.quantum > 0.0) quantum = quantum > 0.0 ? std::min(quantum, signal.quantum) : signal.quantum;
+        if (signal.time_s.size() > 1)
+          period_s = (signal.time_s.back() - signal.time_s.front()) / static_cast<double>(signal.time_s.size() - 1);
+      }
+    }
+    for (const EffectEntry* e : all_effects()) {
+      if ((e->info->claims & kCountsPulses) == 0) continue;
+      const double pulse_rad = 2.0 * std::numbers::pi / e->info->params[0].start_for(drive) / drive.gear_ratio;
+      CountedSpeed counted = counted_speed(readings, quantum, period_s, pulse_rad);
+      if (counted.window_s <= 0.0) continue;
+      counter_ = e;
+      for (ComparedSignal* s : speeds) {
+        // what is stated of the sensor is on top of the count
+        const double rounding = s->quantum / std::sqrt(12.0);
+        counted.sensor_sigma =
+            s->noise_is_stated ? std::sqrt(std::max(0.0, s->noise_sigma * s->noise_sigma - rounding * rounding)) : 0.0;
+        s->counted = counted;
+        s->noise_is_stated = true;  // by the pulses
+        s->noise_sigma = std::hypot(counted.noise_sigma(), counted.sensor_sigma);
+        s->whitening_s = kWhitening_s;
+        s->whitened_sigma = std::hypot(counted.integrated_sigma_rad(),
+                                       counted.sensor_sigma * std::sqrt(0.5 * kWhitening_s * period_s));
+      }
+    }
+  }
+
   // A signal has one noise in all runs: where it is not stated, the runs' median.
   void share_noise() {
     std::vector<std::pair<std::string, std::vector<double>>> sizes;
@@ -332,6 +369,7 @@ class AxisPredictor : public Predictor {
       const std::vector<double> pattern = signal.measured;
       if (signal.counted.window_s > 0.0) {
         add_counting_noise(signal.counted, signal.time_s, p.values[c], uniform(seed, stream, 1u << 30));
+        for (std::size_t k = 0; k < p.values[c].size(); ++k) p.values[c][k] += signal.counted.sensor_sigma * draw(k);
       } else if (signal.whitening_s > 0.0) {
         differenced_noise(s, signal, p.values[c], uniform(seed, stream, 1u << 30), draw);
       } else if (s.method == Method::kInverse && !s.steady && !s.filter.sections.empty()) {
@@ -369,17 +407,25 @@ class AxisPredictor : public Predictor {
     return p;
   }
 
-  // With what effects draw by chance; the seed goes again. A counted speed has the noise of its own count, however
-  // the truth says that it is made.
+  // With what effects draw by chance; the seed goes again. A counted speed has the noise of its own count, not also
+  // that of the effect that made it.
   Prediction as_drawn(const Candidate& truth, int n) {
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     Prediction p = predict(truth, n);
+    Candidate others = truth;
+    const bool counts = std::erase_if(others.effects, [&](const EffectUse& u) { return u.entry == counter_; }) > 0;
+    if (!counts) {
+      s.input.noise_seed.reset();
+      return p;
+    }
+    // what the others draw, and the window's lag
+    const Prediction drawn = predict(others, n);
     s.input.noise_seed.reset();
-    const auto is_counted = [](const ComparedSignal& c) { return c.counted.window_s > 0.0; };
-    if (std::none_of(s.compared.begin(), s.compared.end(), is_counted)) return p;
-    Prediction quiet = predict(truth, n);
+    const Prediction still = predict(others, n), lagging = predict(truth, n);
     for (std::size_t c = 0; c < s.compared.size(); ++c) {
-      if (is_counted(s.compared[c])) p.values[c] = std::move(quiet.values[c]);
+      if (s.compared[c].counted.window_s <= 0.0) continue;
+      for (std::size_t k = 0; k < p.values[c].size(); ++k)
+        p.values[c][k] = lagging.values[c][k] + drawn.values[c][k] - still.values[c][k];
     }
     return p;
   }
@@ -430,6 +476,7 @@ class AxisPredictor : public Predictor {
   PredictOptions options_;
   std::vector<AxisSetup> setups_;
   double step_s_ = 100e-6;
+  const EffectEntry* counter_ = nullptr;  // the effect that made a counted speed; null: none did
 };
 
 }  // namespace

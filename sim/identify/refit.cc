@@ -100,6 +100,7 @@ Fitted undetermined_stay(const RefitSetup& setup, const Fitted& parent, Fitted c
     FitResult fit = child.fit;
     fit.model = with_values(fit.model, {&as_fitted.fit.unknowns[i], 1}, {&*was, 1});
     fit.parameters[i].value = *was;
+    if (p.prior_sigma > 0.0) fit.parameters[i].drift_sigmas = (*was - p.prior_mean) / p.prior_sigma;
     Fitted stayed = fitted(*setup.uses, *setup.seen, std::move(fit), setup.jobs);
     const Evidence& evidence = (*setup.uses)[0];
     if (stayed.finite && energy_ratio(evidence, as_fitted.residual[0], stayed.residual[0]) <= kFree)
@@ -143,7 +144,9 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   const auto also_from = [&](const Candidate& start) {
     Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
     const double next_ratio = fit_ratio(setup, parent, next);
-    if (next_ratio >= ratio) return;
+    const bool comes_back = next_ratio <= 1.0 + kNoMore && next_ratio <= ratio + kNoMore &&
+                            straightened(parent.fit, next.fit) && !straightened(parent.fit, best.fit);
+    if (next_ratio >= ratio && !comes_back) return;
     best = std::move(next);
     ratio = next_ratio;
   };
@@ -164,7 +167,8 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
     if (rugged && !stopped()) also_from(with_strength_times(best.fit.model, effect.name, factor));
   }
   best = undetermined_stay(setup, parent, std::move(best));
-  if (ratio > 1.0) {
+  const bool comes_back = ratio <= 1.0 + kNoMore && straightened(parent.fit, best.fit);
+  if (ratio > 1.0 && !comes_back) {
     // The parent, with the effect neutral, is a member of the larger family.
     FitResult same = parent.fit;
     best = {.fit = std::move(same),

@@ -104,6 +104,16 @@ Bend bend_of(const FitResult& fit) {
   return worst;
 }
 
+bool straightened(const FitResult& parent, const FitResult& child) {
+  const Bend before = bend_of(parent);
+  if (before.sigmas < kBent_sigmas || bend_of(child).sigmas > kStraight_sigmas) return false;
+  // Data may have ceased to determine it: where it stands counts all the same.
+  return std::any_of(child.parameters.begin(), child.parameters.end(), [&](const ParameterEstimate& p) {
+    return p.path == before.path &&
+           std::abs(p.value - p.prior_mean) <= kStraight_sigmas * p.prior_sigma;
+  });
+}
+
 std::string lost_in_the_clock(const FitResult& child, const std::string& name, double rate_Hz) {
   constexpr double kOfVisible = 0.05;
   const EffectEntry* entry = find_effect(name);

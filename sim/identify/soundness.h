@@ -19,8 +19,14 @@ struct Bend {
 };
 Bend bend_of(const FitResult& fit);
 
-// Above this a base parameter stands for something else: nobody's data sheet is that wrong.
+// Above kBent a base parameter stands for something else: nobody's data sheet is that wrong. What lets it come back
+// within kStraight, at no more error than kNoMore of its energy, has a claim to be what it stood for.
 inline constexpr double kBent_sigmas = 4.0;
+inline constexpr double kStraight_sigmas = 2.0;
+inline constexpr double kNoMore = 0.01;
+
+// Does the child hold what the parent bent most, and all else, within kStraight?
+bool straightened(const FitResult& parent, const FitResult& child);
 
 // Is an effect's time (a delay, an inductance) so far below what its page calls visible at this rate that a
 // model's sub-steps and a clock's last digits make as much? Empty: no.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "sim/core/effect_registry.h"
 
 namespace omnihil {
@@ -15,8 +17,12 @@ constexpr int kQuickIterations = 12;
 double rate_Hz(const Predictor& predictor) {
   for (int run = 0; run < predictor.run_count(); ++run) {
     for (const ComparedSignal& s : predictor.compared(run)) {
-      const double span_s = s.time_s.size() > 1 ? s.time_s.back() - s.time_s.front() : 0.0;
-      if (span_s > 0.0) return static_cast<double>(s.time_s.size() - 1) / span_s;
+      if (s.time_s.size() < 2) continue;
+      std::vector<double> period_s;
+      for (std::size_t k = 1; k < s.time_s.size(); ++k) period_s.push_back(s.time_s[k] - s.time_s[k - 1]);
+      const auto middle = period_s.begin() + static_cast<std::ptrdiff_t>(period_s.size() / 2);
+      std::nth_element(period_s.begin(), middle, period_s.end());
+      if (*middle > 0.0) return 1.0 / *middle;
     }
   }
   return 0.0;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "sim/core/random.h"
+
 namespace omnihil {
 namespace {
 
@@ -29,21 +31,51 @@ std::vector<double> counted(std::size_t n) {
 }
 
 TEST(CountedSpeed, IsKnownByItsStepAndTheMotorsPulses) {
-  const CountedSpeed c = counted_speed(counted(4000), kPulse_rad / kWindow_s, kPeriod_s, kPulse_rad);
+  const CountedSpeed c = counted_speed(counted(20000), kPulse_rad / kWindow_s, kPeriod_s, kPulse_rad);
   EXPECT_NEAR(c.window_s, kWindow_s, 1e-9);
   EXPECT_NEAR(c.noise_sigma(), kPulse_rad / kWindow_s / std::sqrt(6.0), 1e-9);
 }
 
-TEST(CountedSpeed, IsNotSeenWhereTheStepIsOfANumberFormat) {
-  std::vector<double> v = counted(4000);
-  for (std::size_t k = 0; k < v.size(); ++k) v[k] = 0.01 * std::round(100.0 * std::sin(0.01 * static_cast<double>(k)));
-  EXPECT_EQ(counted_speed(v, 0.01, kPeriod_s, kPulse_rad).window_s, 0.0);  // 15 s: nobody counts that long
+TEST(CountedSpeed, IsKnownWhereTheWindowIsHeld) {
+  std::vector<double> v = counted(20000);
+  for (std::size_t k = 0; k < v.size(); ++k) v[k] = v[k - k % 8];
+  EXPECT_NEAR(counted_speed(v, kPulse_rad / kWindow_s, kPeriod_s, kPulse_rad).window_s, kWindow_s, 1e-9);
+}
+
+TEST(CountedSpeed, IsNotSeenWithoutAStepOrPolePairs) {
+  const std::vector<double> v = counted(20000);
   EXPECT_EQ(counted_speed(v, 0.0, kPeriod_s, kPulse_rad).window_s, 0.0);
-  EXPECT_EQ(counted_speed(v, 0.01, kPeriod_s, 0.0).window_s, 0.0);  // pole pairs not known
+  EXPECT_EQ(counted_speed(v, kPulse_rad / kWindow_s, kPeriod_s, 0.0).window_s, 0.0);
+}
+
+// The same motion, differenced from an encoder whose count over a sample is a Hall pulse over 10 and 48 ms.
+TEST(CountedSpeed, IsNotSeenInTheDifferencesOfAnEncoder) {
+  for (const double counts_per_pulse : {10.0, 48.0}) {
+    const double count_rad = kPulse_rad / counts_per_pulse, step = count_rad / kPeriod_s;
+    std::vector<double> v(20000, 0.0);
+    const auto counts = [&](std::size_t k) {
+      return std::floor(20.0 * (1.0 - std::cos(3.0 * static_cast<double>(k) * kPeriod_s)) / count_rad);
+    };
+    for (std::size_t k = 1; k < v.size(); ++k) v[k] = (counts(k) - counts(k - 1)) * step;
+    EXPECT_EQ(counted_speed(v, step, kPeriod_s, kPulse_rad).window_s, 0.0) << counts_per_pulse;
+  }
+}
+
+// ... and rounded to the very step that a window would make.
+TEST(CountedSpeed, IsNotSeenWhereTheStepIsOfANumberFormat) {
+  const double step = kPulse_rad / kWindow_s;
+  for (const double noise : {0.0, 1.0}) {
+    std::vector<double> v(20000);
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      const double speed = 60.0 * std::sin(3.0 * static_cast<double>(k) * kPeriod_s) + noise * step * gaussian(1, 2, k);
+      v[k] = step * std::round(speed / step);
+    }
+    EXPECT_EQ(counted_speed(v, step, kPeriod_s, kPulse_rad).window_s, 0.0) << noise;
+  }
 }
 
 TEST(CountedSpeed, IsNotSeenWhereReadingsLieBetweenTheSteps) {
-  std::vector<double> v = counted(4000);
+  std::vector<double> v = counted(20000);
   v[1234] += 0.3 * kPulse_rad / kWindow_s;
   EXPECT_EQ(counted_speed(v, kPulse_rad / kWindow_s, kPeriod_s, kPulse_rad).window_s, 0.0);
 }
