@@ -71,6 +71,22 @@ TEST_P(EveryEffect, HasBoundsAroundNeutralAndTypical) {
   }
 }
 
+// Of a drive like a watch's and of one like a car's: a model with it can be written and read again.
+TEST_P(EveryEffect, StartsWithinItsBoundsInAnyDrive) {
+  for (const double scale : {1e-4, 1.0, 1e4}) {
+    DriveParams<double> drive = small_drive();
+    drive.rotor_inertia_kg_m2 *= scale;
+    drive.load_inertia_kg_m2 *= scale;
+    drive.resistance_ohm /= scale;
+    for (const EffectUse& use : {typical_use(entry(), &drive), neutral_use(entry(), &drive)}) {
+      for (std::size_t i = 0; i < use.values.size(); ++i) {
+        EXPECT_GE(use.values[i], info().params[i].lower) << info().params[i].name << ", scale " << scale;
+        EXPECT_LE(use.values[i], info().params[i].upper) << info().params[i].name << ", scale " << scale;
+      }
+    }
+  }
+}
+
 TEST_P(EveryEffect, StaysFiniteAtItsBounds) {
   for (std::size_t i = 0; i < info().params.size(); ++i) {
     for (const double bound : {info().params[i].lower, info().params[i].upper}) {
