@@ -121,7 +121,8 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
     const bool alike = likeness(best.screened, other.screened) > kTwinSignal;
     const bool same = lost < kSameGain && left < kSameLeft;
     const bool twin = lost < kTwinGain && ((confused && left < kListedLeft) || (alike && left < kTwinLeft));
-    if (!same && !twin && other.probability < kUndecided) continue;
+    const bool undecided = other.probability >= kUndecided && left < kTwinLeft;
+    if (!same && !twin && !undecided) continue;
     equals.push_back(c);
     const Contender& leader = round.contenders[first];
     const bool simpler = left < kSameLeft && numbers(other) < numbers(leader) && equals.size() <= kMostTwins;

@@ -112,11 +112,7 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
   std::string against = unsound(parent.fit, child.fit, name, out.plain);
   if (against.empty()) against = lost_in_the_clock(child.fit, name, context.rate_Hz);
-  if (std::string why = straightens(parent, child, out, held.ratio);
-      !why.empty() && rise <= kExtrapolationLoss && against.empty()) {
-    out.accepted = true;
-    out.why = std::move(why);
-  } else if (gain_over_chance < kChanceMargin) {
+  if (gain_over_chance < kChanceMargin) {
     out.why =
         fmt::format("its gain is {:.1f} times what chance gives in the simulated null", gain_over_chance);
   } else if (1.0 - out.fit.ratio < 0.5 * kMatters) {
@@ -141,6 +137,11 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
   } else if (out.why = against; out.why.empty()) {
     out.accepted = true;
     out.why = fmt::format("held-out error energy falls by {:.1f} %", 100.0 * (1.0 - held.ratio));
+  }
+  if (out.accepted || rise > kExtrapolationLoss || !against.empty()) return out;
+  if (std::string why = straightens(parent, child, out, held.ratio); !why.empty()) {
+    out.accepted = true;
+    out.why = std::move(why);
   }
   return out;
 }

@@ -118,6 +118,15 @@ TEST(ContestTest, WhatSomeDrawsPreferIsATwin) {
   EXPECT_EQ(ring.twins(), std::vector<std::string>{"back_emf_missing"});
 }
 
+TEST(ContestTest, WhatLeavesTwiceAsMuchIsNoTwinWhateverTheDraws) {
+  Ring ring;
+  ring.enter("constant_load", Ring::leaving(0.10, 0.30));
+  ring.enter("back_emf_missing", Ring::leaving(0.80, 0.09));
+  EXPECT_EQ(ring.winner(), "constant_load");
+  EXPECT_GT(ring.round.contenders[1].probability, 0.0);
+  EXPECT_TRUE(ring.twins().empty());
+}
+
 TEST(ContestTest, NamesThreeThatCannotBeToldApartAndNoMore) {
   Ring ring;
   ring.fake.mark = "shaft_compliance";
