@@ -56,8 +56,8 @@ struct EffectParam {
   double prior_scale = 0.0;
   std::string_view what;  // one line
   std::string_view how;   // how to measure it
-  // Start value of a shape, visible size of a strength, from the motor at hand (a cogging order from poles and
-  // slots, the compliance that rings at some frequency); null: `typical`.
+  // Start value of a shape, visible size of a strength, from the motor at hand (a cogging order from poles
+  // and slots, the compliance that rings at some frequency); null: `typical`.
   double (*start_for)(const DriveParams<double>&) = nullptr;
 };
 

@@ -25,8 +25,8 @@ struct EffectUse {
   std::shared_ptr<const void> owner;  // keeps alive what `entry` points into where it was made at run time
 };
 
-// Where a shape starts, which size of a strength is visible, within its bounds; of a linear axis only where it is a
-// speed or the drive is asked (a force: param_range).
+// Where a shape starts, which size of a strength is visible, within its bounds; of a linear axis only where
+// it is a speed or the drive is asked (a force: param_range).
 double start_of(const EffectParam& row, const DriveParams<double>* drive);
 // With every strength at its neutral value and every shape at its start.
 EffectUse neutral_use(const EffectEntry& entry, const DriveParams<double>* drive = nullptr);

@@ -114,8 +114,9 @@ std::string effect_page(const EffectEntry& entry) {
   const DriveParams<double> drive = demonstration_drive();
   const std::vector<EffectUse> uses{typical_use(entry, &drive)};
   const EffectParam& row = info.params[first_strength(info)];
-  out += fmt::format("## In a model file\n\n```toml{}```\n\nOn a command line: `--with {}.{}={:g}`\n",
-                     write_effects(uses, false), info.id, row.name, uses.front().values[first_strength(info)]);
+  out +=
+      fmt::format("## In a model file\n\n```toml{}```\n\nOn a command line: `--with {}.{}={:g}`\n",
+                  write_effects(uses, false), info.id, row.name, uses.front().values[first_strength(info)]);
   return out;
 }
 

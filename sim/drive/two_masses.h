@@ -1,10 +1,11 @@
-// Rotor and output as two masses with a spring between: what their mode's frequency and loss say of the spring.
+// Rotor and output as two masses with a spring between: what their mode's frequency and loss say of the
+// spring.
 //
 //   double c = mode_compliance_rad_per_Nm(drive, 150.0);         // 0: one of the masses is nothing
 //   double d = mode_damping_Nm_s_per_rad(drive, 150.0, 0.5);
 //
-// At the output; both masses against each other, nothing held. Source: Meirovitch, Fundamentals of Vibrations,
-// 2001. Limits: one spring, one mode.
+// At the output; both masses against each other, nothing held. Source: Meirovitch, Fundamentals of
+// Vibrations, 2001. Limits: one spring, one mode.
 #pragma once
 #include <numbers>
 

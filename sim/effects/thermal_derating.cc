@@ -9,14 +9,15 @@ namespace {
 
 struct ThermalDerating {
   enum Param { kDrop, kAbove, kFull };
-  static constexpr double kAmbient_degC = 25.0;  // to which temperature rises refer; data sheets' ambient
+  static constexpr double kAmbient_degC = 25.0;   // to which temperature rises refer; data sheets' ambient
   static constexpr double kFullTypical_A = 20.0;  // peak current of a 50 W drive; estimate
-  // The largest current that a drive draws from rest: firmware that limits it has its limit about there or below.
+  // The largest current that a drive draws from rest: firmware that limits it has its limit about there or
+  // below.
   static double stall_current_of(const DriveParams<double>& drive) {
     const bool known = drive.resistance_ohm > 0.0 && drive.supply_voltage_V > 0.0;
     return known ? drive.supply_voltage_V / drive.resistance_ohm : kFullTypical_A;
   }
-  static constexpr double kLeastShare = 0.05;    // of the limit that remains; our choice, so that it exists
+  static constexpr double kLeastShare = 0.05;   // of the limit that remains; our choice, so that it exists
   static constexpr double kFallsOver_K = 50.0;  // full current to none: estimate, of 20 to 50 K and more
   static double drop_of(const DriveParams<double>& drive) { return stall_current_of(drive) / kFallsOver_K; }
 

@@ -112,8 +112,8 @@ void refit_nominees(const Search& search, const Fitted& parent, const std::vecto
                      .seed = search.seed,
                      .stop = [&] { return stopped.load(); }};
     c.fitted = refit(setup, parent, c.screened);
-    c.judgement = judge(search.judging, parent, c.fitted, c.screened.name,
-                        over_chance(c.screened, round.chance_gain));
+    c.judgement =
+        judge(search.judging, parent, c.fitted, c.screened.name, over_chance(c.screened, round.chance_gain));
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (search.progress && !search.progress("refitting " + c.screened.name, share)) stopped = true;
   });
@@ -235,7 +235,8 @@ Round addition_round(const Search& search, const Fitted& parent) {
   Round round = screening_round(search, parent, not_yet(search, parent.fit.model));
   round.stopped = search.progress && !search.progress("screening", 0.5);
   if (!round.stopped) refit_nominees(search, parent, nominees(round.screened, *search.predictor), round);
-  if (!round.stopped) refit_nominees(search, parent, twins_of_leader(round, !(*search.uses)[1].empty()), round);
+  if (!round.stopped)
+    refit_nominees(search, parent, twins_of_leader(round, !(*search.uses)[1].empty()), round);
   settle(search, parent, round);
   make_ranking(search, parent, round);
   return round;

@@ -17,8 +17,10 @@ constexpr double kListedLeft =
     20.0;  // effects that are known to be confused: their forms differ from the truth's
 constexpr double kTwinSignal = 0.98;  // cosine of signals that no refit can part
 constexpr double kNothing = 0.01;     // gain below which a draw goes to "none"
-constexpr double kLeastToPart = 0.03;  // of the error energy: smaller gains are told apart as if they were this
-constexpr double kUndecided = 0.1;    // share of the bootstrap's draws that an effect wins: it may be meant instead
+constexpr double kLeastToPart =
+    0.03;  // of the error energy: smaller gains are told apart as if they were this
+constexpr double kUndecided =
+    0.1;  // share of the bootstrap's draws that an effect wins: it may be meant instead
 constexpr std::size_t kMostTwins = 3;
 
 int numbers(const Contender& c) {
@@ -105,8 +107,11 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
   const double most = gain_of(best, has_holdout);
   const double floor = floor_of(best, has_holdout);
   std::vector<std::size_t> equals{0};
-  const auto marked = [&](const Contender& c) { return search.predictor->carries_mark_of(*c.screened.entry); };
-  // Of those that leave the same, the one whose mark the readings carry, else the one with the fewest numbers.
+  const auto marked = [&](const Contender& c) {
+    return search.predictor->carries_mark_of(*c.screened.entry);
+  };
+  // Of those that leave the same, the one whose mark the readings carry, else the one with the fewest
+  // numbers.
   std::size_t first = 0;
   for (std::size_t c = 1; c < round.contenders.size(); ++c) {
     const Contender& other = round.contenders[c];
@@ -128,7 +133,8 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
     const bool simpler = left < kSameLeft && numbers(other) < numbers(leader) && equals.size() <= kMostTwins;
     if ((same || twin) && (marked(other) || (simpler && !marked(leader)))) first = c;
   }
-  while (equals.size() > kMostTwins) equals.erase(equals.back() == first ? equals.end() - 2 : equals.end() - 1);
+  while (equals.size() > kMostTwins)
+    equals.erase(equals.back() == first ? equals.end() - 2 : equals.end() - 1);
   std::rotate(round.contenders.begin(), round.contenders.begin() + static_cast<std::ptrdiff_t>(first),
               round.contenders.begin() + static_cast<std::ptrdiff_t>(first) + 1);
   round.chosen = 0;

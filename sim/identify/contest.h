@@ -14,8 +14,8 @@ namespace omnihil {
 
 void settle(const Search& search, const Fitted& parent, Round& round);
 
-// The gain that decides (held-out runs and fit runs alike; without held-out runs the latter), less a little for every
-// further number: a law of many numbers bends to what it does not mean.
+// The gain that decides (held-out runs and fit runs alike; without held-out runs the latter), less a little
+// for every further number: a law of many numbers bends to what it does not mean.
 double merit_of(const Contender& c, bool has_holdout);
 
 // Does either one's page name the other?

@@ -11,12 +11,13 @@ constexpr double kFewestPeriods = 2;  // shorter, the reading is the difference 
 constexpr double kOffStep = 0.02;     // of a step: digits that a file was written with
 constexpr int kFewestSteps = 3;       // different readings
 
-// A window that slides changes its reading by each pulse that comes in and by each that goes out, and by nothing else:
-// 2 |omega| T / pulse changes per sample of T where the motion is slow and even, less those where both fall into one
-// sample (a quarter, measured on simulated Halls: 0.72 to 0.83 remain). A speed differenced from an encoder flickers
-// at every sample (1.0 to 2.4), one rounded to a number format where its noise or its course will have it.
+// A window that slides changes its reading by each pulse that comes in and by each that goes out, and by
+// nothing else: 2 |omega| T / pulse changes per sample of T where the motion is slow and even, less those
+// where both fall into one sample (a quarter, measured on simulated Halls: 0.72 to 0.83 remain). A speed
+// differenced from an encoder flickers at every sample (1.0 to 2.4), one rounded to a number format where its
+// noise or its course will have it.
 bool slides(const std::vector<double>& values, double step, double window_samples) {
-  constexpr double kLeast = 0.6, kMost = 0.9;      // of the changes that are expected
+  constexpr double kLeast = 0.6, kMost = 0.9;        // of the changes that are expected
   constexpr double kSlowest = 0.05, kFastest = 0.6;  // changes per sample
   constexpr double kUneven = 0.5;
   constexpr double kFewest = 100.0;

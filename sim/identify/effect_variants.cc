@@ -160,7 +160,7 @@ std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate
 }
 
 std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& candidate,
-                                          const DataScale& scale) {
+                                         const DataScale& scale) {
   std::vector<EffectVariant> variants;
   const EffectInfo& info = *use.entry->info;
   const bool series = info.id == "cogging";

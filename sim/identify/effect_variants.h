@@ -49,7 +49,7 @@ std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate
 // Further strengths (details) of an effect that the candidate has: harmonics of cogging, the housing behind a
 // winding. `shape` is the use as it is in the candidate.
 std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& candidate,
-                                          const DataScale& scale);
+                                         const DataScale& scale);
 
 // Cogging of several orders at once: order = their greatest common divisor, one harmonic each.
 // Empty where there are fewer than two orders, or their common divisor is too small for the harmonics there

@@ -62,7 +62,8 @@ double extrapolation_rise(const JudgeContext& context, const Fitted& parent, con
 }
 
 // Why an addition that gains little is believed all the same; empty: it is not.
-std::string straightens(const Fitted& parent, const Fitted& child, const Judgement& gains, double held_ratio) {
+std::string straightens(const Fitted& parent, const Fitted& child, const Judgement& gains,
+                        double held_ratio) {
   if (!straightened(parent.fit, child.fit)) return "";
   if (held_ratio > 1.0 + kNoMore || gains.fit.ratio > 1.0 + kNoMore) return "";
   const Bend before = bend_of(parent.fit);

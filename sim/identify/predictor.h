@@ -44,7 +44,7 @@ struct ComparedSignal {
   std::vector<double> measured;  // NaN: not measured, or left out (said in `left_out`)
   double noise_sigma = 0.0;      // per sample, after the chain's own filters: stated, or estimated
   bool noise_is_stated = false;
-  double quantum = 0.0;  // of a counting sensor, in the signal's unit; 0: none
+  double quantum = 0.0;    // of a counting sensor, in the signal's unit; 0: none
   CountedSpeed counted{};  // of a speed that is pulses over a window
   // The noise of differenced counts or positions is blue: successive errors cancel. See whitened().
   double whitening_s = 0.0;     // 0: the noise is white as it is

@@ -244,14 +244,17 @@ class AxisPredictor : public Predictor {
         speeds.push_back(&signal);
         readings.push_back(std::numeric_limits<double>::quiet_NaN());
         readings.insert(readings.end(), signal.measured.begin(), signal.measured.end());
-        if (signal.quantum > 0.0) quantum = quantum > 0.0 ? std::min(quantum, signal.quantum) : signal.quantum;
+        if (signal.quantum > 0.0)
+          quantum = quantum > 0.0 ? std::min(quantum, signal.quantum) : signal.quantum;
         if (signal.time_s.size() > 1)
-          period_s = (signal.time_s.back() - signal.time_s.front()) / static_cast<double>(signal.time_s.size() - 1);
+          period_s =
+              (signal.time_s.back() - signal.time_s.front()) / static_cast<double>(signal.time_s.size() - 1);
       }
     }
     for (const EffectEntry* e : all_effects()) {
       if ((e->info->claims & kCountsPulses) == 0) continue;
-      const double pulse_rad = 2.0 * std::numbers::pi / e->info->params[0].start_for(drive) / drive.gear_ratio;
+      const double pulse_rad =
+          2.0 * std::numbers::pi / e->info->params[0].start_for(drive) / drive.gear_ratio;
       CountedSpeed counted = counted_speed(readings, quantum, period_s, pulse_rad);
       if (counted.window_s <= 0.0) continue;
       counter_ = e;
@@ -259,7 +262,9 @@ class AxisPredictor : public Predictor {
         // what is stated of the sensor is on top of the count
         const double rounding = s->quantum / std::sqrt(12.0);
         counted.sensor_sigma =
-            s->noise_is_stated ? std::sqrt(std::max(0.0, s->noise_sigma * s->noise_sigma - rounding * rounding)) : 0.0;
+            s->noise_is_stated
+                ? std::sqrt(std::max(0.0, s->noise_sigma * s->noise_sigma - rounding * rounding))
+                : 0.0;
         s->counted = counted;
         s->noise_is_stated = true;  // by the pulses
         s->noise_sigma = std::hypot(counted.noise_sigma(), counted.sensor_sigma);
@@ -369,7 +374,8 @@ class AxisPredictor : public Predictor {
       const std::vector<double> pattern = signal.measured;
       if (signal.counted.window_s > 0.0) {
         add_counting_noise(signal.counted, signal.time_s, p.values[c], uniform(seed, stream, 1u << 30));
-        for (std::size_t k = 0; k < p.values[c].size(); ++k) p.values[c][k] += signal.counted.sensor_sigma * draw(k);
+        for (std::size_t k = 0; k < p.values[c].size(); ++k)
+          p.values[c][k] += signal.counted.sensor_sigma * draw(k);
       } else if (signal.whitening_s > 0.0) {
         differenced_noise(s, signal, p.values[c], uniform(seed, stream, 1u << 30), draw);
       } else if (s.method == Method::kInverse && !s.steady && !s.filter.sections.empty()) {
@@ -407,13 +413,14 @@ class AxisPredictor : public Predictor {
     return p;
   }
 
-  // With what effects draw by chance; the seed goes again. A counted speed has the noise of its own count, not also
-  // that of the effect that made it.
+  // With what effects draw by chance; the seed goes again. A counted speed has the noise of its own count,
+  // not also that of the effect that made it.
   Prediction as_drawn(const Candidate& truth, int n) {
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     Prediction p = predict(truth, n);
     Candidate others = truth;
-    const bool counts = std::erase_if(others.effects, [&](const EffectUse& u) { return u.entry == counter_; }) > 0;
+    const bool counts =
+        std::erase_if(others.effects, [&](const EffectUse& u) { return u.entry == counter_; }) > 0;
     if (!counts) {
       s.input.noise_seed.reset();
       return p;

@@ -154,8 +154,8 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   if (ratio > expected && !stopped()) also_from(with_use(parent.fit.model, near_neutral(effect.start)));
   if (ratio > expected && effect.share >= kWorthAThirdStart && !stopped())
     also_from(with_use(parent.fit.model, usual_size));
-  // A base that bent to imitate the effect holds it near nothing, or stays bent beside it: the two together from
-  // what is believed, the effect at its usual size or as it was found.
+  // A base that bent to imitate the effect holds it near nothing, or stays bent beside it: the two together
+  // from what is believed, the effect at its usual size or as it was found.
   const auto is_bent = [](const Fitted& f) { return bend_of(f.fit).sigmas > kBent_sigmas; };
   if (ratio > expected && effect.share >= kWorthAFourthStart && is_bent(parent) && !stopped())
     also_from(with_use(believed(parent.fit.model, *setup.nominal), usual_size));

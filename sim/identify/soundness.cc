@@ -98,8 +98,7 @@ Bend bend_of(const FitResult& fit) {
   for (const ParameterEstimate& p : fit.parameters) {
     if (p.prior_sigma <= 0.0 || !p.identifiable || find_effect(p.path.substr(0, p.path.find('.'))) != nullptr)
       continue;
-    if (std::abs(p.drift_sigmas) > worst.sigmas)
-      worst = {.sigmas = std::abs(p.drift_sigmas), .path = p.path};
+    if (std::abs(p.drift_sigmas) > worst.sigmas) worst = {.sigmas = std::abs(p.drift_sigmas), .path = p.path};
   }
   return worst;
 }
@@ -109,8 +108,7 @@ bool straightened(const FitResult& parent, const FitResult& child) {
   if (before.sigmas < kBent_sigmas || bend_of(child).sigmas > kStraight_sigmas) return false;
   // Data may have ceased to determine it: where it stands counts all the same.
   return std::any_of(child.parameters.begin(), child.parameters.end(), [&](const ParameterEstimate& p) {
-    return p.path == before.path &&
-           std::abs(p.value - p.prior_mean) <= kStraight_sigmas * p.prior_sigma;
+    return p.path == before.path && std::abs(p.value - p.prior_mean) <= kStraight_sigmas * p.prior_sigma;
   });
 }
 
@@ -124,8 +122,9 @@ std::string lost_in_the_clock(const FitResult& child, const std::string& name, d
   for (const ParameterEstimate& p : child.parameters) {
     if (p.path != name + "." + std::string(row.name)) continue;
     if (std::abs(p.value - row.neutral) >= kOfVisible * visible) continue;
-    return fmt::format("{} = {:.2g} {} is lost in the clock: at {:g} Hz such an effect is seen from {:.2g} {}", p.path,
-                       p.value, p.unit, rate_Hz, visible, p.unit);
+    return fmt::format(
+        "{} = {:.2g} {} is lost in the clock: at {:g} Hz such an effect is seen from {:.2g} {}", p.path,
+        p.value, p.unit, rate_Hz, visible, p.unit);
   }
   return "";
 }

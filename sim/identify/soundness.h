@@ -11,16 +11,17 @@
 
 namespace omnihil {
 
-// How far the base model is from what its file says: the largest drift of a parameter of motor, load or supply
-// that the data determine, in its tolerances.
+// How far the base model is from what its file says: the largest drift of a parameter of motor, load or
+// supply that the data determine, in its tolerances.
 struct Bend {
   double sigmas = 0.0;
   std::string path;
 };
 Bend bend_of(const FitResult& fit);
 
-// Above kBent a base parameter stands for something else: nobody's data sheet is that wrong. What lets it come back
-// within kStraight, at no more error than kNoMore of its energy, has a claim to be what it stood for.
+// Above kBent a base parameter stands for something else: nobody's data sheet is that wrong. What lets it
+// come back within kStraight, at no more error than kNoMore of its energy, has a claim to be what it stood
+// for.
 inline constexpr double kBent_sigmas = 4.0;
 inline constexpr double kStraight_sigmas = 2.0;
 inline constexpr double kNoMore = 0.01;

@@ -29,9 +29,7 @@ TEST(ThermalDerating, LeavesATighterLimitAsItIs) {
   EXPECT_NEAR(limit_at(75.0, 5.0, 4.0), 3.0, 1e-12);
 }
 
-TEST(ThermalDerating, LeavesATwentiethOfItsLimit) {
-  EXPECT_NEAR(limit_at(1000.0, 5.0, 100.0), 0.25, 1e-12);
-}
+TEST(ThermalDerating, LeavesATwentiethOfItsLimit) { EXPECT_NEAR(limit_at(1000.0, 5.0, 100.0), 0.25, 1e-12); }
 
 TEST(ThermalDerating, StartsAtTheStallCurrentOfTheModelFile) {
   DriveParams<double> drive;

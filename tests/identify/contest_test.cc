@@ -45,7 +45,8 @@ struct Ring {
     search.kinds = &kinds;
     search.uses = uses.get();
     search.null = &null;
-    search.judging = {.uses = uses.get(), .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
+    search.judging = {
+        .uses = uses.get(), .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
     parent = leaving(1.0, 1.0);
   }
 
@@ -77,7 +78,8 @@ struct Ring {
 
   std::vector<std::string> twins() const {
     std::vector<std::string> names;
-    for (const int t : round.twins) names.push_back(round.contenders[static_cast<std::size_t>(t)].screened.name);
+    for (const int t : round.twins)
+      names.push_back(round.contenders[static_cast<std::size_t>(t)].screened.name);
     return names;
   }
 };

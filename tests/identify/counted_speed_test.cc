@@ -67,7 +67,8 @@ TEST(CountedSpeed, IsNotSeenWhereTheStepIsOfANumberFormat) {
   for (const double noise : {0.0, 1.0}) {
     std::vector<double> v(20000);
     for (std::size_t k = 0; k < v.size(); ++k) {
-      const double speed = 60.0 * std::sin(3.0 * static_cast<double>(k) * kPeriod_s) + noise * step * gaussian(1, 2, k);
+      const double speed =
+          60.0 * std::sin(3.0 * static_cast<double>(k) * kPeriod_s) + noise * step * gaussian(1, 2, k);
       v[k] = step * std::round(speed / step);
     }
     EXPECT_EQ(counted_speed(v, step, kPeriod_s, kPulse_rad).window_s, 0.0) << noise;
@@ -84,7 +85,8 @@ TEST(CountedSpeed, IsNotSeenWhereReadingsLieBetweenTheSteps) {
 TEST(CountedSpeed, NoiseHasItsSizeAndItsIntegralIsBounded) {
   const CountedSpeed c{.window_s = kWindow_s, .pulse_rad = kPulse_rad};
   std::vector<double> v(20000);
-  for (std::size_t k = 0; k < v.size(); ++k) v[k] = 60.0 + 40.0 * std::sin(1.7 * static_cast<double>(k) * kPeriod_s);
+  for (std::size_t k = 0; k < v.size(); ++k)
+    v[k] = 60.0 + 40.0 * std::sin(1.7 * static_cast<double>(k) * kPeriod_s);
   const std::vector<double> truth = v;
   add_counting_noise(c, clock(v.size()), v, 0.37);
   double square = 0.0, sum = 0.0, most = 0.0;
@@ -103,7 +105,8 @@ TEST(CountedSpeed, NoiseOnTheMeanOverTheWindowIsTheReading) {
   const auto angle = [](double t) { return 20.0 * (1.0 - std::cos(3.0 * t)); };
   std::vector<double> speed(readings.size(), 0.0);
   for (std::size_t k = 1; k < speed.size(); ++k)
-    speed[k] = (angle(static_cast<double>(k) * kPeriod_s) - angle(static_cast<double>(k - 1) * kPeriod_s)) / kPeriod_s;
+    speed[k] = (angle(static_cast<double>(k) * kPeriod_s) - angle(static_cast<double>(k - 1) * kPeriod_s)) /
+               kPeriod_s;
   std::vector<double> noisy = speed;
   add_counting_noise({.window_s = kWindow_s, .pulse_rad = kPulse_rad}, clock(speed.size()), noisy, 0.0);
   for (std::size_t k = 8; k < speed.size(); ++k) {
