@@ -179,7 +179,7 @@ Candidate candidate_of(const ModelFile& robot) {
 }
 
 std::string effect_name(const EffectUse& use) {
-  const std::string id(use.entry->info->id);
+  std::string id(use.entry->info->id);
   if (use.name.empty() || use.name == id) return id;
   return use.name.starts_with(id + ".") ? use.name : id + "." + use.name;
 }

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
-#include "sim/core/effect_registry.h"
 #include "sim/core/random.h"
 #include "sim/drive/axis_model.h"
 #include "sim/identify/axis_outputs.h"
+#include "sim/identify/counted_setups.h"
 
 namespace omnihil {
 namespace {
@@ -66,7 +65,7 @@ bool is_hidden_delay(const Candidate& c, const Unknown& u) {
   return (info.numerics & kDelays) != 0 && static_cast<std::size_t>(u.row) == first_strength(info);
 }
 
-class AxisPredictor : public Predictor {
+class AxisPredictor final : public Predictor {
  public:
   AxisPredictor(const Dataset& dataset, const Candidate& nominal, const PredictOptions& options)
       : dataset_(std::make_shared<const Dataset>(dataset)),
@@ -76,7 +75,7 @@ class AxisPredictor : public Predictor {
       setups_.push_back(make_axis_setup(*dataset_, *nominal_, run));
       if (!options_.slave_angle) setups_.back().input.measured_position_rad.clear();
     }
-    find_counted_speed();
+    counter_ = find_counted_speed(setups_, drive_of(*nominal_));
     share_noise();
     choose_step();
   }
@@ -230,51 +229,6 @@ class AxisPredictor : public Predictor {
     }
   }
 
-  // A measured speed that was counted from pulses was so in all runs: decided on all readings together.
-  void find_counted_speed() {
-    const DriveParams<double> drive = drive_of(*nominal_);
-    if (drive.pole_pairs <= 0 || drive.linear) return;
-    std::vector<ComparedSignal*> speeds;
-    std::vector<double> readings;
-    double quantum = 0.0, period_s = 0.0;
-    for (AxisSetup& s : setups_) {
-      for (std::size_t c = 0; c < s.compared.size(); ++c) {
-        if (s.steady || s.method != Method::kForward || s.outputs[c] != AxisOutput::kVelocity) continue;
-        ComparedSignal& signal = s.compared[c];
-        speeds.push_back(&signal);
-        readings.push_back(std::numeric_limits<double>::quiet_NaN());
-        readings.insert(readings.end(), signal.measured.begin(), signal.measured.end());
-        if (signal.quantum > 0.0)
-          quantum = quantum > 0.0 ? std::min(quantum, signal.quantum) : signal.quantum;
-        if (signal.time_s.size() > 1)
-          period_s =
-              (signal.time_s.back() - signal.time_s.front()) / static_cast<double>(signal.time_s.size() - 1);
-      }
-    }
-    for (const EffectEntry* e : all_effects()) {
-      if ((e->info->claims & kCountsPulses) == 0) continue;
-      const double pulse_rad =
-          2.0 * std::numbers::pi / e->info->params[0].start_for(drive) / drive.gear_ratio;
-      CountedSpeed counted = counted_speed(readings, quantum, period_s, pulse_rad);
-      if (counted.window_s <= 0.0) continue;
-      counter_ = e;
-      for (ComparedSignal* s : speeds) {
-        // what is stated of the sensor is on top of the count
-        const double rounding = s->quantum / std::sqrt(12.0);
-        counted.sensor_sigma =
-            s->noise_is_stated
-                ? std::sqrt(std::max(0.0, s->noise_sigma * s->noise_sigma - rounding * rounding))
-                : 0.0;
-        s->counted = counted;
-        s->noise_is_stated = true;  // by the pulses
-        s->noise_sigma = std::hypot(counted.noise_sigma(), counted.sensor_sigma);
-        s->whitening_s = kWhitening_s;
-        s->whitened_sigma = std::hypot(counted.integrated_sigma_rad(),
-                                       counted.sensor_sigma * std::sqrt(0.5 * kWhitening_s * period_s));
-      }
-    }
-  }
-
   // A signal has one noise in all runs: where it is not stated, the runs' median.
   void share_noise() {
     std::vector<std::pair<std::string, std::vector<double>>> sizes;
@@ -333,7 +287,9 @@ class AxisPredictor : public Predictor {
         longest = std::max(longest, std::min(kLongestStep_s, s.input.time_s[1] - s.input.time_s[0]));
       }
     }
-    for (double h = longest; h > options_.step_s * 1.01; h *= 0.5) {
+    for (double next = longest; next > options_.step_s * 1.01;) {
+      const double h = next;
+      next *= 0.5;
       double worst = 0.0;
       int tried = 0;
       for (int n = 0; n < run_count() && tried < 4; ++n) {
