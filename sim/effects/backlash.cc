@@ -7,22 +7,15 @@
 namespace omnihil {
 namespace {
 
-constexpr double kContactMode_Hz = 150.0;  // both masses against each other: estimate, of shafts 20 to 200 Hz
-constexpr double kContactLoss = 0.5;       // of critical damping: guess, a factor of 3 either way
-
 struct Backlash {
   enum Param { kGap, kCompliance, kDamping };
-  static constexpr double kCompliance_rad_per_Nm = 0.03;  // kContactMode_Hz with 1.2e-4 and 4.6e-5 kg m2
-  static constexpr double kDamping_Nm_s_per_rad = 0.03;   // kContactLoss with the above
-
-  static double compliance_of(const DriveParams<double>& drive) {
-    const double compliance = mode_compliance_rad_per_Nm(drive, kContactMode_Hz);
-    return compliance > 0.0 ? compliance : kCompliance_rad_per_Nm;
-  }
-  static double damping_of(const DriveParams<double>& drive) {
-    const double damping = mode_damping_Nm_s_per_rad(drive, kContactMode_Hz, kContactLoss);
-    return damping > 0.0 ? damping : kDamping_Nm_s_per_rad;
-  }
+  // Both masses against each other: estimate, of shafts 20 to 200 Hz; loss a guess, a factor of 3 either way.
+  static constexpr TwoMassMode kContact{.frequency_Hz = 150.0,
+                                        .loss = 0.5,
+                                        .compliance_rad_per_Nm = 0.03,  // with 1.2e-4 and 4.6e-5 kg m2
+                                        .damping_Nm_s_per_rad = 0.03};
+  static double compliance_of(const DriveParams<double>& drive) { return kContact.compliance_of(drive); }
+  static double damping_of(const DriveParams<double>& drive) { return kContact.damping_of(drive); }
 
   static constexpr EffectParam kParams[] = {
       {.name = "gap_rad",
@@ -37,7 +30,7 @@ struct Backlash {
        .unit = "rad/(N m)",
        .role = ParamRole::kShape,
        .neutral = kNoNeutral,
-       .typical = kCompliance_rad_per_Nm,
+       .typical = kContact.compliance_rad_per_Nm,
        .lower = 0,
        .upper = 100,
        .what = "twist of flanks and shaft per torque, in contact, at the output",
@@ -47,7 +40,7 @@ struct Backlash {
        .unit = "N m s/rad",
        .role = ParamRole::kShape,
        .neutral = kNoNeutral,
-       .typical = kDamping_Nm_s_per_rad,
+       .typical = kContact.damping_Nm_s_per_rad,
        .lower = 0,
        .upper = 100,
        .what = "torque per rate of twist, in contact, at the output: how little it bounces",

@@ -7,24 +7,18 @@ namespace {
 
 struct ShaftCompliance {
   enum Param { kCompliance, kDamping };
-  static constexpr double kMode_Hz = 140.0;  // both masses against each other: estimate, of 20 to 200 Hz
-  static constexpr double kLoss = 0.1;       // of critical damping: guess, a factor of 3 either way
-  static constexpr double kCompliance_rad_per_Nm = 0.2;  // kMode_Hz with 9e-6 and 2e-5 kg m2
-  static constexpr double kDamping_Nm_s_per_rad = 1e-3;  // kLoss with the above
-
-  static double compliance_of(const DriveParams<double>& drive) {
-    const double compliance = mode_compliance_rad_per_Nm(drive, kMode_Hz);
-    return compliance > 0.0 ? compliance : kCompliance_rad_per_Nm;
-  }
-  static double damping_of(const DriveParams<double>& drive) {
-    const double damping = mode_damping_Nm_s_per_rad(drive, kMode_Hz, kLoss);
-    return damping > 0.0 ? damping : kDamping_Nm_s_per_rad;
-  }
+  // Both masses against each other: estimate, of 20 to 200 Hz; loss a guess, a factor of 3 either way.
+  static constexpr TwoMassMode kMode{.frequency_Hz = 140.0,
+                                     .loss = 0.1,
+                                     .compliance_rad_per_Nm = 0.2,  // with 9e-6 and 2e-5 kg m2
+                                     .damping_Nm_s_per_rad = 1e-3};
+  static double compliance_of(const DriveParams<double>& drive) { return kMode.compliance_of(drive); }
+  static double damping_of(const DriveParams<double>& drive) { return kMode.damping_of(drive); }
 
   static constexpr EffectParam kParams[] = {
       {.name = "compliance_rad_per_Nm",
        .unit = "rad/(N m)",
-       .typical = kCompliance_rad_per_Nm,
+       .typical = kMode.compliance_rad_per_Nm,
        .lower = 0,
        .upper = 100,
        .prior_scale = 0.5,
@@ -35,7 +29,7 @@ struct ShaftCompliance {
        .unit = "N m s/rad",
        .role = ParamRole::kShape,
        .neutral = kNoNeutral,
-       .typical = kDamping_Nm_s_per_rad,
+       .typical = kMode.damping_Nm_s_per_rad,
        .lower = 0,
        .upper = 100,
        .what = "torque per rate of twist, at the output",

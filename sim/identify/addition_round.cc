@@ -62,19 +62,20 @@ std::vector<const EffectEntry*> not_yet(const Search& search, const Candidate& m
 // readings carry.
 std::vector<std::size_t> nominees(const std::vector<Screened>& screened, const Predictor& predictor) {
   std::vector<std::size_t> order, out;
+  const auto marked = [&](std::size_t i) { return predictor.carries_mark_of(*screened[i].entry); };
   for (std::size_t i = 0; i < screened.size(); ++i) {
     const Screened& s = screened[i];
-    const bool above_chance = s.tried && s.gain > 2.0 * s.null_gain;
-    if (above_chance && (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare))
-      order.push_back(i);
+    const bool above_chance =
+        s.gain > 2.0 * s.null_gain && (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare);
+    if (s.tried && (above_chance || marked(i))) order.push_back(i);
   }
+  const auto rank = [&](std::size_t i) {
+    return std::pair(marked(i), screened[i].share);  // whose mark the readings carry comes before all
+  };
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return screened[a].share > screened[b].share; });
-  for (std::size_t i = 0; i < screened.size(); ++i) {
-    if (screened[i].tried && predictor.carries_mark_of(*screened[i].entry)) out.push_back(i);
-  }
+                   [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
   for (const std::size_t i : order) {
-    if (out.size() < kMostRefits - 1 && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
+    if (out.size() < kMostRefits - 1) out.push_back(i);
   }
   const auto corner = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return screened[a].best_regime_share < screened[b].best_regime_share;

@@ -36,15 +36,6 @@ std::vector<double> as_measured(const std::vector<double>* column, std::size_t f
   return out;
 }
 
-double median_period(const std::vector<double>& time_s) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
-  if (steps.empty()) return 0.0;
-  const auto mid = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), mid, steps.end());
-  return *mid;
-}
-
 // Speed at the first of the positions x(t), by a parabola through them (least squares). Zero where that is
 // within three of its standard errors and a tenth of the speed gained over the span: most records start at
 // rest.
@@ -176,7 +167,7 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
   if (first == command->end()) return r;
   r.first_row = static_cast<std::size_t>(first - command->begin());
   r.time_s = as_measured(&run.time_s, r.first_row);
-  r.period_s = median_period(r.time_s);
+  r.period_s = median_period_s(r.time_s);
   r.command = held(command, r.first_row);
   r.enable = held(run.signal("enable"), r.first_row);
   if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {

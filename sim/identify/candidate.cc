@@ -144,11 +144,13 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
     u.prior_mean = use.values[i];
     u.prior_sigma = tolerance * std::abs(use.values[i]);
   }
-  // Where the drive decides what is usual, it decides how far a belief reaches.
-  const DriveParams<double> drive = drive_of(candidate);
-  const double usual = row.start_for != nullptr ? start_of(row, &drive) : row.typical;
-  if (row.start_for != nullptr && row.typical != 0.0 && tolerance <= 0.0)
-    u.prior_sigma *= std::abs(usual / row.typical);
+  double usual = row.typical;
+  if (row.start_for != nullptr) {
+    // Where the drive decides what is usual, it decides how far a belief reaches.
+    const DriveParams<double> drive = drive_of(candidate);
+    usual = start_of(row, &drive);
+    if (row.typical != 0.0 && tolerance <= 0.0) u.prior_sigma *= std::abs(usual / row.typical);
+  }
   const double typical = row.role == ParamRole::kShape ? usual : usual - row.neutral;
   u.scale = std::abs(typical) * size;
   if (u.scale == 0.0)

@@ -52,6 +52,9 @@ struct Run {
   double duration_s() const { return time_s.empty() ? 0.0 : time_s.back() - time_s.front(); }
 };
 
+// 0: less than two samples.
+double median_period_s(const std::vector<double>& time_s);
+
 struct Dataset {
   std::string name;  // as it was asked for
   std::string title;

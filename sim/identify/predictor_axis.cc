@@ -373,18 +373,15 @@ class AxisPredictor final : public Predictor {
   // not also that of the effect that made it.
   Prediction as_drawn(const Candidate& truth, int n) {
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
-    Prediction p = predict(truth, n);
     Candidate others = truth;
     const bool counts =
         std::erase_if(others.effects, [&](const EffectUse& u) { return u.entry == counter_; }) > 0;
-    if (!counts) {
-      s.input.noise_seed.reset();
-      return p;
-    }
-    // what the others draw, and the window's lag
-    const Prediction drawn = predict(others, n);
+    Prediction p = predict(truth, n);
+    const Prediction drawn = counts ? predict(others, n) : Prediction{};
     s.input.noise_seed.reset();
-    const Prediction still = predict(others, n), lagging = predict(truth, n);
+    if (!counts) return p;
+    // the window's lag, and what the others draw
+    const Prediction lagging = predict(truth, n), still = predict(others, n);
     for (std::size_t c = 0; c < s.compared.size(); ++c) {
       if (s.compared[c].counted.window_s <= 0.0) continue;
       for (std::size_t k = 0; k < p.values[c].size(); ++k)

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "sim/core/effect_registry.h"
 
 namespace omnihil {
@@ -16,14 +14,8 @@ constexpr int kQuickIterations = 12;
 // Of the first run that has samples at a rate.
 double rate_Hz(const Predictor& predictor) {
   for (int run = 0; run < predictor.run_count(); ++run) {
-    for (const ComparedSignal& s : predictor.compared(run)) {
-      if (s.time_s.size() < 2) continue;
-      std::vector<double> period_s;
-      for (std::size_t k = 1; k < s.time_s.size(); ++k) period_s.push_back(s.time_s[k] - s.time_s[k - 1]);
-      const auto middle = period_s.begin() + static_cast<std::ptrdiff_t>(period_s.size() / 2);
-      std::nth_element(period_s.begin(), middle, period_s.end());
-      if (*middle > 0.0) return 1.0 / *middle;
-    }
+    const double period_s = median_period_s(predictor.run(run).time_s);
+    if (period_s > 0.0) return 1.0 / period_s;
   }
   return 0.0;
 }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fake_predictor.h"
+#include "fake_evidence.h"
 #include "sim/core/effect_registry.h"
 #include "sim/core/random.h"
 
@@ -22,10 +22,7 @@ class MarkedPredictor : public FakePredictor {
 // One run to fit and one held out, of noise; contenders that leave shares of it.
 struct Ring {
   MarkedPredictor fake;
-  SignalKinds kinds;
-  std::unique_ptr<Uses> uses;
-  NullModel null;
-  std::vector<BlockBootstrap> bootstrap;
+  std::unique_ptr<FakeEvidence> evidence;
   Search search;
   Fitted parent;
   Round round;
@@ -34,19 +31,12 @@ struct Ring {
     for (const Use use : {Use::kFit, Use::kHoldout}) {
       fake.add(use, std::vector<double>(kSamples, 1.0), std::vector<double>(kSamples, 0.0));
     }
-    kinds = signal_kinds(fake);
-    uses = std::make_unique<Uses>(Uses{Evidence(fake, kinds, Use::kFit), Evidence(fake, kinds, Use::kHoldout),
-                                       Evidence(fake, kinds, Use::kExtrapolation)});
-    for (std::size_t u = 0; u < kUses; ++u) {
-      null.mean_square[u] = Eigen::MatrixXd::Constant(2, 1, 0.01);
-      bootstrap.emplace_back((*uses)[u], 1);
-    }
+    evidence = std::make_unique<FakeEvidence>(fake);
     search.predictor = &fake;
-    search.kinds = &kinds;
-    search.uses = uses.get();
-    search.null = &null;
-    search.judging = {
-        .uses = uses.get(), .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
+    search.kinds = &evidence->kinds;
+    search.uses = evidence->uses.get();
+    search.null = &evidence->null;
+    search.judging = evidence->context;
     parent = leaving(1.0, 1.0);
   }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fake_predictor.h"
+#include "fake_evidence.h"
 #include "sim/core/random.h"
 #include "sim/identify/linear_base.h"
 
@@ -20,28 +20,19 @@ std::vector<double> noise_of(double sigma, std::uint64_t stream) {
   return out;
 }
 
-// Three runs of noise, one per use; residuals are made by the tests.
-struct Court {
-  FakePredictor fake;
-  SignalKinds kinds;
-  std::unique_ptr<Uses> uses;
-  NullModel null;
-  std::vector<BlockBootstrap> bootstrap;
-  JudgeContext context;
-
-  Court() {
-    for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation}) {
+// Runs of noise, one per use; residuals are made by the tests.
+const FakePredictor& three_runs() {
+  static const FakePredictor kRuns = [] {
+    FakePredictor fake;
+    for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation})
       fake.add(use, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
-    }
-    kinds = signal_kinds(fake);
-    uses = std::make_unique<Uses>(Uses{Evidence(fake, kinds, Use::kFit), Evidence(fake, kinds, Use::kHoldout),
-                                       Evidence(fake, kinds, Use::kExtrapolation)});
-    for (std::size_t u = 0; u < kUses; ++u) {
-      null.mean_square[u] = Eigen::MatrixXd::Constant(2, 1, 0.01);
-      bootstrap.emplace_back((*uses)[u], 1);
-    }
-    context = {.uses = uses.get(), .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
-  }
+    return fake;
+  }();
+  return kRuns;
+}
+
+struct Court : FakeEvidence {
+  Court() : FakeEvidence(three_runs()) {}
 
   // A model that leaves noise of these sizes.
   Fitted leaving(double fit, double holdout, double extrapolation) const {
@@ -172,15 +163,8 @@ TEST(JudgeTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
     fake.add(use, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
     fake.add(use, noise_of(1.0, 6), std::vector<double>(kSamples, 0.0), 1.0, "bus_voltage");
   }
-  const SignalKinds kinds = signal_kinds(fake);
-  const Uses uses{Evidence(fake, kinds, Use::kFit), Evidence(fake, kinds, Use::kHoldout),
-                  Evidence(fake, kinds, Use::kExtrapolation)};
-  NullModel null;
-  std::vector<BlockBootstrap> bootstrap;
-  for (std::size_t u = 0; u < kUses; ++u) {
-    null.mean_square[u] = Eigen::MatrixXd::Constant(2, 2, 0.01);
-    bootstrap.emplace_back(uses[u], 1);
-  }
+  const FakeEvidence evidence(fake);
+  const Uses& uses = *evidence.uses;
   const auto leaving = [&](double velocity, double bus) {
     Fitted out;
     out.finite = true;
@@ -192,8 +176,7 @@ TEST(JudgeTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
     }
     return out;
   };
-  const JudgeContext context{
-      .uses = &uses, .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
+  const JudgeContext& context = evidence.context;
   const Judgement j = judge(context, leaving(1, 3), leaving(0.95, 3), "x", 100);
   EXPECT_NEAR(j.holdout.ratio, 0.95 * 0.95, 1e-9);
   EXPECT_NEAR(j.holdout.floor, 0.01, 1e-3);
