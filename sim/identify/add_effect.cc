@@ -48,7 +48,8 @@ Addition add_effect(const Dataset& dataset, const Candidate& nominal, const Effe
   Fitted with = refit(bench.setup(false, stop), bench.base(), start);
   const double gained = (energy_ratio(bench.uses()[0], with.residual[0], bench.base().residual[0]) - 1.0);
   const double over_chance = start.tried ? start.gain / std::max(chance, 1e-300) : (gained > 0.0 ? 1e9 : 0.0);
-  const Judgement judgement = judge(search.judging, bench.base(), with, start.name, over_chance);
+  const Judgement judgement =
+      judge(search.judging, bench.base(), with, start.name, over_chance, start.stands_for());
   out.useful = judgement.accepted;
   out.why = judgement.why;
   out.fit_after = with.fit;

@@ -9,6 +9,7 @@
 #include "sim/identify/contest.h"
 #include "sim/identify/order_spectrum.h"
 #include "sim/identify/parallel.h"
+#include "sim/identify/soundness.h"
 
 namespace omnihil {
 namespace {
@@ -58,9 +59,10 @@ std::vector<const EffectEntry*> not_yet(const Search& search, const Candidate& m
   return out;
 }
 
-// Which of the screened are refitted: the largest shares, whoever is largest in a regime, and whose mark the
-// readings carry.
-std::vector<std::size_t> nominees(const std::vector<Screened>& screened, const Predictor& predictor) {
+// Which of the screened are refitted: the largest shares, whoever is largest in a regime, whose mark the
+// readings carry, and what a base parameter imitates that is not what its file says.
+std::vector<std::size_t> nominees(const std::vector<Screened>& screened, const Fitted& parent,
+                                  const Predictor& predictor) {
   std::vector<std::size_t> order, out;
   const auto marked = [&](std::size_t i) { return predictor.carries_mark_of(*screened[i].entry); };
   for (std::size_t i = 0; i < screened.size(); ++i) {
@@ -76,6 +78,10 @@ std::vector<std::size_t> nominees(const std::vector<Screened>& screened, const P
                    [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
   for (const std::size_t i : order) {
     if (out.size() < kMostRefits - 1) out.push_back(i);
+  }
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const bool hidden = drift_of(parent.fit, screened[i].stands_for()) >= kDisbelieved_sigmas;
+    if (hidden && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
   }
   const auto corner = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return screened[a].best_regime_share < screened[b].best_regime_share;
@@ -113,8 +119,8 @@ void refit_nominees(const Search& search, const Fitted& parent, const std::vecto
                      .seed = search.seed,
                      .stop = [&] { return stopped.load(); }};
     c.fitted = refit(setup, parent, c.screened);
-    c.judgement =
-        judge(search.judging, parent, c.fitted, c.screened.name, over_chance(c.screened, round.chance_gain));
+    c.judgement = judge(search.judging, parent, c.fitted, c.screened.name,
+                        over_chance(c.screened, round.chance_gain), c.screened.stands_for());
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (search.progress && !search.progress("refitting " + c.screened.name, share)) stopped = true;
   });
@@ -142,7 +148,7 @@ std::vector<std::size_t> twins_of_leader(const Round& round, bool has_holdout) {
 
 std::string unseen(const Screened& s, double chance) {
   if (!s.tried) return "not tried";
-  if (s.kept < 0.01 && s.typical_gain <= kNotSeen * chance && !s.imitated_by.empty()) {
+  if (s.kept < kNotParted && s.typical_gain <= kNotSeen * chance && !s.imitated_by.empty()) {
     return fmt::format("not visible in these data: {} imitates it", s.imitated_by);
   }
   if (s.typical_gain <= kNotSeen * chance) {
@@ -235,7 +241,8 @@ Round screening_round(const Search& search, const Fitted& parent,
 Round addition_round(const Search& search, const Fitted& parent) {
   Round round = screening_round(search, parent, not_yet(search, parent.fit.model));
   round.stopped = search.progress && !search.progress("screening", 0.5);
-  if (!round.stopped) refit_nominees(search, parent, nominees(round.screened, *search.predictor), round);
+  if (!round.stopped)
+    refit_nominees(search, parent, nominees(round.screened, parent, *search.predictor), round);
   if (!round.stopped)
     refit_nominees(search, parent, twins_of_leader(round, !(*search.uses)[1].empty()), round);
   settle(search, parent, round);

@@ -56,10 +56,20 @@ void give_probabilities(const Search& search, const Fitted& parent, Round& round
         bootstrap->ratios(before, after, weights_for((*search.uses)[use], *search.null, before, after));
   }
   const Eigen::Index count = bootstrap->draws();
+  const double believed = static_cast<double>(
+      std::count_if(round.contenders.begin(), round.contenders.end(),
+                    [](const Contender& c) { return c.judgement.accepted && c.judgement.by_belief; }));
   for (Eigen::Index d = 0; d < count; ++d) {
     double best = 1.0;
     for (const Eigen::VectorXd& r : draws) best = r.size() > 0 ? std::min(best, r[d]) : best;
-    if (1.0 - best < kNothing) continue;
+    if (1.0 - best < kNothing) {
+      // no gain decides, but what lets a base parameter come back
+      for (Contender& c : round.contenders) {
+        if (c.judgement.accepted && c.judgement.by_belief)
+          c.probability += 1.0 / (believed * static_cast<double>(count));
+      }
+      continue;
+    }
     std::vector<double> votes(draws.size(), 0.0);
     double all = 0.0;
     for (std::size_t c = 0; c < draws.size(); ++c) {

@@ -42,6 +42,7 @@ struct FitOptions {
   std::uint64_t seed = 1;
   bool profile = false;  // walk along flat directions instead of trusting the covariance
   bool quick = false;    // rough covariance only: for rankings
+  bool valley = false;   // to the end of valleys that only the priors know (fit_descent.h)
   bool robust = false;   // large residuals pull linearly (fit_problem.h): for the last word on numbers
   std::function<bool()> stop{};  // true: give up early with what is known
 };

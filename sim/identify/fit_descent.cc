@@ -118,4 +118,30 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
   return d;
 }
 
+Descent along_the_valley(const FitProblem& problem, Descent d) {
+  constexpr int kMostSteps = 3;
+  const std::vector<Unknown>& unknowns = problem.unknowns();
+  const Eigen::Index n = d.x.size();
+  for (int step = 0; step < kMostSteps; ++step) {
+    const FitPoint p = problem.at(d.x, true);
+    if (!p.finite) return d;
+    d.cost = p.cost();  // by the weights of today
+    Eigen::VectorXd scale(n);
+    for (Eigen::Index i = 0; i < n; ++i) scale[i] = unknowns[static_cast<std::size_t>(i)].scale;
+    Eigen::MatrixXd h = scale.asDiagonal() * p.information * scale.asDiagonal();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double prior = unknowns[static_cast<std::size_t>(i)].prior_sigma;
+      if (prior > 0.0) h(i, i) += scale[i] * scale[i] / (prior * prior);
+    }
+    const Eigen::VectorXd change = h.ldlt().solve(scale.cwiseProduct(p.gradient)).cwiseProduct(scale);
+    if (!change.allFinite()) return d;
+    const Eigen::VectorXd x = within_bounds(unknowns, d.x - change);
+    const FitPoint next = problem.at(x, false);
+    if (!next.finite || next.cost() >= d.cost) return d;
+    d.x = x;
+    d.cost = next.cost();
+  }
+  return d;
+}
+
 }  // namespace omnihil

@@ -62,14 +62,15 @@ double extrapolation_rise(const JudgeContext& context, const Fitted& parent, con
 }
 
 // Why an addition that gains little is believed all the same; empty: it is not.
-std::string straightens(const Fitted& parent, const Fitted& child, const Judgement& gains,
-                        double held_ratio) {
-  if (!straightened(parent.fit, child.fit)) return "";
-  if (held_ratio > 1.0 + kNoMore || gains.fit.ratio > 1.0 + kNoMore) return "";
-  const Bend before = bend_of(parent.fit);
+std::string straightens(const Fitted& parent, const Fitted& child, const Judgement& gains, double held_ratio,
+                        std::string_view stands_for) {
+  const std::string path = straightened(parent.fit, child.fit, stands_for);
+  if (path.empty() || held_ratio > 1.0 + kNoMore || gains.fit.ratio > 1.0 + kNoMore) return "";
+  const std::string_view which = path == stands_for ? "; these data cannot part the two" : "";
   return fmt::format(
-      "{} comes back to what the model file says ({:.1f} of its tolerances off without it), at no more error",
-      before.path, before.sigmas);
+      "{} comes back to what the model file says ({:.1f} of its tolerances off without it), at no more "
+      "error{}",
+      path, drift_of(parent.fit, path), which);
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ Fitted fitted(const Uses& uses, const Uses& seen, FitResult fit, int jobs) {
 }
 
 Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted& child,
-                const std::string& name, double gain_over_chance) {
+                const std::string& name, double gain_over_chance, std::string_view stands_for) {
   Judgement out;
   if (!child.finite) {
     out.why = "the model with it does not stay finite";
@@ -140,8 +141,8 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
     out.why = fmt::format("held-out error energy falls by {:.1f} %", 100.0 * (1.0 - held.ratio));
   }
   if (out.accepted || rise > kExtrapolationLoss || !against.empty()) return out;
-  if (std::string why = straightens(parent, child, out, held.ratio); !why.empty()) {
-    out.accepted = true;
+  if (std::string why = straightens(parent, child, out, held.ratio, stands_for); !why.empty()) {
+    out.accepted = out.by_belief = true;
     out.why = std::move(why);
   }
   return out;

@@ -28,7 +28,8 @@ Fitted fitted(const Uses& uses, const Uses& seen, FitResult fit, int jobs);
 
 struct Judgement {
   bool accepted = false;
-  bool plain = false;  // it takes so much that no further question decides
+  bool plain = false;      // it takes so much that no further question decides
+  bool by_belief = false;  // accepted for what it lets come back, not for its gain
   std::string why;
   UseGain fit, holdout, extrapolation;
 };
@@ -40,8 +41,9 @@ struct JudgeContext {
   double rate_Hz = 0.0;  // of the samples; 0: not known
 };
 
-// `gain_over_chance`: the screening's gain over what the simulated null's replicates gave.
+// `gain_over_chance`: the screening's gain over what the simulated null's replicates gave; `stands_for`: the
+// base parameter that data cannot part it from (screening.h).
 Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted& child,
-                const std::string& name, double gain_over_chance);
+                const std::string& name, double gain_over_chance, std::string_view stands_for = {});
 
 }  // namespace omnihil

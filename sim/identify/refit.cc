@@ -36,6 +36,7 @@ Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::
   options.seed = setup.seed;
   options.quick = setup.quick;
   options.profile = setup.profile && !setup.quick;
+  options.valley = setup.valley;
   options.robust = setup.robust;
   options.stop = setup.stop;
   const Candidate start = with_values(candidate, unknowns, values);
@@ -133,7 +134,10 @@ std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Cand
   return unknowns;
 }
 
-Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effect) {
+Fitted refit(const RefitSetup& of_round, const Fitted& parent, const Screened& effect) {
+  const auto is_bent = [](const Fitted& f) { return bend_of(f.fit).sigmas > kBent_sigmas; };
+  RefitSetup setup = of_round;
+  setup.valley = is_bent(parent) || drift_of(parent.fit, effect.stands_for()) >= kDisbelieved_sigmas;
   const Candidate with = with_use(parent.fit.model, effect.start);
   std::vector<Unknown> unknowns = unknowns_with_priors(with, *setup.nominal);
   start_at(unknowns, effect.base_unknowns, effect.base_start);
@@ -141,12 +145,16 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
   const double expected = 1.0 - 0.5 * effect.share;
   double ratio = fit_ratio(setup, parent, best);
   const auto stopped = [&] { return setup.stop && setup.stop(); };
+  const auto is_straight = [&, path = effect.stands_for()](const Fitted& f, double r) {
+    return r <= 1.0 + kNoMore && !straightened(parent.fit, f.fit, path).empty();
+  };
   const auto also_from = [&](const Candidate& start) {
     Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
     const double next_ratio = fit_ratio(setup, parent, next);
-    const bool comes_back = next_ratio <= 1.0 + kNoMore && next_ratio <= ratio + kNoMore &&
-                            straightened(parent.fit, next.fit) && !straightened(parent.fit, best.fit);
-    if (next_ratio >= ratio && !comes_back) return;
+    const bool was = is_straight(best, ratio), is = is_straight(next, next_ratio);
+    // What lets the base come back may leave a last per cent more.
+    const double handicap = was == is ? 0.0 : (is ? kNoMore : -kNoMore);
+    if (next_ratio >= ratio + handicap) return;
     best = std::move(next);
     ratio = next_ratio;
   };
@@ -156,7 +164,6 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
     also_from(with_use(parent.fit.model, usual_size));
   // A base that bent to imitate the effect holds it near nothing, or stays bent beside it: the two together
   // from what is believed, the effect at its usual size or as it was found.
-  const auto is_bent = [](const Fitted& f) { return bend_of(f.fit).sigmas > kBent_sigmas; };
   if (ratio > expected && effect.share >= kWorthAFourthStart && is_bent(parent) && !stopped())
     also_from(with_use(believed(parent.fit.model, *setup.nominal), usual_size));
   if (is_bent(parent) && best.finite && is_bent(best) && !stopped())
@@ -167,8 +174,7 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
     if (rugged && !stopped()) also_from(with_strength_times(best.fit.model, effect.name, factor));
   }
   best = undetermined_stay(setup, parent, std::move(best));
-  const bool comes_back = ratio <= 1.0 + kNoMore && straightened(parent.fit, best.fit);
-  if (ratio > 1.0 && !comes_back) {
+  if (ratio > 1.0 && !is_straight(best, ratio)) {
     // The parent, with the effect neutral, is a member of the larger family.
     FitResult same = parent.fit;
     best = {.fit = std::move(same),

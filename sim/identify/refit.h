@@ -23,6 +23,7 @@ struct RefitSetup {
   int max_iterations = 12;
   bool quick = true;           // rough covariance: for rankings
   bool profile = true;         // FitOptions, where not quick
+  bool valley = false;         // FitOptions
   bool robust = false;         // FitOptions
   std::function<bool()> stop;  // true: give up early
 };

@@ -234,6 +234,12 @@ std::vector<double> finite_sizes(const Eigen::VectorXd& track) {
 
 }  // namespace
 
+std::string Screened::stands_for() const {
+  if (!tried || kept >= kNotParted || imitated_by.empty()) return "";
+  const auto& twins = entry->info->twins;
+  return std::find(twins.begin(), twins.end(), imitated_by) != twins.end() ? imitated_by : "";
+}
+
 std::vector<RegimeMask> regime_masks(const Evidence& evidence, const Candidate& model) {
   std::vector<RegimeMask> masks;
   const Eigen::VectorXd speed = evidence.track(model, "speed");

@@ -56,7 +56,11 @@ struct Screened {
   std::vector<double> base_start;
   Eigen::VectorXd signal;  // projected, at its best size: for twins
   bool tried = false;      // false: interrupted, or every size of it made the model diverge
+
+  // The base parameter that these data cannot part it from, if its page names that as its twin; empty: none.
+  std::string stands_for() const;
 };
+inline constexpr double kNotParted = 0.01;  // of its signal: less is kept, and a base parameter imitates it
 
 std::vector<Screened> screen(const ScreeningTask& task, const std::vector<const EffectEntry*>& effects);
 // Details of effects that the model has.

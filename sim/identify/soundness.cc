@@ -103,13 +103,25 @@ Bend bend_of(const FitResult& fit) {
   return worst;
 }
 
-bool straightened(const FitResult& parent, const FitResult& child) {
-  const Bend before = bend_of(parent);
-  if (before.sigmas < kBent_sigmas || bend_of(child).sigmas > kStraight_sigmas) return false;
+double drift_of(const FitResult& fit, std::string_view path) {
+  const auto p = std::find_if(fit.parameters.begin(), fit.parameters.end(),
+                              [&](const ParameterEstimate& q) { return q.path == path; });
   // Data may have ceased to determine it: where it stands counts all the same.
-  return std::any_of(child.parameters.begin(), child.parameters.end(), [&](const ParameterEstimate& p) {
-    return p.path == before.path && std::abs(p.value - p.prior_mean) <= kStraight_sigmas * p.prior_sigma;
-  });
+  return p == fit.parameters.end() || p->prior_sigma <= 0.0
+             ? 0.0
+             : std::abs(p->value - p->prior_mean) / p->prior_sigma;
+}
+
+std::string straightened(const FitResult& parent, const FitResult& child, std::string_view stands_for) {
+  const Bend before = bend_of(parent), after = bend_of(child);
+  if (before.sigmas >= kBent_sigmas && after.sigmas <= kStraight_sigmas &&
+      drift_of(child, before.path) <= kStraight_sigmas) {
+    return before.path;
+  }
+  const bool comes_back =
+      drift_of(parent, stands_for) >= kDisbelieved_sigmas && drift_of(child, stands_for) <= kBelieved_sigmas;
+  return comes_back && after.sigmas <= std::max(before.sigmas, kStraight_sigmas) ? std::string(stands_for)
+                                                                                 : "";
 }
 
 std::string lost_in_the_clock(const FitResult& child, const std::string& name, double rate_Hz) {

@@ -110,6 +110,7 @@ TEST(JudgeTest, TakesWhatLetsABentBaseParameterComeBack) {
   inductance.prior_sigma = 1e-4;
   const auto with_drift = [&](Fitted fitted, double sigmas) {
     inductance.drift_sigmas = sigmas;
+    inductance.value = sigmas * inductance.prior_sigma;
     fitted.fit.parameters = {inductance};
     return fitted;
   };
@@ -123,6 +124,33 @@ TEST(JudgeTest, TakesWhatLetsABentBaseParameterComeBack) {
   EXPECT_FALSE(judge(court.context, bent, with_drift(court.leaving(1, 1, 1), 3.0), "x", 0.0).accepted);
   const Fitted straight = with_drift(court.leaving(1, 1, 1), 3.0);
   EXPECT_FALSE(judge(court.context, straight, with_drift(court.leaving(1, 1, 1), 0.5), "x", 0.0).accepted);
+}
+
+// A payload: by no motion of these data another thing than a wrong mass. What the file says of the mass
+// decides, and for such an effect alone.
+TEST(JudgeTest, TakesWhatABaseParameterStandsForWhereItIsNotBelieved) {
+  const Court court;
+  const auto with_mass = [&](Fitted fitted, double sigmas) {
+    ParameterEstimate mass;
+    mass.path = "robot.mass_kg";
+    mass.prior_mean = 2.4;
+    mass.prior_sigma = 0.05;
+    mass.value = mass.prior_mean + sigmas * mass.prior_sigma;
+    mass.drift_sigmas = sigmas;
+    fitted.fit.parameters = {mass};
+    return fitted;
+  };
+  const auto of_mass = [&](double before, double after, std::string_view stands_for) {
+    return judge(court.context, with_mass(court.leaving(1, 1, 1), before),
+                 with_mass(court.leaving(1, 1, 1), after), "x", 0.0, stands_for);
+  };
+  const Judgement j = of_mass(2.6, 0.1, "robot.mass_kg");
+  EXPECT_TRUE(j.accepted && j.by_belief) << j.why;
+  EXPECT_NE(j.why.find("cannot part the two"), std::string::npos) << j.why;
+  EXPECT_FALSE(of_mass(2.2, 0.1, "robot.mass_kg").accepted) << "one in thirty such files is that wrong";
+  EXPECT_FALSE(of_mass(2.6, 1.5, "robot.mass_kg").accepted) << "half way";
+  EXPECT_FALSE(of_mass(2.6, 0.1, "").accepted) << "nobody says that the two are twins";
+  EXPECT_FALSE(of_mass(2.6, 0.1, "motor.resistance_ohm").accepted);
 }
 
 // Four microseconds at 1 kHz: the model's own sub-steps make as much.

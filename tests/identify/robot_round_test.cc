@@ -1,0 +1,39 @@
+// One round of the search on a robot's record.
+#include "sim/identify/addition_round.h"
+#include "sim/identify/workbench.h"
+#include "tests/identify/robot_world.h"
+
+namespace omnihil::test {
+namespace {
+
+// Nothing in a record parts a payload from a heavier robot; the file, which knows the mass to 2 %, does.
+Round round_with_payload(double payload_kg) {
+  const Candidate nominal = robot_candidate();
+  Candidate truth = with_effect(nominal, *find_effect("payload"));
+  EXPECT_EQ(set_value(truth, "payload.mass_kg", payload_kg), "");
+  const Dataset blank = blank_robot(6.0, true);
+  const Dataset data = measured(blank, *make_predictor(blank, nominal, {})->simulated(truth, 7));
+  Workbench bench(data, nominal, {.seed = 1, .jobs = 2});
+  EXPECT_TRUE(bench.fit_base([] { return false; }));
+  bench.simulate();
+  std::vector<std::string> not_applicable;
+  return addition_round(bench.search(not_applicable), bench.base());
+}
+
+TEST(RobotRound, APayloadIsWhatLetsTheMassComeBack) {
+  const Round round = round_with_payload(0.2);  // 8 %, four tolerances
+  ASSERT_EQ(round.chosen, 0) << round.ranking.front().effect << ": " << round.ranking.front().why;
+  const Contender& best = round.contenders.front();
+  EXPECT_EQ(best.screened.name, "payload") << best.judgement.why;
+  EXPECT_NEAR(*value_at(best.fitted.fit.model, "payload.mass_kg"), 0.2, 0.02);
+  EXPECT_GT(best.probability, 0.5);
+}
+
+TEST(RobotRound, AMassWithinItsToleranceIsNoPayload) {
+  const Round round = round_with_payload(0.07);  // 3 %
+  EXPECT_EQ(round.chosen, -1) << round.contenders.front().screened.name << ": "
+                              << round.contenders.front().judgement.why;
+}
+
+}  // namespace
+}  // namespace omnihil::test
