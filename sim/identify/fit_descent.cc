@@ -10,6 +10,23 @@
 namespace omnihil {
 namespace {
 
+Eigen::VectorXd scales_of(const FitProblem& problem) {
+  Eigen::VectorXd scale(static_cast<Eigen::Index>(problem.unknowns().size()));
+  for (Eigen::Index i = 0; i < scale.size(); ++i)
+    scale[i] = problem.unknowns()[static_cast<std::size_t>(i)].scale;
+  return scale;
+}
+
+// Gauss-Newton matrix of data and priors, unknowns in units of their scale.
+Eigen::MatrixXd curvature(const FitProblem& problem, const FitPoint& p, const Eigen::VectorXd& scale) {
+  Eigen::MatrixXd h = scale.asDiagonal() * p.information * scale.asDiagonal();
+  for (Eigen::Index i = 0; i < scale.size(); ++i) {
+    const double prior = problem.unknowns()[static_cast<std::size_t>(i)].prior_sigma;
+    if (prior > 0.0) h(i, i) += scale[i] * scale[i] / (prior * prior);
+  }
+  return h;
+}
+
 // The problem as Ceres sees it: as many residuals as unknowns and one more. With J'J + P = R'R and gradient
 // g, the residuals R'^-1 g and sqrt(2 cost - |R'^-1 g|^2) have Jacobian [R; 0]: the same cost, gradient and
 // Gauss-Newton matrix as a hundred thousand samples, which Ceres then need not hold. Unknowns are in units of
@@ -33,11 +50,7 @@ class Condensed : public ceres::CostFunction {
     r[n] = std::sqrt(2.0 * p.cost());
     if (!derivatives) return true;
     Eigen::VectorXd g = scale_.cwiseProduct(p.gradient);
-    Eigen::MatrixXd h = scale_.asDiagonal() * p.information * scale_.asDiagonal();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double prior = problem_.unknowns()[static_cast<std::size_t>(i)].prior_sigma;
-      if (prior > 0.0) h(i, i) += scale_[i] * scale_[i] / (prior * prior);
-    }
+    Eigen::MatrixXd h = curvature(problem_, p, scale_);
     if (held_ >= 0) {
       g[held_] = 0.0;
       h.row(held_).setZero();
@@ -83,8 +96,7 @@ class Stopper : public ceres::IterationCallback {
 Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int iterations,
                 const FitOptions& options, Eigen::Index held) {
   const std::vector<Unknown>& unknowns = problem.unknowns();
-  Eigen::VectorXd scale(start.size());
-  for (std::size_t i = 0; i < unknowns.size(); ++i) scale[static_cast<Eigen::Index>(i)] = unknowns[i].scale;
+  const Eigen::VectorXd scale = scales_of(problem);
   Eigen::VectorXd x = start.cwiseQuotient(scale);
   ceres::Problem ceres_problem;
   ceres_problem.AddResidualBlock(new Condensed(problem, scale, held), nullptr, x.data());
@@ -120,22 +132,15 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
 
 Descent along_the_valley(const FitProblem& problem, Descent d) {
   constexpr int kMostSteps = 3;
-  const std::vector<Unknown>& unknowns = problem.unknowns();
-  const Eigen::Index n = d.x.size();
+  const Eigen::VectorXd scale = scales_of(problem);
   for (int step = 0; step < kMostSteps; ++step) {
     const FitPoint p = problem.at(d.x, true);
     if (!p.finite) return d;
     d.cost = p.cost();  // by the weights of today
-    Eigen::VectorXd scale(n);
-    for (Eigen::Index i = 0; i < n; ++i) scale[i] = unknowns[static_cast<std::size_t>(i)].scale;
-    Eigen::MatrixXd h = scale.asDiagonal() * p.information * scale.asDiagonal();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double prior = unknowns[static_cast<std::size_t>(i)].prior_sigma;
-      if (prior > 0.0) h(i, i) += scale[i] * scale[i] / (prior * prior);
-    }
-    const Eigen::VectorXd change = h.ldlt().solve(scale.cwiseProduct(p.gradient)).cwiseProduct(scale);
+    const Eigen::VectorXd change =
+        curvature(problem, p, scale).ldlt().solve(scale.cwiseProduct(p.gradient)).cwiseProduct(scale);
     if (!change.allFinite()) return d;
-    const Eigen::VectorXd x = within_bounds(unknowns, d.x - change);
+    const Eigen::VectorXd x = within_bounds(problem.unknowns(), d.x - change);
     const FitPoint next = problem.at(x, false);
     if (!next.finite || next.cost() >= d.cost) return d;
     d.x = x;

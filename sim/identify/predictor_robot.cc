@@ -161,7 +161,6 @@ std::string RobotPredictor::applies(const EffectEntry& entry) const {
   if (e.place == Place::kShaft) return "needs a freedom between rotor and wheel, which a robot's model lacks";
   if (is("target_speed_limit")) return "needs a position servo";
   if (is("hall_speed_estimator")) return "needs a speed that the drive's electronics estimate";
-  if (is("sample_jitter")) return "has no expected value: it is noise";
   if (is("vision_delay") && !has_channel("vision")) return "needs a camera";
   if (is("dribbler_drag") && !has_channel("dribbler")) return "needs the dribbler's speed (channel dribbler)";
   const bool has_body = has_channel("vision") || has_channel("gyro") || has_channel("accel");

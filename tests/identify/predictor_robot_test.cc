@@ -154,8 +154,7 @@ TEST(PredictorRobot, ALateCameraIsSeenInThePoseAlone) {
 
 TEST(PredictorRobot, WhatCannotActSaysWhy) {
   const auto world = world_of(robot_candidate(), true, 0.5);
-  for (const char* id :
-       {"backlash", "hall_speed_estimator", "target_speed_limit", "dribbler_drag", "sample_jitter"}) {
+  for (const char* id : {"backlash", "hall_speed_estimator", "target_speed_limit", "dribbler_drag"}) {
     EXPECT_NE(world->applies(*find_effect(id)), "") << id;
   }
   for (const char* id : {"wheel_slip", "cogging", "vision_delay", "floor_tilt"}) {

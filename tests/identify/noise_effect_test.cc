@@ -1,0 +1,67 @@
+// An effect that is noise: found by where a record is loud, on both rigs; and not where it is not.
+#include "sim/identify/noise_effect.h"
+
+#include "sim/identify/workbench.h"
+#include "simulated_bench.h"
+#include "tests/identify/robot_world.h"
+
+namespace omnihil::test {
+namespace {
+
+constexpr double kJitter_s = 100e-6;
+
+// What the search finds in a dataset whose model is the world's, but for what is hidden.
+std::optional<NoiseEffect> found_in(const Dataset& dataset, const Candidate& nominal) {
+  const Workbench bench(dataset, nominal, {.seed = 1, .jobs = 2});
+  std::vector<std::string> not_applicable;
+  const std::vector<const EffectEntry*> applicable = bench.search(not_applicable).applicable;
+  return noise_effect({.predictor = &bench.predictor(), .seen = &bench.seen(), .model = &nominal, .seed = 1},
+                      applicable);
+}
+
+Bench with(const std::vector<std::string>& hidden) {
+  BenchRecipe recipe;
+  recipe.with = hidden;
+  return simulated_bench(recipe);
+}
+
+Dataset robot_record(const std::vector<std::pair<std::string, double>>& hidden) {
+  const Candidate nominal = robot_candidate();
+  Candidate truth = nominal;
+  for (const auto& [path, value] : hidden) {
+    truth = with_effect(truth, *find_effect(path.substr(0, path.find('.'))));
+    EXPECT_EQ(set_value(truth, path, value), "");
+  }
+  const Dataset blank = blank_robot(8.0, true);
+  return measured(blank, *make_predictor(blank, nominal, {})->simulated(truth, 7));
+}
+
+TEST(NoiseEffect, JitterOfADriveIsFoundWithItsSize) {
+  const Bench bench = with({"sample_jitter.sigma_s=1e-4"});
+  const auto found = found_in(bench.dataset, bench.nominal);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->use.entry->info->id, "sample_jitter");
+  EXPECT_NEAR(found->strength.value, kJitter_s, 0.1 * kJitter_s);
+}
+
+TEST(NoiseEffect, JitterOfARobotIsFoundWithItsSize) {
+  const auto found = found_in(robot_record({{"sample_jitter.sigma_s", kJitter_s}}), robot_candidate());
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->use.entry->info->id, "sample_jitter");
+  EXPECT_NEAR(found->strength.value, kJitter_s, 0.1 * kJitter_s);
+}
+
+TEST(NoiseEffect, NothingIsFoundWhereNothingIsHidden) {
+  const Bench bench = with({});
+  EXPECT_FALSE(found_in(bench.dataset, bench.nominal));
+  EXPECT_FALSE(found_in(robot_record({}), robot_candidate()));
+}
+
+TEST(NoiseEffect, AWrongLawIsNoNoise) {
+  const Bench bench = with({"cogging.amplitude_Nm=0.005"});
+  EXPECT_FALSE(found_in(bench.dataset, bench.nominal));
+  EXPECT_FALSE(found_in(robot_record({{"cogging.amplitude_Nm", 0.005}}), robot_candidate()));
+}
+
+}  // namespace
+}  // namespace omnihil::test
