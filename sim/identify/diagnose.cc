@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <map>
 #include <mutex>
 
 #include "sim/identify/diagnose_summary.h"
@@ -154,7 +155,10 @@ class Diagnosing {
     const Contender& best = round.contenders[static_cast<std::size_t>(round.chosen)];
     // The next round would explain what the short refits of this one left on its way.
     current_ = settled(bench_.setup(true, stop()), best.fitted);
-    if (!best.screened.extends) out_.effects.push_back(best.screened.name);
+    if (!best.screened.extends) {
+      out_.effects.push_back(best.screened.name);
+      stands_for_[best.screened.name] = best.screened.stands_for();
+    }
     add_step(best.screened.name, current_, compare(bench_.predictor(), current_.fit.model));
     note_twins(round, out_);
   }
@@ -166,7 +170,7 @@ class Diagnosing {
       say("is " + name + " still needed", kAfterRounds);
       const Fitted less =
           refit_as_it_is(bench_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
-      const Judgement needed = judge(search_.judging, less, current_, name, 1e9);
+      const Judgement needed = judge(search_.judging, less, current_, name, 1e9, stands_for_[name]);
       if (needed.accepted || needed.plain || !less.finite || n + 1 == out_.effects.size()) {
         ++n;
         continue;
@@ -282,7 +286,8 @@ class Diagnosing {
   std::vector<std::string> not_applicable_;
   Fitted current_;
   Diagnosis out_;
-  double order_ = 0.0;  // strongest of the residual's, per rotor turn
+  std::map<std::string, std::string> stands_for_;  // of the effects added
+  double order_ = 0.0;                             // strongest of the residual's, per rotor turn
   double furthest_ = 0.0;
   std::mutex mutex_;  // progress comes from several threads
   std::atomic<bool> stopped_{false};

@@ -25,17 +25,6 @@ Bench with(const std::vector<std::string>& hidden) {
   return simulated_bench(recipe);
 }
 
-Dataset robot_record(const std::vector<std::pair<std::string, double>>& hidden) {
-  const Candidate nominal = robot_candidate();
-  Candidate truth = nominal;
-  for (const auto& [path, value] : hidden) {
-    truth = with_effect(truth, *find_effect(path.substr(0, path.find('.'))));
-    EXPECT_EQ(set_value(truth, path, value), "");
-  }
-  const Dataset blank = blank_robot(8.0, true);
-  return measured(blank, *make_predictor(blank, nominal, {})->simulated(truth, 7));
-}
-
 TEST(NoiseEffect, JitterOfADriveIsFoundWithItsSize) {
   const Bench bench = with({"sample_jitter.sigma_s=1e-4"});
   const auto found = found_in(bench.dataset, bench.nominal);
@@ -45,7 +34,7 @@ TEST(NoiseEffect, JitterOfADriveIsFoundWithItsSize) {
 }
 
 TEST(NoiseEffect, JitterOfARobotIsFoundWithItsSize) {
-  const auto found = found_in(robot_record({{"sample_jitter.sigma_s", kJitter_s}}), robot_candidate());
+  const auto found = found_in(robot_record({{"sample_jitter.sigma_s", kJitter_s}}, 8.0), robot_candidate());
   ASSERT_TRUE(found);
   EXPECT_EQ(found->use.entry->info->id, "sample_jitter");
   EXPECT_NEAR(found->strength.value, kJitter_s, 0.1 * kJitter_s);
@@ -54,13 +43,13 @@ TEST(NoiseEffect, JitterOfARobotIsFoundWithItsSize) {
 TEST(NoiseEffect, NothingIsFoundWhereNothingIsHidden) {
   const Bench bench = with({});
   EXPECT_FALSE(found_in(bench.dataset, bench.nominal));
-  EXPECT_FALSE(found_in(robot_record({}), robot_candidate()));
+  EXPECT_FALSE(found_in(robot_record({}, 8.0), robot_candidate()));
 }
 
 TEST(NoiseEffect, AWrongLawIsNoNoise) {
   const Bench bench = with({"cogging.amplitude_Nm=0.005"});
   EXPECT_FALSE(found_in(bench.dataset, bench.nominal));
-  EXPECT_FALSE(found_in(robot_record({{"cogging.amplitude_Nm", 0.005}}), robot_candidate()));
+  EXPECT_FALSE(found_in(robot_record({{"cogging.amplitude_Nm", 0.005}}, 8.0), robot_candidate()));
 }
 
 }  // namespace

@@ -113,4 +113,16 @@ inline Dataset measured(Dataset d, const Predictor& simulated) {
   return d;
 }
 
+// The record of a robot with these effects hidden in it: {{"payload.mass_kg", 0.2}, …}.
+inline Dataset robot_record(const std::vector<std::pair<std::string, double>>& hidden, double duration_s) {
+  const Candidate nominal = robot_candidate();
+  Candidate truth = nominal;
+  for (const auto& [path, value] : hidden) {
+    truth = with_effect(truth, *find_effect(path.substr(0, path.find('.'))));
+    EXPECT_EQ(set_value(truth, path, value), "");
+  }
+  const Dataset blank = blank_robot(duration_s, true);
+  return measured(blank, *make_predictor(blank, nominal, {})->simulated(truth, 7));
+}
+
 }  // namespace omnihil::test
