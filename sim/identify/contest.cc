@@ -56,20 +56,21 @@ void give_probabilities(const Search& search, const Fitted& parent, Round& round
         bootstrap->ratios(before, after, weights_for((*search.uses)[use], *search.null, before, after));
   }
   const Eigen::Index count = bootstrap->draws();
-  const double believed = static_cast<double>(
-      std::count_if(round.contenders.begin(), round.contenders.end(),
-                    [](const Contender& c) { return c.judgement.accepted && c.judgement.by_belief; }));
+  // Where no gain decides, what lets a base parameter come back has the draws that go to "none" otherwise.
+  const auto by = [&](bool belief) {
+    return std::count_if(round.contenders.begin(), round.contenders.end(), [&](const Contender& c) {
+      return c.judgement.accepted && c.judgement.by_belief == belief;
+    });
+  };
+  if (by(false) == 0 && by(true) > 0) {
+    for (Contender& c : round.contenders)
+      c.probability = c.judgement.accepted ? 1.0 / static_cast<double>(by(true)) : 0.0;
+    return;
+  }
   for (Eigen::Index d = 0; d < count; ++d) {
     double best = 1.0;
     for (const Eigen::VectorXd& r : draws) best = r.size() > 0 ? std::min(best, r[d]) : best;
-    if (1.0 - best < kNothing) {
-      // no gain decides, but what lets a base parameter come back
-      for (Contender& c : round.contenders) {
-        if (c.judgement.accepted && c.judgement.by_belief)
-          c.probability += 1.0 / (believed * static_cast<double>(count));
-      }
-      continue;
-    }
+    if (1.0 - best < kNothing) continue;
     std::vector<double> votes(draws.size(), 0.0);
     double all = 0.0;
     for (std::size_t c = 0; c < draws.size(); ++c) {
@@ -126,6 +127,8 @@ void settle(const Search& search, const Fitted& parent, Round& round) {
   for (std::size_t c = 1; c < round.contenders.size(); ++c) {
     const Contender& other = round.contenders[c];
     if (!other.judgement.accepted || other.screened.extends) continue;
+    // Each lets another base parameter come back: neither does the other's work.
+    if (best.judgement.by_belief && other.screened.stands_for() != best.screened.stands_for()) continue;
     const double lost = (most - gain_of(other, has_holdout)) / std::max(most, kLeastToPart);
     // Both may take nearly all, and yet one leave several times what the other leaves above the sensors'
     // floor.

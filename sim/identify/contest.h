@@ -4,9 +4,10 @@
 //
 // Probability: in how many draws of a block bootstrap of the held-out runs an effect leaves the least error;
 // those that leave nearly as little share the draw; a draw in which none takes as much as matters goes to
-// "none". Twins: contenders that pass and either take nearly the same from the error, or whose signals are
-// nearly one and the same once the base parameters have moved along. Of twins the one with the fewest numbers
-// is named first.
+// "none". Where nothing is accepted but what lets a base parameter come back (soundness.h), that has all.
+// Twins: contenders that pass and either take nearly the same from the error, or whose signals are nearly one
+// and the same once the base parameters have moved along. Of twins the one with the fewest numbers is named
+// first.
 #pragma once
 #include "sim/identify/addition_round.h"
 

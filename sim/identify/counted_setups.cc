@@ -28,7 +28,9 @@ Speeds speeds_of(std::vector<AxisSetup>& setups) {
       out.readings.insert(out.readings.end(), signal.measured.begin(), signal.measured.end());
       if (signal.quantum > 0.0)
         out.quantum = out.quantum > 0.0 ? std::min(out.quantum, signal.quantum) : signal.quantum;
-      if (signal.time_s.size() > 1) out.period_s = median_period_s(signal.time_s);
+      // the mean: a window holds that many samples however the clock rounds them
+      const std::vector<double>& t = signal.time_s;
+      if (t.size() > 1) out.period_s = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
     }
   }
   return out;

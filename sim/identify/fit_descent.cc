@@ -27,6 +27,14 @@ Eigen::MatrixXd curvature(const FitProblem& problem, const FitPoint& p, const Ei
   return h;
 }
 
+// One unknown stays where it is.
+void hold(Eigen::MatrixXd& h, Eigen::VectorXd& g, Eigen::Index unknown) {
+  g[unknown] = 0.0;
+  h.row(unknown).setZero();
+  h.col(unknown).setZero();
+  h(unknown, unknown) = 1.0;
+}
+
 // The problem as Ceres sees it: as many residuals as unknowns and one more. With J'J + P = R'R and gradient
 // g, the residuals R'^-1 g and sqrt(2 cost - |R'^-1 g|^2) have Jacobian [R; 0]: the same cost, gradient and
 // Gauss-Newton matrix as a hundred thousand samples, which Ceres then need not hold. Unknowns are in units of
@@ -52,10 +60,7 @@ class Condensed : public ceres::CostFunction {
     Eigen::VectorXd g = scale_.cwiseProduct(p.gradient);
     Eigen::MatrixXd h = curvature(problem_, p, scale_);
     if (held_ >= 0) {
-      g[held_] = 0.0;
-      h.row(held_).setZero();
-      h.col(held_).setZero();
-      h(held_, held_) = 1.0;
+      hold(h, g, held_);
     }
     // a direction of which nobody knows anything must not stop the rest
     h.diagonal().array() += 1e-12 * std::max(h.diagonal().maxCoeff(), 1e-300);
@@ -79,6 +84,19 @@ class Condensed : public ceres::CostFunction {
   Eigen::VectorXd scale_;
   Eigen::Index held_;  // does not move; -1: none
 };
+
+// Gauss-Newton's step downwards, to be subtracted; what is pressed against its bound stays.
+Eigen::VectorXd full_step(const FitProblem& problem, const FitPoint& p, const Eigen::VectorXd& x,
+                          const Eigen::VectorXd& scale) {
+  Eigen::VectorXd g = scale.cwiseProduct(p.gradient);
+  Eigen::MatrixXd h = curvature(problem, p, scale);
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    const Unknown& u = problem.unknowns()[static_cast<std::size_t>(i)];
+    if ((x[i] <= u.lower && g[i] > 0.0) || (x[i] >= u.upper && g[i] < 0.0)) hold(h, g, i);
+  }
+  h.diagonal().array() += 1e-12 * std::max(h.diagonal().maxCoeff(), 1e-300);
+  return h.ldlt().solve(g).cwiseProduct(scale);
+}
 
 class Stopper : public ceres::IterationCallback {
  public:
@@ -131,20 +149,23 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
 }
 
 Descent along_the_valley(const FitProblem& problem, Descent d) {
-  constexpr int kMostSteps = 3;
+  constexpr int kMostSteps = 3, kMostHalvings = 4;
   const Eigen::VectorXd scale = scales_of(problem);
   for (int step = 0; step < kMostSteps; ++step) {
     const FitPoint p = problem.at(d.x, true);
     if (!p.finite) return d;
     d.cost = p.cost();  // by the weights of today
-    const Eigen::VectorXd change =
-        curvature(problem, p, scale).ldlt().solve(scale.cwiseProduct(p.gradient)).cwiseProduct(scale);
+    const double before = d.cost;
+    const Eigen::VectorXd change = full_step(problem, p, d.x, scale);
     if (!change.allFinite()) return d;
-    const Eigen::VectorXd x = within_bounds(problem.unknowns(), d.x - change);
-    const FitPoint next = problem.at(x, false);
-    if (!next.finite || next.cost() >= d.cost) return d;
-    d.x = x;
-    d.cost = next.cost();
+    for (int half = 0; half <= kMostHalvings && d.cost == before; ++half) {
+      const Eigen::VectorXd x = within_bounds(problem.unknowns(), d.x - std::ldexp(1.0, -half) * change);
+      const FitPoint next = problem.at(x, false);
+      if (!next.finite || next.cost() >= before) continue;
+      d.x = x;
+      d.cost = next.cost();
+    }
+    if (d.cost == before) return d;
   }
   return d;
 }

@@ -68,9 +68,10 @@ std::string straightens(const Fitted& parent, const Fitted& child, const Judgeme
   if (path.empty() || held_ratio > 1.0 + kNoMore || gains.fit.ratio > 1.0 + kNoMore) return "";
   const std::string_view which = path == stands_for ? "; these data cannot part the two" : "";
   return fmt::format(
-      "{} comes back to what the model file says ({:.1f} of its tolerances off without it), at no more "
-      "error{}",
-      path, drift_of(parent.fit, path), which);
+      "{} comes back towards what the model file says ({:.1f} of its tolerances off without it, {:.1f} with "
+      "it), "
+      "at no more error{}",
+      path, drift_of(parent.fit, path), drift_of(child.fit, path), which);
 }
 
 }  // namespace

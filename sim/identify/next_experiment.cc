@@ -16,10 +16,16 @@ const EffectInfo* info_of(const std::string& id) {
   return entry != nullptr ? entry->info : nullptr;
 }
 
+// Effects by the motion that shows them; where one is a base parameter's twin, by a measurement of its own.
 std::string revealing(const std::vector<std::string>& members) {
+  const bool with_base =
+      std::any_of(members.begin(), members.end(), [](const std::string& m) { return info_of(m) == nullptr; });
   std::vector<std::string> parts;
   for (const std::string& m : members) {
-    if (const EffectInfo* info = info_of(m)) parts.push_back(fmt::format("{}: {}", m, info->reveals));
+    const EffectInfo* info = info_of(m);
+    if (info == nullptr) continue;
+    const std::string_view how = info->params[first_strength(*info)].how;
+    parts.push_back(fmt::format("{}: {}", m, with_base && !how.empty() ? how : info->reveals));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
 }

@@ -91,6 +91,15 @@ std::string unphysical(const FitResult& child, const std::string& name, bool pla
   return strong || plain ? "" : "its strength is not told from zero";
 }
 
+// Squared distances from what is believed, in its 1-sigmas.
+double disbelief(const FitResult& fit) {
+  double sum = 0.0;
+  for (const ParameterEstimate& p : fit.parameters) {
+    if (p.prior_sigma > 0.0) sum += std::pow((p.value - p.prior_mean) / p.prior_sigma, 2);
+  }
+  return sum;
+}
+
 }  // namespace
 
 Bend bend_of(const FitResult& fit) {
@@ -118,8 +127,9 @@ std::string straightened(const FitResult& parent, const FitResult& child, std::s
       drift_of(child, before.path) <= kStraight_sigmas) {
     return before.path;
   }
-  const bool comes_back =
-      drift_of(parent, stands_for) >= kDisbelieved_sigmas && drift_of(child, stands_for) <= kBelieved_sigmas;
+  const double was = drift_of(parent, stands_for);
+  const bool comes_back = was >= kDisbelieved_sigmas && drift_of(child, stands_for) < was &&
+                          disbelief(parent) - disbelief(child) >= kDisbelieved_sigmas * kDisbelieved_sigmas;
   return comes_back && after.sigmas <= std::max(before.sigmas, kStraight_sigmas) ? std::string(stands_for)
                                                                                  : "";
 }

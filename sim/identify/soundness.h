@@ -27,17 +27,17 @@ inline constexpr double kBent_sigmas = 4.0;
 inline constexpr double kStraight_sigmas = 2.0;
 inline constexpr double kNoMore = 0.01;
 
-// Where data cannot part an effect from a base parameter (a payload from the mass), the model file's belief
-// does: above kDisbelieved (one in a hundred, one way) it is the effect that lets it come back to kBelieved.
+// Where data cannot part an effect from a base parameter (a payload from the mass), beliefs do. Above
+// kDisbelieved (a normal error is that large one way once in a hundred) it is the effect, if the squares of
+// all numbers' distances from their beliefs, the effect's own included, fall by as much.
 inline constexpr double kDisbelieved_sigmas = 2.33;
-inline constexpr double kBelieved_sigmas = 1.0;
 
 // Tolerances between a base parameter and what its file says; 0: no such, or no tolerance.
 double drift_of(const FitResult& fit, std::string_view path);
 
-// Does the child hold what the parent bent most, and all else, within kStraight; or the parameter that the
-// effect stands for (Screened::stands_for; empty: none) as it is believed? The path of what came back; empty:
-// no.
+// Does the child hold what the parent bent most, and all else, within kStraight; or is it easier to believe,
+// in the parameter that the effect stands for (Screened::stands_for; empty: none)? The path of what came
+// back; empty: no.
 std::string straightened(const FitResult& parent, const FitResult& child, std::string_view stands_for = {});
 
 // Is an effect's time (a delay, an inductance) so far below what its page calls visible at this rate that a

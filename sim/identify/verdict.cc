@@ -83,6 +83,10 @@ std::string leftover_sentence(const Leftover& rest, bool effects_added) {
   if (structure_remains(rest, effects_added)) {
     return "Structure remains that no known effect explains: " + size + ".";
   }
+  if (effects_added && rest.excess_before < kStructure) {
+    // named for what the model file says, not for what it takes
+    return "Nothing more that matters can be learned from these data: " + size + ".";
+  }
   if (effects_added) {
     return fmt::format(
         "Nothing more that matters can be learned from these data: {}; {:.0f} % of what the base "

@@ -147,8 +147,9 @@ TEST(JudgeTest, TakesWhatABaseParameterStandsForWhereItIsNotBelieved) {
   const Judgement j = of_mass(2.6, 0.1, "robot.mass_kg");
   EXPECT_TRUE(j.accepted && j.by_belief) << j.why;
   EXPECT_NE(j.why.find("cannot part the two"), std::string::npos) << j.why;
-  EXPECT_FALSE(of_mass(2.2, 0.1, "robot.mass_kg").accepted) << "one in thirty such files is that wrong";
-  EXPECT_FALSE(of_mass(2.6, 1.5, "robot.mass_kg").accepted) << "half way";
+  EXPECT_FALSE(of_mass(2.2, 0.1, "robot.mass_kg").accepted)
+      << "a normal error is that large once in seventy times";
+  EXPECT_FALSE(of_mass(2.6, 1.5, "robot.mass_kg").accepted) << "half of it stays";
   EXPECT_FALSE(of_mass(2.6, 0.1, "").accepted) << "nobody says that the two are twins";
   EXPECT_FALSE(of_mass(2.6, 0.1, "motor.resistance_ohm").accepted);
 }
