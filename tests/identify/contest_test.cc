@@ -61,6 +61,19 @@ struct Ring {
     round.contenders.push_back(std::move(c));
   }
 
+  // Of no gain; a base parameter comes back with it.
+  void believe(const std::string& effect, const std::string& base) {
+    Contender c;
+    c.screened.entry = find_effect(effect);
+    c.screened.name = effect;
+    c.screened.tried = true;
+    c.screened.imitated_by = base;
+    c.fitted = leaving(1.0, 1.0);
+    c.judgement.accepted = c.judgement.by_belief = true;
+    EXPECT_EQ(c.screened.stands_for(), base);
+    round.contenders.push_back(std::move(c));
+  }
+
   std::string winner() {
     settle(search, parent, round);
     return round.chosen < 0 ? "" : round.contenders[static_cast<std::size_t>(round.chosen)].screened.name;
@@ -126,6 +139,32 @@ TEST(ContestTest, NamesThreeThatCannotBeToldApartAndNoMore) {
     ring.enter(name, Ring::leaving(0.5, 0.5));
   EXPECT_EQ(ring.winner(), "shaft_compliance");
   EXPECT_EQ(ring.twins().size(), 2u);
+}
+
+TEST(ContestTest, WhatIsBelievedWinsWhereNothingGains) {
+  Ring ring;
+  ring.believe("payload", "robot.mass_kg");
+  EXPECT_EQ(ring.winner(), "payload");
+  EXPECT_EQ(ring.round.contenders.front().probability, 1.0);
+  Ring beside;
+  beside.believe("payload", "robot.mass_kg");
+  beside.enter("dead_time", Ring::leaving(0.5, 0.5));
+  EXPECT_EQ(beside.winner(), "dead_time");
+  EXPECT_TRUE(beside.twins().empty());
+}
+
+// Each lets another base parameter come back: neither explains what the other does.
+TEST(ContestTest, WhatIsBelievedForDifferentReasonsIsNoTwin) {
+  Ring ring;
+  ring.believe("payload", "robot.mass_kg");
+  ring.believe("quadratic_drag", "motor.viscous_friction_Nm_s_per_rad");
+  EXPECT_FALSE(ring.winner().empty());
+  EXPECT_TRUE(ring.twins().empty());
+  Ring same;
+  same.believe("grease_drag", "motor.viscous_friction_Nm_s_per_rad");
+  same.believe("quadratic_drag", "motor.viscous_friction_Nm_s_per_rad");
+  EXPECT_FALSE(same.winner().empty());
+  EXPECT_EQ(same.twins().size(), 1u);
 }
 
 }  // namespace

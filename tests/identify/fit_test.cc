@@ -11,6 +11,7 @@
 #include "sim/drive/axis_model.h"
 #include "sim/drive/axis_sim.h"
 #include "sim/drive/sensor_chain.h"
+#include "sim/identify/refit.h"
 
 namespace omnihil {
 namespace {
@@ -141,6 +142,19 @@ TEST(Fit, IsTheSameForAnyNumberOfJobs) {
     EXPECT_EQ(one.parameters[i].value, four.parameters[i].value) << one.parameters[i].path;
     EXPECT_EQ(one.parameters[i].sigma, four.parameters[i].sigma);
   }
+}
+
+// Without a gear the data know the sum of the two inertias, and only the file its parts.
+TEST(Fit, WalksToTheEndOfAValleyThatOnlyThePriorsKnow) {
+  const Candidate nominal = model();
+  const Dataset d = bench(nominal);
+  const Candidate start =
+      changed(nominal, {{"motor.rotor_inertia_kg_m2", 0.6e-5}, {"load.inertia_kg_m2", 5.4e-5}});
+  const auto predictor = make_predictor(d, nominal, {});
+  const FitResult r = fit(*predictor, start, unknowns_with_priors(start, nominal),
+                          {.jobs = 1, .quick = true, .valley = true});
+  EXPECT_NEAR(find(r, "motor.rotor_inertia_kg_m2")->value, 1e-5, 0.02e-5);
+  EXPECT_NEAR(find(r, "load.inertia_kg_m2")->value, 5e-5, 0.1e-5);
 }
 
 TEST(Fit, FindsAnEffectThatStartsAtNeutral) {
