@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "bench/cpu_time.h"
-#include "sim/core/effect_registry.h"
+#include "sim/drive/dc_drive.h"
 #include "sim/drive/drive_sim.h"
-#include "sim/motor/dc_drive.h"
+#include "sim/law/effect_registry.h"
 
 namespace omnihil {
 namespace {

@@ -18,10 +18,10 @@
 #include <vector>
 
 #include "bench/cpu_time.h"
-#include "hil/image_firmware.h"
-#include "hil/model_store.h"
-#include "hil/replay_hash.h"
-#include "hil/session_setup.h"
+#include "hil/firmware/image_firmware.h"
+#include "hil/loop/model_store.h"
+#include "hil/recording/replay_hash.h"
+#include "hil/recording/session_setup.h"
 
 namespace omnihil {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "bench/cpu_time.h"
 #include "firmware_iface/host_firmware.h"
-#include "hil/session_setup.h"
+#include "hil/recording/session_setup.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "bench/cpu_time.h"
-#include "sim/phase/averaged_drive.h"
-#include "sim/phase/dq_motor.h"
-#include "sim/phase/hall_sensors.h"
-#include "sim/phase/switched_drive.h"
+#include "sim/drive/averaged_drive.h"
+#include "sim/drive/dq_motor.h"
+#include "sim/drive/hall_sensors.h"
+#include "sim/drive/switched_drive.h"
 
 namespace omnihil {
 namespace {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "bench/cpu_time.h"
-#include "sim/core/model_file.h"
+#include "sim/model/model_file.h"
 #include "sim/robot/plant.h"
 
 namespace omnihil {

@@ -9,7 +9,7 @@
 // A robot with three-phase drives comes with a MotorConfig; a firmware with a motor_tick() then sets its
 // legs. A leg that is asked for what no leg can do opens all three of its bridge for that PWM period, and is
 // counted. Cannot: catch a firmware that crashes or never returns; it runs in this process. A team's library
-// runs in one of its own (hil/firmware_host/guarded_firmware.h).
+// runs in one of its own (hil/firmware/guarded_firmware.h).
 #pragma once
 #include <cstddef>
 #include <cstdint>

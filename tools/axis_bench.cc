@@ -8,12 +8,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "hil/model_store.h"
-#include "sim/core/effect_reader.h"
-#include "sim/core/effect_registry.h"
-#include "sim/core/random.h"
-#include "sim/drive/axis_signal.h"
-#include "sim/drive/excitation.h"
+#include "hil/loop/model_store.h"
+#include "sim/bench/axis_signal.h"
+#include "sim/bench/excitation.h"
+#include "sim/law/effect_registry.h"
+#include "sim/law/random.h"
+#include "sim/model/effect_reader.h"
 
 namespace omnihil {
 namespace {

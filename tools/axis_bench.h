@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/drive/axis_dataset.h"
+#include "sim/bench/axis_dataset.h"
 
 namespace omnihil {
 

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# Format, style, static checks, sanitizers, a minute of fuzzing. Called by `./dev check [STEP…]`.
+# Format, style, rooms, static checks, sanitizers, a minute of fuzzing. Called by `./dev check [STEP…]`.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 steps=("$@")
-[ ${#steps[@]} -gt 0 ] || steps=(format style tidy sanitizers fuzz)
+[ ${#steps[@]} -gt 0 ] || steps=(format style rooms tidy sanitizers fuzz)
 failed=()
 
 sources() { git ls-files '*.cc' '*.h' '*.c'; }
 
 check_format() { sources | xargs clang-format --dry-run -Werror; }
 check_style() { python3 tools/style_check.py; }
+check_rooms() { python3 tools/rooms.py --check; }
 check_tidy() {
   # without the options that only gcc knows
   mkdir -p build/tidy

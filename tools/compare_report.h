@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "sim/identify/clock_offset.h"
-#include "sim/identify/comparison.h"
-#include "sim/identify/diagnosis.h"
-#include "sim/identify/tube.h"
+#include "identify/compare/clock_offset.h"
+#include "identify/compare/comparison.h"
+#include "identify/compare/tube.h"
+#include "identify/select/diagnosis.h"
 
 namespace omnihil {
 

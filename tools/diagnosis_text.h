@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "sim/identify/diagnosis.h"
+#include "identify/select/diagnosis.h"
 
 namespace omnihil {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hil/stream_file.h"
+#include "hil/recording/stream_file.h"
 
 namespace omnihil {
 

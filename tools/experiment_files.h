@@ -6,8 +6,8 @@
 #pragma once
 #include <string>
 
+#include "identify/design/experiment.h"
 #include "protocols/drive_frames.h"
-#include "sim/identify/experiment.h"
 
 namespace omnihil {
 

@@ -2,7 +2,7 @@
 //
 //   add_firmware_options(*verb, words.firmware);      // --firmware, --board, --firmware-deadline
 #pragma once
-#include "hil/firmware_host/open_firmware.h"
+#include "hil/firmware/open_firmware.h"
 
 namespace CLI {
 class App;

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "sim/identify/comparison.h"
-#include "sim/identify/fit.h"
+#include "identify/compare/comparison.h"
+#include "identify/estimate/fit.h"
 
 namespace omnihil {
 

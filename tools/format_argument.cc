@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "sim/core/params.h"
+#include "sim/model/params.h"
 
 namespace omnihil {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "sim/core/expression.h"
+#include "sim/law/expression.h"
 
 namespace omnihil {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/core/effect_set.h"
+#include "sim/law/effect_set.h"
 
 namespace omnihil {
 

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "hil/dataset_files.h"
-#include "hil/recording_reader.h"
-#include "hil/stream_file.h"
+#include "hil/recording/recording_reader.h"
+#include "hil/recording/stream_file.h"
+#include "hil/text/dataset_files.h"
 #include "tools/exit_codes.h"
 
 namespace omnihil {

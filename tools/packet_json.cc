@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "protocols/codec.h"
-#include "sim/core/params.h"
+#include "sim/model/params.h"
 
 namespace omnihil {
 namespace {

@@ -8,13 +8,13 @@
 #include <fstream>
 #include <sstream>
 
-#include "hil/dataset_model.h"
-#include "hil/effect_overrides.h"
-#include "hil/recording_text.h"
-#include "sim/core/model_writer.h"
-#include "sim/core/random.h"
-#include "sim/drive/excitation.h"
+#include "hil/dataset/dataset_model.h"
+#include "hil/loop/effect_overrides.h"
+#include "hil/text/recording_text.h"
+#include "sim/bench/excitation.h"
 #include "sim/drive/sensor_chain.h"
+#include "sim/law/random.h"
+#include "sim/model/model_writer.h"
 #include "sim/robot/plant.h"
 
 namespace omnihil {

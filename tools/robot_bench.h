@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "hil/dataset_export.h"
+#include "hil/dataset/dataset_export.h"
 #include "tools/axis_bench.h"
 
 namespace omnihil {

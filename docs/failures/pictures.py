@@ -301,7 +301,7 @@ def main():
     differ = []
     for name in arguments[1:] or drawings:
         commands.clear()
-        text, path = svg(*drawings[name]()), HERE / f"{name}.svg"
+        text, path = svg(*drawings[name]()), HERE / "img" / f"{name}.svg"
         if not check:
             path.write_text(text, encoding="utf-8")
         elif not path.exists() or not same(text, path.read_text(encoding="utf-8")):

@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "firmware_iface/robot_io.h"
-#include "sim/core/model_file.h"
+#include "sim/model/model_file.h"
 
 namespace omnihil {
 

@@ -7,7 +7,7 @@
 #include "hil/scenario/scenario.h"
 #include "hil/scenario/scenario_rows.h"
 #include "hil/scenario/scenario_signals.h"
-#include "hil/toml_keys.h"
+#include "hil/text/toml_keys.h"
 
 namespace omnihil {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "hil/markup.h"
+#include "hil/text/markup.h"
 
 namespace omnihil {
 namespace {

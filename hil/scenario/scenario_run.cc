@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "firmware_iface/firmware_checks.h"
-#include "hil/session_checks.h"
+#include "hil/loop/session_checks.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {

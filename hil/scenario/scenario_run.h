@@ -8,9 +8,9 @@
 #pragma once
 #include <string>
 
+#include "hil/loop/session.h"
 #include "hil/scenario/scenario.h"
 #include "hil/scenario/scenario_signals.h"
-#include "hil/session.h"
 
 namespace omnihil {
 

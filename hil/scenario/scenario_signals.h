@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hil/session.h"
+#include "hil/loop/session.h"
 #include "sim/robot/geometry.h"
 
 namespace omnihil {

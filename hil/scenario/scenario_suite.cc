@@ -7,12 +7,12 @@
 #include <fstream>
 #include <system_error>
 
-#include "hil/effect_overrides.h"
-#include "hil/model_store.h"
+#include "hil/loop/effect_overrides.h"
+#include "hil/loop/model_store.h"
+#include "hil/loop/session_checks.h"
+#include "hil/recording/session_setup.h"
 #include "hil/scenario/scenario_plot.h"
-#include "hil/session_checks.h"
-#include "hil/session_setup.h"
-#include "hil/text_file.h"
+#include "hil/text/text_file.h"
 
 namespace omnihil {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hil/firmware_host/open_firmware.h"
+#include "hil/firmware/open_firmware.h"
 #include "hil/scenario/scenario_report.h"
 
 namespace omnihil {

@@ -6,8 +6,8 @@
 // Values in, values out, and never inlined: a drive's sub-step that lent its own numbers by reference to a
 // case this rare would have to keep them in memory (drive_sim.cc).
 #pragma once
-#include "sim/core/scalar.h"
 #include "sim/drive/rotor_step.h"
+#include "sim/law/scalar.h"
 
 namespace omnihil {
 

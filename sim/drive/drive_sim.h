@@ -22,10 +22,10 @@
 #include <array>
 #include <cstdint>
 
-#include "sim/core/effect_set.h"
-#include "sim/drive/drive_params.h"
 #include "sim/drive/rotor_step.h"
 #include "sim/drive/winding_step.h"
+#include "sim/law/drive_params.h"
+#include "sim/law/effect_set.h"
 
 namespace omnihil {
 

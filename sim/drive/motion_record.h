@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "sim/core/scalar.h"
+#include "sim/law/scalar.h"
 
 namespace omnihil {
 

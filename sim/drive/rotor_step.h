@@ -9,7 +9,7 @@
 // rotor stops exactly at zero and stays, or starts in the other direction with the rest of the sub-step. The
 // result is continuous in every parameter and has a derivative but at the crossing itself.
 #pragma once
-#include "sim/core/scalar.h"
+#include "sim/law/scalar.h"
 
 namespace omnihil {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "sim/core/random.h"
+#include "sim/law/random.h"
 
 namespace omnihil {
 

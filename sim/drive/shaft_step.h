@@ -12,8 +12,8 @@
 // / (4 J), J both masses in parallel (5e-5 s and 6e-6 kg m2: 1e-4 rad/(N m)), and where that dominates
 // damping makes contact without bounce.
 #pragma once
-#include "sim/core/effect_ports.h"
-#include "sim/core/scalar.h"
+#include "sim/law/effect_ports.h"
+#include "sim/law/scalar.h"
 
 namespace omnihil {
 

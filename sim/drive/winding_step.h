@@ -13,7 +13,7 @@
 #pragma once
 #include <cmath>
 
-#include "sim/core/scalar.h"
+#include "sim/law/scalar.h"
 
 namespace omnihil {
 

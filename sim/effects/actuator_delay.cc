@@ -1,5 +1,5 @@
 // Delay between asking and doing: bus, firmware and PWM update.
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

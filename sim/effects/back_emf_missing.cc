@@ -1,7 +1,7 @@
 // Back-EMF without the speed in it: not a thing of motors but of models, as in an equation once printed so.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

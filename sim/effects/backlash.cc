@@ -1,8 +1,8 @@
 // Backlash: play between rotor and output, in which no torque passes; beyond it flanks that give a little.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
-#include "sim/drive/two_masses.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/two_masses.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Sag of the supply: the bus voltage falls with the current that all drives take together.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // A centre of mass that is not where the model has it.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "sim/core/effect_entry.h"
-#include "sim/core/fast_sin.h"
-#include "sim/drive/drive_params.h"
+#include "sim/law/drive_params.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/fast_sin.h"
 
 namespace omnihil {
 namespace {

@@ -1,8 +1,8 @@
 // Commutation misalignment: Hall sensors or the encoder's zero sit beside the place they are taken to have.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
-#include "sim/core/fast_sin.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/fast_sin.h"
 
 namespace omnihil {
 namespace {

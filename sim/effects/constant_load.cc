@@ -1,7 +1,7 @@
 // A load that always pushes the same way: slope, spring, cable, magnet.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

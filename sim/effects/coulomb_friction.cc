@@ -1,7 +1,7 @@
 // Dry friction: a level that opposes motion and holds the rotor at rest.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

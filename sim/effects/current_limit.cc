@@ -1,5 +1,5 @@
 // Current limit of the drive: a chopper turns the bridge down as far as the current needs.
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Dead time and device drops of the bridge: a voltage that is lost against the current.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // A ball held by the dribbler rubs on the carpet and holds the robot back.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

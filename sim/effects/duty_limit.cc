@@ -1,5 +1,5 @@
 // Limit of the duty: a bridge that is never given its full voltage.
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

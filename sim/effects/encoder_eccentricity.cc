@@ -1,7 +1,7 @@
 // Eccentricity of the encoder's disc or magnet: an angle error once per turn of its shaft.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

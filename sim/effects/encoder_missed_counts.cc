@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/core/effect_entry.h"
-#include "sim/core/random.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/random.h"
 
 namespace omnihil {
 namespace {

@@ -1,8 +1,8 @@
 // The user's own formula. What stands here is the example that documentation and tests show; the formulas of
-// a model file are made by sim/core/expression.h.
-#include "sim/core/expression.h"
+// a model file are made by sim/law/expression.h.
+#include "sim/law/expression.h"
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

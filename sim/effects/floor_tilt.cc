@@ -1,7 +1,7 @@
 // A floor that is not level: a part of the weight pulls downhill.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

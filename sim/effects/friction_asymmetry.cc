@@ -1,7 +1,7 @@
 // Friction that differs by direction: bearings under axial load, gears ground on one flank, seals, brushes.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

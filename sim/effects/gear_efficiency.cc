@@ -1,7 +1,7 @@
 // Efficiency of a gear: a share of the power is lost, whichever way it flows.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

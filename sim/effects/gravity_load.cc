@@ -1,8 +1,8 @@
 // Gravity on an eccentric load: an arm, a pendulum, a disc with a mass on it. Once per turn of the output.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
-#include "sim/core/fast_sin.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/fast_sin.h"
 
 namespace omnihil {
 namespace {

@@ -2,7 +2,7 @@
 // in ball screws, bearings and gears.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

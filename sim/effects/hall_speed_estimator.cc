@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/core/effect_entry.h"
-#include "sim/drive/drive_params.h"
+#include "sim/law/drive_params.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,8 +1,8 @@
 // Imbalance of the rotor: gravity on its eccentric mass, or a bent shaft's pull. Once per rotor turn.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
-#include "sim/core/fast_sin.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/fast_sin.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Friction of the rollers in their bearings: a force across the drive direction.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Friction of a gear that grows with the torque on its teeth.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

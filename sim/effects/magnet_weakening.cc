@@ -1,7 +1,7 @@
 // Magnets lose flux as they warm: less torque per ampere, and more speed per volt.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

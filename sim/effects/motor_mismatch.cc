@@ -1,7 +1,7 @@
 // Motors that are not alike: each wheel's torque constant apart from the model's.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

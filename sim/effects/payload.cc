@@ -1,7 +1,7 @@
 // Mass that the model does not know of: a second battery, armour, another kicker.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

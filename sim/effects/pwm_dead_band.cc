@@ -1,7 +1,7 @@
 // Dead band of a bridge in coast mode: below some duty no current builds up, so nothing is driven or braked.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

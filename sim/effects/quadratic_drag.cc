@@ -1,7 +1,7 @@
 // Drag with the square of the speed: windage, churning grease, part of the iron loss.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Ripple of the rollers: a drive force that comes once per roller, because the wheel is no circle.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Rolling resistance: carpet and rubber give way under the wheel and take a torque that opposes rolling.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

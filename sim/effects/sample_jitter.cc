@@ -1,8 +1,8 @@
 // Samples that are not taken when their stamp says: earlier or later at random.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
-#include "sim/core/random.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/random.h"
 
 namespace omnihil {
 namespace {

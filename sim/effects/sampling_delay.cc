@@ -1,5 +1,5 @@
 // Measurements that are older than their stamp.
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Magnetic saturation: at high currents the iron carries no more flux, and an ampere gives less torque.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,6 +1,6 @@
 // Compliance of shaft, belt or gear: rotor and output are two masses with a spring between.
-#include "sim/core/effect_entry.h"
-#include "sim/drive/two_masses.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/two_masses.h"
 
 namespace omnihil {
 namespace {

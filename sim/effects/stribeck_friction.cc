@@ -1,7 +1,7 @@
 // Stribeck friction: dry friction that is higher at rest and falls as the lubricant begins to carry.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,5 +1,5 @@
 // Limit of the target's speed: a servo that walks to a new target instead of jumping there.
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,8 +1,8 @@
 // Thermal derating: a firmware that allows less current the hotter the winding is.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
-#include "sim/drive/drive_params.h"
+#include "sim/law/drive_params.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

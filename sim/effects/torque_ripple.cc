@@ -1,9 +1,9 @@
 // Torque ripple: the torque constant depends on the rotor's angle, and the back-EMF with it.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
-#include "sim/core/fast_sin.h"
-#include "sim/drive/drive_params.h"
+#include "sim/law/drive_params.h"
+#include "sim/law/effect_entry.h"
+#include "sim/law/fast_sin.h"
 
 namespace omnihil {
 namespace {

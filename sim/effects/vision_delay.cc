@@ -1,5 +1,5 @@
 // Camera frames that are older than their stamp: exposure, transfer and processing.
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Wheels of unequal radius: worn rings, another batch.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

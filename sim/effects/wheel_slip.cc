@@ -1,7 +1,7 @@
 // Longitudinal slip: the wheel has to slide a little to push, and pushes no harder than its grip.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

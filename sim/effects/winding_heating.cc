@@ -1,7 +1,7 @@
 // Heating of the winding: copper loss warms it, its resistance rises; with or without a housing behind it.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -1,7 +1,7 @@
 // Inductance of the winding beyond what the model has: the current follows the voltage late.
 #include <cmath>
 
-#include "sim/core/effect_entry.h"
+#include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sim/core/effect_set.h"
+#include "sim/law/effect_set.h"
 
 namespace omnihil {
 namespace {

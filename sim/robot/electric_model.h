@@ -6,13 +6,13 @@
 //   electrics_of(m).three_phase();                  // of any model; all neutral where it says nothing
 //   PhaseMotor<double> motor = phase_motor(m);      // the three-phase motor of the same terminal values
 //
-// dc        one winding on an averaged bridge (sim/motor): what there is without these numbers
+// dc        one winding on an averaged bridge (sim/drive): what there is without these numbers
 // dq        three phases, averaged over each PWM period, in the rotor's frame: inductances of both axes,
 //           saturation, dead time; sinusoidal back-EMF. A floating or chopped leg is taken to the averaged
 //           circuit (averaged_drive.h), which knows neither.
 // switched  every edge of the bridge (switched_drive.h), floating phases, diodes, ripple, any back-EMF
 // The torque constant of the model belongs to the commutation with which the drive itself runs (dq:
-// sinusoidal, switched: block) unless constant_for says otherwise. Laws, sources and limits: sim/phase.
+// sinusoidal, switched: block) unless constant_for says otherwise. Laws, sources and limits: sim/drive.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -20,13 +20,13 @@
 #include <utility>
 #include <vector>
 
-#include "sim/phase/absolute_encoder.h"
-#include "sim/phase/current_sensor.h"
-#include "sim/phase/hall_sensors.h"
-#include "sim/phase/inverter.h"
-#include "sim/phase/phase_motor.h"
-#include "sim/phase/supply.h"
-#include "sim/phase/thermal.h"
+#include "sim/drive/absolute_encoder.h"
+#include "sim/drive/current_sensor.h"
+#include "sim/drive/hall_sensors.h"
+#include "sim/drive/inverter.h"
+#include "sim/drive/phase_motor.h"
+#include "sim/drive/supply.h"
+#include "sim/drive/thermal.h"
 #include "sim/robot/robot_model.h"
 
 namespace omnihil {

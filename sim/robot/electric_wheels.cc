@@ -4,8 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include "sim/core/random.h"
-#include "sim/motor/encoder.h"
+#include "sim/drive/encoder.h"
+#include "sim/law/random.h"
 
 namespace omnihil {
 namespace {

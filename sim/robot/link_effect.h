@@ -5,7 +5,7 @@
 #pragma once
 #include <string_view>
 
-#include "sim/core/effect.h"
+#include "sim/law/effect.h"
 
 namespace omnihil {
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "sim/motor/encoder.h"
+#include "sim/drive/encoder.h"
 #include "sim/robot/plain_bytes.h"
 #include "sim/robot/plant_impl.h"
 #include "sim/robot/validate.h"

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "sim/phase/thermal.h"
+#include "sim/drive/thermal.h"
 #include "sim/robot/chassis.h"
 #include "sim/robot/electric_wheels.h"
 #include "sim/robot/integrate.h"

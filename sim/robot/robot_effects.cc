@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "sim/phase/thermal.h"
+#include "sim/drive/thermal.h"
 #include "sim/robot/link_effect.h"
 
 namespace omnihil {

@@ -1,5 +1,5 @@
 // Everything fixed about one robot: geometry, masses, wheels, tyres, motors, encoder, supply.
-// Plain numbers in SI; tolerances and sources live in the model file's rows (sim/core/params.h).
+// Plain numbers in SI; tolerances and sources live in the model file's rows (sim/model/params.h).
 // Wheel i sits at wheel_angle_rad[i] from body x (forward) towards y (left); positive drive direction is
 // the body's counter-clockwise tangent. Drawn in docs/frames-and-wheels.md.
 #pragma once
@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "firmware_iface/robot_io.h"
-#include "sim/motor/motor_params.h"
+#include "sim/drive/motor_params.h"
 #include "sim/robot/tyre.h"
 
 namespace omnihil {
 
-struct EffectUse;      // sim/core/effect_set.h
+struct EffectUse;      // sim/law/effect_set.h
 struct ElectricModel;  // sim/robot/electric_model.h
 
 // What the robot's own firmware makes of its motors: a duty, or the legs of three phases.

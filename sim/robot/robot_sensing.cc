@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "sim/core/random.h"
-#include "sim/motor/encoder.h"
+#include "sim/drive/encoder.h"
+#include "sim/law/random.h"
 
 namespace omnihil {
 namespace {

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/core/scalar.h"
+#include "sim/law/scalar.h"
 
 namespace omnihil {
 

@@ -1,9 +1,5 @@
 #include "sim/robot/rolling_params.h"
 
-#include <numbers>
-
-#include "sim/drive/axis_model.h"
-
 namespace omnihil {
 namespace {
 
@@ -49,14 +45,9 @@ std::array<T*, std::size(kOwnPaths)> own_numbers(RollingParams<T>& p) {
           &p.lateral.asymptote_value};
 }
 
-bool given(const ParameterTable& table, std::string_view section) {
-  for (const Parameter& p : table.parameters) {
-    if (p.row->section == section && p.origin != Origin::kDefault && !p.values.empty()) return true;
-  }
-  return false;
-}
-
 }  // namespace
+
+std::span<const std::string_view> rolling_paths() { return kOwnPaths; }
 
 template <typename T>
 T* rolling_number(RollingParams<T>& p, std::string_view path) {
@@ -73,22 +64,6 @@ T* rolling_number(RollingParams<T>& p, std::string_view path) {
     }
   }
   return nullptr;
-}
-
-RollingParams<double> rolling_params(const ParameterTable& table) {
-  RollingParams<double> p;
-  p.drive = drive_params_of(table);
-  p.drive.coulomb_friction_Nm = 0.0;  // the effect of that name
-  const auto own = own_numbers(p);
-  for (std::size_t i = 0; i < own.size(); ++i) *own[i] = table.value_or(kOwnPaths[i], *own[i]);
-  if (const Parameter* angles = table.find("robot.wheel_angle_deg"); angles != nullptr) {
-    for (std::size_t i = 0; i < kWheels && i < angles->values.size(); ++i) {
-      p.wheel_angle_rad[i] = angles->values[i] * std::numbers::pi / 180.0;
-    }
-  }
-  p.has_tyre = given(table, "tyre.longitudinal");
-  p.has_lateral_tyre = given(table, "tyre.lateral");
-  return p;
 }
 
 template <typename T>

@@ -1,6 +1,6 @@
 // What is fixed about one robot, on any scalar, for the robot that rolls (rolling_robot.h).
 //
-//   RollingParams<double> p = rolling_params(table);        // from a model file's rows
+//   RollingParams<double> p = rolling_params(table);        // sim/model/rolling_model.h: from a model file's rows
 //   RollingParams<Jet> q = rolling_params_as<Jet>(p);
 //   *rolling_number(q, "robot.mass_kg") = Jet(2.4, 0);      // and it is unknown number 0
 //
@@ -8,10 +8,11 @@
 // lateral_roller_friction, whose neutral is rolling. A model that gives one has that tyre (tyre.h, slip.h).
 #pragma once
 #include <array>
+#include <span>
 #include <string_view>
 
-#include "sim/core/params.h"
-#include "sim/drive/drive_params.h"
+#include "sim/law/drive_params.h"
+#include "sim/robot/robot_model.h"
 #include "sim/robot/tyre.h"
 
 namespace omnihil {
@@ -40,7 +41,9 @@ struct RollingParams {
 template <typename T>
 T* rolling_number(RollingParams<T>& p, std::string_view path);
 
-RollingParams<double> rolling_params(const ParameterTable& table);
+// The paths of a robot's own numbers; those of its drives are drive_param_paths().
+std::span<const std::string_view> rolling_paths();
+
 template <typename T>
 RollingParams<T> rolling_params_as(const RollingParams<double>& p);
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/core/effect_reader.h"
+#include "sim/law/effect_set.h"
 #include "sim/robot/contact.h"
 #include "sim/robot/electric_model.h"
 #include "sim/robot/planar_law.h"
@@ -299,6 +299,19 @@ std::string electric_text(const RobotModel& m) {
   return text;
 }
 
+// What each effect is and its numbers, one after another.
+std::string effects_text(std::span<const EffectUse> uses) {
+  std::string text;
+  for (const EffectUse& use : uses) {
+    const EffectInfo& info = *use.entry->info;
+    text += fmt::format("|{} {} {} {} {}", info.id, use.name, static_cast<int>(info.place), info.target,
+                        info.equation);
+    for (std::size_t i = 0; i < use.values.size(); ++i)
+      text += fmt::format(" {} {}", info.params[i].name, use.values[i]);
+  }
+  return text;
+}
+
 }  // namespace
 
 void require_valid(std::span<const RobotModel> robots, const PlantOptions& options) {
@@ -317,7 +330,7 @@ std::uint64_t plant_fingerprint(std::span<const RobotModel> robots, const PlantO
                         m.rollers_per_wheel);
     for (const Field& f : fields_of(m)) text += fmt::format(" {}", f.value);
     text += electric_text(m);
-    if (m.effects != nullptr) text += write_effects(*m.effects, false);
+    if (m.effects != nullptr) text += effects_text(*m.effects);
   }
   std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;

@@ -24,7 +24,7 @@
 // The wheel's own freedom is decoupled in the planar mass matrix, so that a lock is exact there.
 // Cannot represent: a break-away torque above the turning one (Stribeck), friction that depends on load.
 #pragma once
-#include "sim/motor/dc_drive.h"
+#include "sim/drive/dc_drive.h"
 #include "sim/robot/mechanics.h"
 #include "sim/robot/robot_model.h"
 

@@ -21,10 +21,10 @@
 // moved by more than 0.1 K.
 // Cannot: saturation while a leg floats (dq), see also the laws.
 #pragma once
-#include "sim/motor/dc_drive.h"
-#include "sim/phase/averaged_drive.h"
-#include "sim/phase/dq_motor.h"
-#include "sim/phase/switched_drive.h"
+#include "sim/drive/averaged_drive.h"
+#include "sim/drive/dc_drive.h"
+#include "sim/drive/dq_motor.h"
+#include "sim/drive/switched_drive.h"
 #include "sim/robot/electric_model.h"
 #include "sim/robot/wheel_drive.h"
 

@@ -8,7 +8,7 @@
 
 #include "sim/robot/integrate.h"
 #include "sim/robot/planar.h"
-#include "tests/sim/sample_robot.h"
+#include "tests/sim/robot/sample_robot.h"
 
 #ifdef NDEBUG
 #error "this program is there to be compiled without NDEBUG"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "hil/dataset_reader.h"
+#include "hil/dataset/dataset_reader.h"
 
 namespace omnihil {
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "fake_predictor.h"
-#include "sim/identify/judge.h"
+#include "identify/select/judge.h"
+#include "tests/identify/fake_predictor.h"
 
 namespace omnihil {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/identify/predictor.h"
+#include "identify/predict/predictor.h"
 
 namespace omnihil {
 

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "hil/dataset_reader.h"
-#include "sim/core/effect_registry.h"
-#include "sim/identify/fit.h"
+#include "hil/dataset/dataset_reader.h"
+#include "identify/estimate/fit.h"
+#include "sim/law/effect_registry.h"
 
 namespace omnihil {
 

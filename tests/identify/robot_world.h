@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "sim/core/effect_registry.h"
-#include "sim/identify/predictor.h"
+#include "identify/predict/predictor.h"
+#include "sim/law/effect_registry.h"
 
 namespace omnihil::test {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "dataset_folder.h"
-#include "sim/core/effect_reader.h"
-#include "sim/drive/axis_dataset.h"
-#include "sim/drive/excitation.h"
+#include "sim/bench/axis_dataset.h"
+#include "sim/bench/excitation.h"
+#include "sim/model/effect_reader.h"
+#include "tests/identify/dataset_folder.h"
 
 namespace omnihil {
 

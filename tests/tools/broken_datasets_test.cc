@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli.h"
+#include "tests/tools/cli.h"
 
 namespace omnihil {
 namespace {

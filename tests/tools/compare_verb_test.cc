@@ -1,7 +1,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "cli.h"
+#include "tests/tools/cli.h"
 
 namespace omnihil {
 namespace {

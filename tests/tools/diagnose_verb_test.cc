@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "cli.h"
+#include "tests/tools/cli.h"
 
 extern char** environ;
 

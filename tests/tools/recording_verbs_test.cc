@@ -6,7 +6,7 @@
 #include <iterator>
 #include <thread>
 
-#include "tests/recording/real_run.h"
+#include "tests/hil/recording/real_run.h"
 #include "tests/tools/cli.h"
 
 namespace omnihil {

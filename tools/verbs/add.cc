@@ -6,12 +6,12 @@
 #include <memory>
 #include <string>
 
-#include "hil/dataset_files.h"
-#include "hil/dataset_reader.h"
-#include "hil/serve_signals.h"
-#include "sim/core/effect_reader.h"
-#include "sim/core/expression.h"
-#include "sim/identify/add_effect.h"
+#include "hil/dataset/dataset_reader.h"
+#include "hil/serve/serve_signals.h"
+#include "hil/text/dataset_files.h"
+#include "identify/select/add_effect.h"
+#include "sim/law/expression.h"
+#include "sim/model/effect_reader.h"
 #include "tools/diagnosis_text.h"
 #include "tools/exit_codes.h"
 #include "tools/formula_argument.h"
@@ -98,7 +98,7 @@ int run(const Arguments& a) {
   Addition addition;
   {
     ProgressLine line;
-    options.progress = [&](const DiagnosisProgress& p) {
+    options.progress = [&](const Progress& p) {
       line.show(p.doing, p.share);
       return !StopSignals::requested();
     };

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "hil/dataset_files.h"
-#include "hil/dataset_reader.h"
-#include "hil/toml_keys.h"
-#include "sim/identify/force_error.h"
+#include "hil/dataset/dataset_reader.h"
+#include "hil/text/dataset_files.h"
+#include "hil/text/toml_keys.h"
+#include "identify/compare/force_error.h"
 #include "tools/compare_report.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"

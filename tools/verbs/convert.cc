@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
-#include "hil/dataset_export.h"
-#include "hil/dataset_files.h"
-#include "hil/recording_reader.h"
-#include "hil/session_setup.h"
-#include "hil/stream_file.h"
+#include "hil/dataset/dataset_export.h"
+#include "hil/recording/recording_reader.h"
+#include "hil/recording/session_setup.h"
+#include "hil/recording/stream_file.h"
+#include "hil/text/dataset_files.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/verbs/verbs.h"

@@ -7,11 +7,11 @@
 #include <memory>
 #include <string>
 
-#include "hil/dataset_files.h"
-#include "hil/dataset_reader.h"
-#include "hil/diagnosis_json.h"
-#include "hil/report_html.h"
-#include "hil/serve_signals.h"
+#include "hil/dataset/dataset_reader.h"
+#include "hil/report/diagnosis_json.h"
+#include "hil/report/report_html.h"
+#include "hil/serve/serve_signals.h"
+#include "hil/text/dataset_files.h"
 #include "tools/diagnosis_text.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
@@ -57,7 +57,7 @@ int run(const Arguments& a) {
     ProgressLine line;
     DiagnoseOptions options = a.options;
     if (a.quick) options.max_effects = 1;
-    options.progress = [&](const DiagnosisProgress& p) {
+    options.progress = [&](const Progress& p) {
       line.show(p.doing, p.share);
       return !StopSignals::requested();
     };

@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
-#include "sim/core/effect_registry.h"
-#include "sim/drive/effect_page.h"
+#include "sim/law/effect_registry.h"
+#include "sim/pages/effect_page.h"
 #include "tools/exit_codes.h"
 #include "tools/verbs/verbs.h"
 
@@ -57,12 +57,14 @@ bool write_file(const std::filesystem::path& path, const std::string& text) {
 }
 
 int write_docs(const std::filesystem::path& folder) {
+  std::error_code ignored;  // a folder that cannot be made: the first file says so
+  std::filesystem::create_directories(folder / "img", ignored);
   bool good = write_file(folder / "index.md", "# All effects\n\n" + effect_index());
   for (const EffectEntry* e : all_effects()) {
     const std::string id(e->info->id);
     good = good && write_file(folder / (id + ".md"), effect_page(*e));
     const std::string picture = effect_picture(*e);
-    if (!picture.empty()) good = good && write_file(folder / (id + ".svg"), picture);
+    if (!picture.empty()) good = good && write_file(folder / "img" / (id + ".svg"), picture);
   }
   return good ? kExitOk : kExitIo;
 }

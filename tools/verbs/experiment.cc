@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "hil/dataset_files.h"
-#include "hil/dataset_reader.h"
-#include "hil/serve_signals.h"
-#include "sim/core/effect_registry.h"
-#include "sim/core/params.h"
-#include "sim/identify/refit.h"
+#include "hil/dataset/dataset_reader.h"
+#include "hil/serve/serve_signals.h"
+#include "hil/text/dataset_files.h"
+#include "identify/select/refit.h"
+#include "sim/law/effect_registry.h"
+#include "sim/model/params.h"
 #include "tools/axis_bench.h"
 #include "tools/exit_codes.h"
 #include "tools/experiment_files.h"
@@ -173,7 +173,7 @@ int run(Arguments a) {
       line.show("fitting " + name, 0.0);
       rivals.push_back(rival_of(name, *reading.nominal, data, a.options.jobs));
     }
-    a.options.progress = [&](const DiagnosisProgress& p) {
+    a.options.progress = [&](const Progress& p) {
       line.show(p.doing, p.share);
       return !StopSignals::requested();
     };

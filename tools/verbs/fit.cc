@@ -8,11 +8,11 @@
 #include <memory>
 #include <string>
 
-#include "hil/dataset_files.h"
-#include "hil/dataset_reader.h"
-#include "hil/serve_signals.h"
-#include "sim/core/effect_registry.h"
-#include "sim/core/params.h"
+#include "hil/dataset/dataset_reader.h"
+#include "hil/serve/serve_signals.h"
+#include "hil/text/dataset_files.h"
+#include "sim/law/effect_registry.h"
+#include "sim/model/params.h"
 #include "tools/exit_codes.h"
 #include "tools/fit_text.h"
 #include "tools/guarded.h"

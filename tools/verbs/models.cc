@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "hil/model_store.h"
-#include "sim/core/model_figures.h"
-#include "sim/core/model_keys.h"
+#include "hil/loop/model_store.h"
+#include "sim/model/model_figures.h"
+#include "sim/model/model_keys.h"
 #include "sim/robot/validate.h"
 #include "tools/exit_codes.h"
 #include "tools/verbs/verbs.h"

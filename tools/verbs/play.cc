@@ -9,9 +9,9 @@
 #include <string>
 #include <thread>
 
-#include "hil/stream_file.h"
-#include "hil/stream_player.h"
-#include "hil/stream_port.h"
+#include "hil/recording/stream_file.h"
+#include "hil/serve/stream_player.h"
+#include "hil/wire/stream_port.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/verbs/verbs.h"

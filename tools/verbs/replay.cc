@@ -1,5 +1,5 @@
 // `omnihil replay`: the recorded host's bytes through the loop again; says whether the same bytes come back.
-#include "hil/replay.h"
+#include "hil/recording/replay.h"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 #include <memory>
 #include <string>
 
-#include "hil/compare_recordings.h"
-#include "hil/recording_header.h"
-#include "hil/recording_reader.h"
-#include "hil/recording_writer.h"
-#include "hil/replay_report.h"
-#include "hil/replay_run.h"
+#include "hil/recording/compare_recordings.h"
+#include "hil/recording/recording_header.h"
+#include "hil/recording/recording_reader.h"
+#include "hil/recording/recording_writer.h"
+#include "hil/recording/replay_report.h"
+#include "hil/recording/replay_run.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/program_commit.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hil/recording_header.h"
+#include "hil/recording/recording_header.h"
 #include "hil/scenario/scenario_rows.h"
 #include "hil/scenario/scenario_suite.h"
 #include "tools/exit_codes.h"

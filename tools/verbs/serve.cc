@@ -1,5 +1,5 @@
-// `omnihil serve`: robots behind a virtual radio dongle. Options here, the work in hil/serve.h.
-#include "hil/serve.h"
+// `omnihil serve`: robots behind a virtual radio dongle. Options here, the work in hil/serve/serve.h.
+#include "hil/serve/serve.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "hil/bus_port/bus_firmware.h"
-#include "hil/effect_overrides.h"
-#include "hil/model_store.h"
-#include "hil/recording_header.h"
-#include "hil/session_setup.h"
+#include "hil/firmware/bus_firmware.h"
+#include "hil/loop/effect_overrides.h"
+#include "hil/loop/model_store.h"
+#include "hil/recording/recording_header.h"
+#include "hil/recording/session_setup.h"
 #include "protocols/radio_format.h"
 #include "tools/exit_codes.h"
 #include "tools/firmware_options.h"

@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "hil/dataset_files.h"
-#include "hil/model_store.h"
-#include "sim/core/model_document.h"
+#include "hil/loop/model_store.h"
+#include "hil/text/dataset_files.h"
+#include "sim/model/model_document.h"
 #include "tools/axis_bench.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"

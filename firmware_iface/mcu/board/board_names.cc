@@ -6,7 +6,7 @@
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
 #include "firmware_iface/mcu/stm32/spi.h"
-#include "firmware_iface/mcu/stm32/timer.h"
+#include "firmware_iface/mcu/stm32/timer/timer.h"
 #include "firmware_iface/mcu/stm32/usart.h"
 
 namespace omnihil::mcu {

@@ -12,7 +12,7 @@
 #include "firmware_iface/mcu/board/board_spec.h"
 #include "firmware_iface/mcu/board/world_state.h"
 #include "firmware_iface/mcu/stm32/chip.h"
-#include "firmware_iface/mcu/stm32/timer.h"
+#include "firmware_iface/mcu/stm32/timer/timer.h"
 
 namespace omnihil::mcu {
 

@@ -19,7 +19,7 @@
 
 #include "firmware_iface/mcu/board/board_spec.h"
 #include "firmware_iface/mcu/stm32/chip.h"
-#include "firmware_iface/mcu/stm32/timer.h"
+#include "firmware_iface/mcu/stm32/timer/timer.h"
 #include "firmware_iface/robot_io.h"
 
 namespace omnihil::mcu {

@@ -20,7 +20,7 @@
 #include "firmware_iface/mcu/machine/machine.h"
 #include "firmware_iface/mcu/stm32/adc.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
-#include "firmware_iface/mcu/stm32/flash.h"
+#include "firmware_iface/mcu/stm32/clock/flash.h"
 #include "firmware_iface/mcu/stm32/gpio.h"
 
 namespace omnihil::mcu {

@@ -1,9 +1,9 @@
 // What every block of a chip may use of the rest of it.
 #pragma once
-#include "firmware_iface/mcu/stm32/clock_tree.h"
+#include "firmware_iface/mcu/stm32/clock/clock_tree.h"
 #include "firmware_iface/mcu/stm32/dma_router.h"
 #include "firmware_iface/mcu/stm32/irq_hub.h"
-#include "firmware_iface/mcu/stm32/trigger_bus.h"
+#include "firmware_iface/mcu/stm32/timer/trigger_bus.h"
 
 namespace omnihil::mcu {
 

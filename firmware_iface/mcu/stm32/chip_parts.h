@@ -14,11 +14,11 @@
 #include "firmware_iface/mcu/stm32/dma_v2.h"
 #include "firmware_iface/mcu/stm32/exti.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
-#include "firmware_iface/mcu/stm32/pwr.h"
-#include "firmware_iface/mcu/stm32/rcc.h"
+#include "firmware_iface/mcu/stm32/clock/pwr.h"
+#include "firmware_iface/mcu/stm32/clock/rcc.h"
 #include "firmware_iface/mcu/stm32/spi.h"
 #include "firmware_iface/mcu/stm32/stored_block.h"
-#include "firmware_iface/mcu/stm32/timer.h"
+#include "firmware_iface/mcu/stm32/timer/timer.h"
 #include "firmware_iface/mcu/stm32/usart.h"
 
 namespace omnihil::mcu {

@@ -1,0 +1,156 @@
+#include "firmware_iface/mcu/stm32/clock/flash.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace omnihil::mcu {
+namespace {
+constexpr std::uint32_t kBase = 0x08000000;
+
+constexpr RegisterInfo kF0F3[] = {
+    {0x00, "ACR", 0x30, 0x1F},  {0x04, "KEYR", 0, 0}, {0x08, "OPTKEYR", 0, 0}, {0x0C, "SR", 0, 0},
+    {0x10, "CR", 0x80, 0x3677}, {0x14, "AR"},         {0x1C, "OBR", 0x3FC, 0}, {0x20, "WRPR", 0xFFFFFFFF, 0}};
+constexpr RegisterInfo kF4[] = {{0x00, "ACR", 0, 0x1F0F},
+                                {0x04, "KEYR", 0, 0},
+                                {0x08, "OPTKEYR", 0, 0},
+                                {0x0C, "SR", 0, 0},
+                                {0x10, "CR", 0x80000000, 0x8301837F},
+                                {0x14, "OPTCR", 0x0FFFAAED, 0x0FFFFFFD, 0x2},
+                                {0x18, "OPTCR1", 0x0FFF0000}};
+constexpr RegisterInfo kG4[] = {{0x00, "ACR", 0x600, 0x47F0F},
+                                {0x04, "PDKEYR", 0, 0},
+                                {0x08, "KEYR", 0, 0},
+                                {0x0C, "OPTKEYR", 0, 0},
+                                {0x10, "SR", 0, 0},
+                                {0x14, "CR", 0xC0000000, 0xCB07FFFF},
+                                {0x18, "ECCR"},
+                                {0x20, "OPTR", 0xFFEFF8AA},
+                                {0x24, "PCROP1SR"},
+                                {0x28, "PCROP1ER"},
+                                {0x2C, "WRP1AR"},
+                                {0x30, "WRP1BR"}};
+// KEYR, SR, CR; bit of LOCK and STRT in CR; EOP in SR; EOPIE in CR
+struct Layout {
+  std::uint16_t key, sr, cr;
+  unsigned lock, start, done, done_enable;
+};
+Layout layout(FlashFamily family) {
+  if (family == FlashFamily::kF0F3) return {0x04, 0x0C, 0x10, 7, 6, 5, 12};
+  if (family == FlashFamily::kG4) return {0x08, 0x10, 0x14, 31, 16, 0, 24};
+  return {0x04, 0x0C, 0x10, 31, 16, 0, 24};
+}
+std::span<const RegisterInfo> table(FlashFamily family) {
+  if (family == FlashFamily::kF0F3) return kF0F3;
+  if (family == FlashFamily::kG4) return kG4;
+  return kF4;
+}
+}  // namespace
+
+Flash::Flash(FlashFamily family, std::uint32_t bytes, std::uint32_t page_bytes, int irq, ChipContext& context)
+    : RegisterBlock("FLASH", context.system, table(family)),
+      family_(family),
+      bytes_(bytes),
+      page_bytes_(page_bytes),
+      irq_(context.irqs, irq) {}
+
+void Flash::reset() {
+  RegisterBlock::reset();
+  keys_ = 0;
+  irq_.set(false);
+}
+
+bool Flash::locked() const {
+  const Layout at = layout(family_);
+  return bit(value(at.cr), at.lock);
+}
+
+std::uint32_t Flash::load(std::uint32_t offset) {
+  const std::uint32_t v = value(offset);
+  if (family_ == FlashFamily::kF0F3 && offset == 0) return (v & ~0x20u) | (v & 0x10u) << 1;  // PRFTBS
+  return v;
+}
+
+void Flash::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  const Layout at = layout(family_);
+  if (offset == at.key) {
+    key(written);
+  } else if (offset == at.sr) {
+    value(offset) &= ~written;
+    irq_.set(bit(value(at.sr), at.done) && bit(value(at.cr), at.done_enable));
+  } else if (offset == at.cr) {
+    control(written, lanes);
+  } else {
+    keep(offset, written, lanes);
+  }
+}
+
+void Flash::key(std::uint32_t written) {
+  constexpr std::uint32_t kKeys[] = {0x45670123u, 0xCDEF89ABu};
+  const Layout at = layout(family_);
+  if (keys_ < 2 && written == kKeys[keys_]) {
+    if (++keys_ == 2) {
+      value(at.cr) &= ~(1u << at.lock);
+      keys_ = 0;
+    }
+    return;
+  }
+  keys_ = 2;  // a wrong key keeps it locked until reset
+}
+
+void Flash::control(std::uint32_t written, std::uint32_t lanes) {
+  const Layout at = layout(family_);
+  if (locked()) return;
+  keep(at.cr, written, lanes);
+  value(at.cr) |= written & 1u << at.lock;
+  if (!bit(written, at.start)) return;
+  value(at.cr) &= ~(1u << at.start);
+  const std::uint32_t cr = value(at.cr);
+  if (bit(cr, 2)) {
+    erase(0, bytes_);  // MER
+  } else if (bit(cr, 1)) {
+    if (family_ == FlashFamily::kF0F3) {
+      erase((value(0x14) - kBase) / page_bytes_ * page_bytes_, page_bytes_);
+    } else if (family_ == FlashFamily::kG4) {
+      erase((field(cr, 3, 7) + (bit(cr, 11) ? 128u : 0u)) * page_bytes_, page_bytes_);
+    } else {
+      erase_sector(field(cr, 3, 4));
+    }
+  }
+  value(at.sr) |= 1u << at.done;
+  irq_.set(bit(cr, at.done_enable));
+}
+
+// F4: 4 x 16 KiB, 64 KiB, then 128 KiB; F7 (single bank): twice that.
+void Flash::erase_sector(std::uint32_t sector) {
+  const std::uint32_t unit = family_ == FlashFamily::kF7 ? 32768 : 16384;
+  if (sector < 4) return erase(sector * unit, unit);
+  if (sector == 4) return erase(4 * unit, 4 * unit);
+  erase((sector - 4) * 8 * unit, 8 * unit);
+}
+
+void Flash::erase(std::uint32_t from, std::uint32_t count) {
+  if (from >= bytes_) {
+    system().report_unmodelled(name(), "erase beyond the end of flash ignored");
+    return;
+  }
+  const std::vector<std::uint8_t> blank(std::min(count, bytes_ - from), 0xFF);
+  system().program_flash(kBase + from, blank);
+}
+
+void Flash::flash_write(std::uint32_t address, unsigned bytes, std::uint32_t word) {
+  const Layout at = layout(family_);
+  if (locked() || !bit(value(at.cr), 0) || address < kBase || address - kBase + bytes > bytes_) {
+    system().report_unmodelled(name(), "store into flash that is not being programmed ignored");
+    return;
+  }
+  std::array<std::uint8_t, 4> cells{};
+  for (unsigned i = 0; i < bytes; ++i) {  // programming clears bits
+    cells[i] = static_cast<std::uint8_t>(system().bus_read(address + i, 1) & word >> (8 * i));
+  }
+  system().program_flash(address, std::span(cells).first(bytes));
+  value(at.sr) |= 1u << at.done;
+  irq_.set(bit(value(at.cr), at.done_enable));
+}
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,63 @@
+#include "firmware_iface/mcu/stm32/clock/pwr.h"
+
+namespace omnihil::mcu {
+namespace {
+constexpr RegisterInfo kF0F3[] = {{0x00, "CR", 0, 0x1FF, 0x16}, {0x04, "CSR", 0, 0x700, 0x700}};
+constexpr RegisterInfo kF4[] = {{0x00, "CR", 0x0000C000, 0x003FFFF3, 0x12}, {0x04, "CSR", 0, 0x300, 0x100}};
+constexpr RegisterInfo kF7[] = {{0x00, "CR1", 0x0000C000, 0x000FFFF3, 0x10},
+                                {0x04, "CSR1", 0, 0x300, 0x100},
+                                {0x08, "CR2", 0, 0x3F3F, 0x3F},
+                                {0x0C, "CSR2", 0, 0x3F, 0x3F}};
+constexpr RegisterInfo kG4[] = {{0x00, "CR1", 0x200, 0x4707, 0x4007},
+                                {0x04, "CR2", 0, 0xFF, 0xFF},
+                                {0x08, "CR3", 0x8000, 0xFFFF},
+                                {0x0C, "CR4", 0, 0xFFFF, 0x1F},
+                                {0x10, "SR1", 0, 0},
+                                {0x14, "SR2", 0x100, 0},
+                                {0x18, "SCR", 0, 0},
+                                {0x20, "PUCRA"},
+                                {0x24, "PDCRA"},
+                                {0x28, "PUCRB"},
+                                {0x2C, "PDCRB"},
+                                {0x30, "PUCRC"},
+                                {0x34, "PDCRC"},
+                                {0x80, "CR5", 0x100, 0x100}};
+
+std::span<const RegisterInfo> table(PwrFamily family) {
+  switch (family) {
+    case PwrFamily::kF0F3:
+      return kF0F3;
+    case PwrFamily::kF4:
+      return kF4;
+    case PwrFamily::kF7:
+      return kF7;
+    case PwrFamily::kG4:
+      break;
+  }
+  return kG4;
+}
+
+class Pwr final : public RegisterBlock {
+ public:
+  Pwr(PwrFamily family, ChipContext& context)
+      : RegisterBlock("PWR", context.system, table(family)), family_(family) {}
+
+ protected:
+  std::uint32_t load(std::uint32_t offset) override {
+    const std::uint32_t v = value(offset);
+    if (offset != 4 || (family_ != PwrFamily::kF4 && family_ != PwrFamily::kF7)) return v;
+    const std::uint32_t cr = value(0);
+    // VOSRDY; backup regulator BRR follows BRE; over-drive ODRDY, ODSWRDY follow ODEN, ODSWEN (F7, F446)
+    return v | 1u << 14 | (v & 0x200u) >> 6 | (cr & 0x00030000u);
+  }
+
+ private:
+  PwrFamily family_;
+};
+}  // namespace
+
+std::unique_ptr<RegisterBlock> make_pwr(PwrFamily family, ChipContext& context) {
+  return std::make_unique<Pwr>(family, context);
+}
+
+}  // namespace omnihil::mcu

@@ -1,0 +1,59 @@
+#include "firmware_iface/mcu/stm32/clock/rcc.h"
+
+namespace omnihil::mcu {
+
+void Rcc::reset() {
+  RegisterBlock::reset();
+  flags_cleared_ = false;
+  apply();
+}
+
+void Rcc::select(std::uint32_t wanted, bool ready, double hz) {
+  constexpr double kSlowest_hz = 1e5;  // of a source that is meant
+  if (wanted == hsi_) {
+    ready = true, hz = clocks().hsi_hz;  // switched on by the hardware when it is asked for
+  }
+  if (!ready || hz < kSlowest_hz) {
+    system().report_unmodelled(name(), "CFGR selects a clock that is off or of no frequency; it stays");
+    return;
+  }
+  selected_ = wanted;
+  sysclk_hz_ = hz;
+}
+
+std::uint32_t Rcc::reset_flags() const {
+  if (flags_cleared_) return 0;
+  constexpr std::uint32_t kPin = 1u << 26, kPower = 1u << 27, kSoftware = 1u << 28;
+  constexpr std::uint32_t kIwdg = 1u << 29, kWwdg = 1u << 30;
+  const std::string_view cause = system().reset_cause();
+  if (cause == "IWDG") return kPin | kIwdg;
+  if (cause == "WWDG") return kPin | kWwdg;
+  if (cause == "power-on") return kPin | kPower;
+  return kPin | kSoftware;
+}
+
+std::uint32_t Rcc::ahb_divider(std::uint32_t code) {
+  constexpr std::uint32_t kDividers[] = {2, 4, 8, 16, 64, 128, 256, 512};
+  return code < 8 ? 1 : kDividers[code & 7u];
+}
+
+std::uint32_t Rcc::apb_divider(std::uint32_t code) { return code < 4 ? 1 : 2u << (code & 3u); }
+
+ClockState Rcc::buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, std::uint32_t apb2) {
+  ClockState state;
+  state.sysclk_hz = sysclk_hz;
+  state.hclk_hz = sysclk_hz / ahb;
+  state.bus = {ClockRatio{1, 1}, ClockRatio{1, apb1}, ClockRatio{1, apb2}};
+  // An APB prescaler other than 1 doubles the timers' clock: half its divider.
+  state.timers = {ClockRatio{1, 1}, ClockRatio{1, apb1 == 1 ? 1 : apb1 / 2},
+                  ClockRatio{1, apb2 == 1 ? 1 : apb2 / 2}};
+  return state;
+}
+
+std::unique_ptr<Rcc> make_rcc(RccFamily family, ChipContext& context) {
+  if (family == RccFamily::kF0 || family == RccFamily::kF3) return make_rcc_f0_f3(family, context);
+  if (family == RccFamily::kG4) return make_rcc_g4(context);
+  return make_rcc_f4_f7(family, context);
+}
+
+}  // namespace omnihil::mcu

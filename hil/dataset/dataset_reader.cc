@@ -1,0 +1,241 @@
+#include "hil/dataset/dataset_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "hil/dataset/dataset_runs.h"
+#include "hil/text/text_file.h"
+#include "hil/text/toml_keys.h"
+#include "identify/record/signal_list.h"
+#include "sim/model/axis_model.h"
+#include "sim/model/model_rows.h"
+
+namespace omnihil {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DatasetReader {
+ public:
+  DatasetReader(const std::string& path, const std::string& model) : asked_(path), other_model_(model) {
+    std::error_code code;
+    toml_ =
+        fs::is_directory(path, code) ? (fs::path(path) / "dataset.toml").lexically_normal().string() : path;
+    folder_ = fs::path(toml_).parent_path().string();
+  }
+
+  DatasetReading read() {
+    std::string error;
+    const std::string text = read_text_file(toml_, error);
+    if (!error.empty()) {
+      problem({}, "", "", error, "a dataset is a folder with a dataset.toml");
+      return std::move(out_);
+    }
+    plan_ = read_dataset_plan(text, toml_, out_.problems);
+    if (!plan_.rig_known) return std::move(out_);
+    read_nominal();
+    dataset_ = plan_.dataset;
+    dataset_.name = asked_;
+    if (out_.nominal) {
+      dataset_.linear = out_.nominal->file.linear;
+      check_known();
+    }
+    settle_units();
+    add_runs(plan_, folder_, toml_, dataset_, out_.problems);
+    if (out_.problems.empty()) {
+      check_signals();
+      check_model();
+    }
+    if (!dataset_.has(Use::kHoldout)) {
+      dataset_.notes.push_back(
+          "no run has use \"holdout\": errors on unseen data come from blocked cross-validation");
+    }
+    if (out_.problems.empty()) {
+      out_.dataset = std::move(dataset_);
+    } else {
+      out_.nominal.reset();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void problem(TextPlace at, std::string key, std::string value, std::string what, std::string allowed) {
+    out_.problems.push_back({.file = toml_,
+                             .line = at.line,
+                             .column = at.column,
+                             .key = std::move(key),
+                             .value = std::move(value),
+                             .what = std::move(what),
+                             .allowed = std::move(allowed)});
+  }
+
+  void read_nominal() {
+    if (plan_.model.empty() && other_model_.empty()) return;  // said
+    model_file_ =
+        other_model_.empty() ? (fs::path(folder_) / plan_.model).lexically_normal().string() : other_model_;
+    CandidateReading reading = read_candidate(model_file_);
+    out_.model_text = std::move(reading.text);
+    for (ModelProblem& p : reading.problems) out_.problems.push_back(std::move(p));
+    if (!reading.candidate) return;
+    const bool robot = reading.candidate->file.rig == "robot";
+    if (robot != (plan_.dataset.rig == Rig::kRobot)) {
+      problem(plan_.model_at, "model", fmt::format("\"{}\"", model_file_),
+              fmt::format("is a model of rig \"{}\"", reading.candidate->file.rig),
+              fmt::format("the dataset's rig is \"{}\"", robot ? "axis" : "robot"));
+      return;
+    }
+    out_.nominal = std::move(reading.candidate);
+  }
+
+  std::uint32_t rig_bit() const {
+    if (dataset_.rig == Rig::kRobot) return kRigRobot;
+    return dataset_.linear ? kRigLinearAxis : kRigAxis;
+  }
+
+  // Numbers a run knows: paths of the model's parameters or of its effects', within their bounds.
+  void check_known() {
+    Candidate trial = *out_.nominal;
+    for (std::size_t r = 0; r < plan_.runs.size(); ++r) {
+      for (const KnownNumber& known : plan_.runs[r].known) {
+        const std::string key = fmt::format("runs[{}].known.{}", r + 1, known.path);
+        const ParameterRow* row = model_row_at(known.path);
+        if (value_at(trial, known.path)) {
+          const std::string fault = set_value(trial, known.path, known.value);
+          if (!fault.empty()) problem(known.at, key, known.written, "is out of range", fault);
+        } else if (row == nullptr) {
+          problem(known.at, key, known.written, "the model has no such parameter",
+                  parameter_hint(known.path));
+        } else if (!within_bounds(*row, known.value)) {
+          problem(known.at, key, known.written, "is out of range", "allowed: " + allowed_range(*row));
+        }
+      }
+    }
+  }
+
+  // Of a number of this rig that a model may have, given or not; else null.
+  const ParameterRow* model_row_at(const std::string& path) const {
+    const std::size_t dot = path.rfind('.');
+    if (dot == std::string::npos) return nullptr;
+    const ParameterRow* row = find_model_row(path.substr(0, dot), path.substr(dot + 1));
+    return row != nullptr && (row->rigs & rig_bit()) != 0 && row->kind != ParameterKind::kText ? row
+                                                                                               : nullptr;
+  }
+
+  std::string parameter_hint(const std::string& path) const {
+    std::vector<std::string> paths;
+    for (const ParameterRow& row : model_rows()) {
+      const std::string known = parameter_path(row);
+      if (model_row_at(known) != nullptr) paths.push_back(known);
+    }
+    const std::vector<std::string_view> names(paths.begin(), paths.end());
+    const std::string_view near = nearest_spelling(path, names);
+    return near.empty() ? "`omnihil models --keys` lists them" : fmt::format("did you mean \"{}\"?", near);
+  }
+
+  void settle_units() {
+    for (Channel& channel : dataset_.channels) {
+      const SignalRow& row = *find_signal(dataset_.rig, channel.signal);
+      const std::string_view unit = signal_unit(row, dataset_.linear);
+      const TextPlace at{channel.line, 1};
+      if (unit.empty()) {
+        problem(at, "channels." + channel.signal, "", "has no meaning on a linear axis",
+                "allowed there: motor_torque (N), position (m), velocity (m/s), …");
+      } else if (!channel.unit.empty() && channel.unit != unit) {
+        problem(at, "channels." + channel.signal + ".unit", fmt::format("\"{}\"", channel.unit),
+                "is not this signal's unit",
+                fmt::format("allowed: \"{}\"; convert with scale (signal = column * scale + offset)", unit));
+      }
+      channel.unit = unit;
+    }
+  }
+
+  // Every run shows some motion, and something is left for the model to explain.
+  void check_signals() {
+    for (std::size_t r = 0; r < dataset_.runs.size(); ++r) {
+      const Run& run = dataset_.runs[r];
+      bool motion = false, compared = false;
+      for (const auto& [name, values] : run.signals) {
+        const SignalRow& row = *find_signal(dataset_.rig, name);
+        const bool moves = row.kind == SignalKind::kMotion || row.kind == SignalKind::kCounts;
+        motion = motion || moves;
+        compared = compared || ((moves || name == "load_torque") && !dataset_.channel(name)->imposed);
+      }
+      const TextPlace at = plan_.runs[r].at;
+      if (!motion && !run.steady) {
+        problem(at, "runs", fmt::format("\"{}\"", run.file), "has no motion signal",
+                dataset_.rig == Rig::kAxis
+                    ? "one of encoder, position, velocity is needed"
+                    : "encoder_1 to encoder_4, gyro_z or vision_x, vision_y, vision_theta");
+      } else if (!compared && !run.steady) {
+        problem(at, "runs", fmt::format("\"{}\"", run.file), "leaves nothing to compare",
+                "where the speed is imposed, load_torque must be measured");
+      }
+    }
+  }
+
+  // No model here makes duties of radio commands: the duties themselves are needed.
+  void check_robot_drive() {
+    for (std::size_t r = 0; r < dataset_.runs.size(); ++r) {
+      if (dataset_.runs[r].signal("duty_1") != nullptr) continue;
+      problem(plan_.runs[r].at, "runs", fmt::format("\"{}\"", dataset_.runs[r].file),
+              "is driven by radio commands alone, of which no duties are computed here",
+              "log duty_1 to duty_4 beside them");
+    }
+  }
+
+  // What the drive input needs of the model.
+  void check_model() {
+    if (dataset_.rig != Rig::kAxis) {
+      check_robot_drive();
+      return;
+    }
+    const ParameterTable& table = out_.nominal->file.parameters;
+    const auto has = [&](const char* path) { return table.value_or(path, 0.0) > 0.0; };
+    const bool constant = has("motor.torque_constant_Nm_per_A") || has("motor.torque_constant_N_per_A");
+    bool supply_measured = true, electric = false, by_bus = false, servo = false, current = false;
+    for (const Run& run : dataset_.runs) {
+      const bool target = run.signal("position_target") != nullptr, duty = run.signal("duty") != nullptr;
+      servo = servo || target;
+      by_bus = by_bus || target || duty;
+      electric = electric || target || duty || run.signal("motor_voltage") != nullptr;
+      const Channel* amps = dataset_.channel("motor_current");
+      current = current || (amps != nullptr && amps->imposed && run.signal("motor_current") != nullptr);
+      supply_measured = supply_measured && (run.signal("bus_voltage") != nullptr || !(target || duty));
+    }
+    need(!electric || has("motor.resistance_ohm"), "motor.resistance_ohm",
+         "a drive by duty, voltage or position target needs the winding's resistance");
+    need(!(electric || current) || constant,
+         dataset_.linear ? "motor.torque_constant_N_per_A" : "motor.torque_constant_Nm_per_A",
+         "this drive input needs the torque constant");
+    need(!by_bus || supply_measured || has("supply.voltage_V") || has("datasheet.nominal_voltage_V"),
+         "supply.voltage_V", "not every run has a bus_voltage, so the model's is needed");
+    need(!servo || has("servo.kp_duty_per_rad"), "servo.kp_duty_per_rad",
+         "a drive by position_target needs the servo's gain");
+  }
+
+  void need(bool good, std::string path, std::string why) {
+    if (good) return;
+    out_.problems.push_back({.file = model_file_,
+                             .line = 1,
+                             .column = 1,
+                             .key = std::move(path),
+                             .value = "",
+                             .what = "is missing",
+                             .allowed = std::move(why)});
+  }
+
+  std::string asked_, other_model_, toml_, folder_, model_file_;
+  DatasetPlan plan_;
+  Dataset dataset_;
+  DatasetReading out_;
+};
+
+}  // namespace
+
+DatasetReading read_dataset(const std::string& path, const std::string& model) {
+  return DatasetReader(path, model).read();
+}
+
+}  // namespace omnihil

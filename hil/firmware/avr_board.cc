@@ -1,0 +1,148 @@
+#include "hil/firmware/avr_board.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace omnihil {
+namespace {
+
+std::string pin_text(const mcu::PinName& pin) { return fmt::format("P{}{}", pin.port, pin.pin); }
+
+std::string hex(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+std::vector<std::uint8_t> unhex(std::string_view text) {
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    std::uint8_t value = 0;
+    std::from_chars(text.data() + i, text.data() + i + 2, value, 16);
+    bytes.push_back(value);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+AvrBoard::AvrBoard(const mcu::AvrBoardSpec& spec, const mcu::AvrMotor& motor, const mcu::AvrImage& image,
+                   const RobotConfig& config, double deadline_s)
+    : motor_(motor), analog_(spec.analog), process_(deadline_s), shown_mV_(spec.analog.size(), -1) {
+  process_.send(fmt::format("chip {} {}", spec.chip->name, std::llround(spec.crystal_Hz)));
+  program(image, spec);
+  wire(spec, config);
+  process_.send("start");
+  std::string line;
+  const bool answered = process_.receive(line);
+  if (answered && line == "ready") return;
+  throw std::invalid_argument(
+      fmt::format("board of wheel {}: {}", wheel(), answered ? line : "omnihil-avr " + process_.end()));
+}
+
+void AvrBoard::program(const mcu::AvrImage& image, const mcu::AvrBoardSpec& spec) {
+  for (const mcu::ElfSegment& part : image.flash) {
+    process_.send(fmt::format("flash {} {}", part.address, hex(part.bytes)));
+  }
+  for (const mcu::ElfSegment& part : image.eeprom) {
+    process_.send(fmt::format("eeprom {} {}", part.address, hex(part.bytes)));
+  }
+  for (const mcu::FlashEntry& entry : spec.eeprom) {
+    std::vector<std::uint8_t> bytes;
+    for (const std::uint32_t word : entry.words) {
+      for (unsigned i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(word >> (8 * i)));
+    }
+    process_.send(fmt::format("eeprom {} {}", entry.address, hex(bytes)));
+  }
+}
+
+void AvrBoard::wire(const mcu::AvrBoardSpec& spec, const RobotConfig& config) {
+  for (const mcu::AvrPin& pin : spec.pins) {
+    bool level = pin.level;
+    if (pin.robot_id_bit >= 0) level = (config.robot_id >> pin.robot_id_bit & 1u) != 0;
+    if (pin.wheel_bit >= 0) level = (motor_.wheel >> pin.wheel_bit & 1) != 0;
+    process_.send(fmt::format("pin {} {}", pin_text(pin.pin), level ? 1 : 0));
+  }
+  if (const mcu::AvrChannel* c = motor_.pwm; c != nullptr) {
+    process_.send(fmt::format("pwm {} {} {} {} {} {} {} {} {}", pin_text(c->pin), c->bits, c->tccra, c->tccrb,
+                              c->ocr, c->ocra, c->icr, c->com_shift, motor_.inverted ? 1 : 0));
+  }
+  if (motor_.direction) {
+    process_.send(fmt::format("direction {} {}", pin_text(*motor_.direction),
+                              motor_.direction_high_is_forward ? 1 : 0));
+  }
+  if (motor_.enable) process_.send(fmt::format("enable {}", pin_text(*motor_.enable)));
+  process_.send("bridge");
+  if (motor_.encoder.size() == 2) {
+    process_.send(fmt::format("encoder {} {} {:a}", pin_text(motor_.encoder[0]), pin_text(motor_.encoder[1]),
+                              motor_.encoder_sign * config.encoder_counts_per_rotor_turn));
+  }
+  if (spec.serial != 0) process_.send(fmt::format("serial {}", spec.serial));
+  if (spec.control != nullptr) {
+    process_.send(fmt::format("control {} {}", spec.control->vector, spec.control_period_ns));
+  }
+}
+
+void AvrBoard::receive(std::span<const std::uint8_t> frame) {
+  if (!frame.empty()) process_.send("receive " + hex(frame));
+}
+
+void AvrBoard::begin(const mcu::WorldState& world, std::int64_t end_ns) {
+  drive_ = {};
+  running_ = failure_.empty();
+  if (!running_) return;
+  const auto w = static_cast<std::size_t>(motor_.wheel);
+  for (std::size_t i = 0; i < analog_.size(); ++i) {
+    double value = 0.0;
+    if (analog_[i].signal == mcu::AnalogSignal::kBusVoltage) value = world.bus_voltage_V;
+    if (analog_[i].signal == mcu::AnalogSignal::kMotorCurrent) value = world.motor_current_A[w];
+    const double voltage_V = analog_[i].offset_V + analog_[i].volts_per_unit * value;
+    const int mV = static_cast<int>(std::lround(std::clamp(voltage_V, 0.0, 5.0) * 1e3));
+    if (mV == shown_mV_[i]) continue;
+    shown_mV_[i] = mV;
+    process_.send(fmt::format("adc {} {}", analog_[i].channel, mV));
+  }
+  process_.send(fmt::format("run {} {} {:a} {:a}", end_ns, world.at_ns, world.theta_rotor_rad[w],
+                            world.omega_rotor_rad_s[w]));
+}
+
+void AvrBoard::fail(const std::string& why) {
+  failure_ = fmt::format("board of wheel {}: {}", wheel(), why);
+  drive_ = {};
+}
+
+void AvrBoard::take(const std::string& line, bool& done) {
+  const std::size_t space = line.find(' ');
+  const std::string verb = line.substr(0, space);
+  const std::string rest = space == std::string::npos ? "" : line.substr(space + 1);
+  if (verb == "sent") {
+    sent_.push_back(unhex(rest));
+  } else if (verb == "note") {
+    notes_.push_back(fmt::format("board of wheel {}: {}", wheel(), rest));
+  } else if (verb == "stopped" || verb == "error") {
+    fail(rest);
+    done = verb == "error";
+  } else if (verb == "done") {
+    done = true;
+    char* end = nullptr;
+    drive_.driven = rest.starts_with('1') && failure_.empty();
+    drive_.duty_ratio = motor_.sign * std::strtod(rest.c_str() + std::min<std::size_t>(2, rest.size()), &end);
+    missed_ = std::strtoull(end, nullptr, 10);
+  }
+}
+
+void AvrBoard::finish() {
+  std::string line;
+  for (bool done = !running_; !done;) {
+    if (!process_.receive(line)) return fail("omnihil-avr " + process_.end());
+    take(line, done);
+  }
+  running_ = false;
+}
+
+}  // namespace omnihil

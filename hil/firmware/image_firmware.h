@@ -1,0 +1,16 @@
+// An unmodified microcontroller image and its board file, read and checked, as a session takes them.
+//
+//   Session session(config, image_firmware("wheels.elf", "boards/mine.toml"));
+//
+// Each robot gets a board of its own with the same image. Throws std::invalid_argument with every problem of
+// both files, a line each; the maker does if the image does not fit the chip's memory.
+#pragma once
+#include <string>
+
+#include "hil/loop/session.h"
+
+namespace omnihil {
+
+Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file);
+
+}  // namespace omnihil

@@ -1,0 +1,109 @@
+#include "hil/firmware/open_firmware.h"
+
+#include <elf.h>
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include "firmware_iface/mcu/avr/avr_image.h"
+#include "hil/firmware/avr_firmware.h"
+#include "hil/firmware/guarded_firmware.h"
+#include "hil/firmware/image_firmware.h"
+#include "hil/firmware/remote_firmware.h"
+#include "hil/loop/reference_firmware.h"
+#include "hil/loop/session_checks.h"
+#include "hil/text/text_file.h"
+#include "sim/robot/electric_model.h"
+
+namespace omnihil {
+namespace {
+
+// What kind of file it is by its first bytes (System V ABI, ELF header); empty: a shared object.
+std::string why_no_library(const std::string& text) {
+  Elf32_Ehdr head{};  // type and machine are at the same place in both classes
+  if (text.size() < sizeof head || std::memcmp(text.data(), ELFMAG, SELFMAG) != 0) {
+    return "is no shared object (no ELF file)";
+  }
+  std::memcpy(&head, text.data(), sizeof head);
+  if (head.e_type == ET_DYN) return {};
+  return fmt::format("is an ELF file of type {} for machine {}; needed: a shared object of this computer",
+                     head.e_type, head.e_machine);
+}
+
+// An image for a microcontroller: a 32-bit ARM executable, an AVR one, or Intel HEX.
+enum class ImageKind { kNone, kArm, kAvr };
+ImageKind image_kind(const std::string& file) {
+  std::string error;
+  const std::string text = read_text_file(file, error);
+  if (!error.empty()) return ImageKind::kNone;
+  if (mcu::is_avr_image({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}))
+    return ImageKind::kAvr;
+  Elf32_Ehdr head{};
+  if (text.size() < sizeof head) return ImageKind::kNone;
+  std::memcpy(&head, text.data(), sizeof head);
+  const bool arm =
+      std::memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 && head.e_type == ET_EXEC && head.e_machine == EM_ARM;
+  return arm ? ImageKind::kArm : ImageKind::kNone;
+}
+
+std::vector<std::string> problems_of(const FirmwareChoice& choice) {
+  std::vector<std::string> problems;
+  std::string error;
+  const std::string text = read_text_file(choice.file, error);
+  if (error.empty()) error = why_no_library(text);
+  if (!error.empty()) problems.push_back(fmt::format("firmware {}: {}", choice.file, error));
+  if (!choice.board.empty()) {
+    problems.push_back(
+        fmt::format("board {}: belongs to a microcontroller image; a shared object has none", choice.board));
+  }
+  if (!(choice.deadline_s > 0.0 && choice.deadline_s <= 3600.0)) {
+    problems.push_back(
+        fmt::format("firmware deadline: {} s; allowed: above 0, up to 3600 s", choice.deadline_s));
+  }
+  return problems;
+}
+
+Session::FirmwareMaker library_maker(const FirmwareChoice& choice, const SessionConfig& session) {
+  std::map<std::uint32_t, std::optional<MotorConfig>> motors;
+  for (std::size_t i = 0; i < std::min(session.robots.size(), session.robot_ids.size()); ++i) {
+    const RobotModel& model = session.robots[i];
+    auto& of_robot = motors[static_cast<std::uint32_t>(session.robot_ids[i])];
+    if (electrics_of(model).three_phase()) of_robot = motor_config(model);
+  }
+  const GuardedLibrary library{choice.file, choice.deadline_s};
+  return [library, motors = std::move(motors)](const RobotConfig& config) -> std::unique_ptr<Firmware> {
+    return std::make_unique<GuardedFirmware>(library, config, motors.at(config.robot_id));
+  };
+}
+
+}  // namespace
+
+Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session) {
+  if (choice.file.empty()) {
+    if (!choice.board.empty()) {
+      throw_problems({fmt::format("board {}: needs --firmware IMAGE beside it", choice.board)});
+    }
+    return reference_firmware_for(session);
+  }
+  if (is_remote_url(choice.file)) {
+    if (!choice.board.empty()) {
+      throw_problems({fmt::format(
+          "board {}: belongs to a microcontroller image; a board on the desk has none", choice.board)});
+    }
+    return remote_firmware({.url = choice.file, .lock_step = choice.virtual_time}, session);
+  }
+  if (const ImageKind kind = image_kind(choice.file); kind != ImageKind::kNone) {
+    if (choice.board.empty()) {
+      throw_problems(
+          {fmt::format("firmware {}: a microcontroller image; needs --board FILE beside it", choice.file)});
+    }
+    return kind == ImageKind::kArm ? image_firmware(choice.file, choice.board)
+                                   : avr_firmware(choice.file, choice.board, choice.deadline_s);
+  }
+  throw_problems(problems_of(choice));
+  return library_maker(choice, session);
+}
+
+}  // namespace omnihil

@@ -1,0 +1,30 @@
+// The firmware that a user names, as a session takes it. Used by every verb that runs one.
+//
+//   FirmwareChoice choice{.file = "./libmyteam.so"};
+//   Session session(config, open_firmware(choice, config));
+//
+//   (empty)            the reference firmware that the robot's model asks for, in this process
+//   a shared object    of this computer: by the C ABI (omnihil_firmware.h), each robot in a process of its
+//   own
+//   serial:DEVICE[,BAUD], can:INTERFACE, canfd:INTERFACE  a board on the desk (hil/firmware/remote_firmware.h)
+//   a microcontroller image (32-bit ARM executable) with its board file: emulated, one board per robot
+//   an AVR image (ELF or Intel HEX) with its board file: emulated by omnihil-avr, one board per wheel
+#pragma once
+#include <string>
+#include <vector>
+
+#include "hil/loop/session.h"
+
+namespace omnihil {
+
+struct FirmwareChoice {
+  std::string file;          // empty: the reference firmware
+  std::string board;         // board file of a microcontroller image
+  double deadline_s = 10.0;  // of wall time: a call that takes longer hangs
+  bool virtual_time = true;  // false: the run is paced by wall time, so a board on the desk is not waited for
+};
+
+// Throws std::invalid_argument, all problems in one text; the maker does, too, when a robot is refused.
+Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session);
+
+}  // namespace omnihil

@@ -1,0 +1,81 @@
+// When the next loop step is due. The loop asks before every step; virtual time is counted in steps.
+//
+//   RealClock clock({.step_ns = 1'000'000});
+//   while (clock.wait()) session.step(…);      // wait() false: interrupted by a signal, look and ask again
+//   clock.report().slipped_ns;
+//
+// FreeClock   virtual time as fast as it goes; never waits. Lateness has no meaning and stays empty.
+// RealClock   step k is due at start + k * step_ns of CLOCK_MONOTONIC: absolute deadlines, so nothing drifts.
+//             Lateness is the time from a step's deadline to its start. A loop that is behind runs its steps
+//             without waiting until it has caught up; it may be behind by `backlog_ns` at most. What is
+//             beyond that is given up: all later deadlines move ("simulated time slipped 12.3 ms against
+//             wall time"), counted, never hidden.
+// Timer slack is set to 1 ns: the kernel's default of 50 µs would be added to every wake-up.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "hil/loop/clock_lateness.h"
+
+namespace omnihil {
+
+struct ClockReport {
+  bool real_time = false;
+  LatenessHistogram lateness;
+  std::int64_t slipped_ns = 0;   // simulated time behind wall time for good
+  std::uint64_t slips = 0;       // in how many places
+  std::uint64_t late_steps = 0;  // started a whole step or more after their deadline
+};
+
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  // Returns when the next step is due: true. False: a signal came first; nothing is consumed.
+  virtual bool wait() = 0;
+  virtual const ClockReport& report() const = 0;
+};
+
+class FreeClock : public Clock {
+ public:
+  bool wait() override { return true; }
+  const ClockReport& report() const override { return report_; }
+
+ private:
+  ClockReport report_;
+};
+
+struct RealClockOptions {
+  std::int64_t step_ns = 1'000'000;
+  std::int64_t backlog_ns = 20'000'000;
+};
+
+// The rule above without a clock: what RealClock does with the times it reads.
+class DeadlineKeeper {
+ public:
+  DeadlineKeeper(const RealClockOptions& options, std::int64_t start_ns);
+  std::int64_t deadline_ns() const { return deadline_ns_; }
+  void begin_step(std::int64_t now_ns);  // at or after the deadline: counts, and sets the next one
+  const ClockReport& report() const { return report_; }
+
+ private:
+  RealClockOptions options_;
+  std::int64_t deadline_ns_;
+  ClockReport report_;
+};
+
+class RealClock : public Clock {
+ public:
+  explicit RealClock(const RealClockOptions& options);
+  bool wait() override;
+  const ClockReport& report() const override { return keeper_.report(); }
+
+ private:
+  DeadlineKeeper keeper_;
+};
+
+std::int64_t monotonic_now_ns();
+
+// SCHED_FIFO for this thread and all memory locked; empty, or why it could not be had.
+std::string become_realtime(int priority);
+
+}  // namespace omnihil

@@ -1,0 +1,148 @@
+#include "hil/loop/session_checks.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "protocols/radio_format.h"
+#include "sim/model/params.h"
+#include "sim/robot/electric_model.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kMaxRobotId = 15;  // four bits in every radio format served
+
+// The first value that is not finite, as "name" or "name[i]".
+class FiniteScan {
+ public:
+  void check(std::string_view name, double value) {
+    if (found_.empty() && !std::isfinite(value)) found_ = name;
+  }
+  template <class Values>
+  void check_all(std::string_view name, const Values& values) {
+    if (!found_.empty()) return;
+    int index = 0;
+    for (const double value : values) {
+      if (!std::isfinite(value)) {
+        found_ = fmt::format("{}[{}]", name, index);
+        return;
+      }
+      ++index;
+    }
+  }
+  std::string take() { return std::move(found_); }
+
+ private:
+  std::string found_;
+};
+
+void id_problems(const SessionConfig& config, std::vector<std::string>& problems) {
+  if (config.robot_ids.empty()) problems.push_back("robots: none; a session needs at least one");
+  if (config.robots.size() != config.robot_ids.size()) {
+    problems.push_back(fmt::format("robots: {} models for {} robot ids; there must be one for each",
+                                   config.robots.size(), config.robot_ids.size()));
+  }
+  for (std::size_t i = 0; i < config.robot_ids.size(); ++i) {
+    const int id = config.robot_ids[i];
+    if (id < 0 || id > kMaxRobotId) {
+      problems.push_back(fmt::format("robots: id {}: allowed are 0 to {}", id, kMaxRobotId));
+    }
+    if (i > 0 && id <= config.robot_ids[i - 1]) {
+      problems.push_back(
+          fmt::format("robots: id {} after {}: ids must ascend, each once", id, config.robot_ids[i - 1]));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> session_problems(const SessionConfig& config) {
+  std::vector<std::string> problems;
+  if (find_radio_format(config.radio_format) == nullptr) {
+    std::vector<std::string_view> known;
+    for (const RadioFormat* format : radio_formats()) known.push_back(format->id);
+    const std::string_view nearest = nearest_spelling(config.radio_format, known);
+    problems.push_back(fmt::format("radio: unknown format \"{}\"{}; known: {}", config.radio_format,
+                                   nearest.empty() ? "" : fmt::format(", did you mean {}?", nearest),
+                                   fmt::join(known, ", ")));
+  }
+  id_problems(config, problems);
+  const std::int64_t mechanical_ns = config.plant.mechanical_step_ns;
+  if (mechanical_ns <= 0) {
+    problems.push_back(fmt::format("mechanical step: {} ns; must be more than 0", mechanical_ns));
+  } else if (config.step_ns <= 0 || config.step_ns % mechanical_ns != 0) {
+    problems.push_back(fmt::format("step: {} ns; must be a multiple of the mechanical step, {} ns",
+                                   config.step_ns, mechanical_ns));
+  }
+  return problems;
+}
+
+std::vector<std::string> firmware_problems(const SessionConfig& config,
+                                           std::span<const std::unique_ptr<Firmware>> firmware) {
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < firmware.size(); ++i) {
+    const int id = config.robot_ids[i];
+    if (firmware[i] == nullptr) {
+      problems.push_back(fmt::format("robot {}: the firmware could not be made", id));
+      continue;
+    }
+    const std::int64_t period_ns = firmware[i]->control_period_ns();
+    if (period_ns <= 0 || period_ns % config.plant.mechanical_step_ns != 0) {
+      problems.push_back(
+          fmt::format("robot {}: control period {} ns of firmware \"{}\" must be a multiple of the "
+                      "mechanical step, {} ns",
+                      id, period_ns, firmware[i]->name(), config.plant.mechanical_step_ns));
+    }
+    if (firmware[i]->drives_phases() && !electrics_of(config.robots[i]).three_phase()) {
+      problems.push_back(fmt::format(
+          "robot {}: firmware \"{}\" sets the legs of three phases; the model's drive.kind must be \"dq\" or "
+          "\"switched\"",
+          id, firmware[i]->name()));
+    }
+    if (firmware[0] != nullptr && firmware[i]->radio_format() != firmware[0]->radio_format()) {
+      problems.push_back(fmt::format(
+          "robot {}: its firmware decodes radio \"{}\", that of robot {} \"{}\"; behind one dongle "
+          "they must agree",
+          id, firmware[i]->radio_format(), config.robot_ids[0], firmware[0]->radio_format()));
+    }
+  }
+  return problems;
+}
+
+std::string first_non_finite(const RobotSample& sample) {
+  FiniteScan scan;
+  scan.check_all("sensors motor_current_A", sample.sensors.motor_current_A);
+  scan.check("sensors bus_voltage_V", sample.sensors.bus_voltage_V);
+  scan.check("sensors gyro_z_rad_s", sample.sensors.gyro_z_rad_s);
+  scan.check("sensors accel_x_m_s2", sample.sensors.accel_x_m_s2);
+  scan.check("sensors accel_y_m_s2", sample.sensors.accel_y_m_s2);
+  scan.check_all("drive duty_ratio", sample.drive.duty_ratio);
+  scan.check_all("feedback omega_wheel_rad_s", sample.feedback.omega_wheel_rad_s);
+  return scan.take();
+}
+
+void throw_problems(const std::vector<std::string>& problems) {
+  if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "\n")));
+}
+
+RobotConfig robot_config(const RobotModel& model, int robot_id) {
+  RobotConfig config{};
+  config.robot_id = static_cast<std::uint32_t>(robot_id);
+  for (std::size_t i = 0; i < kWheels; ++i) config.wheel_angle_rad[i] = model.wheel_angle_rad[i];
+  config.wheel_radius_m = model.wheel_radius_m;
+  config.wheel_center_radius_m = model.wheel_center_radius_m;
+  config.gear_ratio = model.gear_ratio;
+  // The firmware knows which way its encoders count: a negative count per turn says so.
+  config.encoder_counts_per_rotor_turn = model.encoder.counts_per_turn * model.encoder.direction;
+  config.bus_voltage_nominal_V = model.bus_voltage_V;
+  config.motor_resistance_ohm = model.motor.resistance_ohm;
+  config.motor_torque_constant_Nm_per_A = model.motor.torque_constant_Nm_per_A;
+  config.command_timeout_s = model.control_timeout_s;
+  return config;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,85 @@
+// A run on disk, as text that can be searched, cut and replayed: format "omnihil-recording/1".
+//
+//   # {"format":"omnihil-recording/1","commit":…,"robot":…,"radio":…,"seed":…,…}   header, one JSON line
+//   > TIME_NS HEX            bytes the host wrote, as fed to the loop at that virtual time
+//   < TIME_NS HEX            bytes the dongle gave the host
+//   ! TIME_NS closed         the host closed its port
+//   s TIME_NS ID v1 v2 …     one robot at one control tick; column names and units are in the header
+//   # {"end":…}              counters, wall time; absent when the run was cut off
+//
+// `s` lines stand for every Nth control tick of each robot (header: sample_every); bytes are all there.
+// Numbers are written with as many digits as give the same double back. Lines are flushed at least once
+// per simulated second, so a killed run is readable up to there.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hil/loop/session.h"
+
+namespace omnihil {
+
+// A model file that another one names, with its whole text.
+struct ModelText {
+  std::string name;
+  std::string text;
+};
+
+// Everything needed to run it again.
+struct RecordingHeader {
+  std::string commit;            // of the program that wrote it
+  std::string robot_model;       // name as given
+  std::string robot_model_text;  // the model file's whole text, so that a replay needs no other file
+  std::string radio_format;
+  std::string firmware;
+  std::vector<int> robot_ids;
+  Team team = Team::kBlue;
+  PlantOptions plant;
+  std::int64_t step_ns = 0;
+  std::uint64_t epoch_ms = 0;
+  std::uint64_t seed = 0;
+  std::string started;                     // ISO 8601 wall time, informative only
+  std::vector<ModelText> included_models;  // further files that the model names: its motor
+  int sample_every = 10;                   // of a robot's control ticks, every Nth is written
+  std::vector<std::string> columns;        // of the `s` lines; the writer fills in sample_columns()
+  std::vector<std::string> units;
+};
+
+struct RecordedChunk {
+  enum class Kind : std::uint8_t { kHostBytes, kDongleBytes, kHostClosed, kSample } kind = Kind::kHostBytes;
+  std::int64_t now_ns = 0;
+  std::vector<std::uint8_t> bytes;  // kHostBytes, kDongleBytes
+  int robot_id = 0;                 // kSample
+  std::vector<double> sample;       // kSample, in the order of header.columns
+};
+
+// What the writer of a complete run counted.
+struct RecordingEnd {
+  std::int64_t now_ns = 0;
+  double wall_s = 0.0;
+  std::vector<std::pair<std::string, std::uint64_t>> counters;  // "host packets good", "… refused: checksum"
+};
+
+struct Recording {
+  RecordingHeader header;
+  std::vector<RecordedChunk> chunks;
+  std::int64_t end_ns = 0;
+  bool complete = false;       // the end line is there
+  RecordingEnd end;            // valid when complete
+  bool last_line_cut = false;  // the file ends inside a line, which was left out
+};
+
+// Name and unit of each value of an `s` line, and how to take it from a sample.
+struct SampleColumn {
+  std::string name;
+  std::string unit;
+  double (*get)(const RobotSample&) = nullptr;
+  bool is_angle = false;  // differences are taken modulo a turn
+};
+const std::vector<SampleColumn>& sample_columns();
+
+}  // namespace omnihil

@@ -1,0 +1,222 @@
+#include "hil/recording/recording_header.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "hil/text/recording_text.h"
+
+namespace omnihil {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Enum>
+struct Name {
+  Enum value;
+  std::string_view name;
+};
+constexpr std::array<Name<Physics>, 3> kPhysics{
+    {{Physics::kSimbody, "simbody"}, {Physics::kSimbodyFree, "simbody-free"}, {Physics::kPlanar, "planar"}}};
+constexpr std::array<Name<Integrator>, 2> kIntegrators{
+    {{Integrator::kSemiImplicitEuler, "euler"}, {Integrator::kRungeKutta4, "rk4"}}};
+constexpr std::array<Name<Team>, 2> kTeams{{{Team::kYellow, "yellow"}, {Team::kBlue, "blue"}}};
+
+template <class Table, class Enum>
+std::string_view name_of(const Table& table, Enum value) {
+  for (const auto& row : table) {
+    if (row.value == value) return row.name;
+  }
+  return "";
+}
+
+// Takes the keys of the header one by one and keeps what is wrong with them.
+class HeaderFields {
+ public:
+  HeaderFields(const Json& json, std::vector<std::string>& problems) : json_(json), problems_(problems) {}
+
+  void text(const char* key, std::string& value) {
+    if (const Json* found = find(key, "a text", &Json::is_string)) value = found->get<std::string>();
+  }
+  void natural(const char* key, std::uint64_t& value) {
+    if (const Json* found = find(key, "a whole number >= 0", &Json::is_number_unsigned)) {
+      value = found->get<std::uint64_t>();
+    }
+  }
+  void positive(const char* key, std::int64_t& value) {
+    const Json* found = find(key, "a whole number > 0", &Json::is_number_unsigned);
+    if (found == nullptr) return;
+    constexpr std::uint64_t kDay_ns = 86'400'000'000'000;
+    const std::uint64_t number = found->get<std::uint64_t>();
+    if (number == 0 || number > kDay_ns) {
+      refuse(key, found->dump(), "a whole number from 1 to 86400000000000");
+    } else {
+      value = static_cast<std::int64_t>(number);
+    }
+  }
+  template <class Table, class Enum>
+  void one_of(const char* key, const Table& table, Enum& value) {
+    const Json* found = find(key, "a text", &Json::is_string);
+    if (found == nullptr) return;
+    std::string allowed;
+    for (const auto& row : table) {
+      if (row.name == found->get_ref<const std::string&>()) {
+        value = row.value;
+        return;
+      }
+      allowed += (allowed.empty() ? "" : ", ") + std::string(row.name);
+    }
+    refuse(key, found->dump(), allowed);
+  }
+  void texts(const char* key, std::vector<std::string>& values) {
+    const Json* found = find(key, "a list of texts", &Json::is_array);
+    if (found == nullptr) return;
+    for (const Json& item : *found) {
+      if (!item.is_string()) return refuse(key, item.dump(), "a list of texts");
+      values.push_back(item.get<std::string>());
+    }
+  }
+  void ids(const char* key, std::vector<int>& values) {
+    const Json* found = find(key, "a list of robot ids", &Json::is_array);
+    if (found == nullptr) return;
+    for (const Json& item : *found) {
+      if (!item.is_number_unsigned() || item.get<std::uint64_t>() > 255 ||
+          (!values.empty() && item.get<int>() <= values.back())) {
+        return refuse(key, item.dump(), "ascending whole numbers from 0 to 255");
+      }
+      values.push_back(item.get<int>());
+    }
+    if (values.empty()) refuse(key, "[]", "at least one robot id");
+  }
+  void models(const char* key, std::vector<ModelText>& values) {
+    const Json* found = find(key, "an object of texts", &Json::is_object);
+    if (found == nullptr) return;
+    for (const auto& [name, text] : found->items()) {
+      if (!text.is_string()) return refuse(key, text.dump(), "an object of texts");
+      values.push_back({name, text.get<std::string>()});
+    }
+  }
+  void nothing_else() {
+    for (const auto& [key, value] : json_.items()) {
+      if (!known_.contains(key)) refuse(key.c_str(), value.dump(), "no such key");
+    }
+  }
+  void refuse(const char* key, const std::string& found, std::string_view allowed) {
+    problems_.push_back("key '" + std::string(key) + "': found " + in_quotes(found) +
+                        ", allowed: " + std::string(allowed));
+  }
+
+ private:
+  const Json* find(const char* key, std::string_view allowed, bool (Json::*is_kind)() const noexcept) {
+    known_.insert(key);
+    const auto at = json_.find(key);
+    if (at == json_.end()) {
+      refuse(key, "nothing", allowed);
+      return nullptr;
+    }
+    if (!((*at).*is_kind)()) {
+      refuse(key, at->dump(), allowed);
+      return nullptr;
+    }
+    return &*at;
+  }
+
+  const Json& json_;
+  std::vector<std::string>& problems_;
+  std::set<std::string> known_;
+};
+
+void read_fields(HeaderFields& fields, RecordingHeader& header) {
+  std::uint64_t sample_every = 1;
+  std::string format;
+  fields.text("format", format);
+  if (!format.empty() && format != kRecordingFormat) fields.refuse("format", format, kRecordingFormat);
+  fields.text("commit", header.commit);
+  fields.text("started", header.started);
+  fields.text("robot", header.robot_model);
+  fields.text("robot_text", header.robot_model_text);
+  fields.models("included_models", header.included_models);
+  fields.text("radio", header.radio_format);
+  fields.text("firmware", header.firmware);
+  fields.ids("robot_ids", header.robot_ids);
+  fields.one_of("team", kTeams, header.team);
+  fields.one_of("physics", kPhysics, header.plant.physics);
+  fields.one_of("integrator", kIntegrators, header.plant.integrator);
+  fields.positive("mechanical_step_ns", header.plant.mechanical_step_ns);
+  fields.positive("electrical_step_ns", header.plant.electrical_step_ns);
+  fields.positive("step_ns", header.step_ns);
+  fields.natural("epoch_ms", header.epoch_ms);
+  fields.natural("seed", header.seed);
+  fields.natural("sample_every", sample_every);
+  if (sample_every < 1 || sample_every > 1'000'000) {
+    fields.refuse("sample_every", std::to_string(sample_every), "1 to 1000000");
+  }
+  fields.texts("columns", header.columns);
+  fields.texts("units", header.units);
+  fields.nothing_else();
+  if (header.columns.size() != header.units.size()) {
+    fields.refuse("units", std::to_string(header.units.size()) + " units",
+                  "as many as columns: " + std::to_string(header.columns.size()));
+  }
+  if (std::set<std::string>(header.columns.begin(), header.columns.end()).size() != header.columns.size()) {
+    fields.refuse("columns", "a name twice", "each name once");
+  }
+  header.sample_every = static_cast<int>(sample_every);
+  header.plant.seed = header.seed;
+}
+
+}  // namespace
+
+std::string_view to_string(Physics physics) { return name_of(kPhysics, physics); }
+std::string_view to_string(Integrator integrator) { return name_of(kIntegrators, integrator); }
+
+std::optional<Physics> parse_physics(std::string_view name) {
+  for (const auto& row : kPhysics) {
+    if (row.name == name) return row.value;
+  }
+  return std::nullopt;
+}
+
+std::string to_json(const RecordingHeader& header) {
+  Json json;
+  json["format"] = kRecordingFormat;
+  json["commit"] = header.commit;
+  json["started"] = header.started;
+  json["robot"] = header.robot_model;
+  json["robot_text"] = header.robot_model_text;
+  json["included_models"] = Json::object();
+  for (const ModelText& model : header.included_models) json["included_models"][model.name] = model.text;
+  json["radio"] = header.radio_format;
+  json["firmware"] = header.firmware;
+  json["robot_ids"] = header.robot_ids;
+  json["team"] = name_of(kTeams, header.team);
+  json["physics"] = to_string(header.plant.physics);
+  json["integrator"] = to_string(header.plant.integrator);
+  json["mechanical_step_ns"] = static_cast<std::uint64_t>(header.plant.mechanical_step_ns);
+  json["electrical_step_ns"] = static_cast<std::uint64_t>(header.plant.electrical_step_ns);
+  json["step_ns"] = static_cast<std::uint64_t>(header.step_ns);
+  json["epoch_ms"] = header.epoch_ms;
+  json["seed"] = header.seed;
+  json["sample_every"] = header.sample_every;
+  json["columns"] = header.columns;
+  json["units"] = header.units;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::optional<RecordingHeader> parse_recording_header(std::string_view text,
+                                                      std::vector<std::string>& problems) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) {
+    problems.push_back("found " + in_quotes(text) + ", allowed: the header as one JSON object");
+    return std::nullopt;
+  }
+  const std::size_t before = problems.size();
+  RecordingHeader header;
+  HeaderFields fields(json, problems);
+  read_fields(fields, header);
+  if (problems.size() != before) return std::nullopt;
+  return header;
+}
+
+}  // namespace omnihil

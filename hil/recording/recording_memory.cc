@@ -1,0 +1,52 @@
+#include "hil/recording/recording_memory.h"
+
+namespace omnihil {
+
+RecordingHeader with_sample_columns(RecordingHeader header) {
+  header.columns.clear();
+  header.units.clear();
+  for (const SampleColumn& column : sample_columns()) {
+    header.columns.push_back(column.name);
+    header.units.push_back(column.unit);
+  }
+  return header;
+}
+
+RecordingMemory::RecordingMemory(RecordingHeader header)
+    : decimation_(header.robot_ids, header.sample_every) {
+  recording_.header = with_sample_columns(std::move(header));
+}
+
+RecordedChunk& RecordingMemory::add(RecordedChunk::Kind kind, std::int64_t now_ns) {
+  RecordedChunk& chunk = recording_.chunks.emplace_back();
+  chunk.kind = kind;
+  chunk.now_ns = now_ns;
+  return chunk;
+}
+
+void RecordingMemory::host_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) {
+  if (!bytes.empty()) add(RecordedChunk::Kind::kHostBytes, now_ns).bytes.assign(bytes.begin(), bytes.end());
+}
+
+void RecordingMemory::dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) {
+  if (!bytes.empty()) add(RecordedChunk::Kind::kDongleBytes, now_ns).bytes.assign(bytes.begin(), bytes.end());
+}
+
+void RecordingMemory::host_closed(std::int64_t now_ns) { add(RecordedChunk::Kind::kHostClosed, now_ns); }
+
+void RecordingMemory::robot_tick(std::int64_t now_ns, const RobotSample& sample) {
+  if (!decimation_.keep(sample.robot_id)) return;
+  RecordedChunk& chunk = add(RecordedChunk::Kind::kSample, now_ns);
+  chunk.robot_id = sample.robot_id;
+  chunk.sample.reserve(sample_columns().size());
+  for (const SampleColumn& column : sample_columns()) chunk.sample.push_back(column.get(sample));
+}
+
+Recording RecordingMemory::take(std::int64_t end_ns) {
+  recording_.end_ns = end_ns;
+  recording_.end.now_ns = end_ns;
+  recording_.complete = true;
+  return std::exchange(recording_, {});
+}
+
+}  // namespace omnihil

@@ -1,0 +1,36 @@
+// Keeps a run in memory, as RecordingWriter keeps it on disk: what a replay gives back for comparison.
+//
+//   RecordingMemory memory(header);
+//   session.set_observer(&memory);
+//   …
+//   Recording answer = memory.take(session.now_ns());
+//
+// About 670 bytes per kept sample: 0.4 MB per simulated second for six robots at 1 kHz, every 10th kept.
+#pragma once
+#include "hil/recording/recording.h"
+#include "hil/recording/recording_decimation.h"
+
+namespace omnihil {
+
+class RecordingMemory : public SessionObserver {
+ public:
+  explicit RecordingMemory(RecordingHeader header);
+
+  void host_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
+  void dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
+  void robot_tick(std::int64_t now_ns, const RobotSample& sample) override;
+  void host_closed(std::int64_t now_ns) override;
+
+  Recording take(std::int64_t end_ns);  // complete; this object is empty afterwards
+
+ private:
+  RecordedChunk& add(RecordedChunk::Kind kind, std::int64_t now_ns);
+
+  SampleDecimation decimation_;
+  Recording recording_;
+};
+
+// The header with the columns and units that samples get here.
+RecordingHeader with_sample_columns(RecordingHeader header);
+
+}  // namespace omnihil

@@ -1,0 +1,44 @@
+// From what a user names (a model, a radio format, robot ids) to a session that runs, and to the header of a
+// recording that says it all again: serve and replay build the same session from the same words.
+//
+//   SessionSetup setup;
+//   setup.model = load_robot_model("ulaval_2024", folders).bundle;
+//   setup.radio_format = "ulaval-hermes";
+//   setup.robot_ids = parse_robot_list("0-5", problems);
+//   SessionConfig config = session_config(setup);
+//   Session session(config, reference_firmware_for(config));
+//
+//   RecordingHeader header = recording_header(setup, commit);
+//   SessionSetup again = session_setup(header);     // again's session_config() is the same
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hil/loop/model_store.h"
+#include "hil/loop/session.h"
+#include "hil/recording/recording.h"
+
+namespace omnihil {
+
+struct SessionSetup {
+  ModelBundle model;  // all robots of a session are of one model
+  std::string radio_format;
+  std::vector<int> robot_ids;  // ascending
+  Team team = Team::kBlue;
+  PlantOptions plant;
+  std::int64_t step_ns = 1'000'000;
+  std::uint64_t epoch_ms = 1'700'000'000'000;
+};
+
+// Reads the model from its texts; throws std::invalid_argument with every problem, a line each.
+SessionConfig session_config(const SessionSetup& setup);
+
+// `firmware`, `started` and the columns are left to the writer.
+RecordingHeader recording_header(const SessionSetup& setup, const std::string& commit);
+SessionSetup session_setup(const RecordingHeader& header);
+
+// "0-5", "0,2,7", "0-2,7" -> ascending ids, each once. What is wrong goes to `problems`, a line each.
+std::vector<int> parse_robot_list(std::string_view text, std::vector<std::string>& problems);
+
+}  // namespace omnihil

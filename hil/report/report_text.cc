@@ -1,0 +1,90 @@
+#include "hil/report/report_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace omnihil {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " and " : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
+// "the held-out error falls from 12.1 to 1.3 times the noise (−89 %)"
+std::string error_change(const Comparison& before, const Comparison& after) {
+  const Use use = judging_use(before);
+  const double from = before.pooled(use), to = after.pooled(use);
+  if (!std::isfinite(from) || !std::isfinite(to)) return "its error cannot be stated";
+  return fmt::format("the {} error {} from {} to {} times the noise ({})",
+                     use == Use::kHoldout ? "held-out" : "fitted", to <= from ? "falls" : "rises",
+                     figure(from), figure(to), change_percent(from, to));
+}
+
+bool has_faults(const Diagnosis& d) {
+  return std::ranges::any_of(d.findings, [](const auto& f) { return f.grade == DataFinding::Grade::kFault; });
+}
+
+}  // namespace
+
+std::string figure(double value) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  return fmt::format("{}{:.3g}", value < 0 ? "−" : "", std::fabs(value));
+}
+
+std::string change_percent(double from, double to) {
+  if (!(std::fabs(from) > 0.0) || !std::isfinite(from) || !std::isfinite(to)) return "–";
+  const double percent = 100.0 * (to / from - 1.0);
+  return fmt::format("{}{:.0f} %", percent < 0 ? "−" : "+", std::fabs(percent));
+}
+
+bool has_use(const Comparison& comparison, Use use) {
+  return std::ranges::any_of(comparison.errors,
+                             [use](const SignalError& e) { return e.use == use && e.samples > 0; });
+}
+
+bool has_model(const FitResult& fit) { return !fit.model.file.rig.empty(); }
+
+Use judging_use(const Comparison& comparison) {
+  return has_use(comparison, Use::kHoldout) ? Use::kHoldout : Use::kFit;
+}
+
+std::vector<LadderStep> ladder_shown(const Diagnosis& d) {
+  if (!d.ladder.empty()) return d.ladder;
+  std::vector<LadderStep> steps;
+  if (!d.nominal_comparison.errors.empty()) steps.push_back({"nominal", d.nominal_comparison, {}, {}});
+  if (!d.baseline_comparison.errors.empty()) {
+    steps.push_back({"base parameters refitted", d.baseline_comparison, d.baseline.parameters, {}});
+  }
+  return steps;
+}
+
+std::string verdict_sentence(const Diagnosis& d) {
+  std::string text;
+  if (d.verdict == Verdict::kEffect) {
+    text = fmt::format("The model lacks {}: with {} {}.", joined(d.effects),
+                       d.effects.size() > 1 ? "them" : "it",
+                       error_change(d.baseline_comparison, d.final_comparison));
+  } else if (d.verdict == Verdict::kAdequate) {
+    text = "The model is adequate: no known effect lowers the error by more than chance.";
+  } else {
+    text = d.unknown.sentence.empty() ? "The model lacks something that no known effect explains."
+                                      : d.unknown.sentence;
+    if (!d.effects.empty()) {
+      text += fmt::format(" Of the known effects {} did help: {}.", joined(d.effects),
+                          error_change(d.baseline_comparison, d.final_comparison));
+    }
+  }
+  if (has_faults(d)) text = "The data have faults that can mislead; mend them first. " + text;
+  if (!d.complete) text = "Interrupted: what follows is true as far as it goes. " + text;
+  return text;
+}
+
+}  // namespace omnihil

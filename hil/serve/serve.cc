@@ -1,0 +1,253 @@
+#include "hil/serve/serve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <memory>
+
+#include "firmware_iface/firmware_checks.h"
+#include "hil/loop/clock.h"
+#include "hil/recording/recording_header.h"
+#include "hil/recording/recording_writer.h"
+#include "hil/serve/serve_port.h"
+#include "hil/serve/serve_signals.h"
+#include "hil/serve/status_printer.h"
+#include "hil/wire/pty_transport.h"
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::int64_t kStatusEvery_ns = 50'000'000;  // of wall time
+constexpr int kFifoPriority = 50;                     // below the kernel's own threads at 99, above all else
+
+void complain(const std::string& what) { std::fprintf(stderr, "omnihil serve: %s\n", what.c_str()); }
+
+// "2026-03-01T12:34:56Z"
+std::string wall_time_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+LinePace pace_of(const Carrier& carrier, const ServeOptions& options) {
+  if (!options.pacing) return {};
+  if (options.baud) return {*options.baud, 10};
+  return carrier_pace(carrier);
+}
+
+std::string carrier_words(const Carrier& carrier, const LinePace& pace) {
+  constexpr std::string_view kNames[] = {"USB CDC", "UART", "UDP"};
+  const std::string_view name = kNames[static_cast<std::size_t>(carrier.kind)];
+  if (pace.baud == 0) return fmt::format("{}, not paced", name);
+  return fmt::format("{}, paced at {} baud", name, pace.baud);
+}
+
+class Bench {
+ public:
+  Bench(SessionConfig config, const Session::FirmwareMaker& make_firmware, const ServeOptions& options)
+      : options_(options), session_(std::move(config), make_firmware) {}
+
+  ServeEnd run(RecordingHeader header);
+
+ private:
+  bool open(RecordingHeader header);
+  void say_ready() const;
+  ServeEnd loop();
+  bool step();
+  void note_failures();
+  ServeStatus status() const;
+  void finish_recording();
+
+  const ServeOptions& options_;
+  Session session_;
+  StopSignals stop_;
+  std::unique_ptr<PtyTransport> transport_;
+  std::unique_ptr<HostPort> port_;
+  std::unique_ptr<RecordingWriter> writer_;
+  std::unique_ptr<Clock> clock_;
+  std::string model_;  // as the user named it
+  LinePace pace_;
+  std::int64_t start_ns_ = 0;
+  std::vector<bool> failed_;  // per robot: its firmware answers no more, and that was said
+  std::vector<std::uint8_t> host_;
+  std::vector<std::uint8_t> answer_;
+};
+
+bool Bench::open(RecordingHeader header) {
+  std::string problem;
+  transport_ = PtyTransport::open(options_.device, problem);
+  if (!transport_) {
+    complain(problem);
+    return false;
+  }
+  pace_ = pace_of(find_radio_format(session_.config().radio_format)->carrier, options_);
+  port_ = std::make_unique<HostPort>(*transport_, pace_, HostPortOptions{});
+  if (options_.fifo) {
+    problem = become_realtime(kFifoPriority);
+    if (!problem.empty()) {
+      complain("--fifo: " + problem);
+      return false;
+    }
+  }
+  if (options_.record.empty()) return true;
+  std::error_code error;
+  header.firmware = session_.firmware(0).name();
+  writer_ = RecordingWriter::open(options_.record, std::move(header), error, complain);
+  if (!writer_) {
+    complain("recording " + options_.record + ": " + error.message());
+    return false;
+  }
+  session_.set_observer(writer_.get());
+  return true;
+}
+
+void Bench::say_ready() const {
+  const SessionConfig& config = session_.config();
+  fmt::print("device {} ready: {} ({}), robots {} of model {}, team {}, {}, {}\n", options_.device,
+             config.radio_format, carrier_words(find_radio_format(config.radio_format)->carrier, pace_),
+             fmt::join(config.robot_ids, " "), model_, config.team == Team::kBlue ? "blue" : "yellow",
+             to_string(config.plant.physics), options_.real_time ? "real time" : "free-running");
+  std::fflush(stdout);
+}
+
+ServeStatus Bench::status() const {
+  ServeStatus s;
+  s.now_ns = session_.now_ns();
+  s.wall_ns = monotonic_now_ns() - start_ns_;
+  s.steps = static_cast<std::uint64_t>(s.now_ns / session_.config().step_ns);
+  s.host_present = port_->host_present();
+  s.from_host = session_.link().from_host();
+  s.from_robots = session_.link().from_robots();
+  s.gains_refused = session_.gains_refused();
+  for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
+    const auto* host = dynamic_cast<const CheckedFirmware*>(&session_.firmware(static_cast<int>(i)));
+    if (host != nullptr) s.firmware_faults += host->faults().total();
+  }
+  s.port = port_->counts();
+  take_clock(clock_->report(), s);
+  const RobotTruth truth = session_.plant().truth(0);
+  s.robot_id = session_.config().robot_ids[0];
+  s.omega_wheel_rad_s = truth.omega_wheel_rad_s;
+  s.x_m = truth.x_m;
+  s.y_m = truth.y_m;
+  s.yaw_rad = truth.yaw_rad;
+  return s;
+}
+
+// A firmware that is no more takes its own robot out, not the bench.
+void Bench::note_failures() {
+  failed_.resize(session_.config().robot_ids.size());
+  for (std::size_t i = 0; i < failed_.size(); ++i) {
+    const std::string_view failure = session_.firmware(static_cast<int>(i)).failure();
+    if (failed_[i] || failure.empty()) continue;
+    failed_[i] = true;
+    complain(fmt::format("robot {}: firmware {}; its wheels coast from here on",
+                         session_.config().robot_ids[i], failure));
+  }
+}
+
+// One turn of the loop; false when the device failed.
+bool Bench::step() {
+  std::error_code error = port_->receive(session_.now_ns(), host_);
+  answer_.clear();
+  session_.step(host_, answer_);
+  note_failures();
+  if (!error) error = port_->send(session_.now_ns(), answer_);
+  if (port_->take_host_closed()) session_.host_closed();
+  if (error) complain("device " + options_.device + ": " + error.message());
+  return !error;
+}
+
+ServeEnd Bench::loop() {
+  std::unique_ptr<StatusPrinter> printer;
+  if (!options_.quiet) printer = std::make_unique<StatusPrinter>(stdout);
+  std::int64_t next_status_ns = start_ns_ + kStatusEvery_ns;
+  while (!stop_.requested() && (options_.duration_ns == 0 || session_.now_ns() < options_.duration_ns)) {
+    if (!clock_->wait()) continue;
+    if (!step()) return ServeEnd::kIo;
+    if (options_.strict && clock_->report().slips > 0) {
+      complain("--strict: this computer could not keep up with real time");
+      return ServeEnd::kLate;
+    }
+    if (!printer) continue;
+    const std::int64_t wall_ns = monotonic_now_ns();
+    if (wall_ns < next_status_ns) continue;
+    next_status_ns = wall_ns + kStatusEvery_ns;
+    printer->post(status());
+  }
+  return ServeEnd::kDone;
+}
+
+void Bench::finish_recording() {
+  if (!writer_) return;
+  session_.set_observer(nullptr);
+  const ServeStatus s = status();
+  RecordingEnd end{.now_ns = s.now_ns, .wall_s = static_cast<double>(s.wall_ns) * 1e-9, .counters = {}};
+  const auto add = [&end](const std::string& who, const PacketCounts& counts) {
+    end.counters.emplace_back(who + " packets good", counts.good);
+    for (std::size_t i = 0; i < counts.bad.size(); ++i) {
+      if (counts.bad[i] == 0) continue;
+      end.counters.emplace_back(fmt::format("{} refused: {}", who, to_string(static_cast<PacketError>(i))),
+                                counts.bad[i]);
+    }
+  };
+  add("host", s.from_host);
+  add("robot", s.from_robots);
+  end.counters.emplace_back("slipped ns", static_cast<std::uint64_t>(s.slipped_ns));
+  writer_->finish(end);
+}
+
+ServeEnd Bench::run(RecordingHeader header) {
+  model_ = header.robot_model;
+  header.started = wall_time_text();
+  if (!open(std::move(header))) return ServeEnd::kIo;
+  start_ns_ = monotonic_now_ns();
+  if (options_.real_time) {
+    clock_ = std::make_unique<RealClock>(RealClockOptions{.step_ns = session_.config().step_ns});
+  } else {
+    clock_ = std::make_unique<FreeClock>();
+  }
+  say_ready();
+  ServeEnd end = ServeEnd::kDone;
+  try {
+    end = loop();
+  } catch (const std::exception& error) {
+    complain(error.what());
+    end = ServeEnd::kDiverged;
+  }
+  finish_recording();
+  const bool firmware_failed = std::find(failed_.begin(), failed_.end(), true) != failed_.end();
+  if (end == ServeEnd::kDone && firmware_failed) end = ServeEnd::kFirmware;
+  if (end == ServeEnd::kDone && writer_ && writer_->error()) end = ServeEnd::kIo;
+  if (!options_.quiet) {
+    fmt::print("{}", final_report(status()));
+    for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
+      for (const std::string& line : session_.firmware(static_cast<int>(i)).report()) {
+        fmt::print("  robot {:<11}{}\n", session_.config().robot_ids[i], line);
+      }
+    }
+    if (writer_ && !writer_->error()) {
+      fmt::print("  recording        {} ({} bytes)\n", options_.record, writer_->bytes_written());
+    }
+    std::fflush(stdout);
+  }
+  return end;
+}
+
+}  // namespace
+
+ServeEnd serve(SessionConfig config, const Session::FirmwareMaker& make_firmware, RecordingHeader header,
+               const ServeOptions& options) {
+  Bench bench(std::move(config), make_firmware, options);
+  return bench.run(std::move(header));
+}
+
+}  // namespace omnihil

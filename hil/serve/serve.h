@@ -1,0 +1,44 @@
+// The bench behind a virtual dongle: opens the device, runs the loop on its clock, records, reports.
+//
+//   ServeOptions options;                       // ./dongle, real time, until Ctrl-C
+//   ServeEnd end = serve(config, make_firmware, header, options);
+//
+// stdout: "device ./dongle ready: …" as soon as a host can open it, then status lines (hil/serve/status_printer.h),
+// then the final report. stderr: what went wrong. SIGINT, SIGTERM and SIGHUP end the run cleanly: the name
+// of the device is removed, the recording is closed. For people: docs/serve.md.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "hil/loop/session.h"
+#include "hil/recording/recording.h"
+
+namespace omnihil {
+
+struct ServeOptions {
+  std::string device = "./dongle";
+  bool pacing = true;
+  std::optional<std::int64_t> baud;  // instead of the carrier's; 8N1
+  bool real_time = true;             // false: virtual time as fast as it goes
+  std::int64_t duration_ns = 0;      // simulated; 0: until a signal
+  bool quiet = false;                // the ready line and errors only
+  bool strict = false;               // real time: the first slip ends the run
+  bool fifo = false;                 // SCHED_FIFO, memory locked
+  std::string record;                // file; empty: none
+};
+
+enum class ServeEnd {
+  kDone,      // duration reached or asked to end
+  kIo,        // a device or file could not be opened, read or written
+  kDiverged,  // a state was not finite, or a fault inside
+  kLate,      // strict, and this computer could not keep up
+  kFirmware,  // as kDone, but a robot's firmware crashed or hung on the way: its wheels coasted from then on
+};
+
+// `header` describes `config` for the recording. Throws std::invalid_argument naming every problem of
+// the configuration, before anything is opened.
+ServeEnd serve(SessionConfig config, const Session::FirmwareMaker& make_firmware, RecordingHeader header,
+               const ServeOptions& options);
+
+}  // namespace omnihil

@@ -1,0 +1,85 @@
+// Time stamps: gaps, jitter, and rows that were stamped late.
+//
+// A row stamped late shows as a long interval followed by short ones until the clock has caught up; a missing
+// sample as a long interval alone.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/checks/check_list.h"
+
+namespace omnihil {
+namespace {
+
+using Grade = DataFinding::Grade;
+
+constexpr double kLong = 1.5, kShort = 0.6;  // of the median period
+constexpr double kLateShare = 0.005;         // of the rows
+constexpr double kCaughtUp = 0.5;            // of the time lost is regained by the rows after
+constexpr double kJitterSaid = 0.05;         // of the period, robust 1-sigma
+constexpr double kGapShareDoubtful = 0.02;   // of the duration
+
+struct ClockShape {
+  std::size_t gaps = 0, bunched = 0;
+  double longest_s = 0.0, missing_s = 0.0, late_s = 0.0, regained_s = 0.0;
+  double jitter = 0.0;  // over the median period
+};
+
+ClockShape shape_of(const RunView& view) {
+  ClockShape s;
+  const std::vector<double>& t = view.run->time_s;
+  std::vector<double> off;
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    const double dt = t[k] - t[k - 1], extra = dt - view.period_s;
+    if (dt > kLong * view.period_s) {
+      ++s.gaps;
+      s.longest_s = std::max(s.longest_s, dt);
+      s.missing_s += extra;
+      s.late_s = std::max(s.late_s, extra);
+    } else {
+      off.push_back(std::abs(extra));
+      s.bunched += dt < kShort * view.period_s ? 1 : 0;
+    }
+    if (extra < 0.0) s.regained_s -= extra;
+  }
+  s.jitter = 1.4826 * median_of(std::move(off)) / view.period_s;
+  return s;
+}
+
+}  // namespace
+
+void check_clock(const CheckContext& data, std::vector<DataFinding>& findings) {
+  for (const RunView& view : data.runs) {
+    if (view.run->steady || view.run->time_s.size() < 20) continue;
+    const ClockShape s = shape_of(view);
+    const auto rows = static_cast<double>(view.run->time_s.size());
+    const std::string& run = view.run->file;
+    const bool late = static_cast<double>(s.bunched) > kLateShare * rows &&
+                      s.regained_s > kCaughtUp * s.missing_s && s.gaps > 0;
+    if (late) {
+      const double share = static_cast<double>(s.bunched) / rows;
+      findings.push_back(
+          {share > 0.02 && s.late_s > 3.0 * view.period_s ? Grade::kFault : Grade::kDoubt, "late_timestamps",
+           run, "time", s.late_s,
+           fmt::format(
+               "rows are stamped late, by up to {:.3g} ms, and those after them bunch up ({} intervals "
+               "shorter than {:.0f} % of the period of {:.4g} ms): the time stamps are those of a busy "
+               "host's clock, not of the measurement",
+               1e3 * s.late_s, s.bunched, 100.0 * kShort, 1e3 * view.period_s)});
+    } else if (s.gaps > 0) {
+      const bool much = s.missing_s > kGapShareDoubtful * view.run->duration_s();
+      findings.push_back({much ? Grade::kDoubt : Grade::kNote, "gaps", run, "time", s.longest_s,
+                          fmt::format("{} gaps in time, the longest {:.3g} s, {:.1f} % of the record missing",
+                                      s.gaps, s.longest_s, 100.0 * s.missing_s / view.run->duration_s())});
+    }
+    if (s.jitter > kJitterSaid && !late) {
+      findings.push_back({Grade::kNote, "clock_jitter", run, "time", s.jitter * view.period_s,
+                          fmt::format("the clock jitters: intervals differ by {:.2g} ms (1 sigma) from their "
+                                      "median of {:.4g} ms",
+                                      1e3 * s.jitter * view.period_s, 1e3 * view.period_s)});
+    }
+  }
+}
+
+}  // namespace omnihil

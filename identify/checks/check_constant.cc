@@ -1,0 +1,48 @@
+// Signals that never change: a cable not plugged in, a column of a wrong name, a drive that was never moved.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/checks/check_list.h"
+#include "identify/record/signal_list.h"
+
+namespace omnihil {
+namespace {
+
+bool is_constant(const std::vector<double>& values) {
+  const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  return std::all_of(first, values.end(), [&](double v) { return !std::isfinite(v) || v == *first; });
+}
+
+}  // namespace
+
+void check_constant(const CheckContext& data, std::vector<DataFinding>& findings) {
+  using Grade = DataFinding::Grade;
+  for (const RunView& view : data.runs) {
+    const Run& run = *view.run;
+    if (run.steady || run.time_s.size() < 20) continue;
+    for (const auto& [name, values] : run.signals) {
+      const SignalRow& row = *find_signal(data.dataset.rig, name);
+      if (!is_constant(values)) continue;
+      const double value =
+          *std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+      const bool moves = row.kind == SignalKind::kMotion || row.kind == SignalKind::kCounts;
+      if (moves && !data.dataset.channel(name)->imposed) {
+        findings.push_back(
+            {Grade::kFault, "constant", run.file, name, value,
+             fmt::format("{} is {:g} throughout: nothing moved, or its sensor was not connected", name,
+                         value)});
+      } else if (name.starts_with("motor_current") || name == "load_torque" || name.starts_with("accel")) {
+        findings.push_back({Grade::kDoubt, "constant", run.file, name, value,
+                            fmt::format("{} is {:g} throughout: was its sensor connected?", name, value)});
+      } else if (row.kind == SignalKind::kDrive) {
+        findings.push_back(
+            {Grade::kNote, "constant", run.file, name, value,
+             fmt::format("{} is {:g} throughout: the run shows one working point only", name, value)});
+      }
+    }
+  }
+}
+
+}  // namespace omnihil

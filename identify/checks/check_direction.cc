@@ -1,0 +1,141 @@
+// Signs: does the drive turn the way it is asked to, do two sensors of one motion agree on its direction.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "identify/checks/check_list.h"
+
+namespace omnihil {
+namespace {
+
+using Grade = DataFinding::Grade;
+
+constexpr double kWindow_s = 0.1;
+constexpr double kOpposite = -0.4;  // correlation about zero
+constexpr std::size_t kLeastWindows = 5;
+
+// sum a b / sqrt(sum a^2 sum b^2): about zero, so that steady motion counts.
+double alignment(const std::vector<double>& a, const std::vector<double>& b) {
+  double ab = 0.0, aa = 0.0, bb = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) ab += a[i] * b[i], aa += a[i] * a[i], bb += b[i] * b[i];
+  return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+void drive_against_motion(const RunView& view, const DriveView& drive, std::vector<DataFinding>& findings) {
+  const bool by_voltage = drive.drive_name.starts_with("duty") ||
+                          drive.drive_name.starts_with("motor_voltage") ||
+                          drive.drive_name.starts_with("command_wheel");
+  if (!by_voltage || (drive.position == nullptr && drive.velocity == nullptr)) return;
+  const WindowMeans w = window_means(view, drive, *drive.drive, kWindow_s);
+  const double along = alignment(w.drive, w.speed);
+  if (w.drive.size() < kLeastWindows || along > kOpposite) return;
+  const std::string motion = drive.position != nullptr ? drive.position_name : std::string("velocity");
+  findings.push_back(
+      {Grade::kFault, "swapped_sign", view.run->file, motion, along,
+       fmt::format("the drive turns opposite to what it is asked: the sign of {} or of {} is swapped "
+                   "(the encoder counts backwards, or the motor's leads are reversed)",
+                   motion, drive.drive_name)});
+}
+
+void position_against_velocity(const RunView& view, const DriveView& drive,
+                               std::vector<DataFinding>& findings) {
+  if (drive.position == nullptr || drive.velocity == nullptr) return;
+  DriveView by_speed = drive;
+  by_speed.position = nullptr;
+  const std::vector<double> none(view.run->time_s.size(), 0.0);
+  const WindowMeans a = window_means(view, drive, none, kWindow_s);
+  const WindowMeans b = window_means(view, by_speed, none, kWindow_s);
+  if (a.speed.size() != b.speed.size() || a.speed.size() < kLeastWindows) return;
+  const double along = alignment(a.speed, b.speed);
+  if (along > kOpposite) return;
+  findings.push_back({Grade::kFault, "swapped_sign", view.run->file, drive.position_name, along,
+                      fmt::format("{} and velocity run in opposite directions: the sign of one is swapped",
+                                  drive.position_name)});
+}
+
+void target_against_position(const RunView& view, const DriveView& drive,
+                             std::vector<DataFinding>& findings) {
+  const std::vector<double>* position = view.run->signal("position");
+  if (drive.drive_name != "position_target" || position == nullptr) return;
+  std::vector<double> a, b;
+  double mean_a = 0.0, mean_b = 0.0;
+  for (std::size_t k = 0; k < position->size(); ++k) {
+    if (!std::isfinite((*position)[k]) || !std::isfinite((*drive.drive)[k])) continue;
+    a.push_back((*drive.drive)[k]);
+    b.push_back((*position)[k]);
+    mean_a += a.back();
+    mean_b += b.back();
+  }
+  for (double& v : a) v -= mean_a / static_cast<double>(a.size());
+  for (double& v : b) v -= mean_b / static_cast<double>(b.size());
+  const double along = alignment(a, b);
+  if (a.size() < 50 || along > kOpposite) return;
+  findings.push_back({Grade::kFault, "swapped_sign", view.run->file, "position", along,
+                      "position moves opposite to position_target: the sign of one is swapped"});
+}
+
+// tau = J a + b w + c sgn w: the inertia of a sound record is positive.
+void torque_against_acceleration(const RunView& view, const DriveView& drive,
+                                 std::vector<DataFinding>& findings) {
+  if (drive.drive_name != "motor_torque" || (drive.position == nullptr && drive.velocity == nullptr)) return;
+  const WindowMeans w = window_means(view, drive, *drive.drive, 0.02);
+  std::vector<double> torque, acceleration, speed, side;
+  for (std::size_t i = 1; i + 1 < w.speed.size(); ++i) {
+    torque.push_back(w.drive[i]);
+    acceleration.push_back((w.speed[i + 1] - w.speed[i - 1]) / (w.time_s[i + 1] - w.time_s[i - 1]));
+    speed.push_back(w.speed[i]);
+    side.push_back(w.speed[i] > 0.0 ? 1.0 : -1.0);
+  }
+  const LineFit line = fit_line({acceleration, speed, side}, torque);
+  if (line.coefficient.empty() || line.explained < 0.5) return;
+  if (line.coefficient[0] > -5.0 * line.sigma[0]) return;
+  findings.push_back({Grade::kFault, "swapped_sign", view.run->file, "motor_torque", line.coefficient[0],
+                      "the axis accelerates against motor_torque: the sign of the torque or of the motion is "
+                      "swapped"});
+}
+
+// Gyro against the wheels: yaw rate = mean rim speed / R_b.
+void gyro_against_wheels(const CheckContext& data, const RunView& view, std::vector<DataFinding>& findings) {
+  const std::vector<double>* gyro = view.run->signal("gyro_z");
+  const double radius = nominal_value(data.nominal, "robot.wheel_radius_m").value_or(0.0);
+  const double arm = nominal_value(data.nominal, "robot.wheel_center_radius_m").value_or(0.0);
+  if (gyro == nullptr || radius <= 0.0 || arm <= 0.0) return;
+  std::vector<double> yaw;
+  for (const DriveView& drive : view.drives) {
+    if (drive.position == nullptr) return;
+    const WindowMeans w =
+        window_means(view, drive, std::vector<double>(view.run->time_s.size(), 0.0), kWindow_s);
+    yaw.resize(w.speed.size(), 0.0);
+    for (std::size_t i = 0; i < std::min(yaw.size(), w.speed.size()); ++i)
+      yaw[i] += w.speed[i] * radius / arm / static_cast<double>(view.drives.size());
+  }
+  DriveView turned;
+  turned.velocity = gyro;
+  const WindowMeans g =
+      window_means(view, turned, std::vector<double>(view.run->time_s.size(), 0.0), kWindow_s);
+  if (g.speed.size() != yaw.size() || yaw.size() < kLeastWindows) return;
+  const double along = alignment(g.speed, yaw);
+  if (along > kOpposite) return;
+  findings.push_back(
+      {Grade::kFault, "swapped_sign", view.run->file, "gyro_z", along,
+       "gyro_z turns opposite to the wheels: its sign is swapped (counter-clockwise is positive)"});
+}
+
+}  // namespace
+
+void check_direction(const CheckContext& data, std::vector<DataFinding>& findings) {
+  for (const RunView& view : data.runs) {
+    if (view.run->steady) continue;
+    for (const DriveView& drive : view.drives) {
+      if (drive.drive != nullptr) {
+        drive_against_motion(view, drive, findings);
+        target_against_position(view, drive, findings);
+        torque_against_acceleration(view, drive, findings);
+      }
+      position_against_velocity(view, drive, findings);
+    }
+    if (data.dataset.rig == Rig::kRobot) gyro_against_wheels(data, view, findings);
+  }
+}
+
+}  // namespace omnihil

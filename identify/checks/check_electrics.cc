@@ -1,0 +1,190 @@
+// Scales of current and speed, held against the motor's own equation.
+//
+// With a current: i = u / R - (k / R) w over windows, so that R and k come out separately: R far from the
+// model's says the current has a wrong scale, k far from it says the speed has. Without a current the speed
+// per volt alone: w = u / k' - friction, k' = k (1 + R b / k^2). Windows of 0.2 s leave inductance and delays
+// out. Effects move these numbers by some ten per cent, rarely by half: a fault needs a factor that no effect
+// brings, or the same factor in the acceleration (J dw/dt = k i - friction), which a wrong back-EMF leaves
+// alone. Runs of another kind of motion (extrapolation) are left out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/checks/check_list.h"
+
+namespace omnihil {
+namespace {
+
+using Grade = DataFinding::Grade;
+
+constexpr double kWindow_s = 0.2;
+constexpr std::size_t kLeastWindows = 15;
+constexpr double kDoubtful = 0.28, kWrong = 0.33;  // |log| of a ratio that should be 1
+constexpr double kWrongAlone = 0.8;                // likewise, where the acceleration does not confirm it
+constexpr double kTolerances = 4.0;                // of the model's number
+constexpr double kWrongCurrent = 1.1;              // |log|: a factor of three
+
+struct Windows {
+  std::vector<double> u, w, i, side;  // voltage, rotor speed, current, sign of the voltage
+};
+
+Windows windows_of(const CheckContext& data, std::size_t wheel) {
+  Windows out;
+  const double gear = nominal_value(data.nominal, "gear.ratio").value_or(1.0);
+  for (const RunView& view : data.runs) {
+    const DriveView& drive = view.drives[wheel];
+    if (view.run->steady || view.period_s > 0.05 || view.run->use == Use::kExtrapolation) continue;
+    if (drive.position == nullptr && drive.velocity == nullptr) continue;
+    std::vector<double> u = asked_voltage(data, view, drive);
+    if (u.empty()) continue;
+    if (const auto* enable = view.run->signal("enable")) {
+      for (std::size_t k = 0; k < u.size(); ++k) {
+        if ((*enable)[k] == 0.0) u[k] = NAN;
+      }
+    }
+    const WindowMeans means = window_means(view, drive, u, kWindow_s);
+    for (std::size_t k = 0; k < means.drive.size(); ++k) {
+      out.u.push_back(means.drive[k]);
+      out.w.push_back(means.speed[k] * gear);
+      out.i.push_back(means.current[k]);
+      out.side.push_back(means.drive[k] > 0.0 ? 1.0 : (means.drive[k] < 0.0 ? -1.0 : 0.0));
+    }
+  }
+  return out;
+}
+
+Windows with_current(const Windows& all) {
+  Windows out;
+  for (std::size_t k = 0; k < all.u.size(); ++k) {
+    if (!std::isfinite(all.i[k])) continue;
+    out.u.push_back(all.u[k]);
+    out.w.push_back(all.w[k]);
+    out.i.push_back(all.i[k]);
+    out.side.push_back(all.side[k]);
+  }
+  return out;
+}
+
+std::string speed_name(const CheckContext& data, std::size_t wheel) {
+  for (const RunView& view : data.runs) {
+    const DriveView& drive = view.drives[wheel];
+    if (drive.position != nullptr) return drive.position_name;
+    if (drive.velocity != nullptr) return "velocity";
+  }
+  return "";
+}
+
+void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double confirmed, const char* how,
+               std::vector<DataFinding>& findings) {
+  const double tolerance = kTolerances * tolerance_of(data.nominal, "motor.torque_constant_Nm_per_A");
+  const double off = std::abs(std::log(ratio));
+  if (off < std::max(kDoubtful, tolerance)) return;
+  const std::string name = speed_name(data, wheel);
+  const bool same = std::log(confirmed) * std::log(ratio) > 0.0 && std::abs(std::log(confirmed)) > 0.5 * off;
+  const double wrong = std::max(same ? kWrong : kWrongAlone, tolerance);
+  findings.push_back(
+      {off > wrong ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,
+       fmt::format("the speed from {} is {:.3g} times what {} and the model's torque constant "
+                   "allow: a wrong scale (gear ratio, counts_per_rev or a unit), or not this motor",
+                   name, ratio, how)});
+}
+
+// Acceleration over what current and nominal inertia allow; 1 where it cannot be told.
+double acceleration_ratio(const CheckContext& data, std::size_t wheel) {
+  constexpr double kShortWindow_s = 0.02;
+  const double gear = nominal_value(data.nominal, "gear.ratio").value_or(1.0);
+  std::vector<double> torque, acceleration, speed, side;
+  const DriveParams<double> nominal = drive_of(data.nominal);
+  for (const RunView& view : data.runs) {
+    const DriveView& drive = view.drives[wheel];
+    if (view.run->steady || drive.current == nullptr || view.period_s > 0.005) continue;
+    const std::vector<double> none(view.run->time_s.size(), 0.0);
+    const WindowMeans w = window_means(view, drive, none, kShortWindow_s);
+    for (std::size_t k = 1; k + 1 < w.speed.size(); ++k) {
+      const double span_s = w.time_s[k + 1] - w.time_s[k - 1];
+      if (span_s > 3.0 * kShortWindow_s || !std::isfinite(w.current[k])) continue;
+      torque.push_back(nominal.torque_constant_Nm_per_A * w.current[k]);
+      acceleration.push_back((w.speed[k + 1] - w.speed[k - 1]) * gear / span_s);
+      speed.push_back(w.speed[k] * gear);
+      side.push_back(w.speed[k] > 0.0 ? 1.0 : -1.0);
+    }
+  }
+  const LineFit line = fit_line({acceleration, speed, side}, torque);
+  if (line.coefficient.empty() || line.explained < 0.5 || line.coefficient[0] <= 5.0 * line.sigma[0])
+    return 1.0;
+  return inertia_at_rotor(nominal) / line.coefficient[0];
+}
+
+// True: the current told the scales.
+bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
+                std::vector<DataFinding>& findings) {
+  const Windows w = with_current(all);
+  const double resistance = nominal_value(data.nominal, "motor.resistance_ohm").value_or(0.0);
+  const double constant = nominal_value(data.nominal, "motor.torque_constant_Nm_per_A").value_or(0.0);
+  if (w.u.size() < kLeastWindows || resistance <= 0.0 || constant <= 0.0) return false;
+  const std::vector<double> ones(w.u.size(), 1.0);
+  const LineFit line = fit_line({w.u, w.w, w.side, ones}, w.i);
+  if (line.coefficient.empty() || line.explained < 0.7) return false;
+  const double a = line.coefficient[0], b = line.coefficient[1];
+  const std::string name = "motor_current" + data.runs.front().drives[wheel].suffix;
+  if (a < -10.0 * line.sigma[0] && b > 10.0 * line.sigma[1]) {
+    findings.push_back({Grade::kFault, "swapped_sign", "", name, a,
+                        fmt::format("{} falls where the voltage rises: its sign is swapped", name)});
+    return true;
+  }
+  if (a < 10.0 * line.sigma[0] || -b < 10.0 * line.sigma[1]) return false;
+  const double current_ratio = a * resistance;
+  if (std::abs(std::log(current_ratio)) > kWrongCurrent) {
+    const bool thousand = current_ratio > 400.0 && current_ratio < 2500.0;
+    findings.push_back(
+        {Grade::kFault, "wrong_scale", "", name, current_ratio,
+         fmt::format("{} is {:.3g} times what the voltage and the model's resistance allow: a wrong "
+                     "scale or unit{}",
+                     name, current_ratio, thousand ? " (milliamperes, mA, in place of A)" : "")});
+  }
+  const double confirmed =
+      data.dataset.rig == Rig::kAxis ? acceleration_ratio(data, wheel) : constant / (-b / a);
+  say_speed(data, wheel, constant / (-b / a), confirmed, "voltage, current", findings);
+  return true;
+}
+
+void by_speed_per_volt(const CheckContext& data, std::size_t wheel, const Windows& all,
+                       std::vector<DataFinding>& findings) {
+  const double resistance = nominal_value(data.nominal, "motor.resistance_ohm").value_or(0.0);
+  const double constant = nominal_value(data.nominal, "motor.torque_constant_Nm_per_A").value_or(0.0);
+  const double viscous = nominal_value(data.nominal, "motor.viscous_friction_Nm_s_per_rad").value_or(0.0);
+  if (all.u.size() < kLeastWindows || constant <= 0.0) return;
+  const LineFit line = fit_line({all.u, all.side}, all.w);
+  if (line.coefficient.empty() || line.explained < 0.8) return;
+  const double drag = resistance * viscous / (constant * constant);
+  const double ratio = line.coefficient[0] * constant * (1.0 + drag);
+  if (ratio <= 0.0) return;  // said by check_direction
+  // A speed that is too low may be a load; where friction hardly counts it may not.
+  constexpr double kLightDrag = 0.1, kLoaded = 0.25;
+  if (ratio < 1.0 && (drag > kLightDrag || ratio > kLoaded)) {
+    if (drag <= kLightDrag && ratio < 0.75) {
+      const std::string name = speed_name(data, wheel);
+      findings.push_back(
+          {Grade::kDoubt, "wrong_scale", "", name, ratio,
+           fmt::format("the speed from {} is {:.3g} times what the voltage and the model's torque "
+                       "constant give without load: a heavy load, or a wrong scale (gear ratio, "
+                       "counts_per_rev or a unit)",
+                       name, ratio)});
+    }
+    return;
+  }
+  say_speed(data, wheel, ratio, 1.0, "the voltage", findings);
+}
+
+}  // namespace
+
+void check_electrics(const CheckContext& data, std::vector<DataFinding>& findings) {
+  if (data.runs.empty() || data.dataset.linear) return;
+  for (std::size_t wheel = 0; wheel < data.runs.front().drives.size(); ++wheel) {
+    const Windows all = windows_of(data, wheel);
+    if (!by_current(data, wheel, all, findings)) by_speed_per_volt(data, wheel, all, findings);
+  }
+}
+
+}  // namespace omnihil

@@ -1,0 +1,35 @@
+// Records too short to tell anything.
+#include <fmt/format.h>
+
+#include "identify/checks/check_list.h"
+
+namespace omnihil {
+
+void check_length(const CheckContext& data, std::vector<DataFinding>& findings) {
+  constexpr std::size_t kFewRows = 30;
+  constexpr double kFewTimeConstants = 5.0;
+  const DriveParams<double> drive =
+      data.dataset.rig == Rig::kAxis ? drive_of(data.nominal) : DriveParams<double>{};
+  const double k = drive.torque_constant_Nm_per_A;
+  // mechanical time constant J R / k^2 of a voltage drive
+  const double settle_s = k > 0.0 ? inertia_at_rotor(drive) * drive.resistance_ohm / (k * k) : 0.0;
+  double fitted_s = 0.0;
+  for (const RunView& view : data.runs) {
+    const Run& run = *view.run;
+    if (run.use == Use::kFit) fitted_s += run.steady ? 1e9 : run.duration_s();
+    if (run.time_s.size() < kFewRows) {
+      findings.push_back(
+          {DataFinding::Grade::kDoubt, "few_rows", run.file, "", run.duration_s(),
+           fmt::format("has {} rows only: too few to tell an effect from noise", run.time_s.size())});
+    }
+  }
+  if (fitted_s < kFewTimeConstants * settle_s) {
+    findings.push_back(
+        {DataFinding::Grade::kDoubt, "too_short", "", "", fitted_s,
+         fmt::format("all runs to fit last {:.3g} s together, the drive needs {:.3g} s to settle "
+                     "once: too short to see a steady speed",
+                     fitted_s, settle_s)});
+  }
+}
+
+}  // namespace omnihil

@@ -1,0 +1,110 @@
+// Position against the integral of the speed: two sensors of one motion must agree.
+//
+// Over windows, way = s * integral of v dt. s far from 1 is a wrong scale (a unit, counts_per_rev, a gear
+// ratio); s near 1 with windows that do not fit is a speed that is old, filtered or made up in places.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "identify/checks/check_list.h"
+
+namespace omnihil {
+namespace {
+
+using Grade = DataFinding::Grade;
+
+constexpr double kWindow_s = 0.1;
+constexpr double kScaleSaid = 0.05;    // departure of s from 1
+constexpr double kMisfit = 0.25;       // of the highest way of a window
+constexpr double kMisfitShare = 0.02;  // of the windows
+
+struct Windows {
+  std::vector<double> way, integral, time_s;
+};
+
+Windows windows_of(const RunView& view, const DriveView& drive) {
+  DriveView by_position = drive, by_speed = drive;
+  by_position.velocity = nullptr;
+  by_speed.position = nullptr;
+  const std::vector<double> none(view.run->time_s.size(), 0.0);
+  const WindowMeans way = window_means(view, by_position, none, kWindow_s);
+  const WindowMeans integral = window_means(view, by_speed, none, kWindow_s);
+  Windows out;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < way.time_s.size(); ++i) {
+    while (j < integral.time_s.size() && integral.time_s[j] < way.time_s[i]) ++j;
+    if (j == integral.time_s.size() || integral.time_s[j] != way.time_s[i]) continue;
+    out.way.push_back(way.speed[i]);
+    out.integral.push_back(integral.speed[j]);
+    out.time_s.push_back(way.time_s[i]);
+  }
+  return out;
+}
+
+// What a factor between two measurements of one thing usually is.
+std::string usual_cause(double factor, double gear) {
+  struct Cause {
+    double factor;
+    std::string what;
+  };
+  const double turn = 2.0 * std::numbers::pi;
+  const Cause causes[] = {{gear, fmt::format("the gear ratio, {:g}", gear)},
+                          {4.0, "counts before and after quadrature"},
+                          {2.0, "counts of one edge or of both"},
+                          {turn, "turns for radians"},
+                          {60.0 / turn, "rpm for rad/s"},
+                          {180.0 / std::numbers::pi, "degrees for radians"},
+                          {1000.0, "a unit's thousand"}};
+  const double size = std::max(factor, 1.0 / factor);
+  for (const Cause& cause : causes) {
+    const double expected = std::max(cause.factor, 1.0 / std::max(cause.factor, 1e-12));
+    if (expected > 1.2 && std::abs(size / expected - 1.0) < 0.03)
+      return "; the factor is that of " + cause.what;
+  }
+  return "";
+}
+
+}  // namespace
+
+void check_position_against_speed(const CheckContext& data, std::vector<DataFinding>& findings) {
+  const double gear = nominal_value(data.nominal, "gear.ratio").value_or(1.0);
+  for (const RunView& view : data.runs) {
+    for (const DriveView& drive : view.drives) {
+      if (drive.position == nullptr || drive.velocity == nullptr || view.run->steady) continue;
+      const Windows w = windows_of(view, drive);
+      const LineFit line = fit_line({w.integral}, w.way);
+      if (line.coefficient.empty() || line.explained < 0.5) continue;
+      const double s = line.coefficient[0], highest = quantile_of(w.way, 1.0) - quantile_of(w.way, 0.0);
+      if (s < 0.0) continue;  // said by check_direction
+      if (std::abs(s - 1.0) > std::max(kScaleSaid, 5.0 * line.sigma[0])) {
+        findings.push_back(
+            {std::abs(s - 1.0) > 0.15 ? Grade::kFault : Grade::kDoubt, "position_against_speed",
+             view.run->file, drive.position_name, s,
+             fmt::format(
+                 "{} moves {:.4g} times as far as the integral of velocity: one of the two has a wrong "
+                 "scale (unit, counts_per_rev or gear ratio){}",
+                 drive.position_name, s, usual_cause(s, gear))});
+        continue;
+      }
+      std::size_t misfits = 0, first = 0;
+      for (std::size_t i = 0; i < w.way.size(); ++i) {
+        if (std::abs(w.way[i] - s * w.integral[i]) < kMisfit * highest) continue;
+        if (misfits++ == 0) first = i;
+      }
+      if (misfits == 0 || static_cast<double>(misfits) < kMisfitShare * static_cast<double>(w.way.size()))
+        continue;
+      findings.push_back(
+          {Grade::kDoubt, "position_against_speed", view.run->file, "velocity",
+           static_cast<double>(misfits) / static_cast<double>(w.way.size()),
+           fmt::format("velocity does not fit {} in {:.0f} % of the time (first at {:.3f} s): the "
+                       "speed reported there is old or made up",
+                       drive.position_name,
+                       100.0 * static_cast<double>(misfits) / static_cast<double>(w.way.size()),
+                       w.time_s[first])});
+    }
+  }
+}
+
+}  // namespace omnihil

@@ -1,0 +1,156 @@
+#include "identify/compare/order_spectrum.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/law/drive_params.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kHighestOrder = 200;
+constexpr double kFastest_rad = 2.0;  // phase per sample above which an order is not seen
+constexpr double kStandsOut = 8.0;    // times the median over all orders
+constexpr double kLeastShare = 0.01;  // of the residual's energy
+
+// Sine and cosine of one order after another, by the recurrence s(n+1) = 2 cos(x) s(n) - s(n-1).
+struct Angles {
+  Eigen::ArrayXd twice_cos, sin_n, cos_n, sin_before, cos_before;
+  explicit Angles(const Eigen::ArrayXd& theta)
+      : twice_cos(2.0 * theta.cos()),
+        sin_n(theta.sin()),
+        cos_n(theta.cos()),
+        sin_before(Eigen::ArrayXd::Zero(theta.size())),
+        cos_before(Eigen::ArrayXd::Ones(theta.size())) {}
+  void next() {
+    Eigen::ArrayXd s = twice_cos * sin_n - sin_before, c = twice_cos * cos_n - cos_before;
+    sin_before.swap(sin_n);
+    cos_before.swap(cos_n);
+    sin_n.swap(s);
+    cos_n.swap(c);
+  }
+};
+
+struct Lag {
+  double time_constant_s = 0.0;  // 0: none
+  Eigen::ArrayXd step;           // 1 - exp(-dt / T) per sample; 1 starts afresh
+};
+
+Lag lag_of(const Predictor& predictor, const Evidence& evidence, const Candidate& model) {
+  Lag lag;
+  lag.step = Eigen::ArrayXd::Ones(evidence.size());
+  if (predictor.method() == Method::kInverse) return lag;
+  const DriveParams<double> d = drive_of(model);
+  const double k = d.torque_constant_Nm_per_A;
+  const double damping =
+      d.viscous_friction_Nm_s_per_rad + (d.resistance_ohm > 0.0 ? k * k / d.resistance_ohm : 0.0);
+  if (damping <= 0.0 || inertia_at_rotor(d) <= 0.0) return lag;
+  lag.time_constant_s = inertia_at_rotor(d) / damping;
+  for (const Evidence::Part& part : evidence.parts()) {
+    const std::vector<double>& time_s =
+        predictor.compared(part.run)[static_cast<std::size_t>(part.signal)].time_s;
+    for (std::size_t i = 1; i < part.rows.size(); ++i) {
+      const double dt_s =
+          time_s[static_cast<std::size_t>(part.rows[i])] - time_s[static_cast<std::size_t>(part.rows[i - 1])];
+      lag.step[part.first + static_cast<Eigen::Index>(i)] = -std::expm1(-dt_s / lag.time_constant_s);
+    }
+  }
+  return lag;
+}
+
+void send_through(const Lag& lag, Eigen::ArrayXd& x) {
+  if (lag.time_constant_s <= 0.0) return;
+  double y = 0.0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    y = lag.step[i] == 1.0 ? 0.0 : y + lag.step[i] * (x[i] - y);
+    x[i] = y;
+  }
+}
+
+// Energy that a sine and a cosine take from the residual, each signal on its own; `taken`: what they are.
+double energy_of(const Evidence& evidence, const Eigen::ArrayXd& s, const Eigen::ArrayXd& c,
+                 const Eigen::VectorXd& r, Eigen::VectorXd* taken) {
+  double energy = 0.0;
+  for (const Evidence::Part& part : evidence.parts()) {
+    const Eigen::Index n = static_cast<Eigen::Index>(part.rows.size());
+    Eigen::MatrixXd both(n, 2);
+    both << s.segment(part.first, n).matrix(), c.segment(part.first, n).matrix();
+    evidence.whiten_part(part, both);
+    const auto sn = both.col(0), cn = both.col(1);
+    const auto rn = r.segment(part.first, n);
+    Eigen::Matrix2d gram;
+    gram << sn.squaredNorm(), sn.dot(cn), sn.dot(cn), cn.squaredNorm();
+    if (gram(0, 0) < 1e-9 || gram(1, 1) < 1e-9 || gram.determinant() < 1e-6 * gram(0, 0) * gram(1, 1))
+      continue;
+    const Eigen::Vector2d b(sn.dot(rn), cn.dot(rn));
+    const Eigen::Vector2d a = gram.ldlt().solve(b);
+    energy += b.dot(a);
+    if (taken != nullptr) taken->segment(part.first, n) = a[0] * sn + a[1] * cn;
+  }
+  return energy;
+}
+
+struct Best {
+  int order = 0;
+  double energy = 0.0;
+  double median = 0.0;
+  Eigen::VectorXd taken;
+};
+
+Best best_order(const Evidence& evidence, const Lag& lag, const Eigen::ArrayXd& theta,
+                const Eigen::ArrayXd& fastest, const Eigen::VectorXd& residual) {
+  Angles angles(theta);
+  std::vector<double> energies;
+  Best best;
+  for (int order = 1; order <= kHighestOrder; ++order, angles.next()) {
+    const Eigen::ArrayXd seen = (fastest * order < kFastest_rad).cast<double>();
+    Eigen::ArrayXd s = angles.sin_n * seen, c = angles.cos_n * seen;
+    send_through(lag, s);
+    send_through(lag, c);
+    const double energy = energy_of(evidence, s, c, residual, nullptr);
+    energies.push_back(energy);
+    if (energy <= best.energy) continue;
+    best.order = order;
+    best.energy = energy;
+    best.taken = Eigen::VectorXd::Zero(residual.size());
+    energy_of(evidence, s, c, residual, &best.taken);
+  }
+  std::nth_element(energies.begin(), energies.begin() + kHighestOrder / 2, energies.end());
+  best.median = energies[kHighestOrder / 2];
+  return best;
+}
+
+}  // namespace
+
+std::vector<OrderPeak> strong_orders(const Predictor& predictor, const Evidence& evidence,
+                                     const Candidate& model, Eigen::VectorXd weighted_residual, int most) {
+  std::vector<OrderPeak> peaks;
+  const Eigen::VectorXd angle = evidence.track(model, "rotor_angle");
+  const Eigen::VectorXd speed = evidence.track(model, "speed");
+  if (!angle.allFinite() || evidence.empty()) return peaks;
+  Eigen::ArrayXd per_sample_rad = Eigen::ArrayXd::Zero(evidence.size());
+  for (const Evidence::Part& part : evidence.parts()) {
+    const std::vector<double>& time_s =
+        predictor.compared(part.run)[static_cast<std::size_t>(part.signal)].time_s;
+    for (std::size_t i = 1; i < part.rows.size(); ++i) {
+      const Eigen::Index at = part.first + static_cast<Eigen::Index>(i);
+      const double dt_s =
+          time_s[static_cast<std::size_t>(part.rows[i])] - time_s[static_cast<std::size_t>(part.rows[i - 1])];
+      const bool moves = std::isfinite(speed[at]) && !predictor.run(part.run).steady;
+      per_sample_rad[at] = moves ? std::abs(speed[at]) * dt_s : 0.0;
+    }
+  }
+  const Lag lag = lag_of(predictor, evidence, model);
+  const double all = weighted_residual.squaredNorm();
+  while (static_cast<int>(peaks.size()) < most) {
+    const Best best = best_order(evidence, lag, angle.array(), per_sample_rad, weighted_residual);
+    if (best.order == 0 || best.energy < kLeastShare * all || best.energy < kStandsOut * best.median) break;
+    peaks.push_back({.order = static_cast<double>(best.order), .share = best.energy / all});
+    weighted_residual -= best.taken;
+  }
+  return peaks;
+}
+
+}  // namespace omnihil

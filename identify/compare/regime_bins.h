@@ -1,0 +1,32 @@
+// Sorts errors by what the motion was like: along one axis (speed, current, angle, …) where is the error?
+//
+//   RegimeSamples s{.residual = …, .axis = …, .block = …};
+//   RegimeError r = regime_error("speed", s);       // bins, with the mean residual and its standard error
+//
+// Bins: 24 of equal width, parted further at the 24ths of the samples, so that both sparse ends and
+// crowded places are resolved; none with less than a thousandth of the samples. Angles are taken modulo a
+// turn, in 48 bins. The standard error of a bin's mean comes from blocks of successive samples, since
+// residuals are autocorrelated: var = sum_k (S_k - m n_k)^2 / (sum n_k)^2 * K / (K - 1), S_k, n_k sum and
+// count of block k (ratio estimator: W. G. Cochran, Sampling Techniques, 3rd ed. 1977, sec. 6.3).
+// Cannot: tell two axes apart that move together in the record.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identify/compare/comparison.h"
+
+namespace omnihil {
+
+struct RegimeSamples {
+  std::vector<double> residual;  // measured minus model; finite
+  std::vector<double> axis;      // NaN: not known there
+  std::vector<int> block;        // which stretch of the record a sample belongs to
+};
+
+inline constexpr int kBlocks = 64;  // over all samples of a use
+
+// signal, use and unit are left for the caller.
+RegimeError regime_error(std::string_view axis, const RegimeSamples& samples);
+
+}  // namespace omnihil

@@ -1,0 +1,99 @@
+// What to measure next: the excitation that best tells rival models apart, or that says most about a number,
+// within what the user's bench allows.
+//
+//   NextExperiment next = propose_experiment(dataset, {{"stribeck_friction", a}, {"dead_time", b}}, {},
+//   options); ExperimentPlan plan = plan_experiment(dataset, rivals, question, options); plan.run.time_s,
+//   plan.run.duty[0]; plan.expected_sigmas, plan.given_sigmas, plan.generic_sigmas
+//
+// Every excitation of a menu (experiment_menu.h) is simulated with one rival as the truth, and the other is
+// refitted to it: what is left, in units of the noise, is how far the run would tell them apart. Refitted
+// means: all its unknowns move, held by their priors and by what the given data say of them:
+//     d^2 = min over x of |(y_truth - y_rival(x)) / s|^2 + (x - x_given)' P (x - x_given)
+// by Gauss and Newton, P the information of the given data with the priors. The smaller of the two directions
+// counts, but for a model that holds the other within it: that one can imitate the other. s is the noise, or
+// what the fitted models leave of the given data if that is more. For a number (`shrink`): its sigma after
+// the run, sqrt of its entry in (P + J' J)^-1 (c-optimality). Source: Hunter and Reiner 1965 (discrimination
+// by the distance of refitted predictions); Ljung 1999 sec. 13. Cannot: plan what needs other sensors, other
+// loads or another supply; the answer is as good as the rivals.
+#pragma once
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identify/predict/predictor.h"
+#include "identify/record/progress.h"
+
+namespace omnihil {
+
+struct NextExperiment {
+  std::string what;  // one sentence
+  std::vector<std::string> separates;
+  double expected_sigmas = 0.0;  // distance of the twins' predictions in it, simulated; 0: not computed
+};
+
+struct Rival {
+  std::string name;  // effect, or what the model is
+  Candidate model;   // fitted to the given data
+};
+
+// 0: no limit but the drive's own.
+struct ExperimentLimits {
+  double voltage_V = 0.0;
+  double current_A = 0.0;    // of one motor
+  double speed_rad_s = 0.0;  // of the rotor; of a linear axis m/s
+  double travel = 0.0;       // from the start, either way: rad at the output, m of a linear axis or a robot
+  double duration_s = 20.0;
+};
+
+struct ExperimentQuestion {
+  std::string shrink;  // path of an unknown of the first rival; empty: tell the rivals apart
+};
+
+struct ExperimentOptions {
+  ExperimentLimits limits;
+  double rate_Hz = 1000.0;
+  int jobs = 1;
+  std::uint64_t seed = 1;
+  bool quick = false;                             // a short menu, no refinement: within a diagnosis
+  std::function<bool(const Progress&)> progress;  // false: stop with the best so far
+};
+
+// What is asked of the drive, or of the four.
+struct PlannedRun {
+  std::string excitation;      // "creep", …
+  std::string words;           // "ramps slowly through zero, ±10 % duty, 16 s a period"
+  std::string input = "duty";  // or "motor_voltage", "position_target", as the given data have it
+  std::vector<double> time_s;
+  std::vector<std::vector<double>> duty;  // of that input, per drive: one, or one per wheel
+};
+
+struct TriedRun {
+  std::string excitation;
+  std::string words;
+  double sigmas = 0.0;  // of separation; of `shrink`: sigma before over sigma after
+  std::string refused;  // which limit the simulated run would break; empty: none
+};
+
+struct ExperimentPlan {
+  NextExperiment next;
+  std::optional<PlannedRun> run;  // none: every one was refused, or there is nothing to tell apart
+  double expected_sigmas = 0.0;
+  double generic_sigmas = 0.0;  // of the usual steps within the same limits
+  double given_sigmas = 0.0;    // in the given data
+  // of `shrink`
+  double sigma_before = 0.0, sigma_after = 0.0;
+  double largest_current_A = 0.0, largest_speed_rad_s = 0.0, largest_travel = 0.0;  // simulated
+  std::vector<TriedRun> tried;                                                      // the best first
+  std::string problem;                                                              // why there is no run
+};
+
+ExperimentPlan plan_experiment(const Dataset& dataset, const std::vector<Rival>& rivals,
+                               const ExperimentQuestion& question, const ExperimentOptions& options);
+
+// The plan's sentence and number alone.
+NextExperiment propose_experiment(const Dataset& dataset, const std::vector<Rival>& rivals,
+                                  const ExperimentOptions& options);
+
+}  // namespace omnihil

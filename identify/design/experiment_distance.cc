@@ -1,0 +1,131 @@
+#include "identify/design/experiment_distance.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace omnihil {
+namespace {
+
+struct Normal {
+  double square = 0.0;
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;  // J' r
+  bool finite = true;
+};
+
+// Adds one signal's part; `residual` and `columns` are NaN where nothing is measured.
+void add(const ComparedSignal& signal, double variance, Eigen::MatrixXd residual, Eigen::MatrixXd columns,
+         Normal& sum) {
+  whiten(signal, residual);
+  whiten(signal, columns);
+  for (Eigen::Index k = 0; k < residual.rows(); ++k) {
+    if (std::isfinite(residual(k, 0))) continue;
+    residual(k, 0) = 0.0;
+    columns.row(k).setZero();
+  }
+  sum.square += residual.squaredNorm() / variance;
+  sum.gradient += columns.transpose() * residual.col(0) / variance;
+  sum.information += columns.transpose() * columns / variance;
+}
+
+double variance_of(const SignalVariances& variances, const ComparedSignal& signal) {
+  const auto found = variances.find(signal.name);
+  const double own = signal.whitened_sigma > 0.0 ? signal.whitened_sigma : signal.noise_sigma;
+  const double floor = std::max(own * own, 1e-300);
+  return found != variances.end() ? std::max(found->second, floor) : floor;
+}
+
+// The rival at x against the truth's answers.
+Normal normal_at(const Predictor& world, const std::vector<int>& runs, const std::vector<Prediction>& truth,
+                 const HeldModel& rival, const Eigen::VectorXd& x, const SignalVariances& variances) {
+  const auto n = static_cast<Eigen::Index>(rival.unknowns.size());
+  Normal sum{.information = Eigen::MatrixXd::Zero(n, n), .gradient = Eigen::VectorXd::Zero(n)};
+  const Candidate here = with_values(rival.model, rival.unknowns, {x.data(), static_cast<std::size_t>(n)});
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Prediction y = world.predict_with_derivatives(here, rival.unknowns, runs[i]);
+    sum.finite = sum.finite && y.finite && truth[i].finite;
+    const std::vector<ComparedSignal>& compared = world.compared(runs[i]);
+    for (std::size_t s = 0; s < compared.size(); ++s) {
+      const auto rows = static_cast<Eigen::Index>(compared[s].measured.size());
+      Eigen::MatrixXd residual(rows, 1);
+      Eigen::MatrixXd columns = n > 0 ? y.derivatives[s] : Eigen::MatrixXd(rows, 0);
+      for (Eigen::Index k = 0; k < rows; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        residual(k, 0) = truth[i].values[s][at] - y.values[s][at];
+        if (!std::isfinite(compared[s].measured[at])) residual(k, 0) = std::nan("");
+        if (!std::isfinite(residual(k, 0))) columns.row(k).setConstant(std::nan(""));
+      }
+      add(compared[s], variance_of(variances, compared[s]), std::move(residual), std::move(columns), sum);
+    }
+  }
+  return sum;
+}
+
+// (A) d = b with a badly scaled A.
+Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  Eigen::VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd even = scale.asDiagonal() * a * scale.asDiagonal();
+  even.diagonal().array() += 1e-12;
+  return scale.asDiagonal() * even.ldlt().solve(Eigen::VectorXd(scale.asDiagonal() * b));
+}
+
+}  // namespace
+
+Eigen::MatrixXd prior_hold(const std::vector<Unknown>& unknowns) {
+  const auto n = static_cast<Eigen::Index>(unknowns.size());
+  Eigen::MatrixXd hold = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double sigma = unknowns[static_cast<std::size_t>(i)].prior_sigma;
+    if (sigma > 0.0) hold(i, i) = 1.0 / (sigma * sigma);
+  }
+  return hold;
+}
+
+Distance refitted_distance(const Predictor& world, const std::vector<int>& runs, const Candidate& truth,
+                           const HeldModel& rival, const SignalVariances& variances, int iterations) {
+  std::vector<Prediction> answers;
+  for (const int run : runs) answers.push_back(world.predict(truth, run));
+  Eigen::VectorXd x = rival.center;
+  Distance out;
+  double best = std::numeric_limits<double>::infinity();
+  for (int round = 0;; ++round) {
+    const Normal now = normal_at(world, runs, answers, rival, x, variances);
+    const Eigen::VectorXd moved = x - rival.center;
+    const double held = moved.dot(rival.hold * moved);
+    if (round == 0) out.finite = now.finite;
+    if (!now.finite || !std::isfinite(now.square)) break;
+    best = std::min(best, now.square + held);
+    if (x.size() == 0 || (round == iterations && iterations > 0)) break;
+    const Eigen::MatrixXd all = now.information + rival.hold;
+    const Eigen::VectorXd pull = now.gradient - rival.hold * moved;
+    const Eigen::VectorXd step = solve_scaled(all, pull);
+    if (iterations == 0) {
+      best = std::max(0.0, now.square + held - pull.dot(step));
+      break;
+    }
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const Unknown& u = rival.unknowns[static_cast<std::size_t>(i)];
+      x(i) = std::clamp(x(i) + step(i), u.lower, u.upper);
+    }
+  }
+  out.sigmas = std::isfinite(best) ? std::sqrt(best) : 0.0;
+  return out;
+}
+
+Eigen::MatrixXd information_of(const Predictor& world, const std::vector<int>& runs, const HeldModel& model,
+                               const SignalVariances& variances) {
+  std::vector<Prediction> answers;
+  for (const int run : runs) answers.push_back(world.predict(model.model, run));
+  return normal_at(world, runs, answers, model, model.center, variances).information;
+}
+
+double sigma_of(const Eigen::MatrixXd& information, Eigen::Index unknown) {
+  Eigen::VectorXd one = Eigen::VectorXd::Zero(information.rows());
+  one(unknown) = 1.0;
+  const double variance = solve_scaled(information, one)(unknown);
+  return variance > 0.0 ? std::sqrt(variance) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace omnihil

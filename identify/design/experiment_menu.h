@@ -1,0 +1,32 @@
+// What may be asked of a bench: excitations as values of -1 … 1 over time, for one drive or for a robot's
+// four.
+//
+//   for (const MenuRun& run : axis_menu(time_s, seed)) run.drive[0][k];
+//   for (const MenuRun& run : robot_menu(time_s, wheel_angle_rad, seed)) run.drive[i][k];
+//
+// Besides those of sim/bench/excitation.h: multisine (harmonics with Schroeder's phases), staircase,
+// reversals, pulses with rests, acceleration and braking in pairs, and hold: warm up at a level between two
+// equal probes. For a robot the same along x, y and the turn, and a scan of directions. The first of a menu
+// is the generic run that others are held against. Source: Schroeder 1970 (phases of a flat multisine);
+// Pintelon and Schoukens 2012, ch. 2 (periodic inputs).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "firmware_iface/robot_io.h"
+
+namespace omnihil {
+
+struct MenuRun {
+  std::string excitation;  // "reversals_1s"
+  std::string words;       // "turns round every second"
+  std::vector<std::vector<double>> drive;
+};
+
+std::vector<MenuRun> axis_menu(const std::vector<double>& time_s, std::uint64_t seed);
+std::vector<MenuRun> robot_menu(const std::vector<double>& time_s,
+                                const std::array<double, kWheels>& wheel_angle_rad, std::uint64_t seed);
+
+}  // namespace omnihil

@@ -1,0 +1,240 @@
+#include "identify/design/experiment_world.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "identify/predict/robot_motion.h"
+#include "identify/record/signal_list.h"
+#include "sim/model/axis_model.h"
+#include "sim/model/rolling_model.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+double median_of(const std::vector<double>& values, double otherwise) {
+  std::vector<double> v;
+  for (const double x : values) {
+    if (std::isfinite(x)) v.push_back(x);
+  }
+  if (v.empty()) return otherwise;
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+double largest_of(const Dataset& given, const std::string& signal) {
+  double largest = 0.0;
+  for (const Run& run : given.runs) {
+    const std::vector<double>* values = run.signal(signal);
+    if (values == nullptr) continue;
+    for (const double v : *values) {
+      if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
+    }
+  }
+  return largest;
+}
+
+double camera_period(const Run& run) {
+  for (const char* name : {"vision_x", "vision_y", "vision_theta"}) {
+    const std::vector<double>* seen = run.signal(name);
+    if (seen == nullptr) continue;
+    double first = kNaN, last = kNaN;
+    int frames = 0;
+    for (std::size_t k = 0; k < seen->size(); ++k) {
+      if (!std::isfinite((*seen)[k])) continue;
+      last = run.time_s[k];
+      if (frames++ == 0) first = last;
+    }
+    if (frames > 1) return (last - first) / (frames - 1);
+  }
+  return 0.0;
+}
+
+// The noise that the given data showed, where no channel states it.
+void fill_noise(const Predictor& predictor, Dataset& like) {
+  for (int r = 0; r < predictor.run_count(); ++r) {
+    for (const ComparedSignal& c : predictor.compared(r)) {
+      for (Channel& channel : like.channels) {
+        if (channel.signal == c.name && channel.sigma <= 0.0 && channel.counts_per_rev <= 0.0) {
+          channel.sigma = c.noise_sigma;
+        }
+      }
+    }
+  }
+}
+
+double bus_of(const PlannedBench& bench) {
+  const std::vector<double>* bus = bench.example.signal("bus_voltage");
+  return bus != nullptr ? median_of(*bus, bench.supply_V) : bench.supply_V;
+}
+
+// The run with its inputs, everything that is measured still zero.
+Run blank_run(const PlannedBench& bench, const PlannedInputs& inputs) {
+  Run run;
+  run.file = "planned";
+  run.use = Use::kFit;
+  run.time_s = inputs.time_s;
+  const std::size_t n = run.time_s.size();
+  const double bus_V = bus_of(bench);
+  for (const auto& [name, values] : bench.example.signals) {
+    const SignalRow* row = find_signal(bench.like.rig, name);
+    const bool drive = row != nullptr && row->kind == SignalKind::kDrive;
+    if (drive && name != "dribbler") continue;
+    double level = name == "enable" ? 1.0 : 0.0;
+    if (name == "bus_voltage") level = bus_V;
+    run.signals[name].assign(n, level);
+    if (!name.starts_with("vision") || bench.camera_period_s <= 0.0) continue;
+    double next_s = run.time_s.front();
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool frame = run.time_s[k] >= next_s - 1e-9;
+      run.signals[name][k] = frame ? 0.0 : kNaN;
+      if (frame) next_s += bench.camera_period_s;
+    }
+  }
+  for (std::size_t i = 0; i < bench.inputs.size(); ++i) run.signals[bench.inputs[i]] = inputs.drive[i];
+  return run;
+}
+
+Dataset with_run(const Dataset& like, Run run) {
+  Dataset dataset = like;
+  dataset.runs = {std::move(run)};
+  return dataset;
+}
+
+// An axis' answer as its measurement: angles are the sum of its speed, so that laws of the angle see them.
+void measure_axis(const PlannedBench& bench, const Predictor& world, const Candidate& truth, Run& run) {
+  const Prediction y = world.predict(truth, 0);
+  const std::vector<ComparedSignal>& compared = world.compared(0);
+  const DriveParams<double> drive = drive_of(truth);
+  for (std::size_t s = 0; s < compared.size(); ++s) {
+    if (auto own = run.signals.find(compared[s].name);
+        own != run.signals.end() && compared[s].name != "bus_voltage") {
+      own->second = y.values[s];
+      for (double& v : own->second) v = std::isfinite(v) ? v : 0.0;
+    }
+    if (compared[s].name != "velocity" && compared[s].name != "encoder_velocity") continue;
+    double at = 0.0;
+    std::vector<double> way(run.time_s.size(), 0.0);
+    for (std::size_t k = 1; k < way.size(); ++k) {
+      const double v = y.values[s][k];
+      if (std::isfinite(v)) at += v * (run.time_s[k] - run.time_s[k - 1]);
+      way[k] = at;
+    }
+    if (auto position = run.signals.find("position"); position != run.signals.end()) position->second = way;
+    const Channel* encoder = bench.like.channel("encoder");
+    if (encoder == nullptr || !run.signals.contains("encoder")) continue;
+    const double per_rad = encoder->counts_per_rev / kTurn * (encoder->on_output ? 1.0 : drive.gear_ratio);
+    for (std::size_t k = 0; k < way.size(); ++k) run.signals["encoder"][k] = std::floor(way[k] * per_rad);
+  }
+}
+
+}  // namespace
+
+PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const Predictor& predictor) {
+  PlannedBench bench{.like = given, .example = {}, .nominal = nominal, .inputs = {}, .problem = {}};
+  bench.like.runs.clear();
+  if (predictor.method() == Method::kInverse) {
+    bench.problem =
+        "this bench gives torque or current, or turns the shaft itself: the model answers to its motion, and "
+        "a "
+        "motion cannot be asked of it";
+    return bench;
+  }
+  for (const Run& run : given.runs) {
+    if (run.use == Use::kFit && !run.steady) {
+      bench.example = run;
+      break;
+    }
+  }
+  bench.supply_V = nominal.file.parameters.value_or("supply.voltage_V", 0.0);
+  const bool robot = given.rig == Rig::kRobot;
+  if (robot) {
+    bench.inputs = {"duty_1", "duty_2", "duty_3", "duty_4"};
+  } else {
+    for (const char* name : {"duty", "motor_voltage", "position_target"}) {
+      if (bench.example.signal(name) != nullptr) bench.inputs = {name};
+    }
+  }
+  if (bench.inputs.empty() || bench.example.time_s.empty()) {
+    bench.problem = "no run of use \"fit\" that is a time series driven by duty, voltage or position";
+    return bench;
+  }
+  if (bench.inputs.front() == "motor_voltage") bench.full_input = bench.supply_V;
+  if (bench.inputs.front() == "position_target") bench.full_input = largest_of(given, "position_target");
+  for (const std::string& input : bench.inputs) {
+    if (bench.like.channel(input) == nullptr)
+      bench.like.channels.push_back({.signal = input, .column = input, .unit = "1"});
+  }
+  bench.camera_period_s = camera_period(bench.example);
+  fill_noise(predictor, bench.like);
+  return bench;
+}
+
+std::unique_ptr<Predictor> planned_world(const PlannedBench& bench, const PlannedInputs& inputs,
+                                         const Candidate& truth, std::uint64_t seed) {
+  Run run = blank_run(bench, inputs);
+  if (bench.like.rig == Rig::kRobot) {
+    return make_predictor(with_run(bench.like, run), bench.nominal, {})->simulated(truth, seed);
+  }
+  const auto free = make_predictor(with_run(bench.like, run), bench.nominal, {.slave_angle = false});
+  measure_axis(bench, *free, truth, run);
+  return make_predictor(with_run(bench.like, run), bench.nominal, {});
+}
+
+MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& inputs,
+                                const Candidate& model) {
+  MotionExtremes out;
+  if (bench.like.rig == Rig::kRobot) {
+    const Dataset dataset = with_run(bench.like, blank_run(bench, inputs));
+    const RobotRecord record =
+        robot_record(dataset, dataset.runs[0], rolling_params(bench.nominal.file.parameters));
+    RobotMotionOptions options;
+    options.slave_angle = options.follow_camera = false;
+    const RobotMotion<double> m = run_robot(robot_values<double>(model, {}, 0), record, options);
+    out.finite = m.finite;
+    for (std::size_t k = 1; k < record.size(); ++k) {
+      out.travel = std::max(out.travel, std::hypot(m.x_m[k], m.y_m[k]));
+      const double dt_s = record.time_s[k] - record.time_s[k - 1];
+      for (std::size_t i = 0; i < kWheels; ++i) {
+        out.current_A = std::max(out.current_A, std::abs(m.current_A[k][i]));
+        const double speed = std::abs(m.encoder_rad[k][i] - m.encoder_rad[k - 1][i]) / dt_s;
+        out.rotor_speed_rad_s = std::max(out.rotor_speed_rad_s, speed);
+      }
+    }
+    return out;
+  }
+  // Whatever the bench measures: speed and current are simulated.
+  PlannedBench all = bench;
+  for (const char* name : {"velocity", "motor_current"}) {
+    all.example.signals[name] = {};
+    if (all.like.channel(name) == nullptr)
+      all.like.channels.push_back({.signal = name, .column = name, .unit = "", .sigma = 1.0});
+  }
+  const auto world =
+      make_predictor(with_run(all.like, blank_run(all, inputs)), bench.nominal, {.slave_angle = false});
+  const Prediction y = world->predict(model, 0);
+  out.finite = y.finite;
+  const double gear = bench.like.linear ? 1.0 : drive_of(model).gear_ratio;
+  double at = 0.0;
+  for (std::size_t s = 0; s < world->compared(0).size(); ++s) {
+    const std::string& name = world->compared(0)[s].name;
+    for (std::size_t k = 1; k < y.values[s].size(); ++k) {
+      const double v = y.values[s][k];
+      if (!std::isfinite(v)) continue;
+      if (name == "motor_current") out.current_A = std::max(out.current_A, std::abs(v));
+      if (name != "velocity") continue;
+      out.rotor_speed_rad_s = std::max(out.rotor_speed_rad_s, std::abs(v) * gear);
+      at += v * (inputs.time_s[k] - inputs.time_s[k - 1]);
+      out.travel = std::max(out.travel, std::abs(at));
+    }
+  }
+  return out;
+}
+
+}  // namespace omnihil

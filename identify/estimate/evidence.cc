@@ -1,0 +1,236 @@
+#include "identify/estimate/evidence.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "identify/record/parallel.h"
+
+namespace omnihil {
+namespace {
+
+// Blocks hold the slowest autocorrelation of a drive's residual (mechanical time constants of 10 to 200 ms)
+// a few times over, yet leave enough of them to draw from.
+constexpr double kBlock_s = 0.5;
+constexpr int kMostBlocksPerRun = 200;
+
+constexpr const char* kBusVoltage = "bus_voltage";
+
+// Least squares of 1, x, x^2 over the rows, taken off each column.
+void take_slow_course_off(Eigen::MatrixXd& columns) {
+  const Eigen::Index n = columns.rows();
+  if (n < 6) return;
+  Eigen::MatrixXd slow(n, 3);
+  const Eigen::ArrayXd x = Eigen::ArrayXd::LinSpaced(n, -1.0, 1.0);
+  slow << Eigen::VectorXd::Ones(n), x.matrix(), x.square().matrix();
+  const Eigen::Matrix3d gram = slow.transpose() * slow;
+  const Eigen::MatrixXd share = gram.ldlt().solve(slow.transpose() * columns);
+  columns -= slow * share;
+}
+
+int kind_of(const SignalKinds& kinds, const std::string& name) {
+  return static_cast<int>(std::find(kinds.name.begin(), kinds.name.end(), name) - kinds.name.begin());
+}
+
+}  // namespace
+
+SignalKinds signal_kinds(const Predictor& predictor) {
+  SignalKinds kinds;
+  std::vector<double> square, count;
+  for (int run = 0; run < predictor.run_count(); ++run) {
+    for (const ComparedSignal& s : predictor.compared(run)) {
+      const std::size_t k = static_cast<std::size_t>(kind_of(kinds, s.name));
+      if (k == kinds.name.size()) {
+        kinds.name.push_back(s.name);
+        square.push_back(0.0);
+        count.push_back(0.0);
+      }
+      const double sigma = s.whitening_s > 0.0 ? s.whitened_sigma : s.noise_sigma;
+      square[k] += sigma * sigma;
+      count[k] += 1.0;
+    }
+  }
+  for (std::size_t k = 0; k < square.size(); ++k)
+    kinds.noise_sigma.push_back(std::sqrt(square[k] / count[k]));
+  return kinds;
+}
+
+Evidence::Evidence(const Predictor& predictor, const SignalKinds& kinds, Use use, Weighing weighing)
+    : predictor_(&predictor), use_(use), weighing_(weighing), kinds_(kinds.count()) {
+  for (int run = 0; run < predictor.run_count(); ++run) {
+    if (predictor.run(run).use == use) add_run(run, kinds);
+  }
+  measured_ = measured_by(predictor);
+  samples_ = Eigen::VectorXd::Zero(kinds_);
+  block_samples_ = Eigen::MatrixXd::Zero(blocks_, kinds_);
+  for (const Part& part : parts_) {
+    samples_[part.kind] += static_cast<double>(part.rows.size());
+    for (const int block : part.time_block) block_samples_(block, part.kind) += 1.0;
+  }
+}
+
+void Evidence::add_run(int run, const SignalKinds& kinds) {
+  const std::vector<ComparedSignal>& signals = predictor_->compared(run);
+  runs_.push_back(run);
+  int run_blocks = 0;
+  for (std::size_t s = 0; s < signals.size(); ++s) {
+    const ComparedSignal& signal = signals[s];
+    Part part{.run = run,
+              .signal = static_cast<int>(s),
+              .kind = kind_of(kinds, signal.name),
+              .first = size_,
+              .rows = {},
+              .time_block = {}};
+    const int rows = static_cast<int>(signal.measured.size());
+    const double duration_s = rows > 1 ? signal.time_s.back() - signal.time_s.front() : 0.0;
+    const int count = std::clamp(static_cast<int>(duration_s / kBlock_s), 1, kMostBlocksPerRun);
+    run_blocks = std::max(run_blocks, count);
+    for (int i = 0; i < rows; ++i) {
+      if (!std::isfinite(signal.measured[static_cast<std::size_t>(i)])) continue;
+      part.rows.push_back(i);
+      const double share =
+          duration_s > 0.0 ? (signal.time_s[static_cast<std::size_t>(i)] - signal.time_s.front()) / duration_s
+                           : 0.0;
+      part.time_block.push_back(blocks_ + std::min(count - 1, static_cast<int>(share * count)));
+    }
+    if (part.rows.empty()) continue;
+    size_ += static_cast<Eigen::Index>(part.rows.size());
+    parts_.push_back(std::move(part));
+  }
+  blocks_ += run_blocks;
+}
+
+Eigen::MatrixXd Evidence::whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const {
+  const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
+  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(rows.rows(), rows.cols(), std::nan(""));
+  for (const int row : part.rows) all.row(row) = rows.row(row);
+  if (weighing_ == Weighing::kWhitened) whiten(signal, all);
+  Eigen::MatrixXd out(part.rows.size(), rows.cols());
+  for (std::size_t i = 0; i < part.rows.size(); ++i)
+    out.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
+  if (signal.name == kBusVoltage) take_slow_course_off(out);
+  return out;
+}
+
+void Evidence::whiten_part(const Part& part, Eigen::MatrixXd& columns) const {
+  const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
+  if (signal.whitening_s <= 0.0 || weighing_ == Weighing::kAsSeen) return;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(signal.measured.size()),
+                                                  columns.cols(), std::nan(""));
+  for (std::size_t i = 0; i < part.rows.size(); ++i)
+    all.row(part.rows[i]) = columns.row(static_cast<Eigen::Index>(i));
+  whiten(signal, all);
+  for (std::size_t i = 0; i < part.rows.size(); ++i)
+    columns.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
+}
+
+Eigen::VectorXd Evidence::gathered(const std::vector<std::vector<std::vector<double>>>& values) const {
+  Eigen::VectorXd out(size_);
+  for (const Part& part : parts_) {
+    const std::size_t run =
+        static_cast<std::size_t>(std::find(runs_.begin(), runs_.end(), part.run) - runs_.begin());
+    const std::vector<double>& from = values[run][static_cast<std::size_t>(part.signal)];
+    const Eigen::Map<const Eigen::MatrixXd> column(from.data(), static_cast<Eigen::Index>(from.size()), 1);
+    out.segment(part.first, static_cast<Eigen::Index>(part.rows.size())) = whitened_rows(part, column);
+  }
+  return out;
+}
+
+Eigen::VectorXd Evidence::measured_by(const Predictor& other) const {
+  std::vector<std::vector<std::vector<double>>> values(runs_.size());
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    for (const ComparedSignal& s : other.compared(runs_[r])) values[r].push_back(s.measured);
+  }
+  return gathered(values);
+}
+
+Eigen::VectorXd Evidence::predicted(const Candidate& candidate, int jobs) const {
+  return predicted_by(*predictor_, candidate, jobs);
+}
+
+Eigen::VectorXd Evidence::predicted_by(const Predictor& predictor, const Candidate& candidate,
+                                       int jobs) const {
+  std::vector<std::vector<std::vector<double>>> values(runs_.size());
+  std::vector<char> finite(runs_.size(), 1);
+  parallel_for(jobs, static_cast<int>(runs_.size()), [&](int r) {
+    Prediction p = predictor.predict(candidate, runs_[static_cast<std::size_t>(r)]);
+    finite[static_cast<std::size_t>(r)] = p.finite ? 1 : 0;
+    values[static_cast<std::size_t>(r)] = std::move(p.values);
+  });
+  if (std::find(finite.begin(), finite.end(), 0) != finite.end()) return {};
+  Eigen::VectorXd out = gathered(values);
+  if (!out.allFinite()) return {};
+  return out;
+}
+
+Eigen::VectorXd Evidence::residual(const Candidate& candidate, int jobs) const {
+  const Eigen::VectorXd model = predicted(candidate, jobs);
+  if (model.size() != size_) return {};
+  return measured_ - model;
+}
+
+Eigen::MatrixXd Evidence::derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                      int jobs) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size_, static_cast<Eigen::Index>(unknowns.size()));
+  parallel_for(jobs, static_cast<int>(runs_.size()), [&](int r) {
+    const int run = runs_[static_cast<std::size_t>(r)];
+    const Prediction p = predictor_->predict_with_derivatives(candidate, unknowns, run);
+    for (const Part& part : parts_) {
+      if (part.run != run) continue;
+      const Eigen::MatrixXd& from = p.derivatives[static_cast<std::size_t>(part.signal)];
+      out.middleRows(part.first, static_cast<Eigen::Index>(part.rows.size())) = whitened_rows(part, from);
+    }
+  });
+  return out.allFinite()
+             ? out
+             : Eigen::MatrixXd(out.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }));
+}
+
+Eigen::VectorXd Evidence::track(const Candidate& candidate, std::string_view name) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(size_, std::nan(""));
+  for (const int run : runs_) {
+    for (const RegimeTrack& track : predictor_->regimes(candidate, run)) {
+      if (track.name != name) continue;
+      for (const Part& part : parts_) {
+        if (part.run != run) continue;
+        for (std::size_t i = 0; i < part.rows.size(); ++i) {
+          out[part.first + static_cast<Eigen::Index>(i)] =
+              track.value[static_cast<std::size_t>(part.rows[i])];
+        }
+      }
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd Evidence::mean_square(const Eigen::VectorXd& residual) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(kinds_);
+  for (const Part& part : parts_) {
+    out[part.kind] += residual.segment(part.first, static_cast<Eigen::Index>(part.rows.size())).squaredNorm();
+  }
+  for (int k = 0; k < kinds_; ++k) out[k] = samples_[k] > 0.0 ? out[k] / samples_[k] : 0.0;
+  return out;
+}
+
+Eigen::MatrixXd Evidence::block_sums(const Eigen::VectorXd& residual) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(blocks_, kinds_);
+  for (const Part& part : parts_) {
+    for (std::size_t i = 0; i < part.rows.size(); ++i) {
+      const double r = residual[part.first + static_cast<Eigen::Index>(i)];
+      out(part.time_block[i], part.kind) += r * r;
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd Evidence::weights(const Eigen::VectorXd& scale_of_kind) const {
+  Eigen::VectorXd out(size_);
+  for (const Part& part : parts_) {
+    const double scale = scale_of_kind[part.kind];
+    out.segment(part.first, static_cast<Eigen::Index>(part.rows.size()))
+        .setConstant(scale > 0.0 ? 1.0 / scale : 0.0);
+  }
+  return out;
+}
+
+}  // namespace omnihil

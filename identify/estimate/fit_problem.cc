@@ -1,0 +1,228 @@
+#include "identify/estimate/fit_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/record/parallel.h"
+#include "sim/law/scalar.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kHuber = 6.0;          // sizes
+constexpr double kRobustHuber = 1.345;  // of sizes by the median
+
+// Residual of one signal, whitened, zero where it was not measured.
+Eigen::VectorXd residual_of(const ComparedSignal& signal, const std::vector<double>& model) {
+  std::vector<double> r(signal.measured.size());
+  for (std::size_t k = 0; k < r.size(); ++k) r[k] = signal.measured[k] - model[k];
+  r = whitened(signal, std::move(r));
+  Eigen::VectorXd out(static_cast<Eigen::Index>(r.size()));
+  for (std::size_t k = 0; k < r.size(); ++k)
+    out[static_cast<Eigen::Index>(k)] = std::isfinite(signal.measured[k]) ? r[k] : 0.0;
+  return out;
+}
+
+// Of a Gaussian, its sigma; half of the values say it, however far the others are.
+double size_by_median(std::vector<double> sizes) {
+  if (sizes.empty()) return 0.0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return 1.4826 * *middle;
+}
+
+// 1 + 2 sum of autocorrelations, up to a window of five such times (Sokal). Gaps count as zero.
+double autocorrelation_time(const Eigen::VectorXd& r) {
+  const Eigen::Index n = r.size();
+  const double energy = r.squaredNorm();
+  if (n < 8 || !(energy > 0.0)) return 1.0;
+  constexpr double kWindow = 5.0;
+  double time = 1.0;
+  const Eigen::Index longest = std::min<Eigen::Index>(n / 10, 4000);
+  for (Eigen::Index lag = 1; lag < longest; ++lag) {
+    time += 2.0 * r.head(n - lag).dot(r.tail(n - lag)) / energy;
+    if (static_cast<double>(lag) > kWindow * time) break;
+  }
+  return std::max(1.0, time);
+}
+
+}  // namespace
+
+FitProblem::FitProblem(const Predictor& predictor, const Candidate& candidate,
+                       const std::vector<Unknown>& unknowns, int jobs, bool robust)
+    : predictor_(predictor), candidate_(candidate), unknowns_(unknowns), jobs_(jobs), robust_(robust) {
+  for (int run = 0; run < predictor.run_count(); ++run) {
+    if (predictor.run(run).use == Use::kFit && !predictor.compared(run).empty()) runs_.push_back(run);
+  }
+}
+
+Candidate FitProblem::candidate_at(const Eigen::VectorXd& x) const {
+  return with_values(candidate_, unknowns_, std::span(x.data(), static_cast<std::size_t>(x.size())));
+}
+
+std::vector<std::vector<Eigen::VectorXd>> FitProblem::residuals(const Eigen::VectorXd& x,
+                                                                bool& finite) const {
+  const Candidate c = candidate_at(x);
+  std::vector<std::vector<Eigen::VectorXd>> all(runs_.size());
+  std::vector<char> good(runs_.size(), 1);
+  parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int n) {
+    const auto i = static_cast<std::size_t>(n);
+    const Prediction p = predictor_.predict(c, runs_[i]);
+    good[i] = p.finite ? 1 : 0;
+    const std::vector<ComparedSignal>& compared = predictor_.compared(runs_[i]);
+    for (std::size_t s = 0; s < compared.size(); ++s) all[i].push_back(residual_of(compared[s], p.values[s]));
+  });
+  finite = std::find(good.begin(), good.end(), 0) == good.end();
+  return all;
+}
+
+bool FitProblem::reweigh(const Eigen::VectorXd& x) {
+  bool finite = true;
+  const auto all = residuals(x, finite);
+  if (!finite) return false;
+  struct Sum {
+    double square = 0.0, count = 0.0, noise = 0.0, time = 0.0;
+  };
+  std::map<std::string, Sum> sums;
+  std::map<std::string, std::vector<double>> all_sizes;
+  for (int pass = 0; pass < 3; ++pass) {  // the size without what is beyond six sizes
+    std::map<std::string, Sum> next;
+    for (std::size_t n = 0; n < runs_.size(); ++n) {
+      const auto& compared = predictor_.compared(runs_[n]);
+      for (std::size_t s = 0; s < compared.size(); ++s) {
+        Sum& sum = next[compared[s].name];
+        const Eigen::VectorXd& r = all[n][s];
+        const auto before = sums.find(compared[s].name);
+        const double limit = before == sums.end()
+                                 ? INFINITY
+                                 : kHuber * std::sqrt(before->second.square / before->second.count);
+        double count = 0.0;
+        for (Eigen::Index k = 0; k < r.size(); ++k) {
+          if (!std::isfinite(compared[s].measured[static_cast<std::size_t>(k)]) || !(std::abs(r[k]) <= limit))
+            continue;
+          sum.square += r[k] * r[k];
+          count += 1.0;
+          if (robust_ && pass == 0) all_sizes[compared[s].name].push_back(std::abs(r[k]));
+        }
+        sum.count += count;
+        sum.noise += count * compared[s].whitened_sigma * compared[s].whitened_sigma;
+        if (pass == 2) sum.time += count * autocorrelation_time(r);
+      }
+    }
+    sums = std::move(next);
+  }
+  weights_.clear();
+  for (const auto& [name, sum] : sums) {
+    if (!(sum.count > 0.0)) continue;
+    double size = std::sqrt(std::max(sum.square, sum.noise) / sum.count);
+    if (robust_) size = std::max(size_by_median(all_sizes[name]), std::sqrt(sum.noise / sum.count));
+    weights_[name] = {.size = size > 0.0 ? size : 1.0,
+                      .autocorrelation = std::max(1.0, sum.time / sum.count),
+                      .samples = sum.count};
+  }
+  return true;
+}
+
+FitProblem::RunPart FitProblem::part(int run, const Prediction& values,
+                                     const std::vector<const Prediction*>& strides) const {
+  RunPart out;
+  const auto n = static_cast<Eigen::Index>(unknowns_.size());
+  out.finite = values.finite;
+  if (!strides.empty()) {
+    out.gradient = Eigen::VectorXd::Zero(n);
+    out.information = Eigen::MatrixXd::Zero(n, n);
+  }
+  const double huber = robust_ ? kRobustHuber : kHuber;
+  const std::vector<ComparedSignal>& compared = predictor_.compared(run);
+  for (std::size_t s = 0; s < compared.size() && out.finite; ++s) {
+    const auto found = weights_.find(compared[s].name);
+    if (found == weights_.end()) continue;
+    const SignalWeight& w = found->second;
+    Eigen::VectorXd r = residual_of(compared[s], values.values[s]) / w.size;
+    Eigen::VectorXd weight(r.size());  // square root of what each sample counts
+    for (Eigen::Index k = 0; k < r.size(); ++k) {
+      const double a = std::abs(r[k]);
+      const bool known = std::isfinite(compared[s].measured[static_cast<std::size_t>(k)]);
+      // rho(z) = z within, 2 c sqrt(z) - c^2 beyond; rho' = c / a
+      out.cost +=
+          known ? 0.5 * (a <= huber ? a * a : 2.0 * huber * a - huber * huber) / w.autocorrelation : 0.0;
+      weight[k] = known ? std::sqrt((a <= huber ? 1.0 : huber / a) / w.autocorrelation) : 0.0;
+    }
+    if (strides.empty()) continue;
+    Eigen::MatrixXd j(r.size(), n);
+    Eigen::Index first = 0;
+    for (const Prediction* p : strides) {
+      const Eigen::MatrixXd& d = p->derivatives[s];
+      j.middleCols(first, d.cols()) = d;
+      first += d.cols();
+    }
+    whiten(compared[s], j);
+    j.array().colwise() *= weight.array() / w.size;
+    r.array() *= weight.array();
+    out.information.noalias() += j.transpose() * j;
+    out.gradient.noalias() -= j.transpose() * r;  // r = measured - model
+  }
+  out.finite = out.finite && std::isfinite(out.cost);
+  return out;
+}
+
+FitPoint FitProblem::at(const Eigen::VectorXd& x, bool derivatives) const {
+  const Candidate c = candidate_at(x);
+  const std::size_t n = unknowns_.size();
+  const std::size_t strides = derivatives ? (n + kJetWidth - 1) / kJetWidth : 1;
+  std::vector<Prediction> predicted(runs_.size() * strides);
+  parallel_for(jobs_, static_cast<int>(predicted.size()), [&](int task) {
+    const auto t = static_cast<std::size_t>(task);
+    const int run = runs_[t / strides];
+    const std::size_t first = t % strides * kJetWidth;
+    if (!derivatives) {
+      predicted[t] = predictor_.predict(c, run);
+    } else {
+      const auto some = std::span(unknowns_).subspan(first, std::min<std::size_t>(kJetWidth, n - first));
+      predicted[t] = predictor_.predict_with_derivatives(c, some, run);
+    }
+  });
+  std::vector<RunPart> parts(runs_.size());
+  parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int r) {
+    const auto i = static_cast<std::size_t>(r);
+    std::vector<const Prediction*> own;
+    for (std::size_t s = 0; s < strides && derivatives; ++s) own.push_back(&predicted[i * strides + s]);
+    parts[i] = part(runs_[i], predicted[i * strides], own);
+  });
+  FitPoint out;
+  out.finite = true;
+  out.gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
+  out.information = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
+  for (const RunPart& p : parts) {
+    out.finite = out.finite && p.finite;
+    out.data_cost += p.cost;
+    if (!derivatives || !p.finite) continue;
+    out.gradient += p.gradient;
+    out.information += p.information;
+  }
+  for (std::size_t u = 0; u < n; ++u) {
+    if (unknowns_[u].prior_sigma <= 0.0) continue;
+    const auto i = static_cast<Eigen::Index>(u);
+    const double z = (x[i] - unknowns_[u].prior_mean) / unknowns_[u].prior_sigma;
+    out.prior_cost += 0.5 * z * z;
+    out.gradient[i] += z / unknowns_[u].prior_sigma;
+  }
+  out.finite = out.finite && out.gradient.allFinite() && out.information.allFinite();
+  return out;
+}
+
+double FitProblem::noise_cost(const Eigen::VectorXd& x) const {
+  bool finite = true;
+  const auto all = residuals(x, finite);
+  double sum = 0.0;
+  for (std::size_t n = 0; n < runs_.size(); ++n) {
+    const auto& compared = predictor_.compared(runs_[n]);
+    for (std::size_t s = 0; s < compared.size(); ++s) {
+      const double sigma = compared[s].whitened_sigma;
+      if (sigma > 0.0) sum += all[n][s].squaredNorm() / (sigma * sigma);
+    }
+  }
+  return sum;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,119 @@
+#include "identify/estimate/gain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/law/random.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kDraws = 200;
+constexpr double kFloorWeight = 0.05;
+constexpr double kUnmoved = 1e-9;  // of a signal's error energy
+
+double at_share(Eigen::VectorXd values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<Eigen::Index>(share * static_cast<double>(values.size() - 1))];
+}
+
+// What each signal counts: its share of error energy above the sensors' floor, so that a signal at its floor
+// does not water down what another one shows. At least kFloorWeight.
+Eigen::VectorXd signal_weights(const Evidence& evidence, const NullModel& null,
+                               const Eigen::VectorXd& reference) {
+  const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(reference);
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(square.size());
+  for (Eigen::Index k = 0; k < square.size(); ++k) {
+    if (square[k] > 0.0) weights[k] = std::max(kFloorWeight, 1.0 - floor[k] / square[k]);
+  }
+  return weights;
+}
+
+}  // namespace
+
+BlockBootstrap::BlockBootstrap(const Evidence& evidence, std::uint64_t seed) : evidence_(&evidence) {
+  const int blocks = evidence.blocks();
+  if (blocks == 0) return;
+  counts_ = Eigen::MatrixXd::Zero(kDraws, blocks);
+  for (int d = 0; d < kDraws; ++d) {
+    for (int b = 0; b < blocks; ++b) {
+      const std::uint64_t counter = static_cast<std::uint64_t>(d) * 1000003u + static_cast<std::uint64_t>(b);
+      const int drawn = static_cast<int>(uniform(seed, stream_of("bootstrap"), counter) * blocks);
+      counts_(d, std::min(drawn, blocks - 1)) += 1.0;
+    }
+  }
+}
+
+Eigen::VectorXd BlockBootstrap::ratios(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
+                                       const Eigen::VectorXd& weights) const {
+  const Eigen::MatrixXd before = counts_ * evidence_->block_sums(reference);
+  const Eigen::MatrixXd after = counts_ * evidence_->block_sums(residual);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(counts_.rows());
+  double all = 0.0;
+  for (Eigen::Index k = 0; k < before.cols(); ++k) {
+    if (weights[k] <= 0.0 || before.col(k).sum() <= 0.0) continue;
+    all += weights[k];
+    for (Eigen::Index d = 0; d < out.size(); ++d) {
+      out[d] += weights[k] * (before(d, k) > 0.0 ? after(d, k) / before(d, k) : 1.0);
+    }
+  }
+  return all > 0.0 ? Eigen::VectorXd(out / all) : Eigen::VectorXd::Ones(counts_.rows());
+}
+
+UseGain BlockBootstrap::gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
+                             const Eigen::VectorXd& weights) const {
+  const Eigen::VectorXd draws = ratios(reference, residual, weights);
+  return {.ratio = energy_ratio(*evidence_, reference, residual, weights),
+          .best = at_share(draws, 0.05),
+          .worst = at_share(draws, 0.95)};
+}
+
+Eigen::VectorXd weights_for(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& parent,
+                            const Eigen::VectorXd& child) {
+  Eigen::VectorXd all = signal_weights(evidence, null, parent);
+  if (child.size() != parent.size()) return all;
+  const Eigen::VectorXd moved = evidence.mean_square(child - parent), size = evidence.mean_square(parent);
+  Eigen::VectorXd weights = all;
+  for (Eigen::Index k = 0; k < weights.size(); ++k) {
+    if (moved[k] <= kUnmoved * size[k]) weights[k] = 0.0;
+  }
+  return weights.sum() > 0.0 ? weights : all;
+}
+
+double energy_ratio(const Evidence& evidence, const Eigen::VectorXd& reference,
+                    const Eigen::VectorXd& residual, const Eigen::VectorXd& weights) {
+  const Eigen::VectorXd before = evidence.mean_square(reference), after = evidence.mean_square(residual);
+  double sum = 0.0, all = 0.0;
+  for (Eigen::Index k = 0; k < before.size(); ++k) {
+    if (before[k] <= 0.0) continue;
+    const double weight = weights.size() > 0 ? weights[k] : 1.0;
+    sum += weight * after[k] / before[k];
+    all += weight;
+  }
+  return all > 0.0 ? sum / all : 1.0;
+}
+
+double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd square = evidence.mean_square(residual);
+  double sum = 0.0, signals = 0.0;
+  for (int k = 0; k < kinds.count(); ++k) {
+    const double sigma = kinds.noise_sigma[static_cast<std::size_t>(k)];
+    if (evidence.samples()[k] <= 0.0 || sigma <= 0.0) continue;
+    sum += square[k] / (sigma * sigma);
+    signals += 1.0;
+  }
+  return signals > 0.0 ? std::sqrt(sum / signals) : 0.0;
+}
+
+double floor_share(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual,
+                   const Eigen::VectorXd& weights) {
+  if (evidence.empty()) return 1.0;
+  const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(residual);
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < square.size(); ++k) {
+    if (square[k] > 0.0) sum += weights[k] * std::min(1.0, floor[k] / square[k]);
+  }
+  return weights.sum() > 0.0 ? sum / weights.sum() : 1.0;
+}
+
+}  // namespace omnihil

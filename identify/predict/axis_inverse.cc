@@ -1,0 +1,273 @@
+#include "identify/predict/axis_inverse.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace omnihil {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kOrder = 4;
+constexpr double kShareOfNyquist = 0.2;  // as the published recipe of the linear axis (Janot 2019)
+constexpr double kHighestCutoff_Hz = 100.0;
+constexpr double kEndsInPeriods = 5.0;  // of the cutoff, left out at either end
+
+LowPass filter_for(double rate_Hz) {
+  return butterworth(kOrder, std::min(kHighestCutoff_Hz, kShareOfNyquist * 0.5 * rate_Hz), rate_Hz);
+}
+
+double cutoff_for(double rate_Hz) { return std::min(kHighestCutoff_Hz, kShareOfNyquist * 0.5 * rate_Hz); }
+
+// An even clock of the record's median period.
+std::vector<double> even_clock(const AxisRecord& r) {
+  const double span = r.time_s.back() - r.time_s.front();
+  const auto n = static_cast<std::size_t>(span / r.period_s + 0.5);
+  std::vector<double> t;
+  for (std::size_t i = 0; i <= n; ++i) t.push_back(r.time_s.front() + static_cast<double>(i) * r.period_s);
+  return t;
+}
+
+// Straight lines between known values, flat outside; held: steps instead. Empty stays empty.
+std::vector<double> resampled(const AxisRecord& r, const std::vector<double>& x,
+                              const std::vector<double>& clock, bool held) {
+  std::vector<double> t, v;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (std::isfinite(x[k])) t.push_back(r.time_s[k]), v.push_back(x[k]);
+  }
+  std::vector<double> out;
+  if (t.empty()) return out;
+  std::size_t at = 0;
+  const double late = held ? 1e-6 * r.period_s : 0.0;
+  for (const double now : clock) {
+    while (at + 1 < t.size() && t[at + 1] <= now + late) ++at;
+    if (now <= t[at] || at + 1 == t.size() || held) {
+      out.push_back(v[at]);
+    } else {
+      out.push_back(v[at] + (v[at + 1] - v[at]) * (now - t[at]) / (t[at + 1] - t[at]));
+    }
+  }
+  return out;
+}
+
+std::vector<double> position_of(const AxisRecord& r) {
+  if (!r.position.empty() || r.counts.empty()) return r.position;
+  std::vector<double> x = r.counts;
+  for (double& v : x) v /= r.counts_per_output_rad;
+  return x;
+}
+
+// A value held from k to k + 1, at the end of its interval.
+std::vector<double> at_interval_end(const std::vector<double>& x) {
+  std::vector<double> out(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) out[k] = x[k > 0 ? k - 1 : 0];
+  return out;
+}
+
+// Values at instants, straight between them: the mean from each sample to the next.
+std::vector<double> interval_means(std::vector<double> x) {
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) x[k] = 0.5 * (x[k] + x[k + 1]);
+  return x;
+}
+
+double band_noise(const std::vector<double>& raw, const std::vector<double>& low, double cutoff_Hz,
+                  double rate_Hz) {
+  // white above the cutoff, so as strong below: sigma^2 in band = sigma^2 above * fc / (f_N - fc)
+  std::vector<double> above;
+  for (std::size_t i = 0; i < raw.size(); ++i) above.push_back(std::abs(raw[i] - low[i]));
+  if (above.empty()) return 0.0;
+  const auto mid = above.begin() + static_cast<std::ptrdiff_t>(above.size() / 2);
+  std::nth_element(above.begin(), mid, above.end());
+  return 1.4826 * *mid * std::sqrt(cutoff_Hz / (0.5 * rate_Hz - cutoff_Hz));
+}
+
+double rms_about_mean(const std::vector<double>& x) {
+  double mean = 0.0, square = 0.0;
+  for (const double v : x) mean += v / static_cast<double>(x.size());
+  for (const double v : x) square += (v - mean) * (v - mean) / static_cast<double>(x.size());
+  return std::sqrt(square);
+}
+
+struct NeededName {
+  const char* name;
+  std::string unit;
+};
+NeededName needed_name(const Dataset& dataset, CommandKind kind) {
+  switch (kind) {
+    case CommandKind::kMotorTorque:
+      return {"motor_torque", dataset.linear ? "N" : "N m"};
+    case CommandKind::kMotorCurrent:
+      return {"motor_current", "A"};
+    case CommandKind::kMotorVoltage:
+      return {"motor_voltage", "V"};
+    default:
+      return {"duty", "1"};
+  }
+}
+
+void add(AxisSetup& s, std::string name, std::string unit, AxisOutput output, std::vector<double> measured,
+         double sigma, bool stated) {
+  ComparedSignal c{.name = std::move(name),
+                   .unit = std::move(unit),
+                   .time_s = s.input.time_s,
+                   .measured = std::move(measured),
+                   .left_out = {}};
+  const double least = 1e-4 * rms_about_mean(c.measured);
+  c.noise_sigma = c.whitened_sigma = std::max(sigma, least);
+  c.noise_is_stated = stated;
+  s.compared.push_back(std::move(c));
+  s.outputs.push_back(output);
+}
+
+// Ends, where the filter invents, and gaps, where the clock does.
+void leave_out(const AxisRecord& r, double ends_s, AxisSetup& s) {
+  const std::vector<double>& clock = s.input.time_s;
+  std::vector<bool> out(clock.size());
+  for (std::size_t i = 0; i < clock.size(); ++i) {
+    out[i] = clock[i] < clock.front() + ends_s || clock[i] > clock.back() - ends_s;
+  }
+  std::size_t in_gaps = 0;
+  for (std::size_t k = 1; k < r.size(); ++k) {
+    if (!r.gap_before(k)) continue;
+    const auto from = std::lower_bound(clock.begin(), clock.end(), r.time_s[k - 1] - ends_s);
+    const auto to = std::upper_bound(clock.begin(), clock.end(), r.time_s[k] + ends_s);
+    for (auto at = from; at != to; ++at) {
+      out[static_cast<std::size_t>(at - clock.begin())] = true;
+      ++in_gaps;
+    }
+  }
+  for (ComparedSignal& c : s.compared) {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (out[i]) c.measured[i] = kMissing;
+    }
+    c.left_out = fmt::format("{:.3g} s at either end (filter)", ends_s);
+    if (in_gaps > 0) c.left_out += fmt::format(", {} samples in and around gaps", in_gaps);
+  }
+}
+
+}  // namespace
+
+std::vector<double> smoothed_velocity(const AxisRecord& record) {
+  const std::vector<double> clock = even_clock(record);
+  if (clock.size() < 30 || clock.size() > 4 * record.size()) return record.velocity;
+  const double rate = 1.0 / record.period_s;
+  const LowPass filter = filter_for(rate);
+  std::vector<double> speed;
+  if (!record.velocity.empty()) {
+    speed = zero_phase(filter, resampled(record, record.velocity, clock, false));
+  } else {
+    const std::vector<double> x = resampled(record, position_of(record), clock, false);
+    if (x.empty()) return {};
+    speed = central_differences(zero_phase(filter, x));
+    for (double& v : speed) v *= rate;
+  }
+  AxisRecord even;
+  even.time_s = clock;
+  even.period_s = record.period_s;
+  return resampled(even, speed, record.time_s, false);
+}
+
+void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
+  const CommandKind kind = axis_command_kind(dataset);
+  const Channel* speed_channel = dataset.channel("velocity");
+  s.bench_turns = speed_channel != nullptr && speed_channel->imposed;
+  const double rate = 1.0 / r.period_s;
+  const double cutoff = cutoff_for(rate);
+  s.filter = filter_for(rate);
+  AxisInput& in = s.input;
+  in.kind = kind;
+  in.time_s = even_clock(r);
+  const auto linear = [&](const std::vector<double>& x) { return resampled(r, x, in.time_s, false); };
+  const auto steps = [&](const std::vector<double>& x) { return resampled(r, x, in.time_s, true); };
+  const bool by_torque = kind == CommandKind::kMotorTorque || kind == CommandKind::kMotorCurrent;
+  in.command = by_torque ? interval_means(linear(r.command)) : steps(r.command);
+  for (const double e : steps(r.enable)) in.enable.push_back(e != 0.0 ? 1 : 0);
+  if (!by_torque) in.bus_voltage_V = steps(r.bus_V);
+  const bool bench_torque = s.bench_turns && !r.load_torque_Nm.empty();
+  if (!bench_torque) in.load_torque_Nm = steps(r.load_torque_Nm);
+  std::vector<double> position = linear(position_of(r));
+  std::vector<double> velocity = linear(r.velocity);
+  if (velocity.empty()) {
+    position = zero_phase(s.filter, position);
+    velocity = central_differences(position);
+    for (double& v : velocity) v *= rate;
+  } else {
+    velocity = zero_phase(s.filter, velocity);
+  }
+  in.imposed_velocity_rad_s = velocity;
+  in.measured_position_rad = position;
+  if (!position.empty()) in.initial_position_rad = position.front();
+  s.velocity = velocity;
+  s.position = position;
+  s.measured_current = linear(r.current);
+  s.measured_temperature = linear(r.temperature);
+  const auto add_filtered = [&](std::string name, std::string unit, AxisOutput output,
+                                const std::vector<double>& raw) {
+    const Channel* channel = dataset.channel(name);
+    const bool stated = channel != nullptr && channel->sigma > 0.0 && output != AxisOutput::kNeededInput;
+    std::vector<double> low = zero_phase(s.filter, raw);
+    // white noise of the channel, in the filter's band
+    const double sigma =
+        stated ? channel->sigma * std::sqrt(cutoff / (0.5 * rate)) : band_noise(raw, low, cutoff, rate);
+    add(s, std::move(name), std::move(unit), output, std::move(low), sigma, stated);
+  };
+  if (bench_torque) {
+    add_filtered("load_torque", dataset.linear ? "N" : "N m", AxisOutput::kLoadTorque,
+                 linear(r.load_torque_Nm));
+  } else if (!s.bench_turns || by_torque || r.current.empty()) {
+    const NeededName needed = needed_name(dataset, kind);
+    s.given = zero_phase(s.filter, at_interval_end(in.command));
+    add_filtered(needed.name, needed.unit, AxisOutput::kNeededInput, at_interval_end(in.command));
+  }
+  if (!r.current.empty() && !by_torque) {
+    add_filtered("motor_current", "A", AxisOutput::kCurrent, s.measured_current);
+  }
+  if (!r.temperature.empty() && !by_torque) {
+    add_filtered("winding_temperature", "degC", AxisOutput::kWindingTemperature, s.measured_temperature);
+  }
+  leave_out(r, kEndsInPeriods / cutoff, s);
+}
+
+void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
+  constexpr double kShareOfRange = 1e-3;
+  AxisInput& in = s.input;
+  in.kind = axis_command_kind(dataset);
+  in.time_s = r.time_s;
+  in.command = s.given = r.command;
+  in.bus_voltage_V = r.bus_V;
+  in.load_torque_Nm = r.load_torque_Nm;
+  s.position = position_of(r);
+  in.measured_position_rad = s.position;
+  in.imposed_velocity_rad_s.assign(r.size(), 0.0);
+  for (std::size_t k = 0; k < r.velocity.size(); ++k) {
+    if (std::isfinite(r.velocity[k])) in.imposed_velocity_rad_s[k] = r.velocity[k];
+  }
+  s.velocity = in.imposed_velocity_rad_s;
+  s.measured_current = r.current;
+  s.approach.assign(r.size(), 0.0);
+  if (!s.position.empty()) {
+    const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());
+    const double least = std::max(kShareOfRange * (*high - *low), 3.0 * estimate_noise(s.position).quantum);
+    double turned_at = s.position.front(), direction = 0.0;
+    std::size_t first = r.size();
+    for (std::size_t k = 1; k < r.size(); ++k) {
+      const double way = s.position[k] - turned_at;
+      if (way * direction > 0.0) {
+        turned_at = s.position[k];
+      } else if (std::abs(way) > least) {
+        direction = way > 0.0 ? 1.0 : -1.0;
+        turned_at = s.position[k];
+        first = std::min(first, k);
+      }
+      s.approach[k] = direction;
+    }
+    for (std::size_t k = 0; k < first && first < r.size(); ++k) s.approach[k] = s.approach[first];
+  }
+  const NeededName needed = needed_name(dataset, in.kind);
+  add(s, needed.name, needed.unit, AxisOutput::kNeededInput, r.command, estimate_noise(r.command).sigma,
+      false);
+}
+
+}  // namespace omnihil

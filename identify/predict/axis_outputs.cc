@@ -1,0 +1,143 @@
+#include "identify/predict/axis_outputs.h"
+
+#include <cmath>
+#include <limits>
+
+namespace omnihil {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Drive input per torque that lacks at the rotor: what would have to be added to make up for it.
+template <typename T>
+T input_per_torque(CommandKind kind, const DriveParams<T>& p, double bus_V) {
+  switch (kind) {
+    case CommandKind::kMotorTorque:
+      return T(1.0);
+    case CommandKind::kMotorCurrent:
+      return 1.0 / p.torque_constant_Nm_per_A;
+    case CommandKind::kMotorVoltage:  // u = R / k tau
+      return p.resistance_ohm / p.torque_constant_Nm_per_A;
+    default:
+      return p.resistance_ohm / p.torque_constant_Nm_per_A / (bus_V > 0.0 ? T(bus_V) : p.supply_voltage_V);
+  }
+}
+
+double bus_at(const AxisInput& in, std::size_t k) {
+  return in.bus_voltage_V.empty() ? 0.0 : in.bus_voltage_V[k];
+}
+
+template <typename T>
+T output_of(const AxisSetup& s, const DriveParams<T>& p, AxisOutput what,
+            const std::vector<AxisSample<T>>& samples, std::size_t k, std::size_t last) {
+  const AxisSample<T>& now = samples[k];
+  const double dt = last < k ? now.time_s - samples[last].time_s : 0.0;
+  switch (what) {
+    case AxisOutput::kVelocity:
+      return now.velocity_rad_s;
+    case AxisOutput::kPosition:
+      return now.position_rad;
+    case AxisOutput::kCountsDifferenced:
+      if (dt <= 0.0) return T(kMissing);
+      return (now.encoder_counts - samples[last].encoder_counts) / (s.counts_per_output_rad * dt);
+    case AxisOutput::kPositionDifferenced:
+      if (dt <= 0.0) return T(kMissing);
+      return (now.position_rad - samples[last].position_rad) / dt;
+    case AxisOutput::kCurrent:
+      return now.motor_current_A;
+    case AxisOutput::kWindingTemperature:
+      return now.winding_rise_K + s.first_temperature_degC;
+    case AxisOutput::kBusVoltage:
+      return now.supply_voltage_V;
+    case AxisOutput::kLoadTorque:
+      return now.load_torque_Nm;
+    case AxisOutput::kNeededInput: {
+      if (k == 0) return T(0);
+      const double load = s.input.load_torque_Nm.empty() ? 0.0 : s.input.load_torque_Nm[k - 1];
+      // what the bench would have to add at the rotor, beyond the load that was there
+      const T lacking = (now.load_torque_Nm - load) / p.gear_ratio;
+      return lacking * input_per_torque(s.input.kind, p, bus_at(s.input, k - 1));
+    }
+  }
+  return T(kMissing);
+}
+
+// Settled points: a step so long that the winding has settled, twice.
+template <typename T>
+std::vector<std::vector<T>> steady_outputs(const AxisSetup& s, const DriveParams<T>& p,
+                                           const EffectSet<T>& effects) {
+  constexpr double kSettled_s = 0.5;     // a hundred electrical time constants of a small motor
+  constexpr double kCreep_rad_s = 1e-6;  // slow enough that nothing but dry friction notices
+  const AxisInput& in = s.input;
+  const DriveSim<T> sim(p, effects, kSettled_s);
+  std::vector<T> needed(in.time_s.size());
+  for (std::size_t k = 0; k < needed.size(); ++k) {
+    DriveState<T> state = sim.initial_state();
+    const double gear = value_of(p.gear_ratio);
+    const double speed =
+        in.imposed_velocity_rad_s[k] != 0.0 ? in.imposed_velocity_rad_s[k] : s.approach[k] * kCreep_rad_s;
+    DriveInput<T> drive{.kind = in.kind, .setpoint = in.command[k]};
+    drive.speed_is_imposed = true;
+    drive.imposed_start_rad_s = drive.imposed_end_rad_s = speed * gear;
+    drive.bus_is_measured = !in.bus_voltage_V.empty();
+    drive.bus_voltage_V = bus_at(in, k);
+    if (!in.load_torque_Nm.empty()) drive.tau_outside_Nm = in.load_torque_Nm[k] / p.gear_ratio;
+    DriveResult<T> r;
+    for (int pass = 0; pass < 2; ++pass) {
+      state.omega_rotor_rad_s = T(speed * gear);
+      // the middle of the step is at the measured angle
+      if (!s.position.empty())
+        state.theta_rotor_rad = s.position[k] * p.gear_ratio - 0.5 * kSettled_s * speed * gear;
+      r = sim.advance(state, drive, 1);
+    }
+    needed[k] = in.command[k] + (r.mean_outside_torque_Nm - drive.tau_outside_Nm) *
+                                    input_per_torque(in.kind, p, bus_at(in, k));
+  }
+  return {needed};
+}
+
+}  // namespace
+
+template <typename T>
+std::vector<std::vector<T>> axis_outputs(const AxisSetup& setup, const DriveParams<T>& params,
+                                         const EffectSet<T>& effects, double step_s) {
+  if (setup.steady) return steady_outputs(setup, params, effects);
+  const std::vector<AxisSample<T>> samples = run_axis(params, effects, setup.input, {.step_s = step_s});
+  std::vector<std::vector<T>> out(setup.outputs.size());
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    const bool differenced = setup.outputs[c] == AxisOutput::kCountsDifferenced ||
+                             setup.outputs[c] == AxisOutput::kPositionDifferenced;
+    out[c].reserve(samples.size());
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      out[c].push_back(
+          output_of(setup, params, setup.outputs[c], samples, k, differenced ? setup.difference_from[k] : k));
+    }
+  }
+  return out;
+}
+
+void finish(const AxisSetup& setup, std::size_t signal, bool is_value, Eigen::Ref<Eigen::VectorXd> column) {
+  const AxisOutput what = setup.outputs[signal];
+  if (what == AxisOutput::kBusVoltage) {
+    // the level of the supply is the run's own: means are made equal
+    const std::vector<double>& measured = setup.compared[signal].measured;
+    double mean = 0.0, measured_mean = 0.0, n = 0.0;
+    for (std::size_t k = 0; k < measured.size(); ++k) {
+      if (!std::isfinite(measured[k])) continue;
+      mean += column[static_cast<Eigen::Index>(k)], measured_mean += measured[k], n += 1.0;
+    }
+    if (n > 0.0) column.array() += ((is_value ? measured_mean : 0.0) - mean) / n;
+    return;
+  }
+  if (setup.method != Method::kInverse || setup.steady || setup.filter.sections.empty()) return;
+  column = zero_phase(setup.filter, Eigen::MatrixXd(column)).col(0);
+  if (!is_value || what != AxisOutput::kNeededInput) return;
+  for (Eigen::Index k = 0; k < column.size(); ++k) column[k] += setup.given[static_cast<std::size_t>(k)];
+}
+
+template std::vector<std::vector<double>> axis_outputs(const AxisSetup&, const DriveParams<double>&,
+                                                       const EffectSet<double>&, double);
+template std::vector<std::vector<Jet>> axis_outputs(const AxisSetup&, const DriveParams<Jet>&,
+                                                    const EffectSet<Jet>&, double);
+
+}  // namespace omnihil

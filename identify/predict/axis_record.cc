@@ -1,0 +1,203 @@
+#include "identify/predict/axis_record.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "identify/predict/axis_setup.h"
+#include "identify/record/bus_voltage.h"
+#include "sim/bench/axis_signal.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Rows from `first` on, missing ones held at the last value; before the first value, at that one.
+std::vector<double> held(const std::vector<double>* column, std::size_t first) {
+  std::vector<double> out;
+  if (column == nullptr) return out;
+  const auto known = std::find_if(column->begin(), column->end(), [](double v) { return std::isfinite(v); });
+  if (known == column->end()) return out;
+  double last = *known;
+  for (std::size_t i = 0; i < column->size(); ++i) {
+    if (std::isfinite((*column)[i])) last = (*column)[i];
+    if (i >= first) out.push_back(last);
+  }
+  return out;
+}
+
+std::vector<double> as_measured(const std::vector<double>* column, std::size_t first) {
+  if (column == nullptr) return {};
+  std::vector<double> out(column->begin() + static_cast<std::ptrdiff_t>(first), column->end());
+  if (std::none_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); })) out.clear();
+  return out;
+}
+
+// Speed at the first of the positions x(t), by a parabola through them (least squares). Zero where that is
+// within three of its standard errors and a tenth of the speed gained over the span: most records start at
+// rest.
+double first_slope(const std::vector<double>& t, const std::vector<double>& x, std::size_t from,
+                   std::size_t to) {
+  std::vector<Eigen::Vector3d> rows;
+  std::vector<double> values;
+  for (std::size_t i = from; i < to; ++i) {
+    if (!std::isfinite(x[i])) continue;
+    const double ti = t[i] - t[from];
+    rows.push_back({1.0, ti, ti * ti});
+    values.push_back(x[i] - x[from]);
+  }
+  if (rows.size() < 4 || !std::isfinite(x[from])) return kMissing;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    normal += rows[i] * rows[i].transpose();
+    right += rows[i] * values[i];
+  }
+  const Eigen::Matrix3d inverse = normal.inverse();
+  const Eigen::Vector3d fit = inverse * right;
+  double square = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) square += std::pow(values[i] - rows[i].dot(fit), 2);
+  const double error = std::sqrt(square / static_cast<double>(rows.size() - 3) * inverse(1, 1));
+  const double gained = 2.0 * std::abs(fit[2]) * rows.back()[1];
+  return std::abs(fit[1]) > 3.0 * error + 0.1 * gained ? fit[1] : 0.0;
+}
+
+// The measured bus voltage drives the model: its sensor's noise would come out as current. What a window of
+// 21 samples shows beyond the noise is kept, the rest is the window's mean (J.-S. Lee, IEEE PAMI 2(2), 1980).
+std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
+  constexpr std::size_t kHalf = 10;
+  const std::size_t n = x.size();
+  if (n < 2 * kHalf + 1 || !(sigma > 0.0)) return x;
+  std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
+  const double level = x.front();
+  for (std::size_t k = 0; k < n; ++k) {
+    const double d = x[k] - level;
+    sum[k + 1] = sum[k] + d, square[k + 1] = square[k] + d * d;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t from = k > kHalf ? k - kHalf : 0, to = std::min(n, k + kHalf + 1);
+    const double count = static_cast<double>(to - from);
+    const double mean = (sum[to] - sum[from]) / count;
+    const double variance = (square[to] - square[from]) / count - mean * mean;
+    const double share = variance > sigma * sigma ? 1.0 - sigma * sigma / variance : 0.0;
+    out[k] = level + mean + share * (x[k] - level - mean);
+  }
+  return out;
+}
+
+}  // namespace
+
+bool AxisRecord::gap_before(std::size_t k) const {
+  constexpr double kGapPeriods = 10.0;
+  return k > 0 && time_s[k] - time_s[k - 1] > kGapPeriods * period_s;
+}
+
+std::vector<double> AxisRecord::angle() const {
+  constexpr double kLeastCountsPerRotorTurn = 200.0;
+  if (!position.empty()) return position;
+  const double per_rotor_turn = counts_per_output_rad * 2.0 * std::numbers::pi / gear_ratio;
+  if (counts.empty() || per_rotor_turn < kLeastCountsPerRotorTurn) return {};
+  std::vector<double> out(counts);
+  for (double& v : out) v /= counts_per_output_rad;
+  return out;
+}
+
+// theta_k = sum (t_i - t_{i-1}) (v_i + v_{i-1}) / 2; white noise of the speed makes it wander off by
+// sigma sqrt(dt T) in the time T, where a model's own angle is off by its speed's error times T.
+std::vector<double> AxisRecord::angle_by_speed() const {
+  constexpr double kMostWander_rad = 0.1;  // of the rotor, at the end of the record
+  if (velocity.empty() || size() < 2 || !angle().empty()) return {};
+  const double wander =
+      velocity_sigma_rad_s * std::sqrt(period_s * (time_s.back() - time_s.front())) * gear_ratio;
+  if (!(wander < kMostWander_rad) || !std::isfinite(velocity[0])) return {};
+  std::vector<double> out(size(), kMissing);
+  out[0] = 0.0;
+  std::size_t last = 0;
+  for (std::size_t k = 1; k < size() && !gap_before(k); ++k) {
+    if (!std::isfinite(velocity[k])) continue;
+    out[k] = out[last] + 0.5 * (velocity[k] + velocity[last]) * (time_s[k] - time_s[last]);
+    last = k;
+  }
+  return out;
+}
+
+double AxisRecord::speed_near(std::size_t k) const {
+  constexpr std::size_t kSamples = 5;    // of a measured speed: their median
+  constexpr double kSlopeSpan_s = 0.01;  // of positions
+  // Counts before a speed that a drive reports: such a speed may be stale.
+  const std::vector<double>& way = counts.empty() ? position : counts;
+  const double per_rad = counts.empty() ? 1.0 : counts_per_output_rad;
+  std::vector<double> near;
+  for (std::size_t i = k; i < size() && i < k + kSamples && !velocity.empty(); ++i) {
+    if (std::isfinite(velocity[i])) near.push_back(velocity[i]);
+  }
+  const bool at_rest_by_counts = !counts.empty() && k + 20 < size() && counts[k] == counts[k + 20];
+  if (at_rest_by_counts) return 0.0;
+  const auto slope = [&] {
+    std::size_t end = k;
+    while (end < size() && (end < k + 8 || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
+    return first_slope(time_s, way, k, end) / per_rad;
+  };
+  // n counts tell a slope to count / (span sqrt(n)): often far better than what a noisy speed says at once.
+  const double slope_sigma = 1.0 / per_rad / kSlopeSpan_s / std::sqrt(std::max(1.0, kSlopeSpan_s / period_s));
+  constexpr double kBetter = 5.0;
+  if (!counts.empty() && velocity_sigma_rad_s > kBetter * slope_sigma) {
+    if (const double by_counts = slope(); std::isfinite(by_counts)) return by_counts;
+  }
+  if (!near.empty() && std::isfinite(velocity[k])) {
+    // Where the speed itself moves on in these few samples, their median is that of a later instant.
+    constexpr double kMoves = 6.0;  // sigmas
+    if (std::abs(near.back() - near.front()) > kMoves * velocity_sigma_rad_s) return near.front();
+    std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2), near.end());
+    return near[near.size() / 2];
+  }
+  return way.empty() ? kMissing : slope();
+}
+
+AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, const Run& run) {
+  AxisRecord r;
+  r.gear_ratio = drive_of(nominal).gear_ratio;
+  const std::vector<double>* command = run.signal(command_name(axis_command_kind(dataset)));
+  if (command == nullptr) return r;
+  const auto first =
+      std::find_if(command->begin(), command->end(), [](double v) { return std::isfinite(v); });
+  if (first == command->end()) return r;
+  r.first_row = static_cast<std::size_t>(first - command->begin());
+  r.time_s = as_measured(&run.time_s, r.first_row);
+  r.period_s = median_period_s(r.time_s);
+  r.command = held(command, r.first_row);
+  r.enable = held(run.signal("enable"), r.first_row);
+  if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {
+    const std::vector<double> bus_V = plausible_bus_voltage(*measured);
+    for (std::size_t k = r.first_row; k < bus_V.size(); ++k) {
+      if (std::isfinite((*measured)[k]) && !std::isfinite(bus_V[k])) ++r.bus_left_out;
+    }
+    const Channel* bus = dataset.channel("bus_voltage");
+    r.bus_measured_V = as_measured(&bus_V, r.first_row);
+    const std::vector<double> given_V = held(&bus_V, r.first_row);
+    const double stated_V = bus != nullptr ? bus->sigma : 0.0;
+    r.bus_V = without_noise(given_V, stated_V > 0.0 ? stated_V : estimate_noise(given_V).sigma);
+  }
+  r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
+  r.velocity = as_measured(run.signal("velocity"), r.first_row);
+  const Channel* speed = dataset.channel("velocity");
+  const double stated_rad_s = speed != nullptr ? speed->sigma : 0.0;
+  r.velocity_sigma_rad_s = stated_rad_s > 0.0 ? stated_rad_s : estimate_noise(r.velocity).sigma;
+  r.position = as_measured(run.signal("position"), r.first_row);
+  r.counts = as_measured(run.signal("encoder"), r.first_row);
+  r.current = as_measured(run.signal("motor_current"), r.first_row);
+  r.temperature = as_measured(run.signal("winding_temperature"), r.first_row);
+  if (const Channel* encoder = dataset.channel("encoder");
+      encoder != nullptr && encoder->counts_per_rev > 0.0) {
+    const double per_shaft_rad = encoder->counts_per_rev / (2.0 * std::numbers::pi);
+    r.counts_per_output_rad = encoder->on_output ? per_shaft_rad : per_shaft_rad * r.gear_ratio;
+  } else {
+    r.counts.clear();
+  }
+  return r;
+}
+
+}  // namespace omnihil

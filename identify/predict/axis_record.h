@@ -1,0 +1,45 @@
+// The columns of one run of an axis, as a drive needs them: no missing drive input, motion at the output
+// shaft.
+//
+//   AxisRecord r = make_axis_record(dataset, nominal, run);
+//   r.command[k];        // held from r.time_s[k] on
+//
+// A missing drive input, bus voltage or enable holds its last value; what stands before the first drive input
+// is left out. Motion keeps its missing samples as NaN.
+#pragma once
+#include <vector>
+
+#include "identify/predict/candidate.h"
+#include "identify/record/dataset.h"
+
+namespace omnihil {
+
+struct AxisRecord {
+  std::size_t first_row = 0;
+  double period_s = 0.0;  // median
+  std::vector<double> time_s;
+  std::vector<double> command;
+  std::vector<double> enable, bus_V, load_torque_Nm;  // empty: not measured; bus_V: less its stated noise
+  // measured, NaN where missing; empty: not measured
+  std::vector<double> velocity, position, counts, current, temperature, bus_measured_V;
+  std::size_t bus_left_out = 0;  // readings that no supply gives (bus_voltage.h)
+  double counts_per_output_rad = 0.0;
+  double velocity_sigma_rad_s = 0.0;  // stated, or estimated from differences
+  double gear_ratio = 1.0;            // nominal
+
+  std::size_t size() const { return time_s.size(); }
+  bool gap_before(std::size_t k) const;
+  // Position of the output from its sensor or its encoder; empty where it is not measured, or too coarse to
+  // tell an angle (fewer than 200 counts per rotor turn).
+  std::vector<double> angle() const;
+  // Where no angle is measured: angle of the output turned through since the first sample, from the measured
+  // speed. NaN from the first gap on; empty where the speed is not measured, or its noise adds up to more
+  // than a rotor angle means.
+  std::vector<double> angle_by_speed() const;
+  // Speed of the output at sample k: measured, else from the positions around it; NaN where neither is known.
+  double speed_near(std::size_t k) const;
+};
+
+AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, const Run& run);
+
+}  // namespace omnihil

@@ -1,0 +1,132 @@
+// On what axes the errors of an axis are sorted, and which effects can act on it at all.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identify/predict/predictor_axis.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Time since the input last moved by more than a twentieth of its range.
+std::vector<double> since_step(const AxisInput& in) {
+  const auto [low, high] = std::minmax_element(in.command.begin(), in.command.end());
+  const double step = 0.05 * (*high - *low);
+  std::vector<double> out;
+  double last_s = in.time_s.front(), level = in.command.front();
+  for (std::size_t k = 0; k < in.time_s.size(); ++k) {
+    if (std::abs(in.command[k] - level) > step) last_s = in.time_s[k], level = in.command[k];
+    out.push_back(in.time_s[k] - last_s);
+  }
+  return out;
+}
+
+std::vector<double> slope(const std::vector<double>& t, const std::vector<double>& x) {
+  std::vector<double> out(x.size(), kMissing);
+  for (std::size_t k = 1; k + 1 < x.size(); ++k) out[k] = (x[k + 1] - x[k - 1]) / (t[k + 1] - t[k - 1]);
+  return out;
+}
+
+template <typename Map>
+std::vector<double> mapped(const std::vector<double>& x, Map map) {
+  std::vector<double> out;
+  for (const double v : x) out.push_back(std::isfinite(v) ? map(v) : kMissing);
+  return out;
+}
+
+}  // namespace
+
+std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model, double step_s) {
+  std::vector<RegimeTrack> out;
+  const AxisInput& in = s.input;
+  if (in.time_s.empty()) return out;
+  const DriveParams<double> drive = drive_of(model);
+  const double gear = drive.gear_ratio;
+  std::vector<AxisSample<double>> samples;
+  if (!s.steady) samples = run_axis(drive, EffectSet<double>(model.effects), in, {.step_s = step_s});
+  const auto modelled = [&](auto get) {
+    std::vector<double> v;
+    for (const AxisSample<double>& sample : samples) v.push_back(get(sample));
+    return v;
+  };
+  const auto add = [&](const char* name, const char* unit, std::vector<double> value) {
+    if (value.size() == in.time_s.size()) out.push_back({name, unit, std::move(value)});
+  };
+  const bool linear = drive.linear;
+  std::vector<double> speed = s.velocity;
+  if (speed.empty()) speed = modelled([&](const auto& x) { return x.omega_rotor_rad_s / gear; });
+  std::vector<double> angle = s.position;
+  if (angle.empty()) angle = modelled([&](const auto& x) { return x.theta_rotor_rad / gear; });
+  std::vector<double> current = s.measured_current;
+  if (current.empty() && in.kind == CommandKind::kMotorCurrent) current = in.command;
+  if (current.empty() && drive.resistance_ohm > 0.0)
+    current = modelled([](const auto& x) { return x.motor_current_A; });
+  add("speed", linear ? "m/s" : "rad/s", mapped(speed, [](double v) { return std::abs(v); }));
+  add("velocity", linear ? "m/s" : "rad/s", speed);
+  add("direction", "1", mapped(speed, [](double v) { return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0); }));
+  if (!s.steady) add("acceleration", linear ? "m/s2" : "rad/s2", slope(in.time_s, speed));
+  add("abs_current", "A", mapped(current, [](double v) { return std::abs(v); }));
+  add("rotor_angle", linear ? "m" : "rad", mapped(angle, [&](double v) { return v * gear; }));
+  add("output_angle", linear ? "m" : "rad", angle);
+  add("position", linear ? "m" : "rad", angle);
+  if (!s.steady) add("time", "s", in.time_s);
+  if (!s.steady) add("time_since_step", "s", since_step(in));
+  std::vector<double> command = mapped(in.command, [](double v) { return std::abs(v); });
+  add("abs_command", "", command);
+  std::vector<double> warm = s.measured_temperature;
+  if (warm.empty() && !samples.empty() && samples.back().winding_rise_K != 0.0) {
+    warm = modelled([&](const auto& x) { return x.winding_rise_K + s.first_temperature_degC; });
+  }
+  add("temperature", "degC", warm);
+  add("bus_voltage", "V", in.bus_voltage_V);
+  return out;
+}
+
+std::string axis_effect_refusal(const EffectEntry& entry, const Dataset& dataset, const Candidate& nominal) {
+  const EffectInfo& e = *entry.info;
+  const std::string_view id = e.id;
+  const CommandKind kind = axis_command_kind(dataset);
+  const Method method = axis_method(dataset);
+  const DriveParams<double> drive = drive_of(nominal);
+  const bool by_duty = kind == CommandKind::kDuty || kind == CommandKind::kPositionTarget;
+  const bool electric = by_duty || kind == CommandKind::kMotorVoltage;
+  const auto any_signal = [&](std::string_view name) { return dataset.channel(name) != nullptr; };
+  const auto unknown = [&](std::string_view path) {
+    const Parameter* p = nominal.file.parameters.find(path);
+    return p != nullptr && p->tolerance.value_or(0.0) > 0.0;
+  };
+  if ((e.rigs & kOnAxis) == 0 || e.place == Place::kContact || e.place == Place::kBody)
+    return "acts on a robot on the floor";
+  if (id == "vision_delay") return "needs a camera";
+  if (id == "motor_mismatch") return "needs more than one motor";
+  if (e.place == Place::kSupply && !electric) return "the drive has no supply in these data";
+  const bool ripple_of_current =
+      kind == CommandKind::kMotorCurrent && (e.place == Place::kWinding || e.place == Place::kBridge);
+  if ((e.place == Place::kBridge || e.place == Place::kWinding) && !electric && !ripple_of_current) {
+    return "needs a drive by duty, voltage or current";
+  }
+  if (id == "target_speed_limit" && kind != CommandKind::kPositionTarget) return "needs a position target";
+  if ((id == "duty_limit" || id == "pwm_dead_band") && !by_duty) return "needs a drive by duty";
+  if (id == "thermal_derating" && !electric) return "needs a winding";
+  if (id == "winding_inductance" && unknown("motor.inductance_H"))
+    return "the base model's motor.inductance_H is free";
+  if (id == "gravity_load" && drive.gravity_torque_Nm > 0.0)
+    return "the base model has load.gravity_torque_Nm";
+  if (e.place == Place::kShaft && !(drive.load_inertia_kg_m2 > 0.0 && drive.rotor_inertia_kg_m2 > 0.0)) {
+    return "needs an inertia on either side of the shaft";
+  }
+  if (e.place == Place::kSensor || e.place == Place::kTiming) {
+    if (method == Method::kInverse)
+      return "the motion is taken as measured; actuator_delay shows the same lag";
+    if (id == "hall_speed_estimator" && !any_signal("velocity"))
+      return "needs a speed that the drive reports";
+    if (id == "encoder_missed_counts" && !any_signal("encoder")) return "needs an encoder";
+    if (id == "encoder_eccentricity" && !any_signal("encoder") && !any_signal("position"))
+      return "needs an encoder";
+  }
+  return "";
+}
+
+}  // namespace omnihil

@@ -1,0 +1,82 @@
+// A model under test: base parameters, effects, and which of their numbers a fit may move.
+//
+//   Candidate c = …;                                            // from the nominal model file
+//   std::vector<Unknown> u = unknowns_of(c);                    // R, k, J, b, …, cogging.amplitude_Nm, …
+//   Candidate moved = with_values(c, u, x);
+//
+// A base number is an unknown when its file gives it a tolerance (its prior: normal, relative 1-sigma; cut to
+// the row's bounds); a bare number is known exactly, a strength of an effect and its shapes like any other.
+// Of an effect that the program has added every strength is an unknown, a shape where it has a range to move
+// in, a detail only where it is not neutral; not what its file gives a tolerance of 0, and no shape that is a
+// whole number by construction (orders, pulses per turn: flat from 1 on). Priors of effects: effect.h, or the
+// file's own tolerance where it gives one; what a search has found is written with a tolerance of 1.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/law/drive_params.h"
+#include "sim/law/effect_set.h"
+#include "sim/model/model_file.h"
+
+namespace omnihil {
+
+struct Candidate {
+  ModelFile file;                  // its parameter table holds the base numbers
+  std::vector<EffectUse> effects;  // coulomb_friction among them, where the file has it
+};
+
+struct Unknown {
+  std::string path;  // "motor.resistance_ohm"; "cogging.amplitude_Nm"; "expression.drag.a"
+  std::string unit;
+  int effect = -1;  // index into Candidate::effects; -1: a base parameter
+  int row = 0;      // of the effect's parameters
+  double start = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  double prior_mean = 0.0;
+  double prior_sigma = 0.0;  // 0: flat within the bounds
+  double scale = 1.0;        // a step that matters: tolerance * value, or the effect's typical size
+};
+
+// From what the readers of a model file give. A robot's coulomb_friction, a number of its base model
+// elsewhere, is an effect here.
+Candidate candidate_of(ModelFile file, std::vector<EffectUse> effects);
+Candidate candidate_of(const ModelFile& robot);
+
+// Effects by id; of a formula "expression.NAME".
+std::string effect_name(const EffectUse& use);
+
+std::vector<Unknown> unknowns_of(const Candidate& candidate);
+
+Candidate with_values(const Candidate& candidate, std::span<const Unknown> unknowns,
+                      std::span<const double> values);
+
+// One number by path, a base parameter's or an effect's ("cogging.amplitude_Nm", also with "effects." before
+// it). set_value: "" or what is wrong; bounds are held.
+std::optional<double> value_at(const Candidate& candidate, std::string_view path);
+std::string set_value(Candidate& candidate, std::string_view path, double value);
+
+// The candidate with what a run knows of itself (Run::known) put in; a known number is no unknown there. What
+// set_value refuses is left as it was: the dataset's reader has said so.
+Candidate with_known(const Candidate& candidate, std::span<const std::pair<std::string, double>> known);
+
+// With one more effect, all its strengths neutral.
+Candidate with_effect(const Candidate& candidate, const EffectEntry& entry);
+Candidate with_effect(const Candidate& candidate, EffectUse use);  // a user's formula
+Candidate without_effect(const Candidate& candidate, std::string_view name);
+
+// Numbers of the drive: a rig "axis", or one wheel of a robot, lifted. Without coulomb_friction, which is
+// among the effects.
+DriveParams<double> drive_of(const Candidate& candidate);
+// A rig "robot", with the numbers of its table and all effects in their places (coulomb_friction in its
+// motor).
+RobotModel robot_of(const Candidate& candidate);
+
+// Text of a model file (omnihil-model/1) with these numbers; tolerances and sources kept.
+std::string candidate_text(const Candidate& candidate);
+
+}  // namespace omnihil

@@ -1,0 +1,108 @@
+// What a model says the sensors would have shown: the model run on the measured inputs, through the same
+// sensor chain as the measurement (counts, means over a period, filters, delays), signal by signal.
+//
+//   std::unique_ptr<Predictor> p = make_predictor(dataset, nominal, {});
+//   Prediction y = p->predict(candidate, run);                           // y.values[s][i]
+//   Prediction d = p->predict_with_derivatives(candidate, unknowns, run); // and d.derivatives[s](i, u)
+//   residual = p->compared(run)[s].measured[i] - y.values[s][i];
+//
+// How an axis is run (Method), chosen per dataset by what it gives, the same for measurement, model and null:
+//   kForward  free run from the first measured state: drives by duty, voltage or position target. Laws that
+//             depend on the angle are given the measured angle, so that a small error of speed does not turn
+//             into a wrong phase of cogging ("slaved angle"; not with a servo, whose loop holds the angle).
+//   kInverse  the measured, low-pass filtered motion is imposed and the drive input that it takes is compared
+//             with the one that was given, filtered alike: drives by torque or current, benches that impose
+//             the speed, and runs of kind "steady".
+// Where the bus voltage is measured it is the drive's input, and its drop about the run's mean is compared as
+// well (the level drifts with the battery). Of a position servo the position is compared, not the speed that
+// the servo makes of it. A run of an axis starts at its first row with a drive input; after a gap of more
+// than ten periods it starts anew from the measured speed. An axis that is driven by duty or voltage at
+// points of kind "steady" compares the input that each point needs. A rig "robot" is run forward in a body
+// that follows the measured pose slowly enough not to hide an error. Pure functions of their arguments:
+// predictions may run on several threads at once.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "identify/predict/candidate.h"
+#include "identify/record/counted_speed.h"
+#include "identify/record/dataset.h"
+
+namespace omnihil {
+
+enum class Method : std::uint8_t { kForward, kInverse };
+
+// One signal of one run, measured: what a prediction is held against.
+struct ComparedSignal {
+  std::string name;  // "velocity"; "motor_torque" where the method is inverse
+  std::string unit;
+  std::vector<double> time_s;
+  std::vector<double> measured;  // NaN: not measured, or left out (said in `left_out`)
+  double noise_sigma = 0.0;      // per sample, after the chain's own filters: stated, or estimated
+  bool noise_is_stated = false;
+  double quantum = 0.0;    // of a counting sensor, in the signal's unit; 0: none
+  CountedSpeed counted{};  // of a speed that is pulses over a window
+  // The noise of differenced counts or positions is blue: successive errors cancel. See whitened().
+  double whitening_s = 0.0;     // 0: the noise is white as it is
+  double whitened_sigma = 0.0;  // of whitened(), per sample; noise_sigma where whitening_s is 0
+  std::string left_out;         // how many samples were left out and why; empty: none
+};
+
+// What the motion was like at each compared sample: the axes on which errors are sorted into regimes.
+// Measured where it was measured, else the model's. NaN where neither is known.
+struct RegimeTrack {
+  std::string name;  // "speed", "abs_current", "rotor_angle", "output_angle", "acceleration", "time",
+      // "direction", "time_since_step", "temperature", "bus_voltage", "position", "command_age"
+  std::string unit;
+  std::vector<double> value;  // on the clock of the compared signals of the run
+};
+
+struct Prediction {
+  std::vector<std::vector<double>> values;   // [signal][sample]
+  std::vector<Eigen::MatrixXd> derivatives;  // [signal](sample, unknown); empty unless asked for
+  bool finite = true;                        // false: the run diverged; values after that are NaN
+};
+
+struct PredictOptions {
+  double step_s = 100e-6;  // electrical sub-step, at most
+  bool slave_angle = true;
+};
+
+class Predictor {
+ public:
+  virtual ~Predictor() = default;
+  virtual Method method() const = 0;
+  virtual int run_count() const = 0;
+  virtual const Run& run(int run) const = 0;
+  virtual const std::vector<ComparedSignal>& compared(int run) const = 0;
+  // All signals of a run share one clock: compared(run)[s].time_s are equal.
+  virtual std::vector<RegimeTrack> regimes(const Candidate& candidate, int run) const = 0;
+  virtual Prediction predict(const Candidate& candidate, int run) const = 0;
+  virtual Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                              int run) const = 0;
+  // A predictor of the same dataset whose measurement is what `truth` would have given: the null. Noise of
+  // the compared signals' size, through the same sensors, drawn from `seed`.
+  virtual std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const = 0;
+  // Can this effect act on this rig and drive input at all; "" or why not ("needs a measured current").
+  virtual std::string applies(const EffectEntry& entry) const = 0;
+  // Do the readings themselves, one by one, show that this effect made them?
+  virtual bool carries_mark_of(const EffectEntry&) const { return false; }
+};
+
+// Residuals (or derivatives of predictions) of one signal, filtered so that its sensor noise is white: what a
+// fit and every score weigh. A speed v_i = (x_i - x_{i-1}) / dt_i from a position with white noise is
+// integrated with a leak, y_i = exp(-dt_i / tau) y_{i-1} + r_i dt_i: the position's residual above 1 / (2 pi
+// tau), so that low-frequency errors of speed keep their full weight and the counts' rounding cancels. The
+// result has sigma `whitened_sigma`. Other signals are returned as they are. A missing sample (NaN) stays
+// missing and is passed over; it does not reset the integral.
+void whiten(const ComparedSignal& signal, Eigen::Ref<Eigen::MatrixXd> columns);
+std::vector<double> whitened(const ComparedSignal& signal, std::vector<double> residual);
+
+std::unique_ptr<Predictor> make_predictor(const Dataset& dataset, const Candidate& nominal,
+                                          const PredictOptions& options);
+
+}  // namespace omnihil

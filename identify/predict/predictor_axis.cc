@@ -1,0 +1,449 @@
+#include "identify/predict/predictor_axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identify/predict/axis_outputs.h"
+#include "identify/predict/counted_setups.h"
+#include "sim/law/random.h"
+#include "sim/model/axis_model.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLongestStep_s = 1e-3;
+
+bool is_known(const Run& run, const std::string& path) {
+  return std::any_of(run.known.begin(), run.known.end(),
+                     [&](const auto& k) { return k.first == path || k.first == "effects." + path; });
+}
+
+// The numbers of a candidate as dual numbers: unknown `first + j` is number j of this pass.
+struct Seeded {
+  DriveParams<Jet> params;
+  std::vector<Jet> values;
+};
+Seeded seeded(const Candidate& c, const Run& run, std::span<const Unknown> unknowns, std::size_t first) {
+  Seeded out{.params = drive_params_as<Jet>(drive_of(c)), .values = {}};
+  std::vector<std::size_t> offset;
+  for (const EffectUse& use : c.effects) {
+    offset.push_back(out.values.size());
+    for (const double v : use.values) out.values.emplace_back(v);
+  }
+  const std::size_t count = std::min<std::size_t>(kJetWidth, unknowns.size() - first);
+  for (std::size_t j = 0; j < count; ++j) {
+    const Unknown& u = unknowns[first + j];
+    if (is_known(run, u.path)) continue;
+    const auto place = static_cast<int>(j);
+    if (u.effect >= 0) {
+      Jet& v = out.values[offset[static_cast<std::size_t>(u.effect)] + static_cast<std::size_t>(u.row)];
+      v = Jet(v.a, place);
+      continue;
+    }
+    for (const DriveParamPath& at : drive_param_paths()) {
+      if ((out.params.linear ? at.linear_path : at.path) != u.path) continue;
+      Jet& v = out.params.*at.jet;
+      v = Jet(v.a, place);
+    }
+  }
+  return out;
+}
+
+// Is there an effect of this kind that acts? At neutral it is as if it were not there, to the last digit.
+bool acts(const Candidate& c, std::uint32_t numerics) {
+  return std::any_of(c.effects.begin(), c.effects.end(), [&](const EffectUse& use) {
+    return (use.entry->info->numerics & numerics) != 0 && !is_neutral(use);
+  });
+}
+
+// A delay whose derivative a limit behind it hides (predictor_axis.h).
+bool is_hidden_delay(const Candidate& c, const Unknown& u) {
+  if (u.effect < 0 || !acts(c, kHidesDelays)) return false;
+  const EffectInfo& info = *c.effects[static_cast<std::size_t>(u.effect)].entry->info;
+  return (info.numerics & kDelays) != 0 && static_cast<std::size_t>(u.row) == first_strength(info);
+}
+
+class AxisPredictor final : public Predictor {
+ public:
+  AxisPredictor(const Dataset& dataset, const Candidate& nominal, const PredictOptions& options)
+      : dataset_(std::make_shared<const Dataset>(dataset)),
+        nominal_(std::make_shared<const Candidate>(nominal)),
+        options_(options) {
+    for (const Run& run : dataset_->runs) {
+      setups_.push_back(make_axis_setup(*dataset_, *nominal_, run));
+      if (!options_.slave_angle) setups_.back().input.measured_position_rad.clear();
+    }
+    counter_ = find_counted_speed(setups_, drive_of(*nominal_));
+    share_noise();
+    choose_step();
+  }
+
+  Method method() const override { return axis_method(*dataset_); }
+  int run_count() const override { return static_cast<int>(setups_.size()); }
+  const Run& run(int run) const override { return dataset_->runs[static_cast<std::size_t>(run)]; }
+  const std::vector<ComparedSignal>& compared(int run) const override { return setup(run).compared; }
+  std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
+    return axis_regimes(setup(n), with_known(candidate, run(n).known), step_for(candidate));
+  }
+  bool carries_mark_of(const EffectEntry& effect) const override { return counter_ == &effect; }
+  std::string applies(const EffectEntry& entry) const override {
+    return axis_effect_refusal(entry, *dataset_, *nominal_);
+  }
+
+  Prediction predict(const Candidate& candidate, int n) const override {
+    return predict_at(candidate, n, step_for(candidate));
+  }
+
+  Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                      int n) const override {
+    const AxisSetup& s = setup(n);
+    if (unknowns.empty()) return predict(candidate, n);
+    const Candidate own = with_known(candidate, run(n).known);
+    Prediction p;
+    const auto rows = static_cast<Eigen::Index>(s.input.time_s.size());
+    const auto all = static_cast<Eigen::Index>(unknowns.size());
+    p.derivatives.assign(s.outputs.size(), Eigen::MatrixXd::Zero(rows, all));
+    for (std::size_t first = 0; first < unknowns.size(); first += kJetWidth) {
+      const Seeded x = seeded(own, run(n), unknowns, first);
+      const auto y =
+          rows > 0 ? axis_outputs<Jet>(s, x.params, EffectSet<Jet>(own.effects, x.values), step_for(own))
+                   : std::vector<std::vector<Jet>>(s.outputs.size());
+      const Eigen::Index count = std::min<Eigen::Index>(kJetWidth, all - static_cast<Eigen::Index>(first));
+      for (std::size_t c = 0; c < y.size(); ++c) {
+        for (Eigen::Index k = 0; k < rows; ++k) {
+          const Jet& v = y[c][static_cast<std::size_t>(k)];
+          p.derivatives[c].row(k).segment(static_cast<Eigen::Index>(first), count) =
+              v.v.head(count).transpose();
+        }
+        if (first > 0) continue;
+        std::vector<double> values;
+        for (const Jet& v : y[c]) values.push_back(v.a);
+        p.values.push_back(std::move(values));
+      }
+    }
+    const bool play = acts(own, kImpacts);
+    for (std::size_t u = 0; u < unknowns.size() && rows > 0; ++u) {
+      if (is_known(run(n), unknowns[u].path)) continue;
+      if (is_hidden_delay(own, unknowns[u])) {
+        constexpr double kStep_s = 2e-3;  // two of the longest sub-steps
+        difference(own, unknowns, u, n, kStep_s, p);
+      } else if (play || explodes(s, unknowns[u], static_cast<Eigen::Index>(u), p)) {
+        difference(own, unknowns, u, n, kSecant * unknowns[u].scale, p);
+      }
+    }
+    complete(s, p);
+    return p;
+  }
+
+  std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const override {
+    auto copy = std::make_unique<AxisPredictor>(*this);
+    for (int n = 0; n < run_count(); ++n) copy->replace_measurement(truth, n, seed);
+    return copy;
+  }
+
+ private:
+  static constexpr double kSecant = 0.05;  // of the step that matters
+
+  // Does a step of the size that matters move a signal, to first order, by several times the signal itself?
+  // Then the derivative is that of one impact or one slip after the other (play, sticking), multiplied up,
+  // while the motion itself stays bounded: it says nothing of a step of any size.
+  static bool explodes(const AxisSetup& s, const Unknown& unknown, Eigen::Index u, const Prediction& p) {
+    constexpr double kMost = 3.0;
+    for (std::size_t c = 0; c < p.derivatives.size(); ++c) {
+      double moved = 0.0, signal = 0.0;
+      for (Eigen::Index k = 0; k < p.derivatives[c].rows(); ++k) {
+        const double value = s.compared[c].measured[static_cast<std::size_t>(k)];
+        if (!std::isfinite(value)) continue;
+        moved += p.derivatives[c](k, u) * p.derivatives[c](k, u);
+        signal += value * value;
+      }
+      if (!(moved * unknown.scale * unknown.scale <= kMost * kMost * signal)) return true;
+    }
+    return false;
+  }
+
+  // The derivative as a secant, `step` to both sides.
+  void difference(const Candidate& own, std::span<const Unknown> unknowns, std::size_t u, int n, double step,
+                  Prediction& p) const {
+    const double at = value_at(own, unknowns[u].path).value_or(unknowns[u].start);
+    const double down = std::max(unknowns[u].lower, at - step), up = std::min(unknowns[u].upper, at + step);
+    if (!(up > down)) return;
+    const auto run_at = [&](double value) {
+      const Candidate moved = with_values(own, unknowns.subspan(u, 1), std::span(&value, 1));
+      return axis_outputs<double>(setup(n), drive_of(moved), EffectSet<double>(moved.effects), step_for(own));
+    };
+    const auto a = run_at(up), b = run_at(down);
+    for (std::size_t c = 0; c < a.size(); ++c) {
+      for (std::size_t k = 0; k < a[c].size(); ++k) {
+        p.derivatives[c](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(u)) =
+            (a[c][k] - b[c][k]) / (up - down);
+      }
+    }
+  }
+
+  const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
+  double step_for(const Candidate& c) const {
+    constexpr double kFineStep_s = 200e-6;
+    if (acts(c, kStiff)) return std::min(step_s_, options_.step_s);
+    return acts(c, kFine) ? std::min(step_s_, std::max(options_.step_s, kFineStep_s)) : step_s_;
+  }
+
+  Prediction predict_at(const Candidate& candidate, int n, double step_s) const {
+    const AxisSetup& s = setup(n);
+    Prediction p;
+    if (s.input.time_s.empty()) {
+      p.values.resize(s.outputs.size());
+      return p;
+    }
+    const Candidate own = with_known(candidate, run(n).known);
+    p.values = axis_outputs<double>(s, drive_of(own), EffectSet<double>(own.effects), step_s);
+    complete(s, p);
+    return p;
+  }
+
+  // Linear after-treatment, and what is not finite said.
+  static void complete(const AxisSetup& s, Prediction& p) {
+    for (std::size_t c = 0; c < p.values.size(); ++c) {
+      const auto rows = static_cast<Eigen::Index>(p.values[c].size());
+      Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(p.values[c].data(), rows);
+      // differences have no first value: not a divergence
+      const auto missing = [&](Eigen::Index k) {
+        return !std::isfinite(s.compared[c].measured[static_cast<std::size_t>(k)]);
+      };
+      for (Eigen::Index k = 0; k < rows; ++k) {
+        const bool bad = !std::isfinite(values[k]);
+        if (bad && !missing(k)) p.finite = false;
+        if (bad && missing(k)) values[k] = 0.0;
+      }
+      finish(s, c, true, values);
+      Eigen::Map<Eigen::VectorXd>(p.values[c].data(), rows) = values;
+      if (p.derivatives.empty()) continue;
+      for (Eigen::Index u = 0; u < p.derivatives[c].cols(); ++u) {
+        for (Eigen::Index k = 0; k < rows; ++k) {
+          if (!std::isfinite(p.derivatives[c](k, u))) p.derivatives[c](k, u) = 0.0;
+        }
+        finish(s, c, false, p.derivatives[c].col(u));
+      }
+    }
+  }
+
+  // A signal has one noise in all runs: where it is not stated, the runs' median.
+  void share_noise() {
+    std::vector<std::pair<std::string, std::vector<double>>> sizes;
+    for (const AxisSetup& s : setups_) {
+      for (const ComparedSignal& c : s.compared) {
+        if (c.noise_is_stated || c.whitening_s > 0.0 || s.steady) continue;
+        auto at = std::find_if(sizes.begin(), sizes.end(), [&](const auto& e) { return e.first == c.name; });
+        if (at == sizes.end()) at = sizes.insert(sizes.end(), {c.name, {}});
+        at->second.push_back(c.noise_sigma);
+      }
+    }
+    for (auto& [name, sigmas] : sizes) {
+      std::sort(sigmas.begin(), sigmas.end());
+      const double sigma = sigmas[sigmas.size() / 2];
+      for (AxisSetup& s : setups_) {
+        for (ComparedSignal& c : s.compared) {
+          if (c.name != name || c.noise_is_stated || c.whitening_s > 0.0 || s.steady) continue;
+          c.noise_sigma = c.whitened_sigma = sigma;
+        }
+      }
+    }
+  }
+
+  // Root mean square of (a - b) / noise, the largest of the signals, as they are seen and whitened.
+  double distance(int n, const Prediction& a, const Prediction& b) const {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < a.values.size(); ++c) {
+      const ComparedSignal& signal = compared(n)[c];
+      std::vector<double> d(a.values[c].size());
+      for (std::size_t k = 0; k < d.size(); ++k) d[k] = a.values[c][k] - b.values[c][k];
+      const auto size_of = [&](const std::vector<double>& v, double sigma) {
+        double square = 0.0, count = 0.0;
+        for (std::size_t k = 0; k < v.size(); ++k) {
+          if (!std::isfinite(v[k]) || !std::isfinite(signal.measured[k])) continue;
+          square += v[k] * v[k], count += 1.0;
+        }
+        return count > 0.0 && sigma > 0.0 ? std::sqrt(square / count) / sigma : 0.0;
+      };
+      largest = std::max(largest, size_of(d, signal.noise_sigma));
+      largest = std::max(largest, size_of(whitened(signal, d), signal.whitened_sigma));
+    }
+    return largest;
+  }
+
+  void choose_step() {
+    step_s_ = options_.step_s;
+    constexpr double kTrial_s = 10.0;  // of a run are enough
+    // In the error energy 0.5 %: a sixth of what an effect has to take to be named.
+    constexpr double kShareOfNoise = 0.07;
+    double longest = options_.step_s;
+    std::vector<AxisSetup> whole;
+    for (AxisSetup& s : setups_) {
+      whole.push_back(s);
+      shorten(s, kTrial_s);
+      if (!s.steady && s.input.time_s.size() > 1) {
+        longest = std::max(longest, std::min(kLongestStep_s, s.input.time_s[1] - s.input.time_s[0]));
+      }
+    }
+    for (double next = longest; next > options_.step_s * 1.01;) {
+      const double h = next;
+      next *= 0.5;
+      double worst = 0.0;
+      int tried = 0;
+      for (int n = 0; n < run_count() && tried < 4; ++n) {
+        if (run(n).use != Use::kFit || setup(n).steady || setup(n).input.time_s.size() < 2) continue;
+        worst = std::max(worst, distance(n, predict_at(*nominal_, n, h), predict_at(*nominal_, n, 0.25 * h)));
+        ++tried;
+      }
+      if (tried == 0 || worst > kShareOfNoise) continue;
+      step_s_ = h;
+      break;
+    }
+    setups_ = std::move(whole);
+  }
+
+  static void shorten(AxisSetup& s, double span_s) {
+    const auto& t = s.input.time_s;
+    if (t.empty() || s.steady) return;
+    const auto n =
+        static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + span_s) - t.begin());
+    const auto cut = [&](auto& v) {
+      if (v.size() > n) v.resize(n);
+    };
+    AxisInput& in = s.input;
+    cut(in.command), cut(in.enable), cut(in.bus_voltage_V), cut(in.imposed_velocity_rad_s);
+    cut(in.load_torque_Nm), cut(in.measured_position_rad), cut(in.restart_velocity_rad_s), cut(s.given);
+    for (ComparedSignal& c : s.compared) cut(c.measured);
+    cut(in.time_s);
+  }
+
+  // What the sensors would have shown: noise where it comes in, rounding of counts.
+  void replace_measurement(const Candidate& truth, int n, std::uint64_t seed) {
+    AxisSetup& s = setups_[static_cast<std::size_t>(n)];
+    Prediction p = truth_behind_noisy_input(truth, n, seed);
+    for (std::size_t c = 0; c < s.compared.size(); ++c) {
+      ComparedSignal& signal = s.compared[c];
+      const std::uint64_t stream = stream_of(signal.name) + static_cast<std::uint64_t>(n) * 1000003;
+      const auto draw = [&](std::size_t k) { return gaussian(seed, stream, k); };
+      const std::vector<double> pattern = signal.measured;
+      if (signal.counted.window_s > 0.0) {
+        add_counting_noise(signal.counted, signal.time_s, p.values[c], uniform(seed, stream, 1u << 30));
+        for (std::size_t k = 0; k < p.values[c].size(); ++k)
+          p.values[c][k] += signal.counted.sensor_sigma * draw(k);
+      } else if (signal.whitening_s > 0.0) {
+        differenced_noise(s, signal, p.values[c], uniform(seed, stream, 1u << 30), draw);
+      } else if (s.method == Method::kInverse && !s.steady && !s.filter.sections.empty()) {
+        add_band_noise(s, signal, p.values[c], draw);
+      } else {
+        for (std::size_t k = 0; k < p.values[c].size(); ++k)
+          p.values[c][k] = read(p.values[c][k], signal, draw(k));
+      }
+      signal.measured = p.values[c];
+      for (std::size_t k = 0; k < pattern.size(); ++k) {
+        if (!std::isfinite(pattern[k])) signal.measured[k] = kMissing;
+      }
+    }
+  }
+
+  // The bus voltage that drives the model is a measurement too, a mean over a window (axis_record.cc): the
+  // world's own differs from it by what the mean leaves of the sensor's noise, which wanders off in speed and
+  // position.
+  Prediction truth_behind_noisy_input(const Candidate& truth, int n, std::uint64_t seed) {
+    constexpr std::size_t kWindow = 21;
+    AxisSetup& s = setups_[static_cast<std::size_t>(n)];
+    const auto bus = std::find_if(s.compared.begin(), s.compared.end(),
+                                  [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
+    s.input.noise_seed = random_bits(seed, stream_of("effects"), static_cast<std::uint64_t>(n));
+    if (s.method != Method::kForward || bus == s.compared.end()) return as_drawn(truth, n);
+    const std::vector<double> given = s.input.bus_voltage_V;
+    const std::uint64_t stream = stream_of("bus_voltage input") + static_cast<std::uint64_t>(n) * 1000003;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      sum += gaussian(seed, stream, k) - (k >= kWindow ? gaussian(seed, stream, k - kWindow) : 0.0);
+      s.input.bus_voltage_V[k] += bus->noise_sigma * sum / static_cast<double>(kWindow);
+    }
+    Prediction p = as_drawn(truth, n);
+    s.input.bus_voltage_V = given;
+    return p;
+  }
+
+  // With what effects draw by chance; the seed goes again. A counted speed has the noise of its own count,
+  // not also that of the effect that made it.
+  Prediction as_drawn(const Candidate& truth, int n) {
+    AxisSetup& s = setups_[static_cast<std::size_t>(n)];
+    Candidate others = truth;
+    const bool counts =
+        std::erase_if(others.effects, [&](const EffectUse& u) { return u.entry == counter_; }) > 0;
+    Prediction p = predict(truth, n);
+    const Prediction drawn = counts ? predict(others, n) : Prediction{};
+    s.input.noise_seed.reset();
+    if (!counts) return p;
+    // the window's lag, and what the others draw
+    const Prediction lagging = predict(truth, n), still = predict(others, n);
+    for (std::size_t c = 0; c < s.compared.size(); ++c) {
+      if (s.compared[c].counted.window_s <= 0.0) continue;
+      for (std::size_t k = 0; k < p.values[c].size(); ++k)
+        p.values[c][k] = lagging.values[c][k] + drawn.values[c][k] - still.values[c][k];
+    }
+    return p;
+  }
+
+  // A sensor that rounds rounds its noise as well; noise_sigma holds the rounding's own sigma^2 = q^2 / 12.
+  static double read(double value, const ComparedSignal& signal, double normal) {
+    const double q = signal.quantum;
+    const double rest = signal.noise_sigma * signal.noise_sigma - q * q / 12.0;
+    const double noisy = value + normal * std::sqrt(std::max(0.0, rest));
+    return q > 0.0 ? std::round(noisy / q) * q : noisy;
+  }
+
+  template <typename Draw>
+  static void differenced_noise(const AxisSetup& s, const ComparedSignal& signal, std::vector<double>& v,
+                                double start, Draw draw) {
+    // the position behind the speed, read through a rounding sensor, and differenced again
+    const auto& t = s.input.time_s;
+    const double dt = t.size() > 1 ? (t.back() - t.front()) / static_cast<double>(t.size() - 1) : 1.0;
+    const double q = signal.quantum * dt;
+    const double leak_sigma = signal.noise_sigma * dt / std::sqrt(2.0);
+    const double rest = std::sqrt(std::max(0.0, leak_sigma * leak_sigma - q * q / 12.0));
+    std::vector<double> x(v.size(), 0.0), seen(v.size(), 0.0);
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      const std::size_t from = s.difference_from[k];
+      if (from < k)
+        x[k] = x[from] + v[k] * (t[k] - t[from]);
+      else if (k > 0)
+        x[k] = x[k - 1];
+      const double noisy = x[k] + rest * draw(k) + start * q;  // counts do not start on an edge
+      seen[k] = q > 0.0 ? std::floor(noisy / q) * q : noisy;
+      if (from < k) v[k] = (seen[k] - seen[from]) / (t[k] - t[from]);
+    }
+  }
+
+  template <typename Draw>
+  static void add_band_noise(const AxisSetup& s, const ComparedSignal& signal, std::vector<double>& v,
+                             Draw draw) {
+    std::vector<double> white(v.size());
+    for (std::size_t k = 0; k < v.size(); ++k) white[k] = draw(k);
+    const std::vector<double> low = zero_phase(s.filter, white);
+    double square = 0.0;
+    for (const double x : low) square += x * x / static_cast<double>(low.size());
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] += signal.noise_sigma * low[k] / std::sqrt(square);
+  }
+
+  std::shared_ptr<const Dataset> dataset_;
+  std::shared_ptr<const Candidate> nominal_;
+  PredictOptions options_;
+  std::vector<AxisSetup> setups_;
+  double step_s_ = 100e-6;
+  const EffectEntry* counter_ = nullptr;  // the effect that made a counted speed; null: none did
+};
+
+}  // namespace
+
+std::unique_ptr<Predictor> make_axis_predictor(const Dataset& dataset, const Candidate& nominal,
+                                               const PredictOptions& options) {
+  return std::make_unique<AxisPredictor>(dataset, nominal, options);
+}
+
+}  // namespace omnihil

@@ -1,0 +1,180 @@
+#include "identify/predict/predictor_robot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "identify/predict/robot_motion.h"
+#include "identify/predict/robot_signals.h"
+#include "sim/law/random.h"
+#include "sim/model/rolling_model.h"
+
+namespace omnihil {
+namespace {
+
+Candidate of_run(const Candidate& candidate, const Run& run) {
+  return run.known.empty() ? candidate : with_known(candidate, run.known);
+}
+
+class RobotPredictor : public Predictor {
+ public:
+  RobotPredictor(const Dataset& dataset, const Candidate& nominal, const PredictOptions& options)
+      : dataset_(dataset), nominal_(nominal), options_(options) {
+    motion_.slave_angle = options.slave_angle;
+    for (const Run& run : dataset_.runs) {
+      records_.push_back(robot_record(dataset_, run, rolling_params(of_run(nominal, run).file.parameters)));
+      signals_.push_back(robot_signals(dataset_, run, records_.back()));
+      add_input_noise(of_run(nominal, run), records_.back(), signals_.back());
+      compared_.emplace_back();
+      for (const RobotSignal& s : signals_.back()) compared_.back().push_back(s.compared);
+    }
+  }
+
+  Method method() const override { return Method::kForward; }
+  int run_count() const override { return static_cast<int>(dataset_.runs.size()); }
+  const Run& run(int r) const override { return dataset_.runs[static_cast<std::size_t>(r)]; }
+  const std::vector<ComparedSignal>& compared(int r) const override {
+    return compared_[static_cast<std::size_t>(r)];
+  }
+
+  std::vector<RegimeTrack> regimes(const Candidate& candidate, int r) const override {
+    const auto n = static_cast<std::size_t>(r);
+    const auto model = robot_values<double>(of_run(candidate, run(r)), {}, 0);
+    return robot_regimes(run(r), records_[n], run_robot(model, records_[n], motion_));
+  }
+
+  Prediction predict(const Candidate& candidate, int r) const override {
+    const auto n = static_cast<std::size_t>(r);
+    const auto model = robot_values<double>(of_run(candidate, run(r)), {}, 0);
+    const RobotMotion<double> motion = run_robot(model, records_[n], motion_);
+    Prediction out;
+    out.finite = motion.finite;
+    for (const RobotSignal& s : signals_[n])
+      out.values.push_back(robot_signal_values(s, records_[n], motion));
+    return out;
+  }
+
+  Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                      int r) const override {
+    if (unknowns.empty()) return predict(candidate, r);
+    const auto n = static_cast<std::size_t>(r);
+    const Candidate here = of_run(candidate, run(r));
+    const std::vector<Unknown> open = open_unknowns(unknowns, run(r));
+    Prediction out;
+    for (std::size_t first = 0; first < open.size(); first += kJetWidth) {
+      const auto model = robot_values<Jet>(here, open, first);
+      const RobotMotion<Jet> motion = run_robot(model, records_[n], motion_);
+      out.finite = out.finite && motion.finite;
+      const std::size_t count = std::min<std::size_t>(kJetWidth, open.size() - first);
+      for (std::size_t s = 0; s < signals_[n].size(); ++s) {
+        const std::vector<Jet> y = robot_signal_values(signals_[n][s], records_[n], motion);
+        if (first == 0) {
+          out.derivatives.emplace_back(y.size(), unknowns.size());
+          out.values.emplace_back(y.size());
+        }
+        for (std::size_t k = 0; k < y.size(); ++k) {
+          out.values[s][k] = y[k].a;
+          for (std::size_t u = 0; u < count; ++u) {
+            out.derivatives[s](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(first + u)) =
+                y[k].v[static_cast<Eigen::Index>(u)];
+          }
+        }
+      }
+    }
+    return out;
+  }
+
+  std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const override;
+  std::string applies(const EffectEntry& entry) const override;
+
+ private:
+  void add_input_noise(const Candidate& model, const RobotRecord& record, std::vector<RobotSignal>& signals) {
+    if (record.size() < 2 || (record.duty_quantum == 0.0 && record.bus_sigma_V == 0.0)) return;
+    const auto values = robot_values<double>(model, {}, 0);
+    const RobotMotion<double> motion = run_robot(values, record, motion_);
+    const RobotMotion<double> other = run_robot(values, with_input_noise(record, kNoiseSeed), motion_);
+    if (motion.finite && other.finite) omnihil::add_input_noise(record, motion, other, signals);
+  }
+  static constexpr std::uint64_t kNoiseSeed = 1;  // of a floor's size alone
+
+  // Those that the run knows keep their places, but nothing depends on them.
+  static std::vector<Unknown> open_unknowns(std::span<const Unknown> unknowns, const Run& run) {
+    std::vector<Unknown> open(unknowns.begin(), unknowns.end());
+    for (Unknown& u : open) {
+      for (const auto& [path, value] : run.known) {
+        if (u.effect < 0 && u.path == path) u.path.clear();
+      }
+    }
+    return open;
+  }
+
+  bool has_channel(std::string_view prefix) const {
+    return std::any_of(dataset_.channels.begin(), dataset_.channels.end(),
+                       [&](const Channel& c) { return c.signal.starts_with(prefix); });
+  }
+
+  Dataset dataset_;
+  Candidate nominal_;
+  PredictOptions options_;
+  RobotMotionOptions motion_;
+  std::vector<RobotRecord> records_;
+  std::vector<std::vector<RobotSignal>> signals_;
+  std::vector<std::vector<ComparedSignal>> compared_;
+};
+
+std::unique_ptr<Predictor> RobotPredictor::simulated(const Candidate& truth, std::uint64_t seed) const {
+  Dataset made = dataset_;
+  std::vector<RobotMotion<double>> motions;
+  const auto own_seed = [&](std::size_t n) { return mix_bits(seed ^ mix_bits(n)); };
+  for (std::size_t n = 0; n < made.runs.size(); ++n) {
+    RobotMotionOptions free = motion_;
+    free.slave_angle = false;
+    free.follow_camera = false;
+    free.noise_seed = own_seed(n);
+    const auto model = robot_values<double>(of_run(truth, made.runs[n]), {}, 0);
+    // the duties that the world had, before they were rounded; its bus before it was measured
+    RobotRecord world = with_input_noise(records_[n], own_seed(n));
+    world.bus_voltage_V = records_[n].bus_voltage_V;
+    motions.push_back(run_robot(model, world, free));
+    measure_robot(records_[n], motions.back(), signals_[n], own_seed(n), made.runs[n]);
+  }
+  auto null = std::make_unique<RobotPredictor>(made, nominal_, options_);
+  for (std::size_t n = 0; n < made.runs.size(); ++n) {
+    for (std::size_t s = 0; s < null->signals_[n].size(); ++s) {
+      RobotSignal& signal = null->signals_[n][s];
+      if (signal.output == RobotOutput::kBusVoltage) {
+        measure_robot_bus(records_[n], motions[n], own_seed(n), signal);
+        null->compared_[n][s] = signal.compared;
+      }
+      // the sensors are the same, whatever their noise was taken from
+      signal.channel_sigma = signals_[n][s].channel_sigma;
+      null->compared_[n][s].noise_sigma = compared_[n][s].noise_sigma;
+      null->compared_[n][s].whitened_sigma = compared_[n][s].whitened_sigma;
+    }
+  }
+  return null;
+}
+
+std::string RobotPredictor::applies(const EffectEntry& entry) const {
+  const EffectInfo& e = *entry.info;
+  const auto is = [&](std::string_view id) { return e.id == id; };
+  if ((e.rigs & kOnRobot) == 0) return "acts on a single axis";
+  if (e.place == Place::kShaft) return "needs a freedom between rotor and wheel, which a robot's model lacks";
+  if (is("target_speed_limit")) return "needs a position servo";
+  if (is("hall_speed_estimator")) return "needs a speed that the drive's electronics estimate";
+  if (is("vision_delay") && !has_channel("vision")) return "needs a camera";
+  if (is("dribbler_drag") && !has_channel("dribbler")) return "needs the dribbler's speed (channel dribbler)";
+  const bool has_body = has_channel("vision") || has_channel("gyro") || has_channel("accel");
+  if (is("wheel_slip") && !has_body) return "needs a body's speed: camera, gyro or accelerometer";
+  if (e.place == Place::kSensor && !has_channel("encoder")) return "needs encoders";
+  return "";
+}
+
+}  // namespace
+
+std::unique_ptr<Predictor> make_robot_predictor(const Dataset& dataset, const Candidate& nominal,
+                                                const PredictOptions& options) {
+  return std::make_unique<RobotPredictor>(dataset, nominal, options);
+}
+
+}  // namespace omnihil

@@ -1,0 +1,348 @@
+#include "identify/predict/robot_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/law/random.h"
+#include "sim/model/rolling_model.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kFollow_s = 0.5;  // over which the model's way is drawn to the camera's
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// Everything true, at the samples.
+template <typename T>
+struct Truth {
+  std::vector<std::array<T, kWheels>> theta_rotor_rad, omega_rotor_rad_s, charge_C;
+  std::vector<std::array<T, 3>> velocity;
+  std::vector<T> accel_x, accel_y, bus, supply;
+};
+
+// Place of a time among the samples: between `from` and `from` + 1.
+template <typename T>
+struct Instant {
+  std::size_t from = 0;
+  T share = T(0);
+
+  template <typename V>
+  T of(const V& values) const {
+    return values(from) + (values(from + 1) - values(from)) * share;
+  }
+};
+
+template <typename T>
+Instant<T> instant(const std::vector<double>& time_s, const T& at_s) {
+  const auto after = std::upper_bound(time_s.begin(), time_s.end(), value_of(at_s));
+  std::size_t k = static_cast<std::size_t>(after - time_s.begin());
+  k = std::clamp<std::size_t>(k, 1, time_s.size() - 1);
+  Instant<T> i;
+  i.from = k - 1;
+  i.share = (at_s - time_s[k - 1]) / (time_s[k] - time_s[k - 1]);
+  // before the first sample it stood as it stood there
+  if (value_of(i.share) < 0.0) i.share = T(0);
+  return i;
+}
+
+bool is_finite(double x) { return std::isfinite(x); }
+bool is_finite(const Jet& x) { return std::isfinite(x.a) && x.v.allFinite(); }
+
+template <typename T>
+std::array<T, kMaxEffectStates> initial_states(const EffectSet<T>& effects) {
+  std::array<T, kMaxEffectStates> states{};
+  std::copy(effects.initial_states().begin(), effects.initial_states().end(), states.begin());
+  return states;
+}
+
+template <typename T>
+class Runner {
+ public:
+  Runner(const RobotModelValues<T>& model, const RobotRecord& record, const RobotMotionOptions& options)
+      : model_(model),
+        record_(record),
+        options_(options),
+        robot_(model.params, model.uses, model.values),
+        timing_states_(initial_states(robot_.effects())) {}
+
+  RobotMotion<T> run() {
+    camera_age_s_ = T(0);
+    const std::size_t n = record_.size();
+    if (!timing().empty() && n > 1) {
+      // ages of the camera do not change along a run, but for jitter, which has no expected value
+      auto states = timing_states_;
+      camera_age_s_ = age(Stamped::kVision, 0, states);
+    }
+    if (options_.follow_camera) heading_ = headings(record_, camera_age_s_);
+    simulate();
+    sense();
+    see();
+    return std::move(out_);
+  }
+
+ private:
+  const EffectChain<T, TimingPort<T>>& timing() const { return robot_.effects().timing; }
+
+  T age(Stamped what, std::size_t k, std::array<T, kMaxEffectStates>& states) const {
+    TimingPort<T> port;
+    NoiseKey key{options_.noise_seed.value_or(0), stream_of("timing"), k};
+    port.what = what;
+    port.time_s = record_.time_s[k];
+    port.dt_s = k > 0 ? record_.time_s[k] - record_.time_s[k - 1] : 0.0;
+    port.noise = options_.noise_seed ? &key : nullptr;
+    timing().apply(robot_.effects().values(), states.data(), port);
+    return port.age_s;
+  }
+
+  void simulate() {
+    const std::size_t n = record_.size();
+    RollingState<T> x = robot_.start(record_.start_velocity, record_.theta_rotor_rad[0]);
+    T own_heading = T(0);
+    const double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
+    std::array<double, kWheels> between;
+    for (std::size_t k = 0;; ++k) {
+      keep(x);
+      if (k + 1 >= n) break;
+      RollingInput in = record_.input(k);
+      if (!options_.slave_angle) in.theta_rotor_rad = nullptr;
+      const double dt_s = record_.time_s[k + 1] - record_.time_s[k];
+      const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - 1e-6)));
+      for (int j = 0; j < steps; ++j) {
+        if (in.theta_rotor_rad != nullptr && steps > 1) {
+          for (std::size_t i = 0; i < kWheels; ++i) {
+            const double from = record_.theta_rotor_rad[k][i], to = record_.theta_rotor_rad[k + 1][i];
+            between[i] = from + (to - from) * j / steps;
+          }
+          in.theta_rotor_rad = &between;
+        }
+        x.yaw_rad = heading_.empty() ? own_heading : heading_[k];
+        const T before = x.velocity[2];
+        robot_.advance(x, in, dt_s / steps);
+        own_heading += 0.5 * (before + x.velocity[2]) * (dt_s / steps);
+      }
+      if (!is_finite(x.velocity[0]) || !is_finite(x.omega_rotor_rad_s(0)) || !is_finite(x.charge_C[0])) {
+        out_.finite = false;
+        break;
+      }
+    }
+    if (out_.finite) return;
+    // values after a run diverged are none
+    const std::size_t known = truth_.bus.size();
+    for (std::size_t k = known; k < n; ++k) {
+      keep(x);
+      truth_.velocity.back() = {T(kNaN), T(kNaN), T(kNaN)};
+      truth_.theta_rotor_rad.back().fill(T(kNaN));
+      truth_.charge_C.back().fill(T(kNaN));
+      truth_.accel_x.back() = truth_.accel_y.back() = T(kNaN);
+    }
+  }
+
+  void keep(const RollingState<T>& x) {
+    truth_.theta_rotor_rad.push_back(x.theta_rotor_rad);
+    std::array<T, kWheels> omega;
+    T rise = T(0);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      omega[i] = x.omega_rotor_rad_s(i);
+      rise += 0.25 * x.drive[i].temperature_rise_K;
+    }
+    truth_.omega_rotor_rad_s.push_back(omega);
+    truth_.charge_C.push_back(x.charge_C);
+    truth_.velocity.push_back(x.velocity);
+    truth_.accel_x.push_back(x.accel_x_m_s2);
+    truth_.accel_y.push_back(x.accel_y_m_s2);
+    truth_.bus.push_back(x.bus_voltage_V);
+    truth_.supply.push_back(x.supply_voltage_V);
+    out_.temperature_rise_K.push_back(rise);
+  }
+
+  void sense() {
+    const std::size_t n = record_.size();
+    out_.encoder_rad.resize(n);
+    out_.current_A.resize(n);
+    out_.gyro_rad_s.resize(n);
+    out_.accel_x_m_s2.resize(n);
+    out_.accel_y_m_s2.resize(n);
+    std::array<std::array<T, kMaxEffectStates>, kWheels> states;
+    states.fill(initial_states(robot_.effects()));
+    std::array<T, kWheels> last_theta = truth_.theta_rotor_rad[0], last_charge{};
+    T last_s = T(record_.time_s[0]);
+    for (std::size_t k = 0; k < n; ++k) {
+      T seen_s = T(record_.time_s[k]);
+      if (!timing().empty()) seen_s -= age(Stamped::kDriveSensors, k, timing_states_);
+      const bool now = timing().empty() || n < 2;
+      const Instant<T> at = now ? Instant<T>{} : instant(record_.time_s, seen_s);
+      const auto seen = [&](const auto& values) { return now ? values(k) : at.of(values); };
+      const T span_s = seen_s - last_s;
+      for (std::size_t i = 0; i < kWheels; ++i) {
+        const T theta = seen([&](std::size_t j) { return truth_.theta_rotor_rad[j][i]; });
+        const T omega = seen([&](std::size_t j) { return truth_.omega_rotor_rad_s[j][i]; });
+        const T charge = seen([&](std::size_t j) { return truth_.charge_C[j][i]; });
+        out_.encoder_rad[k][i] = encoder(k, i, theta, omega, T(theta - last_theta[i]), states[i]);
+        out_.current_A[k][i] = value_of(span_s) > 0.0 ? T((charge - last_charge[i]) / span_s) : T(0);
+        last_theta[i] = theta;
+        last_charge[i] = charge;
+      }
+      last_s = seen_s;
+      out_.gyro_rad_s[k] = seen([&](std::size_t j) { return truth_.velocity[j][2]; });
+      out_.accel_x_m_s2[k] = seen([&](std::size_t j) { return truth_.accel_x[j]; });
+      out_.accel_y_m_s2[k] = seen([&](std::size_t j) { return truth_.accel_y[j]; });
+    }
+    out_.bus_voltage_V = truth_.bus;
+    out_.supply_voltage_V = truth_.supply;
+    out_.velocity = truth_.velocity;
+  }
+
+  T encoder(std::size_t k, std::size_t i, const T& theta, const T& omega, const T& travel,
+            std::array<T, kMaxEffectStates>& states) const {
+    const EffectSet<T>& effects = robot_.effects();
+    if (effects.sensor.empty()) return theta;
+    SensorPort<T> port;
+    NoiseKey key{options_.noise_seed.value_or(0), stream_of("sensor") + i, k};
+    port.theta_rotor_rad = port.encoder_angle_rad = theta;
+    if (record_.has_all_encoders && options_.slave_angle) {
+      // the error of a wheel's angle depends on where it stands: the law sees where it stood
+      port.theta_rotor_rad = T(record_.theta_rotor_rad[k][i]);
+      port.encoder_angle_rad = port.theta_rotor_rad;
+    }
+    port.omega_rotor_rad_s = port.measured_speed_rad_s = omega;
+    port.travel_rad = value_of(travel) < 0.0 ? T(-travel) : travel;
+    port.counts_per_turn = T(record_.counts_per_rotor_turn[i]);
+    port.time_s = record_.time_s[k];
+    port.dt_s = k > 0 ? record_.time_s[k] - record_.time_s[k - 1] : 0.0;
+    port.noise = options_.noise_seed ? &key : nullptr;
+    effects.sensor.apply(effects.values(), states.data(), port);
+    return theta + (port.encoder_angle_rad - port.theta_rotor_rad);
+  }
+
+  // Way and heading by the trapezoidal rule, and what the camera sees of them.
+  void see() {
+    using std::cos;
+    using std::sin;
+    const std::size_t n = record_.size();
+    std::vector<T> x(n, T(0)), y(n, T(0)), theta(n, T(0));
+    T vx = T(0), vy = T(0);
+    theta[0] = T(options_.follow_camera ? 0.0 : first_heading());
+    for (std::size_t k = 0; k < n; ++k) {
+      if (k > 0) {
+        const double dt_s = record_.time_s[k] - record_.time_s[k - 1];
+        theta[k] = theta[k - 1] + 0.5 * dt_s * (truth_.velocity[k - 1][2] + truth_.velocity[k][2]);
+      }
+      const T& heading = heading_.empty() ? theta[k] : heading_[k];
+      const T c = cos(heading), s = sin(heading);
+      const T wx = c * truth_.velocity[k][0] - s * truth_.velocity[k][1];
+      const T wy = s * truth_.velocity[k][0] + c * truth_.velocity[k][1];
+      if (k > 0) {
+        const double half_s = 0.5 * (record_.time_s[k] - record_.time_s[k - 1]);
+        x[k] = x[k - 1] + half_s * (vx + wx);
+        y[k] = y[k - 1] + half_s * (vy + wy);
+      }
+      vx = wx;
+      vy = wy;
+    }
+    if (!options_.follow_camera) {
+      look_back(x), look_back(y), look_back(theta);
+      out_.x_m = x;
+      out_.y_m = y;
+      out_.theta_rad = theta;
+      return;
+    }
+    out_.x_m = follow(x, &CameraFrame::x_m);
+    out_.y_m = follow(y, &CameraFrame::y_m);
+    out_.theta_rad = follow(theta, &CameraFrame::theta_rad);
+  }
+
+  double first_heading() const {
+    for (const CameraFrame& f : record_.frames) {
+      if (std::isfinite(f.theta_rad)) return f.theta_rad;
+    }
+    return 0.0;
+  }
+
+  void look_back(std::vector<T>& way) const {
+    if (value_of(camera_age_s_) == 0.0) return;
+    const std::vector<T> now = way;
+    for (std::size_t k = 0; k < way.size(); ++k) {
+      way[k] = instant(record_.time_s, T(record_.time_s[k] - camera_age_s_)).of([&](std::size_t j) {
+        return now[j];
+      });
+    }
+  }
+
+  // The way at the frames, drawn to what the camera saw before.
+  std::vector<T> follow(const std::vector<T>& way, double CameraFrame::*seen) const {
+    std::vector<T> out(way.size(), T(kNaN));
+    T correction = T(0);
+    double last_s = kNaN, frames = 0.0;
+    for (const CameraFrame& f : record_.frames) {
+      if (!std::isfinite(f.*seen)) continue;
+      const double now_s = record_.time_s[f.sample];
+      const T there =
+          is_exactly(camera_age_s_, 0.0)
+              ? way[f.sample]
+              : instant(record_.time_s, T(now_s - camera_age_s_)).of([&](std::size_t j) { return way[j]; });
+      if (!std::isfinite(last_s)) {
+        correction = f.*seen - there;  // the first frame says where the robot is; it is not compared
+      } else {
+        out[f.sample] = there + correction;
+        // at first the mean of the frames so far, so that the first one's noise does not linger
+        const double gain = std::max(-std::expm1(-(now_s - last_s) / kFollow_s), 1.0 / (frames + 1.0));
+        correction += (f.*seen - out[f.sample]) * gain;
+      }
+      last_s = now_s;
+      frames += 1.0;
+    }
+    return out;
+  }
+
+  const RobotModelValues<T>& model_;
+  const RobotRecord& record_;
+  const RobotMotionOptions& options_;
+  RollingRobot<T> robot_;
+  std::array<T, kMaxEffectStates> timing_states_;
+  T camera_age_s_ = T(0);
+  std::vector<T> heading_;
+  Truth<T> truth_;
+  RobotMotion<T> out_;
+};
+
+}  // namespace
+
+template <typename T>
+RobotModelValues<T> robot_values(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                 std::size_t first) {
+  RobotModelValues<T> m;
+  m.params = rolling_params_as<T>(rolling_params(candidate.file.parameters));
+  m.uses = candidate.effects;
+  std::vector<std::size_t> first_value;
+  for (const EffectUse& use : candidate.effects) {
+    first_value.push_back(m.values.size());
+    for (const double v : use.values) m.values.push_back(T(v));
+  }
+  if constexpr (std::is_same_v<T, Jet>) {
+    for (std::size_t n = 0; n < kJetWidth && first + n < unknowns.size(); ++n) {
+      const Unknown& u = unknowns[first + n];
+      Jet* place =
+          u.effect < 0
+              ? rolling_number(m.params, u.path)
+              : &m.values[first_value[static_cast<std::size_t>(u.effect)] + static_cast<std::size_t>(u.row)];
+      if (place != nullptr) *place = Jet(place->a, static_cast<int>(n));
+    }
+  }
+  return m;
+}
+
+template <typename T>
+RobotMotion<T> run_robot(const RobotModelValues<T>& model, const RobotRecord& record,
+                         const RobotMotionOptions& options) {
+  return Runner<T>(model, record, options).run();
+}
+
+template RobotModelValues<double> robot_values(const Candidate&, std::span<const Unknown>, std::size_t);
+template RobotModelValues<Jet> robot_values(const Candidate&, std::span<const Unknown>, std::size_t);
+template RobotMotion<double> run_robot(const RobotModelValues<double>&, const RobotRecord&,
+                                       const RobotMotionOptions&);
+template RobotMotion<Jet> run_robot(const RobotModelValues<Jet>&, const RobotRecord&,
+                                    const RobotMotionOptions&);
+
+}  // namespace omnihil

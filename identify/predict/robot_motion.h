@@ -1,0 +1,56 @@
+// A robot's run as a model says it went: the record's inputs through rolling_robot.h, sample by sample, and
+// what its sensors saw of it.
+//
+//   RobotModelValues<Jet> m = robot_values<Jet>(candidate, unknowns, 0);      // unknown n is Jet's number n
+//   RobotMotion<Jet> y = run_robot(m, record, {});
+//   y.encoder_rad[k][i], y.current_A[k][i], y.gyro_rad_s[k], y.x_m[k] …
+//
+// Sensors as in robot_sensing.h: effects of Place::kSensor on the encoders, of Place::kTiming on the age of
+// drive sensors and of camera frames; looked up on straight lines between samples.
+#pragma once
+#include <optional>
+
+#include "identify/predict/candidate.h"
+#include "identify/predict/robot_record.h"
+
+namespace omnihil {
+
+// A candidate's numbers on a scalar.
+template <typename T>
+struct RobotModelValues {
+  RollingParams<T> params;
+  std::vector<EffectUse> uses;
+  std::vector<T> values;  // of all uses, one after another
+};
+
+// For Jet: unknown `first` + n is the Jet's number n. Known numbers of a run stay known.
+template <typename T>
+RobotModelValues<T> robot_values(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                 std::size_t first);
+
+struct RobotMotionOptions {
+  double step_s = 1e-3;       // at most; a sample period is parted into equal steps
+  bool slave_angle = true;    // laws of the angle see the measured angle
+  bool follow_camera = true;  // false: heading and way are the model's own, from the record's start
+  std::optional<std::uint64_t> noise_seed;  // for effects that draw random numbers; none: expected values
+};
+
+template <typename T>
+struct RobotMotion {
+  std::vector<std::array<T, kWheels>> encoder_rad;  // unrounded, at the rotor
+  std::vector<std::array<T, kWheels>> current_A;    // mean over the period that ends at the sample
+  std::vector<T> gyro_rad_s, accel_x_m_s2, accel_y_m_s2;
+  std::vector<T> bus_voltage_V, supply_voltage_V;  // RollingState
+  std::vector<T> temperature_rise_K;               // mean of the four windings
+  std::vector<std::array<T, 3>> velocity;          // body frame: true, not as seen
+  // As a camera would see it, the corrections of follow_camera included; NaN between frames (follow_camera)
+  // or everywhere the record has none.
+  std::vector<T> x_m, y_m, theta_rad;
+  bool finite = true;
+};
+
+template <typename T>
+RobotMotion<T> run_robot(const RobotModelValues<T>& model, const RobotRecord& record,
+                         const RobotMotionOptions& options);
+
+}  // namespace omnihil

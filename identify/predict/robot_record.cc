@@ -1,0 +1,344 @@
+#include "identify/predict/robot_record.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "identify/record/bus_voltage.h"
+#include "sim/law/random.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kHeadingMemory_s = 1.0;  // over which the gyro's integral is held to the camera's heading
+constexpr double kStartSpan_s = 0.02;     // from which the speeds at the start are read
+
+std::string numbered(std::string_view name, std::size_t wheel) {
+  return std::string(name) + "_" + std::to_string(wheel + 1);
+}
+
+// Gaps take the value before; those at the beginning `first`.
+std::vector<double> held(const std::vector<double>* signal, std::size_t size, double first) {
+  std::vector<double> out(size, first);
+  if (signal == nullptr) return out;
+  for (std::size_t k = 0; k < size; ++k) {
+    out[k] = std::isfinite((*signal)[k]) ? (*signal)[k] : (k > 0 ? out[k - 1] : first);
+  }
+  return out;
+}
+
+double first_of(const std::vector<double>& signal, double otherwise) {
+  const auto found = std::find_if(signal.begin(), signal.end(), [](double v) { return std::isfinite(v); });
+  return found == signal.end() ? otherwise : *found;
+}
+
+// The measured bus voltage drives the model, so its sensor's noise would come out as speed: a white noise of
+// 20 mV moves a rotor's angle ten times as much as an encoder's rounding. Each sample is the mean of the
+// longest of three windows that shows no more than noise; where the shortest shows more, what goes beyond is
+// kept (J.-S. Lee, IEEE PAMI 2(2), 1980).
+std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
+  constexpr std::array<std::size_t, 3> kHalf = {250, 50, 10};  // samples
+  constexpr double kNoMoreThanNoise = 1.2;                     // of the variance
+  const std::size_t n = x.size();
+  if (!(sigma > 0.0)) return x;
+  std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double d = x[k] - x.front();
+    sum[k + 1] = sum[k] + d;
+    square[k + 1] = square[k] + d * d;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    for (const std::size_t half : kHalf) {
+      const std::size_t from = k > half ? k - half : 0, to = std::min(n, k + half + 1);
+      const double count = static_cast<double>(to - from);
+      const double mean = (sum[to] - sum[from]) / count;
+      const double variance = (square[to] - square[from]) / count - mean * mean;
+      out[k] = x.front() + mean;
+      if (variance <= kNoMoreThanNoise * sigma * sigma) break;
+      if (half == kHalf.back()) out[k] += (1.0 - sigma * sigma / variance) * (x[k] - x.front() - mean);
+    }
+  }
+  return out;
+}
+
+void read_drive(const Run& run, RobotRecord& r) {
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const std::vector<double>* duty = run.signal(numbered("duty", i));
+    const std::vector<double>* enable = run.signal("enable");
+    for (std::size_t k = 0; k < r.size(); ++k) {
+      const bool asked = duty != nullptr && std::isfinite((*duty)[k]);
+      r.duty_ratio[k][i] = asked ? (*duty)[k] : 0.0;
+      r.enabled[k][i] = asked && (enable == nullptr || !((*enable)[k] == 0.0));
+    }
+  }
+}
+
+// A record with few decimals: the last of them is what its duties are known to.
+double rounding_of(const std::vector<std::array<double, kWheels>>& duties) {
+  std::vector<double> all;
+  for (const auto& duty : duties) all.insert(all.end(), duty.begin(), duty.end());
+  std::sort(all.begin(), all.end());
+  constexpr std::ptrdiff_t kEnough = 20;  // different values; fewer may be round by choice
+  std::vector<double> different = all;
+  different.erase(std::unique(different.begin(), different.end()), different.end());
+  if (static_cast<std::ptrdiff_t>(different.size()) < kEnough) return 0.0;
+  constexpr std::array<double, 4> kDecimals = {1e2, 1e3, 1e4, 1e5};
+  for (const double scale : kDecimals) {
+    const bool round = std::all_of(different.begin(), different.end(), [&](double v) {
+      return std::abs(v * scale - std::round(v * scale)) < 1e-6 * scale * 1e-3 + 1e-7;
+    });
+    if (round) return 1.0 / scale;
+  }
+  return 0.0;
+}
+
+// Straight lines over gaps.
+std::vector<double> without_gaps(const std::vector<double>& time_s, const std::vector<double>& signal) {
+  std::vector<double> out = signal;
+  std::size_t last = signal.size();
+  for (std::size_t k = 0; k < signal.size(); ++k) {
+    if (!std::isfinite(signal[k])) continue;
+    const std::size_t from = last == signal.size() ? 0 : last + 1;
+    for (std::size_t j = from; j < k; ++j) {
+      const double s = last == signal.size() ? 1.0 : (time_s[j] - time_s[last]) / (time_s[k] - time_s[last]);
+      out[j] = last == signal.size() ? signal[k] : signal[last] + s * (signal[k] - signal[last]);
+    }
+    last = k;
+  }
+  if (last == signal.size()) return {};
+  for (std::size_t j = last + 1; j < signal.size(); ++j) out[j] = signal[last];
+  return out;
+}
+
+void read_encoders(const Dataset& dataset, const Run& run, double gear_ratio, RobotRecord& r) {
+  r.has_all_encoders = true;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const std::string name = numbered("encoder", i);
+    const Channel* channel = dataset.channel(name);
+    const std::vector<double>* counts = run.signal(name);
+    const std::vector<double> full =
+        counts != nullptr ? without_gaps(r.time_s, *counts) : std::vector<double>{};
+    if (channel == nullptr || full.empty() || channel->counts_per_rev <= 0.0) {
+      r.has_all_encoders = false;
+      continue;
+    }
+    r.counts_per_rotor_turn[i] = channel->counts_per_rev * (channel->on_output ? 1.0 / gear_ratio : 1.0);
+    const double rad_per_count = kTurn / r.counts_per_rotor_turn[i];
+    for (std::size_t k = 0; k < r.size(); ++k) {
+      r.encoder_rotor_rad[k][i] = rad_per_count * (*counts)[k];
+      r.theta_rotor_rad[k][i] = rad_per_count * full[k];
+    }
+  }
+}
+
+void read_frames(const Run& run, RobotRecord& r) {
+  const auto *x = run.signal("vision_x"), *y = run.signal("vision_y"), *theta = run.signal("vision_theta");
+  if (x == nullptr && y == nullptr && theta == nullptr) return;
+  const auto at = [](const std::vector<double>* s, std::size_t k) {
+    return s != nullptr ? (*s)[k] : std::nan("");
+  };
+  double last_theta = std::nan("");
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    CameraFrame f{k, at(x, k), at(y, k), at(theta, k)};
+    if (!std::isfinite(f.x_m) && !std::isfinite(f.y_m) && !std::isfinite(f.theta_rad)) continue;
+    if (std::isfinite(f.theta_rad)) {
+      if (std::isfinite(last_theta))
+        f.theta_rad = last_theta + std::remainder(f.theta_rad - last_theta, kTurn);
+      last_theta = f.theta_rad;
+    }
+    r.frames.push_back(f);
+  }
+}
+
+// The gyro knows by how many turns the heading went on between two frames.
+void unwrap_by_gyro(RobotRecord& r) {
+  if (r.turned_rad.empty()) return;
+  double offset = std::nan("");
+  for (CameraFrame& f : r.frames) {
+    if (!std::isfinite(f.theta_rad)) continue;
+    const double turned = r.turned_rad[f.sample];
+    if (std::isfinite(offset))
+      f.theta_rad = turned + offset + std::remainder(f.theta_rad - turned - offset, kTurn);
+    offset = f.theta_rad - turned;
+  }
+}
+
+// theta = theta_0 + v t + a t^2 / 2 over the first moments, by least squares: v.
+double speed_at_start(const RobotRecord& r, std::size_t wheel, std::size_t last) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k <= last; ++k) {
+    const double t = (r.time_s[k] - r.time_s[0]) / kStartSpan_s;
+    const Eigen::Vector3d row(1.0, t, t * t);
+    normal += row * row.transpose();
+    right += row * (r.theta_rotor_rad[k][wheel] - r.theta_rotor_rad[0][wheel]);
+  }
+  return Eigen::Vector3d(normal.ldlt().solve(right))(1) / kStartSpan_s;
+}
+
+BodyVelocity<double> start_velocity(const RobotRecord& r, const RollingParams<double>& nominal) {
+  std::size_t last = 0;
+  while (last + 1 < r.size() && r.time_s[last] - r.time_s[0] < kStartSpan_s) ++last;
+  if (!r.has_all_encoders || last < 3) return {};
+  WheelGeometry<double> g;
+  std::array<double, kWheels> omega_wheel;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    g.cos_angle[i] = std::cos(nominal.wheel_angle_rad[i]);
+    g.sin_angle[i] = std::sin(nominal.wheel_angle_rad[i]);
+    omega_wheel[i] = speed_at_start(r, i, last) / nominal.drive.gear_ratio;
+    // within a count or two it stands
+    const double count_rad = kTurn / r.counts_per_rotor_turn[i];
+    if (std::abs(r.theta_rotor_rad[last][i] - r.theta_rotor_rad[0][i]) < 2.5 * count_rad)
+      omega_wheel[i] = 0.0;
+  }
+  g.wheel_center_radius_m = nominal.wheel_center_radius_m;
+  g.wheel_radius_m = nominal.wheel_radius_m;
+  return body_velocity(g, omega_wheel);
+}
+
+}  // namespace
+
+RollingInput RobotRecord::input(std::size_t k) const {
+  RollingInput in;
+  in.duty_ratio = duty_ratio[k];
+  in.enabled = enabled[k];
+  in.bus_is_measured = !bus_voltage_V.empty();
+  if (in.bus_is_measured) in.bus_voltage_V = bus_voltage_V[k];
+  in.dribbler_rad_s = dribbler_rad_s[k];
+  if (has_all_encoders) in.theta_rotor_rad = &theta_rotor_rad[k];
+  return in;
+}
+
+RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal) {
+  RobotRecord r;
+  r.time_s = run.time_s;
+  r.duty_ratio.resize(r.size());
+  r.enabled.resize(r.size());
+  r.encoder_rotor_rad.resize(r.size());
+  r.theta_rotor_rad.resize(r.size());
+  read_drive(run, r);
+  r.duty_quantum = rounding_of(r.duty_ratio);
+  read_encoders(dataset, run, nominal.drive.gear_ratio, r);
+  r.dribbler_rad_s = held(run.signal("dribbler"), r.size(), 0.0);
+  if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {
+    const std::vector<double> bus_V = plausible_bus_voltage(*measured);
+    const Channel* channel = dataset.channel("bus_voltage");
+    r.bus_sigma_V = channel != nullptr ? channel->sigma : 0.0;
+    r.bus_voltage_V =
+        without_noise(held(&bus_V, r.size(), first_of(bus_V, nominal.drive.supply_voltage_V)), r.bus_sigma_V);
+  }
+  if (const std::vector<double>* gyro = run.signal("gyro_z"); gyro != nullptr) {
+    const std::vector<double> rate = held(gyro, r.size(), first_of(*gyro, 0.0));
+    r.turned_rad.resize(r.size());
+    for (std::size_t k = 1; k < r.size(); ++k) {
+      r.turned_rad[k] = r.turned_rad[k - 1] + 0.5 * (rate[k - 1] + rate[k]) * (r.time_s[k] - r.time_s[k - 1]);
+    }
+  }
+  read_frames(run, r);
+  unwrap_by_gyro(r);
+  r.start_velocity = start_velocity(r, nominal);
+  return r;
+}
+
+RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {
+  RobotRecord r = record;
+  const std::uint64_t bus_stream = stream_of("bus_voltage"), duty_stream = stream_of("duty");
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      r.duty_ratio[k][i] += r.duty_quantum * (uniform(seed, duty_stream + i, k) - 0.5);
+    }
+    if (!r.bus_voltage_V.empty()) r.bus_voltage_V[k] += r.bus_sigma_V * gaussian(seed, bus_stream, k);
+  }
+  if (!r.bus_voltage_V.empty()) r.bus_voltage_V = without_noise(r.bus_voltage_V, r.bus_sigma_V);
+  return r;
+}
+
+// ------------------------------------------------------------------------------------------ the heading
+
+namespace {
+
+// Value of straight lines through (time, values) at a time that may carry derivatives.
+template <typename T>
+T line_at(const std::vector<double>& time_s, const std::vector<double>& values, const T& at_s) {
+  const auto after = std::upper_bound(time_s.begin(), time_s.end(), value_of(at_s));
+  if (after == time_s.begin()) return T(values.front());
+  if (after == time_s.end()) return T(values.back());
+  const auto k = static_cast<std::size_t>(after - time_s.begin());
+  const double slope = (values[k] - values[k - 1]) / (time_s[k] - time_s[k - 1]);
+  return values[k - 1] + slope * (at_s - time_s[k - 1]);
+}
+
+// Means over both sides, weighed by exp(-|dt| / memory).
+template <typename T>
+std::vector<T> smoothed(const std::vector<double>& time_s, const std::vector<T>& values, double memory_s) {
+  const std::size_t n = values.size();
+  std::vector<T> sum = values;
+  std::vector<double> weight(n, 1.0);
+  T carried = T(0);
+  double carried_weight = 0.0;
+  for (std::size_t k = 1; k < n; ++k) {
+    const double keep = std::exp(-(time_s[k] - time_s[k - 1]) / memory_s);
+    carried = (carried + values[k - 1]) * keep;
+    carried_weight = (carried_weight + 1.0) * keep;
+    sum[k] += carried;
+    weight[k] += carried_weight;
+  }
+  carried = T(0);
+  carried_weight = 0.0;
+  for (std::size_t k = n - 1; k-- > 0;) {
+    const double keep = std::exp(-(time_s[k + 1] - time_s[k]) / memory_s);
+    carried = (carried + values[k + 1]) * keep;
+    carried_weight = (carried_weight + 1.0) * keep;
+    sum[k] += carried;
+    weight[k] += carried_weight;
+  }
+  for (std::size_t k = 0; k < n; ++k) sum[k] /= weight[k];
+  return sum;
+}
+
+}  // namespace
+
+template <typename T>
+std::vector<T> headings(const RobotRecord& r, const T& camera_age_s) {
+  std::vector<double> seen_s;
+  std::vector<double> seen_rad;
+  for (const CameraFrame& f : r.frames) {
+    if (!std::isfinite(f.theta_rad)) continue;
+    seen_s.push_back(r.time_s[f.sample]);
+    seen_rad.push_back(f.theta_rad);
+  }
+  std::vector<T> heading(r.size(), T(0));
+  if (r.turned_rad.empty()) {
+    if (seen_s.empty()) return {};
+    for (std::size_t k = 0; k < r.size(); ++k) {
+      heading[k] = line_at(seen_s, seen_rad, T(r.time_s[k] + camera_age_s));
+    }
+    return heading;
+  }
+  std::vector<T> offset;
+  for (std::size_t n = 0; n < seen_s.size(); ++n) {
+    offset.push_back(seen_rad[n] - line_at(r.time_s, r.turned_rad, T(seen_s[n] - camera_age_s)));
+  }
+  if (!offset.empty()) offset = smoothed(seen_s, offset, kHeadingMemory_s);
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    heading[k] = T(r.turned_rad[k]);
+    if (offset.empty()) continue;
+    while (n + 1 < seen_s.size() && seen_s[n + 1] <= r.time_s[k]) ++n;
+    if (n + 1 < seen_s.size() && r.time_s[k] > seen_s[n]) {
+      const double s = (r.time_s[k] - seen_s[n]) / (seen_s[n + 1] - seen_s[n]);
+      heading[k] += offset[n] + (offset[n + 1] - offset[n]) * s;
+    } else {
+      heading[k] += offset[n];
+    }
+  }
+  return heading;
+}
+
+template std::vector<double> headings(const RobotRecord&, const double&);
+template std::vector<Jet> headings(const RobotRecord&, const Jet&);
+
+}  // namespace omnihil

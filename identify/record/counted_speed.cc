@@ -1,0 +1,116 @@
+#include "identify/record/counted_speed.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace omnihil {
+namespace {
+
+constexpr double kLongest_s = 0.05;   // of a window: slower than any loop that lives on it
+constexpr double kFewestPeriods = 2;  // shorter, the reading is the difference of two samples
+constexpr double kOffStep = 0.02;     // of a step: digits that a file was written with
+constexpr int kFewestSteps = 3;       // different readings
+
+// A window that slides changes its reading by each pulse that comes in and by each that goes out, and by
+// nothing else: 2 |omega| T / pulse changes per sample of T where the motion is slow and even, less those
+// where both fall into one sample (a quarter, measured on simulated Halls: 0.72 to 0.83 remain). A speed
+// differenced from an encoder flickers at every sample (1.0 to 2.4), one rounded to a number format where its
+// noise or its course will have it.
+bool slides(const std::vector<double>& values, double step, double window_samples) {
+  constexpr double kLeast = 0.6, kMost = 0.9;        // of the changes that are expected
+  constexpr double kSlowest = 0.05, kFastest = 0.6;  // changes per sample
+  constexpr double kUneven = 0.5;
+  constexpr double kFewest = 100.0;
+  const std::size_t n = values.size();
+  std::vector<double> sum(n + 1, 0.0), missing(n + 1, 0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const bool known = std::isfinite(values[k]);
+    sum[k + 1] = sum[k] + (known ? values[k] : 0.0);
+    missing[k + 1] = missing[k] + (known ? 0.0 : 1.0);
+  }
+  const auto reach = static_cast<std::size_t>(std::lround(1.5 * window_samples));
+  double expected = 0.0, changes = 0.0;
+  for (std::size_t k = reach + 1; k + reach < n; ++k) {
+    if (missing[k + reach] != missing[k - reach - 1]) continue;
+    const double before = (sum[k] - sum[k - reach]) / static_cast<double>(reach);
+    const double after = (sum[k + reach] - sum[k]) / static_cast<double>(reach);
+    const double mean = 0.5 * std::abs(before + after);
+    // a step is a pulse over the window
+    const double rate = 2.0 * mean / step / window_samples;
+    if (rate < kSlowest || rate > kFastest || std::abs(before - after) > kUneven * mean) continue;
+    expected += rate;
+    if (std::abs(values[k] - values[k - 1]) > 0.5 * step) changes += 1.0;
+  }
+  return expected >= kFewest && changes >= kLeast * expected && changes <= kMost * expected;
+}
+
+// Nothing changes within a window, and what changes does so by its clock.
+bool is_held(const std::vector<double>& values, double step, double window_samples) {
+  constexpr double kOff = 0.02;  // of the changes: a clock that slips
+  constexpr double kFewest = 50.0;
+  constexpr double kShortest = 4.0;  // samples: shorter, any change is near some tick of that clock
+  if (window_samples < kShortest) return false;
+  std::size_t last = 0;
+  double changes = 0.0, off = 0.0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    if (!(std::abs(values[k] - values[k - 1]) > 0.5 * step)) continue;
+    const double windows = static_cast<double>(k - last) / window_samples;
+    const double away_samples = std::abs(windows - std::round(windows)) * window_samples;
+    // a window that is no whole number of samples ends at one of two
+    if (changes > 0.0 && (std::round(windows) < 1.0 || away_samples > 1.0)) off += 1.0;
+    changes += 1.0;
+    last = k;
+  }
+  return changes >= kFewest && off <= kOff * changes;
+}
+
+// Rounded down to pulses, less itself.
+double rounding(double angle_rad, double pulse_rad, double start) {
+  const double pulses = angle_rad / pulse_rad + start;
+  return (std::floor(pulses) - pulses) * pulse_rad;
+}
+
+}  // namespace
+
+// two roundings, each uniform over a pulse
+double CountedSpeed::noise_sigma() const { return pulse_rad / window_s * std::sqrt(2.0 / 12.0); }
+double CountedSpeed::integrated_sigma_rad() const { return pulse_rad / std::sqrt(12.0); }
+
+CountedSpeed counted_speed(const std::vector<double>& values, double quantum, double period_s,
+                           double pulse_rad) {
+  if (quantum <= 0.0 || pulse_rad <= 0.0 || period_s <= 0.0) return {};
+  double largest = 0.0;
+  for (const double v : values) largest = std::isfinite(v) ? std::max(largest, std::abs(v)) : largest;
+  const double steps = std::round(largest / quantum);
+  if (steps < kFewestSteps - 1) return {};
+  const double step = largest / steps;
+  for (const double v : values) {
+    if (std::isfinite(v) && std::abs(v / step - std::round(v / step)) > kOffStep) return {};
+  }
+  const double window_s = pulse_rad / step;
+  if (window_s < kFewestPeriods * period_s || window_s > kLongest_s) return {};
+  const double window_samples = window_s / period_s;
+  if (!slides(values, step, window_samples) && !is_held(values, step, window_samples)) return {};
+  return {.window_s = window_s, .pulse_rad = pulse_rad};
+}
+
+void add_counting_noise(const CountedSpeed& counted, const std::vector<double>& time_s,
+                        std::vector<double>& values, double start) {
+  std::vector<double> angle(values.size(), 0.0);
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    const double speed = std::isfinite(values[k]) ? values[k] : 0.0;
+    angle[k] = angle[k - 1] + speed * (time_s[k] - time_s[k - 1]);
+  }
+  std::size_t j = 0;  // last sample at or before the window's beginning
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double from_s = time_s[k] - counted.window_s;
+    while (j + 1 < k && time_s[j + 1] <= from_s) ++j;
+    const bool within = from_s > time_s[j] && j + 1 < time_s.size();
+    const double part = within ? (from_s - time_s[j]) / (time_s[j + 1] - time_s[j]) : 0.0;
+    const double then = within ? angle[j] + part * (angle[j + 1] - angle[j]) : angle[j];
+    values[k] += (rounding(angle[k], counted.pulse_rad, start) - rounding(then, counted.pulse_rad, start)) /
+                 counted.window_s;
+  }
+}
+
+}  // namespace omnihil

@@ -1,0 +1,71 @@
+// A measurement as the identification sees it: runs of named signals on their own clocks, in the units of the
+// format "omnihil-dataset/1". Read from files by hil/dataset/dataset_reader.h; nothing here touches a file.
+//
+//   const Run& run = dataset.runs[0];
+//   const std::vector<double>* w = run.signal("velocity");      // null: not measured in this run
+//
+// A missing sample is NaN. Values are as measured: scaled by the channel, neither filtered nor repaired.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace omnihil {
+
+enum class Rig : std::uint8_t { kAxis, kRobot };
+
+// What a run may be used for.
+enum class Use : std::uint8_t {
+  kFit,            // to estimate parameters and to choose effects
+  kHoldout,        // same kind of motion, never estimated on: decides whether an effect stays
+  kExtrapolation,  // another kind of motion: an effect that makes this worse is rejected
+};
+inline constexpr int kUses = 3;
+std::string_view use_name(Use use);  // "fit", "holdout", "extrapolation"
+
+struct Channel {
+  std::string signal;  // "velocity", "encoder_2"
+  std::string column;
+  std::string unit;    // of the signal, on this rig: "rad/s", on a linear axis "m/s"
+  double sigma = 0.0;  // 1-sigma sensor noise; 0: not stated
+  double scale = 1.0;
+  double offset = 0.0;
+  double counts_per_rev = 0.0;  // encoders
+  bool on_output = false;       // the encoder's shaft
+  bool imposed = false;         // set by the bench: taken as given, not predicted
+  int line = 0;                 // in dataset.toml
+};
+
+struct Run {
+  std::string file;
+  Use use = Use::kFit;
+  std::string excitation;
+  bool steady = false;                                // independent settled points instead of a time series
+  std::vector<std::pair<std::string, double>> known;  // model parameters by path, for this run alone
+  std::vector<double> time_s;                         // increasing
+  std::map<std::string, std::vector<double>, std::less<>> signals;
+
+  const std::vector<double>* signal(std::string_view name) const;
+  double duration_s() const { return time_s.empty() ? 0.0 : time_s.back() - time_s.front(); }
+};
+
+// 0: less than two samples.
+double median_period_s(const std::vector<double>& time_s);
+
+struct Dataset {
+  std::string name;  // as it was asked for
+  std::string title;
+  Rig rig = Rig::kAxis;
+  bool linear = false;  // of its model
+  std::vector<Channel> channels;
+  std::vector<Run> runs;
+  std::vector<std::string> notes;  // what was left out, counted; what a reader should know
+
+  const Channel* channel(std::string_view signal) const;
+  bool has(Use use) const;
+};
+
+}  // namespace omnihil

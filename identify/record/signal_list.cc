@@ -1,0 +1,85 @@
+#include "identify/record/signal_list.h"
+
+namespace omnihil {
+namespace {
+
+using enum SignalKind;
+
+constexpr SignalRow kRows[] = {
+    {"time", "s", "s", kTime, Rig::kAxis, ""},
+    {"duty", "1", "1", kDrive, Rig::kAxis, "duty"},
+    {"motor_voltage", "V", "V", kDrive, Rig::kAxis, "motor_voltage"},
+    {"motor_torque", "N m", "N", kDrive, Rig::kAxis, "motor_torque"},
+    {"position_target", "rad", "", kDrive, Rig::kAxis, "position_target"},
+    {"enable", "1", "1", kFlag, Rig::kAxis, ""},
+    {"bus_voltage", "V", "V", kMeasured, Rig::kAxis, ""},
+    {"motor_current", "A", "A", kMeasured, Rig::kAxis, ""},
+    {"encoder", "counts", "counts", kCounts, Rig::kAxis, ""},
+    {"position", "rad", "m", kMotion, Rig::kAxis, ""},
+    {"velocity", "rad/s", "m/s", kMotion, Rig::kAxis, ""},
+    {"winding_temperature", "degC", "degC", kMeasured, Rig::kAxis, ""},
+    {"load_torque", "N m", "N", kMeasured, Rig::kAxis, ""},
+
+    {"time", "s", "", kTime, Rig::kRobot, ""},
+    {"duty_1", "1", "", kDrive, Rig::kRobot, "duty"},
+    {"duty_2", "1", "", kDrive, Rig::kRobot, "duty"},
+    {"duty_3", "1", "", kDrive, Rig::kRobot, "duty"},
+    {"duty_4", "1", "", kDrive, Rig::kRobot, "duty"},
+    {"command_vx", "m/s", "", kDrive, Rig::kRobot, "command"},
+    {"command_vy", "m/s", "", kDrive, Rig::kRobot, "command"},
+    {"command_w", "rad/s", "", kDrive, Rig::kRobot, "command"},
+    {"command_wheel_1", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
+    {"command_wheel_2", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
+    {"command_wheel_3", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
+    {"command_wheel_4", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
+    {"dribbler", "rad/s", "", kMeasured, Rig::kRobot, ""},
+    {"encoder_1", "counts", "", kCounts, Rig::kRobot, ""},
+    {"encoder_2", "counts", "", kCounts, Rig::kRobot, ""},
+    {"encoder_3", "counts", "", kCounts, Rig::kRobot, ""},
+    {"encoder_4", "counts", "", kCounts, Rig::kRobot, ""},
+    {"motor_current_1", "A", "", kMeasured, Rig::kRobot, ""},
+    {"motor_current_2", "A", "", kMeasured, Rig::kRobot, ""},
+    {"motor_current_3", "A", "", kMeasured, Rig::kRobot, ""},
+    {"motor_current_4", "A", "", kMeasured, Rig::kRobot, ""},
+    {"bus_voltage", "V", "", kMeasured, Rig::kRobot, ""},
+    {"gyro_z", "rad/s", "", kMotion, Rig::kRobot, ""},
+    {"accel_x", "m/s^2", "", kMeasured, Rig::kRobot, ""},
+    {"accel_y", "m/s^2", "", kMeasured, Rig::kRobot, ""},
+    {"vision_x", "m", "", kMotion, Rig::kRobot, ""},
+    {"vision_y", "m", "", kMotion, Rig::kRobot, ""},
+    {"vision_theta", "rad", "", kMotion, Rig::kRobot, ""},
+};
+
+}  // namespace
+
+std::span<const SignalRow> signal_rows() { return kRows; }
+
+const SignalRow* find_signal(Rig rig, std::string_view name) {
+  for (const SignalRow& row : kRows) {
+    if (row.rig == rig && row.name == name) return &row;
+  }
+  return nullptr;
+}
+
+std::string_view signal_unit(const SignalRow& row, bool linear) {
+  return linear ? row.linear_unit : row.unit;
+}
+
+std::vector<std::string_view> signal_names(Rig rig) {
+  std::vector<std::string_view> names;
+  for (const SignalRow& row : kRows) {
+    if (row.rig == rig) names.push_back(row.name);
+  }
+  return names;
+}
+
+std::vector<std::string_view> drive_group_signals(Rig rig, std::string_view group) {
+  std::vector<std::string_view> names;
+  for (const SignalRow& row : kRows) {
+    if (row.rig == rig && row.kind == SignalKind::kDrive && row.drive_group == group)
+      names.push_back(row.name);
+  }
+  return names;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,46 @@
+// The signals that a measurement may have (format "omnihil-dataset/1"): one row each, with unit and role.
+//
+//   const SignalRow* row = find_signal(Rig::kAxis, "velocity");
+//   signal_unit(*row, linear);                     // "rad/s"; on a linear axis "m/s"
+//
+// A run is driven by one group of drive signals: "duty" alone, or "duty_1" … "duty_4" together.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identify/record/dataset.h"
+
+namespace omnihil {
+
+enum class SignalKind : std::uint8_t {
+  kTime,
+  kDrive,     // what was asked of the drive
+  kMotion,    // position, speed, counts, pose: what the model has to explain
+  kCounts,    // the same, as cumulative encoder counts
+  kFlag,      // 0 or 1
+  kMeasured,  // what else a sensor shows
+};
+
+struct SignalRow {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view linear_unit;  // "": the signal has no meaning on a linear axis
+  SignalKind kind;
+  Rig rig;
+  std::string_view drive_group;  // of a drive signal
+};
+
+std::span<const SignalRow> signal_rows();
+const SignalRow* find_signal(Rig rig, std::string_view name);
+std::string_view signal_unit(const SignalRow& row, bool linear);
+
+// Names of a rig's signals, for messages.
+std::vector<std::string_view> signal_names(Rig rig);
+
+// Signals of one drive group: {"command_vx", "command_vy", "command_w"}.
+std::vector<std::string_view> drive_group_signals(Rig rig, std::string_view group);
+
+}  // namespace omnihil

@@ -1,0 +1,63 @@
+// One round of the search: which effect, if any, should the model have next.
+//
+//   Round r = addition_round(search, parent);
+//   r.ranking;                 // every effect that applies, best first
+//   r.chosen                   // index into r.contenders, or -1: none earns its place
+//
+// All effects are screened, the few that promise most are refitted in full, each is judged; of those that
+// pass and cannot be told apart the simplest is taken and the others are kept as its twins. The ranking is
+// made anew in every round: what was masked by a larger effect shows once that is in.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "identify/select/diagnosis.h"
+#include "identify/select/refit.h"
+
+namespace omnihil {
+
+struct Search {
+  const Dataset* dataset = nullptr;
+  const Predictor* predictor = nullptr;
+  const Candidate* nominal = nullptr;
+  const SignalKinds* kinds = nullptr;
+  const Uses* uses = nullptr;
+  const Uses* seen = nullptr;  // the same, not whitened
+  const NullModel* null = nullptr;
+  JudgeContext judging;
+  std::vector<const EffectEntry*> applicable;
+  std::uint64_t seed = 1;
+  int jobs = 1;
+  // share of this round's work; false: stop with what is known
+  std::function<bool(const std::string& doing, double share)> progress;
+};
+
+struct Contender {
+  Screened screened;
+  Fitted fitted;
+  Judgement judgement;
+  double probability = 0.0;
+};
+
+struct Round {
+  std::vector<Screened> screened;
+  std::vector<Contender> contenders;  // refitted, best first
+  std::vector<RankedEffect> ranking;
+  int chosen = -1;
+  std::vector<int> twins;      // of the chosen, in `contenders`
+  double chance_gain = 0.0;    // the most that any effect gains in any replicate of the null
+  std::vector<double> orders;  // that stand out in the residual along the rotor's angle
+  bool stopped = false;
+};
+
+Round addition_round(const Search& search, const Fitted& parent);
+
+// The screening alone: what these effects would gain, and what chance would.
+Round screening_round(const Search& search, const Fitted& parent,
+                      const std::vector<const EffectEntry*>& effects);
+
+// Estimates of the parameters of one effect.
+std::vector<ParameterEstimate> parameters_of(const FitResult& fit, const std::string& effect);
+
+}  // namespace omnihil

@@ -1,0 +1,74 @@
+#include "identify/select/diagnose_summary.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace omnihil {
+namespace {
+
+constexpr double kImitated = 0.03;  // share of its signal that is the effect's own
+constexpr double kLeastExplained = 0.03;
+constexpr std::size_t kMostWhere = 6;
+
+void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& diagnosis) {
+  for (const IndistinguishableSet& set : diagnosis.indistinguishable) {
+    std::vector<std::string> a = set.members, b = members;
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    if (a == b) return;
+  }
+  diagnosis.indistinguishable.push_back({.members = std::move(members), .sentence = std::move(sentence)});
+}
+
+}  // namespace
+
+void note_twins(const Round& round, Diagnosis& diagnosis) {
+  if (round.chosen < 0) return;
+  const Contender& chosen = round.contenders[static_cast<std::size_t>(round.chosen)];
+  if (!round.twins.empty()) {
+    std::vector<std::string> members{chosen.screened.name};
+    for (const int t : round.twins)
+      members.push_back(round.contenders[static_cast<std::size_t>(t)].screened.name);
+    add_set(
+        members,
+        fmt::format("These data cannot tell apart: {}. The first is the simplest; any of them explains the "
+                    "recording as well.",
+                    fmt::join(members, ", ")),
+        diagnosis);
+  }
+  if (chosen.screened.kept < kImitated && !chosen.screened.imitated_by.empty()) {
+    add_set({chosen.screened.name, chosen.screened.imitated_by},
+            fmt::format("{:.1f} % of what {} does to these signals is its own; the rest {} can do as well.",
+                        100.0 * chosen.screened.kept, chosen.screened.name, chosen.screened.imitated_by),
+            diagnosis);
+  }
+}
+
+std::vector<Where> where_of(const Comparison& comparison, double order) {
+  std::vector<Where> all;
+  for (const RegimeError& r : comparison.regimes) {
+    // A measured bus voltage is given to the model: what it leaves there is no structure of the drive.
+    if (r.signal == "bus_voltage" || r.use == Use::kExtrapolation || r.explained_fraction < kLeastExplained)
+      continue;
+    const auto same = std::find_if(
+        all.begin(), all.end(), [&](const Where& w) { return w.signal == r.signal && w.against == r.axis; });
+    if (same != all.end()) {
+      // fit and held-out runs agree, or it is chance
+      same->explained_fraction = std::min(same->explained_fraction, r.explained_fraction);
+      continue;
+    }
+    all.push_back({.signal = r.signal,
+                   .against = r.axis,
+                   .explained_fraction = r.explained_fraction,
+                   .order = r.axis == "rotor_angle" ? order : 0.0});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Where& a, const Where& b) {
+    return a.explained_fraction > b.explained_fraction;
+  });
+  if (all.size() > kMostWhere) all.resize(kMostWhere);
+  return all;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,251 @@
+#include "identify/select/effect_variants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "sim/law/effect_registry.h"
+#include "sim/model/effect_reader.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kQuarterTurn_rad = std::numbers::pi / 2.0;
+
+bool is_phase(const EffectParam& row) {
+  return row.role == ParamRole::kShape && row.unit == "rad" &&
+         (row.name.starts_with("phase") || row.name.starts_with("direction"));
+}
+bool is_order(const EffectParam& row) { return row.role == ParamRole::kShape && row.name == "order"; }
+
+// The phase that belongs to a strength: the next such row before another strength.
+int phase_of(const EffectInfo& info, std::size_t strength) {
+  for (std::size_t i = strength + 1; i < info.params.size() && info.params[i].role == ParamRole::kShape;
+       ++i) {
+    if (is_phase(info.params[i])) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void add_columns(const EffectInfo& info, std::size_t row_index, const Candidate& candidate,
+                 EffectVariant& variant) {
+  const EffectParam& row = info.params[row_index];
+  VariantColumn column;
+  column.row = static_cast<int>(row_index);
+  column.size = visible_size(row, candidate);
+  column.two_sided = row.lower < row.neutral && row.neutral < row.upper;
+  if (column.size == 0.0) return;
+  column.phase_row = phase_of(info, row_index);
+  if (column.phase_row >= 0) column.two_sided = true;
+  variant.columns.push_back(column);
+  if (column.phase_row >= 0) {
+    column.phase = kQuarterTurn_rad;
+    variant.columns.push_back(column);
+  }
+}
+
+std::vector<double> orders_of_motor(const DriveParams<double>& drive) {
+  if (drive.pole_pairs <= 0) return {};
+  std::vector<double> orders;
+  const int poles = 2 * drive.pole_pairs;
+  const double electrical = 6.0 * drive.pole_pairs;
+  if (drive.slots > 0) {
+    const int cogging = std::lcm(poles, drive.slots);
+    for (const double n : {1.0 * cogging, 1.0 * drive.slots, 1.0 * poles}) orders.push_back(n);
+  }
+  orders.push_back(electrical);
+  return orders;
+}
+
+std::vector<double> order_grid(const EffectParam& row, double start, const Candidate& candidate,
+                               const DataScale& scale) {
+  constexpr std::size_t kMost = 6;
+  std::vector<double> grid{start};
+  const auto add = [&](double order) {
+    // Once per turn has effects of its own (imbalance, eccentricity).
+    if (order > 1.5 && order <= row.upper && grid.size() < kMost &&
+        std::find(grid.begin(), grid.end(), order) == grid.end()) {
+      grid.push_back(order);
+    }
+  };
+  for (std::size_t i = 0; i < scale.orders.size() && i < 3; ++i) add(scale.orders[i]);
+  if (scale.orders.empty()) {
+    for (const double order : orders_of_motor(drive_of(candidate))) add(order);
+  }
+  return grid;
+}
+
+// Values that a shape is tried at.
+std::vector<double> shape_grid(const EffectParam& row, double start, const Candidate& candidate,
+                               const DataScale& scale) {
+  if (is_order(row)) return order_grid(row, start, candidate, scale);
+  std::vector<double> grid;
+  if (row.unit == "rad/(N m)") return {start, 0.15 * start};
+  if (is_phase(row) || row.start_for != nullptr || row.unit == "1") return {start};
+  if (row.unit == "rad/s" && scale.top_speed_rad_s > 0.0) {
+    for (const double share : {0.01, 0.04, 0.15}) grid.push_back(share * scale.top_speed_rad_s);
+  } else if (row.unit == "A" && scale.top_current_A > 0.0) {
+    for (const double share : {0.02, 0.1}) grid.push_back(share * scale.top_current_A);
+  } else if (row.unit == "degC") {
+    grid = {35.0, 40.0, 47.0, 58.0, 75.0};  // ever wider above ambient
+  } else if (row.unit == "J/K" && scale.duration_s > 0.0) {
+    grid = {start, 4.0 * start, 16.0 * start};
+  } else {
+    grid = {start};
+  }
+  for (double& v : grid) v = std::clamp(v, row.lower, row.upper);
+  return grid;
+}
+
+std::vector<std::size_t> rows_of_role(const EffectInfo& info, ParamRole role) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < info.params.size(); ++i) {
+    if (info.params[i].role == role) rows.push_back(i);
+  }
+  return rows;
+}
+
+// A ringing at one frequency is nothing like one at twice it: no line leads from one size to another.
+void add_stiffer(std::vector<EffectVariant>& variants) {
+  constexpr double kStiffer = 0.2;
+  const std::size_t count = variants.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    variants.push_back(variants[i]);
+    for (VariantColumn& c : variants.back().columns) c.size *= kStiffer;
+  }
+}
+
+// A shape that belongs to a detail has no influence while that is neutral.
+bool belongs_to_detail(const EffectInfo& info, std::size_t row) {
+  while (row > 0 && info.params[row].role == ParamRole::kShape) --row;
+  return info.params[row].role == ParamRole::kDetail;
+}
+
+}  // namespace
+
+double visible_size(const EffectParam& row, const Candidate& candidate) {
+  if (row.start_for == nullptr)
+    return (row.typical - row.neutral) * param_range(row, candidate.file.linear).scale;
+  const DriveParams<double> drive = drive_of(candidate);
+  return start_of(row, &drive) - row.neutral;
+}
+
+std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate& candidate,
+                                       const DataScale& scale) {
+  const EffectInfo& info = *entry.info;
+  const DriveParams<double> drive = drive_of(candidate);
+  std::vector<EffectVariant> variants{{.shape = neutral_use(entry, &drive), .columns = {}}};
+  for (const std::size_t i : rows_of_role(info, ParamRole::kShape)) {
+    if (belongs_to_detail(info, i)) continue;
+    const std::vector<double> grid =
+        shape_grid(info.params[i], variants.front().shape.values[i], candidate, scale);
+    std::vector<EffectVariant> more;
+    for (const EffectVariant& v : variants) {
+      for (const double value : grid) {
+        more.push_back(v);
+        more.back().shape.values[i] = value;
+      }
+    }
+    variants = std::move(more);
+  }
+  for (EffectVariant& v : variants) {
+    for (const std::size_t row : rows_of_role(info, ParamRole::kStrength)) {
+      add_columns(info, row, candidate, v);
+    }
+  }
+  if (info.params[first_strength(info)].unit == "rad/(N m)") add_stiffer(variants);
+  return variants;
+}
+
+std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& candidate,
+                                         const DataScale& scale) {
+  std::vector<EffectVariant> variants;
+  const EffectInfo& info = *use.entry->info;
+  const bool series = info.id == "cogging";
+  for (const std::size_t row : rows_of_role(info, ParamRole::kDetail)) {
+    if (use.values[row] != info.params[row].neutral) continue;
+    if (series) {
+      // harmonic k stands at rows 3 + 2 (k - 2); only those whose order shows in the residual
+      const double order = use.values[1] * (2.0 + (static_cast<double>(row) - 3.0) / 2.0);
+      const bool shows = std::any_of(scale.orders.begin(), scale.orders.end(),
+                                     [&](double n) { return std::abs(n - order) < 0.5; });
+      if (!shows && row > 5) continue;
+    }
+    EffectVariant v{.shape = use, .columns = {}};
+    add_columns(info, row, candidate, v);
+    variants.push_back(std::move(v));
+  }
+  return variants;
+}
+
+std::vector<EffectVariant> cogging_series(const EffectEntry& entry, const Candidate& candidate,
+                                          const DataScale& scale) {
+  constexpr int kMostOrders = 4;
+  constexpr int kHarmonics = 24;
+  std::vector<int> orders;
+  for (const double n : scale.orders) {
+    if (n > 1.5 && std::abs(n - std::round(n)) < 1e-6 && static_cast<int>(orders.size()) < kMostOrders) {
+      orders.push_back(static_cast<int>(std::lround(n)));
+    }
+  }
+  std::vector<EffectVariant> variants;
+  const DriveParams<double> drive = drive_of(candidate);
+  for (std::size_t count = 2; count <= orders.size(); ++count) {
+    int common = 0;
+    for (std::size_t i = 0; i < count; ++i) common = std::gcd(common, orders[i]);
+    const int highest =
+        *std::max_element(orders.begin(), orders.begin() + static_cast<std::ptrdiff_t>(count));
+    if (highest > kHarmonics * common) continue;
+    EffectVariant v{.shape = neutral_use(entry, &drive), .columns = {}};
+    v.shape.values[1] = common;
+    for (std::size_t i = 0; i < count; ++i) {
+      const int k = orders[i] / common;
+      const std::size_t row = k == 1 ? 0 : 3 + 2 * (static_cast<std::size_t>(k) - 2);
+      add_columns(*entry.info, row, candidate, v);
+    }
+    variants.push_back(std::move(v));
+  }
+  return variants;
+}
+
+EffectUse setting(const EffectVariant& variant, const VariantColumn& column) {
+  EffectUse use = variant.shape;
+  use.values[static_cast<std::size_t>(column.row)] += column.size;
+  if (column.phase_row >= 0) use.values[static_cast<std::size_t>(column.phase_row)] = column.phase;
+  return use;
+}
+
+EffectUse start_of(const EffectVariant& variant, const std::vector<double>& coefficients, bool linear) {
+  EffectUse use = variant.shape;
+  const EffectInfo& info = *use.entry->info;
+  for (std::size_t c = 0; c < variant.columns.size(); ++c) {
+    const VariantColumn& column = variant.columns[c];
+    double& value = use.values[static_cast<std::size_t>(column.row)];
+    const ParamRange range = param_range(info.params[static_cast<std::size_t>(column.row)], linear);
+    if (column.phase_row >= 0) {
+      if (column.phase != 0.0) continue;  // taken with its sine
+      const double sine = coefficients[c], cosine = coefficients[c + 1];
+      value += column.size * std::hypot(sine, cosine);
+      use.values[static_cast<std::size_t>(column.phase_row)] = std::atan2(cosine, sine);
+    } else {
+      value += column.size * coefficients[c];
+    }
+    value = std::clamp(value, range.lower, range.upper);
+  }
+  return use;
+}
+
+Candidate with_use(const Candidate& candidate, const EffectUse& use) {
+  Candidate out = candidate;
+  const std::string name = effect_name(use);
+  std::erase_if(out.effects, [&](const EffectUse& u) { return effect_name(u) == name; });
+  const auto place =
+      std::upper_bound(out.effects.begin(), out.effects.end(), name,
+                       [](const std::string& n, const EffectUse& u) { return n < effect_name(u); });
+  out.effects.insert(place, use);
+  return with_values(out, {}, {});  // what its file says of effects follows
+}
+
+}  // namespace omnihil

@@ -1,0 +1,269 @@
+#include "identify/select/noise_effect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identify/select/effect_variants.h"
+#include "sim/law/effect_registry.h"
+#include "sim/law/random.h"
+#include "sim/model/effect_reader.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kBins = 8;  // of equal numbers, per signal and track
+constexpr int kReplicates = 2;
+constexpr int kPasses = 3;
+constexpr double kExplained = 0.75;   // of the bins' excess, held out
+constexpr double kExcess = 0.05;      // of the sensors' energy: less is nothing to explain
+constexpr double kCorrelation = 0.1;  // that residual and simulation may differ at any lag
+constexpr int kLags = 10;
+
+// Sums of squares of one use, by signal and bin.
+struct Energies {
+  Eigen::VectorXd sum, count, fourth;
+  Eigen::VectorXd mean() const { return sum.cwiseQuotient(count.cwiseMax(1.0)); }
+  // As many normal samples would tell the energy as well: var(r^2) = 2 sigma^4 makes 3 (sum r^2)^2 / sum r^4.
+  // Where a few edges are loud and the rest is still, they are few, whatever the bin holds (Kish 1965).
+  Eigen::VectorXd weight() const {
+    const Eigen::VectorXd normal = 3.0 * sum.cwiseAbs2().cwiseQuotient(fourth.cwiseMax(1e-300));
+    return normal.cwiseMin(count);
+  }
+};
+
+// A measured bus voltage is given to the model: what it leaves there is no noise of an effect.
+bool counts(const Predictor& predictor, const Evidence::Part& part) {
+  return predictor.compared(part.run)[static_cast<std::size_t>(part.signal)].name != "bus_voltage";
+}
+
+// Which bin each sample is in, for two tracks at once: [sample], -1 in none; and what the model says there.
+class Binning {
+ public:
+  Binning(const Predictor& predictor, const Evidence& evidence, const Candidate& model)
+      : predictor_(&predictor), evidence_(&evidence), predicted_(evidence.predicted(model)) {
+    for (const char* name : {"speed", "acceleration"}) tracks_.push_back(bins(evidence.track(model, name)));
+  }
+
+  const Evidence& evidence() const { return *evidence_; }
+  const Eigen::VectorXd& predicted() const { return predicted_; }
+
+  Energies energies(const Eigen::VectorXd& r) const {
+    const auto kinds = static_cast<std::size_t>(evidence_->samples().size());
+    const Eigen::Index size = static_cast<Eigen::Index>(tracks_.size() * kinds * kBins);
+    Energies e{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size)};
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+      for (const Evidence::Part& part : evidence_->parts()) {
+        if (!counts(*predictor_, part)) continue;
+        const std::size_t row = (t * kinds + static_cast<std::size_t>(part.kind)) * kBins;
+        for (Eigen::Index i = part.first; i < part.first + static_cast<Eigen::Index>(part.rows.size()); ++i) {
+          const int bin = tracks_[t][static_cast<std::size_t>(i)];
+          if (bin < 0 || !std::isfinite(r[i])) continue;
+          const Eigen::Index at = static_cast<Eigen::Index>(row) + bin;
+          e.sum[at] += r[i] * r[i];
+          e.count[at] += 1.0;
+          e.fourth[at] += r[i] * r[i] * r[i] * r[i];
+        }
+      }
+    }
+    return e;
+  }
+
+ private:
+  static std::vector<int> bins(const Eigen::VectorXd& track) {
+    std::vector<double> sizes;
+    for (const double v : track) {
+      if (std::isfinite(v)) sizes.push_back(std::abs(v));
+    }
+    std::sort(sizes.begin(), sizes.end());
+    std::vector<int> out(static_cast<std::size_t>(track.size()), -1);
+    if (sizes.size() < 10 * kBins) return out;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double v = std::abs(track[static_cast<Eigen::Index>(i)]);
+      if (!std::isfinite(v)) continue;
+      const auto below = std::lower_bound(sizes.begin(), sizes.end(), v) - sizes.begin();
+      out[i] =
+          std::min(kBins - 1, static_cast<int>(kBins * below / static_cast<std::ptrdiff_t>(sizes.size())));
+    }
+    return out;
+  }
+
+  const Predictor* predictor_;
+  const Evidence* evidence_;
+  Eigen::VectorXd predicted_;
+  std::vector<std::vector<int>> tracks_;
+};
+
+// The residual's autocorrelation, per signal one after the other, lags 1 to kLags.
+Eigen::VectorXd autocorrelations(const Predictor& predictor, const Evidence& evidence,
+                                 const Eigen::VectorXd& r) {
+  const Eigen::Index kinds = evidence.samples().size();
+  Eigen::VectorXd products = Eigen::VectorXd::Zero(kinds * kLags), energy = Eigen::VectorXd::Zero(kinds);
+  for (const Evidence::Part& part : evidence.parts()) {
+    if (!counts(predictor, part)) continue;
+    const auto n = static_cast<Eigen::Index>(part.rows.size());
+    const auto own =
+        r.segment(part.first, n).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }).eval();
+    energy[part.kind] += own.squaredNorm();
+    for (Eigen::Index lag = 1; lag <= kLags && lag < n; ++lag) {
+      products[part.kind * kLags + lag - 1] += own.head(n - lag).dot(own.tail(n - lag));
+    }
+  }
+  for (Eigen::Index k = 0; k < kinds; ++k) products.segment(k * kLags, kLags) /= std::max(energy[k], 1e-300);
+  return products;
+}
+
+class Trial {
+ public:
+  Trial(const NoiseSearch& search, const EffectEntry& entry) : search_(search), entry_(entry) {
+    const EffectInfo& info = *entry.info;
+    const DriveParams<double> drive = drive_of(*search.model);
+    shape_ = neutral_use(entry, &drive);
+    for (std::size_t i = 0; i < info.params.size(); ++i) {
+      if (info.params[i].role == ParamRole::kStrength) row_ = i;
+    }
+  }
+
+  std::optional<NoiseEffect> run() {
+    const Uses& seen = *search_.seen;
+    const Evidence& fit = seen[0];
+    const Binning bins(*search_.predictor, fit, *search_.model);
+    if (bins.predicted().size() != fit.size()) return std::nullopt;
+    const Energies measured = bins.energies(fit.residual_of(bins.predicted()));
+    const Eigen::VectorXd own = simulated(bins, 0.0);
+    if (own.size() == 0) return std::nullopt;
+    const EffectParam& row = entry_.info->params[row_];
+    // A power law about a first guess, then about what that says.
+    double size = row.typical;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const double below = std::max(0.5 * size, 1e-12 * row.typical);
+      Eigen::VectorXd more = simulated(bins, size), less = simulated(bins, below);
+      if (more.size() == 0 || less.size() == 0) return std::nullopt;
+      more -= own;
+      less -= own;
+      const double total = more.dot(measured.count), part = less.dot(measured.count);
+      double power = 2.0;
+      if (total > 0.0 && part > 0.0 && below < size) power = std::log(total / part) / std::log(size / below);
+      const double next = most_likely(measured, own, more.cwiseMax(0.0), std::clamp(power, 0.5, 4.0), size);
+      if (next <= 0.0) return std::nullopt;
+      size = std::clamp(next, 1e-9 * row.typical, row.upper);
+    }
+    return checked(size, bins, measured, own);
+  }
+
+ private:
+  EffectUse at(double strength) const {
+    EffectUse use = shape_;
+    use.values[row_] = strength;
+    return use;
+  }
+
+  std::unique_ptr<Predictor> world(double strength, int replicate) const {
+    const std::uint64_t seed =
+        random_bits(search_.seed, stream_of("noise effect"), static_cast<std::uint64_t>(replicate));
+    return search_.predictor->simulated(with_use(*search_.model, at(strength)), seed);
+  }
+
+  // Mean energies by bin of what the model's sensors would show with this strength.
+  Eigen::VectorXd simulated(const Binning& bins, double strength) const {
+    Eigen::VectorXd mean;
+    for (int k = 0; k < kReplicates; ++k) {
+      Eigen::VectorXd left = left_in(*world(strength, k), bins.evidence(), *search_.model, bins.predicted());
+      if (left.size() == 0) return left;
+      const Eigen::VectorXd e = bins.energies(left).mean();
+      mean = k == 0 ? e : Eigen::VectorXd(mean + e);
+    }
+    return mean / kReplicates;
+  }
+
+  static double most_likely(const Energies& measured, const Eigen::VectorXd& own, const Eigen::VectorXd& more,
+                            double power, double size) {
+    const Eigen::VectorXd energy = measured.mean(), weight = measured.weight();
+    const auto unlikely = [&](double factor) {
+      double sum = 0.0;
+      for (Eigen::Index b = 0; b < own.size(); ++b) {
+        const double expected = own[b] + more[b] * factor;
+        if (weight[b] > 0.0 && expected > 0.0) sum += weight[b] * (energy[b] / expected + std::log(expected));
+      }
+      return sum;
+    };
+    double best = 0.0, least = unlikely(0.0);
+    for (int k = -80; k <= 40; ++k) {  // x^a in steps of half an octave
+      const double factor = std::exp2(0.5 * k), value = unlikely(factor);
+      if (value < least) least = value, best = factor;
+    }
+    for (double step = std::exp2(0.125); best > 0.0 && step > 1.001; step = std::sqrt(step)) {
+      for (const double factor : {best * step, best / step}) {
+        if (unlikely(factor) < least) least = unlikely(factor), best = factor;
+      }
+    }
+    return best > 0.0 ? size * std::pow(best, 1.0 / power) : 0.0;
+  }
+
+  std::optional<NoiseEffect> checked(double strength, const Binning& fit_bins, const Energies& fit_measured,
+                                     const Eigen::VectorXd& fit_own) const {
+    const Uses& seen = *search_.seen;
+    const Evidence& judge = seen[1].empty() ? seen[0] : seen[1];
+    const bool same = seen[1].empty();
+    const Binning bins = same ? fit_bins : Binning(*search_.predictor, judge, *search_.model);
+    if (bins.predicted().size() != judge.size()) return std::nullopt;
+    const Eigen::VectorXd residual = judge.residual_of(bins.predicted());
+    const Energies measured = same ? fit_measured : bins.energies(residual);
+    const Eigen::VectorXd own = same ? fit_own : simulated(bins, 0.0), with = simulated(bins, strength);
+    if (own.size() == 0 || with.size() == 0) return std::nullopt;
+    double before = 0.0, after = 0.0, all = 0.0, floor = 0.0;
+    const Eigen::VectorXd energy = measured.mean(), weight = measured.weight();
+    for (Eigen::Index b = 0; b < own.size(); ++b) {
+      // in units of the sensors' own, so that every signal counts; counts that stand still have none
+      const double unit = std::max(own[b], 0.2 * own.segment(b - b % kBins, kBins).mean());
+      if (!(unit > 0.0)) continue;
+      const double n = measured.count[b];
+      before += weight[b] * std::pow((energy[b] - own[b]) / unit, 2);
+      after += weight[b] * std::pow((energy[b] - with[b]) / unit, 2);
+      all += n * (energy[b] - own[b]) / unit;
+      floor += n;
+    }
+    NoiseEffect out{
+        .use = at(strength), .strength = {}, .explained = before > 0.0 ? 1.0 - after / before : 0.0};
+    if (all < kExcess * floor || out.explained < kExplained) return std::nullopt;
+    const Eigen::VectorXd drawn =
+        left_in(*world(strength, kReplicates), judge, *search_.model, bins.predicted());
+    if (drawn.size() == 0) return std::nullopt;
+    const Eigen::VectorXd apart = autocorrelations(*search_.predictor, judge, residual) -
+                                  autocorrelations(*search_.predictor, judge, drawn);
+    // A correlation from n samples scatters by 1 / sqrt(n); where few are loud, few count (Kish 1965).
+    const auto finite = residual.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }).array();
+    const double loud = std::pow(finite.square().sum(), 2) / std::max(finite.square().square().sum(), 1e-300);
+    if (apart.cwiseAbs().maxCoeff() > kCorrelation + 3.0 / std::sqrt(loud)) return std::nullopt;
+    const EffectParam& row = entry_.info->params[row_];
+    out.strength.path = std::string(entry_.info->id) + "." + std::string(row.name);
+    out.strength.unit = row.unit;
+    out.strength.value = strength;
+    // relative: an energy from n samples is known to sqrt(2 / n)
+    out.strength.sigma = out.strength.data_sigma =
+        strength * std::sqrt(2.0 / fit_measured.count.sum()) * (1.0 + floor / std::max(all, 1e-9));
+    return out;
+  }
+
+  const NoiseSearch& search_;
+  const EffectEntry& entry_;
+  EffectUse shape_;
+  std::size_t row_ = 0;
+};
+
+}  // namespace
+
+std::optional<NoiseEffect> noise_effect(const NoiseSearch& search,
+                                        const std::vector<const EffectEntry*>& effects) {
+  std::optional<NoiseEffect> best;
+  for (const EffectEntry* entry : effects) {
+    int strengths = 0;
+    for (const EffectParam& row : entry->info->params) strengths += row.role == ParamRole::kStrength ? 1 : 0;
+    if ((entry->info->claims & kRandom) == 0 || strengths != 1) continue;
+    std::optional<NoiseEffect> found = Trial(search, *entry).run();
+    if (found && (!best || found->explained > best->explained)) best = std::move(found);
+  }
+  return best;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,204 @@
+#include "identify/select/refit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "identify/select/soundness.h"
+#include "sim/law/effect_registry.h"
+#include "sim/model/effect_reader.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kWorthAThirdStart = 0.2;  // of the error energy, as the screening promises
+constexpr double kWorthAFourthStart = 0.1;
+
+// Numbers of a candidate by path; what `start` does not name stays.
+void start_at(std::vector<Unknown>& unknowns, const std::vector<Unknown>& paths,
+              const std::vector<double>& values) {
+  for (std::size_t i = 0; i < paths.size() && i < values.size(); ++i) {
+    for (Unknown& u : unknowns) {
+      if (u.path == paths[i].path) u.start = std::clamp(values[i], u.lower, u.upper);
+    }
+  }
+}
+
+Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::vector<Unknown>& unknowns,
+                int starts) {
+  std::vector<double> values;
+  values.reserve(unknowns.size());
+  for (const Unknown& u : unknowns) values.push_back(u.start);
+  FitOptions options;
+  options.jobs = setup.jobs;
+  options.max_iterations = setup.max_iterations;
+  options.starts = starts;
+  options.seed = setup.seed;
+  options.quick = setup.quick;
+  options.profile = setup.profile && !setup.quick;
+  options.valley = setup.valley;
+  options.robust = setup.robust;
+  options.stop = setup.stop;
+  const Candidate start = with_values(candidate, unknowns, values);
+  return fitted(*setup.uses, *setup.seen, fit(*setup.predictor, start, unknowns, options), setup.jobs);
+}
+
+// The effect a tenth as strong: near neutral, yet with a direction for its shapes.
+EffectUse near_neutral(const EffectUse& use) {
+  EffectUse out = use;
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    const EffectParam& row = use.entry->info->params[i];
+    if (row.role != ParamRole::kShape) out.values[i] = row.neutral + 0.1 * (use.values[i] - row.neutral);
+  }
+  return out;
+}
+
+// At the sizes that such effects usually have: where neither what the screening says nor the neighbourhood of
+// nothing leads anywhere.
+EffectUse usual(const EffectUse& use, const Candidate& model) {
+  EffectUse out = use;
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    const EffectParam& row = use.entry->info->params[i];
+    if (row.role != ParamRole::kStrength) continue;
+    const ParamRange range = param_range(row, model.file.linear);
+    out.values[i] = std::clamp(row.neutral + visible_size(row, model), range.lower, range.upper);
+  }
+  return out;
+}
+
+// The same model, one effect's strength changed by a factor.
+Candidate with_strength_times(const Candidate& model, const std::string& effect, double factor) {
+  Candidate out = model;
+  for (EffectUse& use : out.effects) {
+    if (use.entry->info->id != effect) continue;
+    const std::size_t row = first_strength(*use.entry->info);
+    const double neutral = use.entry->info->params[row].neutral;
+    use.values[row] = neutral + factor * (use.values[row] - neutral);
+  }
+  return out;
+}
+
+// The base parameters as the model file believes them.
+Candidate believed(const Candidate& model, const Candidate& nominal) {
+  std::vector<Unknown> base = unknowns_with_priors(model, nominal);
+  std::erase_if(base, [](const Unknown& u) { return u.effect >= 0 || u.prior_sigma <= 0.0; });
+  std::vector<double> values;
+  values.reserve(base.size());
+  for (const Unknown& u : base) values.push_back(u.prior_mean);
+  return with_values(model, base, values);
+}
+
+// Base parameters that these data do not determine, and that trade with nobody, have no reason to move
+// because an effect was added; where they end by chance, another kind of motion would pay for it.
+Fitted undetermined_stay(const RefitSetup& setup, const Fitted& parent, Fitted child) {
+  constexpr double kFree = 1.002;  // of the error energy: what going back may cost
+  const Fitted as_fitted = child;
+  for (std::size_t i = 0; i < as_fitted.fit.parameters.size() && as_fitted.finite; ++i) {
+    const ParameterEstimate& p = as_fitted.fit.parameters[i];
+    const std::optional<double> was = value_at(parent.fit.model, p.path);
+    if (i >= as_fitted.fit.unknowns.size() || as_fitted.fit.unknowns[i].effect >= 0) break;
+    if (p.identifiable || !p.trades_with.empty() || !was || *was == p.value) continue;
+    FitResult fit = child.fit;
+    fit.model = with_values(fit.model, {&as_fitted.fit.unknowns[i], 1}, {&*was, 1});
+    fit.parameters[i].value = *was;
+    if (p.prior_sigma > 0.0) fit.parameters[i].drift_sigmas = (*was - p.prior_mean) / p.prior_sigma;
+    Fitted stayed = fitted(*setup.uses, *setup.seen, std::move(fit), setup.jobs);
+    const Evidence& evidence = (*setup.uses)[0];
+    if (stayed.finite && energy_ratio(evidence, as_fitted.residual[0], stayed.residual[0]) <= kFree)
+      child = std::move(stayed);
+  }
+  return child;
+}
+
+double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& child) {
+  if (!child.finite) return 1e300;
+  return energy_ratio((*setup.uses)[0], parent.residual[0], child.residual[0]);
+}
+
+}  // namespace
+
+std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Candidate& nominal) {
+  std::vector<Unknown> unknowns = unknowns_of(candidate);
+  const std::vector<Unknown> believed = unknowns_of(nominal);
+  for (Unknown& u : unknowns) {
+    const auto from =
+        std::find_if(believed.begin(), believed.end(), [&](const Unknown& b) { return b.path == u.path; });
+    if (from == believed.end()) continue;
+    u.prior_mean = from->prior_mean;
+    u.prior_sigma = from->prior_sigma;
+    u.scale = from->scale;
+    u.lower = from->lower;
+    u.upper = from->upper;
+    u.start = std::clamp(u.start, u.lower, u.upper);
+  }
+  return unknowns;
+}
+
+Fitted refit(const RefitSetup& of_round, const Fitted& parent, const Screened& effect) {
+  const auto is_bent = [](const Fitted& f) { return bend_of(f.fit).sigmas > kBent_sigmas; };
+  RefitSetup setup = of_round;
+  setup.valley = is_bent(parent) || drift_of(parent.fit, effect.stands_for()) >= kDisbelieved_sigmas;
+  const Candidate with = with_use(parent.fit.model, effect.start);
+  std::vector<Unknown> unknowns = unknowns_with_priors(with, *setup.nominal);
+  start_at(unknowns, effect.base_unknowns, effect.base_start);
+  Fitted best = fit_from(setup, with, unknowns, 1);
+  const double expected = 1.0 - 0.5 * effect.share;
+  double ratio = fit_ratio(setup, parent, best);
+  const auto stopped = [&] { return setup.stop && setup.stop(); };
+  const auto is_straight = [&, path = effect.stands_for()](const Fitted& f, double r) {
+    return r <= 1.0 + kNoMore && !straightened(parent.fit, f.fit, path).empty();
+  };
+  const auto also_from = [&](const Candidate& start) {
+    Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
+    const double next_ratio = fit_ratio(setup, parent, next);
+    const bool was = is_straight(best, ratio), is = is_straight(next, next_ratio);
+    // What lets the base come back may leave a last per cent more.
+    const double handicap = was == is ? 0.0 : (is ? kNoMore : -kNoMore);
+    if (next_ratio >= ratio + handicap) return;
+    best = std::move(next);
+    ratio = next_ratio;
+  };
+  const EffectUse usual_size = usual(effect.start, with);
+  if (ratio > expected && !stopped()) also_from(with_use(parent.fit.model, near_neutral(effect.start)));
+  if (ratio > expected && effect.share >= kWorthAThirdStart && !stopped())
+    also_from(with_use(parent.fit.model, usual_size));
+  // A base that bent to imitate the effect holds it near nothing, or stays bent beside it: the two together
+  // from what is believed, the effect at its usual size or as it was found.
+  if (ratio > expected && effect.share >= kWorthAFourthStart && is_bent(parent) && !stopped())
+    also_from(with_use(believed(parent.fit.model, *setup.nominal), usual_size));
+  if (is_bent(parent) && best.finite && is_bent(best) && !stopped())
+    also_from(believed(best.fit.model, *setup.nominal));
+  // Impacts make many small valleys: the first one that is deep enough need not be the deepest.
+  const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0 && ratio < 1.0 - kWorthAThirdStart;
+  for (const double factor : {0.5, 2.0}) {
+    if (rugged && !stopped()) also_from(with_strength_times(best.fit.model, effect.name, factor));
+  }
+  best = undetermined_stay(setup, parent, std::move(best));
+  if (ratio > 1.0 && !is_straight(best, ratio)) {
+    // The parent, with the effect neutral, is a member of the larger family.
+    FitResult same = parent.fit;
+    best = {.fit = std::move(same),
+            .residual = parent.residual,
+            .as_seen = parent.as_seen,
+            .finite = parent.finite};
+  }
+  return best;
+}
+
+Fitted refit_as_it_is(const RefitSetup& setup, const Candidate& model, int starts) {
+  return fit_from(setup, model, unknowns_with_priors(model, *setup.nominal), starts);
+}
+
+Fitted settled(const RefitSetup& setup, Fitted model) {
+  constexpr int kMostRepeats = 3;
+  constexpr double kWorthAnother = 0.005;  // fall of the error energy
+  for (int k = 0; k < kMostRepeats && model.finite && !(setup.stop && setup.stop()); ++k) {
+    Fitted further = refit_as_it_is(setup, model.fit.model, 1);
+    const double ratio = fit_ratio(setup, model, further);
+    if (ratio < 1.0) model = std::move(further);
+    if (ratio > 1.0 - kWorthAnother) break;
+  }
+  return model;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,296 @@
+#include "identify/select/screening.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "identify/record/parallel.h"
+#include "sim/model/effect_reader.h"
+
+namespace omnihil {
+namespace {
+
+struct Scored {
+  EffectVariant variant;
+  std::vector<bool> two_sided;
+  ProjectedColumns columns;
+  LinearGain fit;
+  bool finite = false;
+};
+
+std::vector<bool> sides(const EffectVariant& variant) {
+  std::vector<bool> two_sided;
+  for (const VariantColumn& c : variant.columns) two_sided.push_back(c.two_sided);
+  return two_sided;
+}
+
+Scored score(const ScreeningTask& task, EffectVariant variant) {
+  Scored out{.variant = std::move(variant), .two_sided = {}, .columns = {}, .fit = {}};
+  out.two_sided = sides(out.variant);
+  Eigen::MatrixXd columns(task.evidence->size(), static_cast<Eigen::Index>(out.variant.columns.size()));
+  for (std::size_t c = 0; c < out.variant.columns.size(); ++c) {
+    const Eigen::VectorXd with =
+        task.evidence->predicted(with_use(*task.model, setting(out.variant, out.variant.columns[c])));
+    if (with.size() != task.evidence->size()) return out;
+    columns.col(static_cast<Eigen::Index>(c)) =
+        (with - task.base->prediction()).cwiseProduct(task.base->weights());
+  }
+  out.columns = task.base->project(std::move(columns));
+  out.fit = task.base->gain(out.columns, out.two_sided);
+  out.finite = true;
+  return out;
+}
+
+// Sizes that the linear fit asks for; false: they are as they are, or cannot be changed.
+bool resize(const ScreeningTask& task, const Scored& scored, EffectVariant& variant, double unseen_factor) {
+  bool changed = false;
+  const EffectInfo& info = *variant.shape.entry->info;
+  for (std::size_t c = 0; c < variant.columns.size(); ++c) {
+    VariantColumn& column = variant.columns[c];
+    const EffectParam& row = info.params[static_cast<std::size_t>(column.row)];
+    const ParamRange range = param_range(row, task.model->file.linear);
+    double factor = std::abs(scored.fit.coefficients[c]);
+    if (column.phase_row >= 0) {
+      const std::size_t other = column.phase == 0.0 ? c + 1 : c - 1;
+      factor = std::hypot(factor, scored.fit.coefficients[other]);
+    }
+    if (scored.fit.gain <= 0.0) factor = unseen_factor;
+    if (factor <= 0.0) continue;
+    const double most = 0.9 * (column.size > 0.0 ? range.upper - row.neutral : row.neutral - range.lower);
+    const double size = std::clamp(std::abs(column.size) * factor, 1e-6 * most, most);
+    const double ratio = size / std::abs(column.size);
+    if (ratio > 0.7 && ratio < 1.4) continue;
+    column.size = std::copysign(size, column.size);
+    changed = true;
+  }
+  return changed;
+}
+
+// The best of the shapes, then at the size that the data ask for.
+Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& variants) {
+  constexpr int kResizings = 3;
+  Scored best;
+  for (const EffectVariant& v : variants) {
+    if (v.columns.empty()) continue;
+    Scored s = score(task, v);
+    if (s.finite && (!best.finite || s.fit.gain > best.fit.gain)) best = std::move(s);
+  }
+  if (!best.finite) return best;
+  EffectVariant next = best.variant;
+  Scored latest = best;
+  for (int k = 0; k < kResizings; ++k) {
+    // A limit may lie above what the data reach, a delay too long for a linear step: try both ways.
+    if (!resize(task, latest, next, k == 0 ? 0.3 : 8.0)) break;
+    latest = score(task, next);
+    if (!latest.finite) break;
+    if (latest.fit.gain > best.fit.gain) best = latest;
+  }
+  return best;
+}
+
+// A law that acts from some strength on, a limit that the data reach: sizes one by one, each as it is. A line
+// through one of them would lead back to where nothing is reached.
+class SizeSearch {
+ public:
+  explicit SizeSearch(const ScreeningTask& task) : task_(task) {}
+
+  Scored run(const std::vector<EffectVariant>& variants) {
+    constexpr int kLargest = 3, kSmallest = -7, kHalvings = 5;
+    for (const EffectVariant& v : variants) {
+      double acts = 0.0, idle = 0.0;  // factors of its typical size
+      for (int k = kLargest; k >= kSmallest && idle == 0.0; --k) {
+        (attempt(v, std::exp2(k)) ? acts : idle) = std::exp2(k);
+      }
+      if (acts == 0.0 || idle == 0.0) continue;
+      for (int n = 0; n < kHalvings; ++n) {
+        const double middle = std::sqrt(acts * idle);
+        (attempt(v, middle) ? acts : idle) = middle;
+      }
+      for (const double beyond : {1.08, 1.2, 1.4, 1.7}) attempt(v, acts * beyond);
+    }
+    for (const double refining : {std::exp2(0.25), std::exp2(-0.25)}) {
+      if (best_.finite) attempt(EffectVariant(best_.variant), refining);
+    }
+    return std::move(best_);
+  }
+
+ private:
+  // Does it change anything at this multiple of its size?
+  bool attempt(const EffectVariant& variant, double factor) {
+    EffectVariant sized = variant;
+    VariantColumn& column = sized.columns.front();
+    const EffectParam& row = variant.shape.entry->info->params[static_cast<std::size_t>(column.row)];
+    const ParamRange range = param_range(row, task_.model->file.linear);
+    column.size *= factor;
+    if (column.size <= 0.0 || row.neutral + column.size > range.upper) return true;
+    Scored s = score(task_, std::move(sized));
+    if (!s.finite) return true;
+    s.fit = task_.base->gain_as_tried(s.columns);
+    const bool acts = s.columns.gram(0, 0) > 1e-6 * task_.base->energy();
+    if (!best_.finite || s.fit.gain > best_.fit.gain) best_ = std::move(s);
+    return acts;
+  }
+
+  const ScreeningTask& task_;
+  Scored best_;
+};
+
+double share_in(const RegimeMask& regime, const ProjectedColumns& p, const std::vector<bool>& two_sided,
+                const Eigen::VectorXd& residual, const std::vector<Eigen::VectorXd>& noise) {
+  const Eigen::MatrixXd inside = regime.inside.asDiagonal() * p.columns;
+  const double energy = residual.cwiseProduct(regime.inside).squaredNorm();
+  if (energy <= 0.0) return 0.0;
+  const Eigen::MatrixXd gram = inside.transpose() * inside;
+  const double gain = bounded_gain(gram, inside.transpose() * residual, two_sided).first;
+  double chance = 0.0;
+  for (const Eigen::VectorXd& n : noise) {
+    chance = std::max(chance, bounded_gain(gram, inside.transpose() * n, two_sided).first);
+  }
+  return std::max(0.0, gain - chance) / energy;
+}
+
+// Which base parameter's signal is most like the effect's.
+std::string nearest_base(const LinearBase& base, const Scored& s) {
+  std::string nearest;
+  double best = 0.0;
+  for (Eigen::Index u = 0; u < s.columns.coupling.rows(); ++u) {
+    const double size = base.derivatives().col(u).norm() * s.columns.coupling.row(u).norm();
+    if (size > best) {
+      best = size;
+      nearest = base.unknowns()[static_cast<std::size_t>(u)].path;
+    }
+  }
+  return nearest;
+}
+
+Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored best) {
+  Screened out;
+  out.entry = entry;
+  if (!best.finite) return out;
+  const LinearBase& base = *task.base;
+  out.tried = true;
+  out.gain = best.fit.gain;
+  for (const Eigen::VectorXd& n : task.noise) {
+    out.null_gain = std::max(out.null_gain, base.gain_in_noise(best.columns, best.two_sided, n));
+  }
+  out.share = std::max(0.0, out.gain - out.null_gain) / std::max(base.energy(), 1e-300);
+  for (const RegimeMask& regime : task.regimes) {
+    const double share = share_in(regime, best.columns, best.two_sided, base.residual(), task.noise);
+    if (share > out.best_regime_share) {
+      out.best_regime_share = share;
+      out.best_regime = regime.name;
+    }
+  }
+  out.kept = best.columns.kept;
+  out.imitated_by = nearest_base(base, best);
+  out.start = start_of(best.variant, best.fit.coefficients, task.model->file.linear);
+  out.base_unknowns = base.unknowns();
+  for (std::size_t u = 0; u < base.unknowns().size(); ++u) {
+    const Unknown& unknown = base.unknowns()[u];
+    out.base_start.push_back(std::clamp(unknown.start + best.fit.base_shift[static_cast<Eigen::Index>(u)],
+                                        unknown.lower, unknown.upper));
+  }
+  const Eigen::Map<const Eigen::VectorXd> a(best.fit.coefficients.data(),
+                                            static_cast<Eigen::Index>(best.fit.coefficients.size()));
+  out.signal = best.columns.columns * a;
+  return out;
+}
+
+Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
+  std::vector<EffectVariant> variants = variants_of(*entry, *task.model, task.scale);
+  const bool steps_in = (entry->info->claims & kFlatAtNeutral) != 0 && variants.front().columns.size() == 1;
+  Scored best = steps_in ? SizeSearch(task).run(variants) : best_of(task, variants);
+  // At its typical size, whatever the data ask for.
+  const Scored typical = score(task, variants.front());
+  if (entry->info->id == "cogging" && best.finite) {
+    for (const EffectVariant& v : cogging_series(*entry, *task.model, task.scale)) {
+      Scored series = score(task, v);
+      // Several orders must earn their numbers.
+      if (series.finite && series.fit.gain > 1.05 * best.fit.gain) best = std::move(series);
+    }
+  }
+  Screened out = finished(task, entry, std::move(best));
+  out.name = std::string(entry->info->id);
+  if (typical.finite) out.typical_gain = typical.columns.gram.trace();
+  return out;
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const std::size_t at =
+      std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+std::vector<double> finite_sizes(const Eigen::VectorXd& track) {
+  std::vector<double> sizes;
+  for (const double v : track) {
+    if (std::isfinite(v)) sizes.push_back(std::abs(v));
+  }
+  return sizes;
+}
+
+}  // namespace
+
+std::string Screened::stands_for() const {
+  if (!tried || kept >= kNotParted || imitated_by.empty()) return "";
+  const auto& twins = entry->info->twins;
+  return std::find(twins.begin(), twins.end(), imitated_by) != twins.end() ? imitated_by : "";
+}
+
+std::vector<RegimeMask> regime_masks(const Evidence& evidence, const Candidate& model) {
+  std::vector<RegimeMask> masks;
+  const Eigen::VectorXd speed = evidence.track(model, "speed");
+  const Eigen::VectorXd acceleration = evidence.track(model, "acceleration");
+  const std::vector<double> speeds = finite_sizes(speed), accelerations = finite_sizes(acceleration);
+  constexpr std::size_t kLeast = 200;  // samples, for a regime to be worth looking at
+  const auto add = [&](const char* name, auto&& is_inside) {
+    RegimeMask mask{.name = name, .inside = Eigen::VectorXd::Zero(evidence.size())};
+    for (Eigen::Index i = 0; i < evidence.size(); ++i) mask.inside[i] = is_inside(i) ? 1.0 : 0.0;
+    if (mask.inside.sum() >= static_cast<double>(kLeast)) masks.push_back(std::move(mask));
+  };
+  if (speeds.size() >= kLeast) {
+    const double top = quantile(speeds, 0.98);
+    add("slow", [&](Eigen::Index i) { return std::abs(speed[i]) < 0.1 * top; });
+    add("fast", [&](Eigen::Index i) { return std::abs(speed[i]) > 0.6 * top; });
+  }
+  if (accelerations.size() >= kLeast) {
+    const double calm = quantile(accelerations, 0.5), wild = quantile(accelerations, 0.85);
+    add("steady", [&](Eigen::Index i) { return std::abs(acceleration[i]) < calm; });
+    add("transient", [&](Eigen::Index i) { return std::abs(acceleration[i]) > wild; });
+  }
+  return masks;
+}
+
+std::vector<Screened> screen(const ScreeningTask& task, const std::vector<const EffectEntry*>& effects) {
+  std::vector<Screened> out(effects.size());
+  std::atomic<int> done{0};
+  std::atomic<bool> stopped{false};
+  parallel_for(task.jobs, static_cast<int>(effects.size()), [&](int k) {
+    const std::size_t e = static_cast<std::size_t>(k);
+    out[e].entry = effects[e];
+    out[e].name = std::string(effects[e]->info->id);
+    if (stopped) return;
+    out[e] = screen_one(task, effects[e]);
+    const double share = ++done / static_cast<double>(effects.size());
+    if (task.progress && !task.progress(share)) stopped = true;
+  });
+  return out;
+}
+
+std::vector<Screened> screen_extensions(const ScreeningTask& task) {
+  std::vector<Screened> out;
+  for (const EffectUse& use : task.model->effects) {
+    const std::vector<EffectVariant> variants = extensions_of(use, *task.model, task.scale);
+    if (variants.empty()) continue;
+    Screened s = finished(task, use.entry, best_of(task, variants));
+    s.name = effect_name(use);
+    s.extends = true;
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+}  // namespace omnihil

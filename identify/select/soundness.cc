@@ -1,0 +1,159 @@
+#include "identify/select/soundness.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/law/effect_registry.h"
+#include "sim/model/effect_reader.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kSignificant_sigmas = 2.0;
+constexpr double kPushedOut_sigmas = 3.5;     // of a base parameter's tolerance
+constexpr double kDriftAllowed_sigmas = 0.7;  // further out than it was before
+
+// A base parameter that the addition pushes out of its tolerance; empty: none.
+std::string pushed_out(const FitResult& parent, const FitResult& child) {
+  for (const ParameterEstimate& p : child.parameters) {
+    if (p.prior_sigma <= 0.0 || std::abs(p.drift_sigmas) < kPushedOut_sigmas) continue;
+    const auto before = std::find_if(parent.parameters.begin(), parent.parameters.end(),
+                                     [&](const ParameterEstimate& q) { return q.path == p.path; });
+    if (before == parent.parameters.end()) continue;  // of the effect itself
+    if (std::abs(p.drift_sigmas) > std::abs(before->drift_sigmas) + kDriftAllowed_sigmas) {
+      return fmt::format("it pushes {} out of its tolerance ({:+.1f} sigma, before {:+.1f})", p.path,
+                         p.drift_sigmas, before->drift_sigmas);
+    }
+  }
+  return "";
+}
+
+// A bound that says that the law is bent to something it does not mean. A strength may stay at its neutral
+// value (one of several), a phase goes round, an exponent is a form.
+bool misused_bound(const ParameterEstimate& p, const EffectParam* row) {
+  if (!p.at_bound || row == nullptr) return false;
+  if (row->role != ParamRole::kShape) return std::abs(p.value - row->neutral) > 1e-3 * std::abs(row->typical);
+  return !row->name.starts_with("phase") && row->name != "exponent";
+}
+
+// Strengths together: those that trade with each other (four ratios against the scale that they share with a
+// base parameter) may each be uncertain where what parts them is not. Wald's statistic, 95 % of chi-square.
+bool told_together(const FitResult& child, const std::vector<Eigen::Index>& rows,
+                   const std::vector<double>& away) {
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  if (n < 2 || rows.back() >= child.covariance.rows()) return false;
+  const Eigen::VectorXd d = Eigen::Map<const Eigen::VectorXd>(away.data(), n);
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      covariance(i, j) =
+          child.covariance(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(j)]);
+    }
+  }
+  constexpr double kPerFurther = 1.9;  // of the quantile, per further strength
+  const double asked = kSignificant_sigmas * kSignificant_sigmas + kPerFurther * static_cast<double>(n - 1);
+  return d.dot(covariance.ldlt().solve(d)) > asked;
+}
+
+// Numbers of the effect that no drive has; empty: none. `plain`: it takes so much that its strength is no
+// question, however it trades against its own shapes.
+std::string unphysical(const FitResult& child, const std::string& name, bool plain) {
+  const EffectEntry* entry = find_effect(name);
+  bool strong = entry == nullptr;
+  std::vector<Eigen::Index> strengths;
+  std::vector<double> away;
+  for (std::size_t n = 0; n < child.parameters.size(); ++n) {
+    const ParameterEstimate& p = child.parameters[n];
+    if (!p.path.starts_with(name + ".")) continue;
+    const std::string key = p.path.substr(name.size() + 1);
+    const EffectParam* row = nullptr;
+    for (std::size_t i = 0; entry != nullptr && i < entry->info->params.size(); ++i) {
+      const EffectParam& r = entry->info->params[i];
+      if (r.name == key || param_key(r, child.model.file.linear) == key) row = &r;
+    }
+    if (misused_bound(p, row)) {
+      return fmt::format("{} ends at a bound ({:.4g} {}): a symptom, not a result", p.path, p.value, p.unit);
+    }
+    if (row == nullptr || row->role == ParamRole::kShape) continue;
+    const double size = std::abs(p.value - row->neutral);
+    if (p.unphysical && size > 1e-9)
+      return fmt::format("{} = {:.4g} {} is not physical", p.path, p.value, p.unit);
+    // With what the file knows of the base: where the data fix ratios alone (speed without current), the
+    // scale of every torque comes from the tolerances.
+    if (size > kSignificant_sigmas * p.sigma || p.sigma <= 0.0) strong = strong || size > 0.0;
+    strengths.push_back(static_cast<Eigen::Index>(n));
+    away.push_back(p.value - row->neutral);
+  }
+  strong = strong || told_together(child, strengths, away);
+  return strong || plain ? "" : "its strength is not told from zero";
+}
+
+// Squared distances from what is believed, in its 1-sigmas.
+double disbelief(const FitResult& fit) {
+  double sum = 0.0;
+  for (const ParameterEstimate& p : fit.parameters) {
+    if (p.prior_sigma > 0.0) sum += std::pow((p.value - p.prior_mean) / p.prior_sigma, 2);
+  }
+  return sum;
+}
+
+}  // namespace
+
+Bend bend_of(const FitResult& fit) {
+  Bend worst;
+  for (const ParameterEstimate& p : fit.parameters) {
+    if (p.prior_sigma <= 0.0 || !p.identifiable || find_effect(p.path.substr(0, p.path.find('.'))) != nullptr)
+      continue;
+    if (std::abs(p.drift_sigmas) > worst.sigmas) worst = {.sigmas = std::abs(p.drift_sigmas), .path = p.path};
+  }
+  return worst;
+}
+
+double drift_of(const FitResult& fit, std::string_view path) {
+  const auto p = std::find_if(fit.parameters.begin(), fit.parameters.end(),
+                              [&](const ParameterEstimate& q) { return q.path == path; });
+  // Data may have ceased to determine it: where it stands counts all the same.
+  return p == fit.parameters.end() || p->prior_sigma <= 0.0
+             ? 0.0
+             : std::abs(p->value - p->prior_mean) / p->prior_sigma;
+}
+
+std::string straightened(const FitResult& parent, const FitResult& child, std::string_view stands_for) {
+  const Bend before = bend_of(parent), after = bend_of(child);
+  if (before.sigmas >= kBent_sigmas && after.sigmas <= kStraight_sigmas &&
+      drift_of(child, before.path) <= kStraight_sigmas) {
+    return before.path;
+  }
+  const double was = drift_of(parent, stands_for);
+  const bool comes_back = was >= kDisbelieved_sigmas && drift_of(child, stands_for) < was &&
+                          disbelief(parent) - disbelief(child) >= kDisbelieved_sigmas * kDisbelieved_sigmas;
+  return comes_back && after.sigmas <= std::max(before.sigmas, kStraight_sigmas) ? std::string(stands_for)
+                                                                                 : "";
+}
+
+std::string lost_in_the_clock(const FitResult& child, const std::string& name, double rate_Hz) {
+  constexpr double kOfVisible = 0.05;
+  const EffectEntry* entry = find_effect(name);
+  if (entry == nullptr || entry->info->min_visible == nullptr || rate_Hz <= 0.0) return "";
+  const EffectParam& row = entry->info->params[first_strength(*entry->info)];
+  if (row.unit != "s" && row.unit != "H") return "";
+  const double visible = entry->info->min_visible({.rate_Hz = rate_Hz});
+  for (const ParameterEstimate& p : child.parameters) {
+    if (p.path != name + "." + std::string(row.name)) continue;
+    if (std::abs(p.value - row.neutral) >= kOfVisible * visible) continue;
+    return fmt::format(
+        "{} = {:.2g} {} is lost in the clock: at {:g} Hz such an effect is seen from {:.2g} {}", p.path,
+        p.value, p.unit, rate_Hz, visible, p.unit);
+  }
+  return "";
+}
+
+std::string unsound(const FitResult& parent, const FitResult& child, const std::string& name, bool plain) {
+  const std::string why = unphysical(child, name, plain);
+  return why.empty() ? pushed_out(parent, child) : why;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,224 @@
+#include "identify/select/unknown_structure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/compare/order_spectrum.h"
+#include "identify/estimate/linear_base.h"
+#include "identify/record/parallel.h"
+#include "identify/select/diagnose_summary.h"
+#include "identify/select/unknown_terms.h"
+#include "sim/law/effect_registry.h"
+#include "sim/law/expression.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::size_t kMostTerms = 4;
+constexpr double kLeastGain = 0.02;  // of the residual's energy, per term
+constexpr double kOverChance = 3.0;
+constexpr std::size_t kMostCurves = 8;
+
+struct Library {
+  std::string adds_to;
+  std::vector<UnknownTerm> terms;
+  std::vector<ProjectedColumns> signals;  // one column each; empty: the model diverged
+};
+
+// The signal of one term, at a size at which it is comparable with the residual.
+ProjectedColumns signal_of(const Search& search, const Fitted& last, const LinearBase& base,
+                           const std::string& adds_to, UnknownTerm& term) {
+  const Evidence& fit = (*search.uses)[0];
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const EffectUse use = formula_use("rest", adds_to, {term}, {term.size}, last.fit.model.file.linear);
+    if (use.entry == nullptr) return {};
+    const Eigen::VectorXd with = fit.predicted(with_use(last.fit.model, use));
+    if (with.size() != fit.size()) {
+      term.size *= 0.1;
+      continue;
+    }
+    const Eigen::VectorXd d = (with - base.prediction()).cwiseProduct(base.weights());
+    const double ratio = d.squaredNorm() / std::max(base.energy(), 1e-300);
+    if (ratio > 10.0 && attempt < 2) {
+      term.size *= 1.0 / std::sqrt(ratio);
+      continue;
+    }
+    return base.project(d);
+  }
+  return {};
+}
+
+Library library_of(const Search& search, const Fitted& last, const LinearBase& base, std::string adds_to,
+                   std::vector<UnknownTerm> terms) {
+  Library library{.adds_to = std::move(adds_to), .terms = std::move(terms), .signals = {}};
+  library.signals.resize(library.terms.size());
+  parallel_for(search.jobs, static_cast<int>(library.terms.size()), [&](int k) {
+    const std::size_t t = static_cast<std::size_t>(k);
+    library.signals[t] = signal_of(search, last, base, library.adds_to, library.terms[t]);
+  });
+  return library;
+}
+
+ProjectedColumns joined(const Library& library, const std::vector<std::size_t>& chosen,
+                        const LinearBase& base) {
+  ProjectedColumns out;
+  const Eigen::Index rows = base.residual().size();
+  out.columns.resize(rows, static_cast<Eigen::Index>(chosen.size()));
+  out.coupling.resize(library.signals[chosen.front()].coupling.rows(), out.columns.cols());
+  for (std::size_t c = 0; c < chosen.size(); ++c) {
+    out.columns.col(static_cast<Eigen::Index>(c)) = library.signals[chosen[c]].columns.col(0);
+    out.coupling.col(static_cast<Eigen::Index>(c)) = library.signals[chosen[c]].coupling.col(0);
+  }
+  out.gram = out.columns.transpose() * out.columns;
+  return out;
+}
+
+struct Selection {
+  std::vector<std::size_t> chosen;
+  std::vector<double> coefficients;  // multiples of the terms' sizes
+  double gain = 0.0;
+};
+
+// The term that adds most; nothing when it adds no more than chance or than what matters.
+bool add_best(const Library& library, const LinearBase& base, const std::vector<Eigen::VectorXd>& noise,
+              Selection& selection) {
+  double best = selection.gain, chance = 0.0;
+  std::size_t which = library.terms.size();
+  LinearGain found;
+  for (std::size_t t = 0; t < library.terms.size(); ++t) {
+    const bool usable = library.signals[t].columns.cols() == 1 && library.signals[t].kept > 1e-6;
+    if (!usable || std::find(selection.chosen.begin(), selection.chosen.end(), t) != selection.chosen.end())
+      continue;
+    std::vector<std::size_t> chosen = selection.chosen;
+    chosen.push_back(t);
+    const ProjectedColumns columns = joined(library, chosen, base);
+    const std::vector<bool> free(chosen.size(), true);
+    for (const Eigen::VectorXd& n : noise) {
+      chance = std::max(chance, base.gain_in_noise(library.signals[t], {true}, n));
+    }
+    LinearGain gain = base.gain(columns, free);
+    if (gain.gain <= best) continue;
+    best = gain.gain;
+    which = t;
+    found = std::move(gain);
+  }
+  const double added = best - selection.gain;
+  if (which == library.terms.size() || added < kLeastGain * base.energy() || added < kOverChance * chance)
+    return false;
+  selection.chosen.push_back(which);
+  selection.coefficients = found.coefficients;
+  selection.gain = best;
+  return true;
+}
+
+double torque_scale(const Search& search, const Candidate& model) {
+  const DriveParams<double> d = drive_of(model);
+  if (d.resistance_ohm > 0.0 && d.supply_voltage_V > 0.0) {
+    return 0.02 * d.torque_constant_Nm_per_A * d.supply_voltage_V / d.resistance_ohm;
+  }
+  double most = 0.0;
+  for (const Run& run : search.dataset->runs) {
+    for (const char* name : {"motor_torque", "load_torque"}) {
+      const std::vector<double>* torque = run.signal(name);
+      if (torque == nullptr) continue;
+      for (const double v : *torque) most = std::isfinite(v) ? std::max(most, std::abs(v)) : most;
+    }
+  }
+  return most > 0.0 ? 0.02 * most : 0.01;
+}
+
+std::vector<RegimeError> telling_curves(const Comparison& comparison) {
+  std::vector<RegimeError> curves;
+  for (const RegimeError& r : comparison.regimes) {
+    if (r.use == Use::kFit && r.explained_fraction > 0.0) curves.push_back(r);
+  }
+  std::stable_sort(curves.begin(), curves.end(), [](const RegimeError& a, const RegimeError& b) {
+    return a.explained_fraction > b.explained_fraction;
+  });
+  if (curves.size() > kMostCurves) curves.resize(kMostCurves);
+  return curves;
+}
+
+// A formula of one place that holds on the held-out runs; gain 0: none.
+struct Found {
+  EffectUse use;
+  double gain = 0.0;
+};
+
+Found formula_of(const Search& search, const Fitted& last, const LinearBase& base, const Library& library,
+                 const std::vector<Eigen::VectorXd>& noise) {
+  Selection selection;
+  while (selection.chosen.size() < kMostTerms && add_best(library, base, noise, selection)) {
+  }
+  if (selection.chosen.empty()) return {};
+  std::vector<UnknownTerm> terms;
+  std::vector<double> coefficients;
+  for (std::size_t c = 0; c < selection.chosen.size(); ++c) {
+    terms.push_back(library.terms[selection.chosen[c]]);
+    coefficients.push_back(terms.back().size * selection.coefficients[c]);
+  }
+  Screened start;
+  start.start = formula_use("rest", library.adds_to, terms, coefficients, last.fit.model.file.linear);
+  if (start.start.entry == nullptr) return {};
+  start.entry = start.start.entry;
+  start.name = effect_name(start.start);
+  start.share = selection.gain / base.energy();
+  RefitSetup setup;
+  setup.predictor = search.predictor;
+  setup.uses = search.uses;
+  setup.seen = search.seen;
+  setup.nominal = search.nominal;
+  setup.seed = search.seed;
+  setup.jobs = search.jobs;
+  const Fitted with = refit(setup, last, start);
+  const Judgement judgement = judge(search.judging, last, with, start.name, kOverChance);
+  if (!judgement.accepted) return {};
+  for (const EffectUse& use : with.fit.model.effects) {
+    if (effect_name(use) == start.name) return {.use = use, .gain = 1.0 - judgement.holdout.ratio};
+  }
+  return {};
+}
+
+}  // namespace
+
+UnknownStructure unknown_structure(const Search& search, const Fitted& last, const Comparison& comparison) {
+  UnknownStructure out;
+  const Evidence& fit = (*search.uses)[0];
+  Eigen::VectorXd scale = fit.mean_square(last.residual[0]).cwiseSqrt();
+  const LinearBase base(fit, last.fit.model, unknowns_with_priors(last.fit.model, *search.nominal), scale,
+                        search.jobs);
+  out.curves = telling_curves(comparison);
+  if (!base.usable()) return out;
+  DataScale data;
+  for (const double v : fit.track(last.fit.model, "speed")) {
+    if (std::isfinite(v)) data.top_speed_rad_s = std::max(data.top_speed_rad_s, std::abs(v));
+  }
+  for (const OrderPeak& p : strong_orders(*search.predictor, fit, last.fit.model, base.residual(), 3)) {
+    data.orders.push_back(p.order);
+  }
+  out.where = where_of(comparison, data.orders.empty() ? 0.0 : data.orders.front());
+  const bool no_formulas =
+      search.dataset->rig != Rig::kAxis || !search.predictor->applies(*find_effect("expression")).empty();
+  if (no_formulas) return out;
+  std::vector<Eigen::VectorXd> noise;
+  for (const Eigen::VectorXd& n : search.null->fit_noise) noise.push_back(n.cwiseProduct(base.weights()));
+  Found best;
+  const Library torque = library_of(search, last, base, "torque_Nm",
+                                    torque_terms(last.fit.model, data, torque_scale(search, last.fit.model)));
+  const Library voltage = library_of(search, last, base, "voltage_V", voltage_terms(last.fit.model, data));
+  for (const Library* library : {&torque, &voltage}) {
+    if (library->terms.empty()) continue;
+    Found found = formula_of(search, last, base, *library, noise);
+    if (found.gain > best.gain) best = std::move(found);
+  }
+  if (best.gain > 0.0) {
+    const Expression* expression = expression_of(best.use);
+    out.formula = expression->text.adds_to + " += " + expression->text.formula;
+    out.expression_toml = write_expression(best.use);
+  }
+  return out;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,48 @@
+// A simulated bench's afternoon as text in the measurement format "omnihil-dataset/1", rig "axis".
+//
+//   AxisBench bench{.title = "…", .model = model, .runs = {{"steps", "fit", "steps", input, samples}}};
+//   dataset_text(bench), axis_model_text(bench.model), run_csv(bench, bench.runs[0])
+//
+// Columns: what was asked, bus voltage and current with noise, encoder counts rounded down (or position and
+// velocity with noise where there is no encoder), winding temperature where the model has one.
+// The model that goes with it is the nominal one: effects added for this run are what the data are to show.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/bench/axis_sim.h"
+#include "sim/model/axis_model.h"
+
+namespace omnihil {
+
+struct AxisNoise {
+  double bus_voltage_V = 0.02;
+  double motor_current_A = 0.03;
+  double position_rad = 1e-4;  // where the rig has no encoder
+  double winding_K = 0.2;
+};
+
+struct AxisBenchRun {
+  std::string name;        // of the CSV, without .csv
+  std::string use;         // "fit", "holdout", "extrapolation"
+  std::string excitation;  // free text
+  AxisInput input;
+  std::vector<AxisSample<double>> samples;
+  std::uint64_t seed = 0;  // of its noise
+};
+
+struct AxisBench {
+  std::string title;
+  AxisModel model;
+  std::vector<AxisBenchRun> runs;
+  AxisNoise noise;
+  bool has_temperature = false;  // some effect models the winding's temperature
+};
+
+std::string dataset_text(const AxisBench& bench);
+std::string run_csv(const AxisBench& bench, const AxisBenchRun& run);
+// The base parameters and the effects of the model's own file, flattened into one text.
+std::string axis_model_text(const AxisModel& model);
+
+}  // namespace omnihil

@@ -1,0 +1,250 @@
+#include "sim/drive/phase_circuit.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+
+#include "sim/drive/phase_conduction.h"
+
+namespace omnihil {
+namespace {
+
+using namespace phase_detail;
+
+constexpr int kMaxParts = 12;  // of one step; each ends with a diode's current at zero
+// A stretch of time with fixed conduction.
+struct Part {
+  double h_s = 0.0;
+  double decay = 0.0;
+  double mean_decay = 0.0;  // (1 - decay) tau / h
+  double omega_mid_rad_s = 0.0;
+  Three settled_A{};  // where each current would go
+};
+
+void set_length(const PhaseCircuit& c, Part& p, double h_s, double decay) {
+  p.h_s = h_s;
+  p.decay = decay;
+  p.mean_decay = h_s > 0.0 ? (1.0 - decay) * c.time_constant_s / h_s : 1.0;
+}
+
+// What drives the phases, whatever the part's length.
+struct Drive {
+  Three constant;        // K_x, V s/rad
+  Three volt_V, emf;     // V_x - mean V and K_x - mean K over the conducting phases; 0 of floating ones
+  double driven = 0.0;   // sum K_x volt_x
+  double kept = 0.0;     // sum K_x i0_x
+  double damping = 0.0;  // sum emf_x^2
+};
+
+Drive drive_of(const Conduction& on, const Three& constant, const Three& current_A) {
+  Drive d;
+  d.constant = constant;
+  const double mean_V = mean_of(on, on.volt_V), mean_K = mean_of(on, constant);
+  each_phase([&](auto x) {
+    d.volt_V[x] = on.on[x] * (on.volt_V[x] - mean_V);
+    d.emf[x] = on.on[x] * (constant[x] - mean_K);
+    d.driven += constant[x] * d.volt_V[x];
+    d.kept += constant[x] * current_A[x];
+    d.damping += d.emf[x] * d.emf[x];
+  });
+  return d;
+}
+
+// Fills speed, settled and mean currents for the part's length.
+void solve(const PhaseCircuit& c, const PhaseState& s, const Drive& d, const PhaseInput& in, Part& p) {
+  p.omega_mid_rad_s = s.omega_rotor_rad_s;
+  if (!in.speed_is_imposed) {
+    // mean i_x = g (volt_x - emf_x w) + phi i0_x;  torque = T0 - G w
+    const double gain = (1.0 - p.mean_decay) * c.conductance_per_ohm;
+    const double torque = gain * d.driven + p.mean_decay * d.kept;
+    const double twice_inertia = 2.0 * c.inertia_kg_m2;
+    // w_mid = w_0 + h / (2 J) (T0 - G w_mid - b w_mid - tau_load)
+    p.omega_mid_rad_s = (twice_inertia * s.omega_rotor_rad_s + p.h_s * (torque - in.tau_load_Nm)) /
+                        (twice_inertia + p.h_s * (gain * d.damping + c.viscous_Nm_s_per_rad));
+  }
+  each_phase(
+      [&](auto x) { p.settled_A[x] = (d.volt_V[x] - d.emf[x] * p.omega_mid_rad_s) * c.conductance_per_ohm; });
+}
+
+// The diode whose current reaches zero first within the part, or kNone. remaining: exp(-t / tau) there.
+std::size_t first_zero(const PhaseState& s, const Conduction& on, const Part& p, double& remaining) {
+  Three end_A;
+  each_phase([&](auto x) {
+    end_A[x] = on.direction[x] * (p.settled_A[x] + (s.current_A[x] - p.settled_A[x]) * p.decay);
+  });
+  if (std::min(std::min(end_A[0], end_A[1]), end_A[2]) >= 0.0) return kNone;
+  std::size_t first = kNone;
+  for (std::size_t x = 0; x < 3; ++x) {
+    if (end_A[x] >= 0.0) continue;
+    // i_inf + (i_0 - i_inf) exp(-t / tau) = 0
+    const double i0 = s.current_A[x], settled = p.settled_A[x];
+    const double there = i0 == 0.0 ? 1.0 : settled / (settled - i0);
+    if (first == kNone || there > remaining) first = x, remaining = there;
+  }
+  return first;
+}
+
+void book(const PhaseState& s, const Conduction& on, const Three& constant, const PhaseInput& in,
+          const Part& p, PhaseFlow& flow) {
+  // integral of (i_inf + d exp(-t / tau))^2 = i_inf^2 h + 2 i_inf d phi h + d^2 (1 + decay) phi h / 2
+  const double ring_s = p.mean_decay * p.h_s, ring2_s = 0.5 * (1.0 + p.decay) * ring_s;
+  double square = 0.0, torque = 0.0, bus_A = 0.0, drop_W = 0.0;
+  each_phase([&](auto x) {
+    const double d = s.current_A[x] - p.settled_A[x], mean_A = p.settled_A[x] + d * p.mean_decay;
+    square += p.settled_A[x] * (p.settled_A[x] * p.h_s + 2.0 * d * ring_s) + d * d * ring2_s;
+    torque += constant[x] * mean_A;
+    flow.charge_C[x] += mean_A * p.h_s;
+    bus_A += on.source[x]->bus_share * mean_A;
+    drop_W += on.source[x]->drop_V * mean_A;
+  });
+  const double bus_C = bus_A * p.h_s, impulse_Nm_s = torque * p.h_s;
+  flow.time_s += p.h_s;
+  flow.square_A2_s += square;
+  flow.bus_charge_C += bus_C;
+  flow.bus_J += bus_C * in.bus_voltage_V;
+  flow.drop_J += drop_W * p.h_s;
+  flow.impulse_Nm_s += impulse_Nm_s;
+  flow.mechanical_J += impulse_Nm_s * p.omega_mid_rad_s;
+  flow.angle_rad += p.omega_mid_rad_s * p.h_s;
+}
+
+void finish(PhaseState& s, const PhaseInput& in, const Part& p) {
+  each_phase([&](auto x) { s.current_A[x] = p.settled_A[x] + (s.current_A[x] - p.settled_A[x]) * p.decay; });
+  s.theta_rotor_rad += p.omega_mid_rad_s * p.h_s;
+  if (!in.speed_is_imposed) s.omega_rotor_rad_s = 2.0 * p.omega_mid_rad_s - s.omega_rotor_rad_s;
+}
+
+// The phase's current is exactly zero; the others keep their sum at zero.
+void extinguish(PhaseState& s, std::size_t x) {
+  const double rest_A = 0.5 * s.current_A[x];
+  s.current_A[x] = 0.0;
+  double& y = s.current_A[(x + 1) % 3];
+  double& z = s.current_A[(x + 2) % 3];
+  if (y == 0.0 || z == 0.0) {
+    y = z = 0.0;
+  } else {
+    y += rest_A;
+    z = -y;
+  }
+}
+
+// The usual case, apart because it costs a third: two phases carry the same current, the third floats within
+// its diodes' voltages, nothing ends. Does nothing and returns false if it is not that.
+bool advance_pair(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs, const Three& constant,
+                  const PhaseInput& in, const Part& p, PhaseFlow& flow) {
+  const Three& i = s.current_A;
+  const bool a = !legs[0].always && i[0] == 0.0, b = !legs[1].always && i[1] == 0.0;
+  const bool third = !legs[2].always && i[2] == 0.0;
+  if (a + b + third != 1) return false;
+  const std::size_t f = a ? 0 : (b ? 1 : 2), h = a ? 1 : 0, l = third ? 1 : 2;
+  const LegSource& from = i[h] < 0.0 ? legs[h].backward : legs[h].forward;
+  const LegSource& to = i[l] < 0.0 ? legs[l].backward : legs[l].forward;
+  const double w = s.omega_rotor_rad_s, current_A = i[h];
+  const double floating_V =
+      0.5 * (from.volt_V + to.volt_V) + (constant[f] - 0.5 * (constant[h] + constant[l])) * w;
+  if (floating_V > legs[f].backward.volt_V || floating_V < legs[f].forward.volt_V) return false;
+  // L di/dt = drive - emf w - R i,   torque = 2 emf i
+  const double drive_V = 0.5 * (from.volt_V - to.volt_V), emf = 0.5 * (constant[h] - constant[l]);
+  double omega_mid = w;
+  if (!in.speed_is_imposed) {
+    const double gain = (1.0 - p.mean_decay) * c.conductance_per_ohm;
+    const double torque = 2.0 * emf * (gain * drive_V + p.mean_decay * current_A);
+    const double twice_inertia = 2.0 * c.inertia_kg_m2;
+    omega_mid = (twice_inertia * w + p.h_s * (torque - in.tau_load_Nm)) /
+                (twice_inertia + p.h_s * (2.0 * emf * emf * gain + c.viscous_Nm_s_per_rad));
+  }
+  const double settled_A = (drive_V - emf * omega_mid) * c.conductance_per_ohm, d = current_A - settled_A;
+  const double end_A = settled_A + d * p.decay;
+  if (!(legs[h].always && legs[l].always) && end_A * current_A < 0.0) return false;
+  const double mean_A = settled_A + d * p.mean_decay, charge_C = mean_A * p.h_s;
+  const double ring_s = p.mean_decay * p.h_s, impulse_Nm_s = 2.0 * emf * charge_C;
+  const double bus_C = (from.bus_share - to.bus_share) * charge_C;
+  flow.time_s += p.h_s;
+  flow.charge_C[h] += charge_C;
+  flow.charge_C[l] -= charge_C;
+  flow.square_A2_s +=
+      2.0 * (settled_A * (settled_A * p.h_s + 2.0 * d * ring_s) + 0.5 * d * d * (1.0 + p.decay) * ring_s);
+  flow.bus_charge_C += bus_C;
+  flow.bus_J += bus_C * in.bus_voltage_V;
+  flow.drop_J += (from.drop_V - to.drop_V) * charge_C;
+  flow.impulse_Nm_s += impulse_Nm_s;
+  flow.mechanical_J += impulse_Nm_s * omega_mid;
+  flow.angle_rad += omega_mid * p.h_s;
+  s.current_A[h] = end_A;
+  s.current_A[l] = -end_A;
+  s.theta_rotor_rad += omega_mid * p.h_s;
+  if (!in.speed_is_imposed) s.omega_rotor_rad_s = 2.0 * omega_mid - w;
+  return true;
+}
+
+}  // namespace
+
+PhaseCircuit make_phase_circuit(const PhaseMotor<double>& m, double switch_resistance_ohm, double step_s,
+                                double extra_inertia_kg_m2) {
+  PhaseCircuit c;
+  c.step_s = step_s;
+  c.winding_ohm = m.resistance_ohm;
+  c.device_ohm = switch_resistance_ohm;
+  c.inductance_H = 0.5 * (m.inductance_d_H + m.inductance_q_H);
+  c.conductance_per_ohm = 1.0 / (c.winding_ohm + c.device_ohm);
+  c.time_constant_s = c.inductance_H * c.conductance_per_ohm;
+  c.decay = std::exp(-step_s / c.time_constant_s);
+  c.mean_decay = (1.0 - c.decay) * c.time_constant_s / step_s;
+  c.pole_pairs = m.pole_pairs;
+  c.back_emf_V_s_per_rad = m.pole_pairs * m.flux_linkage_Wb;
+  c.inertia_kg_m2 = m.rotor_inertia_kg_m2 + extra_inertia_kg_m2;
+  c.viscous_Nm_s_per_rad = m.viscous_friction_Nm_s_per_rad;
+  c.sine = m.back_emf.shape == BackEmfShape::kSine;
+  c.trapezoid_slope = c.sine ? 0.0 : trapezoid_slope(m.back_emf);
+  assert(step_s > 0.0 && c.time_constant_s > 0.0 && c.inertia_kg_m2 > 0.0);
+  return c;
+}
+
+void advance_circuit(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                     const PhaseInput& in, double h_s, PhaseFlow& flow) {
+  Part p;
+  if (h_s == c.step_s) {
+    p.h_s = h_s;
+    p.decay = c.decay;
+    p.mean_decay = c.mean_decay;
+  } else {
+    set_length(c, p, h_s, std::exp(-h_s / c.time_constant_s));
+  }
+  std::size_t barred = kNone;
+  for (int part = 1;; ++part) {
+    const Three constant = phase_constants(c, s.theta_rotor_rad + 0.5 * p.h_s * s.omega_rotor_rad_s);
+    if (barred == kNone && advance_pair(c, s, legs, constant, in, p, flow)) return;
+    const double w = s.omega_rotor_rad_s;
+    const Conduction on =
+        conduction_of(s.current_A, legs, {constant[0] * w, constant[1] * w, constant[2] * w}, barred);
+    const Drive drive = drive_of(on, constant, s.current_A);
+    std::size_t zero = kNone;
+    double left_s = 0.0, left_decay = 1.0;
+    // First over all that is left; once more, shorter, if a diode's current ends within.
+    for (bool shortened = false;; shortened = true) {
+      solve(c, s, drive, in, p);
+      if (shortened || part == kMaxParts) break;
+      double remaining = 1.0;
+      zero = first_zero(s, on, p, remaining);
+      if (zero == kNone) break;
+      ++flow.events;
+      const double zero_s = -c.time_constant_s * std::log(remaining);
+      left_s = p.h_s - zero_s;
+      left_decay = p.decay / remaining;
+      set_length(c, p, zero_s, remaining);
+      if (zero_s <= 0.0) break;
+    }
+    if (p.h_s > 0.0) {
+      book(s, on, constant, in, p, flow);
+      finish(s, in, p);
+    }
+    if (zero == kNone) return;
+    barred = p.h_s > 0.0 ? kNone : zero;
+    extinguish(s, zero);
+    if (left_s <= 0.0) return;
+    set_length(c, p, left_s, left_decay);
+  }
+}
+
+}  // namespace omnihil

@@ -1,0 +1,145 @@
+// What is known about one physical effect that a drive or a robot may have: everything but its law.
+//
+//   const EffectEntry* e = find_effect("cogging");            // effect_registry.h
+//   e->info->equation;                                        // "tau += sum_k A_k sin(k n theta + p_k)"
+//   e->info->params[0].unit;                                  // "N m"
+//
+// One effect is one file in sim/effects/; how to write one: docs/effects/README.md.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+
+namespace omnihil {
+
+template <typename T>
+struct DriveParams;  // sim/law/drive_params.h
+
+// Where an effect acts, in the order in which a step meets them.
+enum class Place : std::uint8_t {
+  kCommand,  // what is asked of the drive: duty, voltage, torque, position target
+  kSupply,   // bus voltage
+  kBridge,   // mean voltage at the winding, current limit
+  kWinding,  // resistance, inductance, torque and back-EMF constant
+  kTorque,   // torques and friction on the rotor
+  kShaft,    // play and compliance between rotor and output
+  kContact,  // wheel on floor
+  kBody,     // forces on the robot, its mass
+  kSensor,   // what encoders and sensors see
+  kTiming,   // how old a measurement is
+};
+inline constexpr int kPlaces = 10;
+std::string_view place_name(Place place);
+
+// What a parameter is to its effect.
+enum class ParamRole : std::uint8_t {
+  kStrength,  // at its neutral value the effect is exactly absent (all strengths and details at neutral)
+  kShape,     // no effect of its own: order, phase, width
+  kDetail,    // a further strength that stays at neutral unless it is asked for (a second harmonic)
+};
+
+inline constexpr double kNoNeutral =
+    std::numeric_limits<double>::quiet_NaN();  // compile-time mark of shape rows
+
+struct EffectParam {
+  std::string_view name;  // the unit is its suffix
+  std::string_view unit;  // "N m"; "1": a ratio
+  ParamRole role = ParamRole::kStrength;
+  double neutral = 0.0;  // kStrength and kDetail
+  double typical = 0.0;  // a visible size, used by documentation and tests; start value of a shape
+  double lower = 0.0;
+  double upper = 0.0;
+  // Prior of a fit: half-normal (normal if the bounds straddle neutral) of this scale about neutral, with
+  // finite density there; a shape's is normal about its start value. 0: flat within the bounds.
+  double prior_scale = 0.0;
+  std::string_view what;  // one line
+  std::string_view how;   // how to measure it
+  // Start value of a shape, visible size of a strength, from the motor at hand (a cogging order from poles
+  // and slots, the compliance that rings at some frequency); null: `typical`.
+  double (*start_for)(const DriveParams<double>&) = nullptr;
+};
+
+struct EffectState {
+  std::string_view name;
+  std::string_view unit;
+  double initial = 0.0;
+};
+
+// Properties that a test holds against every effect that claims them.
+enum ClaimBit : std::uint32_t {
+  kClaimNone = 0,
+  kDissipative = 1u << 0,   // never adds energy to the mechanism
+  kOdd = 1u << 1,           // speed, current, voltage and torque reversed: the effect reversed
+  kConservative = 1u << 2,  // its torque does no work over a turn
+  kRandom = 1u << 3,        // draws random numbers: needs a seed
+  // At neutral no signal changes with its strength to first order (a limit that nothing reaches, a square).
+  // A fit that starts there alone never leaves: give it a second start away from neutral.
+  kFlatAtNeutral = 1u << 4,
+  kCountsPulses = 1u << 5,  // makes a speed of pulses; its first parameter says how many there are in a turn
+};
+
+// What a numerical treatment has to know of a law, besides its equation.
+enum NumericsBit : std::uint32_t {
+  kNumericsPlain = 0,
+  kStiff = 1u << 0,        // faster than a millisecond: short sub-steps
+  kFine = 1u << 1,         // changes within a sample: many times a turn, or a part of a sample late
+  kImpacts = 1u << 2,      // parts meet and leave: exact derivatives multiply up from one impact to the next
+  kDelays = 1u << 3,       // its strength is a delay of the command
+  kHidesDelays = 1u << 4,  // a limit behind a delay: the delay's derivative is zero behind it
+};
+
+enum RigsBit : std::uint32_t { kOnAxis = 1u << 0, kOnRobot = 1u << 1, kOnBoth = 3u };
+
+// How good the sensors are, for the smallest size of an effect that they can show.
+struct SensorSet {
+  double counts_per_turn = 4096;  // encoder on the rotor
+  double rate_Hz = 1000;
+  double current_sigma_A = 0.03;
+  double voltage_sigma_V = 0.02;
+  double duration_s = 20;
+};
+
+// Which picture shows the effect best: y over x of a simulated axis, with the effect and without.
+struct EffectPlot {
+  // sim/bench/excitation.h; or "turn", "locked", "stall", "servo" (sim/pages/effect_picture.cc)
+  std::string_view excitation = "steps";
+  std::string_view x = "time";  // signals of AxisSample
+  std::string_view y = "velocity";
+  double from_s = 0.0;
+  double to_s = 2.0;
+};
+
+struct EffectInfo {
+  std::string_view id;
+  std::string_view title;
+  std::string_view equation;
+  std::string_view source;  // author, year, number
+  std::string_view cannot;  // what it does not represent
+  Place place = Place::kTorque;
+  std::string_view target = "";             // of a user's formula: what it adds to, "torque_Nm"
+  std::array<std::string_view, 8> twins{};  // ids, or base parameters by path; as many as there are
+  std::string_view reveals;                 // the experiment, and the signal in which it shows
+  std::string_view visible;                 // the smallest size that can be seen, in words
+  // Of the first strength, by the simple estimator that `visible` names; null: `visible` says why not.
+  double (*min_visible)(const SensorSet&) = nullptr;
+  std::uint32_t claims = kClaimNone;
+  std::uint32_t numerics = kNumericsPlain;
+  std::uint32_t rigs = kOnBoth;
+  std::span<const EffectParam> params;
+  std::span<const EffectState> states{};
+  // An effect whose states this one reads; it is run along, at neutral strength if the model does not have
+  // it.
+  std::string_view needs = "";
+  EffectPlot plot{};
+};
+
+// The row that an effect's size is told by: its first strength.
+constexpr std::size_t first_strength(const EffectInfo& info) {
+  std::size_t row = 0;
+  while (row + 1 < info.params.size() && info.params[row].role != ParamRole::kStrength) ++row;
+  return row;
+}
+
+}  // namespace omnihil

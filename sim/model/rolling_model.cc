@@ -1,0 +1,37 @@
+#include "sim/model/rolling_model.h"
+
+#include <numbers>
+
+#include "sim/model/axis_model.h"
+
+namespace omnihil {
+namespace {
+
+bool given(const ParameterTable& table, std::string_view section) {
+  for (const Parameter& p : table.parameters) {
+    if (p.row->section == section && p.origin != Origin::kDefault && !p.values.empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+RollingParams<double> rolling_params(const ParameterTable& table) {
+  RollingParams<double> p;
+  p.drive = drive_params_of(table);
+  p.drive.coulomb_friction_Nm = 0.0;  // the effect of that name
+  for (const std::string_view path : rolling_paths()) {
+    double* number = rolling_number(p, path);
+    *number = table.value_or(path, *number);
+  }
+  if (const Parameter* angles = table.find("robot.wheel_angle_deg"); angles != nullptr) {
+    for (std::size_t i = 0; i < kWheels && i < angles->values.size(); ++i) {
+      p.wheel_angle_rad[i] = angles->values[i] * std::numbers::pi / 180.0;
+    }
+  }
+  p.has_tyre = given(table, "tyre.longitudinal");
+  p.has_lateral_tyre = given(table, "tyre.lateral");
+  return p;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,130 @@
+// Scenario files: what is read, and every problem of a bad one with its place.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "hil/scenario/scenario.h"
+#include "hil/scenario/scenario_rows.h"
+#include "hil/scenario/scenario_suite.h"
+#include "sim/law/random.h"
+
+namespace omnihil {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kSuite = fs::path(OMNIHIL_SOURCE_DIR) / "examples/scenarios";
+const fs::path kBroken = fs::path(OMNIHIL_SOURCE_DIR) / "tests/hil/scenario/broken_files";
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+constexpr std::string_view kGood = R"(format = "omnihil-scenario/1"
+title = "t"
+duration_s = 2.0
+[[step]]
+at_s = 0.1
+do = "command"
+omega_wheel_rad_s = [1.0, 2, 3.0, 4.0]
+[[step]]
+at_s = 0.5
+for_s = 0.25
+do = "wheel_blocked"
+wheels = [1]
+[[check]]
+is = "wind_up"
+at_most_ratio = 0.1
+[[check]]
+is = "rise_time"
+at_most_s = 0.2
+)";
+
+TEST(ScenarioReader, ReadsStepsChecksAndTheirWindows) {
+  const ScenarioReading r = read_scenario(kGood, "good.toml");
+  ASSERT_TRUE(r.scenario) << r.problems.front().text();
+  const Scenario& s = *r.scenario;
+  ASSERT_EQ(s.steps.size(), 2u);
+  EXPECT_EQ(s.steps[0].command.mode, std::uint32_t{OMNIHIL_MODE_WHEEL_SPEED});
+  EXPECT_EQ(s.steps[0].command.omega_wheel_rad_s[3], 4.0);
+  EXPECT_EQ(s.steps[1].until_s, 0.75);
+  EXPECT_EQ(s.steps[1].line, 8);
+  EXPECT_EQ(s.checks[0].from_s, 0.75);  // from the release
+  EXPECT_EQ(s.checks[0].to_s, 2.0);
+  EXPECT_EQ(s.checks[0].wheels, (WheelSet{false, true, false, false}));
+  EXPECT_EQ(s.checks[1].from_s, 0.1);  // from the command to the next step
+  EXPECT_EQ(s.checks[1].to_s, 0.5);
+}
+
+// Each file's comments say which problems it has: "# expect: LINE KEY".
+TEST(ScenarioReader, EveryProblemOfABadFileIsNamedWithItsLine) {
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(kBroken)) {
+    ++files;
+    const std::string text = text_of(entry.path());
+    const ScenarioReading r = read_scenario(text, entry.path().filename().string());
+    EXPECT_FALSE(r.scenario) << entry.path();
+    std::istringstream lines(text);
+    std::size_t expected = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.rfind("# expect: ", 0) != 0) continue;
+      ++expected;
+      std::istringstream words(line.substr(10));
+      int at = 0;
+      std::string key;
+      words >> at >> key;
+      const bool found = std::ranges::any_of(r.problems, [&](const ModelProblem& p) {
+        return p.line == at && (key.empty() || p.key.find(key) != std::string::npos) &&
+               (!p.allowed.empty() || key.empty());
+      });
+      std::string all;
+      for (const ModelProblem& p : r.problems) all += p.text() + "\n";
+      EXPECT_TRUE(found) << entry.path() << ": " << line << "\n" << all;
+    }
+    EXPECT_EQ(r.problems.size(), expected) << entry.path();
+  }
+  EXPECT_GE(files, 5);
+}
+
+// Bytes changed, dropped and doubled at places that a counter picks: read or refused with a reason, no third.
+TEST(ScenarioReader, DamagedFilesAreReadOrRefusedWithAReason) {
+  constexpr std::string_view kBytes = "[]{}=\"\n.#0-9eE'x\\ ";
+  int refused = 0;
+  for (std::uint64_t n = 0; n < 2000; ++n) {
+    std::string text(kGood);
+    for (std::uint64_t k = 0; k < 3; ++k) {
+      const std::uint64_t bits = random_bits(1, n, k);
+      const std::size_t at = bits % text.size();
+      const char byte = kBytes[(bits >> 20) % kBytes.size()];
+      if ((bits >> 40) % 3 == 0) text[at] = byte;
+      if ((bits >> 40) % 3 == 1) text.erase(at, 1 + (bits >> 44) % 9);
+      if ((bits >> 40) % 3 == 2) text.insert(at, text.substr(at, 1 + (bits >> 44) % 40));
+    }
+    const ScenarioReading r = read_scenario(text, "damaged.toml");
+    EXPECT_NE(r.scenario.has_value(), !r.problems.empty()) << text;
+    refused += r.scenario ? 0 : 1;
+  }
+  EXPECT_GT(refused, 1000);
+}
+
+TEST(ScenarioReader, ShippedSuiteReadsAndShowsEveryStepAndCheck) {
+  const SuiteReading suite = read_suite({kSuite.string()}, "");
+  for (const std::string& problem : suite.problems) ADD_FAILURE() << problem;
+  for (const StepRow& row : step_rows()) {
+    EXPECT_TRUE(std::ranges::any_of(suite.scenarios, [&](const Scenario& s) {
+      return std::ranges::find(s.steps, row.kind, &ScenarioStep::kind) != s.steps.end();
+    })) << row.word;
+  }
+  for (const CheckRow& row : check_rows()) {
+    EXPECT_TRUE(std::ranges::any_of(suite.scenarios, [&](const Scenario& s) {
+      return std::ranges::find(s.checks, row.kind, &ScenarioCheck::kind) != s.checks.end();
+    })) << row.word;
+  }
+}
+
+}  // namespace
+}  // namespace omnihil

@@ -1,0 +1,190 @@
+// What the robot's model says its sensors would have shown.
+#include "identify/predict/predictor_robot.h"
+
+#include <cstdlib>
+
+#include "hil/dataset/dataset_reader.h"
+#include "identify/compare/comparison.h"
+#include "identify/estimate/fit.h"
+#include "identify/estimate/null_model.h"
+#include "tests/identify/robot_world.h"
+
+namespace omnihil::test {
+namespace {
+
+std::unique_ptr<Predictor> world_of(const Candidate& truth, bool bus = true, double duration_s = 8.0) {
+  return make_predictor(blank_robot(duration_s, bus), robot_candidate(), {})->simulated(truth, 7);
+}
+
+// Root mean square of whitened residuals over the noise, per signal.
+std::map<std::string, double> errors(const Predictor& p, const Candidate& c, int run = 0) {
+  std::map<std::string, double> out;
+  const Prediction y = p.predict(c, run);
+  for (std::size_t s = 0; s < p.compared(run).size(); ++s) {
+    const ComparedSignal& signal = p.compared(run)[s];
+    std::vector<double> r(signal.measured.size());
+    for (std::size_t k = 0; k < r.size(); ++k) r[k] = signal.measured[k] - y.values[s][k];
+    double square = 0.0, count = 0.0;
+    for (const double v : whitened(signal, r)) {
+      if (std::isfinite(v)) square += v * v, count += 1.0;
+    }
+    out[signal.name] = std::sqrt(square / count) / signal.whitened_sigma;
+  }
+  return out;
+}
+
+Candidate with_typical(Candidate c, const std::vector<std::string>& effects) {
+  for (const std::string& id : effects) {
+    c = with_effect(c, *find_effect(id));
+    const DriveParams<double> drive = drive_of(c);
+    c.effects.back() = typical_use(*find_effect(id), &drive);
+  }
+  return c;
+}
+
+TEST(PredictorRobot, TheModelThatMadeTheDataLeavesTheNoise) {
+  for (const bool bus : {false, true}) {
+    const Candidate truth =
+        with_typical(robot_candidate(), {"cogging", "lateral_roller_friction", "floor_tilt"});
+    const auto world = world_of(truth, bus);
+    for (const auto& [signal, error] : errors(*world, truth)) {
+      EXPECT_NEAR(error, 1.0, 0.15) << signal << ", bus measured: " << bus;
+    }
+  }
+}
+
+// A robot whose motors differ strays by metres from the way of a model that does not know it. The null of
+// that model is what its sensors leave, wherever the robot went.
+TEST(PredictorRobot, TheNullIsWhatSensorsLeaveHoweverFarTheRobotStrayed) {
+  const Candidate nominal = robot_candidate(), truth = with_typical(nominal, {"motor_mismatch"});
+  const auto strayed = world_of(truth, false);
+  ASSERT_GT(errors(*strayed, nominal)["vision_theta"], 3.0);
+  const SignalKinds kinds = signal_kinds(*strayed);
+  const std::array<Evidence, kUses> uses{Evidence(*strayed, kinds, Use::kFit),
+                                         Evidence(*strayed, kinds, Use::kHoldout),
+                                         Evidence(*strayed, kinds, Use::kExtrapolation)};
+  const NullModel null = simulate_null(*strayed, nominal, uses, 3, 3, 2);
+  for (int k = 0; k < kinds.count(); ++k) {
+    const auto n = static_cast<std::size_t>(k);
+    EXPECT_NEAR(std::sqrt(null.floor(Use::kFit)[k]) / kinds.noise_sigma[n], 1.0, 0.15) << kinds.name[n];
+  }
+}
+
+TEST(PredictorRobot, EveryEffectThatAppliesShows) {
+  const Candidate nominal = robot_candidate();
+  for (const EffectEntry* entry : all_effects()) {
+    const std::string id(entry->info->id);
+    if (id == "coulomb_friction" || id == "expression") continue;
+    if (id == "duty_limit" || id == "thermal_derating") continue;  // beyond these duties, beyond this warmth
+    if (id == "sample_jitter") continue;                           // no expected value: noise_effect_test.cc
+    const bool needs_supply = entry->info->place == Place::kSupply;
+    const auto nothing = world_of(nominal, !needs_supply, 2.0);
+    if (!nothing->applies(*entry).empty()) continue;
+    const Prediction base = nothing->predict(nominal, 0);
+    const Prediction with = nothing->predict(with_typical(nominal, {id}), 0);
+    double largest = 0.0;
+    for (std::size_t s = 0; s < base.values.size(); ++s) {
+      for (std::size_t k = 0; k < base.values[s].size(); ++k) {
+        const double d =
+            std::abs(with.values[s][k] - base.values[s][k]) / nothing->compared(0)[s].noise_sigma;
+        if (std::isfinite(d)) largest = std::max(largest, d);
+      }
+    }
+    EXPECT_GT(largest, 1e-3) << id;
+  }
+}
+
+TEST(PredictorRobot, AnEffectAtNeutralChangesNoBit) {
+  const Candidate nominal = robot_candidate();
+  const auto world = world_of(nominal, false, 1.0);
+  const Prediction base = world->predict(nominal, 0);
+  for (const EffectEntry* entry : all_effects()) {
+    if (entry->info->id == "expression" || !world->applies(*entry).empty()) continue;
+    const Prediction with = world->predict(with_effect(nominal, *entry), 0);
+    for (std::size_t s = 0; s < base.values.size(); ++s) {
+      for (std::size_t k = 1; k < base.values[s].size(); ++k) {
+        if (std::isnan(base.values[s][k])) continue;
+        ASSERT_EQ(with.values[s][k], base.values[s][k]) << entry->info->id;
+      }
+    }
+  }
+}
+
+// Against central differences, away from kinks: a wheel that stops at another instant is one.
+TEST(PredictorRobot, DerivativesAreExact) {
+  const Candidate at =
+      with_typical(robot_candidate(), {"wheel_slip", "lateral_roller_friction", "rolling_resistance",
+                                       "payload", "vision_delay", "center_of_mass_offset", "battery_sag",
+                                       "winding_heating", "motor_mismatch", "floor_tilt"});
+  const auto world = world_of(at, false, 1.0);
+  const std::vector<Unknown> unknowns = unknowns_of(at);
+  const Prediction d = world->predict_with_derivatives(at, unknowns, 0);
+  std::vector<double> x;
+  for (const Unknown& u : unknowns) x.push_back(u.start);
+  for (std::size_t n = 0; n < unknowns.size(); ++n) {
+    const double h = 1e-5 * std::max(std::abs(unknowns[n].scale), 1e-9);
+    const auto moved = [&](double by) {
+      std::vector<double> there = x;
+      there[n] += by;
+      return world->predict(with_values(at, unknowns, there), 0);
+    };
+    const Prediction up = moved(h), down = moved(-h);
+    double error = 0.0, size = 0.0;
+    for (std::size_t s = 0; s < up.values.size(); ++s) {
+      const double noise = world->compared(0)[s].noise_sigma;
+      for (std::size_t k = 0; k < up.values[s].size(); ++k) {
+        const double expected = (up.values[s][k] - down.values[s][k]) / (2.0 * h) / noise;
+        const double got =
+            d.derivatives[s](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(n)) / noise;
+        if (!std::isfinite(expected)) continue;
+        error += (got - expected) * (got - expected);
+        size += expected * expected;
+      }
+    }
+    EXPECT_LT(std::sqrt(error), 0.01 * std::sqrt(size) + 1e-9) << unknowns[n].path;
+  }
+}
+
+TEST(PredictorRobot, ALateCameraIsSeenInThePoseAlone) {
+  const auto world = world_of(with_typical(robot_candidate(), {"vision_delay"}));
+  const auto error = errors(*world, robot_candidate());
+  EXPECT_GT(std::max(error.at("vision_x"), error.at("vision_y")), 3.0);
+  EXPECT_NEAR(error.at("velocity_1"), 1.0, 0.1);
+  EXPECT_NEAR(error.at("gyro_z"), 1.0, 0.1);
+}
+
+TEST(PredictorRobot, WhatCannotActSaysWhy) {
+  const auto world = world_of(robot_candidate(), true, 0.5);
+  for (const char* id : {"backlash", "hall_speed_estimator", "target_speed_limit", "dribbler_drag"}) {
+    EXPECT_NE(world->applies(*find_effect(id)), "") << id;
+  }
+  for (const char* id : {"wheel_slip", "cogging", "vision_delay", "floor_tilt"}) {
+    EXPECT_EQ(world->applies(*find_effect(id)), "") << id;
+  }
+}
+
+// A recording of a robot by a simulator that shares nothing with this one.
+TEST(PredictorRobot, SlowAnIndependentRobotIsExplainedToItsNoise) {
+  const char* shared = std::getenv("OMNIHIL_SHARED");
+  if (shared == nullptr) GTEST_SKIP() << "OMNIHIL_SHARED is not set";
+  const DatasetReading reading = read_dataset(std::string(shared) + "/data/robot_sample");
+  for (const ModelProblem& p : reading.problems) ADD_FAILURE() << p.text();
+  ASSERT_TRUE(reading.dataset);
+  const auto predictor = make_predictor(*reading.dataset, *reading.nominal, {});
+  const FitResult r = fit(*predictor, *reading.nominal, unknowns_of(*reading.nominal), {.jobs = 2});
+  for (int run = 0; run < predictor->run_count(); ++run) {
+    const Prediction y = predictor->predict(r.model, run);
+    for (std::size_t s = 0; s < y.values.size(); ++s) {
+      const ComparedSignal& signal = predictor->compared(run)[s];
+      double square = 0.0, count = 0.0;
+      for (std::size_t k = 0; k < y.values[s].size(); ++k) {
+        const double e = signal.measured[k] - y.values[s][k];
+        if (std::isfinite(e)) square += e * e, count += 1.0;
+      }
+      EXPECT_LT(std::sqrt(square / count), 1.1 * signal.noise_sigma) << run << " " << signal.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace omnihil::test

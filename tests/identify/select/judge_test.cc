@@ -1,0 +1,300 @@
+#include "identify/select/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "identify/estimate/linear_base.h"
+#include "sim/law/random.h"
+#include "tests/identify/fake_evidence.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kSamples = 4000;
+
+std::vector<double> noise_of(double sigma, std::uint64_t stream) {
+  std::vector<double> out;
+  for (int i = 0; i < kSamples; ++i)
+    out.push_back(sigma * gaussian(1, stream, static_cast<std::uint64_t>(i)));
+  return out;
+}
+
+// Runs of noise, one per use; residuals are made by the tests.
+const FakePredictor& three_runs() {
+  static const FakePredictor kRuns = [] {
+    FakePredictor fake;
+    for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation})
+      fake.add(use, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
+    return fake;
+  }();
+  return kRuns;
+}
+
+struct Court : FakeEvidence {
+  Court() : FakeEvidence(three_runs()) {}
+
+  // A model that leaves noise of these sizes.
+  Fitted leaving(double fit, double holdout, double extrapolation) const {
+    Fitted out;
+    out.finite = true;
+    const std::array<double, kUses> sizes{fit, holdout, extrapolation};
+    for (std::size_t u = 0; u < kUses; ++u) {
+      const std::vector<double> r = noise_of(sizes[u], 7);
+      out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), kSamples);
+      out.as_seen[u] = (*uses)[u].mean_square(out.residual[u]);
+    }
+    return out;
+  }
+};
+
+TEST(JudgeTest, TakesWhatGainsEverywhere) {
+  const Court court;
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.7, 0.7, 0.7), "x", 100).accepted);
+}
+
+TEST(JudgeTest, RefusesATrainingGainWithAHeldOutLoss) {
+  const Court court;
+  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.9, 1.1, 1), "x", 100);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("raises the held-out"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, RefusesALossOnAnotherKindOfMotion) {
+  const Court court;
+  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("extrapolation"), std::string::npos) << j.why;
+}
+
+// Below what the simulated null leaves there, a rise is chance.
+TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatTheNullLeavesAsWell) {
+  Court court;
+  court.null.mean_square[2] = Eigen::MatrixXd::Constant(2, 1, 2.0);
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100).accepted);
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.6), "x", 100).accepted);
+}
+
+// The first of two effects that made up for each other raises the error of the motion in which they did so.
+TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsSmallBesideTheHeldOutFall) {
+  const Court court;
+  // energies: 0.16 * 1.44 = 0.23 of both kinds of motion left; 0.16 * 3.61 = 0.58
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.4, 0.4, 1.2), "x", 100).accepted);
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.4, 0.4, 1.9), "x", 100).accepted);
+}
+
+// Whitening weighs the slowest wandering most; what somebody sees of another kind of motion may yet be
+// halved.
+TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsAFallAsItIsSeen) {
+  const Court court;
+  Fitted child = court.leaving(0.8, 0.8, 1.2);
+  child.as_seen[2] *= 0.5;
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), child, "x", 100).accepted);
+}
+
+TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatNobodySees) {
+  const Court court;
+  const Fitted parent = court.leaving(1, 1, 1);
+  Fitted child = court.leaving(0.8, 0.8, 1.2);
+  child.as_seen[2] = 1.01 * parent.as_seen[2];
+  EXPECT_TRUE(judge(court.context, parent, child, "x", 100).accepted);
+  child.as_seen[2] = 1.03 * parent.as_seen[2];
+  EXPECT_FALSE(judge(court.context, parent, child, "x", 100).accepted);
+}
+
+// An inductance that stands for a delay: with the delay it is what the data sheet says.
+TEST(JudgeTest, TakesWhatLetsABentBaseParameterComeBack) {
+  const Court court;
+  ParameterEstimate inductance;
+  inductance.path = "motor.inductance_H";
+  inductance.prior_sigma = 1e-4;
+  const auto with_drift = [&](Fitted fitted, double sigmas) {
+    inductance.drift_sigmas = sigmas;
+    inductance.value = sigmas * inductance.prior_sigma;
+    fitted.fit.parameters = {inductance};
+    return fitted;
+  };
+  const Fitted bent = with_drift(court.leaving(1, 1, 1), 9.0);
+  const Judgement j = judge(court.context, bent, with_drift(court.leaving(1, 1, 1), 0.5), "x", 0.0);
+  EXPECT_TRUE(j.accepted) << j.why;
+  EXPECT_NE(j.why.find("motor.inductance_H comes back"), std::string::npos) << j.why;
+  // not at the price of more error, not half way, and not where nobody was surprised
+  EXPECT_FALSE(judge(court.context, bent, with_drift(court.leaving(1, 1.02, 1), 0.5), "x", 0.0).accepted);
+  EXPECT_FALSE(judge(court.context, bent, with_drift(court.leaving(1, 1, 1.1), 0.5), "x", 0.0).accepted);
+  EXPECT_FALSE(judge(court.context, bent, with_drift(court.leaving(1, 1, 1), 3.0), "x", 0.0).accepted);
+  const Fitted straight = with_drift(court.leaving(1, 1, 1), 3.0);
+  EXPECT_FALSE(judge(court.context, straight, with_drift(court.leaving(1, 1, 1), 0.5), "x", 0.0).accepted);
+}
+
+// A payload: by no motion of these data another thing than a wrong mass. What the file says of the mass
+// decides, and for such an effect alone.
+TEST(JudgeTest, TakesWhatABaseParameterStandsForWhereItIsNotBelieved) {
+  const Court court;
+  const auto with_mass = [&](Fitted fitted, double sigmas) {
+    ParameterEstimate mass;
+    mass.path = "robot.mass_kg";
+    mass.prior_mean = 2.4;
+    mass.prior_sigma = 0.05;
+    mass.value = mass.prior_mean + sigmas * mass.prior_sigma;
+    mass.drift_sigmas = sigmas;
+    fitted.fit.parameters = {mass};
+    return fitted;
+  };
+  const auto of_mass = [&](double before, double after, std::string_view stands_for) {
+    return judge(court.context, with_mass(court.leaving(1, 1, 1), before),
+                 with_mass(court.leaving(1, 1, 1), after), "x", 0.0, stands_for);
+  };
+  const Judgement j = of_mass(2.6, 0.1, "robot.mass_kg");
+  EXPECT_TRUE(j.accepted && j.by_belief) << j.why;
+  EXPECT_NE(j.why.find("cannot part the two"), std::string::npos) << j.why;
+  EXPECT_FALSE(of_mass(2.2, 0.1, "robot.mass_kg").accepted)
+      << "a normal error is that large once in seventy times";
+  EXPECT_FALSE(of_mass(2.6, 1.5, "robot.mass_kg").accepted) << "half of it stays";
+  EXPECT_FALSE(of_mass(2.6, 0.1, "").accepted) << "nobody says that the two are twins";
+  EXPECT_FALSE(of_mass(2.6, 0.1, "motor.resistance_ohm").accepted);
+}
+
+// Four microseconds at 1 kHz: the model's own sub-steps make as much.
+TEST(JudgeTest, RefusesATimeThatIsLostInTheClock) {
+  Court court;
+  court.context.rate_Hz = 1000.0;
+  Fitted child = court.leaving(0.7, 0.7, 0.7);
+  ParameterEstimate delay;
+  delay.path = "actuator_delay.delay_s";
+  delay.unit = "s";
+  delay.value = 4e-6;
+  delay.sigma = 1e-7;
+  child.fit.parameters = {delay};
+  const Judgement lost = judge(court.context, court.leaving(1, 1, 1), child, "actuator_delay", 100);
+  EXPECT_FALSE(lost.accepted);
+  EXPECT_NE(lost.why.find("lost in the clock"), std::string::npos) << lost.why;
+  child.fit.parameters[0].value = 4e-5;
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), child, "actuator_delay", 100).accepted);
+}
+
+TEST(JudgeTest, RefusesWhatChanceGivesAsWell) {
+  const Court court;
+  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 0.8), "x", 1.1);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("chance"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, RefusesWhatDoesNotMatter) {
+  const Court court;
+  // energy falls by 1 - 0.99^2 = 2 %
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.99, 0.99, 1), "x", 100).accepted);
+}
+
+// A measured bus drives the model: what its supply does beside, no friction explains and none is judged by.
+TEST(JudgeTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
+  FakePredictor fake;
+  for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation}) {
+    fake.add(use, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
+    fake.add(use, noise_of(1.0, 6), std::vector<double>(kSamples, 0.0), 1.0, "bus_voltage");
+  }
+  const FakeEvidence evidence(fake);
+  const Uses& uses = *evidence.uses;
+  const auto leaving = [&](double velocity, double bus) {
+    Fitted out;
+    out.finite = true;
+    for (std::size_t u = 0; u < kUses; ++u) {
+      std::vector<double> r = noise_of(velocity, 7);
+      for (const double v : noise_of(bus, 8)) r.push_back(v);
+      out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), 2 * kSamples);
+      out.as_seen[u] = uses[u].mean_square(out.residual[u]);
+    }
+    return out;
+  };
+  const JudgeContext& context = evidence.context;
+  const Judgement j = judge(context, leaving(1, 3), leaving(0.95, 3), "x", 100);
+  EXPECT_NEAR(j.holdout.ratio, 0.95 * 0.95, 1e-9);
+  EXPECT_NEAR(j.holdout.floor, 0.01, 1e-3);
+  // one that moves both is judged by both
+  EXPECT_GT(judge(context, leaving(1, 3), leaving(0.95, 3.1), "x", 100).holdout.ratio, 0.95);
+}
+
+TEST(JudgeTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
+  const Court court;
+  Fitted parent = court.leaving(1, 1, 1), child = court.leaving(0.7, 0.7, 0.7);
+  ParameterEstimate r;
+  r.path = "motor.resistance_ohm";
+  r.prior_sigma = 0.1;
+  r.drift_sigmas = 1.0;
+  parent.fit.parameters = {r};
+  r.drift_sigmas = -5.0;
+  child.fit.parameters = {r};
+  const Judgement j = judge(court.context, parent, child, "x", 100);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("motor.resistance_ohm"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, ReadsAParameterAtItsBoundAsASymptom) {
+  const Court court;
+  Fitted child = court.leaving(0.7, 0.7, 0.7);
+  ParameterEstimate p;
+  p.path = "quadratic_drag.coefficient_Nm_s2_per_rad2";
+  p.value = 1.0;
+  p.sigma = 1e-3;
+  p.at_bound = true;
+  child.fit.parameters = {p};
+  const Judgement j = judge(court.context, court.leaving(1, 1, 1), child, "quadratic_drag", 100);
+  EXPECT_FALSE(j.accepted);
+  EXPECT_NE(j.why.find("symptom"), std::string::npos) << j.why;
+}
+
+TEST(JudgeTest, RefusesAStrengthThatIsNotToldFromZero) {
+  const Court court;
+  Fitted child = court.leaving(0.9, 0.9, 0.9);
+  ParameterEstimate p;
+  p.path = "lugre_friction.static_torque_Nm";
+  p.value = 5e-5;
+  p.sigma = 8e-5;
+  child.fit.parameters = {p};
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), child, "lugre_friction", 100).accepted);
+}
+
+// Four wheels' ratios share their scale with the wheels' radius: each is known to 4 parts in a thousand, what
+// parts them to one in ten thousand.
+TEST(JudgeTest, StrengthsThatTradeWithEachOtherAreToldFromZeroTogether) {
+  const Court court;
+  Fitted child = court.leaving(0.9, 0.9, 0.9);
+  const std::vector<double> ratios = {0.999, 1.002, 1.0, 0.999};
+  constexpr double kShared = 4e-3, kOwn = 1e-4;
+  for (std::size_t i = 0; i < 4; ++i) {
+    ParameterEstimate p;
+    p.path = "wheel_radius_mismatch.ratio_" + std::to_string(i + 1);
+    p.value = ratios[i];
+    p.sigma = kShared;
+    child.fit.parameters.push_back(p);
+  }
+  child.fit.covariance = Eigen::MatrixXd::Constant(4, 4, kShared * kShared);
+  child.fit.covariance.diagonal().array() += kOwn * kOwn;
+  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100).accepted);
+  // a common scale alone is the wheels' radius
+  for (ParameterEstimate& p : child.fit.parameters) p.value = 1.002;
+  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100).accepted);
+}
+
+TEST(BlockBootstrapTest, AGainInOneMomentAloneIsUncertain) {
+  const Court court;
+  const Fitted parent = court.leaving(1, 1, 1);
+  Eigen::VectorXd everywhere = 0.9 * parent.residual[1], once = parent.residual[1];
+  once.head(500) *= 0.1;  // one block of eight loses nearly all
+  once.tail(kSamples - 500) *= 1.01;
+  const Eigen::VectorXd weights = Eigen::VectorXd::Ones(1);
+  const UseGain sure = court.bootstrap[1].gain(parent.residual[1], everywhere, weights);
+  const UseGain unsure = court.bootstrap[1].gain(parent.residual[1], once, weights);
+  EXPECT_LT(sure.worst, 1.0);
+  EXPECT_GT(unsure.worst, 1.0);
+}
+
+TEST(BoundedGainTest, AOneSidedStrengthIsNotTakenBelowZero) {
+  const Eigen::MatrixXd gram = Eigen::MatrixXd::Identity(1, 1);
+  const Eigen::VectorXd against = Eigen::VectorXd::Constant(1, -2.0);
+  EXPECT_EQ(bounded_gain(gram, against, {false}).first, 0.0);
+  EXPECT_NEAR(bounded_gain(gram, against, {true}).first, 4.0,
+              1e-6);  // b' G^-1 b; copies of columns are damped
+}
+
+}  // namespace
+}  // namespace omnihil
