@@ -36,7 +36,7 @@ std::string verdict_text(const Diagnosis& d) {
   out += "\n";
   if (!d.complete) out += "  Interrupted: this is what was known by then.\n";
   if (!d.unknown.sentence.empty()) out += "  " + d.unknown.sentence + "\n";
-  for (const IndistinguishableSet& set : d.indistinguishable) out += "  " + set.sentence + "\n";
+  for (const ConfoundedSet& set : d.indistinguishable) out += "  " + set.sentence + "\n";
   return out + "\n";
 }
 

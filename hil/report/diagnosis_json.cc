@@ -124,7 +124,7 @@ std::string diagnosis_json(const Diagnosis& d, const DiagnosisJsonOptions& optio
   last["parameters"] = parameters_json(d.final_fit.parameters);
   last["model"] = options.model;
   Json twins = Json::array();
-  for (const IndistinguishableSet& set : d.indistinguishable) twins.push_back(set.members);
+  for (const ConfoundedSet& set : d.indistinguishable) twins.push_back(set.members);
   const Json out = {
       {"format", "omnihil-diagnosis/1"},
       {"dataset", d.dataset},

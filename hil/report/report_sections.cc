@@ -118,7 +118,7 @@ std::string ranking_section(const Diagnosis& d) {
       numbers += fmt::format("{}<code>{}</code> {} ± {} {}", numbers.empty() ? "" : "<br>", escaped(p.path),
                              figure(p.value), figure(p.sigma), escaped(p.unit));
     }
-    for (const IndistinguishableSet& set : d.indistinguishable) {
+    for (const ConfoundedSet& set : d.indistinguishable) {
       if (std::ranges::find(set.members, r.effect) == set.members.end()) continue;
       std::vector<std::string> others;
       std::ranges::copy_if(set.members, std::back_inserter(others),
@@ -137,7 +137,7 @@ std::string ranking_section(const Diagnosis& d) {
   html += "</tbody></table>\n";
   if (d.indistinguishable.empty()) return html;
   html += "<h3>Twins</h3>\n<ul>\n";
-  for (const IndistinguishableSet& set : d.indistinguishable) {
+  for (const ConfoundedSet& set : d.indistinguishable) {
     html += fmt::format("<li>{}: {}</li>\n", names(set.members), escaped(set.sentence));
   }
   return html + "</ul>\n";

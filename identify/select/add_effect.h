@@ -6,7 +6,7 @@
 //
 // The base parameters are fitted without it and with it; the same rules decide as in a diagnosis.
 #pragma once
-#include "identify/select/workbench.h"
+#include "identify/select/selection_context.h"
 
 namespace omnihil {
 

@@ -11,10 +11,10 @@
 #include "identify/select/effect_variants.h"
 #include "identify/select/next_experiment.h"
 #include "identify/select/noise_effect.h"
-#include "identify/select/soundness.h"
+#include "identify/select/plausibility.h"
+#include "identify/select/selection_context.h"
 #include "identify/select/unknown_structure.h"
 #include "identify/select/verdict.h"
-#include "identify/select/workbench.h"
 
 namespace omnihil {
 namespace {
@@ -33,20 +33,20 @@ class Diagnosing {
       : dataset_(dataset),
         nominal_(nominal),
         options_(options),
-        bench_(dataset, nominal, {.seed = options.seed, .jobs = options.jobs}) {
+        context_(dataset, nominal, {.seed = options.seed, .jobs = options.jobs}) {
     out_.dataset = dataset.name;
     out_.seed = options.seed;
   }
 
   Diagnosis run() {
     out_.findings = check_data(dataset_, nominal_);
-    out_.nominal_comparison = compare(bench_.predictor(), nominal_);
+    out_.nominal_comparison = compare(context_.predictor(), nominal_);
     add_step("nominal", {}, out_.nominal_comparison);
     if (!baseline()) return finish_early();
     simulate();
     if (stopped_) return finish_early();
     if (!misleading()) {
-      rounds();
+      iterate();
       eliminate();
     }
     conclude();
@@ -64,17 +64,17 @@ class Diagnosing {
   // Base parameters before anything else: their tolerances are priors.
   bool baseline() {
     if (!say("refitting the base parameters", 0.02)) return false;
-    const bool usable = bench_.fit_base(stop());
-    out_.baseline = bench_.base().fit;
-    out_.baseline_comparison = compare(bench_.predictor(), bench_.base().fit.model);
-    add_step("base parameters refitted", bench_.base(), out_.baseline_comparison);
-    current_ = bench_.base();
+    const bool usable = context_.fit_base(stop());
+    out_.baseline = context_.base().fit;
+    out_.baseline_comparison = compare(context_.predictor(), context_.base().fit.model);
+    add_step("base parameters refitted", context_.base(), out_.baseline_comparison);
+    current_ = context_.base();
     return say("base parameters refitted", kAfterBaseline) && usable;
   }
 
   void simulate() {
-    bench_.simulate();
-    search_ = bench_.search(not_applicable_);
+    context_.simulate();
+    task_ = context_.task(not_applicable_);
     out_.not_visible = not_applicable_;
     say("simulated null", kAfterNull);
   }
@@ -92,40 +92,41 @@ class Diagnosing {
                        [](const DataFinding& f) { return f.grade == DataFinding::Grade::kFault; });
   }
 
-  void rounds() {
+  void iterate() {
     double from = kAfterNull;
     int restarts = 0;
     for (int n = 0; n < options_.max_effects && !stopped_; ++n) {
       const double to = from + 0.5 * (kAfterRounds - from);
-      search_.progress = [&](const std::string& doing, double share) {
+      task_.progress = [&](const std::string& doing, double share) {
         return say(fmt::format("round {}: {}", n + 1, doing), from + share * (to - from));
       };
-      Round round = addition_round(search_, current_);
-      if (out_.effects.empty() && n == 0) first_ranking(round);
-      if (n == 0 || !round.orders.empty()) order_ = round.orders.empty() ? 0.0 : round.orders.front();
-      out_.ladder.back().ranking = round.ranking;
-      if (round.chosen < 0) return;
-      if (parent_was_short(round)) {
+      Iteration iteration = selection_iteration(task_, current_);
+      if (out_.effects.empty() && n == 0) first_ranking(iteration);
+      if (n == 0 || !iteration.orders.empty())
+        order_ = iteration.orders.empty() ? 0.0 : iteration.orders.front();
+      out_.ladder.back().ranking = iteration.ranking;
+      if (iteration.chosen < 0) return;
+      if (parent_was_short(iteration)) {
         // The search found better numbers for the model as it is: rank again from there.
         if (++restarts <= kMostRestarts) {
           --n;
           continue;
         }
       }
-      take(round);
-      if (!worth_another_round()) return;
+      take(iteration);
+      if (!worth_another_iteration()) return;
       from = to;
     }
   }
 
   // Is the chosen effect's gain one of the base parameters alone, which the parent's fit had missed?
-  bool parent_was_short(const Round& round) {
-    const Contender& best = round.contenders[static_cast<std::size_t>(round.chosen)];
+  bool parent_was_short(const Iteration& iteration) {
+    const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
     if (best.screened.extends) return false;
-    Fitted without = refit_as_it_is(bench_.setup(true, stop()),
+    Fitted without = refit_as_it_is(context_.setup(true, stop()),
                                     without_effect(best.fitted.fit.model, best.screened.name), 1);
     if (!without.finite) return false;
-    const double ratio = energy_ratio(bench_.uses()[0], current_.residual[0], without.residual[0]);
+    const double ratio = energy_ratio(context_.splits()[0], current_.residual[0], without.residual[0]);
     if (ratio > 1.0 - kShort) return false;
     current_ = std::move(without);
     if (out_.effects.empty()) rebase();
@@ -134,33 +135,33 @@ class Diagnosing {
 
   // The baseline itself was short: what was said of it is said anew.
   void rebase() {
-    bench_.take_base(current_);
+    context_.take_base(current_);
     out_.baseline = current_.fit;
-    out_.baseline_comparison = compare(bench_.predictor(), current_.fit.model);
+    out_.baseline_comparison = compare(context_.predictor(), current_.fit.model);
     out_.ladder.back().comparison = out_.baseline_comparison;
     out_.ladder.back().parameters = current_.fit.parameters;
   }
 
-  void first_ranking(const Round& round) {
-    out_.ranking = round.ranking;
+  void first_ranking(const Iteration& iteration) {
+    out_.ranking = iteration.ranking;
     out_.not_visible = not_applicable_;
-    for (const RankedEffect& r : round.ranking) {
+    for (const RankedEffect& r : iteration.ranking) {
       if (r.why.starts_with("not visible") || r.why.starts_with("not tried")) {
         out_.not_visible.push_back(r.effect + ": " + r.why);
       }
     }
   }
 
-  void take(const Round& round) {
-    const Contender& best = round.contenders[static_cast<std::size_t>(round.chosen)];
+  void take(const Iteration& iteration) {
+    const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
     // The next round would explain what the short refits of this one left on its way.
-    current_ = settled(bench_.setup(true, stop()), best.fitted);
+    current_ = refit_to_convergence(context_.setup(true, stop()), best.fitted);
     if (!best.screened.extends) {
       out_.effects.push_back(best.screened.name);
-      stands_for_[best.screened.name] = best.screened.stands_for();
+      aliased_parameter_[best.screened.name] = best.screened.aliased_parameter();
     }
-    add_step(best.screened.name, current_, compare(bench_.predictor(), current_.fit.model));
-    note_twins(round, out_);
+    add_step(best.screened.name, current_, compare(context_.predictor(), current_.fit.model));
+    note_confounded(iteration, out_);
   }
 
   // An effect that later ones made superfluous goes.
@@ -169,15 +170,16 @@ class Diagnosing {
       const std::string name = out_.effects[n];
       say("is " + name + " still needed", kAfterRounds);
       const Fitted less =
-          refit_as_it_is(bench_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
-      const Judgement needed = judge(search_.judging, less, current_, name, 1e9, stands_for_[name]);
-      if (needed.accepted || needed.plain || !less.finite || n + 1 == out_.effects.size()) {
+          refit_as_it_is(context_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
+      const AcceptanceResult needed =
+          test_acceptance(task_.acceptance_context, less, current_, name, 1e9, aliased_parameter_[name]);
+      if (needed.accepted || needed.decisive || !less.finite || n + 1 == out_.effects.size()) {
         ++n;
         continue;
       }
       current_ = less;
       out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(n));
-      add_step("removed " + name, current_, compare(bench_.predictor(), current_.fit.model));
+      add_step("removed " + name, current_, compare(context_.predictor(), current_.fit.model));
     }
   }
 
@@ -186,59 +188,61 @@ class Diagnosing {
     bool added = !out_.effects.empty();
     if (added && !stopped_) {
       // What the model has is settled; a few runs that it cannot explain shall not bend its numbers.
-      RefitSetup setup = bench_.setup(false, stop());
+      RefitSetup setup = context_.setup(false, stop());
       setup.robust = true;
       const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);
-      if (last.finite && energy_ratio(bench_.uses()[0], current_.residual[0], last.residual[0]) < kRobustLoss)
+      if (last.finite &&
+          energy_ratio(context_.splits()[0], current_.residual[0], last.residual[0]) < kRobustLoss)
         current_ = last;
     }
-    Leftover rest = leftover();
-    if (!misleading() && !stopped_ && rest_is_structure(rest) && take_noise_effect()) rest = leftover();
+    ResidualExcess rest = residual_excess();
+    if (!misleading() && !stopped_ && structure_in_excess(rest) && take_noise_effect())
+      rest = residual_excess();
     added = !out_.effects.empty();
     out_.final_fit = current_.fit;
     out_.final_comparison =
-        added ? compare(bench_.predictor(), current_.fit.model) : out_.baseline_comparison;
+        added ? compare(context_.predictor(), current_.fit.model) : out_.baseline_comparison;
     const bool remains = misleading() || structure_remains(rest, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
-    out_.unknown.sentence = leftover_sentence(rest, added);
+    out_.unknown.sentence = residual_sentence(rest, added);
     if (remains && !misleading() && !stopped_) {
       say("looking for a formula", 0.92);
-      out_.unknown = unknown_structure(search_, current_, out_.final_comparison);
-      out_.unknown.sentence = leftover_sentence(rest, added);
+      out_.unknown = unknown_structure(task_, current_, out_.final_comparison);
+      out_.unknown.sentence = residual_sentence(rest, added);
     }
     out_.next_experiment = next_experiment(dataset_, out_);
     out_.complete = !stopped_;
     say("done", 1.0);
   }
 
-  Leftover leftover() {
-    return leftover_of(bench_.predictor(), bench_.kinds(), out_.baseline.model, current_.fit.model,
-                       options_.seed, options_.jobs);
+  ResidualExcess residual_excess() {
+    return residual_excess_of(context_.predictor(), context_.kinds(), out_.baseline.model, current_.fit.model,
+                              options_.seed, options_.jobs);
   }
 
   // Less than what an adequate model leaves: to search on there finds laws that bend to the noise. But a base
   // parameter that nobody believes hides something, however well it does so.
-  bool worth_another_round() {
-    const std::size_t u = bench_.uses()[1].empty() ? 0 : 1;
-    return bend_of(current_.fit).sigmas > kBent_sigmas ||
-           structure_in(bench_.uses()[u], bench_.null(), bench_.kinds(), current_.residual[u]) ||
-           rest_is_structure(leftover());
+  bool worth_another_iteration() {
+    const std::size_t u = context_.splits()[1].empty() ? 0 : 1;
+    return largest_prior_deviation(current_.fit).sigmas > kImplausible_sigmas ||
+           structure_in(context_.splits()[u], context_.null(), context_.kinds(), current_.residual[u]) ||
+           structure_in_excess(residual_excess());
   }
 
   // By the measure of a model without any effect.
-  bool rest_is_structure(const Leftover& rest) const { return structure_remains(rest, false); }
+  bool structure_in_excess(const ResidualExcess& rest) const { return structure_remains(rest, false); }
 
   // What is left may be noise that an effect makes. Its strength was found without the fit, which sees means.
   bool take_noise_effect() {
     say("is the rest an effect's noise", 0.9);
     std::vector<const EffectEntry*> others;
-    for (const EffectEntry* e : search_.applicable) {
+    for (const EffectEntry* e : task_.applicable) {
       if (std::find(out_.effects.begin(), out_.effects.end(), e->info->id) == out_.effects.end())
         others.push_back(e);
     }
-    const std::optional<NoiseEffect> found = noise_effect({.predictor = &bench_.predictor(),
-                                                           .seen = &bench_.seen(),
+    const std::optional<NoiseEffect> found = noise_effect({.predictor = &context_.predictor(),
+                                                           .unweighted = &context_.unweighted(),
                                                            .model = &current_.fit.model,
                                                            .seed = options_.seed},
                                                           others);
@@ -247,7 +251,7 @@ class Diagnosing {
     current_.fit.model = with_use(current_.fit.model, found->use);
     current_.fit.parameters.push_back(found->strength);
     out_.effects.push_back(name);
-    add_step(name, current_, compare(bench_.predictor(), current_.fit.model));
+    add_step(name, current_, compare(context_.predictor(), current_.fit.model));
     for (std::size_t r = 0; r < out_.ranking.size(); ++r) {
       RankedEffect& ranked = out_.ranking[r];
       if (ranked.effect != name) continue;
@@ -281,13 +285,13 @@ class Diagnosing {
   const Dataset& dataset_;
   const Candidate& nominal_;
   const DiagnoseOptions& options_;
-  Workbench bench_;
-  Search search_;
+  SelectionContext context_;
+  SelectionTask task_;
   std::vector<std::string> not_applicable_;
   Fitted current_;
   Diagnosis out_;
-  std::map<std::string, std::string> stands_for_;  // of the effects added
-  double order_ = 0.0;                             // strongest of the residual's, per rotor turn
+  std::map<std::string, std::string> aliased_parameter_;  // of the effects added
+  double order_ = 0.0;                                    // strongest of the residual's, per rotor turn
   double furthest_ = 0.0;
   std::mutex mutex_;  // progress comes from several threads
   std::atomic<bool> stopped_{false};

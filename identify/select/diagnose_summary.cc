@@ -13,7 +13,7 @@ constexpr double kLeastExplained = 0.03;
 constexpr std::size_t kMostWhere = 6;
 
 void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& diagnosis) {
-  for (const IndistinguishableSet& set : diagnosis.indistinguishable) {
+  for (const ConfoundedSet& set : diagnosis.indistinguishable) {
     std::vector<std::string> a = set.members, b = members;
     std::sort(a.begin(), a.end());
     std::sort(b.begin(), b.end());
@@ -24,13 +24,13 @@ void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& 
 
 }  // namespace
 
-void note_twins(const Round& round, Diagnosis& diagnosis) {
-  if (round.chosen < 0) return;
-  const Contender& chosen = round.contenders[static_cast<std::size_t>(round.chosen)];
-  if (!round.twins.empty()) {
+void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
+  if (iteration.chosen < 0) return;
+  const CandidateEffect& chosen = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
+  if (!iteration.twins.empty()) {
     std::vector<std::string> members{chosen.screened.name};
-    for (const int t : round.twins)
-      members.push_back(round.contenders[static_cast<std::size_t>(t)].screened.name);
+    for (const int t : iteration.twins)
+      members.push_back(iteration.candidates[static_cast<std::size_t>(t)].screened.name);
     add_set(
         members,
         fmt::format("These data cannot tell apart: {}. The first is the simplest; any of them explains the "
@@ -38,11 +38,12 @@ void note_twins(const Round& round, Diagnosis& diagnosis) {
                     fmt::join(members, ", ")),
         diagnosis);
   }
-  if (chosen.screened.kept < kImitated && !chosen.screened.imitated_by.empty()) {
-    add_set({chosen.screened.name, chosen.screened.imitated_by},
-            fmt::format("{:.1f} % of what {} does to these signals is its own; the rest {} can do as well.",
-                        100.0 * chosen.screened.kept, chosen.screened.name, chosen.screened.imitated_by),
-            diagnosis);
+  if (chosen.screened.kept < kImitated && !chosen.screened.closest_parameter.empty()) {
+    add_set(
+        {chosen.screened.name, chosen.screened.closest_parameter},
+        fmt::format("{:.1f} % of what {} does to these signals is its own; the rest {} can do as well.",
+                    100.0 * chosen.screened.kept, chosen.screened.name, chosen.screened.closest_parameter),
+        diagnosis);
   }
 }
 

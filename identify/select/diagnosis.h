@@ -45,7 +45,7 @@ struct LadderStep {
   std::vector<RankedEffect> ranking;  // the ranking that led to the next step
 };
 
-struct IndistinguishableSet {
+struct ConfoundedSet {
   std::vector<std::string> members;  // effect ids and base-parameter paths
   std::string sentence;
 };
@@ -77,7 +77,7 @@ struct Diagnosis {
   std::vector<std::string> effects;   // in the order in which they were added
   std::vector<RankedEffect> ranking;  // first round, best first: every effect that applies to the rig
   std::vector<LadderStep> ladder;
-  std::vector<IndistinguishableSet> indistinguishable;
+  std::vector<ConfoundedSet> indistinguishable;
   std::vector<Where> where;
   UnknownStructure unknown;
   NextExperiment next_experiment;

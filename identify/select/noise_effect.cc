@@ -125,8 +125,8 @@ class Trial {
   }
 
   std::optional<NoiseEffect> run() {
-    const Uses& seen = *search_.seen;
-    const Evidence& fit = seen[0];
+    const Splits& unweighted = *search_.unweighted;
+    const Evidence& fit = unweighted[0];
     const Binning bins(*search_.predictor, fit, *search_.model);
     if (bins.predicted().size() != fit.size()) return std::nullopt;
     const Energies measured = bins.energies(fit.residual_of(bins.predicted()));
@@ -202,9 +202,9 @@ class Trial {
 
   std::optional<NoiseEffect> checked(double strength, const Binning& fit_bins, const Energies& fit_measured,
                                      const Eigen::VectorXd& fit_own) const {
-    const Uses& seen = *search_.seen;
-    const Evidence& judge = seen[1].empty() ? seen[0] : seen[1];
-    const bool same = seen[1].empty();
+    const Splits& unweighted = *search_.unweighted;
+    const Evidence& judge = unweighted[1].empty() ? unweighted[0] : unweighted[1];
+    const bool same = unweighted[1].empty();
     const Binning bins = same ? fit_bins : Binning(*search_.predictor, judge, *search_.model);
     if (bins.predicted().size() != judge.size()) return std::nullopt;
     const Eigen::VectorXd residual = judge.residual_of(bins.predicted());

@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "identify/estimate/fit.h"
-#include "identify/select/judge.h"
+#include "identify/select/acceptance.h"
 
 namespace omnihil {
 
 struct NoiseSearch {
   const Predictor* predictor = nullptr;
-  const Uses* seen = nullptr;  // not whitened
+  const Splits* unweighted = nullptr;  // not whitened
   const Candidate* model = nullptr;
   std::uint64_t seed = 1;
 };
@@ -33,7 +33,7 @@ struct NoiseEffect {
 };
 
 // The one of these that explains most; empty: none does.
-std::optional<NoiseEffect> noise_effect(const NoiseSearch& search,
+std::optional<NoiseEffect> noise_effect(const NoiseSearch& task,
                                         const std::vector<const EffectEntry*>& effects);
 
 }  // namespace omnihil

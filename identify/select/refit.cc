@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "identify/select/soundness.h"
+#include "identify/select/plausibility.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/effect_reader.h"
 
@@ -40,7 +40,8 @@ Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::
   options.robust = setup.robust;
   options.stop = setup.stop;
   const Candidate start = with_values(candidate, unknowns, values);
-  return fitted(*setup.uses, *setup.seen, fit(*setup.predictor, start, unknowns, options), setup.jobs);
+  return fitted(*setup.splits, *setup.unweighted, fit(*setup.predictor, start, unknowns, options),
+                setup.jobs);
 }
 
 // The effect a tenth as strong: near neutral, yet with a direction for its shapes.
@@ -79,7 +80,7 @@ Candidate with_strength_times(const Candidate& model, const std::string& effect,
 }
 
 // The base parameters as the model file believes them.
-Candidate believed(const Candidate& model, const Candidate& nominal) {
+Candidate at_priors(const Candidate& model, const Candidate& nominal) {
   std::vector<Unknown> base = unknowns_with_priors(model, nominal);
   std::erase_if(base, [](const Unknown& u) { return u.effect >= 0 || u.prior_sigma <= 0.0; });
   std::vector<double> values;
@@ -90,7 +91,7 @@ Candidate believed(const Candidate& model, const Candidate& nominal) {
 
 // Base parameters that these data do not determine, and that trade with nobody, have no reason to move
 // because an effect was added; where they end by chance, another kind of motion would pay for it.
-Fitted undetermined_stay(const RefitSetup& setup, const Fitted& parent, Fitted child) {
+Fitted reset_unidentifiable(const RefitSetup& setup, const Fitted& parent, Fitted child) {
   constexpr double kFree = 1.002;  // of the error energy: what going back may cost
   const Fitted as_fitted = child;
   for (std::size_t i = 0; i < as_fitted.fit.parameters.size() && as_fitted.finite; ++i) {
@@ -102,8 +103,8 @@ Fitted undetermined_stay(const RefitSetup& setup, const Fitted& parent, Fitted c
     fit.model = with_values(fit.model, {&as_fitted.fit.unknowns[i], 1}, {&*was, 1});
     fit.parameters[i].value = *was;
     if (p.prior_sigma > 0.0) fit.parameters[i].drift_sigmas = (*was - p.prior_mean) / p.prior_sigma;
-    Fitted stayed = fitted(*setup.uses, *setup.seen, std::move(fit), setup.jobs);
-    const Evidence& evidence = (*setup.uses)[0];
+    Fitted stayed = fitted(*setup.splits, *setup.unweighted, std::move(fit), setup.jobs);
+    const Evidence& evidence = (*setup.splits)[0];
     if (stayed.finite && energy_ratio(evidence, as_fitted.residual[0], stayed.residual[0]) <= kFree)
       child = std::move(stayed);
   }
@@ -112,18 +113,18 @@ Fitted undetermined_stay(const RefitSetup& setup, const Fitted& parent, Fitted c
 
 double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& child) {
   if (!child.finite) return 1e300;
-  return energy_ratio((*setup.uses)[0], parent.residual[0], child.residual[0]);
+  return energy_ratio((*setup.splits)[0], parent.residual[0], child.residual[0]);
 }
 
 }  // namespace
 
 std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Candidate& nominal) {
   std::vector<Unknown> unknowns = unknowns_of(candidate);
-  const std::vector<Unknown> believed = unknowns_of(nominal);
+  const std::vector<Unknown> at_priors = unknowns_of(nominal);
   for (Unknown& u : unknowns) {
     const auto from =
-        std::find_if(believed.begin(), believed.end(), [&](const Unknown& b) { return b.path == u.path; });
-    if (from == believed.end()) continue;
+        std::find_if(at_priors.begin(), at_priors.end(), [&](const Unknown& b) { return b.path == u.path; });
+    if (from == at_priors.end()) continue;
     u.prior_mean = from->prior_mean;
     u.prior_sigma = from->prior_sigma;
     u.scale = from->scale;
@@ -135,9 +136,12 @@ std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Cand
 }
 
 Fitted refit(const RefitSetup& of_round, const Fitted& parent, const Screened& effect) {
-  const auto is_bent = [](const Fitted& f) { return bend_of(f.fit).sigmas > kBent_sigmas; };
+  const auto is_bent = [](const Fitted& f) {
+    return largest_prior_deviation(f.fit).sigmas > kImplausible_sigmas;
+  };
   RefitSetup setup = of_round;
-  setup.valley = is_bent(parent) || drift_of(parent.fit, effect.stands_for()) >= kDisbelieved_sigmas;
+  setup.valley =
+      is_bent(parent) || prior_deviation(parent.fit, effect.aliased_parameter()) >= kPriorRejected_sigmas;
   const Candidate with = with_use(parent.fit.model, effect.start);
   std::vector<Unknown> unknowns = unknowns_with_priors(with, *setup.nominal);
   start_at(unknowns, effect.base_unknowns, effect.base_start);
@@ -145,15 +149,15 @@ Fitted refit(const RefitSetup& of_round, const Fitted& parent, const Screened& e
   const double expected = 1.0 - 0.5 * effect.share;
   double ratio = fit_ratio(setup, parent, best);
   const auto stopped = [&] { return setup.stop && setup.stop(); };
-  const auto is_straight = [&, path = effect.stands_for()](const Fitted& f, double r) {
-    return r <= 1.0 + kNoMore && !straightened(parent.fit, f.fit, path).empty();
+  const auto is_straight = [&, path = effect.aliased_parameter()](const Fitted& f, double r) {
+    return r <= 1.0 + kMostEnergyRise && !restores_prior(parent.fit, f.fit, path).empty();
   };
   const auto also_from = [&](const Candidate& start) {
     Fitted next = fit_from(setup, start, unknowns_with_priors(start, *setup.nominal), 1);
     const double next_ratio = fit_ratio(setup, parent, next);
     const bool was = is_straight(best, ratio), is = is_straight(next, next_ratio);
     // What lets the base come back may leave a last per cent more.
-    const double handicap = was == is ? 0.0 : (is ? kNoMore : -kNoMore);
+    const double handicap = was == is ? 0.0 : (is ? kMostEnergyRise : -kMostEnergyRise);
     if (next_ratio >= ratio + handicap) return;
     best = std::move(next);
     ratio = next_ratio;
@@ -165,21 +169,21 @@ Fitted refit(const RefitSetup& of_round, const Fitted& parent, const Screened& e
   // A base that bent to imitate the effect holds it near nothing, or stays bent beside it: the two together
   // from what is believed, the effect at its usual size or as it was found.
   if (ratio > expected && effect.share >= kWorthAFourthStart && is_bent(parent) && !stopped())
-    also_from(with_use(believed(parent.fit.model, *setup.nominal), usual_size));
+    also_from(with_use(at_priors(parent.fit.model, *setup.nominal), usual_size));
   if (is_bent(parent) && best.finite && is_bent(best) && !stopped())
-    also_from(believed(best.fit.model, *setup.nominal));
+    also_from(at_priors(best.fit.model, *setup.nominal));
   // Impacts make many small valleys: the first one that is deep enough need not be the deepest.
   const bool rugged = (effect.start.entry->info->numerics & kImpacts) != 0 && ratio < 1.0 - kWorthAThirdStart;
   for (const double factor : {0.5, 2.0}) {
     if (rugged && !stopped()) also_from(with_strength_times(best.fit.model, effect.name, factor));
   }
-  best = undetermined_stay(setup, parent, std::move(best));
+  best = reset_unidentifiable(setup, parent, std::move(best));
   if (ratio > 1.0 && !is_straight(best, ratio)) {
     // The parent, with the effect neutral, is a member of the larger family.
     FitResult same = parent.fit;
     best = {.fit = std::move(same),
             .residual = parent.residual,
-            .as_seen = parent.as_seen,
+            .unweighted = parent.unweighted,
             .finite = parent.finite};
   }
   return best;
@@ -189,7 +193,7 @@ Fitted refit_as_it_is(const RefitSetup& setup, const Candidate& model, int start
   return fit_from(setup, model, unknowns_with_priors(model, *setup.nominal), starts);
 }
 
-Fitted settled(const RefitSetup& setup, Fitted model) {
+Fitted refit_to_convergence(const RefitSetup& setup, Fitted model) {
   constexpr int kMostRepeats = 3;
   constexpr double kWorthAnother = 0.005;  // fall of the error energy
   for (int k = 0; k < kMostRepeats && model.finite && !(setup.stop && setup.stop()); ++k) {

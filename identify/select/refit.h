@@ -8,15 +8,15 @@
 #pragma once
 #include <functional>
 
-#include "identify/select/judge.h"
+#include "identify/select/acceptance.h"
 #include "identify/select/screening.h"
 
 namespace omnihil {
 
 struct RefitSetup {
   const Predictor* predictor = nullptr;
-  const Uses* uses = nullptr;
-  const Uses* seen = nullptr;          // the same, not whitened
+  const Splits* splits = nullptr;
+  const Splits* unweighted = nullptr;  // the same, not whitened
   const Candidate* nominal = nullptr;  // whose priors hold
   std::uint64_t seed = 1;
   int jobs = 1;
@@ -38,6 +38,6 @@ Fitted refit_as_it_is(const RefitSetup& setup, const Candidate& model, int start
 
 // Again from its own end until that is worth no more (at most three times): a fit weighs signals by what they
 // leave at its start, and those of a search are short. Never worse than `model`.
-Fitted settled(const RefitSetup& setup, Fitted model);
+Fitted refit_to_convergence(const RefitSetup& setup, Fitted model);
 
 }  // namespace omnihil

@@ -183,7 +183,7 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
     }
   }
   out.kept = best.columns.kept;
-  out.imitated_by = nearest_base(base, best);
+  out.closest_parameter = nearest_base(base, best);
   out.start = start_of(best.variant, best.fit.coefficients, task.model->file.linear);
   out.base_unknowns = base.unknowns();
   for (std::size_t u = 0; u < base.unknowns().size(); ++u) {
@@ -234,10 +234,10 @@ std::vector<double> finite_sizes(const Eigen::VectorXd& track) {
 
 }  // namespace
 
-std::string Screened::stands_for() const {
-  if (!tried || kept >= kNotParted || imitated_by.empty()) return "";
+std::string Screened::aliased_parameter() const {
+  if (!tried || kept >= kAliasedFraction || closest_parameter.empty()) return "";
   const auto& twins = entry->info->twins;
-  return std::find(twins.begin(), twins.end(), imitated_by) != twins.end() ? imitated_by : "";
+  return std::find(twins.begin(), twins.end(), closest_parameter) != twins.end() ? closest_parameter : "";
 }
 
 std::vector<RegimeMask> regime_masks(const Evidence& evidence, const Candidate& model) {

@@ -48,9 +48,9 @@ struct Screened {
   double share = 0.0;              // (gain - null) over the residual's energy, at least 0
   double best_regime_share = 0.0;  // the same within the regime where it is largest
   std::string best_regime;
-  double typical_gain = 0.0;  // what its typical size would gain: below the null's, it cannot be seen
-  double kept = 0.0;          // share of its signal that no base parameter can imitate
-  std::string imitated_by;    // the base parameter that imitates it best
+  double typical_gain = 0.0;      // what its typical size would gain: below the null's, it cannot be seen
+  double kept = 0.0;              // share of its signal that no base parameter can imitate
+  std::string closest_parameter;  // the base parameter that imitates it best
   EffectUse start;
   std::vector<Unknown> base_unknowns;  // and where they go when the effect is added:
   std::vector<double> base_start;
@@ -58,9 +58,10 @@ struct Screened {
   bool tried = false;      // false: interrupted, or every size of it made the model diverge
 
   // The base parameter that these data cannot part it from, if its page names that as its twin; empty: none.
-  std::string stands_for() const;
+  std::string aliased_parameter() const;
 };
-inline constexpr double kNotParted = 0.01;  // of its signal: less is kept, and a base parameter imitates it
+inline constexpr double kAliasedFraction =
+    0.01;  // of its signal: less is kept, and a base parameter imitates it
 
 std::vector<Screened> screen(const ScreeningTask& task, const std::vector<const EffectEntry*>& effects);
 // Details of effects that the model has.

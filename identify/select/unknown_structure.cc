@@ -28,9 +28,9 @@ struct Library {
 };
 
 // The signal of one term, at a size at which it is comparable with the residual.
-ProjectedColumns signal_of(const Search& search, const Fitted& last, const LinearBase& base,
+ProjectedColumns signal_of(const SelectionTask& task, const Fitted& last, const LinearBase& base,
                            const std::string& adds_to, UnknownTerm& term) {
-  const Evidence& fit = (*search.uses)[0];
+  const Evidence& fit = (*task.splits)[0];
   for (int attempt = 0; attempt < 3; ++attempt) {
     const EffectUse use = formula_use("rest", adds_to, {term}, {term.size}, last.fit.model.file.linear);
     if (use.entry == nullptr) return {};
@@ -50,13 +50,13 @@ ProjectedColumns signal_of(const Search& search, const Fitted& last, const Linea
   return {};
 }
 
-Library library_of(const Search& search, const Fitted& last, const LinearBase& base, std::string adds_to,
+Library library_of(const SelectionTask& task, const Fitted& last, const LinearBase& base, std::string adds_to,
                    std::vector<UnknownTerm> terms) {
   Library library{.adds_to = std::move(adds_to), .terms = std::move(terms), .signals = {}};
   library.signals.resize(library.terms.size());
-  parallel_for(search.jobs, static_cast<int>(library.terms.size()), [&](int k) {
+  parallel_for(task.jobs, static_cast<int>(library.terms.size()), [&](int k) {
     const std::size_t t = static_cast<std::size_t>(k);
-    library.signals[t] = signal_of(search, last, base, library.adds_to, library.terms[t]);
+    library.signals[t] = signal_of(task, last, base, library.adds_to, library.terms[t]);
   });
   return library;
 }
@@ -113,13 +113,13 @@ bool add_best(const Library& library, const LinearBase& base, const std::vector<
   return true;
 }
 
-double torque_scale(const Search& search, const Candidate& model) {
+double torque_scale(const SelectionTask& task, const Candidate& model) {
   const DriveParams<double> d = drive_of(model);
   if (d.resistance_ohm > 0.0 && d.supply_voltage_V > 0.0) {
     return 0.02 * d.torque_constant_Nm_per_A * d.supply_voltage_V / d.resistance_ohm;
   }
   double most = 0.0;
-  for (const Run& run : search.dataset->runs) {
+  for (const Run& run : task.dataset->runs) {
     for (const char* name : {"motor_torque", "load_torque"}) {
       const std::vector<double>* torque = run.signal(name);
       if (torque == nullptr) continue;
@@ -147,8 +147,8 @@ struct Found {
   double gain = 0.0;
 };
 
-Found formula_of(const Search& search, const Fitted& last, const LinearBase& base, const Library& library,
-                 const std::vector<Eigen::VectorXd>& noise) {
+Found formula_of(const SelectionTask& task, const Fitted& last, const LinearBase& base,
+                 const Library& library, const std::vector<Eigen::VectorXd>& noise) {
   Selection selection;
   while (selection.chosen.size() < kMostTerms && add_best(library, base, noise, selection)) {
   }
@@ -166,51 +166,53 @@ Found formula_of(const Search& search, const Fitted& last, const LinearBase& bas
   start.name = effect_name(start.start);
   start.share = selection.gain / base.energy();
   RefitSetup setup;
-  setup.predictor = search.predictor;
-  setup.uses = search.uses;
-  setup.seen = search.seen;
-  setup.nominal = search.nominal;
-  setup.seed = search.seed;
-  setup.jobs = search.jobs;
+  setup.predictor = task.predictor;
+  setup.splits = task.splits;
+  setup.unweighted = task.unweighted;
+  setup.nominal = task.nominal;
+  setup.seed = task.seed;
+  setup.jobs = task.jobs;
   const Fitted with = refit(setup, last, start);
-  const Judgement judgement = judge(search.judging, last, with, start.name, kOverChance);
-  if (!judgement.accepted) return {};
+  const AcceptanceResult acceptance =
+      test_acceptance(task.acceptance_context, last, with, start.name, kOverChance);
+  if (!acceptance.accepted) return {};
   for (const EffectUse& use : with.fit.model.effects) {
-    if (effect_name(use) == start.name) return {.use = use, .gain = 1.0 - judgement.holdout.ratio};
+    if (effect_name(use) == start.name) return {.use = use, .gain = 1.0 - acceptance.holdout.ratio};
   }
   return {};
 }
 
 }  // namespace
 
-UnknownStructure unknown_structure(const Search& search, const Fitted& last, const Comparison& comparison) {
+UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last,
+                                   const Comparison& comparison) {
   UnknownStructure out;
-  const Evidence& fit = (*search.uses)[0];
+  const Evidence& fit = (*task.splits)[0];
   Eigen::VectorXd scale = fit.mean_square(last.residual[0]).cwiseSqrt();
-  const LinearBase base(fit, last.fit.model, unknowns_with_priors(last.fit.model, *search.nominal), scale,
-                        search.jobs);
+  const LinearBase base(fit, last.fit.model, unknowns_with_priors(last.fit.model, *task.nominal), scale,
+                        task.jobs);
   out.curves = telling_curves(comparison);
   if (!base.usable()) return out;
   DataScale data;
   for (const double v : fit.track(last.fit.model, "speed")) {
     if (std::isfinite(v)) data.top_speed_rad_s = std::max(data.top_speed_rad_s, std::abs(v));
   }
-  for (const OrderPeak& p : strong_orders(*search.predictor, fit, last.fit.model, base.residual(), 3)) {
+  for (const OrderPeak& p : strong_orders(*task.predictor, fit, last.fit.model, base.residual(), 3)) {
     data.orders.push_back(p.order);
   }
   out.where = where_of(comparison, data.orders.empty() ? 0.0 : data.orders.front());
   const bool no_formulas =
-      search.dataset->rig != Rig::kAxis || !search.predictor->applies(*find_effect("expression")).empty();
+      task.dataset->rig != Rig::kAxis || !task.predictor->applies(*find_effect("expression")).empty();
   if (no_formulas) return out;
   std::vector<Eigen::VectorXd> noise;
-  for (const Eigen::VectorXd& n : search.null->fit_noise) noise.push_back(n.cwiseProduct(base.weights()));
+  for (const Eigen::VectorXd& n : task.null->fit_noise) noise.push_back(n.cwiseProduct(base.weights()));
   Found best;
-  const Library torque = library_of(search, last, base, "torque_Nm",
-                                    torque_terms(last.fit.model, data, torque_scale(search, last.fit.model)));
-  const Library voltage = library_of(search, last, base, "voltage_V", voltage_terms(last.fit.model, data));
+  const Library torque = library_of(task, last, base, "torque_Nm",
+                                    torque_terms(last.fit.model, data, torque_scale(task, last.fit.model)));
+  const Library voltage = library_of(task, last, base, "voltage_V", voltage_terms(last.fit.model, data));
   for (const Library* library : {&torque, &voltage}) {
     if (library->terms.empty()) continue;
-    Found found = formula_of(search, last, base, *library, noise);
+    Found found = formula_of(task, last, base, *library, noise);
     if (found.gain > best.gain) best = std::move(found);
   }
   if (best.gain > 0.0) {

@@ -12,10 +12,11 @@
 // held-out runs like any other.
 // Cannot: memory (hysteresis, delays), functions of time or temperature, more than four terms.
 #pragma once
-#include "identify/select/addition_round.h"
+#include "identify/select/selection_iteration.h"
 
 namespace omnihil {
 
-UnknownStructure unknown_structure(const Search& search, const Fitted& last, const Comparison& comparison);
+UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last,
+                                   const Comparison& comparison);
 
 }  // namespace omnihil

@@ -28,25 +28,26 @@ Eigen::VectorXd excess_of(const Evidence& evidence, const NullModel& null, const
 
 }  // namespace
 
-Leftover leftover_of(const Predictor& predictor, const SignalKinds& kinds, const Candidate& baseline,
-                     const Candidate& last, std::uint64_t seed, int jobs) {
+ResidualExcess residual_excess_of(const Predictor& predictor, const SignalKinds& kinds,
+                                  const Candidate& baseline, const Candidate& last, std::uint64_t seed,
+                                  int jobs) {
   constexpr int kReplicates = 8;
-  Leftover out;
-  const Uses uses{Evidence(predictor, kinds, Use::kFit, Weighing::kAsSeen),
-                  Evidence(predictor, kinds, Use::kHoldout, Weighing::kAsSeen),
-                  Evidence(predictor, kinds, Use::kExtrapolation, Weighing::kAsSeen)};
-  const std::size_t u = uses[1].empty() ? 0 : 1;
-  const Eigen::VectorXd first = uses[u].residual(baseline, jobs), now = uses[u].residual(last, jobs);
-  if (uses[u].empty() || first.size() == 0 || now.size() == 0) return out;
-  const NullModel null = simulate_null(predictor, last, uses, seed, kReplicates, jobs);
-  const Eigen::VectorXd before = excess_of(uses[u], null, kinds, first);
-  const Eigen::VectorXd after = excess_of(uses[u], null, kinds, now);
+  ResidualExcess out;
+  const Splits splits{Evidence(predictor, kinds, Use::kFit, Weighing::kAsSeen),
+                      Evidence(predictor, kinds, Use::kHoldout, Weighing::kAsSeen),
+                      Evidence(predictor, kinds, Use::kExtrapolation, Weighing::kAsSeen)};
+  const std::size_t u = splits[1].empty() ? 0 : 1;
+  const Eigen::VectorXd first = splits[u].residual(baseline, jobs), now = splits[u].residual(last, jobs);
+  if (splits[u].empty() || first.size() == 0 || now.size() == 0) return out;
+  const NullModel null = simulate_null(predictor, last, splits, seed, kReplicates, jobs);
+  const Eigen::VectorXd before = excess_of(splits[u], null, kinds, first);
+  const Eigen::VectorXd after = excess_of(splits[u], null, kinds, now);
   Eigen::Index worst = 0;
   out.excess = after.maxCoeff(&worst);
   out.excess_before = before[worst];
   out.signal = kinds.name[static_cast<std::size_t>(worst)];
-  const double floor = null.floor(uses[u].use())[worst];
-  out.spread = floor > 0.0 ? null.spread(uses[u].use())[worst] / floor : 0.0;
+  const double floor = null.floor(splits[u].use())[worst];
+  out.spread = floor > 0.0 ? null.spread(splits[u].use())[worst] / floor : 0.0;
   double left = 0.0, all = 0.0;
   for (Eigen::Index k = 0; k < after.size(); ++k) {
     if (before[k] <= 0.0) continue;
@@ -58,7 +59,7 @@ Leftover leftover_of(const Predictor& predictor, const SignalKinds& kinds, const
   return out;
 }
 
-bool structure_remains(const Leftover& rest, bool effects_added) {
+bool structure_remains(const ResidualExcess& rest, bool effects_added) {
   const bool above_chance = rest.excess > kSpreads * rest.spread;
   if (!above_chance || rest.excess < kStructure) return false;
   return !effects_added || rest.unexplained > kUnexplained;
@@ -75,7 +76,7 @@ bool structure_in(const Evidence& evidence, const NullModel& null, const SignalK
   return false;
 }
 
-std::string leftover_sentence(const Leftover& rest, bool effects_added) {
+std::string residual_sentence(const ResidualExcess& rest, bool effects_added) {
   const std::string size = fmt::format(
       "the error energy of {} is {:.0f} % above what the sensors' noise alone would leave "
       "(simulated; its replicates scatter by {:.1f} %)",

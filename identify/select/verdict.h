@@ -1,6 +1,6 @@
 // What is left when no effect earns its place any more: nothing, or structure; and what that means.
 //
-//   Leftover rest = leftover_of(uses, null, baseline, last);
+//   ResidualExcess rest = residual_excess_of(uses, null, baseline, last);
 //   Verdict v = verdict_of(rest, effects_added);
 //
 // Structure remains where the error energy that no addition took is above the simulated null by more than its
@@ -9,12 +9,12 @@
 #pragma once
 #include <string>
 
+#include "identify/select/acceptance.h"
 #include "identify/select/diagnosis.h"
-#include "identify/select/judge.h"
 
 namespace omnihil {
 
-struct Leftover {
+struct ResidualExcess {
   double excess = 0.0;           // error energy over the null's, less 1: of the signal where it is largest
   double excess_before = 0.0;    // the same of the refitted baseline
   double spread = 0.0;           // of the null's replicates, relative, that signal
@@ -25,14 +25,15 @@ struct Leftover {
 };
 
 // Counted in signals as they are seen, not whitened: how large it is to somebody who looks.
-Leftover leftover_of(const Predictor& predictor, const SignalKinds& kinds, const Candidate& baseline,
-                     const Candidate& last, std::uint64_t seed, int jobs);
+ResidualExcess residual_excess_of(const Predictor& predictor, const SignalKinds& kinds,
+                                  const Candidate& baseline, const Candidate& last, std::uint64_t seed,
+                                  int jobs);
 
-bool structure_remains(const Leftover& rest, bool effects_added);
+bool structure_remains(const ResidualExcess& rest, bool effects_added);
 // The same question of a whitened residual: what a coarse sensor's noise hides from the eye may stand out
 // there.
 bool structure_in(const Evidence& evidence, const NullModel& null, const SignalKinds& kinds,
                   const Eigen::VectorXd& residual);
-std::string leftover_sentence(const Leftover& rest, bool effects_added);
+std::string residual_sentence(const ResidualExcess& rest, bool effects_added);
 
 }  // namespace omnihil

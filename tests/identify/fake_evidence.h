@@ -7,26 +7,28 @@
 #include <memory>
 #include <vector>
 
-#include "identify/select/judge.h"
+#include "identify/select/acceptance.h"
 #include "tests/identify/fake_predictor.h"
 
 namespace omnihil {
 
 struct FakeEvidence {
   SignalKinds kinds;
-  std::unique_ptr<Uses> uses;
+  std::unique_ptr<Splits> splits;
   NullModel null;
   std::vector<BlockBootstrap> bootstrap;
-  JudgeContext context;
+  AcceptanceContext context;
 
   explicit FakeEvidence(const FakePredictor& fake) : kinds(signal_kinds(fake)) {
-    uses = std::make_unique<Uses>(Uses{Evidence(fake, kinds, Use::kFit), Evidence(fake, kinds, Use::kHoldout),
-                                       Evidence(fake, kinds, Use::kExtrapolation)});
+    splits = std::make_unique<Splits>(Splits{Evidence(fake, kinds, Use::kFit),
+                                             Evidence(fake, kinds, Use::kHoldout),
+                                             Evidence(fake, kinds, Use::kExtrapolation)});
     for (std::size_t u = 0; u < kUses; ++u) {
       null.mean_square[u] = Eigen::MatrixXd::Constant(2, kinds.count(), 0.01);
-      bootstrap.emplace_back((*uses)[u], 1);
+      bootstrap.emplace_back((*splits)[u], 1);
     }
-    context = {.uses = uses.get(), .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
+    context = {
+        .splits = splits.get(), .null = &null, .bootstrap = {&bootstrap[0], &bootstrap[1], &bootstrap[2]}};
   }
   FakeEvidence(const FakeEvidence&) = delete;  // the context points into it
   FakeEvidence& operator=(const FakeEvidence&) = delete;

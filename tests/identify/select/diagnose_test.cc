@@ -7,7 +7,7 @@
 #include "hil/report/diagnosis_json.h"
 #include "identify/select/add_effect.h"
 #include "identify/select/diagnosis.h"
-#include "identify/select/workbench.h"
+#include "identify/select/selection_context.h"
 #include "sim/law/effect_registry.h"
 #include "tests/identify/simulated_bench.h"
 
@@ -36,11 +36,10 @@ std::string reasons(const Diagnosis& d) {
 }
 
 bool same_set(const Diagnosis& d, const std::string& a, const std::string& b) {
-  return std::any_of(d.indistinguishable.begin(), d.indistinguishable.end(),
-                     [&](const IndistinguishableSet& s) {
-                       return std::find(s.members.begin(), s.members.end(), a) != s.members.end() &&
-                              std::find(s.members.begin(), s.members.end(), b) != s.members.end();
-                     });
+  return std::any_of(d.indistinguishable.begin(), d.indistinguishable.end(), [&](const ConfoundedSet& s) {
+    return std::find(s.members.begin(), s.members.end(), a) != s.members.end() &&
+           std::find(s.members.begin(), s.members.end(), b) != s.members.end();
+  });
 }
 
 // Its impacts multiply up every exact derivative; the fit has to get through.
@@ -156,14 +155,14 @@ TEST(SlowDiagnoseTest, WhatTheDataDoNotDetermineStaysWhereItWas) {
   recipe.excitations = {Excitation::kRamp, Excitation::kRamp};
   recipe.duration_s = 6.0;
   const Bench bench = simulated_bench(recipe);
-  Workbench work(bench.dataset, bench.nominal, {});
+  SelectionContext work(bench.dataset, bench.nominal, {});
   ASSERT_TRUE(work.fit_base([] { return false; }));
   work.simulate();
   std::vector<std::string> not_applicable;
-  const Round round = addition_round(work.search(not_applicable), work.base());
+  const Iteration iteration = selection_iteration(work.task(not_applicable), work.base());
   const std::string inductance = "motor.inductance_H";
   int undetermined = 0;
-  for (const Contender& c : round.contenders) {
+  for (const CandidateEffect& c : iteration.candidates) {
     for (const ParameterEstimate& p : c.fitted.fit.parameters) {
       if (p.path != inductance || p.identifiable || !p.trades_with.empty()) continue;
       ++undetermined;

@@ -1,7 +1,7 @@
 // An effect that is noise: found by where a record is loud, on both rigs; and not where it is not.
 #include "identify/select/noise_effect.h"
 
-#include "identify/select/workbench.h"
+#include "identify/select/selection_context.h"
 #include "tests/identify/robot_world.h"
 #include "tests/identify/simulated_bench.h"
 
@@ -12,13 +12,14 @@ constexpr double kJitter_s = 100e-6;
 
 // What the search finds in a dataset whose model is the world's, but for what is hidden.
 std::optional<NoiseEffect> found_in(const Dataset& dataset, const Candidate& nominal) {
-  const Workbench bench(dataset, nominal, {.seed = 1, .jobs = 2});
+  const SelectionContext bench(dataset, nominal, {.seed = 1, .jobs = 2});
   std::vector<const EffectEntry*> applicable;
   for (const EffectEntry* e : all_effects()) {
     if (bench.predictor().applies(*e).empty()) applicable.push_back(e);
   }
-  return noise_effect({.predictor = &bench.predictor(), .seen = &bench.seen(), .model = &nominal, .seed = 1},
-                      applicable);
+  return noise_effect(
+      {.predictor = &bench.predictor(), .unweighted = &bench.unweighted(), .model = &nominal, .seed = 1},
+      applicable);
 }
 
 Bench with(const std::vector<std::string>& hidden) {

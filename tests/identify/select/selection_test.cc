@@ -1,4 +1,4 @@
-#include "identify/select/contest.h"
+#include "identify/select/selection.h"
 
 #include <gtest/gtest.h>
 
@@ -23,20 +23,20 @@ class MarkedPredictor : public FakePredictor {
 struct Ring {
   MarkedPredictor fake;
   std::unique_ptr<FakeEvidence> evidence;
-  Search search;
+  SelectionTask task;
   Fitted parent;
-  Round round;
+  Iteration iteration;
 
   Ring() {
     for (const Use use : {Use::kFit, Use::kHoldout}) {
       fake.add(use, std::vector<double>(kSamples, 1.0), std::vector<double>(kSamples, 0.0));
     }
     evidence = std::make_unique<FakeEvidence>(fake);
-    search.predictor = &fake;
-    search.kinds = &evidence->kinds;
-    search.uses = evidence->uses.get();
-    search.null = &evidence->null;
-    search.judging = evidence->context;
+    task.predictor = &fake;
+    task.kinds = &evidence->kinds;
+    task.splits = evidence->splits.get();
+    task.null = &evidence->null;
+    task.acceptance_context = evidence->context;
     parent = leaving(1.0, 1.0);
   }
 
@@ -52,37 +52,39 @@ struct Ring {
   }
 
   void enter(const std::string& effect, Fitted fitted) {
-    Contender c;
+    CandidateEffect c;
     c.screened.entry = find_effect(effect);
     c.screened.name = effect;
     c.fitted = std::move(fitted);
-    c.judgement = judge(search.judging, parent, c.fitted, "x", 100.0);
-    EXPECT_TRUE(c.judgement.accepted) << c.judgement.why;
-    round.contenders.push_back(std::move(c));
+    c.acceptance = test_acceptance(task.acceptance_context, parent, c.fitted, "x", 100.0);
+    EXPECT_TRUE(c.acceptance.accepted) << c.acceptance.why;
+    iteration.candidates.push_back(std::move(c));
   }
 
   // Of no gain; a base parameter comes back with it.
   void believe(const std::string& effect, const std::string& base) {
-    Contender c;
+    CandidateEffect c;
     c.screened.entry = find_effect(effect);
     c.screened.name = effect;
     c.screened.tried = true;
-    c.screened.imitated_by = base;
+    c.screened.closest_parameter = base;
     c.fitted = leaving(1.0, 1.0);
-    c.judgement.accepted = c.judgement.by_belief = true;
-    EXPECT_EQ(c.screened.stands_for(), base);
-    round.contenders.push_back(std::move(c));
+    c.acceptance.accepted = c.acceptance.by_prior = true;
+    EXPECT_EQ(c.screened.aliased_parameter(), base);
+    iteration.candidates.push_back(std::move(c));
   }
 
   std::string winner() {
-    settle(search, parent, round);
-    return round.chosen < 0 ? "" : round.contenders[static_cast<std::size_t>(round.chosen)].screened.name;
+    select_best(task, parent, iteration);
+    return iteration.chosen < 0
+               ? ""
+               : iteration.candidates[static_cast<std::size_t>(iteration.chosen)].screened.name;
   }
 
   std::vector<std::string> twins() const {
     std::vector<std::string> names;
-    for (const int t : round.twins)
-      names.push_back(round.contenders[static_cast<std::size_t>(t)].screened.name);
+    for (const int t : iteration.twins)
+      names.push_back(iteration.candidates[static_cast<std::size_t>(t)].screened.name);
     return names;
   }
 };
@@ -128,7 +130,7 @@ TEST(ContestTest, WhatLeavesTwiceAsMuchIsNoTwinWhateverTheDraws) {
   ring.enter("constant_load", Ring::leaving(0.10, 0.30));
   ring.enter("back_emf_missing", Ring::leaving(0.80, 0.09));
   EXPECT_EQ(ring.winner(), "constant_load");
-  EXPECT_GT(ring.round.contenders[1].probability, 0.0);
+  EXPECT_GT(ring.iteration.candidates[1].probability, 0.0);
   EXPECT_TRUE(ring.twins().empty());
 }
 
@@ -145,7 +147,7 @@ TEST(ContestTest, WhatIsBelievedWinsWhereNothingGains) {
   Ring ring;
   ring.believe("payload", "robot.mass_kg");
   EXPECT_EQ(ring.winner(), "payload");
-  EXPECT_EQ(ring.round.contenders.front().probability, 1.0);
+  EXPECT_EQ(ring.iteration.candidates.front().probability, 1.0);
   Ring beside;
   beside.believe("payload", "robot.mass_kg");
   beside.enter("dead_time", Ring::leaving(0.5, 0.5));

@@ -1,35 +1,35 @@
 // One round of the search on a robot's record.
-#include "identify/select/addition_round.h"
-#include "identify/select/workbench.h"
+#include "identify/select/selection_context.h"
+#include "identify/select/selection_iteration.h"
 #include "tests/identify/robot_world.h"
 
 namespace omnihil::test {
 namespace {
 
 // Nothing in a record parts a payload from a heavier robot; the file, which knows the mass to 2 %, does.
-Round round_with_payload(double payload_kg) {
+Iteration round_with_payload(double payload_kg) {
   const Dataset data = robot_record({{"payload.mass_kg", payload_kg}}, 6.0);
   const Candidate nominal = robot_candidate();
-  Workbench bench(data, nominal, {.seed = 1, .jobs = 2});
+  SelectionContext bench(data, nominal, {.seed = 1, .jobs = 2});
   EXPECT_TRUE(bench.fit_base([] { return false; }));
   bench.simulate();
   std::vector<std::string> not_applicable;
-  return addition_round(bench.search(not_applicable), bench.base());
+  return selection_iteration(bench.task(not_applicable), bench.base());
 }
 
 TEST(RobotRound, APayloadIsWhatLetsTheMassComeBack) {
-  const Round round = round_with_payload(0.14);  // 6 %, 2.9 tolerances
-  ASSERT_EQ(round.chosen, 0) << round.ranking.front().effect << ": " << round.ranking.front().why;
-  const Contender& best = round.contenders.front();
-  EXPECT_EQ(best.screened.name, "payload") << best.judgement.why;
+  const Iteration iteration = round_with_payload(0.14);  // 6 %, 2.9 tolerances
+  ASSERT_EQ(iteration.chosen, 0) << iteration.ranking.front().effect << ": " << iteration.ranking.front().why;
+  const CandidateEffect& best = iteration.candidates.front();
+  EXPECT_EQ(best.screened.name, "payload") << best.acceptance.why;
   EXPECT_NEAR(*value_at(best.fitted.fit.model, "payload.mass_kg"), 0.14, 0.015);
   EXPECT_GT(best.probability, 0.5);
 }
 
 TEST(RobotRound, AMassWithinItsToleranceIsNoPayload) {
-  const Round round = round_with_payload(0.07);  // 3 %
-  EXPECT_EQ(round.chosen, -1) << round.contenders.front().screened.name << ": "
-                              << round.contenders.front().judgement.why;
+  const Iteration iteration = round_with_payload(0.07);  // 3 %
+  EXPECT_EQ(iteration.chosen, -1) << iteration.candidates.front().screened.name << ": "
+                                  << iteration.candidates.front().acceptance.why;
 }
 
 // Ten per cent, five tolerances: after the other effect is found nothing remains but a mass that nobody

@@ -1,11 +1,11 @@
-#include "identify/select/judge.h"
+#include "identify/select/acceptance.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "identify/select/soundness.h"
+#include "identify/select/plausibility.h"
 
 namespace omnihil {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr double kMatters = 0.03;
 // More where the sensors' noise is most of what is left: a gain of a few per cent of noise is no effect.
 constexpr double kMattersAtFloor = 0.05;
-constexpr double kChanceMargin = 2.0;  // gain over what chance gives (addition_round.cc)
+constexpr double kChanceMargin = 2.0;  // gain over what chance gives (selection_iteration.cc)
 constexpr double kPlain = 0.3;         // of the held-out error energy
 constexpr double kSeen = 0.015;        // change of some signal's error energy, noise included, that one sees
 // ... or of the whitened: a coarse encoder hides from the eye what its count still tells
@@ -26,7 +26,7 @@ constexpr double kExtrapolationLoss = 0.03;
 constexpr double kOutweighed = 0.5;
 
 // The largest relative fall of one signal's error energy, as somebody sees it who looks at the signal.
-double gain_as_seen(const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {
+double unweighted_gain(const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {
   double most = 0.0;
   for (Eigen::Index k = 0; k < std::min(parent.size(), child.size()); ++k) {
     if (parent[k] > 0.0) most = std::max(most, 1.0 - child[k] / parent[k]);
@@ -51,73 +51,74 @@ double rise_above_null(const Evidence& evidence, const NullModel& null, const Ei
 
 // Of the extrapolation runs; 0 where the bootstrap does not see one, or where nobody would who looks at the
 // signals: the slowest part of a residual, whitened, tells of a last digit of a base parameter.
-double extrapolation_rise(const JudgeContext& context, const Fitted& parent, const Fitted& child,
+double extrapolation_rise(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
                           const UseGain& gain) {
-  const Evidence& evidence = (*context.uses)[2];
+  const Evidence& evidence = (*context.splits)[2];
   if (evidence.empty() || gain.best <= 1.0) return 0.0;
-  const bool known_as_seen = child.as_seen[2].size() > 0 && parent.as_seen[2].size() > 0;
-  if (known_as_seen && gain_as_seen(child.as_seen[2], parent.as_seen[2]) < kSeen) return 0.0;
+  const bool known_as_seen = child.unweighted[2].size() > 0 && parent.unweighted[2].size() > 0;
+  if (known_as_seen && unweighted_gain(child.unweighted[2], parent.unweighted[2]) < kSeen) return 0.0;
   return std::min(gain.ratio - 1.0,
                   rise_above_null(evidence, *context.null, parent.residual[2], child.residual[2]));
 }
 
 // Why an addition that gains little is believed all the same; empty: it is not.
-std::string straightens(const Fitted& parent, const Fitted& child, const Judgement& gains, double held_ratio,
-                        std::string_view stands_for) {
-  const std::string path = straightened(parent.fit, child.fit, stands_for);
-  if (path.empty() || held_ratio > 1.0 + kNoMore || gains.fit.ratio > 1.0 + kNoMore) return "";
-  const std::string_view which = path == stands_for ? "; these data cannot part the two" : "";
+std::string reason_by_prior(const Fitted& parent, const Fitted& child, const AcceptanceResult& gains,
+                            double held_ratio, std::string_view aliased_parameter) {
+  const std::string path = restores_prior(parent.fit, child.fit, aliased_parameter);
+  if (path.empty() || held_ratio > 1.0 + kMostEnergyRise || gains.fit.ratio > 1.0 + kMostEnergyRise)
+    return "";
+  const std::string_view which = path == aliased_parameter ? "; these data cannot part the two" : "";
   return fmt::format(
       "{} comes back towards what the model file says ({:.1f} of its tolerances off without it, {:.1f} with "
       "it), "
       "at no more error{}",
-      path, drift_of(parent.fit, path), drift_of(child.fit, path), which);
+      path, prior_deviation(parent.fit, path), prior_deviation(child.fit, path), which);
 }
 
 }  // namespace
 
-Fitted fitted(const Uses& uses, const Uses& seen, FitResult fit, int jobs) {
+Fitted fitted(const Splits& splits, const Splits& unweighted, FitResult fit, int jobs) {
   Fitted out{.fit = std::move(fit), .residual = {}, .finite = true};
   for (std::size_t u = 0; u < kUses; ++u) {
-    if (uses[u].empty()) continue;
-    out.residual[u] = uses[u].residual(out.fit.model, jobs);
-    if (out.residual[u].size() != uses[u].size()) {
+    if (splits[u].empty()) continue;
+    out.residual[u] = splits[u].residual(out.fit.model, jobs);
+    if (out.residual[u].size() != splits[u].size()) {
       out.finite = false;
       continue;
     }
-    const Eigen::VectorXd as_seen = seen[u].residual(out.fit.model, jobs);
-    if (as_seen.size() == seen[u].size()) out.as_seen[u] = seen[u].mean_square(as_seen);
+    const Eigen::VectorXd residual = unweighted[u].residual(out.fit.model, jobs);
+    if (residual.size() == unweighted[u].size()) out.unweighted[u] = unweighted[u].mean_square(residual);
   }
   return out;
 }
 
-Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted& child,
-                const std::string& name, double gain_over_chance, std::string_view stands_for) {
-  Judgement out;
+AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
+                                 const std::string& name, double signal_to_null,
+                                 std::string_view aliased_parameter) {
+  AcceptanceResult out;
   if (!child.finite) {
     out.why = "the model with it does not stay finite";
     return out;
   }
   std::array<UseGain*, kUses> gains{&out.fit, &out.holdout, &out.extrapolation};
   for (std::size_t u = 0; u < kUses; ++u) {
-    if ((*context.uses)[u].empty()) continue;
-    const Evidence& evidence = (*context.uses)[u];
+    if ((*context.splits)[u].empty()) continue;
+    const Evidence& evidence = (*context.splits)[u];
     const Eigen::VectorXd weights =
         weights_for(evidence, *context.null, parent.residual[u], child.residual[u]);
     *gains[u] = context.bootstrap[u]->gain(parent.residual[u], child.residual[u], weights);
     gains[u]->floor = floor_share(evidence, *context.null, parent.residual[u], weights);
   }
-  const Use decides = (*context.uses)[1].empty() ? Use::kFit : Use::kHoldout;
+  const Use decides = (*context.splits)[1].empty() ? Use::kFit : Use::kHoldout;
   const std::size_t d = static_cast<std::size_t>(decides);
   const UseGain& held = *gains[d];
   const double needed = kMatters + kMattersAtFloor * held.floor;
-  out.plain = 1.0 - held.ratio > kPlain && held.worst < 1.0;
+  out.decisive = 1.0 - held.ratio > kPlain && held.worst < 1.0;
   const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
-  std::string against = unsound(parent.fit, child.fit, name, out.plain);
-  if (against.empty()) against = lost_in_the_clock(child.fit, name, context.rate_Hz);
-  if (gain_over_chance < kChanceMargin) {
-    out.why =
-        fmt::format("its gain is {:.1f} times what chance gives in the simulated null", gain_over_chance);
+  std::string against = implausibility(parent.fit, child.fit, name, out.decisive);
+  if (against.empty()) against = below_time_resolution(child.fit, name, context.rate_Hz);
+  if (signal_to_null < kChanceMargin) {
+    out.why = fmt::format("its gain is {:.1f} times what chance gives in the simulated null", signal_to_null);
   } else if (1.0 - out.fit.ratio < 0.5 * kMatters) {
     out.why = fmt::format("it lowers the error energy of the fit runs by {:.1f} % only",
                           100.0 * (1.0 - out.fit.ratio));
@@ -129,10 +130,10 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
                   decides == Use::kHoldout ? "held-out" : "fit", 100.0 * (held.ratio - 1.0))
             : fmt::format("it takes {:.1f} % of the held-out error energy; {:.1f} % would matter",
                           100.0 * (1.0 - held.ratio), 100.0 * needed);
-  } else if (const double seen = gain_as_seen(parent.as_seen[d], child.as_seen[d]);
-             seen < kSeen && 1.0 - held.ratio < kSeenWhitened) {
-    out.why =
-        fmt::format("no signal's error falls by more than {:.1f} % in energy as it is seen", 100.0 * seen);
+  } else if (const double unweighted = unweighted_gain(parent.unweighted[d], child.unweighted[d]);
+             unweighted < kSeen && 1.0 - held.ratio < kSeenWhitened) {
+    out.why = fmt::format("no signal's error falls by more than {:.1f} % in energy as it is seen",
+                          100.0 * unweighted);
   } else if (held.worst > 1.0) {
     out.why = "its gain comes from a few moments of the held-out runs alone";
   } else if (rise > kExtrapolationLoss && held.ratio * (1.0 + rise) > kOutweighed) {
@@ -142,8 +143,8 @@ Judgement judge(const JudgeContext& context, const Fitted& parent, const Fitted&
     out.why = fmt::format("held-out error energy falls by {:.1f} %", 100.0 * (1.0 - held.ratio));
   }
   if (out.accepted || rise > kExtrapolationLoss || !against.empty()) return out;
-  if (std::string why = straightens(parent, child, out, held.ratio, stands_for); !why.empty()) {
-    out.accepted = out.by_belief = true;
+  if (std::string why = reason_by_prior(parent, child, out, held.ratio, aliased_parameter); !why.empty()) {
+    out.accepted = out.by_prior = true;
     out.why = std::move(why);
   }
   return out;

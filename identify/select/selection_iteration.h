@@ -1,6 +1,6 @@
 // One round of the search: which effect, if any, should the model have next.
 //
-//   Round r = addition_round(search, parent);
+//   Round r = selection_iteration(search, parent);
 //   r.ranking;                 // every effect that applies, best first
 //   r.chosen                   // index into r.contenders, or -1: none earns its place
 //
@@ -17,15 +17,15 @@
 
 namespace omnihil {
 
-struct Search {
+struct SelectionTask {
   const Dataset* dataset = nullptr;
   const Predictor* predictor = nullptr;
   const Candidate* nominal = nullptr;
   const SignalKinds* kinds = nullptr;
-  const Uses* uses = nullptr;
-  const Uses* seen = nullptr;  // the same, not whitened
+  const Splits* splits = nullptr;
+  const Splits* unweighted = nullptr;  // the same, not whitened
   const NullModel* null = nullptr;
-  JudgeContext judging;
+  AcceptanceContext acceptance_context;
   std::vector<const EffectEntry*> applicable;
   std::uint64_t seed = 1;
   int jobs = 1;
@@ -33,29 +33,29 @@ struct Search {
   std::function<bool(const std::string& doing, double share)> progress;
 };
 
-struct Contender {
+struct CandidateEffect {
   Screened screened;
   Fitted fitted;
-  Judgement judgement;
+  AcceptanceResult acceptance;
   double probability = 0.0;
 };
 
-struct Round {
+struct Iteration {
   std::vector<Screened> screened;
-  std::vector<Contender> contenders;  // refitted, best first
+  std::vector<CandidateEffect> candidates;  // refitted, best first
   std::vector<RankedEffect> ranking;
   int chosen = -1;
-  std::vector<int> twins;      // of the chosen, in `contenders`
-  double chance_gain = 0.0;    // the most that any effect gains in any replicate of the null
-  std::vector<double> orders;  // that stand out in the residual along the rotor's angle
+  std::vector<int> twins;          // of the chosen, in `contenders`
+  double largest_null_gain = 0.0;  // the most that any effect gains in any replicate of the null
+  std::vector<double> orders;      // that stand out in the residual along the rotor's angle
   bool stopped = false;
 };
 
-Round addition_round(const Search& search, const Fitted& parent);
+Iteration selection_iteration(const SelectionTask& task, const Fitted& parent);
 
 // The screening alone: what these effects would gain, and what chance would.
-Round screening_round(const Search& search, const Fitted& parent,
-                      const std::vector<const EffectEntry*>& effects);
+Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
+                              const std::vector<const EffectEntry*>& effects);
 
 // Estimates of the parameters of one effect.
 std::vector<ParameterEstimate> parameters_of(const FitResult& fit, const std::string& effect);

@@ -1,33 +1,33 @@
 // What every search works with, made once per dataset: predictor, evidence per use, fitted base model,
 // simulated null, bootstrap.
 //
-//   Workbench bench(dataset, nominal, {.seed = 1, .jobs = 2});
-//   bench.fit_base(stop);  bench.simulate();
-//   Round r = addition_round(bench.search(), bench.base());
+//   SelectionContext context(dataset, nominal, {.seed = 1, .jobs = 2});
+//   context.fit_base(stop);  context.simulate();
+//   Round r = selection_iteration(context.search(), context.base());
 #pragma once
 #include <functional>
 #include <memory>
 #include <vector>
 
-#include "identify/select/addition_round.h"
+#include "identify/select/selection_iteration.h"
 
 namespace omnihil {
 
-struct WorkbenchOptions {
+struct SelectionOptions {
   std::uint64_t seed = 1;
   int jobs = 1;
 };
 
-class Workbench {
+class SelectionContext {
  public:
-  Workbench(const Dataset& dataset, const Candidate& nominal, const WorkbenchOptions& options);
-  Workbench(const Workbench&) = delete;
-  Workbench& operator=(const Workbench&) = delete;
+  SelectionContext(const Dataset& dataset, const Candidate& nominal, const SelectionOptions& options);
+  SelectionContext(const SelectionContext&) = delete;
+  SelectionContext& operator=(const SelectionContext&) = delete;
 
   const Predictor& predictor() const { return *predictor_; }
   const SignalKinds& kinds() const { return kinds_; }
-  const Uses& uses() const { return uses_; }
-  const Uses& seen() const { return seen_; }  // not whitened
+  const Splits& splits() const { return splits_; }
+  const Splits& unweighted() const { return unweighted_; }  // not whitened
   const NullModel& null() const { return null_; }
   const Fitted& base() const { return base_; }
   const Candidate& nominal() const { return nominal_; }
@@ -41,16 +41,16 @@ class Workbench {
   // After fit_base.
   void simulate();
   // After simulate; effects that cannot act here go to `not_applicable` with why.
-  Search search(std::vector<std::string>& not_applicable) const;
+  SelectionTask task(std::vector<std::string>& not_applicable) const;
 
  private:
   const Dataset& dataset_;
   const Candidate& nominal_;
-  WorkbenchOptions options_;
+  SelectionOptions options_;
   std::unique_ptr<Predictor> predictor_;
   SignalKinds kinds_;
-  Uses uses_;
-  Uses seen_;
+  Splits splits_;
+  Splits unweighted_;
   NullModel null_;
   std::vector<BlockBootstrap> bootstrap_;
   Fitted base_;

@@ -1,4 +1,4 @@
-#include "identify/select/judge.h"
+#include "identify/select/acceptance.h"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ struct Court : FakeEvidence {
     for (std::size_t u = 0; u < kUses; ++u) {
       const std::vector<double> r = noise_of(sizes[u], 7);
       out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), kSamples);
-      out.as_seen[u] = (*uses)[u].mean_square(out.residual[u]);
+      out.unweighted[u] = (*splits)[u].mean_square(out.residual[u]);
     }
     return out;
   }
@@ -50,19 +50,22 @@ struct Court : FakeEvidence {
 
 TEST(JudgeTest, TakesWhatGainsEverywhere) {
   const Court court;
-  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.7, 0.7, 0.7), "x", 100).accepted);
+  EXPECT_TRUE(test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.7, 0.7, 0.7), "x", 100)
+                  .accepted);
 }
 
 TEST(JudgeTest, RefusesATrainingGainWithAHeldOutLoss) {
   const Court court;
-  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.9, 1.1, 1), "x", 100);
+  const AcceptanceResult j =
+      test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.9, 1.1, 1), "x", 100);
   EXPECT_FALSE(j.accepted);
   EXPECT_NE(j.why.find("raises the held-out"), std::string::npos) << j.why;
 }
 
 TEST(JudgeTest, RefusesALossOnAnotherKindOfMotion) {
   const Court court;
-  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100);
+  const AcceptanceResult j =
+      test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100);
   EXPECT_FALSE(j.accepted);
   EXPECT_NE(j.why.find("extrapolation"), std::string::npos) << j.why;
 }
@@ -71,16 +74,20 @@ TEST(JudgeTest, RefusesALossOnAnotherKindOfMotion) {
 TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatTheNullLeavesAsWell) {
   Court court;
   court.null.mean_square[2] = Eigen::MatrixXd::Constant(2, 1, 2.0);
-  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100).accepted);
-  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.6), "x", 100).accepted);
+  EXPECT_TRUE(test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100)
+                  .accepted);
+  EXPECT_FALSE(test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.6), "x", 100)
+                   .accepted);
 }
 
 // The first of two effects that made up for each other raises the error of the motion in which they did so.
 TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsSmallBesideTheHeldOutFall) {
   const Court court;
   // energies: 0.16 * 1.44 = 0.23 of both kinds of motion left; 0.16 * 3.61 = 0.58
-  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.4, 0.4, 1.2), "x", 100).accepted);
-  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.4, 0.4, 1.9), "x", 100).accepted);
+  EXPECT_TRUE(test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.4, 0.4, 1.2), "x", 100)
+                  .accepted);
+  EXPECT_FALSE(test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.4, 0.4, 1.9), "x", 100)
+                   .accepted);
 }
 
 // Whitening weighs the slowest wandering most; what somebody sees of another kind of motion may yet be
@@ -88,18 +95,18 @@ TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsSmallBesideTheHeldOutFall)
 TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsAFallAsItIsSeen) {
   const Court court;
   Fitted child = court.leaving(0.8, 0.8, 1.2);
-  child.as_seen[2] *= 0.5;
-  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), child, "x", 100).accepted);
+  child.unweighted[2] *= 0.5;
+  EXPECT_TRUE(test_acceptance(court.context, court.leaving(1, 1, 1), child, "x", 100).accepted);
 }
 
 TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatNobodySees) {
   const Court court;
   const Fitted parent = court.leaving(1, 1, 1);
   Fitted child = court.leaving(0.8, 0.8, 1.2);
-  child.as_seen[2] = 1.01 * parent.as_seen[2];
-  EXPECT_TRUE(judge(court.context, parent, child, "x", 100).accepted);
-  child.as_seen[2] = 1.03 * parent.as_seen[2];
-  EXPECT_FALSE(judge(court.context, parent, child, "x", 100).accepted);
+  child.unweighted[2] = 1.01 * parent.unweighted[2];
+  EXPECT_TRUE(test_acceptance(court.context, parent, child, "x", 100).accepted);
+  child.unweighted[2] = 1.03 * parent.unweighted[2];
+  EXPECT_FALSE(test_acceptance(court.context, parent, child, "x", 100).accepted);
 }
 
 // An inductance that stands for a delay: with the delay it is what the data sheet says.
@@ -115,15 +122,20 @@ TEST(JudgeTest, TakesWhatLetsABentBaseParameterComeBack) {
     return fitted;
   };
   const Fitted bent = with_drift(court.leaving(1, 1, 1), 9.0);
-  const Judgement j = judge(court.context, bent, with_drift(court.leaving(1, 1, 1), 0.5), "x", 0.0);
+  const AcceptanceResult j =
+      test_acceptance(court.context, bent, with_drift(court.leaving(1, 1, 1), 0.5), "x", 0.0);
   EXPECT_TRUE(j.accepted) << j.why;
   EXPECT_NE(j.why.find("motor.inductance_H comes back"), std::string::npos) << j.why;
   // not at the price of more error, not half way, and not where nobody was surprised
-  EXPECT_FALSE(judge(court.context, bent, with_drift(court.leaving(1, 1.02, 1), 0.5), "x", 0.0).accepted);
-  EXPECT_FALSE(judge(court.context, bent, with_drift(court.leaving(1, 1, 1.1), 0.5), "x", 0.0).accepted);
-  EXPECT_FALSE(judge(court.context, bent, with_drift(court.leaving(1, 1, 1), 3.0), "x", 0.0).accepted);
+  EXPECT_FALSE(
+      test_acceptance(court.context, bent, with_drift(court.leaving(1, 1.02, 1), 0.5), "x", 0.0).accepted);
+  EXPECT_FALSE(
+      test_acceptance(court.context, bent, with_drift(court.leaving(1, 1, 1.1), 0.5), "x", 0.0).accepted);
+  EXPECT_FALSE(
+      test_acceptance(court.context, bent, with_drift(court.leaving(1, 1, 1), 3.0), "x", 0.0).accepted);
   const Fitted straight = with_drift(court.leaving(1, 1, 1), 3.0);
-  EXPECT_FALSE(judge(court.context, straight, with_drift(court.leaving(1, 1, 1), 0.5), "x", 0.0).accepted);
+  EXPECT_FALSE(
+      test_acceptance(court.context, straight, with_drift(court.leaving(1, 1, 1), 0.5), "x", 0.0).accepted);
 }
 
 // A payload: by no motion of these data another thing than a wrong mass. What the file says of the mass
@@ -140,12 +152,12 @@ TEST(JudgeTest, TakesWhatABaseParameterStandsForWhereItIsNotBelieved) {
     fitted.fit.parameters = {mass};
     return fitted;
   };
-  const auto of_mass = [&](double before, double after, std::string_view stands_for) {
-    return judge(court.context, with_mass(court.leaving(1, 1, 1), before),
-                 with_mass(court.leaving(1, 1, 1), after), "x", 0.0, stands_for);
+  const auto of_mass = [&](double before, double after, std::string_view aliased_parameter) {
+    return test_acceptance(court.context, with_mass(court.leaving(1, 1, 1), before),
+                           with_mass(court.leaving(1, 1, 1), after), "x", 0.0, aliased_parameter);
   };
-  const Judgement j = of_mass(2.6, 0.1, "robot.mass_kg");
-  EXPECT_TRUE(j.accepted && j.by_belief) << j.why;
+  const AcceptanceResult j = of_mass(2.6, 0.1, "robot.mass_kg");
+  EXPECT_TRUE(j.accepted && j.by_prior) << j.why;
   EXPECT_NE(j.why.find("cannot part the two"), std::string::npos) << j.why;
   EXPECT_FALSE(of_mass(2.2, 0.1, "robot.mass_kg").accepted)
       << "a normal error is that large once in seventy times";
@@ -165,16 +177,18 @@ TEST(JudgeTest, RefusesATimeThatIsLostInTheClock) {
   delay.value = 4e-6;
   delay.sigma = 1e-7;
   child.fit.parameters = {delay};
-  const Judgement lost = judge(court.context, court.leaving(1, 1, 1), child, "actuator_delay", 100);
+  const AcceptanceResult lost =
+      test_acceptance(court.context, court.leaving(1, 1, 1), child, "actuator_delay", 100);
   EXPECT_FALSE(lost.accepted);
   EXPECT_NE(lost.why.find("lost in the clock"), std::string::npos) << lost.why;
   child.fit.parameters[0].value = 4e-5;
-  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), child, "actuator_delay", 100).accepted);
+  EXPECT_TRUE(test_acceptance(court.context, court.leaving(1, 1, 1), child, "actuator_delay", 100).accepted);
 }
 
 TEST(JudgeTest, RefusesWhatChanceGivesAsWell) {
   const Court court;
-  const Judgement j = judge(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 0.8), "x", 1.1);
+  const AcceptanceResult j =
+      test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 0.8), "x", 1.1);
   EXPECT_FALSE(j.accepted);
   EXPECT_NE(j.why.find("chance"), std::string::npos) << j.why;
 }
@@ -182,7 +196,8 @@ TEST(JudgeTest, RefusesWhatChanceGivesAsWell) {
 TEST(JudgeTest, RefusesWhatDoesNotMatter) {
   const Court court;
   // energy falls by 1 - 0.99^2 = 2 %
-  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), court.leaving(0.99, 0.99, 1), "x", 100).accepted);
+  EXPECT_FALSE(test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.99, 0.99, 1), "x", 100)
+                   .accepted);
 }
 
 // A measured bus drives the model: what its supply does beside, no friction explains and none is judged by.
@@ -193,7 +208,7 @@ TEST(JudgeTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
     fake.add(use, noise_of(1.0, 6), std::vector<double>(kSamples, 0.0), 1.0, "bus_voltage");
   }
   const FakeEvidence evidence(fake);
-  const Uses& uses = *evidence.uses;
+  const Splits& splits = *evidence.splits;
   const auto leaving = [&](double velocity, double bus) {
     Fitted out;
     out.finite = true;
@@ -201,16 +216,16 @@ TEST(JudgeTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
       std::vector<double> r = noise_of(velocity, 7);
       for (const double v : noise_of(bus, 8)) r.push_back(v);
       out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), 2 * kSamples);
-      out.as_seen[u] = uses[u].mean_square(out.residual[u]);
+      out.unweighted[u] = splits[u].mean_square(out.residual[u]);
     }
     return out;
   };
-  const JudgeContext& context = evidence.context;
-  const Judgement j = judge(context, leaving(1, 3), leaving(0.95, 3), "x", 100);
+  const AcceptanceContext& context = evidence.context;
+  const AcceptanceResult j = test_acceptance(context, leaving(1, 3), leaving(0.95, 3), "x", 100);
   EXPECT_NEAR(j.holdout.ratio, 0.95 * 0.95, 1e-9);
   EXPECT_NEAR(j.holdout.floor, 0.01, 1e-3);
   // one that moves both is judged by both
-  EXPECT_GT(judge(context, leaving(1, 3), leaving(0.95, 3.1), "x", 100).holdout.ratio, 0.95);
+  EXPECT_GT(test_acceptance(context, leaving(1, 3), leaving(0.95, 3.1), "x", 100).holdout.ratio, 0.95);
 }
 
 TEST(JudgeTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
@@ -223,7 +238,7 @@ TEST(JudgeTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
   parent.fit.parameters = {r};
   r.drift_sigmas = -5.0;
   child.fit.parameters = {r};
-  const Judgement j = judge(court.context, parent, child, "x", 100);
+  const AcceptanceResult j = test_acceptance(court.context, parent, child, "x", 100);
   EXPECT_FALSE(j.accepted);
   EXPECT_NE(j.why.find("motor.resistance_ohm"), std::string::npos) << j.why;
 }
@@ -237,7 +252,8 @@ TEST(JudgeTest, ReadsAParameterAtItsBoundAsASymptom) {
   p.sigma = 1e-3;
   p.at_bound = true;
   child.fit.parameters = {p};
-  const Judgement j = judge(court.context, court.leaving(1, 1, 1), child, "quadratic_drag", 100);
+  const AcceptanceResult j =
+      test_acceptance(court.context, court.leaving(1, 1, 1), child, "quadratic_drag", 100);
   EXPECT_FALSE(j.accepted);
   EXPECT_NE(j.why.find("symptom"), std::string::npos) << j.why;
 }
@@ -250,7 +266,7 @@ TEST(JudgeTest, RefusesAStrengthThatIsNotToldFromZero) {
   p.value = 5e-5;
   p.sigma = 8e-5;
   child.fit.parameters = {p};
-  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), child, "lugre_friction", 100).accepted);
+  EXPECT_FALSE(test_acceptance(court.context, court.leaving(1, 1, 1), child, "lugre_friction", 100).accepted);
 }
 
 // Four wheels' ratios share their scale with the wheels' radius: each is known to 4 parts in a thousand, what
@@ -269,10 +285,12 @@ TEST(JudgeTest, StrengthsThatTradeWithEachOtherAreToldFromZeroTogether) {
   }
   child.fit.covariance = Eigen::MatrixXd::Constant(4, 4, kShared * kShared);
   child.fit.covariance.diagonal().array() += kOwn * kOwn;
-  EXPECT_TRUE(judge(court.context, court.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100).accepted);
+  EXPECT_TRUE(
+      test_acceptance(court.context, court.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100).accepted);
   // a common scale alone is the wheels' radius
   for (ParameterEstimate& p : child.fit.parameters) p.value = 1.002;
-  EXPECT_FALSE(judge(court.context, court.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100).accepted);
+  EXPECT_FALSE(
+      test_acceptance(court.context, court.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100).accepted);
 }
 
 TEST(BlockBootstrapTest, AGainInOneMomentAloneIsUncertain) {

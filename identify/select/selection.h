@@ -9,20 +9,20 @@
 // and the same once the base parameters have moved along. Of twins the one with the fewest numbers is named
 // first.
 #pragma once
-#include "identify/select/addition_round.h"
+#include "identify/select/selection_iteration.h"
 
 namespace omnihil {
 
-void settle(const Search& search, const Fitted& parent, Round& round);
+void select_best(const SelectionTask& task, const Fitted& parent, Iteration& iteration);
 
 // The gain that decides (held-out runs and fit runs alike; without held-out runs the latter), less a little
 // for every further number: a law of many numbers bends to what it does not mean.
-double merit_of(const Contender& c, bool has_holdout);
+double penalised_gain(const CandidateEffect& c, bool has_holdout);
 
 // Does either one's page name the other?
-bool listed_twins(const EffectInfo& a, const EffectInfo& b);
+bool listed_as_confounded(const EffectInfo& a, const EffectInfo& b);
 
 // Cosine between the signals of two screened effects, both beside the base parameters.
-double likeness(const Screened& a, const Screened& b);
+double cosine_similarity(const Screened& a, const Screened& b);
 
 }  // namespace omnihil

@@ -1,4 +1,4 @@
-#include "identify/select/soundness.h"
+#include "identify/select/plausibility.h"
 
 #include <fmt/format.h>
 
@@ -41,8 +41,8 @@ bool misused_bound(const ParameterEstimate& p, const EffectParam* row) {
 
 // Strengths together: those that trade with each other (four ratios against the scale that they share with a
 // base parameter) may each be uncertain where what parts them is not. Wald's statistic, 95 % of chi-square.
-bool told_together(const FitResult& child, const std::vector<Eigen::Index>& rows,
-                   const std::vector<double>& away) {
+bool jointly_significant(const FitResult& child, const std::vector<Eigen::Index>& rows,
+                         const std::vector<double>& away) {
   const auto n = static_cast<Eigen::Index>(rows.size());
   if (n < 2 || rows.back() >= child.covariance.rows()) return false;
   const Eigen::VectorXd d = Eigen::Map<const Eigen::VectorXd>(away.data(), n);
@@ -60,7 +60,7 @@ bool told_together(const FitResult& child, const std::vector<Eigen::Index>& rows
 
 // Numbers of the effect that no drive has; empty: none. `plain`: it takes so much that its strength is no
 // question, however it trades against its own shapes.
-std::string unphysical(const FitResult& child, const std::string& name, bool plain) {
+std::string unphysical(const FitResult& child, const std::string& name, bool decisive) {
   const EffectEntry* entry = find_effect(name);
   bool strong = entry == nullptr;
   std::vector<Eigen::Index> strengths;
@@ -87,12 +87,12 @@ std::string unphysical(const FitResult& child, const std::string& name, bool pla
     strengths.push_back(static_cast<Eigen::Index>(n));
     away.push_back(p.value - row->neutral);
   }
-  strong = strong || told_together(child, strengths, away);
-  return strong || plain ? "" : "its strength is not told from zero";
+  strong = strong || jointly_significant(child, strengths, away);
+  return strong || decisive ? "" : "its strength is not told from zero";
 }
 
 // Squared distances from what is believed, in its 1-sigmas.
-double disbelief(const FitResult& fit) {
+double prior_chi_square(const FitResult& fit) {
   double sum = 0.0;
   for (const ParameterEstimate& p : fit.parameters) {
     if (p.prior_sigma > 0.0) sum += std::pow((p.value - p.prior_mean) / p.prior_sigma, 2);
@@ -102,8 +102,8 @@ double disbelief(const FitResult& fit) {
 
 }  // namespace
 
-Bend bend_of(const FitResult& fit) {
-  Bend worst;
+PriorDeviation largest_prior_deviation(const FitResult& fit) {
+  PriorDeviation worst;
   for (const ParameterEstimate& p : fit.parameters) {
     if (p.prior_sigma <= 0.0 || !p.identifiable || find_effect(p.path.substr(0, p.path.find('.'))) != nullptr)
       continue;
@@ -112,7 +112,7 @@ Bend bend_of(const FitResult& fit) {
   return worst;
 }
 
-double drift_of(const FitResult& fit, std::string_view path) {
+double prior_deviation(const FitResult& fit, std::string_view path) {
   const auto p = std::find_if(fit.parameters.begin(), fit.parameters.end(),
                               [&](const ParameterEstimate& q) { return q.path == path; });
   // Data may have ceased to determine it: where it stands counts all the same.
@@ -121,20 +121,23 @@ double drift_of(const FitResult& fit, std::string_view path) {
              : std::abs(p->value - p->prior_mean) / p->prior_sigma;
 }
 
-std::string straightened(const FitResult& parent, const FitResult& child, std::string_view stands_for) {
-  const Bend before = bend_of(parent), after = bend_of(child);
-  if (before.sigmas >= kBent_sigmas && after.sigmas <= kStraight_sigmas &&
-      drift_of(child, before.path) <= kStraight_sigmas) {
+std::string restores_prior(const FitResult& parent, const FitResult& child,
+                           std::string_view aliased_parameter) {
+  const PriorDeviation before = largest_prior_deviation(parent), after = largest_prior_deviation(child);
+  if (before.sigmas >= kImplausible_sigmas && after.sigmas <= kRestored_sigmas &&
+      prior_deviation(child, before.path) <= kRestored_sigmas) {
     return before.path;
   }
-  const double was = drift_of(parent, stands_for);
-  const bool comes_back = was >= kDisbelieved_sigmas && drift_of(child, stands_for) < was &&
-                          disbelief(parent) - disbelief(child) >= kDisbelieved_sigmas * kDisbelieved_sigmas;
-  return comes_back && after.sigmas <= std::max(before.sigmas, kStraight_sigmas) ? std::string(stands_for)
-                                                                                 : "";
+  const double was = prior_deviation(parent, aliased_parameter);
+  const bool comes_back =
+      was >= kPriorRejected_sigmas && prior_deviation(child, aliased_parameter) < was &&
+      prior_chi_square(parent) - prior_chi_square(child) >= kPriorRejected_sigmas * kPriorRejected_sigmas;
+  return comes_back && after.sigmas <= std::max(before.sigmas, kRestored_sigmas)
+             ? std::string(aliased_parameter)
+             : "";
 }
 
-std::string lost_in_the_clock(const FitResult& child, const std::string& name, double rate_Hz) {
+std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz) {
   constexpr double kOfVisible = 0.05;
   const EffectEntry* entry = find_effect(name);
   if (entry == nullptr || entry->info->min_visible == nullptr || rate_Hz <= 0.0) return "";
@@ -151,8 +154,9 @@ std::string lost_in_the_clock(const FitResult& child, const std::string& name, d
   return "";
 }
 
-std::string unsound(const FitResult& parent, const FitResult& child, const std::string& name, bool plain) {
-  const std::string why = unphysical(child, name, plain);
+std::string implausibility(const FitResult& parent, const FitResult& child, const std::string& name,
+                           bool decisive) {
+  const std::string why = unphysical(child, name, decisive);
   return why.empty() ? pushed_out(parent, child) : why;
 }
 

@@ -1,0 +1,94 @@
+#include "identify/select/selection_context.h"
+
+#include <fmt/format.h>
+
+#include "sim/law/effect_registry.h"
+
+namespace omnihil {
+namespace {
+
+constexpr int kReplicates = 12;
+constexpr int kThoroughIterations = 30;
+constexpr int kQuickIterations = 12;
+
+// Of the first run that has samples at a rate.
+double rate_Hz(const Predictor& predictor) {
+  for (int run = 0; run < predictor.run_count(); ++run) {
+    const double period_s = median_period_s(predictor.run(run).time_s);
+    if (period_s > 0.0) return 1.0 / period_s;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+SelectionContext::SelectionContext(const Dataset& dataset, const Candidate& nominal,
+                                   const SelectionOptions& options)
+    : dataset_(dataset),
+      nominal_(nominal),
+      options_(options),
+      predictor_(make_predictor(dataset, nominal, {})),
+      kinds_(signal_kinds(*predictor_)),
+      splits_{Evidence(*predictor_, kinds_, Use::kFit), Evidence(*predictor_, kinds_, Use::kHoldout),
+              Evidence(*predictor_, kinds_, Use::kExtrapolation)},
+      unweighted_{Evidence(*predictor_, kinds_, Use::kFit, Weighing::kAsSeen),
+                  Evidence(*predictor_, kinds_, Use::kHoldout, Weighing::kAsSeen),
+                  Evidence(*predictor_, kinds_, Use::kExtrapolation, Weighing::kAsSeen)} {}
+
+RefitSetup SelectionContext::setup(bool quick, const std::function<bool()>& stop) const {
+  RefitSetup s;
+  s.predictor = predictor_.get();
+  s.splits = &splits_;
+  s.unweighted = &unweighted_;
+  s.nominal = &nominal_;
+  s.seed = options_.seed;
+  s.jobs = options_.jobs;
+  s.quick = quick;
+  s.max_iterations = quick ? kQuickIterations : kThoroughIterations;
+  s.stop = stop;
+  return s;
+}
+
+bool SelectionContext::fit_base(const std::function<bool()>& stop) {
+  RefitSetup thorough = setup(false, stop);
+  thorough.profile = false;
+  base_ = refit_to_convergence(thorough, refit_as_it_is(thorough, nominal_, 1));
+  thorough.profile = true;  // once, where it ends
+  if (base_.finite && !stop()) base_ = refit_as_it_is(thorough, base_.fit.model, 1);
+  return base_.finite && !splits_[0].empty();
+}
+
+void SelectionContext::simulate() {
+  null_ = simulate_null(*predictor_, base_.fit.model, splits_, options_.seed, kReplicates, options_.jobs);
+  bootstrap_.clear();
+  for (std::size_t u = 0; u < kUses; ++u) bootstrap_.emplace_back(splits_[u], options_.seed + u);
+}
+
+SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) const {
+  SelectionTask task;
+  task.dataset = &dataset_;
+  task.predictor = predictor_.get();
+  task.nominal = &nominal_;
+  task.kinds = &kinds_;
+  task.splits = &splits_;
+  task.unweighted = &unweighted_;
+  task.null = &null_;
+  task.acceptance_context = {.splits = &splits_,
+                             .null = &null_,
+                             .bootstrap = {&bootstrap_[0], &bootstrap_[1], &bootstrap_[2]},
+                             .rate_Hz = rate_Hz(*predictor_)};
+  task.seed = options_.seed;
+  task.jobs = options_.jobs;
+  for (const EffectEntry* e : all_effects()) {
+    if (e->info->id == "expression") continue;  // the user's own, and what unknown structure is written in
+    const std::string why_not = predictor_->applies(*e);
+    if (why_not.empty()) {
+      task.applicable.push_back(e);
+    } else {
+      not_applicable.push_back(fmt::format("{}: {}", e->info->id, why_not));
+    }
+  }
+  return task;
+}
+
+}  // namespace omnihil

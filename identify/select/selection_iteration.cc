@@ -1,0 +1,258 @@
+#include "identify/select/selection_iteration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "identify/compare/order_spectrum.h"
+#include "identify/record/parallel.h"
+#include "identify/select/plausibility.h"
+#include "identify/select/selection.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::size_t kMostRefits = 6;
+constexpr double kLeastShare = 0.002;       // of the residual's energy, to be worth a refit
+constexpr double kLeastRegimeShare = 0.05;  // of that of one regime
+constexpr double kNotSeen = 1.0;            // typical size gains less than chance
+
+DataScale scale_of(const SelectionTask& task, const Fitted& parent, const LinearBase& base) {
+  DataScale scale;
+  const Evidence& fit = (*task.splits)[0];
+  const auto top = [&](const char* name) {
+    double most = 0.0;
+    for (const double v : fit.track(parent.fit.model, name)) {
+      if (std::isfinite(v)) most = std::max(most, std::abs(v));
+    }
+    return most;
+  };
+  scale.top_speed_rad_s = top("speed");
+  scale.top_current_A = top("abs_current");
+  for (const int run : fit.runs()) {
+    scale.duration_s = std::max(scale.duration_s, task.predictor->run(run).duration_s());
+  }
+  for (const OrderPeak& p : strong_orders(*task.predictor, fit, parent.fit.model, base.residual(), 4)) {
+    scale.orders.push_back(p.order);
+  }
+  return scale;
+}
+
+// Signals weigh the same however well the model explains each: by what it leaves now.
+Eigen::VectorXd scales_now(const SelectionTask& task, const Fitted& parent) {
+  Eigen::VectorXd scale = (*task.splits)[0].mean_square(parent.residual[0]).cwiseSqrt();
+  for (Eigen::Index k = 0; k < scale.size(); ++k) {
+    scale[k] = std::max(scale[k], task.kinds->noise_sigma[static_cast<std::size_t>(k)]);
+  }
+  return scale;
+}
+
+std::vector<const EffectEntry*> not_yet(const SelectionTask& task, const Candidate& model) {
+  std::vector<const EffectEntry*> out;
+  for (const EffectEntry* e : task.applicable) {
+    const bool has = std::any_of(model.effects.begin(), model.effects.end(),
+                                 [&](const EffectUse& u) { return u.entry->info->id == e->info->id; });
+    if (!has) out.push_back(e);
+  }
+  return out;
+}
+
+// Which of the screened are refitted: the largest shares, whoever is largest in a regime, whose mark the
+// readings carry, and what a base parameter imitates that is not what its file says.
+std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const Fitted& parent,
+                                   const Predictor& predictor) {
+  std::vector<std::size_t> order, out;
+  const auto marked = [&](std::size_t i) { return predictor.carries_mark_of(*screened[i].entry); };
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const Screened& s = screened[i];
+    const bool above_chance =
+        s.gain > 2.0 * s.null_gain && (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare);
+    if (s.tried && (above_chance || marked(i))) order.push_back(i);
+  }
+  const auto rank = [&](std::size_t i) {
+    return std::pair(marked(i), screened[i].share);  // whose mark the readings carry comes before all
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
+  for (const std::size_t i : order) {
+    if (out.size() < kMostRefits - 1) out.push_back(i);
+  }
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const bool hidden = prior_deviation(parent.fit, screened[i].aliased_parameter()) >= kPriorRejected_sigmas;
+    if (hidden && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
+  }
+  const auto corner = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return screened[a].best_regime_share < screened[b].best_regime_share;
+  });
+  if (corner != order.end() && std::find(out.begin(), out.end(), *corner) == out.end())
+    out.push_back(*corner);
+  return out;
+}
+
+// Its gain over what chance gives: the most that it gave this effect, or half the most that it gave any.
+double signal_to_null(const Screened& s, double chance_of_any) {
+  return s.gain / std::max({s.null_gain, 0.5 * chance_of_any, 1e-300});
+}
+
+double chance_of(const std::vector<Screened>& screened) {
+  double most = 0.0;
+  for (const Screened& s : screened) most = std::max(most, s.null_gain);
+  return most;
+}
+
+void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std::vector<std::size_t>& chosen,
+                     Iteration& iteration) {
+  const std::size_t before = iteration.candidates.size();
+  iteration.candidates.resize(before + chosen.size());
+  std::atomic<int> done{0};
+  std::atomic<bool> stopped{false};
+  parallel_for(task.jobs, static_cast<int>(chosen.size()), [&](int n) {
+    CandidateEffect& c = iteration.candidates[before + static_cast<std::size_t>(n)];
+    c.screened = iteration.screened[chosen[static_cast<std::size_t>(n)]];
+    if (stopped) return;
+    RefitSetup setup{.predictor = task.predictor,
+                     .splits = task.splits,
+                     .unweighted = task.unweighted,
+                     .nominal = task.nominal,
+                     .seed = task.seed,
+                     .stop = [&] { return stopped.load(); }};
+    c.fitted = refit(setup, parent, c.screened);
+    c.acceptance = test_acceptance(task.acceptance_context, parent, c.fitted, c.screened.name,
+                                   signal_to_null(c.screened, iteration.largest_null_gain),
+                                   c.screened.aliased_parameter());
+    const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
+    if (task.progress && !task.progress("refitting " + c.screened.name, share)) stopped = true;
+  });
+  iteration.stopped = stopped;
+}
+
+// Effects that are known to be confused with the leading contender, and were not refitted: the screening is
+// linear, and theirs may be the form that it sees worst.
+std::vector<std::size_t> confounded_with_best(const Iteration& iteration, bool has_holdout) {
+  const CandidateEffect* leader = nullptr;
+  for (const CandidateEffect& c : iteration.candidates) {
+    if (!c.acceptance.accepted || c.screened.extends) continue;
+    if (leader == nullptr || penalised_gain(c, has_holdout) > penalised_gain(*leader, has_holdout))
+      leader = &c;
+  }
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; leader != nullptr && i < iteration.screened.size(); ++i) {
+    const Screened& s = iteration.screened[i];
+    const bool known = std::any_of(iteration.candidates.begin(), iteration.candidates.end(),
+                                   [&](const CandidateEffect& c) { return c.screened.name == s.name; });
+    if (s.tried && !s.extends && !known &&
+        listed_as_confounded(*leader->screened.entry->info, *s.entry->info))
+      out.push_back(i);
+  }
+  return out;
+}
+
+std::string unseen(const Screened& s, double chance) {
+  if (!s.tried) return "not tried";
+  if (s.kept < kAliasedFraction && s.typical_gain <= kNotSeen * chance && !s.closest_parameter.empty()) {
+    return fmt::format("not visible in these data: {} imitates it", s.closest_parameter);
+  }
+  if (s.typical_gain <= kNotSeen * chance) {
+    return "not visible in these data: at its typical size its signal is below what the sensors' noise gives";
+  }
+  return "";
+}
+
+RankedEffect ranked(const Screened& s, double chance) {
+  RankedEffect r;
+  r.effect = s.name;
+  r.score = s.share;
+  r.why = unseen(s, chance);
+  if (r.why.empty()) {
+    r.why = s.share > kLeastShare
+                ? fmt::format("could take {:.1f} % of the error energy; others take more", 100.0 * s.share)
+                : "would take less of the error energy than matters";
+  }
+  return r;
+}
+
+void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
+  std::vector<std::string> refitted;
+  for (const CandidateEffect& c : iteration.candidates) {
+    RankedEffect r = ranked(c.screened, iteration.largest_null_gain);
+    r.refitted = true;
+    r.accepted = c.acceptance.accepted;
+    r.why = c.acceptance.why;
+    r.probability = c.probability;
+    r.parameters = parameters_of(c.fitted.fit, c.screened.name);
+    const auto ratio = [&](std::size_t u) {
+      const Evidence& evidence = (*task.splits)[u];
+      if (evidence.empty() || !c.fitted.finite) return 1.0;
+      return pooled_error(evidence, *task.kinds, c.fitted.residual[u]) /
+             std::max(pooled_error(evidence, *task.kinds, parent.residual[u]), 1e-300);
+    };
+    r.fit_error_ratio = ratio(0);
+    r.holdout_error_ratio = ratio(1);
+    r.extrapolation_error_ratio = ratio(2);
+    refitted.push_back(c.screened.name);
+    iteration.ranking.push_back(std::move(r));
+  }
+  std::vector<RankedEffect> others;
+  for (const Screened& s : iteration.screened) {
+    if (std::find(refitted.begin(), refitted.end(), s.name) == refitted.end()) {
+      others.push_back(ranked(s, iteration.largest_null_gain));
+    }
+  }
+  std::stable_sort(others.begin(), others.end(),
+                   [](const RankedEffect& a, const RankedEffect& b) { return a.score > b.score; });
+  iteration.ranking.insert(iteration.ranking.end(), others.begin(), others.end());
+}
+
+}  // namespace
+
+std::vector<ParameterEstimate> parameters_of(const FitResult& fit, const std::string& effect) {
+  std::vector<ParameterEstimate> out;
+  for (const ParameterEstimate& p : fit.parameters) {
+    if (!p.path.starts_with(effect + ".")) continue;
+    out.push_back(p);
+    out.back().path = p.path.substr(effect.size() + 1);
+  }
+  return out;
+}
+
+Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
+                              const std::vector<const EffectEntry*>& effects) {
+  Iteration iteration;
+  const Evidence& fit = (*task.splits)[0];
+  const LinearBase base(fit, parent.fit.model, unknowns_with_priors(parent.fit.model, *task.nominal),
+                        scales_now(task, parent), task.jobs);
+  if (!base.usable()) return iteration;
+  ScreeningTask screening;
+  screening.evidence = &fit;
+  screening.model = &parent.fit.model;
+  screening.base = &base;
+  for (const Eigen::VectorXd& n : task.null->fit_noise)
+    screening.noise.push_back(n.cwiseProduct(base.weights()));
+  screening.regimes = regime_masks(fit, parent.fit.model);
+  screening.scale = scale_of(task, parent, base);
+  screening.jobs = task.jobs;
+  screening.progress = [&](double share) {
+    return !task.progress || task.progress("screening", 0.5 * share);
+  };
+  iteration.orders = screening.scale.orders;
+  iteration.screened = screen(screening, effects);
+  for (Screened& s : screen_extensions(screening)) iteration.screened.push_back(std::move(s));
+  iteration.largest_null_gain = chance_of(iteration.screened);
+  return iteration;
+}
+
+Iteration selection_iteration(const SelectionTask& task, const Fitted& parent) {
+  Iteration iteration = screening_iteration(task, parent, not_yet(task, parent.fit.model));
+  iteration.stopped = task.progress && !task.progress("screening", 0.5);
+  if (!iteration.stopped)
+    refit_shortlist(task, parent, shortlist(iteration.screened, parent, *task.predictor), iteration);
+  if (!iteration.stopped)
+    refit_shortlist(task, parent, confounded_with_best(iteration, !(*task.splits)[1].empty()), iteration);
+  select_best(task, parent, iteration);
+  make_ranking(task, parent, iteration);
+  return iteration;
+}
+
+}  // namespace omnihil
