@@ -1,7 +1,7 @@
 // A simulated bench's afternoon as text in the measurement format "omnihil-dataset/1", rig "axis".
 //
 //   AxisBench bench{.title = "…", .model = model, .runs = {{"steps", "fit", "steps", input, samples}}};
-//   dataset_text(bench), axis_model_text(bench.model), run_csv(bench, bench.runs[0])
+//   dataset_text(bench); axis_model_text(bench.model); run_csv(bench, bench.runs[0]);
 //
 // Columns: what was asked, bus voltage and current with noise, encoder counts rounded down (or position and
 // velocity with noise where there is no encoder), winding temperature where the model has one.

@@ -2,12 +2,12 @@
 //
 //   double duty = 0.6 * excitation_at(Excitation::kChirp, t, {.duration_s = 20});
 //
-//   steps   a fixed pattern of levels, 0.4 s each, both signs, small and large       transients, delays
-//   ramp    triangle from 0 to 1 to -1 to 0, twice over the duration                 friction, limits,
-//   asymmetry chirp   sine from 0.2 Hz to 40 Hz, exponentially                                 inductance,
-//   delays, resonance prbs    one of -1, 1 for multiples of 20 ms                                      fits
-//   in general creep   triangle of a tenth of full scale, 16 s per period                       friction at
-//   rest, cogging
+//   steps   a fixed pattern of levels, 0.4 s each, both signs, small and large   for transients, delays
+//   ramp    triangle from 0 to 1 to -1 to 0, twice over the duration             for friction, limits, asymmetry
+//   chirp   sine from 0.2 Hz to 40 Hz, exponentially                             for inductance, delays, resonance
+//   prbs    one of -1, 1 for multiples of 20 ms                                  for fits in general
+//   creep   triangle of a tenth of full scale, 16 s per period                   for friction at rest, cogging
+//
 // Source: Ljung, System Identification, 2nd ed. 1999 (inputs).
 #pragma once
 #include <cstdint>

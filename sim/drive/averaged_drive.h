@@ -1,8 +1,8 @@
 // The same motor and bridge averaged over the PWM: one step per period (or any other step), no edges.
 //
 //   AveragedDrive drive = make_averaged_drive(motor, inverter, 50e-6, 0.0);
-//   advance_averaged(drive, x, block_command(0, 1, 0.4, PwmMode::kComplementary), {.bus_voltage_V = 24},
-//   flow);
+//   BridgeCommand legs = block_command(0, 1, 0.4, PwmMode::kComplementary);
+//   advance_averaged(drive, x, legs, {.bus_voltage_V = 24}, flow);
 //
 // Law: each leg is a source at its mean voltage over the period (phase_circuit.h does the rest, floating
 // phase and commutation through the diodes included):

@@ -1,6 +1,6 @@
 // One sub-step of a rotor whose speed a bench imposes: the torque that the bench must add.
 //
-//   BenchTurn<double> b = turn_by_bench(w0, w1, h, J, tau_outside, load);   // b.outside_Nm, b.held
+//   BenchTurn<double> b = turn_by_bench(w0, w1, h, J, tau_outside_Nm, load);   // b.outside_Nm, b.held
 //
 // Law: tau_outside = J domega/dt - (all other torques), friction at rest taking what it can.
 // Values in, values out, and never inlined: a drive's sub-step that lent its own numbers by reference to a

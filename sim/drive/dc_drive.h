@@ -2,10 +2,9 @@
 //
 //   DcDrive drive = make_dc_drive(motor, wheel_inertia_kg_m2 / (gear * gear), 50e-6);
 //   DcDriveState state;
-//   DcDriveResult r = advance_drive(drive, state,
-//       {.mode = OMNIHIL_DRIVE_DUTY, .duty_ratio = 0.5, .bus_voltage_V = 24, .omega_rotor_rad_s = w,
-//        .tau_load_Nm = friction + contact}, 20);                        // 1 ms; r.mean_torque_Nm to the
-//        plant
+//   DcDriveInput input{.mode = OMNIHIL_DRIVE_DUTY, .duty_ratio = 0.5, .bus_voltage_V = 24,
+//                      .omega_rotor_rad_s = omega_rotor_rad_s, .tau_load_Nm = friction_Nm + contact_Nm};
+//   DcDriveResult r = advance_drive(drive, state, input, 20);     // 1 ms; r.mean_torque_Nm to the plant
 //
 // Law: dc_law.h (eq. 7 with its speed factor, plus inductance and rotor), solved exactly per sub-step
 // (dc_step.h) with voltage and load held. The bridge is averaged over its PWM period: u = duty * bus.

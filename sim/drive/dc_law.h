@@ -5,8 +5,7 @@
 //                                       {.voltage_V = 12, .tau_load_Nm = 0});
 //
 // Law:  L di/dt = u - R i - k omega,   J domega/dt = k i - tau_load        (k: torque and back-EMF constant)
-//       L = 0: i = (u - k omega) / R, hence tau = (k/R) u - (k/(R k')) omega with k' = 1/k, the speed
-//       constant
+//       L = 0: i = (u - k omega) / R, hence tau = (k/R) u - (k/(R k')) omega with k' = 1/k, the speed constant
 // Source: A robot simulator paper's eq. (7), "tau = (k/R) u - k/(R k')", completed by the speed factor that
 // the print lost; winding and rotor: any text on permanent-magnet motors (e.g. Maxon, "Key information").
 // Cannot represent: commutation ripple, saturation, iron loss, temperature, PWM ripple (averaged voltage).

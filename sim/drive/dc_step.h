@@ -2,7 +2,7 @@
 // with voltage and load held, and the exact integrals of current and of its square over the step.
 //
 //   DcStep step = make_dc_step({.resistance_ohm = 1.2, .inductance_H = 5.6e-4, …}, 50e-6);
-//   DcFlow flow{.current_A = i, .omega_rad_s = w};
+//   DcFlow flow{.current_A = i_A, .omega_rad_s = w};
 //   apply(step, flow, voltage_V, tau_load_Nm);
 //
 // Law: dc_law.h.  z = (i, omega, u, tau_load), dz/dt = M z with zero rows for u and tau_load;

@@ -2,7 +2,7 @@
 //
 //   DqState<double> x;
 //   DqStepResult<double> r = advance_dq(motor, x, {.v_d_V = 0, .v_q_V = 5, .tau_load_Nm = 0.02}, 50e-6);
-//   x.i_q_A; x.omega_rotor_rad_s; r.torque_Nm
+//   x.i_q_A; x.omega_rotor_rad_s; r.torque_Nm;
 //
 // Law (amplitude-invariant Park transform):
 //   v_d = R i_d + dpsi_d/dt - omega_e psi_q,    v_q = R i_q + dpsi_q/dt + omega_e psi_d,  omega_e = p omega

@@ -3,8 +3,8 @@
 //
 //   DriveSim<double> sim(params, effects, 50e-6);
 //   DriveState<double> state = sim.initial_state();
-//   DriveResult<double> r = sim.advance(state, {.kind = CommandKind::kDuty, .setpoint = 0.5, .bus_voltage_V =
-//   24}, 20);
+//   DriveInput<double> in{.kind = CommandKind::kDuty, .setpoint = 0.5, .bus_voltage_V = 24};
+//   DriveResult<double> r = sim.advance(state, in, 20);           // 20 sub-steps of 50 us
 //
 // Base model: L di/dt = u - R i - k omega; J domega/dt = k i - b omega - c sgn(omega) + tau_outside, c really
 // holding; J = J_rotor + J_load / N^2; gravity -m g l sin(theta_out) / N. Winding exact per sub-step

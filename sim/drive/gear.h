@@ -3,7 +3,7 @@
 //   GearParams<double> g{.ratio = 3, .drive_efficiency = 0.95, .backdrive_efficiency = 0.93};
 //   double tau_out = gear_output_Nm(g, tau_rotor_Nm, omega_rotor_rad_s);            // rigid, with loss
 //   double tau = shaft_torque_Nm(g, twist_rad, twist_rate_rad_s);                   // at the output, elastic
-//   advance_gear(g, masses, state, tau_motor, tau_load, 50e-6);
+//   advance_gear(g, masses, state, tau_rotor_Nm, tau_load_Nm, 50e-6);
 //
 // Law: tau_out = N tau eta_d where the rotor drives (tau omega > 0), N tau / eta_b where it is driven.
 //      twist = theta_rotor / N - theta_out;  inside the play |twist| <= gap / 2 no torque; outside

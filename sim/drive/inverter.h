@@ -8,12 +8,12 @@
 // its `off` state for the rest. The usual six-step modes are pairs of these:
 //   complementary   high leg {kHigh, kLow},  low leg {kLow, kLow}: current may reverse, brakes below its EMF
 //   high-side chop  high leg {kHigh, kOff},  low leg {kLow, kLow}: slow decay through the lower diode
-//   fast decay      high leg {kHigh, kOff},  low leg {kLow, kOff}: both off together, back into the bus
-//   (coast)
+//   fast decay      high leg {kHigh, kOff},  low leg {kLow, kOff}: both off together, back into the bus (coast)
 // Law of a leg, i counted into the motor:
 //   switched on     v = V_bus or 0, minus R_on i, either direction
-//   off, i > 0      lower diode:  v = -V_f - R_on i           off, i < 0   upper diode:  v = V_bus + V_f -
-//   R_on i off, i = 0      floats, while -V_f <= v <= V_bus + V_f
+//   off, i > 0      lower diode:  v = -V_f - R_on i
+//   off, i < 0      upper diode:  v = V_bus + V_f - R_on i
+//   off, i = 0      floats, while -V_f <= v <= V_bus + V_f
 // Dead time: after a change between kHigh and kLow both switches stay off for dead_time_s; an on-time shorter
 // than that is lost.
 // Source: Mohan, Undeland, Robbins, "Power Electronics" (2003), ch. 8 (bridge, dead time); data sheets for

@@ -1,6 +1,6 @@
 // The true motion of the recent past, for measurements that are older than their stamp.
 //
-//   record.push({.time_s = t, .theta_rad = th, .omega_rad_s = w, .charge_C = q});
+//   record.push({.time_s = t, .theta_rad = theta_rad, .omega_rad_s = w, .charge_C = q_C});
 //   MotionPoint<Jet> p = record.at(t - age);      // derivative with respect to the age included
 //
 // Angle by cubic Hermite interpolation (its slope is the speed), the others linearly. Before the first point

@@ -13,9 +13,8 @@
 // With V, K and the speed of mid step held, every current is one exponential of time constant L / (R + R_on)
 // and its mean is linear in that speed; so winding and rotor (implicit midpoint) are solved together, in
 // closed form. Energy closes to rounding; second order in the step, by K and theta alone. Where a diode's
-// current reaches zero the step is parted at that instant (closed form; the speed of mid step
-// is reckoned again for the shorter part).
-// A diode's start of conduction is looked for at each step's start.
+// current reaches zero the step is parted at that instant (closed form; the speed of mid step is reckoned again
+// for the shorter part). A diode's start of conduction is looked for at each step's start.
 // Source: Krause et al. (2002), ch. 15; Pillay and Krishnan 1989 for floating phase and star point.
 // Cannot: salient rotors (L is the mean of d and q), saturation, mutual coupling that depends on the angle,
 // dry friction that holds (bring friction in by tau_load, or impose the speed).

@@ -1,7 +1,7 @@
 // Which phases carry current between two boundaries, and by which source: switches that are on, diodes whose
 // current flows, diodes that a floating phase's voltage opens. Used by phase_circuit.cc alone.
 //
-//   Conduction on = conduction_of(currents, legs, back_emf_V, kNone);     // on.count phases conduct
+//   Conduction on = conduction_of(currents_A, legs, back_emf_V, kNone);     // on.count phases conduct
 //
 // Law: star point = mean over the conducting phases of (source - back-EMF); a phase without current floats at
 // star + its back-EMF and joins when that passes a diode's voltage of its leg.

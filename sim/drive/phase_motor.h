@@ -1,7 +1,8 @@
 // A three-phase permanent-magnet motor in star: what is fixed about it, and how it relates to the
 // DC-equivalent one of the data sheet.
 //
-//   PhaseMotor<double> m = phase_motor_of(motor_params, Commutation::kBlock, {.shape = kTrapezoid, …});
+//   PhaseMotor<double> m = phase_motor_of(motor_params, Commutation::kBlock,
+//                                         {.shape = BackEmfShape::kTrapezoid, …});
 //   double k = torque_constant_Nm_per_A(m, Commutation::kSinusoidal);    // of the same motor under FOC
 //
 // theta_elec is the angle of the rotor's d axis before phase a: theta_elec = pole_pairs * theta_rotor.

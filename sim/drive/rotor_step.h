@@ -1,7 +1,7 @@
 // One sub-step of a rotor with dry friction that really holds.
 //
-//   RotorStep<double> r = advance_rotor(w0, h, {.inertia = J, .torque = tau, .damping = {b, b}, .friction =
-//   {c, c}}); r.omega_end_rad_s; r.mean_omega_rad_s; r.held
+//   RotorStep<double> r = advance_rotor(w0, h, RotorLoad<double>{J, tau_Nm, b, b, c, c});
+//   r.omega_end_rad_s; r.mean_omega_rad_s; r.held;
 //
 // Law: J domega/dt = tau - d omega - F sgn(omega), sticking where |tau| <= F; d and F may differ by
 // direction. Method: implicit midpoint (second order, no step too long, energy exact: J (w1^2 - w0^2)/2 = h

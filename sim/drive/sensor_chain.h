@@ -1,7 +1,7 @@
 // From a true signal to what a channel of a record holds: rounding of an encoder, noise of a known size.
 //
-//   sample.encoder_counts -> encoder_reading(...)        12.7 -> 12
-//   noisy(24.0, 0.02, {seed, "bus_voltage", k})          24.0 + 0.02 n
+//   double counts = encoder_reading(sample.encoder_counts);              // 12.7 -> 12
+//   double volts = noisy(24.0, 0.02, seed, "bus_voltage", k);            // 24.0 + 0.02 n
 #pragma once
 #include <cmath>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // One sub-step of the shaft between rotor and output: a spring with damping and play, as a linear function of
 // the rotor's mean speed, so that rotor, winding, shaft and output are solved together.
 //
-//   ShaftStep<double> s = make_shaft_step(port, masses, output, 50e-6);
-//   torque at the output  s.torque_Nm + s.damping_Nm_s_per_rad * (mean omega_rotor / N)
+//   ShaftStep<double> s = make_shaft_step(port, output, 50e-6);
+//   double tau_output_Nm = s.torque_Nm + s.damping_Nm_s_per_rad * mean_omega_rotor_rad_s / ratio;
 //
 // Law: tau = (x -+ gap / 2) / c + d x' in contact, 0 in the play; x = theta_rotor / N - theta_out.
 //   implicit midpoint: mean tau = K (x + h mean x' / 2 - side) + D mean x',  A = K h / 2 + D

@@ -2,7 +2,7 @@
 //
 //   BatteryParams<double> b{.cells = 6, .capacity_C = 1.3 * 3600, .resistance_ohm = 0.04};
 //   SupplyState<double> s = full_supply(b);
-//   advance_supply(b, 2e-3, s, all_motors_bus_current_A, 1e-3);       // s.bus_voltage_V sags for all of them
+//   advance_supply(b, 2e-3, s, bus_current_A, 1e-3);      // of all motors; s.bus_voltage_V sags for all of them
 //
 // Law: V_oc = cells * v(q / capacity), v a table of one cell;   i_b = (V_oc - V_bus) / R_b
 //      C dV_bus/dt = i_b - i_bus,   dq/dt = -i_b      (V_oc held over a step)

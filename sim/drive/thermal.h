@@ -3,7 +3,7 @@
 //   ThermalParams<double> p = {.winding_to_housing_K_per_W = 1.57, .housing_to_ambient_K_per_W = 8.28, …};
 //   ThermalState<double> s;                                        // rises over ambient, K
 //   advance_thermal(p, s, heat_W, 1.0);
-//   double r = warm_resistance_ohm(r25, kCopperPerK, s.winding_K);
+//   double r = warm_resistance_ohm(r25_ohm, kCopperPerK, s.winding_K);
 //
 // Law: C_w dT_w/dt = P - (T_w - T_h) / R_wh,   C_h dT_h/dt = (T_w - T_h) / R_wh - T_h / R_ha
 //      R(T) = R (1 + alpha dT),   lambda(T) = lambda (1 + beta dT), beta < 0

@@ -1,8 +1,8 @@
 // One sub-step of the winding: exact for resistance, inductance, constants and voltage held over it, with the
 // mean current as a linear function of the mean speed so that winding and rotor are solved together.
 //
-//   WindingStep<double> w = make_winding_step(1.2, 5.6e-4, 5.6e-4 / 50e-6);
-//   w.mean_current(u, emf_offset, i0)  and  -w.gain * k * mean_omega  add up to the mean current
+//   WindingStep<double> w = make_winding_step(1.2, 5.6e-4, 5.6e-4 / 50e-6, 50e-6 / 5.6e-4);
+//   double mean_A = w.mean_current(u - e0, i0) - w.gain * k_V_s_per_rad * mean_omega_rad_s;
 //
 // Law: L di/dt = u - e0 - k omega - R i.  With everything but i held:
 //   i(h) = i_inf + (i_0 - i_inf) e,       e = exp(-R h / L),      i_inf = (u - e0 - k omega) / R

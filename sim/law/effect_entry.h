@@ -1,6 +1,6 @@
 // One effect as the rest of the program holds it: its description and its law, for both scalars.
 //
-//   struct Cogging { static constexpr EffectInfo kInfo{…};
+//   struct Cogging { static constexpr EffectInfo kInfo{.id = "cogging", …};
 //                    template <typename T> static void apply(const T* p, T* x, TorquePort<T>& port); };
 //   OMNIHIL_EFFECT(cogging, Cogging)        // at the end of sim/effects/cogging.cc; nothing else to register
 //

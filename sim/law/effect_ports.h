@@ -2,7 +2,7 @@
 // effects of that place in the order of their ids, and takes the changed fields back.
 //
 //   template <typename T> static void apply(const T* p, T* x, TorquePort<T>& port) {
-//     port.add_friction(p[kTorque]);          // holds still at zero speed, with all others together
+//     port.add_friction(p[0]);                // holds still at zero speed, with all others together
 //   }
 //
 // p: the effect's parameters in the order of its rows. x: its states, kept between sub-steps (null: it has

@@ -1,6 +1,7 @@
 // The effects that a model has, ready to be applied sub-step by sub-step.
 //
-//   EffectSet<double> set({{find_effect("cogging"), {0.004, 48, 0}}});
+//   const std::vector<EffectUse> uses = {{find_effect("cogging"), {0.004, 48, 0}}};
+//   EffectSet<double> set(uses);
 //   set.torque.apply(set.values(), states, port);
 //
 // An effect all of whose strengths are exactly neutral is left out, so results are equal bit for bit; with

@@ -1,7 +1,7 @@
 // What a user's formula may read and what it may add to, per place: the fields of the ports, by name.
 //
-//   for (const auto& s : PortTable<TorquePort<double>>::kSignals) print(s.name, s.unit);
-//   omega_rotor_rad_s  rad/s
+//   for (const auto& s : PortTable<TorquePort<double>>::kSignals) std::cout << s.name << " " << s.unit;
+//   // omega_rotor_rad_s rad/s, …
 //
 // Fields mean what sim/law/effect_ports.h says of them.
 #pragma once

@@ -1,9 +1,8 @@
 // Sine and cosine for laws that are evaluated every 50 microseconds: a third of the library's time, and the
 // same bits on every machine.
 //
-//   port.tau_Nm += amplitude * sin_of(order * port.theta_rotor_rad + phase);      // double or Jet
-//   ... * turning_mean(order * port.omega_rotor_rad_s * port.dt_s);               // its mean over the
-//   sub-step
+//   port.tau_Nm += amplitude_Nm * sin_of(order * port.theta_rotor_rad + phase_rad)     // double or Jet
+//                  * turning_mean(order * port.omega_rotor_rad_s * port.dt_s);         // its mean over the sub-step
 //
 // Method: x = k pi + r with |r| <= pi/2, pi in three parts (Cody and Waite 1980), Taylor series of sin r to
 // r^19. Within 4e-16 absolute of the true value for |x| up to 1e6, growing as |x| 1e-22 beyond; not for |x|

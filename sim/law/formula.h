@@ -1,7 +1,8 @@
 // A formula that a user wrote, compiled: values on both scalars, so its derivatives are exact.
 //
 //   std::vector<FormulaFault> faults;
-//   const auto f = compile_formula("-a*w*abs(w)", {"w", "a"}, faults);
+//   const std::vector<std::string> variables = {"w", "a"};
+//   const auto f = compile_formula("-a*w*abs(w)", variables, faults);
 //   f->value<Jet>([&](int variable) { return variable == 0 ? Jet(3.0) : Jet(2.0, 0); });   // -18, d/da = -9
 //
 // muParser 2.3 reads the text (its grammar: + - * / ^, comparisons, && ||, c ? a : b, brackets) and puts it

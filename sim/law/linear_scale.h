@@ -2,7 +2,7 @@
 // screw that moves 1 mm per rad would have them. A convention, for bounds, prior scales and start values
 // alone.
 //
-//   upper = row.upper * kForceOverTorque_per_m;   // 10 N m allowed, so 10 kN
+//   double upper_N = row.upper * kForceOverTorque_per_m;   // 10 N m allowed, so 10 kN
 #pragma once
 
 namespace omnihil {

@@ -2,8 +2,7 @@
 //
 //   std::vector<ModelProblem> problems;
 //   std::vector<EffectUse> uses = read_effects(document, {.drive = &drive}, problems);
-//   std::string fault = add_override("cogging.amplitude_Nm=0.004", {.drive = &drive}, uses);   // "" or what
-//   is wrong
+//   std::string fault = add_override("cogging.amplitude_Nm=0.004", {.drive = &drive}, uses);   // what is wrong, or ""
 //
 // [effects.ID] holds numbers, bare or { value, tolerance, source }. Strengths that are not given are neutral,
 // shapes start from the motor at hand where they can. A linear axis has _N, _m in place of _Nm, _rad. All

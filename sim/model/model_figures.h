@@ -1,6 +1,6 @@
 // What follows from a model's numbers: the figures by which a person recognises a motor or a robot.
 //
-//   for (const ModelFigure& f : model_figures(model)) print(f.name, f.value, f.unit, f.formula);
+//   for (const ModelFigure& f : model_figures(model)) std::cout << f.name << f.value << f.unit << f.formula;
 //
 // Steady-state and static formulas (eq. 7, friction, gear, statics); no simulation is run. Top speeds hold
 // for the nominal bus voltage and leave out tyre slip and roller drag.

@@ -1,9 +1,9 @@
 // Reads a model (format omnihil-model/1): a robot, an axis or a motor, from TOML text. No file is opened
 // here; the text of a referenced motor file comes from the caller.
 //
-//   ModelReading r = read_model(text, "robots/my_robot.toml", [&](const std::string& file) { … });
+//   ModelReading r = read_model(text, "robots/my_robot.toml", load_motor);    // load_motor: a file's name to its text
 //   for (const ModelProblem& p : r.problems) std::cerr << p.text() << "\n";   // all of them, not the first
-//   if (r.model) plant_robot = *r.model->robot;
+//   if (r.model) robots.push_back(*r.model->robot);
 //
 // A number is bare (known exactly) or { value = 1.2, tolerance = 0.1, source = "data sheet" }; tolerance is
 // the relative 1-sigma. Keys, units and bounds: model_rows.h. Keys of the robot's file override the motor

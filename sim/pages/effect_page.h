@@ -1,9 +1,8 @@
 // What people read about one effect: a page in Markdown and a picture, both from its EffectInfo and a
 // simulation.
 //
-//   write("docs/effects/cogging.md", effect_page(*find_effect("cogging")));
-//   write("docs/effects/img/cogging.svg", effect_picture(*find_effect("cogging")));      // "" where no axis
-//   shows it
+//   folder.write("cogging.md", effect_page(*find_effect("cogging")));
+//   folder.write("cogging.svg", effect_picture(*find_effect("cogging")));      // "" where no axis shows it
 //
 // `omnihil effects --docs DIR` writes them all; a test holds docs/effects to what is generated.
 #pragma once

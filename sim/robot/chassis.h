@@ -9,15 +9,13 @@
 //   kFloorDamping of critical (floor and tyre together: guess, +-50 %). Wheels can lift, the robot can tip.
 //   Roll and pitch inertia are those of a cylinder as high as twice the centre of mass (guess, +-30 %):
 //   models give the yaw inertia only.
-// Spin inertia: Simbody's pins have no rotor inertia of their own, so wheel_inertia + gear^2 rotor_inertia is
-// the
-//   wheel body's axial inertia. A rigid body needs I_x + I_y >= I_z; the wheel's diametral inertia is
-//   therefore half the axial one, more than the real wheel's, and the chassis is given that much less yaw
-//   inertia: the robot's total is exact. In kFree the rotors' share of the spin also turns with the chassis
+// Spin inertia: Simbody's pins have no rotor inertia of their own, so wheel_inertia + gear^2 rotor_inertia is the
+//   wheel body's axial inertia. A rigid body needs I_x + I_y >= I_z; the wheel's diametral inertia is therefore
+//   half the axial one, more than the real wheel's, and the chassis is given that much less yaw inertia: the
+//   robot's total is exact. In kFree the rotors' share of the spin also turns with the chassis
 //   as gear^2 J instead of gear J, which inflates gyroscopic pitch and roll moments: about 1 % of m a h.
 // A locked wheel gets the torque that answers the floor, with its reaction on the chassis, and exactly no
-//   acceleration against it. In kFree that leaves out the wheel's own inertia against pitch: J times its
-//   rate.
+//   acceleration against it. In kFree that leaves out the wheel's own inertia against pitch: J times its rate.
 // Cannot represent: contact between robots, walls, a ball; contact off the wheel's middle. Simbody itself
 // allocates per evaluation; nothing here does.
 #pragma once

@@ -1,7 +1,7 @@
 // Forces of the floor on the four wheels of one robot, for given speeds: slip, tyre curves, wheel loads.
 //
 //   ContactLaw<double> law = contact_law(model);
-//   WheelContacts<double> c = contact_forces(law, wheel_motion(law, body_velocity, omega_wheel_rad_s));
+//   WheelContacts<double> c = contact_forces(law, wheel_motion(law, velocity, omega_wheel_rad_s));
 //   c.force_longitudinal_N[i], c.force_x_N, c.force_y_N, c.moment_z_Nm;
 //
 // Law: force_longitudinal = -grip_longitudinal(slip) N   along the drive direction t_i = (-sin a_i, cos a_i)
@@ -9,8 +9,7 @@
 //      eq. (4) with S = N. N depends on the sum F of these forces (wheel_load.h) and F on N, both linearly:
 //      F = G N, N = N_rest + K F  =>  (1 - G K) F = G N_rest, a 2x2 system solved exactly; nothing is taken
 //      from the step before, so the law is a function of the speeds alone and the same in every back end.
-//      Where a load would fall below zero, the transfer is scaled down until the lightest wheel carries
-//      nothing.
+//       Where a load would fall below zero, the transfer is scaled down until the lightest wheel carries nothing.
 // Source: eqs. (4) and (6) and Table I of Bakhshandeh and Sharbafi 2012 as read in tyre.h and slip.h.
 // Combined slip: the two directions do not limit each other (the rollers turn, the ring drives).
 // Cannot represent: a wheel in the air (kSimbodyFree does), bumps of the rollers, contact off the wheel's

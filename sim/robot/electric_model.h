@@ -1,7 +1,7 @@
 // What a robot's model says about its electrics beyond the DC-equivalent motor: kind of drive, bridge, Hall
 // and angle sensors, current sensing, battery, bus capacitor, heat. Neutral: none of it is there.
 //
-//   RobotModel m = …;
+//   RobotModel m = model;
 //   set_electrics(m, [](ElectricModel& e) { e.kind = DriveKind::kDq; });
 //   electrics_of(m).three_phase();                  // of any model; all neutral where it says nothing
 //   PhaseMotor<double> motor = phase_motor(m);      // the three-phase motor of the same terminal values

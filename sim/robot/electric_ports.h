@@ -1,6 +1,6 @@
 // What passes between a three-phase robot's electrics and the outside: who sets its legs, what is true of it.
 //
-//   struct Mine : MotorControl { MotorDrive motor_tick(const MotorSensors& s) override { … } };
+//   struct Mine : MotorControl { MotorDrive motor_tick(const MotorSensors& s) override { return {…}; } } mine;
 //   plant.set_motor_control(0, &mine);     // called once per PWM period of robot 0, within advance()
 #pragma once
 #include <array>

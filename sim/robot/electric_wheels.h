@@ -4,8 +4,8 @@
 //   ElectricWheels wheels(model, electrical_step_s, step_s, seed, robot);
 //   ElectricMemory memory = wheels.initial_memory();
 //   wheels.begin_step(memory, inputs, now_ns, control, steps);       // one mechanical step; steps to it
-//   … mechanics advances one step …
-//   omega_wheel = wheels.end_wheel(memory, i, steps[i], omega_before, omega_after);
+//   // … mechanics advances one step …
+//   double omega_wheel_rad_s = wheels.end_wheel(i, steps[i], omega_before_rad_s, omega_after_rad_s);
 //
 // Law: within a mechanical step the floor's torque of its start is held. Per period (PWM period with three
 //   phases, electrical sub-step without): each winding by wheel_electrics.h at the bus voltage of the

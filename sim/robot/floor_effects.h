@@ -1,10 +1,10 @@
 // Effects between one robot and the floor, and on its body: asked anew at every state that a back end looks
 // at, by both back ends alike.
 //
-//   FloorEffects effects(set, model);                        // the model that body effects have made
+//   FloorEffects effects(set, model, step_s);                // the model that body effects have made
 //   FloorForces more;
 //   WheelContacts<double> c = effects.contacts(law, motion, state, nullptr, more);
-//   more.wheel_radius_m[i], more.friction_wheel_Nm[i], more.body_force_x_N
+//   more.wheel_radius_m[i], more.friction_wheel_Nm[i], more.body_force_x_N;
 //
 // Law: the floor's law is that of contact.h with
 //     radius            as the effects have it, wheel by wheel: rim speed and lever of the force

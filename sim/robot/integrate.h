@@ -2,8 +2,8 @@
 // rounding only.
 //
 //   IntegratorScratch scratch(q.size(), u.size());
-//   back.set_state(q, u);                                   // contacts() are wanted before the torques are
-//   known integrate(Integrator::kRungeKutta4, back, torques, step_s, q, u, scratch);
+//   back.set_state(q, u);               // contacts() are wanted before the torques are known
+//   integrate(Integrator::kRungeKutta4, back, torques, step_s, q, u, scratch);
 //
 // Law: semi-implicit Euler, u += h f(q, u), q += h N(q) u (order 1, one evaluation), and the classical
 //      Runge-Kutta method of order 4 on (q, u) (four evaluations). The first sees the mean torques of

@@ -2,8 +2,8 @@
 //
 //   RobotEffects effects(model, electrical_step_s, substeps, step_s);   // model.effects not null
 //   effects.begin_step(law, memory, inputs, steps);      // four drives on one bus; steps[i] to the mechanics
-//   … mechanics advances one step …
-//   omega_wheel = effects.end_wheel(law, memory, i, steps[i], omega_after);
+//   // … mechanics advances one step …
+//   double omega_wheel_rad_s = effects.end_wheel(law, memory, i, steps[i], omega_before_rad_s, omega_after_rad_s);
 //
 // Law: each wheel's drive is DriveSim (drive_sim.h: command, supply, bridge, winding, torque) with the
 //   floor's force of the step's start held over the step. The mechanics gets the mean torque of all that is

@@ -1,5 +1,4 @@
-// What a robot's sensors could have seen in the recent past, for measurements that are older than their
-// stamp.
+// What a robot's sensors could have seen in the recent past, for measurements that are older than their stamp.
 //
 //   RobotHistory history(1.0, step_s);
 //   history.push(point);                           // once per mechanical step; the oldest is forgotten

@@ -2,7 +2,7 @@
 // as old as the effects of Place::kTiming make it.
 //
 //   RobotSensors s = read_sensors(effects, memory, history, model, {now, now_ns, seed, robot});
-//   RobotInstant seen = seen_by_camera(effects, memory, history, {…});
+//   RobotInstant seen = seen_by_camera(effects, memory, history, {now, now_ns, seed, robot});
 //
 // Random numbers are a function of seed, robot, wheel and time, not of how often one asks.
 // Cannot represent: ages beyond kLongestAge_s, noise of gyro and accelerometer.

@@ -1,6 +1,6 @@
 // One step of a robot that rolls (rolling_robot.h): the slips on which floor, rotors and body agree.
 //
-//   RollingBalance<double> b; …fill…;
+//   RollingBalance<double> b;          // filled by rolling_robot.cc
 //   if (!b.newton(slip)) b.sweep(slip);
 #pragma once
 #include <Eigen/LU>

@@ -1,5 +1,4 @@
-// Floor force over slip speed of one wheel of a robot that rolls (rolling_robot.h): rolling, or a tyre's
-// curve.
+// Floor force over slip speed of one wheel of a robot that rolls (rolling_robot.h): rolling, or a tyre's curve.
 //
 //   Grip<double> g{.rolls = false, .load_N = 5.4, .full_grip_m_s = 0.02, .shape = {0.75, 0.6, 4.0}};
 //   g.force(0.01);      // 5.4 N x 0.75 x (3/2 x - 1/2 x^3), x = 0.5

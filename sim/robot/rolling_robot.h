@@ -1,9 +1,9 @@
 // One robot on wheels that roll or slip, solved implicitly: what fits run, on double and with derivatives.
 //
-//   RollingRobot<double> robot(params, effects);
+//   RollingRobot<double> robot(params, uses, values);      // of all uses one after another
 //   RollingState<double> x = robot.start({.v_forward_m_s = 1.0}, theta_rotor_rad);
-//   robot.advance(x, {.duty_ratio = {…}, .bus_voltage_V = 22.2, .bus_is_measured = true}, 1e-3);
-//   x.velocity, x.omega_rotor_rad_s(i), x.theta_rotor_rad[i], x.charge_C[i]
+//   robot.advance(x, {.duty_ratio = {0.4, 0.4, -0.4, -0.4}, .bus_voltage_V = 22.2, .bus_is_measured = true}, 1e-3);
+//   x.velocity, x.omega_rotor_rad_s(i), x.theta_rotor_rad[i], x.charge_C[i];
 //
 // The same laws as the plant's (plant.h): drives of drive_sim.h with all their effects, masses of
 // planar_law.h, loads of wheel_load.h, tyres of tyre.h, Coulomb friction that really holds. What differs is
@@ -18,8 +18,7 @@
 //   unknown slips, Newton's method on the values, and one more Newton step on the scalar with derivatives,
 //   which makes them exact (implicit function theorem).
 //   Without a tyre f is a line so steep that 1 N slides 1 um/s: rolling. With wheel_slip, or a tyre, f is the
-//   tyre's curve over s / (scale + v_c), scale = extremum slip times max(|v|, |rim|, floor) for a tyre, 0
-//   without.
+//   tyre's curve over s / (scale + v_c), scale = extremum slip times max(|v|, |rim|, floor) for a tyre, 0 without.
 // Order 2 in the step where wheels roll, 1 where they slip. A force that an effect adds along the wheel's
 // drive direction (roller_ripple) acts on wheel and body where there is a tyre, as in the plant. Without one
 // it turns the wheel only: on a wheel that rolls, a force at the point of contact does no work. Cannot

@@ -2,25 +2,25 @@
 // still.
 //
 //   WheelDriveLaw law = wheel_drive_law(model, electrical_step_s, substeps);
-//   WheelStep step = begin_wheel_step(law, drive_state, bridge, omega_rotor, contact_Nm);
-//   ... mechanics advances one step with step.torque ...
-//   omega_wheel = end_wheel_step(law, drive_state, step, omega_before, omega_after);   // stops at zero
+//   WheelStep step = begin_wheel_step(law, drive_state, bridge, omega_rotor_rad_s, contact_Nm);
+//   // … mechanics advances one step with step.torque …
+//   double omega_wheel_rad_s = end_wheel_step(law, drive_state, step, omega_before_rad_s, omega_after_rad_s);   // stops at zero
 //
 // Law: the winding is advanced exactly over the step's electrical sub-steps (dc_drive.h) with floor and
 //   friction torque of the step's start held. The mechanics gets its torque at start and end and, between,
 //   the value that makes the step's mean by Simpson's rule: the current's rise within the step is not lost.
 //   The floor's force changes within the step, so the rotor's true speed departs from the foreseen one, to
-//   first order linearly: d t. A winding at a held voltage answers by L di/dt + R i = -k d t. Its mean over
-//   the step h is -(k/R) phi d h/2, phi = 1 - 2 (1 - (1 - e^-x) / x) / x, x = h R / L; its value at the end
-//   is
-//   -(k/R) d h (1 - (1 - e^-x) / x). The first is the slope that the mechanics sees, (k^2/R) phi; the second
-//   corrects the current after the step. None while coasting or at the current limit: no voltage is held
-//   then. Coulomb friction tau_c acts at the rotor (after Karnopp 1985, in event form): turning:  tau_c
-//   against the motion; its sign is fixed within a step. at zero:  locked while |motor + floor| <= tau_c:
-//   speed and acceleration exactly zero. Above, it breaks away. A wheel that passes zero within a step: the
-//   part of the step past zero runs against friction instead of with it, so the speed gained there shrinks by
-//   1 - 2 tau_c / |net torque|, to exactly zero where friction holds. Friction therefore only ever takes
-//   energy. Viscous friction b omega acts continuously in the mechanics.
+//   first order linearly: d t. A winding at a held voltage answers by L di/dt + R i = -k d t. With
+//   x = h R / L over the step h, the answer's
+//     mean         -(k/R) phi d h/2,  phi = 1 - 2 (1 - (1 - e^-x) / x) / x:  the mechanics sees its slope, (k^2/R) phi
+//     value at h   -(k/R) d h (1 - (1 - e^-x) / x):  corrects the current after the step
+//   None while coasting or at the current limit: no voltage is held then.
+//   Coulomb friction tau_c acts at the rotor (after Karnopp 1985, in event form):
+//     turning  tau_c against the motion; its sign is fixed within a step
+//     at zero  locked while |motor + floor| <= tau_c: speed and acceleration exactly zero; above, it breaks away
+//   A wheel that passes zero within a step: the part of the step past zero runs against friction instead of with
+//   it, so the speed gained there shrinks by 1 - 2 tau_c / |net torque|, to exactly zero where friction holds.
+//   Friction therefore only ever takes energy. Viscous friction b omega acts continuously in the mechanics.
 // The wheel's own freedom is decoupled in the planar mass matrix, so that a lock is exact there.
 // Cannot represent: a break-away torque above the turning one (Stribeck), friction that depends on load.
 #pragma once

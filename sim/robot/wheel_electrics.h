@@ -3,9 +3,9 @@
 //
 //   WheelElectrics wheel(model, electrical_step_s);
 //   WheelElectricState x;
-//   BridgeCommand legs = wheel.own_command(x, {OMNIHIL_DRIVE_DUTY, 0.4}, 24.0, hall_code);
+//   BridgeCommand legs = wheel.own_command(x, {OMNIHIL_DRIVE_DUTY, 0.4, 24.0}, hall_code);
 //   PeriodFlow f = wheel.advance(x, legs, {.bus_voltage_V = 24.0, .tau_load_Nm = 0.01});    // dq, switched
-//   PeriodFlow f = wheel.advance_dc(x, {OMNIHIL_DRIVE_DUTY, 0.4}, {…});                      // dc
+//   PeriodFlow g = wheel.advance_dc(x, {OMNIHIL_DRIVE_DUTY, 0.4, 24.0}, {…});               // dc
 //
 // Laws: dc_drive.h, dq_motor.h with averaged_drive.h, switched_drive.h. The wheel turns rigidly with the
 // rotor; its inertia counts there. dq with all three legs complementary: mean leg voltages (dead time

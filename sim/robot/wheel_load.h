@@ -2,8 +2,7 @@
 //
 //   WheelLoadLaw<double> law = wheel_load_law(geometry, mass_kg, com_x_m, com_y_m, com_height_m);
 //   law.at_rest_N[i];                                   // sums to m g
-//   law.transfer(i, force_x_N, force_y_N);              // change by the floor's horizontal force on the
-//   robot
+//   law.transfer(i, force_x_N, force_y_N);              // change by the floor's horizontal force on the robot
 //
 // Law: three balances (vertical force, moments about x and y through the geometric centre),
 //        sum N_i = m g,   sum N_i x_i = m g c_x - h F_x,   sum N_i y_i = m g c_y - h F_y,
