@@ -1,7 +1,7 @@
 // What a dataset.toml says, before any of its files is opened: channels, runs, and where each stands.
 //
 //   DatasetPlan plan = read_dataset_plan(text, "bench/dataset.toml", problems);
-//   plan.dataset.channels; plan.runs[0].file;
+//   plan.dataset.channels; plan.runs[0].run.file;
 //
 // Problems are collected; what is wrong is left out of the plan.
 #pragma once

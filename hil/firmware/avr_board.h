@@ -1,9 +1,9 @@
 // One board of a robot of AVR boards: a chip in a process of its own with its wires, asked line by line.
 //
 //   AvrBoard board(spec, spec.motors[2], image, config, 10.0);   // throws std::invalid_argument
-//   board.begin({…}, frames);                                   // let it run
+//   board.begin(world, end_ns);                                 // let it run
 //   board.finish();                                             // wait for it
-//   board.drive()                                               // what the bridge did on the mean
+//   board.drive();                                              // what the bridge did on the mean
 #pragma once
 #include <cstdint>
 #include <string>

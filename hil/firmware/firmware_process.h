@@ -3,7 +3,7 @@
 //   FirmwareProcess process(10.0);                       // throws std::system_error if it cannot be started
 //   process.send({FirmwareCall::kTick}, &sensors, sizeof sensors);
 //   std::span<const std::uint8_t> answer = process.receive();     // empty: it is no more
-//   process.end()                                        // "crashed in tick() at tick 1234 …"
+//   process.end();                                       // "crashed in tick() at tick 1234 …"
 //
 // The deadline is of wall time and for hangs alone: an answer that comes is the same whenever it comes.
 #pragma once

@@ -1,10 +1,8 @@
-// A team's shared object as an omnihil::Firmware, in a process of its own: whatever it does, the bench goes
-// on.
+// A team's shared object as an omnihil::Firmware, in a process of its own: whatever it does, the bench goes on.
 //
 //   GuardedFirmware firmware({.library = "./libmyteam.so"}, config);      // throws std::invalid_argument
 //   RobotDrive drive = firmware.tick(sensors);          // coast once it is no more
-//   firmware.failure();   // "./libmyteam.so crashed (SIGSEGV, a null pointer (+0 bytes)) in tick(), tick
-//   1234 …"
+//   firmware.failure();   // "./libmyteam.so crashed (SIGSEGV, a null pointer (+0 bytes)) in tick(), tick 1234 …"
 //
 // Contained and told: crashes, abort(), exit(), stack overflow, access outside the state block, a call that
 // does not return within the deadline. One process per robot, so that a firmware with global variables serves

@@ -1,7 +1,6 @@
 // The two files of an emulated board, image and description, with every fault of both said at once.
 //
-//   read_image_files(image_file, board_file, read_the_image, read_the_board);   // throws
-//   std::invalid_argument
+//   read_image_files(image_file, board_file, read_image, read_board);   // throws std::invalid_argument
 //
 // The readers add what they find wrong to the list they are given; names of the files are put in front here.
 #pragma once

@@ -1,7 +1,8 @@
 // The bench's end of the line to a board: frames of remote_frame.h out and in, and how long answers took.
 //
 //   RemoteLink link(std::move(line));
-//   link.hello(robot_config, problem);
+//   RemoteHello answer;
+//   if (!link.hello(robot_config, answer, problem)) …                         // what came instead
 //   link.send_sensors(sensors);
 //   link.poll();  link.drive();                  // the newest drive that came, and which sensors it answers
 //

@@ -1,7 +1,7 @@
 // When the next loop step is due. The loop asks before every step; virtual time is counted in steps.
 //
 //   RealClock clock({.step_ns = 1'000'000});
-//   while (clock.wait()) session.step(…);      // wait() false: interrupted by a signal, look and ask again
+//   while (clock.wait()) session.step(host, answer);      // wait() false: interrupted by a signal, look and ask again
 //   clock.report().slipped_ns;
 //
 // FreeClock   virtual time as fast as it goes; never waits. Lateness has no meaning and stays empty.

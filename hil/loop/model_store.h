@@ -1,8 +1,8 @@
 // Finds and reads model files: robots, motors and axes, by path or by name.
 //
-//   StoredModel m = load_model("roboteam_2024", {OMNIHIL_SOURCE_MODELS});
+//   StoredModel m = load_model("roboteam_2024", {"/usr/share/omnihil/models"});
 //   if (!m.model) for (const ModelProblem& p : m.problems) std::cerr << p.text() << "\n";
-//   header["model"] = m.bundle;                       // a recording carries the texts, not the paths
+//   setup.model = m.bundle;                           // a recording carries the texts, not the paths
 //   ModelReading again = read_bundle(m.bundle);       // later, anywhere, without any file
 //
 // A name without a slash and without ".toml" is looked for as robots/NAME.toml, motors/NAME.toml and

@@ -1,13 +1,13 @@
 // The one loop: five hops, one thread, one clock, no I/O. Bytes of the AI host and a duration go in, bytes
 // for the AI host come out; clocks, devices and files belong to the callers (serve, replay, tests).
 //
-//   bytes -> RadioLink -> RobotCommand -> Firmware -> RobotDrive -> Plant -> RobotSensors -> Firmware ->
-//   RadioLink -> bytes
+//   bytes -> RadioLink -> RobotCommand -> Firmware -> RobotDrive -> Plant
+//   bytes <- RadioLink <- RobotFeedback <- Firmware <- RobotSensors <- Plant
 //
 // Deterministic: the same configuration and the same (time, bytes) sequence give the same bytes and states.
 //
 //   Session session(config, reference_firmware_for(config));
-//   while (session.now_ns() < end_ns) session.step(host_bytes, answer);
+//   while (session.now_ns() < end_ns) session.step(host, answer);
 //
 // One step from t to t + step_ns, in this order: host bytes into the dongle at t; what has reached robots is
 // handed to their firmware at t; then, at every control instant k * control_period of [t, t + step_ns), robot

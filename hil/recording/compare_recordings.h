@@ -1,8 +1,8 @@
 // Says where two runs differ: packets of the dongle field by field, samples column by column.
 //
 //   RecordingComparison c = compare_recordings(recorded, replayed, format, tolerances);
-//   if (!c.agrees()) print(c.first->text());
-//     // "3.020 s, robot 2: true_v_forward_m_s: recorded 0.98, replayed 1.02 m/s (tolerance 0.005)"
+//   if (!c.agrees()) std::cout << c.first->text();
+//   // "3.020 s, robot 2: true_v_forward_m_s: recorded 0.98, replayed 1.02 m/s (tolerance 0.005)"
 //
 // A recording that was cut off is compared as far as it goes. Columns that only one side has are not
 // compared, and are listed.

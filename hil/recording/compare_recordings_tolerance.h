@@ -1,8 +1,7 @@
 // How far two runs may differ and still agree: absolute tolerances, in the unit of the signal.
 //
 //   Tolerances tolerances;                                  // the table below
-//   tolerances.read("true_x_m = 0.002", "line 1", problems) // one setting, as in a file or on the command
-//   line
+//   tolerances.read("true_x_m = 0.002", "line 1", &format, problems);   // as in a file or on the command line
 //
 // A setting is KEY = VALUE, most particular first:
 //   true_omega_wheel_rad_s_2      one column

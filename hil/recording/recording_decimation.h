@@ -2,7 +2,7 @@
 // and for a replay, so that both keep the same ticks.
 //
 //   SampleDecimation decimation({0, 1}, 10);
-//   if (decimation.keep(robot_id)) write(sample);
+//   if (decimation.keep(robot_id)) …
 #pragma once
 #include <algorithm>
 #include <cstddef>

@@ -2,7 +2,7 @@
 //
 //   RecordingMemory memory(header);
 //   session.set_observer(&memory);
-//   …
+//   // … the session goes its steps …
 //   Recording answer = memory.take(session.now_ns());
 //
 // About 670 bytes per kept sample: 0.4 MB per simulated second for six robots at 1 kHz, every 10th kept.

@@ -4,7 +4,7 @@
 //
 //   RecordingReader reader(stream, "drive.omnirec");            // a recording larger than memory
 //   RecordedChunk chunk;
-//   while (reader.next(chunk)) use(chunk);
+//   while (reader.next(chunk)) …
 //   if (!reader.problems().empty()) …                           // "drive.omnirec:7: robot id: found '9', …"
 //
 // Refused: unknown tags and header keys, a wrong number of values, numbers that are not finite, broken hex,

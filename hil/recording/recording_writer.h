@@ -3,13 +3,12 @@
 //   std::error_code error;
 //   auto writer = RecordingWriter::open("drive.omnirec", header, error);
 //   session.set_observer(writer.get());
-//   …
+//   // … the session goes its steps …
 //   writer->finish({.now_ns = session.now_ns(), .wall_s = 12.5, .counters = {{"host packets good", 120}}});
 //
 // A write that fails (disk full, device gone) ends the recording, not the run: it is reported once through
 // `report` and kept in error(). A killed run is readable up to the last simulated second at least.
-// Cost: about 6 µs per `s` line: 0.4 % of a core for six robots at 1 kHz with every 10th tick, 4 % with every
-// one.
+// Cost: about 6 µs per `s` line: 0.4 % of a core for six robots at 1 kHz with every 10th tick, 4 % with every one.
 #pragma once
 #include <functional>
 #include <memory>

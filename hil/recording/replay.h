@@ -1,7 +1,7 @@
 // Feeds a recorded host's bytes through the loop again, at the virtual times at which they came.
 //
 //   Recording recording = load_recording("drive.omnirec");
-//   Session session(config_of(recording.header), make_firmware);
+//   Session session(session_config(session_setup(recording.header)), make_firmware);
 //   RecordingMemory answer(recording.header);
 //   replay(recording, session, &answer);              // as fast as it goes, no clock is read
 //   Recording again = answer.take(session.now_ns());

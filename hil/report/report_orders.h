@@ -1,7 +1,7 @@
 // How strong a residual is at each order of an angle: order 1 is once per turn, 12 is twelve times.
 //
 //   OrderSums s = order_sums(angle_rad, residual, 192);
-//   s.power[71] / s.weight;          // squared amplitude at order 72
+//   s.power[71] / s.weight[71];      // squared amplitude at order 72
 //
 // Law: A_n = 2 |sum w r exp(-j n theta)| / sum w with w = |d theta|, the mean of r taken off; so a slow turn
 // counts as much as a fast one. Valid while n |d theta| stays below half a period; samples beyond that are

@@ -2,8 +2,7 @@
 //
 //   const ThinClock clock = thin_clock(time_s, 1000);          // at most 1000 intervals
 //   const std::vector<double> y = thinned(clock, measured);    // two values per interval: least and greatest
-//   const PackedSeries p = packed(y);                          // 16-bit steps between p.low and p.high,
-//   base64
+//   const PackedSeries p = packed(y);                          // 16-bit steps between p.low and p.high, base64
 //
 // A signal with at most two samples per interval is kept sample by sample. In an interval the two extremes
 // stand in the order in which they came, a quarter and three quarters through it: an instant is true to half

@@ -1,7 +1,7 @@
 // A scenario: what is done to one robot with its firmware at which instants, and what must come of it.
 //
 //   ScenarioReading reading = read_scenario(text, "wheel_step.toml");
-//   if (!reading.scenario) …reading.problems…
+//   if (!reading.scenario) for (const ModelProblem& p : reading.problems) std::cerr << p.text();
 //
 // Text form, a step and a check (scenario_help.h prints all of them):
 //   format = "omnihil-scenario/1"

@@ -1,6 +1,6 @@
 // What a run is held to: each check measured, wheel by wheel where it has wheels.
 //
-//   for (const CheckResult& r : check_scenario(scenario, run)) if (!r.passed) …r.text()…
+//   for (const CheckResult& r : check_scenario(scenario, run)) if (!r.passed) std::cout << r.name << r.measured_text();
 //
 // Measures, of a signal y with commanded value r (at the window's end) and start y_0 (at from_s):
 //   rise_time       first t with (y - y_0) / (r - y_0) >= 0.9, less from_s

@@ -1,6 +1,6 @@
 // The signals of one failed check as a self-contained SVG: what was, what was commanded, the check's window.
 //
-//   write("wheel_step.svg", scenario_plot(title, run.trace, result));
+//   std::string svg = scenario_plot(title, run.trace, result);
 #pragma once
 #include <string>
 

@@ -1,7 +1,7 @@
 // What came of scenarios: lines for people, JUnit XML for machines.
 //
 //   std::fputs(scenario_text(outcome, false).c_str(), stdout);
-//   write(junit_xml(outcomes));
+//   std::string xml = junit_xml(outcomes);
 #pragma once
 #include <span>
 #include <string>

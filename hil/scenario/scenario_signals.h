@@ -1,7 +1,7 @@
 // The signals a scenario's checks and plots look at, and the record of a run: one row per control period.
 //
 //   ScenarioTrace trace;
-//   trace.add(now_s, sample_of(…));
+//   trace.add(now_s, sample);
 //   std::span<const double> y = trace.column("omega_wheel_rad_s", 2);
 #pragma once
 #include <cstdint>

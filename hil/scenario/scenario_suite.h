@@ -1,7 +1,7 @@
 // Scenario files as a user names them, run one after another with one firmware.
 //
 //   SuiteReading suite = read_suite({"wheel", "mine.toml"}, "", "examples/scenarios");
-//   for (const Scenario& s : suite.scenarios) outcomes.push_back(run_one(s, choice, options));
+//   for (const Scenario& s : suite.scenarios) outcomes.push_back(run_one(s, options));
 #pragma once
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // Ctrl-C and its relatives as a flag that the loop looks at.
 //
-//   StopSignals stop;                 // from here on SIGINT, SIGTERM, SIGHUP set the flag; SIGPIPE is
-//   ignored while (!stop.requested()) …
+//   StopSignals stop;             // from here on SIGINT, SIGTERM, SIGHUP set the flag; SIGPIPE is ignored
+//   while (!stop.requested()) …
 //
 // The handlers are installed without SA_RESTART, so a sleeping loop wakes at once. One at a time.
 #pragma once

@@ -1,7 +1,6 @@
 // What `serve` says while it runs and when it ends: pure text from a snapshot of numbers.
 //
-//   1:02.345  host here | 12400 ok, 3 refused (2 checksum, 1 framing) | late p50 36 us p99 198 us | #0 wheels
-//   …
+//   1:02.345  host here | 12400 ok, 3 refused (2 checksum, 1 framing) | late p50 36 us p99 198 us | #0 wheels …
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,8 +1,7 @@
 // Reads the columns one asks for out of a CSV file, fast, and says everything that is wrong with them.
 //
 //   CsvTable t = read_csv("bench/steps.csv", {"time_s", "duty"}, problems);
-//   t.columns[1];            // values, NaN where the cell is empty; no value when the file has no such
-//   column
+//   t.columns[1];            // values, NaN where the cell is empty; no value when the file has no such column
 //
 // One header line, comma between cells, a point as decimal mark, LF or CRLF; a byte order mark, blanks around
 // a cell and quotes are allowed. Columns nobody asks for may hold anything. A cell must be a finite number or

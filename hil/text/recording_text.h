@@ -2,7 +2,7 @@
 //
 //   append_number(line, 0.1);        // "0.1": the shortest text that gives the same double back
 //   append_hex(line, bytes);         // "03ff"
-//   parse_hex("03f", bytes)          // false: an odd number of digits
+//   parse_hex("03f", bytes);         // false: an odd number of digits
 #pragma once
 #include <cstdint>
 #include <span>

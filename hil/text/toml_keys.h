@@ -1,7 +1,8 @@
 // Walks a TOML table of known keys and says what is wrong with each, with its place.
 //
 //   TomlKeys keys(document, problems);
-//   keys.only(table, "", {"format", "title"});                   // unknown keys, with the nearest spelling
+//   const std::string_view known[] = {"format", "title"};
+//   keys.only(table, "", known);                                 // unknown keys, with the nearest spelling
 //   std::optional<std::string> title = keys.text(table, "", "title");
 #pragma once
 #include <optional>

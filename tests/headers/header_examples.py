@@ -76,8 +76,8 @@ def read_given(file=GIVEN):
 
 def names_of(table, room):
     """The words of a room, declared where every name of the code itself hides them."""
-    names = {**table.get("names", {}).get("all", {}), **table.get("names", {}).get(room, {})}
-    declared = [f"extern {kind} {name};\n" for kind, words in names.items() for name in words.split()]
+    names = [item for of in ("all", room) for item in table.get("names", {}).get(of, {}).items()]
+    declared = [f"extern {kind} {name};\n" for kind, words in names for name in words.split()]
     return "using namespace omnihil;\nnamespace header_example_names {\n" + "".join(declared) + (
         "}\nusing namespace header_example_names;\n\n")
 
@@ -85,8 +85,8 @@ def names_of(table, room):
 def unit_of(room, headers, table, given):
     """The text of the translation unit of a room, and what is wrong before any compiler is asked."""
     faults, functions = [], []
-    skipped = table.get("not_compiled", {})
-    texts = {path: (ROOT / path).read_text(encoding="utf-8") for path in headers if path not in skipped}
+    skipped = tuple(table.get("not_compiled", {}))
+    texts = {path: (ROOT / path).read_text(encoding="utf-8") for path in headers if not path.startswith(skipped or "/")}
     for number, (path, text) in enumerate(texts.items()):
         faults += looks_unfinished(path, text)
         function = example_of(path, text, given.get(path), number, path in table.get("namespace_scope", []))
@@ -112,7 +112,7 @@ def main():
     table, given = read_given()
     bad = False
     for path in list(given) + list(table.get("not_compiled", {})):
-        if not (ROOT / path).is_file():
+        if not (ROOT / path).exists():
             print(f"{GIVEN.relative_to(ROOT)}: error: there is no {path}")
             bad = True
     args.out.mkdir(parents=True, exist_ok=True)

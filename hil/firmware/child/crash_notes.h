@@ -1,6 +1,7 @@
 // Notes that a crash leaves on the shared page (wire.h): which call, and what kind of address it was about.
 //
-//   install_crash_notes(page, block);    // once; block may be null until the state is there
+//   install_crash_notes(page);
+//   watch_state(&block);                 // once the state is there
 #pragma once
 #include "hil/firmware/child/state_block.h"
 #include "hil/firmware/wire.h"

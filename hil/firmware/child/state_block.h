@@ -4,7 +4,7 @@
 //   StateBlock block(api.state_bytes);
 //   api.init(block.data(), &config);
 //   if (!block.intact()) …
-//   block.offset_of(fault_address)     // how far from the block's begin, if it is near
+//   block.offset_of(fault_address);    // how far from the block's begin, if it is near
 //
 //   [wall page] [filled bytes] [state, 16-byte aligned, ends at the wall but for up to 15 bytes] [wall page]
 #pragma once
