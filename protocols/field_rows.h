@@ -56,6 +56,20 @@ constexpr Field enveloped(Field field) {
   return field;
 }
 
+// The same row with what it tells a dongle; see FieldRole.
+constexpr Field with_role(FieldRole role, Field field) {
+  field.role = role;
+  return field;
+}
+constexpr Message with_role(MessageRole role, Message message) {
+  message.role = role;
+  return message;
+}
+constexpr Message answered_by(std::uint32_t type, Message message) {
+  message.answer_type = type;
+  return message;
+}
+
 // Bits after the last field, up to the whole byte: not listed among the values, kept on a round trip.
 constexpr Field padding(int bits) {
   return enveloped(reserved("padding", bits, "fills the last byte; sent as 0"));

@@ -28,6 +28,27 @@ int Message::field_index(std::string_view field) const {
   return -1;
 }
 
+int Message::field_index(FieldRole wanted) const {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (fields[i].role == wanted) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+const Message* message_of_type(std::span<const Message> messages, std::uint32_t type) {
+  for (const Message& message : messages) {
+    if (message.type == type) return &message;
+  }
+  return nullptr;
+}
+
+const Message* message_of_role(std::span<const Message> messages, MessageRole role) {
+  for (const Message& message : messages) {
+    if (message.role == role) return &message;
+  }
+  return nullptr;
+}
+
 double Values::number(std::string_view field) const { return fields[existing_index(message, field)].number; }
 
 void Values::set(std::string_view field, double number) {

@@ -27,6 +27,16 @@ enum class FieldKind : std::uint8_t {
   kChecksum,  // computed by the format's own rule; the walker leaves it to the codec
 };
 
+// What a field tells a dongle, whatever the team calls it.
+enum class FieldRole : std::uint8_t {
+  kNone,
+  kRobot,      // the robot meant
+  kTeam,       // its team: 0 yellow, 1 blue
+  kAllRobots,  // not 0: every robot of the team
+  kForDongle,  // not 0: the dongle itself
+  kForHost,    // not 0: the host; a dongle that gets this from the host gives it back
+};
+
 struct Field {
   std::string_view name{};  // the team's own name; "cmd[2]" marks element 2 of an array "cmd"
   int bit = 0;
@@ -40,9 +50,30 @@ struct Field {
   // Part of the frame rather than of the packet's content (HERMES' version, source, checksum): filled in by
   // encode, checked by decode, not listed among the values a user reads and writes.
   bool envelope = false;
+  FieldRole role = FieldRole::kNone;
 };
 
 enum class Direction : std::uint8_t { kToRobot, kFromRobot, kBoth, kToDongle, kFromDongle };
+
+// What a packet is for, where a dongle or the radio end of a robot treats it in a way of its own.
+enum class MessageRole : std::uint8_t {
+  kNone,
+  kHeaderOnly,     // says nothing
+  kFiller,         // fills an air packet; never for anybody
+  kCommand,        // what a robot does from now on; a newer one makes it void
+  kSingleCommand,  // the same, but each one counts
+  kKill,           // the robot stops
+  kSetGains,       // a robot's controllers
+  kGetGains,       // answered by kGains
+  kGains,
+  kAnnounce,  // a packet that is to be acknowledged follows
+  kAcknowledge,
+  kFeedback,         // a robot's state in short
+  kStateInfo,        // and at length
+  kText,             // a line for people
+  kConfigureDongle,  // from the host an order, from the dongle its answer
+  kAskDongle,        // answered by kConfigureDongle
+};
 
 struct Message {
   std::string_view name;   // the team's own name, as `encode FORMAT NAME` takes it
@@ -53,9 +84,15 @@ struct Message {
   BitOrder bit_order = BitOrder::kMsbFirst;
   std::span<const Field> fields;
   std::string_view what;
+  MessageRole role = MessageRole::kNone;
+  std::uint32_t answer_type = 0;  // of the packet that answers this one; 0: none does
 
   int field_index(std::string_view name) const;  // -1 when there is none
+  int field_index(FieldRole wanted) const;
 };
+
+const Message* message_of_type(std::span<const Message> messages, std::uint32_t type);  // nullptr: none
+const Message* message_of_role(std::span<const Message> messages, MessageRole role);  // the first; or nullptr
 
 inline constexpr int kMaxFields = 96;
 
@@ -76,6 +113,16 @@ struct Values {
   double number(std::string_view field) const;  // asserts that the field exists
   bool flag(std::string_view field) const { return number(field) != 0.0; }
   void set(std::string_view field, double number);  // asserts that the field exists; clears `raw`
+  // Of a field that this packet may not have.
+  double number_or(std::string_view field, double absent) const {
+    return at_or(message->field_index(field), absent);
+  }
+  double number_or(FieldRole role, double absent) const { return at_or(message->field_index(role), absent); }
+
+ private:
+  double at_or(int index, double absent) const {
+    return index < 0 ? absent : fields[static_cast<std::size_t>(index)].number;
+  }
 };
 
 // True when the fields cover size_bytes * 8 bits exactly, without gap or overlap.

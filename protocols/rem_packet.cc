@@ -5,13 +5,6 @@
 namespace omnihil::rem {
 namespace {
 
-const Message* message_of_type(std::span<const Message> messages, std::uint8_t type) {
-  for (const Message& message : messages) {
-    if (message.type == type) return &message;
-  }
-  return nullptr;
-}
-
 const Field* field_of_kind(const Message& message, FieldKind kind) {
   for (const Field& field : message.fields) {
     if (field.kind == kind) return &field;

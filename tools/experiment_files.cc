@@ -23,12 +23,16 @@ std::string planned_csv(const PlannedRun& run) {
   return text;
 }
 
-std::string planned_stream(const PlannedRun& run, const RadioFormat& format, const RobotAddress& robot,
-                           double rate_Hz, std::string& fault) {
+std::string planned_stream(const PlannedRun& run, const RadioFormat& format, CommandTo robot, double rate_Hz,
+                           std::string& fault) {
   HostStream stream;
   const auto frames = [&](double time_s, const std::array<double, 4>& duty) {
     StreamChunk chunk{.at_ns = std::llround(time_s * 1e9), .bytes = {}};
-    if (!append_duty_frames(format, robot, duty, stream.chunks.empty(), chunk.bytes)) {
+    RobotCommand command{};
+    command.mode = OMNIHIL_MODE_WHEEL_DUTY;
+    std::copy(duty.begin(), duty.end(), command.duty_ratio);
+    robot.set_up = stream.chunks.empty();
+    if (!format.encode_command(command, robot, chunk.bytes)) {
       fault = fmt::format("{} refuses the duties at {:.3f} s", format.id, time_s);
     }
     stream.chunks.push_back(std::move(chunk));
@@ -42,7 +46,7 @@ std::string planned_stream(const PlannedRun& run, const RadioFormat& format, con
   if (!fault.empty()) return "";
   frames(run.time_s.back() + 1.0 / rate_Hz, {0.0, 0.0, 0.0, 0.0});
   return to_text(stream, fmt::format("{}: {}; {} packets a second to robot {}", format.id, run.words, rate_Hz,
-                                     robot.id));
+                                     robot.robot_id));
 }
 
 std::string plan_text(const ExperimentPlan& plan) {

@@ -2,12 +2,12 @@
 //
 //   folder.write("run.csv", planned_csv(run, inputs));
 //   std::string fault;
-//   folder.write("stream.txt", planned_stream(run, format, {.id = 3}, 100.0, fault));
+//   folder.write("stream.txt", planned_stream(run, format, {.robot_id = 3}, 100.0, fault));
 #pragma once
 #include <string>
 
 #include "identify/design/experiment.h"
-#include "protocols/drive_frames.h"
+#include "protocols/radio_format.h"
 
 namespace omnihil {
 
@@ -16,8 +16,8 @@ std::string planned_csv(const PlannedRun& run);
 
 // The four duties as frames, `rate_Hz` a second, and zero at the end: as `omnihil play` takes it. `fault`:
 // why there is none.
-std::string planned_stream(const PlannedRun& run, const RadioFormat& format, const RobotAddress& robot,
-                           double rate_Hz, std::string& fault);
+std::string planned_stream(const PlannedRun& run, const RadioFormat& format, CommandTo robot, double rate_Hz,
+                           std::string& fault);
 
 // The plan for a reader: what, how far it separates, what the run does, what was refused.
 std::string plan_text(const ExperimentPlan& plan);

@@ -26,7 +26,7 @@ class Bench : public SessionObserver {
     session_.set_observer(this);
     const RadioFormat* format = find_radio_format(config.radio_format);
     const bool decodes = session_.firmware(0).radio_format() == config.radio_format;
-    if (decodes && format->encode_command != nullptr && scenario.path != CommandPath::kHal) format_ = format;
+    if (decodes && scenario.path != CommandPath::kHal) format_ = format;
     if (scenario.path == CommandPath::kRadio && format_ == nullptr) {
       throw_problems(
           {fmt::format("{}: commands = \"radio\": firmware \"{}\" decodes no radio format that a "
@@ -171,8 +171,9 @@ class Bench : public SessionObserver {
     next_packet_ns_ += ns(scenario_.command_every_s);
     if (silent_) return packet_;
     if (format_ != nullptr) {
-      if (format_->encode_command(command_, robot_id_, packet_)) return packet_;
-      if (format_->encode_command(as_body_velocity(command_), robot_id_, packet_)) return packet_;
+      if (format_->encode_command(command_, {.robot_id = robot_id_}, packet_)) return packet_;
+      if (format_->encode_command(as_body_velocity(command_), {.robot_id = robot_id_}, packet_))
+        return packet_;
       if (scenario_.path == CommandPath::kRadio) {
         throw std::invalid_argument(
             fmt::format("{}: commands = \"radio\": {} cannot say the command at {:g} s", scenario_.file,

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "protocols/hermes_types.h"
+
 namespace omnihil::hermes {
 
 inline constexpr std::size_t kPayloadBytes = 23;  // longest frame with its delimiter; shorter ones are padded
@@ -22,7 +24,9 @@ inline constexpr std::int64_t kAck_ns = kSettling_ns + air_time_ns(0);
 inline constexpr std::int64_t kNoAck_ns = 1'000'000;            // how long the radio waits for an ack
 inline constexpr std::int64_t kAnswerTimeout_ns = 5'000'000;    // how long the dongle waits for an answer
 inline constexpr std::int64_t kRobotTurnaround_ns = 1'000'000;  // request to answer in the robot; guess
-inline constexpr std::size_t kQueueFrames = 149;                // the dongle's ring of 150, one kept free
+// How often the dongle sends a request that gets no answer.
+constexpr int tries(std::uint32_t type) { return type == kGetNumRequest ? 1 : 3; }
+inline constexpr std::size_t kQueueFrames = 149;  // the dongle's ring of 150, one kept free
 
 // The radio numbers its frames modulo 4 and a receiver takes an equal number for a repetition. The dongle
 // works around that: a frame whose address was last used exactly four transmissions ago is sent twice.

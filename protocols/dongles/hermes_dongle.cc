@@ -1,17 +1,21 @@
 // RoboCup ULaval's dongle and the radio ends of its robots.
 //
-//   host -> HermesStream -> queue -> one frame at a time over the air -> robot -> answer -> host
+//   host -> DelimitedStream -> queue -> one frame at a time over the air -> robot -> answer -> host
 //
 // Cannot: lose frames on the air, or repeat the radio's mistaking of a new frame for a repetition (the robot
 // acts once on each frame; the second transmission only takes its time).
+#include "protocols/dongles/hermes_dongle.h"
+
 #include <algorithm>
 #include <cassert>
 
-#include "protocols/dongles/dongles.h"
+#include "protocols/dongles/delimited_stream.h"
+#include "protocols/dongles/dongle.h"
 #include "protocols/dongles/hermes_air.h"
 #include "protocols/dongles/hermes_robot.h"
-#include "protocols/dongles/hermes_stream.h"
+#include "protocols/dongles/kept_packet.h"
 #include "protocols/dongles/ring.h"
+#include "protocols/dongles/robot_table.h"
 
 namespace omnihil {
 namespace {
@@ -19,33 +23,26 @@ namespace {
 constexpr std::size_t kHostBuffer = 16384;  // bytes waiting for the host; more are dropped as overrun
 
 struct Frame {
-  std::array<std::uint8_t, hermes::kPayloadBytes> bytes{};
-  std::uint8_t size = 0;
+  KeptPacket<hermes::kPayloadBytes> packet;
+  const Message* message = nullptr;
   int robot = 0;
   bool reaches_robot = false;
   int tries = 0;  // waits for an answer; 0: the type has none
   std::int64_t arrived_ns = 0;
-  std::span<const std::uint8_t> span() const { return std::span(bytes).first(size); }
 };
 
 struct Robot {
-  bool exists = false;
-  bool has_feedback = false;
-  RobotFeedback feedback{};
+  std::optional<RobotFeedback> feedback;
   HermesRobot radio;
 };
 
-class HermesDongle final : public RadioLink {
+class HermesDongle final : public Dongle {
  public:
   HermesDongle(const RadioFormat& format, const RadioLinkConfig& config)
-      : format_(format),
-        config_(config),
-        stream_(static_cast<std::size_t>(format.max_frame_bytes), from_host_) {
+      : Dongle(format, config, kHostBuffer),
+        stream_(static_cast<std::size_t>(format.max_frame_bytes), from_host_),
+        robots_(config.robot_ids) {
     assert(static_cast<std::size_t>(format.max_frame_bytes) <= hermes::kPayloadBytes);
-    for (const int id : config.robot_ids) {
-      robots_.at(static_cast<std::size_t>(id)).exists = true;  // ids beyond are the caller's mistake
-    }
-    host_out_.reserve(kHostBuffer);
   }
 
   void host_bytes(std::span<const std::uint8_t> bytes, std::int64_t now_ns) override {
@@ -62,33 +59,19 @@ class HermesDongle final : public RadioLink {
   void robot_frame(int robot_id, std::span<const std::uint8_t> payload, std::int64_t now_ns) override {
     const auto delimiter = std::find(payload.begin(), payload.end(), std::uint8_t{0});
     const auto frame = delimiter == payload.end() ? payload : payload.first(delimiter - payload.begin() + 1);
-    const DecodeResult result = format_.decode(frame);
-    PacketError error = result.error;
-    if (error == PacketError::kNone && result.values.message->direction == Direction::kToRobot) {
-      error = PacketError::kDirection;
-    }
+    PacketError error = fault_from_robot(frame);
     if (error == PacketError::kNone) error = take_answer(robot_id, frame, now_ns);
     if (error != PacketError::kNone) from_robots_.count(error);
   }
 
   void robot_feedback(int robot_id, const RobotFeedback& feedback, const RobotGains&, std::int64_t) override {
-    if (robot_id < 0 || robot_id >= static_cast<int>(robots_.size())) return;
-    robots_[static_cast<std::size_t>(robot_id)].has_feedback = true;
-    robots_[static_cast<std::size_t>(robot_id)].feedback = feedback;
+    if (Robot* robot = robots_.find(robot_id)) robot->feedback = feedback;
   }
 
-  void take_host_bytes(std::int64_t, std::vector<std::uint8_t>& out) override {
-    out.insert(out.end(), host_out_.begin(), host_out_.end());
-    host_out_.clear();
-  }
-
-  void host_closed(std::int64_t) override {
+  void host_closed(std::int64_t now_ns) override {
     stream_.close();
-    host_out_.clear();
+    Dongle::host_closed(now_ns);
   }
-
-  const PacketCounts& from_host() const override { return from_host_; }
-  const PacketCounts& from_robots() const override { return from_robots_; }
 
  private:
   enum class Phase : std::uint8_t { kIdle, kOnAir, kAcknowledge, kAwait };
@@ -100,14 +83,9 @@ class HermesDongle final : public RadioLink {
   void reach_robot(RadioSink& sink);
   void finish(std::int64_t at_ns);
   void end_of_wait();
-  Robot& robot_of(const Frame& frame) { return robots_[static_cast<std::size_t>(frame.robot)]; }
 
-  const RadioFormat& format_;
-  RadioLinkConfig config_;
-  PacketCounts from_host_;
-  PacketCounts from_robots_;
-  HermesStream stream_;
-  std::array<Robot, 256> robots_{};
+  DelimitedStream stream_;
+  RobotTable<Robot, 256> robots_;
   Ring<Frame, hermes::kQueueFrames> queue_;
   hermes::RepeatRule repeat_rule_;
 
@@ -120,7 +98,6 @@ class HermesDongle final : public RadioLink {
   bool answered_ = false;
   std::int64_t answer_ns_ = 0;  // the answer is at the dongle
   std::vector<std::uint8_t> answer_;
-  std::vector<std::uint8_t> host_out_;
 };
 
 // What the dongle takes from the host. A refused frame takes no time on the air.
@@ -128,15 +105,13 @@ PacketError HermesDongle::accept(std::span<const std::uint8_t> bytes, std::int64
   const DecodeResult result = format_.decode(bytes);
   if (result.error != PacketError::kNone) return result.error;
   const Message& message = *result.values.message;
-  if (message.direction == Direction::kFromRobot || message.direction == Direction::kFromDongle) {
-    return PacketError::kDirection;
-  }
+  if (never_from_host(message)) return PacketError::kDirection;
   Frame frame;
-  frame.size = static_cast<std::uint8_t>(bytes.size());
-  std::copy(bytes.begin(), bytes.end(), frame.bytes.begin());
-  frame.robot = static_cast<int>(result.values.number("robot"));
-  frame.reaches_robot = robot_of(frame).exists;
-  if (HermesRobot::has_answer(message)) frame.tries = message.name == "GET_NUM_REQUEST" ? 1 : 3;
+  frame.packet = KeptPacket<hermes::kPayloadBytes>::of(bytes);
+  frame.message = &message;
+  frame.robot = address_of(result.values).robot;
+  frame.reaches_robot = robots_.find(frame.robot) != nullptr;
+  if (message.answer_type != 0) frame.tries = hermes::tries(message.type);
   frame.arrived_ns = now_ns;
   if (!queue_.push(frame)) return PacketError::kOverrun;
   return frame.reaches_robot ? PacketError::kNone : PacketError::kAddress;
@@ -188,23 +163,19 @@ void HermesDongle::transmit(std::int64_t start_ns) {
 void HermesDongle::reach_robot(RadioSink& sink) {
   const Frame& frame = queue_.front();
   if (!frame.reaches_robot) return;
-  Robot& robot = robot_of(frame);
-  const DecodeResult result = format_.decode(frame.span());
-  assert(result.error == PacketError::kNone);
-  Delivery delivery;
-  delivery.robot_id = frame.robot;
-  delivery.message = result.values.message->name;
   if (config_.firmware_decodes) {
-    delivery.kind = Delivery::Kind::kFrame;
-    delivery.frame = frame.span();
-    sink.deliver(delivery, reached_ns_);
-    return;
+    return deliver_frame(sink, frame.robot, *frame.message, frame.packet.span(), reached_ns_);
   }
+  Robot& robot = *robots_.find(frame.robot);
+  const DecodeResult result = format_.decode(frame.packet.span());  // the robot's own reading
   if (const std::optional<RobotCommand> command = robot.radio.receive(result.values, reached_ns_)) {
+    Delivery delivery;
+    delivery.robot_id = frame.robot;
+    delivery.message = frame.message->name;
     delivery.command = *command;
     sink.deliver(delivery, reached_ns_);
   }
-  if (frame.tries > 0 && robot.has_feedback && !answered_) {
+  if (frame.tries > 0 && robot.feedback && !answered_) {
     answered_ = true;
     answer_.clear();
     answer_ns_ = std::max(end_ns_, reached_ns_ + hermes::kRobotTurnaround_ns) + hermes::kFrame_ns;
@@ -221,18 +192,14 @@ void HermesDongle::end_of_wait() {
     phase_ = Phase::kOnAir;
     return;
   }
-  if (!config_.firmware_decodes) {
-    Robot& robot = robot_of(frame);
-    const DecodeResult request = format_.decode(frame.span());
+  const Robot* robot = robots_.find(frame.robot);
+  if (!config_.firmware_decodes && robot != nullptr) {
     Values values;
-    robot.radio.answer(*request.values.message, format_, frame.robot, robot.feedback, values);
-    const RadioFormat::EncodeResult encoded = format_.encode(values, answer_);
-    assert(encoded.error == PacketError::kNone);
-    static_cast<void>(encoded);
+    values.message = message_of_type(format_.messages, frame.message->answer_type);
+    robot->radio.answer(frame.robot, robot->feedback.value_or(RobotFeedback{}), values);
+    encode(values, answer_);
   }
-  const bool room = host_out_.size() + answer_.size() <= kHostBuffer;
-  from_robots_.count(room ? PacketError::kNone : PacketError::kOverrun);
-  if (room) host_out_.insert(host_out_.end(), answer_.begin(), answer_.end());
+  from_robots_.count(to_host(answer_));
   finish(answer_ns_);
 }
 
@@ -258,10 +225,8 @@ PacketError HermesDongle::take_answer(int robot_id, std::span<const std::uint8_t
 
 }  // namespace
 
-std::unique_ptr<RadioLink> make_hermes_dongle(const RadioLinkConfig& config) {
-  const RadioFormat* format = find_radio_format("ulaval-hermes");
-  assert(format != nullptr);
-  return std::make_unique<HermesDongle>(*format, config);
+std::unique_ptr<RadioLink> make_hermes_dongle(const RadioFormat& format, const RadioLinkConfig& config) {
+  return std::make_unique<HermesDongle>(format, config);
 }
 
 }  // namespace omnihil

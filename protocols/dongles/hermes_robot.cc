@@ -1,14 +1,14 @@
 #include "protocols/dongles/hermes_robot.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <string_view>
+
+#include "protocols/hermes_types.h"
 
 namespace omnihil {
 namespace {
 
-enum Register : int { kLoop = 0, kKick = 1, kCharge = 2, kDribbler = 3 };
+using hermes::kCharge, hermes::kDribbler, hermes::kKick, hermes::kLoop;
 
 // Duty of the dribbler's motor for levels 0 to 3; any other level stops it.
 double dribbler_ratio(int level) {
@@ -21,29 +21,29 @@ constexpr double kKickUnit_s = 1e-4;
 }  // namespace
 
 std::optional<RobotCommand> HermesRobot::receive(const Values& values, std::int64_t now_ns) {
-  const std::string_view name = values.message->name;
-  if (name != "GET_NUM_REQUEST") ++received_;
+  const std::uint32_t type = values.message->type;
+  if (type != hermes::kGetNumRequest) ++received_;
   kick_pulse_s_ = 0.0;
-  if (name == "SPEED_MOVE" || name == "SPEED_MOVE_ADVANCE") {
+  if (type == hermes::kSpeedMove || type == hermes::kSpeedMoveAdvance) {
     v_forward_m_s_ = values.number("vx");
     v_left_m_s_ = values.number("vy");
     omega_body_rad_s_ = values.number("vtheta");
     speed_at_ns_ = now_ns;
-    if (name == "SPEED_MOVE") return open_loop_ ? std::nullopt : std::optional(command_now(now_ns));
+    if (type == hermes::kSpeedMove) return open_loop_ ? std::nullopt : std::optional(command_now(now_ns));
     kick_pulse_s_ = values.number("kick_force") * kKickUnit_s;
     charge_ = values.flag("charge") || kick_pulse_s_ > 0.0;
     dribbler_ratio_ = dribbler_ratio(static_cast<int>(values.number("dribbler")));
     return command_now(now_ns);
   }
-  if (name == "OPEN_LOOP_COMMAND") {
-    static constexpr std::string_view kDuty[] = {"cmd[0]", "cmd[1]", "cmd[2]", "cmd[3]"};
+  if (type == hermes::kOpenLoopCommand) {
     for (std::size_t i = 0; i < OMNIHIL_WHEELS; ++i) {
-      duty_ratio_[i] = std::clamp(values.number(kDuty[i]), -1.0, 1.0);  // a bridge cannot do more
+      duty_ratio_[i] =
+          std::clamp(values.number(hermes::kDutyFields[i]), -1.0, 1.0);  // a bridge cannot do more
     }
     duty_at_ns_ = now_ns;
     return open_loop_ ? std::optional(command_now(now_ns)) : std::nullopt;
   }
-  if (name == "SET_REGISTER") {
+  if (type == hermes::kSetRegister) {
     set_register(static_cast<int>(values.number("register")), static_cast<int>(values.number("value")));
     return command_now(now_ns);
   }
@@ -84,28 +84,15 @@ RobotCommand HermesRobot::command_now(std::int64_t now_ns) const {
   return command;
 }
 
-bool HermesRobot::has_answer(const Message& request) {
-  return request.name == "PING_REQUEST" || request.name == "GET_BATTERIE" ||
-         request.name == "GET_NUM_REQUEST";
-}
-
-bool HermesRobot::answer(const Message& request, const RadioFormat& format, int robot_id,
-                         const RobotFeedback& feedback, Values& out) const {
-  if (!has_answer(request)) return false;
-  const bool ping = request.name == "PING_REQUEST";
-  const bool battery = request.name == "GET_BATTERIE";
-  out = Values{};
-  out.message = format.find(ping ? "PING_RESPONSE" : battery ? "BATTERIE_RESPONSE" : "NUM_REQUEST_RESPONSE");
-  assert(out.message != nullptr);
+void HermesRobot::answer(int robot_id, const RobotFeedback& feedback, Values& out) const {
   out.set("robot", robot_id);
-  if (battery) {
+  if (out.message->type == hermes::kBatterieResponse) {
     // decivolts = trunc(10 V)
     const double decivolts = std::floor(feedback.battery_V * 10.0);
     out.set("decivolts", std::isfinite(decivolts) ? std::clamp(decivolts, 0.0, 255.0) : 0.0);
-  } else if (!ping) {
+  } else if (out.message->type == hermes::kNumRequestResponse) {
     out.set("value", received_);
   }
-  return true;
 }
 
 }  // namespace omnihil

@@ -2,7 +2,8 @@
 //
 //   HermesRobot robot;
 //   if (auto command = robot.receive(values, now_ns)) sink.deliver(*command);
-//   if (robot.answer(values_of_request, format, feedback, answer)) send(answer);
+//   robot.answer(robot_id, feedback, answer);      // `answer` is of the packet that the request's table
+//   names
 //
 // Facts (RobotMCU 44cc54f, hermes/commands.c and motors/ctrl_task.c): the control loop's state, set by
 // SET_REGISTER and closed at the start, decides whether speeds or duties drive; each is forgotten 500 ms
@@ -24,10 +25,8 @@ class HermesRobot {
   // A packet from the host that reached this robot. Empty: it changes nothing that drives.
   std::optional<RobotCommand> receive(const Values& values, std::int64_t now_ns);
 
-  // Fills the answer to `request`; false: this packet has none.
-  static bool has_answer(const Message& request);
-  bool answer(const Message& request, const RadioFormat& format, int robot_id, const RobotFeedback& feedback,
-              Values& out) const;
+  // Fills an answer; out.message says which.
+  void answer(int robot_id, const RobotFeedback& feedback, Values& out) const;
 
   std::uint32_t received() const { return received_; }
 

@@ -2,9 +2,10 @@
 // Sources: Basestation 0bb0bf9 (timer, stitching), microcontroller6.0 5bfe578 (answer), SX1280 data sheet,
 // FLRC packet format. docs/dongles.md says what is known and what is our choice.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <string_view>
+#include <span>
 
 namespace omnihil::rem {
 
@@ -28,12 +29,6 @@ constexpr std::int64_t air_time_ns(std::size_t payload_bytes) {
   return (24 + 32 + coded) * 10'000 / 13;
 }
 
-// One packet as the base station keeps it.
-struct Packet {
-  std::array<std::uint8_t, kAirBytes> bytes{};
-  std::uint8_t size = 0;
-};
-
 // Several packets stitched together, on their way to one robot.
 struct AirPacket {
   int robot = 0;
@@ -41,10 +36,11 @@ struct AirPacket {
   std::array<std::uint8_t, kAirBytes> bytes{};
   std::size_t size = 0;
 
-  bool has_room_for(const Packet& packet) const { return size + packet.size <= kAirBytes; }
-  void append(const Packet& packet) {
-    for (std::size_t i = 0; i < packet.size; ++i) bytes[size + i] = packet.bytes[i];
-    size += packet.size;
+  std::size_t room() const { return kAirBytes - size; }
+  std::span<const std::uint8_t> span() const { return std::span(bytes).first(size); }
+  void append(std::span<const std::uint8_t> packet) {
+    std::copy(packet.begin(), packet.end(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    size += packet.size();
   }
 };
 

@@ -3,48 +3,47 @@
 namespace omnihil::rem {
 namespace {
 
-std::size_t size_of(const RadioFormat& format, std::string_view name) {
-  return static_cast<std::size_t>(format.find(name)->size_bytes);
-}
-
-// v5's commands and v8's test commands have a bit that says: answer, but do not act.
-bool only_asks_for_an_answer(const Values& values) {
-  const int index = values.message->field_index("feedback");
-  return index >= 0 && values.fields[static_cast<std::size_t>(index)].number != 0.0;
+std::size_t size_of(const RadioFormat& format, MessageRole role) {
+  return static_cast<std::size_t>(message_of_role(format.messages, role)->size_bytes);
 }
 
 }  // namespace
 
 AnswerSizes::AnswerSizes(const RadioFormat& format)
-    : feedback(size_of(format, "REM_RobotFeedback")),
-      state_info(size_of(format, "REM_RobotStateInfo")),
-      gains(size_of(format, "REM_RobotPIDGains")),
-      ack(size_of(format, "REM_RobotAssuredAck")) {}
+    : feedback(size_of(format, MessageRole::kFeedback)),
+      state_info(size_of(format, MessageRole::kStateInfo)),
+      gains(size_of(format, MessageRole::kGains)),
+      ack(size_of(format, MessageRole::kAcknowledge)) {}
 
 std::optional<Delivery> RadioEnd::receive(const Values& values) {
-  const std::string_view name = values.message->name;
   Delivery delivery;
   delivery.robot_id = id_;
-  delivery.message = name;
-  if (name == "REM_RobotCommand" || name == "REM_RobotCommandTesting") {
-    sends_state_info_ = wants_state_info(values);
-    command_id_ = static_cast<std::uint8_t>(values.number("messageId"));
-    if (only_asks_for_an_answer(values)) return std::nullopt;
-    delivery.command = to_command(values);
-    return delivery;
+  delivery.message = values.message->name;
+  switch (values.message->role) {
+    case MessageRole::kCommand:
+    case MessageRole::kSingleCommand:
+      sends_state_info_ = wants_state_info(values);
+      command_id_ = static_cast<std::uint8_t>(values.number("messageId"));
+      // v5's commands and v8's test commands have a bit that says: answer, but do not act.
+      if (values.number_or("feedback", 0.0) != 0.0) return std::nullopt;
+      delivery.command = to_command(values);
+      return delivery;
+    case MessageRole::kKill:
+      return delivery;  // all zero: coast
+    case MessageRole::kSetGains:
+      delivery.kind = Delivery::Kind::kGains;
+      delivery.gains = to_gains(values, state_.gains);
+      return delivery;
+    case MessageRole::kGetGains:
+      gains_asked_ = true;
+      return std::nullopt;
+    case MessageRole::kAnnounce:
+      if (acks_.full()) acks_.pop();  // the oldest is lost; its sender repeats
+      acks_.push(static_cast<std::uint8_t>(values.number("sequenceNumber")));
+      return std::nullopt;
+    default:
+      return std::nullopt;
   }
-  if (name == "REM_RobotKillCommand") return delivery;  // all zero: coast
-  if (name == "REM_RobotSetPIDGains") {
-    delivery.kind = Delivery::Kind::kGains;
-    delivery.gains = to_gains(values, state_.gains);
-    return delivery;
-  }
-  if (name == "REM_RobotGetPIDGains") gains_asked_ = true;
-  if (name == "REM_RobotAssuredPacket") {
-    if (acks_.full()) acks_.pop();  // the oldest is lost; its sender repeats
-    acks_.push(static_cast<std::uint8_t>(values.number("sequenceNumber")));
-  }
-  return std::nullopt;
 }
 
 void RadioEnd::set_state(const RobotFeedback& feedback, const RobotGains& gains) {

@@ -67,7 +67,7 @@ class RadioEnd {
     }
     for (std::size_t i = 0; i < plan.acks; ++i) {
       header.message_id = next_id_++;
-      telemetry.start("REM_RobotAssuredAck", header, scratch);
+      telemetry.start(MessageRole::kAcknowledge, header, scratch);
       scratch.set("sequenceNumber", acks_.front());
       acks_.pop();
       send(scratch);

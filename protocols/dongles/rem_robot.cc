@@ -10,13 +10,6 @@
 namespace omnihil::rem {
 namespace {
 
-// The versions differ in which fields they have; one that is not there reads as 0 and is not written.
-double get(const Values& values, std::string_view name) {
-  const int index = values.message->field_index(name);
-  return index < 0 ? 0.0 : values.fields[static_cast<std::size_t>(index)].number;
-}
-bool is_set(const Values& values, std::string_view name) { return get(values, name) != 0.0; }
-
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
 
 // Nearest value that the field can carry. A 32-bit field's upper end wraps in float32, hence raw and number.
@@ -104,56 +97,7 @@ constexpr std::string_view kGainNames[OMNIHIL_LOOPS][4] = {
     {"Pwheels", "Iwheels", "Dwheels", ""},
 };
 
-void set_kick(const Values& values, RobotCommand& command) {
-  const bool chip = is_set(values, "doChip");
-  const bool kick = is_set(values, "doKick");
-  const bool at_yaw = is_set(values, "kickAtYaw") || is_set(values, "kickAtAngle");
-  // The robot looks at chip, kick, kick-at-yaw in this order and does the first one that is set.
-  if (chip) command.kick = OMNIHIL_KICK_CHIP;
-  if (!chip && (kick || at_yaw)) command.kick = OMNIHIL_KICK_STRAIGHT;
-  if (is_set(values, "doForce")) command.kick_when = OMNIHIL_KICK_NOW;
-  if (!chip && !kick && at_yaw) command.kick_when = OMNIHIL_KICK_AT_YAW;
-  if (command.kick != OMNIHIL_KICK_NONE) command.v_kick_m_s = get(values, "kickChipPower");
-}
-
-void set_mode(const Values& values, RobotCommand& command) {
-  command.mode = OMNIHIL_MODE_BODY_VELOCITY;
-  if (is_set(values, "useWheelSpeedRef")) command.mode = OMNIHIL_MODE_WHEEL_SPEED;
-  if (is_set(values, "useWheelPWMRef")) command.mode = OMNIHIL_MODE_WHEEL_DUTY;
-  if (is_set(values, "wheelsOff")) command.mode = OMNIHIL_MODE_COAST;
-}
-
 }  // namespace
-
-RobotCommand to_command(const Values& values) {
-  RobotCommand command{};
-  set_mode(values, command);
-  command.flags = OMNIHIL_COMMAND_FIELD_FRAME;
-  // v = rho (cos theta, sin theta), in the field frame
-  command.v_forward_m_s = get(values, "rho") * std::cos(get(values, "theta"));
-  command.v_left_m_s = get(values, "rho") * std::sin(get(values, "theta"));
-  command.omega_body_rad_s = get(values, "angularVelocity");
-  command.yaw_target_rad = get(values, "yaw") + get(values, "angle");
-  const bool hold_yaw =
-      is_set(values, "useYaw") || is_set(values, "useAbsoluteYaw") || is_set(values, "useAbsoluteAngle");
-  if (hold_yaw) command.flags |= OMNIHIL_COMMAND_YAW_TARGET;
-  command.camera_yaw_rad = get(values, "cameraYaw") + get(values, "cameraAngle");
-  if (is_set(values, "useCameraYaw") || is_set(values, "useCameraAngle"))
-    command.flags |= OMNIHIL_COMMAND_CAMERA_YAW;
-  if (is_set(values, "reboot")) command.flags |= OMNIHIL_COMMAND_REBOOT;
-  command.a_feedforward_m_s2 = get(values, "acceleration_magnitude");
-  command.a_feedforward_angle_rad = get(values, "acceleration_angle");
-  set_kick(values, command);
-  command.dribbler_ratio = is_set(values, "dribblerOn") ? 1.0 : get(values, "dribbler");
-  static constexpr std::string_view kSpeed[] = {"wheelSpeedRef1", "wheelSpeedRef2", "wheelSpeedRef3",
-                                                "wheelSpeedRef4"};
-  static constexpr std::string_view kDuty[] = {"wheelPWM1", "wheelPWM2", "wheelPWM3", "wheelPWM4"};
-  for (std::size_t i = 0; i < OMNIHIL_WHEELS; ++i) {
-    command.omega_wheel_rad_s[i] = get(values, kSpeed[i]);
-    command.duty_ratio[i] = get(values, kDuty[i]);
-  }
-  return command;
-}
 
 RobotGains to_gains(const Values& values, const RobotGains& known) {
   RobotGains gains = known;
@@ -167,21 +111,19 @@ RobotGains to_gains(const Values& values, const RobotGains& known) {
   return gains;
 }
 
-bool wants_state_info(const Values& values) {
-  return values.message->field_index("sendStateInfo") < 0 || is_set(values, "sendStateInfo");
-}
+bool wants_state_info(const Values& values) { return values.number_or("sendStateInfo", 1.0) != 0.0; }
 
 Telemetry::Telemetry(const RadioFormat& format) : format_(format) {
-  const Message* state_info = format.find("REM_RobotStateInfo");
+  const Message* state_info = message_of_role(format.messages, MessageRole::kStateInfo);
   assert(state_info != nullptr);
   for (const StateInfoRow& row : kStateInfo) state_info_fields_.push_back(state_info->field_index(row.name));
   const int timestamp = state_info->field_index("timestamp");
   centiseconds_ = state_info->fields[static_cast<std::size_t>(timestamp)].bits == 40;
 }
 
-void Telemetry::start(const char* message_name, const Header& header, Values& out) const {
+void Telemetry::start(MessageRole role, const Header& header, Values& out) const {
   out = Values{};
-  out.message = format_.find(message_name);
+  out.message = message_of_role(format_.messages, role);
   assert(out.message != nullptr);
   put(out, "toPC", 1.0);
   put(out, "fromRobotId", header.from_robot);
@@ -192,7 +134,7 @@ void Telemetry::start(const char* message_name, const Header& header, Values& ou
 }
 
 void Telemetry::robot_feedback(const RobotState& state, const Header& header, Values& out) const {
-  start("REM_RobotFeedback", header, out);
+  start(MessageRole::kFeedback, header, out);
   const RobotFeedback& f = state.feedback;
   put(out, "rho", std::hypot(f.v_forward_m_s, f.v_left_m_s));
   put(out, "theta", wrapped(std::atan2(f.v_left_m_s, f.v_forward_m_s)));
@@ -218,13 +160,13 @@ void Telemetry::robot_feedback(const RobotState& state, const Header& header, Va
 }
 
 void Telemetry::robot_state_info(const RobotState& state, const Header& header, Values& out) const {
-  start("REM_RobotStateInfo", header, out);
+  start(MessageRole::kStateInfo, header, out);
   for (std::size_t i = 0; i < state_info_fields_.size(); ++i)
     put(out, state_info_fields_[i], kStateInfo[i].get(state));
 }
 
 void Telemetry::robot_gains(const RobotState& state, const Header& header, Values& out) const {
-  start("REM_RobotPIDGains", header, out);
+  start(MessageRole::kGains, header, out);
   for (std::size_t loop = 0; loop < OMNIHIL_LOOPS; ++loop) {
     const double parts[] = {state.gains.p[loop], state.gains.i[loop], state.gains.d[loop],
                             state.gains.d2[loop]};

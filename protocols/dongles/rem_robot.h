@@ -1,22 +1,19 @@
-// The radio end of a RoboTeam robot: REM fields -> SI commands, RobotFeedback -> REM telemetry. Pure.
+// The radio end of a RoboTeam robot: RobotFeedback -> REM telemetry, REM fields -> gains. Pure.
 //
-//   RobotCommand command = rem::to_command(values);           // of REM_RobotCommand or …Testing, v8 or v5
 //   telemetry.robot_feedback(state, header, values);           // fills a REM_RobotFeedback
 //
-// Frames (microcontroller6.0 5bfe578, executeCommands and global2Local): rho and theta give a velocity in the
-// field frame that the robot turns by its own yaw; feedback's rho and theta are the body's velocity in the
-// body frame. Values outside their range are set to the nearest end of it; angles are wrapped to -pi..pi.
+// Feedback's rho and theta are the body's velocity in the body frame, unlike a command's (rem_command.h).
+// Values outside their range are set to the nearest end of it; angles are wrapped to -pi..pi.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 #include "firmware_iface/robot_io.h"
 #include "protocols/radio_format.h"
-#include "protocols/radio_link.h"
+#include "protocols/rem_command.h"
 
 namespace omnihil::rem {
 
-RobotCommand to_command(const Values& values);
 // Gains of the packet over `known`, for those that the packet does not carry.
 RobotGains to_gains(const Values& values, const RobotGains& known);
 // Does a command with these values ask for RobotStateInfo? v5 has no bit for it: always.
@@ -40,7 +37,7 @@ class Telemetry {
  public:
   explicit Telemetry(const RadioFormat& format);
 
-  void start(const char* message_name, const Header& header, Values& out) const;
+  void start(MessageRole role, const Header& header, Values& out) const;
   void robot_feedback(const RobotState& state, const Header& header, Values& out) const;
   void robot_state_info(const RobotState& state, const Header& header, Values& out) const;
   void robot_gains(const RobotState& state, const Header& header, Values& out) const;

@@ -6,8 +6,8 @@
 namespace omnihil {
 
 RemStream::RemStream(const RadioFormat& format, PacketCounts& counts) : format_(format), counts_(counts) {
-  const Message* header = format.find("REM_Packet");
-  const Message* filler = format.find("REM_SX1280Filler");
+  const Message* header = message_of_role(format.messages, MessageRole::kHeaderOnly);
+  const Message* filler = message_of_role(format.messages, MessageRole::kFiller);
   assert(header != nullptr && filler != nullptr);
   header_bytes_ = static_cast<std::size_t>(header->size_bytes);
   const int version = header->field_index("remVersion");
@@ -46,13 +46,6 @@ std::span<const std::uint8_t> RemStream::take(std::span<const std::uint8_t> byte
   return bytes.subspan(n);
 }
 
-const Message* RemStream::message_of_type(std::uint8_t type) const {
-  for (const Message& message : format_.messages) {
-    if (message.type == type) return &message;
-  }
-  return nullptr;
-}
-
 // The order of the checks is the base station's: filler, version, type, size.
 bool RemStream::header_is_good() {
   const bool filler = buffer_[0] == filler_type_;
@@ -63,9 +56,9 @@ bool RemStream::header_is_good() {
   }
   if (filler) return true;
   if (buffer_[3] >> 4 != version_) return refuse(PacketError::kVersion), false;
-  const Message* message = message_of_type(buffer_[0]);
+  const Message* message = message_of_type(format_.messages, buffer_[0]);
   if (message == nullptr) return refuse(PacketError::kUnknownType), false;
-  const std::size_t size = buffer_[header_bytes_ - 1];
+  const std::size_t size = packet_bytes(buffer_);
   const auto fields = static_cast<std::size_t>(message->size_bytes);
   if (message->text_tail ? size < fields : size != fields) return refuse(PacketError::kLength), false;
   wanted_ = size;

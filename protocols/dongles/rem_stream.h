@@ -49,6 +49,9 @@ class RemStream {
     last_byte_ns_ = now_ns;
   }
 
+  // Length of the good packet at the front: its header's last byte.
+  std::size_t packet_bytes(std::span<const std::uint8_t> packet) const { return packet[header_bytes_ - 1]; }
+
   void expire(std::int64_t now_ns);  // gives up a half packet whose rest did not come in time
   void close();                      // the host is gone: a half packet is dropped and counted
 
@@ -60,7 +63,6 @@ class RemStream {
   std::span<const std::uint8_t> take(std::span<const std::uint8_t> bytes);
   bool header_is_good();  // false: the rest of the transfer is lost, or more bytes are wanted first
   void refuse(PacketError error);
-  const Message* message_of_type(std::uint8_t type) const;
 
   const RadioFormat& format_;
   PacketCounts& counts_;

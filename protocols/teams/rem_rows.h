@@ -14,11 +14,11 @@ constexpr auto header_rows(std::string_view type_name, std::uint64_t version, in
                            std::string_view timestamp_unit, std::string_view timestamp_what) {
   return std::array{
       type_code(type_name, 8),
-      number("toRobotId", 4, "", "receiving robot"),
-      flag("toColor", "team of the receiver: 0 yellow, 1 blue"),
-      flag("toBC", "for all robots"),
-      flag("toBS", "for the base station"),
-      flag("toPC", "for the host"),
+      with_role(FieldRole::kRobot, number("toRobotId", 4, "", "receiving robot")),
+      with_role(FieldRole::kTeam, flag("toColor", "team of the receiver: 0 yellow, 1 blue")),
+      with_role(FieldRole::kAllRobots, flag("toBC", "for all robots")),
+      with_role(FieldRole::kForDongle, flag("toBS", "for the base station")),
+      with_role(FieldRole::kForHost, flag("toPC", "for the host")),
       number("fromRobotId", 4, "", "sending robot"),
       flag("fromColor", "team of the sender: 0 yellow, 1 blue"),
       reserved("reserved", 1, "not used"),
@@ -72,8 +72,9 @@ inline constexpr std::array kBallSensorRows{
 };
 
 constexpr Message packet(std::string_view name, std::uint32_t type, int size_bytes, Direction direction,
-                         std::span<const Field> fields, std::string_view what) {
-  return {name, type, size_bytes, false, direction, BitOrder::kMsbFirst, fields, what};
+                         std::span<const Field> fields, std::string_view what,
+                         MessageRole role = MessageRole::kNone) {
+  return {name, type, size_bytes, false, direction, BitOrder::kMsbFirst, fields, what, role};
 }
 constexpr Message with_text(Message message) {
   message.text_tail = true;

@@ -4,14 +4,13 @@
 //
 // Source: RoboTeamTwente/roboteam_embedded_messages at 27e6961; the public base station pins d80493a, which
 // has the same tables.
-#include "protocols/dongles/dongles.h"
+#include "protocols/dongles/rem_dongle.h"
 #include "protocols/radio_format.h"
+#include "protocols/rem_command.h"
 #include "protocols/rem_packet.h"
 #include "protocols/teams/rem_rows.h"
 
 namespace omnihil {
-
-extern const RadioFormat kFormat_roboteam_rem_v5;
 
 namespace {
 
@@ -125,28 +124,29 @@ constexpr auto kFiller = in_order(rem::filler_rows(5));
 using rem::packet;
 using enum Direction;
 constexpr std::array kMessages{
-    packet("REM_Packet", 0x21, 10, kBoth, kHeader, rem::kWhatPacket),
-    packet("REM_RobotCommand", 0x22, 22, kToRobot, kCommand, rem::kWhatCommand),
-    packet("REM_RobotFeedback", 0x24, 20, kFromRobot, kFeedback, rem::kWhatFeedback),
-    packet("REM_RobotStateInfo", 0x27, 50, kFromRobot, kStateInfo, rem::kWhatStateInfo),
+    packet("REM_Packet", 0x21, 10, kBoth, kHeader, rem::kWhatPacket, MessageRole::kHeaderOnly),
+    packet("REM_RobotCommand", 0x22, 22, kToRobot, kCommand, rem::kWhatCommand, MessageRole::kCommand),
+    packet("REM_RobotFeedback", 0x24, 20, kFromRobot, kFeedback, rem::kWhatFeedback, MessageRole::kFeedback),
+    packet("REM_RobotStateInfo", 0x27, 50, kFromRobot, kStateInfo, rem::kWhatStateInfo,
+           MessageRole::kStateInfo),
     packet("REM_RobotBuzzer", 0x28, 14, kToRobot, kBuzzer, rem::kWhatBuzzer),
-    rem::with_text(packet("REM_Log", 0x2B, 10, kFromRobot, kHeader, rem::kWhatLog)),
-    packet("REM_BasestationGetConfiguration", 0x2D, 10, kToDongle, kHeader, rem::kWhatGetConfiguration),
-    packet("REM_BasestationConfiguration", 0x2E, 11, kBoth, kConfiguration, rem::kWhatConfiguration),
-    packet("REM_RobotGetPIDGains", 0x30, 10, kToRobot, kHeader, rem::kWhatGetGains),
-    packet("REM_RobotPIDGains", 0x33, 40, kFromRobot, kGains, rem::kWhatGains),
-    packet("REM_RobotSetPIDGains", 0x35, 40, kToRobot, kGains, rem::kWhatSetGains),
-    packet("REM_RobotAssuredPacket", 0x36, 12, kToRobot, kAssured, rem::kWhatAssured),
-    packet("REM_RobotAssuredAck", 0x39, 11, kFromRobot, kAck, rem::kWhatAck),
+    rem::with_text(packet("REM_Log", 0x2B, 10, kFromRobot, kHeader, rem::kWhatLog, MessageRole::kText)),
+    packet("REM_BasestationGetConfiguration", 0x2D, 10, kToDongle, kHeader, rem::kWhatGetConfiguration,
+           MessageRole::kAskDongle),
+    packet("REM_BasestationConfiguration", 0x2E, 11, kBoth, kConfiguration, rem::kWhatConfiguration,
+           MessageRole::kConfigureDongle),
+    packet("REM_RobotGetPIDGains", 0x30, 10, kToRobot, kHeader, rem::kWhatGetGains, MessageRole::kGetGains),
+    packet("REM_RobotPIDGains", 0x33, 40, kFromRobot, kGains, rem::kWhatGains, MessageRole::kGains),
+    packet("REM_RobotSetPIDGains", 0x35, 40, kToRobot, kGains, rem::kWhatSetGains, MessageRole::kSetGains),
+    packet("REM_RobotAssuredPacket", 0x36, 12, kToRobot, kAssured, rem::kWhatAssured, MessageRole::kAnnounce),
+    packet("REM_RobotAssuredAck", 0x39, 11, kFromRobot, kAck, rem::kWhatAck, MessageRole::kAcknowledge),
     packet("REM_RobotMusicCommand", 0x3A, 13, kToRobot, kMusic, rem::kWhatMusic),
-    packet("REM_SX1280Filler", 0x3C, 6, kToRobot, kFiller, rem::kWhatFiller),
-    packet("REM_RobotKillCommand", 0x3F, 10, kToRobot, kHeader, rem::kWhatKill),
+    packet("REM_SX1280Filler", 0x3C, 6, kToRobot, kFiller, rem::kWhatFiller, MessageRole::kFiller),
+    packet("REM_RobotKillCommand", 0x3F, 10, kToRobot, kHeader, rem::kWhatKill, MessageRole::kKill),
 };
 static_assert(all_tiled(kMessages));
 
-}  // namespace
-
-constinit const RadioFormat kFormat_roboteam_rem_v5{
+constinit const RadioFormat kFormat{
     .id = "roboteam-rem-v5",
     .title = "RoboTeam Twente REM, version 5",
     .source = "https://github.com/RoboTeamTwente/roboteam_embedded_messages at 27e6961",
@@ -156,7 +156,16 @@ constinit const RadioFormat kFormat_roboteam_rem_v5{
     .messages = kMessages,
     .decode = [](std::span<const std::uint8_t> frame) { return rem::decode(kMessages, frame); },
     .encode = rem::encode,
-    .make_link = [](const RadioLinkConfig& c) { return make_rem_dongle(kFormat_roboteam_rem_v5, c); },
+    .encode_command =
+        [](const RobotCommand& command, const CommandTo& to, std::vector<std::uint8_t>& out) {
+          return rem::encode_command(kMessages, command, to, out);
+        },
+    .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY),
+    .dongle = make_rem_dongle,
 };
+
+}  // namespace
+
+const RadioFormat& radio_format_roboteam_rem_v5() { return kFormat; }
 
 }  // namespace omnihil

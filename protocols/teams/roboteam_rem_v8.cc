@@ -3,14 +3,13 @@
 //   REM_RobotCommand to yellow robot 3 is 28 bytes: type 22h, header up to payloadSize at byte 10, body
 //
 // Source: RoboTeamTwente/roboteam_embedded_messages, packet table of commit 9cb3c21.
-#include "protocols/dongles/dongles.h"
+#include "protocols/dongles/rem_dongle.h"
 #include "protocols/radio_format.h"
+#include "protocols/rem_command.h"
 #include "protocols/rem_packet.h"
 #include "protocols/teams/rem_rows.h"
 
 namespace omnihil {
-
-extern const RadioFormat kFormat_roboteam_rem_v8;
 
 namespace {
 
@@ -197,30 +196,31 @@ constexpr auto kFiller = in_order(rem::filler_rows(8));
 using rem::packet;
 using enum Direction;
 constexpr std::array kMessages{
-    packet("REM_Packet", 0x21, 11, kBoth, kHeader, rem::kWhatPacket),
-    packet("REM_RobotCommand", 0x22, 28, kToRobot, kCommand, rem::kWhatCommand),
+    packet("REM_Packet", 0x21, 11, kBoth, kHeader, rem::kWhatPacket, MessageRole::kHeaderOnly),
+    packet("REM_RobotCommand", 0x22, 28, kToRobot, kCommand, rem::kWhatCommand, MessageRole::kCommand),
     packet("REM_RobotCommandTesting", 0x24, 41, kToRobot, kTesting,
-           "Wheel speeds or duties for experiments, or a body velocity."),
-    packet("REM_RobotFeedback", 0x27, 28, kFromRobot, kFeedback, rem::kWhatFeedback),
-    packet("REM_RobotStateInfo", 0x28, 99, kFromRobot, kStateInfo, rem::kWhatStateInfo),
+           "Wheel speeds or duties for experiments, or a body velocity.", MessageRole::kSingleCommand),
+    packet("REM_RobotFeedback", 0x27, 28, kFromRobot, kFeedback, rem::kWhatFeedback, MessageRole::kFeedback),
+    packet("REM_RobotStateInfo", 0x28, 99, kFromRobot, kStateInfo, rem::kWhatStateInfo,
+           MessageRole::kStateInfo),
     packet("REM_RobotBuzzer", 0x2B, 15, kToRobot, kBuzzer, rem::kWhatBuzzer),
-    rem::with_text(packet("REM_Log", 0x2D, 11, kFromRobot, kHeader, rem::kWhatLog)),
-    packet("REM_BasestationGetConfiguration", 0x2E, 11, kToDongle, kHeader, rem::kWhatGetConfiguration),
-    packet("REM_BasestationConfiguration", 0x30, 12, kBoth, kConfiguration, rem::kWhatConfiguration),
-    packet("REM_RobotGetPIDGains", 0x33, 11, kToRobot, kHeader, rem::kWhatGetGains),
-    packet("REM_RobotPIDGains", 0x35, 49, kFromRobot, kGains, rem::kWhatGains),
-    packet("REM_RobotSetPIDGains", 0x36, 67, kToRobot, kSetGains, rem::kWhatSetGains),
-    packet("REM_RobotAssuredPacket", 0x39, 13, kToRobot, kAssured, rem::kWhatAssured),
-    packet("REM_RobotAssuredAck", 0x3A, 12, kFromRobot, kAck, rem::kWhatAck),
+    rem::with_text(packet("REM_Log", 0x2D, 11, kFromRobot, kHeader, rem::kWhatLog, MessageRole::kText)),
+    packet("REM_BasestationGetConfiguration", 0x2E, 11, kToDongle, kHeader, rem::kWhatGetConfiguration,
+           MessageRole::kAskDongle),
+    packet("REM_BasestationConfiguration", 0x30, 12, kBoth, kConfiguration, rem::kWhatConfiguration,
+           MessageRole::kConfigureDongle),
+    packet("REM_RobotGetPIDGains", 0x33, 11, kToRobot, kHeader, rem::kWhatGetGains, MessageRole::kGetGains),
+    packet("REM_RobotPIDGains", 0x35, 49, kFromRobot, kGains, rem::kWhatGains, MessageRole::kGains),
+    packet("REM_RobotSetPIDGains", 0x36, 67, kToRobot, kSetGains, rem::kWhatSetGains, MessageRole::kSetGains),
+    packet("REM_RobotAssuredPacket", 0x39, 13, kToRobot, kAssured, rem::kWhatAssured, MessageRole::kAnnounce),
+    packet("REM_RobotAssuredAck", 0x3A, 12, kFromRobot, kAck, rem::kWhatAck, MessageRole::kAcknowledge),
     packet("REM_RobotMusicCommand", 0x3C, 14, kToRobot, kMusic, rem::kWhatMusic),
-    packet("REM_SX1280Filler", 0x3F, 6, kToRobot, kFiller, rem::kWhatFiller),
-    packet("REM_RobotKillCommand", 0x41, 11, kToRobot, kHeader, rem::kWhatKill),
+    packet("REM_SX1280Filler", 0x3F, 6, kToRobot, kFiller, rem::kWhatFiller, MessageRole::kFiller),
+    packet("REM_RobotKillCommand", 0x41, 11, kToRobot, kHeader, rem::kWhatKill, MessageRole::kKill),
 };
 static_assert(all_tiled(kMessages));
 
-}  // namespace
-
-constinit const RadioFormat kFormat_roboteam_rem_v8{
+constinit const RadioFormat kFormat{
     .id = "roboteam-rem-v8",
     .title = "RoboTeam Twente REM, version 8",
     .source = "https://github.com/RoboTeamTwente/roboteam_embedded_messages, packet table of commit 9cb3c21",
@@ -230,7 +230,17 @@ constinit const RadioFormat kFormat_roboteam_rem_v8{
     .messages = kMessages,
     .decode = [](std::span<const std::uint8_t> frame) { return rem::decode(kMessages, frame); },
     .encode = rem::encode,
-    .make_link = [](const RadioLinkConfig& c) { return make_rem_dongle(kFormat_roboteam_rem_v8, c); },
+    .encode_command =
+        [](const RobotCommand& command, const CommandTo& to, std::vector<std::uint8_t>& out) {
+          return rem::encode_command(kMessages, command, to, out);
+        },
+    .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_WHEEL_SPEED) |
+                      drives(OMNIHIL_MODE_WHEEL_DUTY) | drives(OMNIHIL_MODE_COAST),
+    .dongle = make_rem_dongle,
 };
+
+}  // namespace
+
+const RadioFormat& radio_format_roboteam_rem_v8() { return kFormat; }
 
 }  // namespace omnihil

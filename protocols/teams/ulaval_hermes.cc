@@ -10,8 +10,9 @@
 #include "protocols/checksum.h"
 #include "protocols/cobs.h"
 #include "protocols/codec.h"
-#include "protocols/dongles/dongles.h"
+#include "protocols/dongles/hermes_dongle.h"
 #include "protocols/field_rows.h"
+#include "protocols/hermes_types.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
@@ -28,7 +29,8 @@ constexpr Field kSum = enveloped(checksum("checksum", 8, "sum of all other bytes
 
 // Header of a packet to a robot, and of a robot's answer.
 constexpr std::array kToRobot{kVersion, enveloped(constant("source", 8, kHostAddress, "address of the host")),
-                              number("robot", 8, "", "receiving robot"), kType, kSum};
+                              with_role(FieldRole::kRobot, number("robot", 8, "", "receiving robot")), kType,
+                              kSum};
 constexpr std::array kFromRobot{
     kVersion, number("robot", 8, "", "answering robot"),
     enveloped(constant("destination", 8, kBaseStationAddress, "address of the base station")), kType, kSum};
@@ -63,37 +65,36 @@ constexpr auto kSpeedMoveAdvance =
                         boolean("charge", "charge the kicker's capacitor"),
                         number("kick_force", 8, "0.1 ms", "time the kicker is on; 0: no kick")});
 
-constexpr Message hermes(std::string_view name, std::uint32_t type, int size_bytes, Direction direction,
-                         std::span<const Field> fields, std::string_view what) {
+constexpr Message row(std::string_view name, std::uint32_t type, int size_bytes, Direction direction,
+                      std::span<const Field> fields, std::string_view what) {
   return {name, type, size_bytes, false, direction, BitOrder::kLsbFirst, fields, what};
 }
 
 constexpr Direction kTo = Direction::kToRobot;
 constexpr Direction kFrom = Direction::kFromRobot;
 constexpr std::array kMessages{
-    hermes("PING_REQUEST", 0, 5, kTo, kRequest, "Are you there? Answered by PING_RESPONSE."),
-    hermes("PING_RESPONSE", 1, 5, kFrom, kPingResponse, "Yes."),
-    hermes("SPEED_MOVE", 2, 17, kTo, kSpeedMove, "Body velocity, closed loop."),
-    hermes("SET_REGISTER", 3, 7, kTo, kSetRegister, "Switch the control loop, kick, charge, dribble."),
-    hermes("OPEN_LOOP_COMMAND", 4, 21, kTo, kOpenLoop, "Duty of each motor; acts in the open loop only."),
-    hermes("GET_BATTERIE", 5, 5, kTo, kRequest, "Ask for the battery. Answered by BATTERIE_RESPONSE."),
-    hermes("BATTERIE_RESPONSE", 6, 6, kFrom, kBattery, "Battery voltage."),
-    hermes("GET_NUM_REQUEST", 7, 5, kTo, kRequest, "Ask for the counter. Answered by NUM_REQUEST_RESPONSE."),
-    hermes("NUM_REQUEST_RESPONSE", 8, 9, kFrom, kNumResponse, "Number of packets received."),
-    hermes("SPEED_MOVE_ADVANCE", 9, 19, kTo, kSpeedMoveAdvance,
-           "Body velocity with kicker and dribbler: the only packet StrategyAI sends."),
+    answered_by(hermes::kPingResponse, row("PING_REQUEST", hermes::kPingRequest, 5, kTo, kRequest,
+                                           "Are you there? Answered by PING_RESPONSE.")),
+    row("PING_RESPONSE", hermes::kPingResponse, 5, kFrom, kPingResponse, "Yes."),
+    row("SPEED_MOVE", hermes::kSpeedMove, 17, kTo, kSpeedMove, "Body velocity, closed loop."),
+    row("SET_REGISTER", hermes::kSetRegister, 7, kTo, kSetRegister,
+        "Switch the control loop, kick, charge, dribble."),
+    row("OPEN_LOOP_COMMAND", hermes::kOpenLoopCommand, 21, kTo, kOpenLoop,
+        "Duty of each motor; acts in the open loop only."),
+    answered_by(hermes::kBatterieResponse, row("GET_BATTERIE", hermes::kGetBatterie, 5, kTo, kRequest,
+                                               "Ask for the battery. Answered by BATTERIE_RESPONSE.")),
+    row("BATTERIE_RESPONSE", hermes::kBatterieResponse, 6, kFrom, kBattery, "Battery voltage."),
+    answered_by(hermes::kNumRequestResponse, row("GET_NUM_REQUEST", hermes::kGetNumRequest, 5, kTo, kRequest,
+                                                 "Ask for the counter. Answered by NUM_REQUEST_RESPONSE.")),
+    row("NUM_REQUEST_RESPONSE", hermes::kNumRequestResponse, 9, kFrom, kNumResponse,
+        "Number of packets received."),
+    row("SPEED_MOVE_ADVANCE", hermes::kSpeedMoveAdvance, 19, kTo, kSpeedMoveAdvance,
+        "Body velocity with kicker and dribbler: the only packet StrategyAI sends."),
 };
 static_assert(all_tiled(kMessages));
 
 constexpr std::size_t kLongest = 21;
 constexpr std::size_t kLongestFrame = cobs_max_size(kLongest) + 1;
-
-const Message* message_of_type(std::uint8_t type) {
-  for (const Message& message : kMessages) {
-    if (message.type == type) return &message;
-  }
-  return nullptr;
-}
 
 // Sum of all bytes but the checksum's own.
 std::uint8_t expected_checksum(std::span<const std::uint8_t> packet) {
@@ -111,7 +112,7 @@ DecodeResult refused(PacketError error, std::string_view field = {}) {
 DecodeResult decode_packet(std::span<const std::uint8_t> packet) {
   if (packet.size() < kHeaderBytes) return refused(PacketError::kTooShort);
   if (packet[0] != kVersion.constant) return refused(PacketError::kVersion, "version");
-  const Message* message = message_of_type(packet[3]);
+  const Message* message = message_of_type(kMessages, packet[3]);
   if (message == nullptr) return refused(PacketError::kUnknownType, "type");
   const auto size = static_cast<std::size_t>(message->size_bytes);
   if (packet.size() < size) return refused(PacketError::kTooShort);
@@ -147,42 +148,38 @@ RadioFormat::EncodeResult encode(const Values& values, std::vector<std::uint8_t>
   return {};
 }
 
-Values packet_to(std::string_view name, int robot_id) {
+Values packet_to(int robot_id, hermes::Type type) {
   Values values;
-  for (const Message& message : kMessages) {
-    if (message.name == name) values.message = &message;
-  }
+  values.message = message_of_type(kMessages, type);
   values.set("robot", robot_id);
   return values;
 }
 
-// The loop's register first: a robot ignores velocities in the open loop and duties in the closed one.
-bool encode_command(const RobotCommand& command, int robot_id, std::vector<std::uint8_t>& out) {
+// A robot ignores velocities in the open loop and duties in the closed one: the loop's register sets it up.
+bool encode_command(const RobotCommand& command, const CommandTo& to, std::vector<std::uint8_t>& out) {
   const bool velocity = command.mode == OMNIHIL_MODE_BODY_VELOCITY;
   if (!velocity && command.mode != OMNIHIL_MODE_WHEEL_DUTY) return false;
   if (command.flags != 0 || command.kick != OMNIHIL_KICK_NONE || command.dribbler_ratio != 0.0) return false;
-  Values loop = packet_to("SET_REGISTER", robot_id);
+  Values loop = packet_to(to.robot_id, hermes::kSetRegister);
+  loop.set("register", hermes::kLoop);
   loop.set("value", velocity ? 1.0 : 0.0);
-  Values wanted = packet_to(velocity ? "SPEED_MOVE" : "OPEN_LOOP_COMMAND", robot_id);
+  Values wanted = packet_to(to.robot_id, velocity ? hermes::kSpeedMove : hermes::kOpenLoopCommand);
   if (velocity) {
     wanted.set("vx", command.v_forward_m_s);
     wanted.set("vy", command.v_left_m_s);
     wanted.set("vtheta", command.omega_body_rad_s);
   } else {
-    constexpr std::string_view kDuties[] = {"cmd[0]", "cmd[1]", "cmd[2]", "cmd[3]"};
-    for (std::size_t w = 0; w < OMNIHIL_WHEELS; ++w) wanted.set(kDuties[w], command.duty_ratio[w]);
+    for (std::size_t w = 0; w < OMNIHIL_WHEELS; ++w)
+      wanted.set(hermes::kDutyFields[w], command.duty_ratio[w]);
   }
   const std::size_t before = out.size();
-  if (encode(loop, out).error == PacketError::kNone && encode(wanted, out).error == PacketError::kNone)
-    return true;
+  if (to.set_up && encode(loop, out).error != PacketError::kNone) return false;
+  if (encode(wanted, out).error == PacketError::kNone) return true;
   out.resize(before);
   return false;
 }
 
-}  // namespace
-
-extern const RadioFormat kFormat_ulaval_hermes;
-constinit const RadioFormat kFormat_ulaval_hermes{
+constinit const RadioFormat kFormat{
     .id = "ulaval-hermes",
     .title = "RoboCup ULaval HERMES v1",
     .source =
@@ -213,7 +210,12 @@ constinit const RadioFormat kFormat_ulaval_hermes{
     .decode = decode,
     .encode = encode,
     .encode_command = encode_command,
-    .make_link = [](const RadioLinkConfig& config) { return make_hermes_dongle(config); },
+    .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_WHEEL_DUTY),
+    .dongle = make_hermes_dongle,
 };
+
+}  // namespace
+
+const RadioFormat& radio_format_ulaval_hermes() { return kFormat; }
 
 }  // namespace omnihil

@@ -39,7 +39,9 @@ TEST(Registry, EveryFormatSaysWhatItIs) {
     EXPECT_FALSE(format->notes.empty());
     EXPECT_NE(format->decode, nullptr);
     EXPECT_NE(format->encode, nullptr);
-    EXPECT_NE(format->make_link, nullptr);
+    EXPECT_NE(format->encode_command, nullptr);
+    EXPECT_NE(format->command_drives, 0u) << format->id;
+    EXPECT_NE(format->dongle, nullptr);
     for (const Message& message : format->messages) {
       EXPECT_FALSE(message.what.empty()) << message.name;
       EXPECT_LE(message.size_bytes, format->max_frame_bytes) << message.name;

@@ -34,7 +34,7 @@ struct Arguments {
   std::vector<std::string> separate;
   ExperimentQuestion question;
   ExperimentOptions options;
-  RobotAddress robot;
+  CommandTo robot;
   std::string team = "blue";
   double packets_Hz = 100.0;
 
@@ -140,7 +140,7 @@ int run(Arguments a) {
   if (names.size() < 2 && a.question.shrink.empty())
     faults.push_back("--separate A,B: two effects (or \"base\") to tell apart, or --shrink PATH");
   const RadioFormat* format = a.radio.empty() ? nullptr : find_radio_format(a.radio);
-  if (!a.radio.empty() && (format == nullptr || !can_drive_by_duty(*format))) {
+  if (!a.radio.empty() && (format == nullptr || !format->can_drive(OMNIHIL_MODE_WHEEL_DUTY))) {
     faults.push_back(fmt::format("--radio {}: {}", a.radio,
                                  format == nullptr ? "there is no such format; `omnihil formats` lists them"
                                                    : "has no packet that hands duties to the wheels"));
@@ -213,7 +213,7 @@ void add_verb_experiment(CLI::App& app, VerbResult& result) {
       ->capture_default_str();
   verb->add_option("--out", a->out, "new folder: run.csv, plan.txt, stream.txt");
   verb->add_option("--radio", a->radio, "write the run as packets of this format too (robots)");
-  verb->add_option("--robot", a->robot.id, "that the packets are for")
+  verb->add_option("--robot", a->robot.robot_id, "that the packets are for")
       ->check(CLI::Range(0, 15))
       ->capture_default_str();
   verb->add_option("--team", a->team, "of the robot")
@@ -231,7 +231,7 @@ void add_verb_experiment(CLI::App& app, VerbResult& result) {
       "separation\n"
       "is in sigmas of the noise, with one model refitted to the other.");
   verb->callback([a, &result] {
-    a->robot.blue = a->team == "blue";
+    a->robot.team = a->team == "blue" ? Team::kBlue : Team::kYellow;
     result.exit_code = guarded("experiment", [&] { return run(*a); });
   });
 }

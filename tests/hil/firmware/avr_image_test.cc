@@ -74,7 +74,8 @@ Drive drive(const std::string& image, const Session::FirmwareMaker& make = {}) {
   std::vector<std::uint8_t> packet, out;
   for (int step = 0; step < 250; ++step) {
     packet.clear();
-    if (step % 10 == 0) find_radio_format("ulaval-hermes")->encode_command(command, kRobot, packet);
+    if (step % 10 == 0)
+      find_radio_format("ulaval-hermes")->encode_command(command, {.robot_id = kRobot}, packet);
     session.step(packet, out);
   }
   const Firmware& firmware = session.firmware(0);

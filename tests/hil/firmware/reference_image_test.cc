@@ -63,7 +63,8 @@ Drive drive(const std::string& image = kImage) {
   std::vector<std::uint8_t> packet, out;
   for (int step = 0; step < 300; ++step) {
     packet.clear();
-    if (step % 10 == 0) find_radio_format("ulaval-hermes")->encode_command(command, kRobot, packet);
+    if (step % 10 == 0)
+      find_radio_format("ulaval-hermes")->encode_command(command, {.robot_id = kRobot}, packet);
     session.step(packet, out);
   }
   return {seen.hash.hex(), session.plant().truth(0).omega_rotor_rad_s[0], session.firmware(0).report()};
@@ -111,7 +112,7 @@ TEST_F(ReferenceImage, ControlInterruptTakesLessThanHalfAPeriodAndTheCoreSleepsO
   command.mode = OMNIHIL_MODE_BODY_VELOCITY;
   command.v_forward_m_s = 0.5;
   std::vector<std::uint8_t> frame;
-  find_radio_format("ulaval-hermes")->encode_command(command, kRobot, frame);
+  find_radio_format("ulaval-hermes")->encode_command(command, {.robot_id = kRobot}, frame);
   RobotSensors sensors{};
   sensors.bus_voltage_V = 22.2;
   for (int tick = 0; tick < 1000; ++tick, sensors.now_us += 500) {

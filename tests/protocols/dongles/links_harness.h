@@ -82,8 +82,9 @@ inline Bytes operator+(Bytes a, const Bytes& b) {
 }
 
 struct Bench {
-  Bench(const char* id, const RadioLinkConfig& c)
-      : format(*find_radio_format(id)), config(c), link(format.make_link(config)) {}
+  Bench(const char* id, const RadioLinkConfig& c) : Bench(*find_radio_format(id), c) {}
+  Bench(const RadioFormat& f, const RadioLinkConfig& c)
+      : format(f), config(c), link(format.make_link(config)) {}
 
   Bytes encode(const char* message, FieldValues fields, std::string_view text = {}) const {
     return omnihil::encode(format, message, fields, text);

@@ -1,5 +1,6 @@
-// Cuts the bytes a host writes to a HERMES dongle into frames that end in 00.
+// Cuts the bytes a host writes to a dongle into frames that end in 00.
 //
+//   DelimitedStream stream(23, counts);
 //   stream.feed(bytes, [&](std::span<const std::uint8_t> frame) { … });   // frame with its delimiter
 //
 // Two delimiters in a row enclose nothing: no frame, and not an error (hosts send one to clear the line).
@@ -15,9 +16,10 @@
 
 namespace omnihil {
 
-class HermesStream {
+class DelimitedStream {
  public:
-  HermesStream(std::size_t longest_frame, PacketCounts& counts) : longest_(longest_frame), counts_(counts) {
+  DelimitedStream(std::size_t longest_frame, PacketCounts& counts)
+      : longest_(longest_frame), counts_(counts) {
     assert(longest_ <= buffer_.size());
   }
 
@@ -55,7 +57,7 @@ class HermesStream {
 
   std::size_t longest_;
   PacketCounts& counts_;
-  std::array<std::uint8_t, 64> buffer_{};
+  std::array<std::uint8_t, 256> buffer_{};
   std::size_t fill_ = 0;
   bool skipping_ = false;
 };

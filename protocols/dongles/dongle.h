@@ -1,0 +1,81 @@
+// What dongles have in common, whatever their air: counts by cause, bytes that wait for a host which reads
+// late, which way a packet may go, whom it is for, and its hand-over to a robot's firmware.
+//
+//   class MyDongle final : public Dongle {
+//     MyDongle(const RadioFormat& f, const RadioLinkConfig& c) : Dongle(f, c, 16384) {}
+//     …
+//     from_host_.count(for_addressed(address_of(values), [&](int id) { return keep_for(id, values); }));
+//
+// Around it: ring.h (bounded queue), outbox.h (latest command and queue of a robot), robot_table.h,
+// kept_packet.h, heartbeat.h, delimited_stream.h and sized_stream.h (bytes into frames). plain_dongle.h is
+// the whole of a dongle that does no more than pass frames on. All of it is a pure function of bytes and
+// times; after start nothing is allocated.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "protocols/radio_format.h"
+#include "protocols/radio_link.h"
+
+namespace omnihil {
+
+// Whom a packet is for, by the roles of its fields.
+struct Address {
+  int robot = -1;  // -1: its table names none
+  std::optional<Team> team;
+  bool all_robots = false;
+  bool dongle = false;
+  bool host = false;
+};
+Address address_of(const Values& values);
+
+// Packets of this kind come from robots or dongles alone.
+bool never_from_host(const Message& message);
+
+class Dongle : public RadioLink {
+ public:
+  // `host_buffer_bytes` wait for a host that does not read; more are dropped as overrun.
+  Dongle(const RadioFormat& format, const RadioLinkConfig& config, std::size_t host_buffer_bytes);
+
+  void take_host_bytes(std::int64_t now_ns, std::vector<std::uint8_t>& out) override;
+  void host_closed(std::int64_t now_ns) override;
+  const PacketCounts& from_host() const final { return from_host_; }
+  const PacketCounts& from_robots() const final { return from_robots_; }
+
+ protected:
+  // kNone, or the worst that `keep(id)` said of the robots the packet is for.
+  template <class Keep>
+  PacketError for_addressed(const Address& address, Keep&& keep) const {
+    if (!address.all_robots) return keep(address.robot);
+    PacketError error = config_.robot_ids.empty() ? PacketError::kAddress : PacketError::kNone;
+    for (const int id : config_.robot_ids) {
+      const PacketError one = keep(id);
+      if (one != PacketError::kNone) error = one;
+    }
+    return error;
+  }
+
+  // A frame that a robot's firmware sent: what is wrong with it by itself.
+  PacketError fault_from_robot(std::span<const std::uint8_t> frame) const;
+  // Frame as it is, for a firmware that decodes by itself.
+  static void deliver_frame(RadioSink& sink, int robot, const Message& message,
+                            std::span<const std::uint8_t> frame, std::int64_t at_ns);
+
+  PacketError to_host(std::span<const std::uint8_t> bytes);  // kOverrun: no room
+  PacketError to_host(const Values& values);                 // encoded; a table's own values never fail
+  void encode(const Values& values, std::vector<std::uint8_t>& out) const;
+
+  const RadioFormat& format_;
+  const RadioLinkConfig config_;
+  PacketCounts from_host_;
+  PacketCounts from_robots_;
+
+ private:
+  std::size_t host_buffer_bytes_;
+  std::vector<std::uint8_t> host_out_;
+  std::vector<std::uint8_t> encoded_;
+};
+
+}  // namespace omnihil

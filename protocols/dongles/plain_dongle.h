@@ -1,0 +1,35 @@
+// A dongle that does no more than pass frames on, and the radio ends of its robots: for formats whose stick
+// is a serial port with a radio behind it.
+//
+//   host -> SizedStream -> (after to_robot_ns) robot -> answer -> (after to_host_ns) host
+//
+//   constexpr PlainDongle kDongle{.frame_bytes = frame_bytes, .to_robot_ns = 500'000, .to_host_ns = 500'000,
+//                                 .to_command = to_command, .answer = answer};
+//   RadioFormat{…, .dongle = [](const RadioFormat& self, const RadioLinkConfig& config) {
+//                   return make_plain_dongle(self, config, kDongle); }};
+//
+// A frame goes to the robot that its table's fields of role kRobot, kTeam, kAllRobots name; packets of role
+// kCommand and kSingleCommand become commands, those of role kKill let the wheels run free.
+// Cannot: frames that share one air packet, polling, retries; two frames on the air do not wait for each
+// other. Write a dongle of its own for those (hermes_dongle.cc, rem_dongle.cc).
+#pragma once
+#include "protocols/dongles/sized_stream.h"
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+
+struct PlainDongle {
+  FrameBytes frame_bytes = nullptr;  // sized_stream.h; frames have at most 255 bytes
+  std::int64_t to_robot_ns = 0;      // last byte from the host until the robot has it
+  std::int64_t to_host_ns = 0;       // the robot has a frame until its answer is at the host
+  RobotCommand (*to_command)(const Values& values) = nullptr;
+  // Fills `out`, its message included, with what robot `id` answers to a packet. False: nothing. Null: robots
+  // never answer.
+  bool (*answer)(const Values& to_robot, int id, const RobotFeedback& feedback, Values& out) = nullptr;
+};
+
+// `format` outlives the link.
+std::unique_ptr<RadioLink> make_plain_dongle(const RadioFormat& format, const RadioLinkConfig& config,
+                                             const PlainDongle& plain);
+
+}  // namespace omnihil
