@@ -129,7 +129,7 @@ Speed speed_of(const RobotModel& model, const Setting& setting, int robots, doub
     const double start_s = thread_cpu_s();
     for (int ms = 0; ms < count; ++ms) {
       drive(plant, model.bus_voltage_V);
-      for (int n = 0; n < robots; ++n) (void)plant.read(n);
+      for (int n = 0; n < robots; ++n) (void)plant.sample_sensors(n);
     }
     return thread_cpu_s() - start_s;
   };

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Use kAllUses[] = {Use::kFit, Use::kHoldout, Use::kExtrapolation};
+constexpr Split kAllSplits[] = {Split::kTraining, Split::kValidation, Split::kExtrapolation};
 
 std::string error_table(const CompareReport& r) {
   std::size_t wide = 6;
@@ -19,12 +19,12 @@ std::string error_table(const CompareReport& r) {
   std::string out =
       fmt::format("{:<{}}  {:<13} {:>8}  {:>10} {:<6} {:>8} {:>10} {:>10} {:>10}  {}\n", "signal", wide,
                   "runs", "samples", "RMSE", "unit", "% of std", "mean |e|", "bias", "noise", "x noise");
-  for (const Use use : kAllUses) {
+  for (const Split split : kAllSplits) {
     for (const SignalError& e : r.comparison.errors) {
-      if (e.use != use) continue;
+      if (e.split != split) continue;
       out += fmt::format(
           "{:<{}}  {:<13} {:>8}  {:>10.4g} {:<6} {:>8.3g} {:>10.4g} {:>+10.3g} {:>10.3g}  {:.3g}\n", e.signal,
-          wide, use_name(use), e.samples, e.rmse, e.unit, e.nrmse_percent, e.mean_absolute, e.bias,
+          wide, split_name(split), e.samples, e.rmse, e.unit, e.nrmse_percent, e.mean_absolute, e.bias,
           e.noise_sigma, e.in_sigmas);
     }
   }
@@ -32,7 +32,7 @@ std::string error_table(const CompareReport& r) {
       "noise: 1-sigma floor that no model can pass, as stated or estimated from differences; x noise: error "
       "in those (whitened), 1 is perfect\n";
   for (const SignalError& e : r.comparison.errors) {
-    if (e.repeat_sigma > 0.0 && e.use == Use::kFit)
+    if (e.repeat_sigma > 0.0 && e.split == Split::kTraining)
       out += fmt::format("{}: the same input given twice brings answers that differ by {:.3g} {} (1-sigma)\n",
                          e.signal, e.repeat_sigma, e.unit);
   }
@@ -42,10 +42,11 @@ std::string error_table(const CompareReport& r) {
 std::string worst_text(const CompareReport& r) {
   constexpr int kShown = 4;  // of each use; all are in the JSON
   std::string out;
-  for (const Use use : kAllUses) {
+  for (const Split split : kAllSplits) {
     int shown = 0;
     for (const WorstRegime& w : r.comparison.worst) {
-      if (w.use == use && shown++ < kShown) out += fmt::format("{:<14}{}\n", use_name(use), w.sentence);
+      if (w.split == split && shown++ < kShown)
+        out += fmt::format("{:<14}{}\n", split_name(split), w.sentence);
     }
   }
   return out.empty() ? "" : "\nWhere it is worst\n" + out;
@@ -109,10 +110,10 @@ std::string offsets_text(const CompareReport& r) {
 
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
-Json errors_json(const Comparison& c, Use use) {
+Json errors_json(const Comparison& c, Split split) {
   Json out = Json::object();
   for (const SignalError& e : c.errors) {
-    if (e.use != use) continue;
+    if (e.split != split) continue;
     out[e.signal] = {{"unit", e.unit},
                      {"samples", e.samples},
                      {"rmse", number(e.rmse)},
@@ -151,8 +152,8 @@ std::string compare_text(const CompareReport& r) {
              ? "The model runs freely on the measured input.\n\n"
              : "The measured motion is imposed; the input that the model needs for it is compared.\n\n";
   out += findings_text(r) + error_table(r);
-  for (const auto& [use, error] : r.force_errors)
-    out += fmt::format("relative force error, {}: {:.3f} %\n", use_name(use), 100.0 * error);
+  for (const auto& [split, error] : r.force_errors)
+    out += fmt::format("relative force error, {}: {:.3f} %\n", split_name(split), 100.0 * error);
   out += worst_text(r) + offsets_text(r);
   if (r.per_run) out += run_table(r);
   for (const std::string& run : r.comparison.diverged)
@@ -165,22 +166,22 @@ std::string compare_json(const CompareReport& r) {
               {"dataset", r.dataset},
               {"method", r.method == Method::kForward ? "forward" : "inverse"}};
   if (!r.model.empty()) out["model"] = r.model;
-  for (const Use use : kAllUses) {
-    Json errors = errors_json(r.comparison, use);
-    if (!errors.empty()) out[std::string(use_name(use))] = std::move(errors);
+  for (const Split split : kAllSplits) {
+    Json errors = errors_json(r.comparison, split);
+    if (!errors.empty()) out[std::string(split_name(split))] = std::move(errors);
   }
   out["worst"] = Json::array();
   for (const WorstRegime& w : r.comparison.worst) {
     out["worst"].push_back({{"signal", w.signal},
-                            {"use", use_name(w.use)},
+                            {"use", split_name(w.split)},
                             {"against", w.axis},
                             {"error_share", w.share},
                             {"time_share", w.time_share},
                             {"sentence", w.sentence}});
   }
   out["runs"] = runs_json(r);
-  for (const auto& [use, error] : r.force_errors)
-    out["relative_force_error"][std::string(use_name(use))] = number(error);
+  for (const auto& [split, error] : r.force_errors)
+    out["relative_force_error"][std::string(split_name(split))] = number(error);
   for (const auto& [signal, offset] : r.offsets) {
     out["clock_offset_s"][signal] = {{"value", offset.seconds},
                                      {"sigma", number(offset.sigma_s)},

@@ -22,7 +22,7 @@ struct CompareReport {
   Comparison comparison;
   std::vector<std::string> left_out;                         // samples of signals, and why
   std::vector<std::pair<std::string, ClockOffset>> offsets;  // per signal
-  std::vector<std::pair<Use, double>> force_errors;          // relative; torque-driven axes
+  std::vector<std::pair<Split, double>> force_errors;        // relative; torque-driven axes
   std::vector<std::pair<Tube, TubeResult>> tubes;
   bool per_run = false;
 

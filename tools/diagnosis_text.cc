@@ -19,7 +19,9 @@ std::vector<std::string> signals_of(const Comparison& comparison) {
   return names;
 }
 
-const char* use_word(Use use) { return use == Use::kHoldout ? "held out" : use_name(use).data(); }
+const char* split_word(Split split) {
+  return split == Split::kValidation ? "held out" : split_name(split).data();
+}
 
 std::string findings_text(const Diagnosis& d) {
   static constexpr const char* kGrades[] = {"note", "doubt", "FAULT"};
@@ -85,7 +87,7 @@ std::string errors_text(const Comparison& comparison) {
     for (const SignalError& e : comparison.errors) {
       if (e.signal != signal) continue;
       if (line.empty()) line = fmt::format("  {:20} {:6}", signal, e.unit);
-      line += fmt::format("  {} {:.4g} ({:.2f} %)", use_word(e.use), e.rmse, e.nrmse_percent);
+      line += fmt::format("  {} {:.4g} ({:.2f} %)", split_word(e.split), e.rmse, e.nrmse_percent);
     }
     out += line + "\n";
   }
@@ -97,10 +99,10 @@ std::string errors_change_text(const Comparison& before, const Comparison& after
   for (const std::string& signal : signals_of(before)) {
     std::string line;
     for (const SignalError& e : before.errors) {
-      const SignalError* now = after.error(e.use, signal);
+      const SignalError* now = after.error(e.split, signal);
       if (e.signal != signal || now == nullptr) continue;
       if (line.empty()) line = fmt::format("  {:20} {:6}", signal, e.unit);
-      line += fmt::format("  {} {:.4g} -> {:.4g}", use_word(e.use), e.rmse, now->rmse);
+      line += fmt::format("  {} {:.4g} -> {:.4g}", split_word(e.split), e.rmse, now->rmse);
     }
     out += line + "\n";
   }
@@ -113,7 +115,7 @@ std::string parameters_text(const std::vector<ParameterEstimate>& parameters) {
     out += fmt::format("  {:40} {:.5g} +- {:.2g} {}", p.path, p.value, p.sigma, p.unit);
     if (p.prior_sigma > 0.0 && p.prior_mean != 0.0) {
       out += fmt::format("  ({:+.1f} % of the file's, {:+.1f} sigma)", 100.0 * (p.value / p.prior_mean - 1.0),
-                         p.drift_sigmas);
+                         p.prior_deviation_sigmas);
     }
     out += p.sentence.empty() ? "\n" : "  " + p.sentence + "\n";
   }

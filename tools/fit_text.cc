@@ -9,7 +9,7 @@
 namespace omnihil {
 namespace {
 
-constexpr Use kAllUses[] = {Use::kFit, Use::kHoldout, Use::kExtrapolation};
+constexpr Split kAllSplits[] = {Split::kTraining, Split::kValidation, Split::kExtrapolation};
 
 std::string uncertain(const ParameterEstimate& p) {
   constexpr double kNinety = 1.645;  // 90 % of a normal
@@ -21,7 +21,7 @@ std::string believed(const ParameterEstimate& p) {
 }
 
 std::string drift(const ParameterEstimate& p) {
-  return p.prior_sigma > 0.0 ? fmt::format("{:+.1f}", p.drift_sigmas) : "-";
+  return p.prior_sigma > 0.0 ? fmt::format("{:+.1f}", p.prior_deviation_sigmas) : "-";
 }
 
 std::string parameter_table(const FitResult& fit) {
@@ -40,13 +40,13 @@ std::string parameter_table(const FitResult& fit) {
 std::string error_table(const FitReport& r) {
   std::string out = fmt::format("{:<22} {:<14} {:>12} {:>12}  {:<7} {:>9} {:>9}\n", "signal", "runs",
                                 "error before", "after", "unit", "% of std", "noise");
-  for (const Use use : kAllUses) {
+  for (const Split split : kAllSplits) {
     for (const SignalError& e : r.after.errors) {
-      if (e.use != use) continue;
-      const SignalError* old = r.before.error(use, e.signal);
-      out +=
-          fmt::format("{:<22} {:<14} {:>12.5g} {:>12.5g}  {:<7} {:>9.3g} {:>9.3g}\n", e.signal, use_name(use),
-                      old != nullptr ? old->rmse : NAN, e.rmse, e.unit, e.nrmse_percent, e.noise_sigma);
+      if (e.split != split) continue;
+      const SignalError* old = r.before.error(split, e.signal);
+      out += fmt::format("{:<22} {:<14} {:>12.5g} {:>12.5g}  {:<7} {:>9.3g} {:>9.3g}\n", e.signal,
+                         split_name(split), old != nullptr ? old->rmse : NAN, e.rmse, e.unit, e.nrmse_percent,
+                         e.noise_sigma);
     }
   }
   return out;
@@ -54,10 +54,10 @@ std::string error_table(const FitReport& r) {
 
 nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
 
-nlohmann::json errors_json(const Comparison& c, Use use) {
+nlohmann::json errors_json(const Comparison& c, Split split) {
   nlohmann::json out = nlohmann::json::object();
   for (const SignalError& e : c.errors) {
-    if (e.use != use) continue;
+    if (e.split != split) continue;
     out[e.signal] = {{"rmse", number(e.rmse)}, {"nrmse_percent", number(e.nrmse_percent)}, {"unit", e.unit}};
   }
   return out;
@@ -78,24 +78,24 @@ std::string fit_text(const FitReport& r) {
 std::string fit_json(const FitReport& r) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const ParameterEstimate& p : r.fit.parameters) {
-    parameters[p.path] = {
-        {"value", p.value},
-        {"sigma", number(p.sigma)},
-        {"unit", p.unit},
-        {"at_bound", p.at_bound},
-        {"identifiable", p.identifiable},
-        {"unphysical", p.unphysical},
-        {"drift_tolerances", p.prior_sigma > 0.0 ? number(p.drift_sigmas) : nlohmann::json(nullptr)},
-        {"trades_with", p.trades_with},
-        {"sentence", p.sentence}};
+    parameters[p.path] = {{"value", p.value},
+                          {"sigma", number(p.sigma)},
+                          {"unit", p.unit},
+                          {"at_bound", p.at_bound},
+                          {"identifiable", p.identifiable},
+                          {"unphysical", p.unphysical},
+                          {"drift_tolerances",
+                           p.prior_sigma > 0.0 ? number(p.prior_deviation_sigmas) : nlohmann::json(nullptr)},
+                          {"trades_with", p.correlated_with},
+                          {"sentence", p.sentence}};
   }
   nlohmann::json out = {{"format", "omnihil-fit/1"},  {"dataset", r.dataset},
                         {"elapsed_s", r.elapsed_s},   {"converged", r.fit.converged},
                         {"parameters", parameters},   {"findings", r.fit.findings},
                         {"before", nlohmann::json{}}, {"after", nlohmann::json{}}};
-  for (const Use use : kAllUses) {
-    out["before"][std::string(use_name(use))] = errors_json(r.before, use);
-    out["after"][std::string(use_name(use))] = errors_json(r.after, use);
+  for (const Split split : kAllSplits) {
+    out["before"][std::string(split_name(split))] = errors_json(r.before, split);
+    out["after"][std::string(split_name(split))] = errors_json(r.after, split);
   }
   return out.dump(2) + "\n";
 }

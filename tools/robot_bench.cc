@@ -180,7 +180,7 @@ std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, 
       "ticks_3,current_4,ticks_4,gyro_z,accel_x,accel_y,vision_x,vision_y,vision_theta\n";
   std::int64_t last_frame = -1;
   for (std::size_t k = 0; k < run.duty.size(); ++k) {
-    const RobotSensors s = plant.read(0);
+    const RobotSensors s = plant.sample_sensors(0);
     const auto measured = [&](double value, double sigma, std::string_view stream) {
       return noisy(value, sigma * o.noise_scale, run.seed, stream, k);
     };

@@ -125,7 +125,7 @@ class PlanReader {
   void read_signal_keys(const SignalRow& row, const toml::node& node, const std::string& path,
                         Channel& channel) {
     const toml::table& table = *node.as_table();
-    const bool counts = row.kind == SignalKind::kCounts;
+    const bool counts = row.role == SignalRole::kCounts;
     if (counts) {
       if (table.get("counts_per_rev") == nullptr)
         keys_.missing(node, path, "counts_per_rev",
@@ -149,7 +149,7 @@ class PlanReader {
     static constexpr std::string_view kRoles[] = {"measured", "imposed"};
     channel.imposed = keys_.word(table, path, "role", kRoles, 0).value_or(0) == 1;
     const bool can = row.rig == Rig::kAxis && (row.name == "velocity" || row.name == "position" ||
-                                               row.name == "motor_current" || row.kind == SignalKind::kDrive);
+                                               row.name == "motor_current" || row.role == SignalRole::kDrive);
     if (channel.imposed && !can) {
       keys_.wrong(*table.get("role"), path + ".role", "a bench cannot impose this signal",
                   "allowed: velocity, position or motor_current of rig \"axis\"");
@@ -167,7 +167,7 @@ class PlanReader {
     for (const toml::node& node : *runs->as_array()) {
       read_run(*node.as_table(), fmt::format("runs[{}]", ++number));
     }
-    const auto is_fit = [](const RunPlan& r) { return r.run.use == Use::kFit; };
+    const auto is_fit = [](const RunPlan& r) { return r.run.split == Split::kTraining; };
     if (std::none_of(plan_.runs.begin(), plan_.runs.end(), is_fit) &&
         plan_.runs.size() == runs->as_array()->size()) {
       keys_.wrong(*runs, "runs", "no run has use \"fit\"", "at least one run to estimate on is needed");
@@ -176,7 +176,7 @@ class PlanReader {
 
   void read_run(const toml::table& table, const std::string& path) {
     static constexpr std::string_view kKeys[] = {"file", "use", "excitation", "kind", "known"};
-    static constexpr std::string_view kUses[] = {"fit", "holdout", "extrapolation"};
+    static constexpr std::string_view kSplitWords[] = {"fit", "holdout", "extrapolation"};
     static constexpr std::string_view kKinds[] = {"series", "steady"};
     keys_.only(table, path, kKeys);
     RunPlan plan;
@@ -186,13 +186,13 @@ class PlanReader {
     if (table.get("use") == nullptr)
       keys_.missing(table, path, "use", "\"fit\", \"holdout\" or \"extrapolation\"");
     const auto file = keys_.text(table, path, "file");
-    const auto use = keys_.word(table, path, "use", kUses, std::nullopt);
+    const auto use = keys_.word(table, path, "use", kSplitWords, std::nullopt);
     plan.run.excitation = keys_.text(table, path, "excitation").value_or("");
     plan.run.steady = keys_.word(table, path, "kind", kKinds, 0).value_or(0) == 1;
     if (const toml::node* known = table.get("known")) read_known(*known, path + ".known", "", plan);
     if (!file || !use) return;
     plan.run.file = *file;
-    plan.run.use = static_cast<Use>(*use);
+    plan.run.split = static_cast<Split>(*use);
     if (!stays_inside(*file)) {
       keys_.wrong(*table.get("file"), path + ".file", "lies outside the dataset's folder",
                   "a path inside the folder is needed, without .. and not absolute");

@@ -48,7 +48,7 @@ class DatasetReader {
       check_signals();
       check_model();
     }
-    if (!dataset_.has(Use::kHoldout)) {
+    if (!dataset_.has(Split::kValidation)) {
       dataset_.notes.push_back(
           "no run has use \"holdout\": errors on unseen data come from blocked cross-validation");
     }
@@ -158,7 +158,7 @@ class DatasetReader {
       bool motion = false, compared = false;
       for (const auto& [name, values] : run.signals) {
         const SignalRow& row = *find_signal(dataset_.rig, name);
-        const bool moves = row.kind == SignalKind::kMotion || row.kind == SignalKind::kCounts;
+        const bool moves = row.role == SignalRole::kMotion || row.role == SignalRole::kCounts;
         motion = motion || moves;
         compared = compared || ((moves || name == "load_torque") && !dataset_.channel(name)->imposed);
       }

@@ -111,7 +111,7 @@ class RunsReader {
   void note_values(const Channel& channel, const std::vector<double>& values, std::size_t measured,
                    const CsvTable& table, const std::string& path, const Run& run) {
     const SignalRow* row = find_signal(dataset_.rig, channel.signal);
-    if (row->kind == SignalKind::kFlag) {
+    if (row->role == SignalRole::kFlag) {
       const auto bad = std::find_if(values.begin(), values.end(),
                                     [](double v) { return !std::isnan(v) && v != 0.0 && v != 1.0; });
       if (bad != values.end()) {
@@ -119,7 +119,7 @@ class RunsReader {
               fmt::format("{:g}", *bad), fmt::format("{} is a flag", channel.signal), "allowed: 0, 1");
       }
     }
-    if (row->kind == SignalKind::kDrive && measured < values.size()) {
+    if (row->role == SignalRole::kDrive && measured < values.size()) {
       notes_.add(fmt::format("{}: {} of {} cells are empty: no drive is known there", channel.signal,
                              values.size() - measured, values.size()),
                  run.file);
@@ -168,7 +168,7 @@ class RunsReader {
     for (const Channel& channel : dataset_.channels) {
       const SignalRow* row = find_signal(dataset_.rig, channel.signal);
       const bool current = channel.signal == "motor_current" && channel.imposed;
-      if ((row->kind != SignalKind::kDrive && !current) || run.signal(channel.signal) == nullptr) continue;
+      if ((row->role != SignalRole::kDrive && !current) || run.signal(channel.signal) == nullptr) continue;
       const std::string_view group = current ? channel.signal : row->drive_group;
       if (group == chosen) continue;
       if (!complete(group, run)) {

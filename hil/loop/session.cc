@@ -77,7 +77,7 @@ struct Session::Impl : RadioSink {
     Firmware& robot = *firmware[i];
     RobotSample& sample = samples[i];
     sample.robot_id = id;
-    sample.sensors = plant.read(static_cast<int>(i));
+    sample.sensors = plant.sample_sensors(static_cast<int>(i));
     sample.truth = plant.truth(static_cast<int>(i));
     RobotShafts shafts;
     std::copy_n(sample.truth.theta_rotor_rad.begin(), kWheels, shafts.theta_rotor_rad);

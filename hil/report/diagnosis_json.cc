@@ -17,8 +17,8 @@ Json parameter_json(const ParameterEstimate& p) {
               {"at_bound", p.at_bound},
               {"identifiable", p.identifiable}};
   if (p.unphysical) out["unphysical"] = true;
-  if (p.prior_sigma > 0.0) out["drift_sigmas"] = number(p.drift_sigmas);
-  if (!p.trades_with.empty()) out["trades_with"] = p.trades_with;
+  if (p.prior_sigma > 0.0) out["drift_sigmas"] = number(p.prior_deviation_sigmas);
+  if (!p.correlated_with.empty()) out["trades_with"] = p.correlated_with;
   if (!p.sentence.empty()) out["sentence"] = p.sentence;
   return out;
 }
@@ -29,20 +29,21 @@ Json parameters_json(const std::vector<ParameterEstimate>& parameters) {
   return out;
 }
 
-Json errors_json(const Comparison& comparison, Use use) {
+Json errors_json(const Comparison& comparison, Split split) {
   Json out = Json::object();
   for (const SignalError& e : comparison.errors) {
-    if (e.use == use) out[e.signal] = {{"rmse", number(e.rmse)}, {"nrmse_percent", number(e.nrmse_percent)}};
+    if (e.split == split)
+      out[e.signal] = {{"rmse", number(e.rmse)}, {"nrmse_percent", number(e.nrmse_percent)}};
   }
   return out;
 }
 
 // The three uses, as far as there are runs of them.
 void add_errors(const Comparison& comparison, Json& out) {
-  for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation}) {
-    Json errors = errors_json(comparison, use);
-    if (use == Use::kExtrapolation && errors.empty()) continue;
-    out[std::string(use_name(use))] = std::move(errors);
+  for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation}) {
+    Json errors = errors_json(comparison, split);
+    if (split == Split::kExtrapolation && errors.empty()) continue;
+    out[std::string(split_name(split))] = std::move(errors);
   }
 }
 

@@ -22,7 +22,7 @@ constexpr std::size_t kMostPoints = 90'000;  // of all overlays together; 13 to 
 constexpr std::size_t kMostOverlays = 220;
 constexpr std::size_t kLeastPoints = 400, kMostPointsEach = 6'000;
 constexpr std::size_t kMostMaps = 60, kMostBins = 80;
-constexpr Use kAllUses[] = {Use::kFit, Use::kHoldout, Use::kExtrapolation};
+constexpr Split kAllSplits[] = {Split::kTraining, Split::kValidation, Split::kExtrapolation};
 
 // Four digits are more than a chart shows.
 Json number(double value) {
@@ -76,7 +76,7 @@ std::vector<std::size_t> shown_overlays(const std::vector<ReportOverlay>& overla
 Json overlay(const ReportOverlay& o, std::size_t points) {
   const ThinClock clock = thin_clock(o.time_s, points / 2);
   Json j{{"run", o.run},
-         {"use", use_name(o.use)},
+         {"use", split_name(o.split)},
          {"signal", o.signal},
          {"unit", o.unit},
          {"noise", number(o.noise_sigma)},
@@ -124,7 +124,7 @@ std::ptrdiff_t worst_bin(const RegimeError& curve) {
 
 const RegimeError* same_axis(const std::vector<RegimeError>& curves, const RegimeError& like) {
   const auto it = std::ranges::find_if(curves, [&](const RegimeError& c) {
-    return c.signal == like.signal && c.axis == like.axis && c.use == like.use;
+    return c.signal == like.signal && c.axis == like.axis && c.split == like.split;
   });
   return it == curves.end() ? nullptr : &*it;
 }
@@ -132,11 +132,11 @@ const RegimeError* same_axis(const std::vector<RegimeError>& curves, const Regim
 Json maps(const Diagnosis& d, std::size_t& left_out) {
   std::map<std::string, std::string> unit_of;
   for (const auto& e : d.baseline_comparison.errors) unit_of[e.signal] = e.unit;
-  const Use use = judging_use(d.baseline_comparison);
+  const Split split = judging_split(d.baseline_comparison);
   std::vector<const RegimeError*> curves;
   for (const RegimeError& c : d.baseline_comparison.regimes) {
     // A measured signal against itself shows its own noise as a slope.
-    if (c.use == use && !c.bins.empty() && c.axis != c.signal) curves.push_back(&c);
+    if (c.split == split && !c.bins.empty() && c.axis != c.signal) curves.push_back(&c);
   }
   std::ranges::stable_sort(curves,
                            [](auto* a, auto* b) { return a->explained_fraction > b->explained_fraction; });
@@ -145,9 +145,9 @@ Json maps(const Diagnosis& d, std::size_t& left_out) {
   Json list = Json::array();
   for (const RegimeError* c : curves) {
     const RegimeError* after = same_axis(d.final_comparison.regimes, *c);
-    Json j{{"signal", c->signal},  {"signal_unit", unit_of[c->signal]},
-           {"axis", c->axis},      {"unit", c->unit},
-           {"use", use_name(use)}, {"explained", number(c->explained_fraction)}};
+    Json j{{"signal", c->signal},      {"signal_unit", unit_of[c->signal]},
+           {"axis", c->axis},          {"unit", c->unit},
+           {"use", split_name(split)}, {"explained", number(c->explained_fraction)}};
     j["explained_final"] = after != nullptr ? number(after->explained_fraction) : Json(nullptr);
     j["worst"] = worst_bin(*c);
     for (const WorstRegime& w : d.baseline_comparison.worst) {
@@ -163,12 +163,12 @@ Json maps(const Diagnosis& d, std::size_t& left_out) {
 Json ladder(const std::vector<LadderStep>& steps) {
   Json j{{"steps", Json::array()}, {"errors", Json::object()}};
   for (const LadderStep& s : steps) j["steps"].push_back(s.added);
-  for (const Use use : kAllUses) {
-    if (!std::ranges::any_of(steps, [&](const LadderStep& s) { return has_use(s.comparison, use); }))
+  for (const Split split : kAllSplits) {
+    if (!std::ranges::any_of(steps, [&](const LadderStep& s) { return has_split(s.comparison, split); }))
       continue;
     Json list = Json::array();
-    for (const LadderStep& s : steps) list.push_back(number(s.comparison.pooled(use)));
-    j["errors"][std::string(use_name(use))] = list;
+    for (const LadderStep& s : steps) list.push_back(number(s.comparison.pooled(split)));
+    j["errors"][std::string(split_name(split))] = list;
   }
   return j;
 }
@@ -181,7 +181,7 @@ Json drift(const std::vector<ParameterEstimate>& base, const std::vector<LadderS
     Json values = Json::array();
     for (const LadderStep& s : steps) {
       const auto it = std::ranges::find(s.parameters, p.path, &ParameterEstimate::path);
-      values.push_back(it == s.parameters.end() ? Json(nullptr) : number(it->drift_sigmas));
+      values.push_back(it == s.parameters.end() ? Json(nullptr) : number(it->prior_deviation_sigmas));
     }
     list.push_back({{"path", p.path}, {"sigmas", values}});
   }

@@ -21,7 +21,7 @@ namespace omnihil {
 // One signal of one run: measured, and what the two models say. NaN: not there.
 struct ReportOverlay {
   std::string run;
-  Use use = Use::kFit;
+  Split split = Split::kTraining;
   std::string signal;
   std::string unit;
   double noise_sigma = 0.0;

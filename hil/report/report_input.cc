@@ -59,7 +59,7 @@ RunPart run_part(const Predictor& predictor, const Diagnosis& d, int run, bool s
   };
   for (std::size_t s = 0; s < compared.size(); ++s) {
     const ComparedSignal& c = compared[s];
-    part.overlays.push_back({predictor.run(run).file, predictor.run(run).use, c.name, c.unit, c.noise_sigma,
+    part.overlays.push_back({predictor.run(run).file, predictor.run(run).split, c.name, c.unit, c.noise_sigma,
                              c.time_s, c.measured, values_of(before, s), values_of(after, s)});
   }
   if (!spectra || !has_model(d.baseline)) return part;
@@ -128,11 +128,11 @@ ReportInput report_input(const Dataset& dataset, const Predictor& predictor, con
   input.diagnosis = diagnosis;
   input.title = dataset.title;
   input.notes = dataset.notes;
-  const Use judged = dataset.has(Use::kHoldout) ? Use::kHoldout : Use::kFit;
+  const Split judged = dataset.has(Split::kValidation) ? Split::kValidation : Split::kTraining;
   std::vector<RunPart> parts(static_cast<std::size_t>(predictor.run_count()));
   parallel_for(options.jobs, predictor.run_count(), [&](int run) {
     parts[static_cast<std::size_t>(run)] =
-        run_part(predictor, diagnosis, run, predictor.run(run).use == judged);
+        run_part(predictor, diagnosis, run, predictor.run(run).split == judged);
   });
   input.spectra = spectra_of(parts);
   for (RunPart& part : parts) {

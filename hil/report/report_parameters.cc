@@ -37,7 +37,7 @@ std::string marks(const ParameterEstimate& p) {
   mark(p.unphysical, "unphysical");
   mark(p.at_bound, "at its bound");
   mark(!p.identifiable, "not determined");
-  mark(std::fabs(p.drift_sigmas) > 2.0, "left its tolerance");
+  mark(std::fabs(p.prior_deviation_sigmas) > 2.0, "left its tolerance");
   return html + escaped(p.sentence);
 }
 
@@ -63,7 +63,7 @@ std::string parameters_section(const Diagnosis& d) {
         "scope=\"row\"><code>{}</code></th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</"
         "td></tr>\n",
         escaped(p.path), escaped(p.unit), believed(p), interval(find(d.baseline.parameters, p.path)),
-        interval(&p), p.prior_sigma > 0.0 ? figure(p.drift_sigmas) : "–", marks(p));
+        interval(&p), p.prior_sigma > 0.0 ? figure(p.prior_deviation_sigmas) : "–", marks(p));
   }
   html += "</tbody></table>\n";
   std::vector<std::string> findings = d.baseline.findings;

@@ -11,7 +11,7 @@
 namespace omnihil {
 namespace {
 
-constexpr Use kAllUses[] = {Use::kFit, Use::kHoldout, Use::kExtrapolation};
+constexpr Split kAllSplits[] = {Split::kTraining, Split::kValidation, Split::kExtrapolation};
 
 std::string list_of(const std::vector<std::string>& lines, const char* none) {
   if (lines.empty()) return fmt::format("<p>{}</p>\n", none);
@@ -27,8 +27,8 @@ std::string names(const std::vector<std::string>& all) {
   return html;
 }
 
-std::string error_of(const Comparison& comparison, Use use, const std::string& signal) {
-  const SignalError* e = comparison.error(use, signal);
+std::string error_of(const Comparison& comparison, Split split, const std::string& signal) {
+  const SignalError* e = comparison.error(split, signal);
   return e == nullptr ? "<td>–</td>"
                       : fmt::format("<td title=\"{} % of the signal's spread\">{}</td>",
                                     figure(e->nrmse_percent), figure(e->rmse));
@@ -70,9 +70,9 @@ std::string ladder_section(const Diagnosis& d) {
       "scope=\"col\">extrapolation</th></tr></thead><tbody>\n";
   for (const LadderStep& step : ladder_shown(d)) {
     html += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(step.added));
-    for (const Use use : kAllUses) {
+    for (const Split split : kAllSplits) {
       html += fmt::format("<td>{}</td>",
-                          has_use(step.comparison, use) ? figure(step.comparison.pooled(use)) : "–");
+                          has_split(step.comparison, split) ? figure(step.comparison.pooled(split)) : "–");
     }
     html += "</tr>\n";
   }
@@ -87,14 +87,15 @@ std::string errors_table(const Diagnosis& d) {
       "<th scope=\"col\">refitted</th><th scope=\"col\">final</th><th "
       "scope=\"col\">change</th></tr></thead><tbody>\n";
   const auto value = [](const Comparison& comparison, const SignalError& like) {
-    const SignalError* e = comparison.error(like.use, like.signal);
+    const SignalError* e = comparison.error(like.split, like.signal);
     return e == nullptr ? std::nan("") : e->rmse;
   };
   for (const SignalError& e : d.baseline_comparison.errors) {
     html += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td>", escaped(e.signal),
-                        use_name(e.use), escaped(e.unit), figure(e.noise_sigma));
-    html += error_of(d.nominal_comparison, e.use, e.signal) +
-            error_of(d.baseline_comparison, e.use, e.signal) + error_of(d.final_comparison, e.use, e.signal);
+                        split_name(e.split), escaped(e.unit), figure(e.noise_sigma));
+    html += error_of(d.nominal_comparison, e.split, e.signal) +
+            error_of(d.baseline_comparison, e.split, e.signal) +
+            error_of(d.final_comparison, e.split, e.signal);
     html += fmt::format("<td>{}</td></tr>\n", change_percent(e.rmse, value(d.final_comparison, e)));
   }
   return html + "</tbody></table>\n";

@@ -19,11 +19,11 @@ std::string joined(const std::vector<std::string>& words) {
 
 // "the held-out error falls from 12.1 to 1.3 times the noise (−89 %)"
 std::string error_change(const Comparison& before, const Comparison& after) {
-  const Use use = judging_use(before);
-  const double from = before.pooled(use), to = after.pooled(use);
+  const Split split = judging_split(before);
+  const double from = before.pooled(split), to = after.pooled(split);
   if (!std::isfinite(from) || !std::isfinite(to)) return "its error cannot be stated";
   return fmt::format("the {} error {} from {} to {} times the noise ({})",
-                     use == Use::kHoldout ? "held-out" : "fitted", to <= from ? "falls" : "rises",
+                     split == Split::kValidation ? "held-out" : "fitted", to <= from ? "falls" : "rises",
                      figure(from), figure(to), change_percent(from, to));
 }
 
@@ -45,15 +45,15 @@ std::string change_percent(double from, double to) {
   return fmt::format("{}{:.0f} %", percent < 0 ? "−" : "+", std::fabs(percent));
 }
 
-bool has_use(const Comparison& comparison, Use use) {
+bool has_split(const Comparison& comparison, Split split) {
   return std::ranges::any_of(comparison.errors,
-                             [use](const SignalError& e) { return e.use == use && e.samples > 0; });
+                             [split](const SignalError& e) { return e.split == split && e.samples > 0; });
 }
 
 bool has_model(const FitResult& fit) { return !fit.model.file.rig.empty(); }
 
-Use judging_use(const Comparison& comparison) {
-  return has_use(comparison, Use::kHoldout) ? Use::kHoldout : Use::kFit;
+Split judging_split(const Comparison& comparison) {
+  return has_split(comparison, Split::kValidation) ? Split::kValidation : Split::kTraining;
 }
 
 std::vector<LadderStep> ladder_shown(const Diagnosis& d) {

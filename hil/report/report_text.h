@@ -17,14 +17,14 @@ std::string figure(double value);
 std::string change_percent(double from, double to);
 
 // The use by which a model is judged: holdout where there is one, else fit.
-Use judging_use(const Comparison& comparison);
+Split judging_split(const Comparison& comparison);
 std::string verdict_sentence(const Diagnosis& diagnosis);
 
 // The ladder as a report shows it: that of the diagnosis, or of an early end what there is of it.
 std::vector<LadderStep> ladder_shown(const Diagnosis& diagnosis);
 
 // Whether a use was compared at all.
-bool has_use(const Comparison& comparison, Use use);
+bool has_split(const Comparison& comparison, Split split);
 
 // Whether the fit got as far as a model.
 bool has_model(const FitResult& fit);

@@ -8,17 +8,19 @@
 #include <cmath>
 
 #include "identify/checks/check_list.h"
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
 
 using Grade = DataFinding::Grade;
 
+// A gap is nearer to two periods than to one (derived); a bunched row comes well before its time (tuned).
 constexpr double kLong = 1.5, kShort = 0.6;  // of the median period
-constexpr double kLateShare = 0.005;         // of the rows
-constexpr double kCaughtUp = 0.5;            // of the time lost is regained by the rows after
-constexpr double kJitterSaid = 0.05;         // of the period, robust 1-sigma
-constexpr double kGapShareDoubtful = 0.02;   // of the duration
+constexpr double kLateShare = 0.005;         // of the rows; tuned
+constexpr double kCaughtUp = 0.5;            // of the time lost is regained by the rows after; tuned
+constexpr double kJitterSaid = 0.05;         // of the period, robust 1-sigma; tuned
+constexpr double kGapShareDoubtful = 0.02;   // of the duration; tuned
 
 struct ClockShape {
   std::size_t gaps = 0, bunched = 0;
@@ -43,7 +45,7 @@ ClockShape shape_of(const RunView& view) {
     }
     if (extra < 0.0) s.regained_s -= extra;
   }
-  s.jitter = 1.4826 * median_of(std::move(off)) / view.period_s;
+  s.jitter = kSigmaPerMad * median_of(std::move(off)) / view.period_s;
   return s;
 }
 

@@ -12,8 +12,8 @@ namespace {
 using Grade = DataFinding::Grade;
 
 void check_duty(const RunView& view, const DriveView& drive, std::vector<DataFinding>& findings) {
-  constexpr double kPercent = 2.5;    // nobody asks for this much by mistake
-  constexpr double kSaturated = 0.3;  // of the rows
+  constexpr double kPercent = 2.5;    // duty: nobody asks for this much by mistake; a choice
+  constexpr double kSaturated = 0.3;  // of the rows at full duty; tuned
   const std::vector<double>& duty = *drive.drive;
   const double largest = largest_size(duty);
   const auto rows = static_cast<double>(duty.size());
@@ -45,8 +45,8 @@ void check_duty(const RunView& view, const DriveView& drive, std::vector<DataFin
 
 // An input that is cut off at one value, both ways or one.
 void check_clipped(const RunView& view, const DriveView& drive, std::vector<DataFinding>& findings) {
-  constexpr double kClipped = 0.2;
-  constexpr std::size_t kDifferent = 50;  // values below the limit: else it is a staircase
+  constexpr double kClipped = 0.2;        // of the rows at the largest value; tuned
+  constexpr std::size_t kDifferent = 50;  // values below the limit: else it is a staircase; tuned
   std::vector<double> sizes;
   for (const double v : *drive.drive) {
     if (std::isfinite(v)) sizes.push_back(std::abs(v));

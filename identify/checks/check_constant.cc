@@ -27,7 +27,7 @@ void check_constant(const CheckContext& data, std::vector<DataFinding>& findings
       if (!is_constant(values)) continue;
       const double value =
           *std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-      const bool moves = row.kind == SignalKind::kMotion || row.kind == SignalKind::kCounts;
+      const bool moves = row.role == SignalRole::kMotion || row.role == SignalRole::kCounts;
       if (moves && !data.dataset.channel(name)->imposed) {
         findings.push_back(
             {Grade::kFault, "constant", run.file, name, value,
@@ -36,7 +36,7 @@ void check_constant(const CheckContext& data, std::vector<DataFinding>& findings
       } else if (name.starts_with("motor_current") || name == "load_torque" || name.starts_with("accel")) {
         findings.push_back({Grade::kDoubt, "constant", run.file, name, value,
                             fmt::format("{} is {:g} throughout: was its sensor connected?", name, value)});
-      } else if (row.kind == SignalKind::kDrive) {
+      } else if (row.role == SignalRole::kDrive) {
         findings.push_back(
             {Grade::kNote, "constant", run.file, name, value,
              fmt::format("{} is {:g} throughout: the run shows one working point only", name, value)});

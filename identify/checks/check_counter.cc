@@ -10,6 +10,7 @@ namespace omnihil {
 
 void check_counter(const CheckContext& data, std::vector<DataFinding>& findings) {
   using Grade = DataFinding::Grade;
+  // Turns of common encoders and the ranges of 8 to 32 bit counters.
   constexpr double kWraps[] = {256, 1024, 4096, 16384, 32768, 65536, 4294967296.0};
   for (const RunView& view : data.runs) {
     for (const DriveView& drive : view.drives) {
@@ -21,7 +22,8 @@ void check_counter(const CheckContext& data, std::vector<DataFinding>& findings)
       const Channel& channel = *data.dataset.channel(drive.position_name);
       for (const double wrap : {kWraps[0], kWraps[1], kWraps[2], kWraps[3], kWraps[4], kWraps[5], kWraps[6],
                                 channel.counts_per_rev}) {
-        // a wrap shows as a step of nearly the counter's range, which then never exceeds it
+        // A wrap shows as a step of nearly the counter's range, which the counts then never exceed. Nearly:
+        // more than 3/4 of it, where usual steps stay below 1/4: neither passes for the other (derived).
         const double range =
             (quantile_of(*drive.position, 1.0) - quantile_of(*drive.position, 0.0)) / drive.quantum;
         const bool wraps = usual < 0.25 * wrap && largest > 0.75 * wrap && largest <= wrap && range <= wrap;

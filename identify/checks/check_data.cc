@@ -19,9 +19,10 @@ bool same_kind(const DataFinding& a, const DataFinding& b) {
   return a.kind == b.kind && a.signal == b.signal && a.grade == b.grade;
 }
 
-// The same thing in many runs is said once, with the run where it is largest.
+// A finding of one kind, signal and grade in more than kSaidSingly runs is said once, with the run where its
+// size is largest.
 std::vector<DataFinding> merged(const std::vector<DataFinding>& all) {
-  constexpr std::ptrdiff_t kSaidSingly = 3;
+  constexpr std::ptrdiff_t kSaidSingly = 3;  // lines that a reader still reads: a choice
   std::vector<DataFinding> out;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto same = [&](const DataFinding& f) { return same_kind(f, all[i]); };

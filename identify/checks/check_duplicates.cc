@@ -11,7 +11,8 @@ namespace {
 
 using Grade = DataFinding::Grade;
 
-// Where the load torque jumps, does the drive's torque jump by as much?
+// Where the load torque jumps (by 0.3 of its largest jump or more), does the drive's torque jump by as much:
+// slope within 15 % of ±1, 80 % of the jumps' squares explained? All three tuned (check_list.h).
 void load_in_torque(const RunView& view, std::vector<DataFinding>& findings) {
   const std::vector<double>* load = view.run->signal("load_torque");
   const std::vector<double>* torque = view.run->signal("motor_torque");

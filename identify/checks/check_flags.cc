@@ -33,8 +33,8 @@ Following following(const DriveView& drive, const std::vector<double>& enable, d
 }  // namespace
 
 void check_flags(const CheckContext& data, std::vector<DataFinding>& findings) {
-  constexpr std::size_t kLeastRows = 30;
-  constexpr double kFollows = 0.8, kDoesNot = 0.4;
+  constexpr std::size_t kLeastRows = 30;            // with each state of the flag; a choice
+  constexpr double kFollows = 0.8, kDoesNot = 0.4;  // correlation of motion and input about zero; tuned
   for (const RunView& view : data.runs) {
     const std::vector<double>* enable = view.run->signal("enable");
     if (enable == nullptr || view.run->steady) continue;

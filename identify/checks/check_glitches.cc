@@ -11,14 +11,16 @@
 
 #include "identify/checks/check_list.h"
 #include "identify/record/signal_list.h"
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
 
+// All tuned (check_list.h): no smooth or quantised motion of the sound records passes for a glitch.
 constexpr double kOutstanding = 12.0;  // robust sigmas of the second difference
-constexpr double kQuanta = 4.0;
+constexpr double kQuanta = 4.0;  // of a counter: its rounding alone makes second differences of up to two
 constexpr std::size_t kSustained = 4;  // samples before and after that a speed must last
-constexpr double kFarBeyond = 2.5;     // the bound: less may be a late time stamp
+constexpr double kFarBeyond = 2.5;     // times the bound: less may be a late time stamp
 constexpr double kShareFault = 5e-4;   // of the rows
 
 struct Samples {
@@ -50,8 +52,7 @@ double sustained_speed(const Samples& s) {
     near.clear();
     for (std::size_t i = k - kSustained; i <= k + kSustained; ++i)
       near.push_back(std::abs((s.x[i + 1] - s.x[i]) / (s.t[i + 1] - s.t[i])));
-    std::nth_element(near.begin(), near.begin() + kSustained, near.end());
-    highest = std::max(highest, near[kSustained]);
+    highest = std::max(highest, median_in_place(near));  // of 2 kSustained + 1 sizes
   }
   return highest;
 }
@@ -67,7 +68,7 @@ void check_signal(const RunView& view, const std::string& name, const std::vecto
     second[k] = s.x[k] - (s.x[k - 1] + share * (s.x[k + 1] - s.x[k - 1]));
     sizes.push_back(std::abs(second[k]));
   }
-  const double robust = 1.4826 * median_of(sizes), highest = sustained_speed(s);
+  const double robust = kSigmaPerMad * median_of(sizes), highest = sustained_speed(s);
   std::size_t count = 0, first = 0;
   double largest = 0.0;
   bool far = false;

@@ -4,20 +4,10 @@
 #include <numbers>
 
 #include "identify/checks/check_list.h"
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
-
-std::vector<double> known(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  return values;
-}
-
-double median_period(const Run& run) {
-  std::vector<double> periods;
-  for (std::size_t i = 1; i < run.time_s.size(); ++i) periods.push_back(run.time_s[i] - run.time_s[i - 1]);
-  return median_of(std::move(periods));
-}
 
 // Where the drive's position comes from, in rad (m) of the output.
 void add_position(const Dataset& dataset, const Candidate& nominal, const Run& run, DriveView& view) {
@@ -68,18 +58,13 @@ CheckContext check_context(const Dataset& dataset, const Candidate& nominal) {
   CheckContext context{.dataset = dataset, .nominal = nominal, .runs = {}};
   for (const Run& run : dataset.runs) {
     context.runs.push_back(
-        {.run = &run, .period_s = median_period(run), .drives = drives_of(dataset, nominal, run)});
+        {.run = &run, .period_s = median_period_s(run.time_s), .drives = drives_of(dataset, nominal, run)});
   }
   return context;
 }
 
 double quantile_of(std::vector<double> values, double share) {
-  values = known(std::move(values));
-  if (values.empty()) return 0.0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return quantile(finite_values(values), share, QuantileRank::kNearest);
 }
 
 double median_of(std::vector<double> values) { return quantile_of(std::move(values), 0.5); }

@@ -6,8 +6,8 @@
 namespace omnihil {
 
 void check_length(const CheckContext& data, std::vector<DataFinding>& findings) {
-  constexpr std::size_t kFewRows = 30;
-  constexpr double kFewTimeConstants = 5.0;
+  constexpr std::size_t kFewRows = 30;       // not twice the base model's dozen parameters; a choice
+  constexpr double kFewTimeConstants = 5.0;  // a first-order step has settled to 1 - e^-5 = 99.3 %
   const DriveParams<double> drive =
       data.dataset.rig == Rig::kAxis ? drive_of(data.nominal) : DriveParams<double>{};
   const double k = drive.torque_constant_Nm_per_A;
@@ -16,7 +16,7 @@ void check_length(const CheckContext& data, std::vector<DataFinding>& findings) 
   double fitted_s = 0.0;
   for (const RunView& view : data.runs) {
     const Run& run = *view.run;
-    if (run.use == Use::kFit) fitted_s += run.steady ? 1e9 : run.duration_s();
+    if (run.split == Split::kTraining) fitted_s += run.steady ? 1e9 : run.duration_s();
     if (run.time_s.size() < kFewRows) {
       findings.push_back(
           {DataFinding::Grade::kDoubt, "few_rows", run.file, "", run.duration_s(),

@@ -5,6 +5,11 @@
 // A check is one function in a file check_NAME.cc; kChecks in check_data.cc lists them. Grades: a fault is
 // something that would be taken for physics; a doubt may be; a note is worth knowing. On sound data, with or
 // without effects hidden in them, checks say no faults.
+//
+// Thresholds. "tuned" at a threshold of a check means: set so that the sound simulated records of
+// tests/identify/checks/check_data_test.cc (every drive, every hidden effect) and the published recordings of
+// docs/measurements.md bring no fault, and that each spoilt record of the same test is named. How far one may
+// move before that fails was measured for none of them, nor was a rate of false alarms beyond those records.
 #pragma once
 #include <optional>
 #include <string>
@@ -60,26 +65,27 @@ void check_duplicates(const CheckContext&, std::vector<DataFinding>&);
 void check_flags(const CheckContext&, std::vector<DataFinding>&);
 void check_splits(const CheckContext&, std::vector<DataFinding>&);
 
-// Helpers of the checks.
+// Helpers of the checks. Order statistics as in identify/record/statistics.h (QuantileRank::kNearest).
 double median_of(std::vector<double> values);                  // NaN left out; 0 of none
 double quantile_of(std::vector<double> values, double share);  // likewise
 double largest_size(const std::vector<double>& values);        // largest |v|
 std::optional<double> nominal_value(const Candidate& nominal, std::string_view path);
 double tolerance_of(const Candidate& nominal, std::string_view path);  // relative; 0: known exactly
 
-// Voltage at the bridge, sample by sample; empty where the drive is not by duty or voltage.
+// Voltage at the bridge in V, one per row of the run; empty where the drive is not by duty or voltage.
 std::vector<double> asked_voltage(const CheckContext& data, const RunView& view, const DriveView& drive);
 
 // Means over windows of `window_s` of drive voltage (or whatever `drive` holds), rotor speed and current.
 // A window with gaps or missing samples is left out.
-struct WindowMeans {
-  std::vector<double> drive, speed, current;  // speed of the output; current NaN where not measured
-  std::vector<double> time_s;
+struct WindowMeans {                          // each vector: one value per window
+  std::vector<double> drive, speed, current;  // input's unit; output, rad/s or m/s; A, NaN: not measured
+  std::vector<double> time_s;                 // of the window's beginning
 };
 WindowMeans window_means(const RunView& view, const DriveView& drive, const std::vector<double>& input,
                          double window_s);
 
-// Least squares y = sum_j c_j x_j: coefficients with standard errors, and the share of y's squares explained.
+// Least squares y = sum_j c_j x_j: m coefficients with standard errors (in y's unit over x_j's), and the
+// share of y's squares explained. x: m columns of n samples each; y: n samples.
 struct LineFit {
   std::vector<double> coefficient, sigma;
   double explained = 0.0;

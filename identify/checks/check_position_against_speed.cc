@@ -1,7 +1,7 @@
 // Position against the integral of the speed: two sensors of one motion must agree.
 //
-// Over windows, way = s * integral of v dt. s far from 1 is a wrong scale (a unit, counts_per_rev, a gear
-// ratio); s near 1 with windows that do not fit is a speed that is old, filtered or made up in places.
+// Over windows, displacement = s * integral of v dt. s far from 1 is a wrong scale (a unit, counts_per_rev, a
+// gear ratio); s near 1 with windows that do not fit is a speed that is old, filtered or made up in places.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace {
 
 using Grade = DataFinding::Grade;
 
-constexpr double kWindow_s = 0.1;
-constexpr double kScaleSaid = 0.05;    // departure of s from 1
-constexpr double kMisfit = 0.25;       // of the highest way of a window
-constexpr double kMisfitShare = 0.02;  // of the windows
+constexpr double kWindow_s = 0.1;      // many samples, so that noise and rounding average out; a choice
+constexpr double kScaleSaid = 0.05;    // departure of s from 1; tuned
+constexpr double kMisfit = 0.25;       // of the range of the windows' displacements; tuned
+constexpr double kMisfitShare = 0.02;  // of the windows; tuned
 
 struct Windows {
-  std::vector<double> way, integral, time_s;
+  std::vector<double> displacement, integral, time_s;
 };
 
 Windows windows_of(const RunView& view, const DriveView& drive) {
@@ -29,16 +29,16 @@ Windows windows_of(const RunView& view, const DriveView& drive) {
   by_position.velocity = nullptr;
   by_speed.position = nullptr;
   const std::vector<double> none(view.run->time_s.size(), 0.0);
-  const WindowMeans way = window_means(view, by_position, none, kWindow_s);
+  const WindowMeans displacement = window_means(view, by_position, none, kWindow_s);
   const WindowMeans integral = window_means(view, by_speed, none, kWindow_s);
   Windows out;
   std::size_t j = 0;
-  for (std::size_t i = 0; i < way.time_s.size(); ++i) {
-    while (j < integral.time_s.size() && integral.time_s[j] < way.time_s[i]) ++j;
-    if (j == integral.time_s.size() || integral.time_s[j] != way.time_s[i]) continue;
-    out.way.push_back(way.speed[i]);
+  for (std::size_t i = 0; i < displacement.time_s.size(); ++i) {
+    while (j < integral.time_s.size() && integral.time_s[j] < displacement.time_s[i]) ++j;
+    if (j == integral.time_s.size() || integral.time_s[j] != displacement.time_s[i]) continue;
+    out.displacement.push_back(displacement.speed[i]);
     out.integral.push_back(integral.speed[j]);
-    out.time_s.push_back(way.time_s[i]);
+    out.time_s.push_back(displacement.time_s[i]);
   }
   return out;
 }
@@ -74,9 +74,10 @@ void check_position_against_speed(const CheckContext& data, std::vector<DataFind
     for (const DriveView& drive : view.drives) {
       if (drive.position == nullptr || drive.velocity == nullptr || view.run->steady) continue;
       const Windows w = windows_of(view, drive);
-      const LineFit line = fit_line({w.integral}, w.way);
+      const LineFit line = fit_line({w.integral}, w.displacement);
       if (line.coefficient.empty() || line.explained < 0.5) continue;
-      const double s = line.coefficient[0], highest = quantile_of(w.way, 1.0) - quantile_of(w.way, 0.0);
+      const double s = line.coefficient[0],
+                   highest = quantile_of(w.displacement, 1.0) - quantile_of(w.displacement, 0.0);
       if (s < 0.0) continue;  // said by check_direction
       if (std::abs(s - 1.0) > std::max(kScaleSaid, 5.0 * line.sigma[0])) {
         findings.push_back(
@@ -89,19 +90,20 @@ void check_position_against_speed(const CheckContext& data, std::vector<DataFind
         continue;
       }
       std::size_t misfits = 0, first = 0;
-      for (std::size_t i = 0; i < w.way.size(); ++i) {
-        if (std::abs(w.way[i] - s * w.integral[i]) < kMisfit * highest) continue;
+      for (std::size_t i = 0; i < w.displacement.size(); ++i) {
+        if (std::abs(w.displacement[i] - s * w.integral[i]) < kMisfit * highest) continue;
         if (misfits++ == 0) first = i;
       }
-      if (misfits == 0 || static_cast<double>(misfits) < kMisfitShare * static_cast<double>(w.way.size()))
+      if (misfits == 0 ||
+          static_cast<double>(misfits) < kMisfitShare * static_cast<double>(w.displacement.size()))
         continue;
       findings.push_back(
           {Grade::kDoubt, "position_against_speed", view.run->file, "velocity",
-           static_cast<double>(misfits) / static_cast<double>(w.way.size()),
+           static_cast<double>(misfits) / static_cast<double>(w.displacement.size()),
            fmt::format("velocity does not fit {} in {:.0f} % of the time (first at {:.3f} s): the "
                        "speed reported there is old or made up",
                        drive.position_name,
-                       100.0 * static_cast<double>(misfits) / static_cast<double>(w.way.size()),
+                       100.0 * static_cast<double>(misfits) / static_cast<double>(w.displacement.size()),
                        w.time_s[first])});
     }
   }

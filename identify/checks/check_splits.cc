@@ -14,11 +14,11 @@ struct Range {
   std::size_t runs = 0;
 };
 
-Range range_of(const CheckContext& data, const std::string& signal, Use use) {
+Range range_of(const CheckContext& data, const std::string& signal, Split split) {
   Range range;
   for (const RunView& view : data.runs) {
     const std::vector<double>* values = view.run->signal(signal);
-    if (values == nullptr || view.run->use != use || view.run->steady) continue;
+    if (values == nullptr || view.run->split != split || view.run->steady) continue;
     std::vector<double> sizes;
     for (const double v : *values) sizes.push_back(std::abs(v));
     range.largest = std::max(range.largest, quantile_of(std::move(sizes), 0.98));
@@ -30,7 +30,7 @@ Range range_of(const CheckContext& data, const std::string& signal, Use use) {
 }  // namespace
 
 void check_splits(const CheckContext& data, std::vector<DataFinding>& findings) {
-  constexpr double kBeyond = 1.5, kWithin = 0.25;
+  constexpr double kBeyond = 1.5, kWithin = 0.25;  // held-out range over fitted range (98 % quantiles); tuned
   std::vector<std::string> seen;
   for (const RunView& view : data.runs) {
     for (const DriveView& drive : view.drives) {
@@ -38,7 +38,8 @@ void check_splits(const CheckContext& data, std::vector<DataFinding>& findings) 
            {drive.drive_name, std::string(drive.velocity != nullptr ? "velocity" : "")}) {
         if (signal.empty() || std::find(seen.begin(), seen.end(), signal) != seen.end()) continue;
         seen.push_back(signal);
-        const Range fit = range_of(data, signal, Use::kFit), held = range_of(data, signal, Use::kHoldout);
+        const Range fit = range_of(data, signal, Split::kTraining),
+                    held = range_of(data, signal, Split::kValidation);
         if (fit.runs == 0 || held.runs == 0 || fit.largest <= 0.0) continue;
         const double ratio = held.largest / fit.largest;
         if (ratio > kBeyond || ratio < kWithin) {

@@ -8,9 +8,9 @@
 namespace omnihil {
 
 void check_stall(const CheckContext& data, std::vector<DataFinding>& findings) {
-  constexpr double kWindow_s = 0.05;
-  constexpr double kDriven = 0.05, kStanding = 0.005;  // of the largest drive, of the highest speed
-  constexpr double kShare = 0.5;
+  constexpr double kWindow_s = 0.05;                   // some mechanical time constants; a choice
+  constexpr double kDriven = 0.05, kStanding = 0.005;  // of the largest drive, of the highest speed; tuned
+  constexpr double kShare = 0.5;                       // of the driven windows: most of them; a choice
   for (const RunView& view : data.runs) {
     if (view.run->steady) continue;
     for (const DriveView& drive : view.drives) {

@@ -8,10 +8,10 @@
 namespace omnihil {
 namespace {
 
-constexpr int kStretches = 8;
-constexpr int kMostSteps = 60;  // periods, either way
-constexpr double kMostSeconds = 0.15;
-constexpr std::size_t kLeastSamples = 200;  // per stretch
+constexpr int kStretches = 8;          // a spread from so many is known within 27 % (1 / sqrt(2 (n - 1)))
+constexpr int kMostSteps = 60;         // periods, to either side: what the search costs; a choice
+constexpr double kMostSeconds = 0.15;  // beyond what a radio, a bus or a camera's chain delays; a choice
+constexpr std::size_t kLeastSamples = 200;  // per stretch, several times 2 kMostSteps would leave; a choice
 
 struct Stretch {
   const ComparedSignal* signal;
@@ -20,7 +20,7 @@ struct Stretch {
   double period_s;
 };
 
-// Straight lines between the values that are there: a camera's model stands only at its frames.
+// Linear interpolation over the missing values: the model of a camera signal is known at its frames alone.
 std::vector<double> without_holes(const std::vector<double>& model) {
   std::vector<double> out = model;
   std::size_t last = model.size();
@@ -35,7 +35,8 @@ std::vector<double> without_holes(const std::vector<double>& model) {
   return out;
 }
 
-// Mean over the samples that both have; none when there are too few.
+// Mean squared error at this lag over the samples that measurement and model both have; infinite when there
+// are fewer than kLeastCommon, of which a mean square is known within 26 % (sqrt(2 / n)).
 double mean_square(const Stretch& s, int lag) {
   constexpr std::size_t kLeastCommon = 30;
   double sum = 0.0;
@@ -63,9 +64,9 @@ Best best_lag(const Stretch& s) {
             .least = error[at]};
   if (!std::isfinite(best.at_zero)) return {};
   if (at == 0 || at + 1 == error.size() || !std::isfinite(error[at - 1] + error[at + 1])) return best;
-  const double bend = error[at - 1] - 2.0 * error[at] + error[at + 1];
-  if (bend <= 0.0) return best;
-  const double shift = 0.5 * (error[at - 1] - error[at + 1]) / bend;
+  const double curvature = error[at - 1] - 2.0 * error[at] + error[at + 1];
+  if (curvature <= 0.0) return best;
+  const double shift = 0.5 * (error[at - 1] - error[at + 1]) / curvature;
   best.lag += shift;
   best.least = std::max(0.0, error[at] - 0.25 * (error[at - 1] - error[at + 1]) * shift);
   return best;
@@ -118,9 +119,11 @@ std::optional<ClockOffset> clock_offset(const Predictor& predictor, std::span<co
     square += weights[i] * (seconds[i] - mean_s) * (seconds[i] - mean_s);
     weight_square += weights[i] * weights[i];
   }
-  const double effective = weight * weight / weight_square;  // stretches that really say something
+  const double effective = weight * weight / weight_square;  // effective number of stretches (Kish 1965)
   ClockOffset out{.seconds = mean_s, .error_share = 1.0 - least / at_zero};
   out.sigma_s = std::sqrt(square / weight / std::max(1.0, effective - 1.0));
+  // Three standard errors (two-sided p = 0.3 % of a normal); the rest is a choice: an offset below a tenth of
+  // a period or a twentieth of the error is nobody's trouble. Sensitivity not measured.
   out.significant = effective > 1.5 && std::abs(mean_s) > 3.0 * out.sigma_s &&
                     std::abs(mean_s) > 0.1 * period_s && out.error_share > 0.05;
   return out;

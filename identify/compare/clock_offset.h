@@ -2,7 +2,7 @@
 // that of the response, estimated and said; never applied.
 //
 //   std::optional<ClockOffset> o = clock_offset(predictor, predictions, "velocity");
-//   o->seconds;        // 0.0031: what was measured shows the model's motion 3.1 ms later
+//   o->seconds;        // 0.0031: the measured motion is 3.1 ms later than the model's
 //
 // The lag at which the squared error of model(t - lag) is least, in steps of the sample period, refined by a
 // parabola through the three best. From eight stretches of the record, so that its spread is known.
@@ -24,6 +24,7 @@ struct ClockOffset {
   bool significant = false;  // beyond three sigmas, a tenth of a period and a twentieth of the error
 };
 
+// `predictions`: one per run of the predictor. None: fewer than two stretches compare this signal.
 std::optional<ClockOffset> clock_offset(const Predictor& predictor, std::span<const Prediction> predictions,
                                         std::string_view signal);
 

@@ -12,7 +12,7 @@
 namespace omnihil {
 namespace {
 
-// Sums over the samples of one signal and one use (or one run).
+// Sums over the samples of one signal and one split (or one run).
 struct Sums {
   std::size_t n = 0;
   double square = 0.0, absolute = 0.0, error = 0.0;  // of model minus measurement
@@ -83,7 +83,7 @@ std::vector<const ComparedSignal*> all_signals(const Predictor& predictor) {
   return out;
 }
 
-// The samples of one signal and use along every axis.
+// The samples of one signal and split along every axis.
 struct AxisSamples {
   std::string unit;
   RegimeSamples samples;
@@ -104,7 +104,7 @@ void add_regimes(const std::vector<RegimeTrack>& tracks, const ComparedSignal& s
   }
 }
 
-void finish_regimes(SamplesByAxis& by_axis, const std::string& signal, Use use, Comparison& out) {
+void finish_regimes(SamplesByAxis& by_axis, const std::string& signal, Split split, Comparison& out) {
   for (auto& [axis, at] : by_axis) {
     const std::size_t n = at.samples.residual.size();
     if (n == 0) continue;
@@ -113,7 +113,7 @@ void finish_regimes(SamplesByAxis& by_axis, const std::string& signal, Use use, 
     RegimeError regime = regime_error(axis, at.samples);
     if (regime.bins.empty()) continue;
     regime.signal = signal;
-    regime.use = use;
+    regime.split = split;
     regime.unit = at.unit;
     out.regimes.push_back(std::move(regime));
   }
@@ -128,20 +128,21 @@ int index_of(const std::vector<ComparedSignal>& signals, const std::string& name
 
 }  // namespace
 
-double Comparison::pooled(Use use) const {
+double Comparison::pooled(Split split) const {
   double square = 0.0;
   int signals = 0;
   for (const SignalError& e : errors) {
-    if (e.use != use || (e.samples == 0 && std::isfinite(e.rmse))) continue;
+    if (e.split != split || (e.samples == 0 && std::isfinite(e.rmse))) continue;
     square += e.in_sigmas * e.in_sigmas;
     ++signals;
   }
   return signals > 0 ? std::sqrt(square / signals) : 0.0;
 }
 
-const SignalError* Comparison::error(Use use, std::string_view signal) const {
-  const auto found = std::find_if(errors.begin(), errors.end(),
-                                  [&](const SignalError& e) { return e.use == use && e.signal == signal; });
+const SignalError* Comparison::error(Split split, std::string_view signal) const {
+  const auto found = std::find_if(errors.begin(), errors.end(), [&](const SignalError& e) {
+    return e.split == split && e.signal == signal;
+  });
   return found == errors.end() ? nullptr : &*found;
 }
 
@@ -163,15 +164,15 @@ Comparison compare(const Predictor& predictor, const Candidate& candidate,
   }
   for (const ComparedSignal* signal : all_signals(predictor)) {
     const double repeat = repeat_noise(predictor, signal->name).value_or(0.0);
-    for (int u = 0; u < kUses; ++u) {
-      const Use use = static_cast<Use>(u);
+    for (int u = 0; u < kSplits; ++u) {
+      const Split split = static_cast<Split>(u);
       Sums sums;
       SamplesByAxis by_axis;
       bool any = false;
       for (int r = 0; r < runs; ++r) {
         const auto at = static_cast<std::size_t>(r);
         const int s = index_of(predictor.compared(r), signal->name);
-        if (predictor.run(r).use != use || s < 0) continue;
+        if (predictor.run(r).split != split || s < 0) continue;
         any = true;
         const ComparedSignal& compared = predictor.compared(r)[static_cast<std::size_t>(s)];
         const std::vector<double>& model = predictions[at].values[static_cast<std::size_t>(s)];
@@ -186,10 +187,10 @@ Comparison compare(const Predictor& predictor, const Candidate& candidate,
       SignalError error = error_of(sums);
       error.signal = signal->name;
       error.unit = signal->unit;
-      error.use = use;
+      error.split = split;
       error.repeat_sigma = repeat;
       out.errors.push_back(std::move(error));
-      finish_regimes(by_axis, signal->name, use, out);
+      finish_regimes(by_axis, signal->name, split, out);
     }
   }
   std::stable_sort(out.runs.begin(), out.runs.end(),

@@ -1,7 +1,7 @@
-// How far a model is from a measurement: per signal and per use, with the regime where it is worst.
+// How far a model is from a measurement: per signal and per split, with the regime where it is worst.
 //
 //   Comparison c = compare(predictor, candidate);
-//   c.error(Use::kHoldout, "velocity")->rmse;
+//   c.error(Split::kValidation, "velocity")->rmse;
 //   c.worst[0].sentence;       // "62 % of the error energy of velocity is below 3 rad/s (11 % of the time)"
 //
 // A run in which the model stops being finite has an infinite error: it never looks good by having few
@@ -20,7 +20,7 @@ namespace omnihil {
 struct SignalError {
   std::string signal;
   std::string unit;
-  Use use = Use::kFit;
+  Split split = Split::kTraining;
   std::size_t samples = 0;
   double rmse = 0.0;
   double mean_absolute = 0.0;
@@ -36,23 +36,24 @@ struct SignalError {
 // Error energy in one range of one axis.
 struct RegimeBin {
   double from = 0.0, to = 0.0;
-  double energy_share = 0.0;  // of the squared error of this signal and use
+  double energy_share = 0.0;  // of the squared error of this signal and split
   double time_share = 0.0;
-  double mean = 0.0;   // of the residual (measured minus model)
+  double mean = 0.0;   // of the residual (measured minus model), in the signal's unit
   double sigma = 0.0;  // standard error of the mean, from blocks (residuals are autocorrelated)
 };
+// Errors are in the signal's unit, `from` and `to` in the axis'.
 struct RegimeError {
   std::string signal;
   std::string axis;  // RegimeTrack::name
   std::string unit;  // of the axis
-  Use use = Use::kFit;
+  Split split = Split::kTraining;
   std::vector<RegimeBin> bins;
   double explained_fraction = 0.0;  // of the residual's variance, by its mean per bin, chance subtracted
 };
 struct WorstRegime {
   std::string signal;
   std::string axis;
-  Use use = Use::kFit;
+  Split split = Split::kTraining;
   double share = 0.0;       // of the error energy
   double time_share = 0.0;  // of the samples
   std::string sentence;
@@ -73,8 +74,8 @@ struct Comparison {
   std::vector<RunError> runs;         // in the order of the runs
   std::vector<std::string> diverged;  // runs in which the model stopped being finite
   // sqrt(mean over signals of in_sigmas^2): 1 is perfect; infinite where a run diverged
-  double pooled(Use use) const;
-  const SignalError* error(Use use, std::string_view signal) const;
+  double pooled(Split split) const;
+  const SignalError* error(Split split, std::string_view signal) const;
 };
 
 Comparison compare(const Predictor& predictor, const Candidate& candidate);

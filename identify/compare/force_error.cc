@@ -8,8 +8,8 @@
 namespace omnihil {
 namespace {
 
-constexpr int kFactor = 10;
-constexpr std::size_t kLeastSamples = 100;  // of a stretch: shorter ones are all ends
+constexpr int kFactor = 10;  // of the published recipe (Janot, Gautier, Brunot 2019): 1 kHz to 100 Hz
+constexpr std::size_t kLeastSamples = 100;  // of a stretch: shorter ones are all ends of the filter; a choice
 
 double decimated_square(const std::vector<double>& x) {
   double square = 0.0;
@@ -20,10 +20,10 @@ double decimated_square(const std::vector<double>& x) {
 }  // namespace
 
 std::optional<double> force_error(const Predictor& predictor, std::span<const Prediction> predictions,
-                                  Use use) {
+                                  Split split) {
   double error = 0.0, force = 0.0;
   for (int r = 0; r < predictor.run_count(); ++r) {
-    if (predictor.run(r).use != use || predictor.run(r).steady) continue;
+    if (predictor.run(r).split != split || predictor.run(r).steady) continue;
     for (std::size_t s = 0; s < predictor.compared(r).size(); ++s) {
       const ComparedSignal& signal = predictor.compared(r)[s];
       if (signal.name != "motor_torque") continue;

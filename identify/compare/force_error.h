@@ -1,12 +1,12 @@
 // Relative force error of a torque-driven axis, by the recipe of the published benchmark of a linear drive.
 //
-//   std::optional<double> e = force_error(predictor, predictions, Use::kFit);    // 0.0206
+//   std::optional<double> e = force_error(predictor, predictions, Split::kTraining);    // 0.0206
 //
 // norm(force - model) / norm(force), both decimated by ten (decimate.h). The motion from which the model's
 // force follows is the predictor's (inverse method): position low-passed with a Butterworth filter of order 4
 // at a fifth of the Nyquist frequency, forward and backward, differentiated by central differences, the ends
 // left out (A. Janot, M. Gautier, M. Brunot, Data Set and Reference Models of EMPS, 2019).
-// None where no run of that use compares a motor_torque.
+// None where no run of that split compares a motor_torque. `predictions`: one per run of the predictor.
 #pragma once
 #include <optional>
 #include <span>
@@ -16,6 +16,6 @@
 namespace omnihil {
 
 std::optional<double> force_error(const Predictor& predictor, std::span<const Prediction> predictions,
-                                  Use use);
+                                  Split split);
 
 }  // namespace omnihil

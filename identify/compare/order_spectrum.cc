@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/record/statistics.h"
 #include "sim/law/drive_params.h"
 
 namespace omnihil {
 namespace {
 
-constexpr int kHighestOrder = 200;
-constexpr double kFastest_rad = 2.0;  // phase per sample above which an order is not seen
-constexpr double kStandsOut = 8.0;    // times the median over all orders
-constexpr double kLeastShare = 0.01;  // of the residual's energy
+constexpr int kHighestOrder = 200;    // periods per turn; cogging of 14 poles and 12 slots has 84; a choice
+constexpr double kFastest_rad = 2.0;  // phase per sample, 2/3 of Nyquist's pi: a faster order is not resolved
+constexpr double kStandsOut = 8.0;    // times the median over all orders; tuned, sensitivity not measured
+constexpr double kLeastShare =
+    0.01;  // of the residual's energy; a third of what an effect has to take; a choice
 
 // Sine and cosine of one order after another, by the recurrence s(n+1) = 2 cos(x) s(n) - s(n-1).
 struct Angles {
@@ -35,12 +37,12 @@ struct Angles {
 
 struct Lag {
   double time_constant_s = 0.0;  // 0: none
-  Eigen::ArrayXd step;           // 1 - exp(-dt / T) per sample; 1 starts afresh
+  Eigen::ArrayXd step;           // 1 - exp(-dt / T) per sample; 1 starts a new part
 };
 
-Lag lag_of(const Predictor& predictor, const Evidence& evidence, const Candidate& model) {
+Lag lag_of(const Predictor& predictor, const WhitenedResiduals& residuals, const Candidate& model) {
   Lag lag;
-  lag.step = Eigen::ArrayXd::Ones(evidence.size());
+  lag.step = Eigen::ArrayXd::Ones(residuals.size());
   if (predictor.method() == Method::kInverse) return lag;
   const DriveParams<double> d = drive_of(model);
   const double k = d.torque_constant_Nm_per_A;
@@ -48,7 +50,7 @@ Lag lag_of(const Predictor& predictor, const Evidence& evidence, const Candidate
       d.viscous_friction_Nm_s_per_rad + (d.resistance_ohm > 0.0 ? k * k / d.resistance_ohm : 0.0);
   if (damping <= 0.0 || inertia_at_rotor(d) <= 0.0) return lag;
   lag.time_constant_s = inertia_at_rotor(d) / damping;
-  for (const Evidence::Part& part : evidence.parts()) {
+  for (const WhitenedResiduals::Part& part : residuals.parts()) {
     const std::vector<double>& time_s =
         predictor.compared(part.run)[static_cast<std::size_t>(part.signal)].time_s;
     for (std::size_t i = 1; i < part.rows.size(); ++i) {
@@ -69,15 +71,17 @@ void send_through(const Lag& lag, Eigen::ArrayXd& x) {
   }
 }
 
-// Energy that a sine and a cosine take from the residual, each signal on its own; `taken`: what they are.
-double energy_of(const Evidence& evidence, const Eigen::ArrayXd& s, const Eigen::ArrayXd& c,
+// Energy that a sine and a cosine take from the residual, fitted to each part by itself; `taken`: the fitted
+// sum of both. All vectors: n samples of WhitenedResiduals. Below 1e-9 of energy or 1e-6 of the determinant
+// an order was not excited (numerical rank).
+double energy_of(const WhitenedResiduals& residuals, const Eigen::ArrayXd& s, const Eigen::ArrayXd& c,
                  const Eigen::VectorXd& r, Eigen::VectorXd* taken) {
   double energy = 0.0;
-  for (const Evidence::Part& part : evidence.parts()) {
+  for (const WhitenedResiduals::Part& part : residuals.parts()) {
     const Eigen::Index n = static_cast<Eigen::Index>(part.rows.size());
     Eigen::MatrixXd both(n, 2);
     both << s.segment(part.first, n).matrix(), c.segment(part.first, n).matrix();
-    evidence.whiten_part(part, both);
+    residuals.whiten_part(part, both);
     const auto sn = both.col(0), cn = both.col(1);
     const auto rn = r.segment(part.first, n);
     Eigen::Matrix2d gram;
@@ -99,7 +103,7 @@ struct Best {
   Eigen::VectorXd taken;
 };
 
-Best best_order(const Evidence& evidence, const Lag& lag, const Eigen::ArrayXd& theta,
+Best best_order(const WhitenedResiduals& residuals, const Lag& lag, const Eigen::ArrayXd& theta,
                 const Eigen::ArrayXd& fastest, const Eigen::VectorXd& residual) {
   Angles angles(theta);
   std::vector<double> energies;
@@ -109,29 +113,28 @@ Best best_order(const Evidence& evidence, const Lag& lag, const Eigen::ArrayXd& 
     Eigen::ArrayXd s = angles.sin_n * seen, c = angles.cos_n * seen;
     send_through(lag, s);
     send_through(lag, c);
-    const double energy = energy_of(evidence, s, c, residual, nullptr);
+    const double energy = energy_of(residuals, s, c, residual, nullptr);
     energies.push_back(energy);
     if (energy <= best.energy) continue;
     best.order = order;
     best.energy = energy;
     best.taken = Eigen::VectorXd::Zero(residual.size());
-    energy_of(evidence, s, c, residual, &best.taken);
+    energy_of(residuals, s, c, residual, &best.taken);
   }
-  std::nth_element(energies.begin(), energies.begin() + kHighestOrder / 2, energies.end());
-  best.median = energies[kHighestOrder / 2];
+  best.median = median_in_place(energies);
   return best;
 }
 
 }  // namespace
 
-std::vector<OrderPeak> strong_orders(const Predictor& predictor, const Evidence& evidence,
+std::vector<OrderPeak> strong_orders(const Predictor& predictor, const WhitenedResiduals& residuals,
                                      const Candidate& model, Eigen::VectorXd weighted_residual, int most) {
   std::vector<OrderPeak> peaks;
-  const Eigen::VectorXd angle = evidence.track(model, "rotor_angle");
-  const Eigen::VectorXd speed = evidence.track(model, "speed");
-  if (!angle.allFinite() || evidence.empty()) return peaks;
-  Eigen::ArrayXd per_sample_rad = Eigen::ArrayXd::Zero(evidence.size());
-  for (const Evidence::Part& part : evidence.parts()) {
+  const Eigen::VectorXd angle = residuals.track(model, "rotor_angle");
+  const Eigen::VectorXd speed = residuals.track(model, "speed");
+  if (!angle.allFinite() || residuals.empty()) return peaks;
+  Eigen::ArrayXd per_sample_rad = Eigen::ArrayXd::Zero(residuals.size());
+  for (const WhitenedResiduals::Part& part : residuals.parts()) {
     const std::vector<double>& time_s =
         predictor.compared(part.run)[static_cast<std::size_t>(part.signal)].time_s;
     for (std::size_t i = 1; i < part.rows.size(); ++i) {
@@ -142,10 +145,10 @@ std::vector<OrderPeak> strong_orders(const Predictor& predictor, const Evidence&
       per_sample_rad[at] = moves ? std::abs(speed[at]) * dt_s : 0.0;
     }
   }
-  const Lag lag = lag_of(predictor, evidence, model);
+  const Lag lag = lag_of(predictor, residuals, model);
   const double all = weighted_residual.squaredNorm();
   while (static_cast<int>(peaks.size()) < most) {
-    const Best best = best_order(evidence, lag, angle.array(), per_sample_rad, weighted_residual);
+    const Best best = best_order(residuals, lag, angle.array(), per_sample_rad, weighted_residual);
     if (best.order == 0 || best.energy < kLeastShare * all || best.energy < kStandsOut * best.median) break;
     peaks.push_back({.order = static_cast<double>(best.order), .share = best.energy / all});
     weighted_residual -= best.taken;

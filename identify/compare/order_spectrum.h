@@ -1,17 +1,18 @@
 // Which orders (periods per rotor turn) stand out in a residual.
 //
-//   std::vector<double> n = strong_orders(predictor, fit_evidence, model, weighted_residual, 4);  // {48, 12}
+//   std::vector<OrderPeak> p = strong_orders(predictor, residuals, model, weighted_residual, 4);
+//   p[0].order;        // 48
 //
 // A torque A sin(n theta + p) shows in the speed behind the drive's own lag T = J / (k^2/R + b); sine and
 // cosine of every whole order are sent through that lag and held against the residual (least squares, two
-// numbers per order and signal). The strongest is taken out, then the next is looked for, while one stands
-// out from its neighbours by far. Where the drive input is compared (inverse method) there is no lag.
+// coefficients per order and signal). The strongest is taken out, then the next is looked for, while one
+// stands out from its neighbours by far. Where the drive input is compared (inverse method) there is no lag.
 // Cannot: tell orders apart that never passed at different speeds; see orders that pass faster than a third
 // of the sampling rate; fractions of an order.
 #pragma once
 #include <vector>
 
-#include "identify/estimate/evidence.h"
+#include "identify/estimate/whitened_residuals.h"
 
 namespace omnihil {
 
@@ -20,8 +21,9 @@ struct OrderPeak {
   double share = 0.0;  // of the residual's energy when it was taken out
 };
 
-// Strongest first; empty where the rotor's angle is not known.
-std::vector<OrderPeak> strong_orders(const Predictor& predictor, const Evidence& evidence,
+// At most `most`, strongest first. `weighted_residual`: n = residuals.size() samples, whitened and divided by
+// their channel's scale (WhitenedResiduals::weights), of no unit. Empty where the rotor's angle is not known.
+std::vector<OrderPeak> strong_orders(const Predictor& predictor, const WhitenedResiduals& residuals,
                                      const Candidate& model, Eigen::VectorXd weighted_residual, int most);
 
 }  // namespace omnihil

@@ -10,12 +10,13 @@ namespace {
 
 bool is_drive(std::string_view name) {
   return std::any_of(signal_rows().begin(), signal_rows().end(), [&](const SignalRow& row) {
-    return row.name == name && row.kind == SignalKind::kDrive;
+    return row.name == name && row.role == SignalRole::kDrive;
   });
 }
 
+// Equal over the first n samples, and not constant.
 bool equal_so_far(const std::vector<double>& a, const std::vector<double>& b, std::size_t n) {
-  constexpr double kShare = 1e-3;  // of the input's size: rounding in a file
+  constexpr double kShare = 1e-3;  // of the input's size: three decimals of a duty in a file; a choice
   double size = 0.0;
   for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(a[i]));
   bool moves = false;
@@ -27,7 +28,7 @@ bool equal_so_far(const std::vector<double>& a, const std::vector<double>& b, st
 }
 
 bool same_input(const Run& a, const Run& b) {
-  constexpr double kLeast = 0.8;  // of the longer run
+  constexpr double kLeast = 0.8;  // of the longer run: a repetition that was cut short; a choice
   const std::size_t n = std::min(a.time_s.size(), b.time_s.size());
   if (a.steady || b.steady || a.known != b.known || n < 10) return false;
   if (static_cast<double>(n) < kLeast * static_cast<double>(std::max(a.time_s.size(), b.time_s.size())))

@@ -35,6 +35,7 @@ struct TubeResult {
   double worst_s = 0.0, first_s = 0.0;
 };
 
+// `predictions`: one per run of the predictor.
 TubeResult hold_in_tube(const Predictor& predictor, std::span<const Prediction> predictions,
                         const Tube& tube);
 

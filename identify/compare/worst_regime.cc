@@ -8,7 +8,8 @@
 namespace omnihil {
 namespace {
 
-constexpr double kLeastExcess = 0.10;  // share of the error over share of the time: less is not worth a word
+constexpr double kLeastExcess =
+    0.10;  // share of the error less share of the time: less is not reported; a choice
 
 struct AxisWords {
   std::string_view axis;
@@ -65,7 +66,7 @@ std::optional<WorstRegime> worst_of(const RegimeError& regime) {
     if (sum > best) best = sum, best_first = first, best_last = b;
   }
   if (best < kLeastExcess) return std::nullopt;
-  WorstRegime out{.signal = regime.signal, .axis = regime.axis, .use = regime.use, .sentence = ""};
+  WorstRegime out{.signal = regime.signal, .axis = regime.axis, .split = regime.split, .sentence = ""};
   for (std::size_t b = best_first; b <= best_last; ++b) {
     out.share += regime.bins[b].energy_share;
     out.time_share += regime.bins[b].time_share;
@@ -83,7 +84,7 @@ std::vector<WorstRegime> worst_regimes(const std::vector<RegimeError>& regimes) 
     std::optional<WorstRegime> worst = worst_of(regime);
     if (!worst) continue;
     const auto same = std::find_if(out.begin(), out.end(), [&](const WorstRegime& w) {
-      return w.signal == regime.signal && w.use == regime.use;
+      return w.signal == regime.signal && w.split == regime.split;
     });
     if (same == out.end()) {
       out.push_back(std::move(*worst));

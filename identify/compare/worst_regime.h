@@ -16,7 +16,7 @@ namespace omnihil {
 
 std::optional<WorstRegime> worst_of(const RegimeError& regime);
 
-// The worst range of each signal and use over all axes, the worst first.
+// The worst range of each signal and split over all axes, the worst first.
 std::vector<WorstRegime> worst_regimes(const std::vector<RegimeError>& regimes);
 
 }  // namespace omnihil

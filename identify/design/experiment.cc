@@ -8,7 +8,7 @@
 
 #include "identify/design/experiment_distance.h"
 #include "identify/design/experiment_menu.h"
-#include "identify/design/experiment_world.h"
+#include "identify/design/experiment_truth.h"
 #include "identify/estimate/fit_problem.h"
 #include "identify/record/parallel.h"
 #include "sim/model/rolling_model.h"
@@ -17,15 +17,17 @@
 namespace omnihil {
 namespace {
 
-constexpr double kLevels[] = {1.0, 0.5, 0.2, 0.08, 0.03, 0.01};  // shares of the largest level there is
-constexpr int kRefitRounds = 3;
-constexpr std::size_t kRefined = 3;       // of the menu's best, looked at in full
-constexpr double kQuickLongest_s = 10.0;  // within a diagnosis
+// The design grid: choices of effort. A coarser grid proposes a worse run, never a wrong distance.
+// Levels are steps of a factor of two to three down to where stiction holds a drive.
+constexpr double kLevels[] = {1.0, 0.5, 0.2, 0.08, 0.03, 0.01};  // shares of the largest input allowed
+constexpr int kRefitIterations = 3;        // Gauss-Newton; a choice, convergence is not checked
+constexpr std::size_t kRefined = 3;        // best of the linear ranking, refitted in full
+constexpr double kCoarseLongest_s = 10.0;  // within a diagnosis, whose time it costs
 
 struct Trial {
   std::size_t entry = 0;  // of the menu
   double level = 1.0;     // of the input
-  double score = 0.0;     // sigmas; of a number: sigma before over after
+  double score = 0.0;     // separation in sigmas; of `shrink`: sigma before over sigma after
   std::string refused;
 };
 
@@ -47,9 +49,9 @@ class Planner {
   PlannedInputs inputs(const Trial& t) const;
   std::string broken_limit(const MotionExtremes& m) const;
   double largest_level() const;
-  double score(const Trial& t, int rounds) const;
-  bool imitates(std::size_t whole, std::size_t part) const;
-  double separation(const Predictor& world_of_a, std::size_t a, std::size_t b, int rounds) const;
+  double score(const Trial& t, int iterations) const;
+  bool nests(std::size_t whole, std::size_t part) const;
+  double separation(const Predictor& simulated_a, std::size_t a, std::size_t b, int iterations) const;
   std::vector<Trial> screen();
   void describe(const Trial& best);
 
@@ -60,8 +62,8 @@ class Planner {
   std::unique_ptr<Predictor> given_;
   std::vector<int> fit_runs_;
   SignalVariances variances_;
-  std::vector<HeldModel> held_;  // by priors and the given data
-  Eigen::Index wanted_ = 0;      // the unknown to shrink
+  std::vector<HeldModel> held_;  // rivals with the information of priors and given data
+  Eigen::Index wanted_ = 0;      // the unknown whose sigma is to shrink
   PlannedBench bench_;
   std::vector<double> time_s_;
   std::vector<MenuRun> menu_;
@@ -70,7 +72,7 @@ class Planner {
 
 bool Planner::prepare() {
   if (rivals_.empty() || (question_.shrink.empty() && rivals_.size() < 2)) {
-    plan_.problem = "there are no two models to tell apart, and no number to shrink";
+    plan_.problem = "there are no two models to tell apart, and no parameter to shrink";
     return false;
   }
   given_ = make_predictor(dataset_, rivals_.front().model, {});
@@ -78,7 +80,7 @@ bool Planner::prepare() {
   plan_.problem = bench_.problem;
   if (!plan_.problem.empty()) return false;
   for (int r = 0; r < given_->run_count(); ++r) {
-    if (given_->run(r).use == Use::kFit) fit_runs_.push_back(r);
+    if (given_->run(r).split == Split::kTraining) fit_runs_.push_back(r);
   }
   prepare_rivals();
   if (!prepare_question()) return false;
@@ -99,17 +101,17 @@ void Planner::prepare_rivals() {
       for (const auto& [signal, weight] : problem.weights()) {
         double& variance = variances_[signal];
         const double own = weight.size * weight.size * weight.autocorrelation;
-        variance = variance > 0.0 ? std::min(variance, own) : own;  // of the model that leaves less
+        variance = variance > 0.0 ? std::min(variance, own) : own;  // of the rival with less residual
       }
     }
     held_.push_back(std::move(h));
   }
   if (question_.shrink.empty() && held_.size() > 1) {
-    // before the given data hold them: how far these tell them apart already
+    // separation by the given data, with the priors alone as information
     double least = 1e300;
     for (std::size_t a = 0; a < held_.size(); ++a) {
       for (std::size_t b = 0; b < held_.size(); ++b) {
-        if (a == b || imitates(b, a)) continue;
+        if (a == b || nests(b, a)) continue;
         const Distance d = refitted_distance(*given_, fit_runs_, held_[a].model, held_[b], variances_, 1);
         least = std::min(least, d.sigmas);
       }
@@ -125,7 +127,7 @@ bool Planner::prepare_question() {
   const auto found =
       std::find_if(u.begin(), u.end(), [&](const Unknown& one) { return one.path == question_.shrink; });
   if (found == u.end()) {
-    plan_.problem = fmt::format("{}: no number of this model that could move", question_.shrink);
+    plan_.problem = fmt::format("{}: no parameter of this model that could move", question_.shrink);
     return false;
   }
   wanted_ = found - u.begin();
@@ -135,7 +137,7 @@ bool Planner::prepare_question() {
 
 void Planner::prepare_menu() {
   const double duration_s =
-      options_.quick ? std::min(options_.limits.duration_s, kQuickLongest_s) : options_.limits.duration_s;
+      options_.coarse ? std::min(options_.limits.duration_s, kCoarseLongest_s) : options_.limits.duration_s;
   const auto count = static_cast<std::size_t>(std::llround(duration_s * options_.rate_Hz));
   for (std::size_t k = 0; k <= count; ++k) time_s_.push_back(static_cast<double>(k) / options_.rate_Hz);
   menu_ = dataset_.rig == Rig::kRobot
@@ -178,8 +180,9 @@ std::string Planner::broken_limit(const MotionExtremes& m) const {
   return "";
 }
 
-// A model with all effects of another can be fitted to whatever that one does: nothing is learnt from it.
-bool Planner::imitates(std::size_t whole, std::size_t part) const {
+// A model that has all effects of another nests it and can be fitted to whatever that one does: the distance
+// of that pair is zero by construction and says nothing.
+bool Planner::nests(std::size_t whole, std::size_t part) const {
   const std::vector<EffectUse>& all = held_[whole].model.effects;
   const std::vector<EffectUse>& some = held_[part].model.effects;
   return std::all_of(some.begin(), some.end(), [&](const EffectUse& e) {
@@ -188,27 +191,29 @@ bool Planner::imitates(std::size_t whole, std::size_t part) const {
   });
 }
 
-double Planner::separation(const Predictor& world, std::size_t a, std::size_t b, int rounds) const {
-  const Distance d = refitted_distance(world, {0}, held_[a].model, held_[b], variances_, rounds);
+double Planner::separation(const Predictor& simulated, std::size_t a, std::size_t b, int iterations) const {
+  const Distance d = refitted_distance(simulated, {0}, held_[a].model, held_[b], variances_, iterations);
   return d.finite ? d.sigmas : 0.0;
 }
 
-// Of a run: the weakest pair's distance, in the weaker direction; for ranking in one direction alone.
-double Planner::score(const Trial& t, int rounds) const {
+// Smallest distance of any pair of rivals, in the smaller of its two directions (either one is the truth);
+// with no iterations, for ranking, in one direction alone.
+double Planner::score(const Trial& t, int iterations) const {
   const PlannedInputs in = inputs(t);
   if (!question_.shrink.empty()) {
-    const auto world = planned_world(bench_, in, held_.front().model, options_.seed);
-    const Eigen::MatrixXd all = held_.front().hold + information_of(*world, {0}, held_.front(), variances_);
+    const auto simulated = simulated_truth(bench_, in, held_.front().model, options_.seed);
+    const Eigen::MatrixXd all =
+        held_.front().hold + information_of(*simulated, {0}, held_.front(), variances_);
     return plan_.sigma_before / sigma_of(all, wanted_);
   }
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t a = 0; a < held_.size(); ++a) {
-    std::unique_ptr<Predictor> world;
+    std::unique_ptr<Predictor> simulated;
     for (std::size_t b = 0; b < held_.size(); ++b) {
-      const bool counts = a != b && !imitates(b, a) && (rounds > 0 || a < b || imitates(a, b));
+      const bool counts = a != b && !nests(b, a) && (iterations > 0 || a < b || nests(a, b));
       if (!counts) continue;
-      if (!world) world = planned_world(bench_, in, held_[a].model, options_.seed);
-      least = std::min(least, separation(*world, a, b, rounds));
+      if (!simulated) simulated = simulated_truth(bench_, in, held_[a].model, options_.seed);
+      least = std::min(least, separation(*simulated, a, b, iterations));
     }
   }
   return std::isfinite(least) ? least : 0.0;
@@ -219,7 +224,7 @@ std::vector<Trial> Planner::screen() {
   std::vector<Trial> trials;
   for (std::size_t e = 0; e < menu_.size(); ++e) {
     for (const double level : kLevels) {
-      if (options_.quick && (level == kLevels[1] || level == kLevels[3] || level == kLevels[5])) continue;
+      if (options_.coarse && (level == kLevels[1] || level == kLevels[3] || level == kLevels[5])) continue;
       trials.push_back({.entry = e, .level = level * largest_level(), .score = 0.0, .refused = {}});
     }
   }
@@ -300,7 +305,7 @@ ExperimentPlan Planner::plan() {
     if (usual != allowed.end()) final.push_back(*usual);
     parallel_for(options_.jobs, static_cast<int>(final.size()), [&](int k) {
       Trial& t = final[static_cast<std::size_t>(k)];
-      t.score = score(t, kRefitRounds);
+      t.score = score(t, kRefitIterations);
     });
     if (usual != allowed.end()) plan_.generic_sigmas = final.back().score;
     const Trial best = *std::max_element(final.begin(), final.end(),
@@ -331,9 +336,9 @@ ExperimentPlan plan_experiment(const Dataset& dataset, const std::vector<Rival>&
 
 NextExperiment propose_experiment(const Dataset& dataset, const std::vector<Rival>& rivals,
                                   const ExperimentOptions& options) {
-  ExperimentOptions quick = options;
-  quick.quick = true;
-  return plan_experiment(dataset, rivals, {}, quick).next;
+  ExperimentOptions coarse = options;
+  coarse.coarse = true;
+  return plan_experiment(dataset, rivals, {}, coarse).next;
 }
 
 }  // namespace omnihil

@@ -1,20 +1,21 @@
-// What to measure next: the excitation that best tells rival models apart, or that says most about a number,
-// within what the user's bench allows.
+// Optimal experiment design: the excitation that best tells rival models apart, or that most reduces a
+// parameter's uncertainty, within what the user's bench allows.
 //
-//   NextExperiment next = propose_experiment(dataset, {{"stribeck_friction", a}, {"dead_time", b}}, {},
-//   options); ExperimentPlan plan = plan_experiment(dataset, rivals, question, options); plan.run.time_s,
-//   plan.run.duty[0]; plan.expected_sigmas, plan.given_sigmas, plan.generic_sigmas
+//   ExperimentPlan plan = plan_experiment(dataset, {{"stribeck_friction", a}, {"dead_time", b}}, {}, options);
+//   plan.run->time_s; plan.run->duty[0];
+//   plan.expected_sigmas; plan.given_sigmas; plan.generic_sigmas;
+//   NextExperiment next = propose_experiment(dataset, rivals, options);     // its sentence alone
 //
 // Every excitation of a menu (experiment_menu.h) is simulated with one rival as the truth, and the other is
 // refitted to it: what is left, in units of the noise, is how far the run would tell them apart. Refitted
 // means: all its unknowns move, held by their priors and by what the given data say of them:
 //     d^2 = min over x of |(y_truth - y_rival(x)) / s|^2 + (x - x_given)' P (x - x_given)
 // by Gauss and Newton, P the information of the given data with the priors. The smaller of the two directions
-// counts, but for a model that holds the other within it: that one can imitate the other. s is the noise, or
-// what the fitted models leave of the given data if that is more. For a number (`shrink`): its sigma after
-// the run, sqrt of its entry in (P + J' J)^-1 (c-optimality). Source: Hunter and Reiner 1965 (discrimination
-// by the distance of refitted predictions); Ljung 1999 sec. 13. Cannot: plan what needs other sensors, other
-// loads or another supply; the answer is as good as the rivals.
+// counts, but for a model that nests the other: refitted, it predicts whatever that one does. s is the noise,
+// or the rms residual of the fitted models in the given data if that is more. For a parameter (`shrink`): its
+// sigma after the run, sqrt of its entry in (P + J' J)^-1 (c-optimality). Source: Hunter and Reiner 1965
+// (discrimination by the distance of refitted predictions); Ljung 1999 sec. 13. Cannot: plan what needs other
+// sensors, other loads or another supply; the answer is as good as the rivals.
 #pragma once
 #include <array>
 #include <functional>
@@ -30,7 +31,7 @@ namespace omnihil {
 struct NextExperiment {
   std::string what;  // one sentence
   std::vector<std::string> separates;
-  double expected_sigmas = 0.0;  // distance of the twins' predictions in it, simulated; 0: not computed
+  double expected_sigmas = 0.0;  // distance of the rivals' predictions in it, simulated; 0: not computed
 };
 
 struct Rival {
@@ -48,7 +49,8 @@ struct ExperimentLimits {
 };
 
 struct ExperimentQuestion {
-  std::string shrink;  // path of an unknown of the first rival; empty: tell the rivals apart
+  std::string
+      shrink;  // unknown of the first rival, by path, to be estimated better; empty: separate the rivals
 };
 
 struct ExperimentOptions {
@@ -56,17 +58,17 @@ struct ExperimentOptions {
   double rate_Hz = 1000.0;
   int jobs = 1;
   std::uint64_t seed = 1;
-  bool quick = false;                             // a short menu, no refinement: within a diagnosis
+  bool coarse = false;                            // a short menu, no refinement: within a diagnosis
   std::function<bool(const Progress&)> progress;  // false: stop with the best so far
 };
 
-// What is asked of the drive, or of the four.
+// The drive's input over time; of a robot, all four.
 struct PlannedRun {
-  std::string excitation;      // "creep", …
-  std::string words;           // "ramps slowly through zero, ±10 % duty, 16 s a period"
-  std::string input = "duty";  // or "motor_voltage", "position_target", as the given data have it
-  std::vector<double> time_s;
-  std::vector<std::vector<double>> duty;  // of that input, per drive: one, or one per wheel
+  std::string excitation;                 // "creep", …
+  std::string words;                      // "ramps slowly through zero, ±10 % duty, 16 s a period"
+  std::string input = "duty";             // or "motor_voltage", "position_target", as the given data have it
+  std::vector<double> time_s;             // n samples
+  std::vector<std::vector<double>> duty;  // [drive][sample] in the input's unit; one drive, or one per wheel
 };
 
 struct TriedRun {
@@ -92,7 +94,7 @@ struct ExperimentPlan {
 ExperimentPlan plan_experiment(const Dataset& dataset, const std::vector<Rival>& rivals,
                                const ExperimentQuestion& question, const ExperimentOptions& options);
 
-// The plan's sentence and number alone.
+// The plan's sentence and expected separation alone, from a coarse menu.
 NextExperiment propose_experiment(const Dataset& dataset, const std::vector<Rival>& rivals,
                                   const ExperimentOptions& options);
 

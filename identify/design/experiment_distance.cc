@@ -15,7 +15,8 @@ struct Normal {
   bool finite = true;
 };
 
-// Adds one signal's part; `residual` and `columns` are NaN where nothing is measured.
+// Normal equations of n samples and p unknowns: J'J (p x p), J'r (p).
+// add: one signal's part; `residual` [n x 1] and `columns` [n x p] are NaN where nothing is measured.
 void add(const ComparedSignal& signal, double variance, Eigen::MatrixXd residual, Eigen::MatrixXd columns,
          Normal& sum) {
   whiten(signal, residual);
@@ -37,16 +38,17 @@ double variance_of(const SignalVariances& variances, const ComparedSignal& signa
   return found != variances.end() ? std::max(found->second, floor) : floor;
 }
 
-// The rival at x against the truth's answers.
-Normal normal_at(const Predictor& world, const std::vector<int>& runs, const std::vector<Prediction>& truth,
-                 const HeldModel& rival, const Eigen::VectorXd& x, const SignalVariances& variances) {
+// The rival at x (size p) against the truth's predictions, one per run.
+Normal normal_at(const Predictor& simulated, const std::vector<int>& runs,
+                 const std::vector<Prediction>& truth, const HeldModel& rival, const Eigen::VectorXd& x,
+                 const SignalVariances& variances) {
   const auto n = static_cast<Eigen::Index>(rival.unknowns.size());
   Normal sum{.information = Eigen::MatrixXd::Zero(n, n), .gradient = Eigen::VectorXd::Zero(n)};
   const Candidate here = with_values(rival.model, rival.unknowns, {x.data(), static_cast<std::size_t>(n)});
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Prediction y = world.predict_with_derivatives(here, rival.unknowns, runs[i]);
+    const Prediction y = simulated.predict_with_derivatives(here, rival.unknowns, runs[i]);
     sum.finite = sum.finite && y.finite && truth[i].finite;
-    const std::vector<ComparedSignal>& compared = world.compared(runs[i]);
+    const std::vector<ComparedSignal>& compared = simulated.compared(runs[i]);
     for (std::size_t s = 0; s < compared.size(); ++s) {
       const auto rows = static_cast<Eigen::Index>(compared[s].measured.size());
       Eigen::MatrixXd residual(rows, 1);
@@ -63,7 +65,7 @@ Normal normal_at(const Predictor& world, const std::vector<int>& runs, const std
   return sum;
 }
 
-// (A) d = b with a badly scaled A.
+// Solves A d = b, A p x p symmetric and badly scaled: diagonal scaling to ones, ridge 1e-12 of it.
 Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   Eigen::VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd even = scale.asDiagonal() * a * scale.asDiagonal();
@@ -83,26 +85,26 @@ Eigen::MatrixXd prior_hold(const std::vector<Unknown>& unknowns) {
   return hold;
 }
 
-Distance refitted_distance(const Predictor& world, const std::vector<int>& runs, const Candidate& truth,
+Distance refitted_distance(const Predictor& simulated, const std::vector<int>& runs, const Candidate& truth,
                            const HeldModel& rival, const SignalVariances& variances, int iterations) {
-  std::vector<Prediction> answers;
-  for (const int run : runs) answers.push_back(world.predict(truth, run));
+  std::vector<Prediction> predictions;
+  for (const int run : runs) predictions.push_back(simulated.predict(truth, run));
   Eigen::VectorXd x = rival.center;
   Distance out;
   double best = std::numeric_limits<double>::infinity();
-  for (int round = 0;; ++round) {
-    const Normal now = normal_at(world, runs, answers, rival, x, variances);
+  for (int iteration = 0;; ++iteration) {
+    const Normal now = normal_at(simulated, runs, predictions, rival, x, variances);
     const Eigen::VectorXd moved = x - rival.center;
     const double held = moved.dot(rival.hold * moved);
-    if (round == 0) out.finite = now.finite;
+    if (iteration == 0) out.finite = now.finite;
     if (!now.finite || !std::isfinite(now.square)) break;
     best = std::min(best, now.square + held);
-    if (x.size() == 0 || (round == iterations && iterations > 0)) break;
+    if (x.size() == 0 || (iteration == iterations && iterations > 0)) break;
     const Eigen::MatrixXd all = now.information + rival.hold;
-    const Eigen::VectorXd pull = now.gradient - rival.hold * moved;
-    const Eigen::VectorXd step = solve_scaled(all, pull);
+    const Eigen::VectorXd gradient = now.gradient - rival.hold * moved;
+    const Eigen::VectorXd step = solve_scaled(all, gradient);
     if (iterations == 0) {
-      best = std::max(0.0, now.square + held - pull.dot(step));
+      best = std::max(0.0, now.square + held - gradient.dot(step));
       break;
     }
     for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -114,11 +116,11 @@ Distance refitted_distance(const Predictor& world, const std::vector<int>& runs,
   return out;
 }
 
-Eigen::MatrixXd information_of(const Predictor& world, const std::vector<int>& runs, const HeldModel& model,
-                               const SignalVariances& variances) {
-  std::vector<Prediction> answers;
-  for (const int run : runs) answers.push_back(world.predict(model.model, run));
-  return normal_at(world, runs, answers, model, model.center, variances).information;
+Eigen::MatrixXd information_of(const Predictor& simulated, const std::vector<int>& runs,
+                               const HeldModel& model, const SignalVariances& variances) {
+  std::vector<Prediction> predictions;
+  for (const int run : runs) predictions.push_back(simulated.predict(model.model, run));
+  return normal_at(simulated, runs, predictions, model, model.center, variances).information;
 }
 
 double sigma_of(const Eigen::MatrixXd& information, Eigen::Index unknown) {

@@ -1,5 +1,4 @@
-// What may be asked of a bench: excitations as values of -1 … 1 over time, for one drive or for a robot's
-// four.
+// Menu of excitations: values of -1 … 1 over time, for one drive or for a robot's four.
 //
 //   for (const MenuRun& run : axis_menu(time_s, seed)) run.drive[0][k];
 //   for (const MenuRun& run : robot_menu(time_s, wheel_angle_rad, seed)) run.drive[i][k];
@@ -20,9 +19,9 @@
 namespace omnihil {
 
 struct MenuRun {
-  std::string excitation;  // "reversals_1s"
-  std::string words;       // "turns round every second"
-  std::vector<std::vector<double>> drive;
+  std::string excitation;                  // "reversals_1s"
+  std::string words;                       // "turns round every second"
+  std::vector<std::vector<double>> drive;  // [drive][sample], of no unit
 };
 
 std::vector<MenuRun> axis_menu(const std::vector<double>& time_s, std::uint64_t seed);

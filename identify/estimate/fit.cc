@@ -61,7 +61,7 @@ FitResult fit(const Predictor& predictor, const Candidate& candidate, const std:
     const FitPoint same = problem.at(best.x, false);
     if (d.cost <= same.cost()) best = std::move(d);
   }
-  if (options.valley && !stopped()) best = along_the_valley(problem, std::move(best));
+  if (options.finish_undamped && !stopped()) best = finish_undamped(problem, std::move(best));
   // Never above where it started; a model whose effects start at neutral is its parent there.
   const FitPoint start = problem.at(given, false), end = problem.at(best.x, false);
   const bool nested = std::any_of(candidate.effects.begin(), candidate.effects.end(), is_neutral);

@@ -23,16 +23,16 @@ struct ParameterEstimate {
   std::string path;
   std::string unit;
   double value = 0.0;
-  double sigma = 0.0;         // posterior, 1-sigma
-  double data_sigma = 0.0;    // from the data alone; infinite: the data say nothing
-  double prior_mean = 0.0;    // what the model file believed
-  double prior_sigma = 0.0;   // 0: nothing
-  double drift_sigmas = 0.0;  // (value - prior_mean) / prior_sigma
+  double sigma = 0.0;                   // posterior, 1-sigma
+  double data_sigma = 0.0;              // from the data alone; infinite: the data say nothing
+  double prior_mean = 0.0;              // what the model file believed
+  double prior_sigma = 0.0;             // 0: nothing
+  double prior_deviation_sigmas = 0.0;  // (value - prior_mean) / prior_sigma
   bool at_bound = false;
   bool identifiable = true;
-  bool unphysical = false;               // a sign or size that no drive has
-  std::vector<std::string> trades_with;  // paths
-  std::string sentence;                  // plain language; empty: nothing to say
+  bool unphysical = false;                   // a sign or size that no drive has
+  std::vector<std::string> correlated_with;  // paths
+  std::string sentence;                      // plain language; empty: nothing to say
 };
 
 struct FitOptions {
@@ -40,10 +40,10 @@ struct FitOptions {
   int max_iterations = 30;
   int starts = 1;  // further starts are drawn from the priors
   std::uint64_t seed = 1;
-  bool profile = false;  // walk along flat directions instead of trusting the covariance
-  bool quick = false;    // rough covariance only: for rankings
-  bool valley = false;   // to the end of valleys that only the priors know (fit_descent.h)
-  bool robust = false;   // large residuals pull linearly (fit_problem.h): for the last word on numbers
+  bool profile = false;          // walk along flat directions instead of trusting the covariance
+  bool coarse = false;           // rough covariance only: for rankings
+  bool finish_undamped = false;  // to the end of valleys that only the priors know (fit_descent.h)
+  bool robust = false;  // large residuals pull linearly (fit_problem.h): for the last word on numbers
   std::function<bool()> stop{};  // true: give up early with what is known
 };
 

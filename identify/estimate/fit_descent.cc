@@ -126,8 +126,8 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = iterations;
-  solver.function_tolerance = options.quick ? 1e-4 : 1e-6;
-  solver.parameter_tolerance = options.quick ? 1e-5 : 1e-7;
+  solver.function_tolerance = options.coarse ? 1e-4 : 1e-6;
+  solver.parameter_tolerance = options.coarse ? 1e-5 : 1e-7;
   solver.initial_trust_region_radius = 1e3;
   // With bounds each step is followed by a line search; by halves, or each trial would cost the derivatives.
   solver.line_search_interpolation_type = ceres::BISECTION;
@@ -148,7 +148,7 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
   return d;
 }
 
-Descent along_the_valley(const FitProblem& problem, Descent d) {
+Descent finish_undamped(const FitProblem& problem, Descent d) {
   constexpr int kMostSteps = 3, kMostHalvings = 4;
   const Eigen::VectorXd scale = scales_of(problem);
   for (int step = 0; step < kMostSteps; ++step) {

@@ -25,6 +25,6 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
 // Gauss-Newton without damping, from where a descent ended, as far as the cost falls. Where the data know a
 // sum (mass and payload) and only the priors its parts, the damping, a thousandth of the data's curvature, is
 // far stiffer than the priors: a descent ends where it first meets the valley, and not at its lowest point.
-Descent along_the_valley(const FitProblem& problem, Descent descent);
+Descent finish_undamped(const FitProblem& problem, Descent descent);
 
 }  // namespace omnihil

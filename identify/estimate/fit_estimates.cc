@@ -80,14 +80,14 @@ std::string bound_sentence(const Unknown& u, double x, double gradient) {
 
 std::string sentence_of(const Unknown& u, const ParameterEstimate& p, double gradient) {
   if (p.at_bound) return bound_sentence(u, p.value, gradient);
-  if (!p.identifiable && !p.trades_with.empty()) {
-    return fmt::format("not determined by these data: trades against {}", fmt::join(p.trades_with, ", "));
+  if (!p.identifiable && !p.correlated_with.empty()) {
+    return fmt::format("not determined by these data: trades against {}", fmt::join(p.correlated_with, ", "));
   }
   if (!p.identifiable) return "not determined by these data";
   constexpr double kDrift = 3.0;
-  if (std::abs(p.drift_sigmas) > kDrift && u.effect < 0) {
+  if (std::abs(p.prior_deviation_sigmas) > kDrift && u.effect < 0) {
     return fmt::format("{:.1f} tolerances from what the model file believed: a missing effect may hide in it",
-                       std::abs(p.drift_sigmas));
+                       std::abs(p.prior_deviation_sigmas));
   }
   return "";
 }
@@ -110,7 +110,7 @@ void name_closed_loop(const Predictor& predictor, const FitResult& result,
   for (int n = 0; n < predictor.run_count(); ++n) {
     const Run& run = predictor.run(n);
     const std::vector<double>* speed = run.signal("velocity");
-    if (run.use != Use::kFit || run.steady || speed == nullptr) continue;
+    if (run.split != Split::kTraining || run.steady || speed == nullptr) continue;
     for (const char* name : {"motor_torque", "motor_current", "duty", "motor_voltage"}) {
       const std::vector<double>* input = run.signal(name);
       if (input == nullptr) continue;
@@ -153,12 +153,12 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
   result.parameters.clear();
   for (Eigen::Index i = 0; i < n; ++i) {
     const Unknown& u = unknowns[static_cast<std::size_t>(i)];
-    ParameterEstimate p{.path = u.path, .unit = u.unit, .value = x[i], .trades_with = {}, .sentence = {}};
+    ParameterEstimate p{.path = u.path, .unit = u.unit, .value = x[i], .correlated_with = {}, .sentence = {}};
     p.sigma = std::sqrt(std::max(0.0, result.covariance(i, i)));
     p.data_sigma = std::sqrt(data_variance(data, i, u.scale));
     p.prior_mean = u.prior_mean;
     p.prior_sigma = u.prior_sigma;
-    if (u.prior_sigma > 0.0) p.drift_sigmas = (x[i] - u.prior_mean) / u.prior_sigma;
+    if (u.prior_sigma > 0.0) p.prior_deviation_sigmas = (x[i] - u.prior_mean) / u.prior_sigma;
     const bool phase = u.path.find("phase") != std::string::npos;
     p.at_bound = !phase && (at(x[i], u.lower, u.scale) || at(x[i], u.upper, u.scale));
     // a strength that the fit leaves at neutral stands at a bound of no meaning
@@ -166,7 +166,7 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
     p.unphysical = p.at_bound && u.lower == 0.0 && at(x[i], 0.0, u.scale) && pressed;
     const double belief = u.prior_sigma > 0.0 ? u.prior_sigma : std::max(std::abs(x[i]), u.scale);
     p.identifiable = p.data_sigma < belief;
-    if (!p.identifiable) p.trades_with = partners(point.information, scale, i, unknowns);
+    if (!p.identifiable) p.correlated_with = partners(point.information, scale, i, unknowns);
     p.sentence = sentence_of(u, p, point.gradient[i]);
     if (!p.sentence.empty()) result.findings.push_back(p.path + ": " + p.sentence);
     result.parameters.push_back(std::move(p));

@@ -52,7 +52,8 @@ FitProblem::FitProblem(const Predictor& predictor, const Candidate& candidate,
                        const std::vector<Unknown>& unknowns, int jobs, bool robust)
     : predictor_(predictor), candidate_(candidate), unknowns_(unknowns), jobs_(jobs), robust_(robust) {
   for (int run = 0; run < predictor.run_count(); ++run) {
-    if (predictor.run(run).use == Use::kFit && !predictor.compared(run).empty()) runs_.push_back(run);
+    if (predictor.run(run).split == Split::kTraining && !predictor.compared(run).empty())
+      runs_.push_back(run);
   }
 }
 

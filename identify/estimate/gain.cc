@@ -19,9 +19,9 @@ double at_share(Eigen::VectorXd values, double share) {
 
 // What each signal counts: its share of error energy above the sensors' floor, so that a signal at its floor
 // does not water down what another one shows. At least kFloorWeight.
-Eigen::VectorXd signal_weights(const Evidence& evidence, const NullModel& null,
+Eigen::VectorXd signal_weights(const WhitenedResiduals& residuals, const NullModel& null,
                                const Eigen::VectorXd& reference) {
-  const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(reference);
+  const Eigen::VectorXd floor = null.floor(residuals.split()), square = residuals.mean_square(reference);
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(square.size());
   for (Eigen::Index k = 0; k < square.size(); ++k) {
     if (square[k] > 0.0) weights[k] = std::max(kFloorWeight, 1.0 - floor[k] / square[k]);
@@ -31,8 +31,9 @@ Eigen::VectorXd signal_weights(const Evidence& evidence, const NullModel& null,
 
 }  // namespace
 
-BlockBootstrap::BlockBootstrap(const Evidence& evidence, std::uint64_t seed) : evidence_(&evidence) {
-  const int blocks = evidence.blocks();
+BlockBootstrap::BlockBootstrap(const WhitenedResiduals& residuals, std::uint64_t seed)
+    : residuals_(&residuals) {
+  const int blocks = residuals.blocks();
   if (blocks == 0) return;
   counts_ = Eigen::MatrixXd::Zero(kDraws, blocks);
   for (int d = 0; d < kDraws; ++d) {
@@ -46,8 +47,8 @@ BlockBootstrap::BlockBootstrap(const Evidence& evidence, std::uint64_t seed) : e
 
 Eigen::VectorXd BlockBootstrap::ratios(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
                                        const Eigen::VectorXd& weights) const {
-  const Eigen::MatrixXd before = counts_ * evidence_->block_sums(reference);
-  const Eigen::MatrixXd after = counts_ * evidence_->block_sums(residual);
+  const Eigen::MatrixXd before = counts_ * residuals_->block_sums(reference);
+  const Eigen::MatrixXd after = counts_ * residuals_->block_sums(residual);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(counts_.rows());
   double all = 0.0;
   for (Eigen::Index k = 0; k < before.cols(); ++k) {
@@ -60,19 +61,19 @@ Eigen::VectorXd BlockBootstrap::ratios(const Eigen::VectorXd& reference, const E
   return all > 0.0 ? Eigen::VectorXd(out / all) : Eigen::VectorXd::Ones(counts_.rows());
 }
 
-UseGain BlockBootstrap::gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
-                             const Eigen::VectorXd& weights) const {
+SplitGain BlockBootstrap::gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
+                               const Eigen::VectorXd& weights) const {
   const Eigen::VectorXd draws = ratios(reference, residual, weights);
-  return {.ratio = energy_ratio(*evidence_, reference, residual, weights),
+  return {.ratio = energy_ratio(*residuals_, reference, residual, weights),
           .best = at_share(draws, 0.05),
           .worst = at_share(draws, 0.95)};
 }
 
-Eigen::VectorXd weights_for(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& parent,
-                            const Eigen::VectorXd& child) {
-  Eigen::VectorXd all = signal_weights(evidence, null, parent);
+Eigen::VectorXd weights_for(const WhitenedResiduals& residuals, const NullModel& null,
+                            const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {
+  Eigen::VectorXd all = signal_weights(residuals, null, parent);
   if (child.size() != parent.size()) return all;
-  const Eigen::VectorXd moved = evidence.mean_square(child - parent), size = evidence.mean_square(parent);
+  const Eigen::VectorXd moved = residuals.mean_square(child - parent), size = residuals.mean_square(parent);
   Eigen::VectorXd weights = all;
   for (Eigen::Index k = 0; k < weights.size(); ++k) {
     if (moved[k] <= kUnmoved * size[k]) weights[k] = 0.0;
@@ -80,9 +81,9 @@ Eigen::VectorXd weights_for(const Evidence& evidence, const NullModel& null, con
   return weights.sum() > 0.0 ? weights : all;
 }
 
-double energy_ratio(const Evidence& evidence, const Eigen::VectorXd& reference,
+double energy_ratio(const WhitenedResiduals& residuals, const Eigen::VectorXd& reference,
                     const Eigen::VectorXd& residual, const Eigen::VectorXd& weights) {
-  const Eigen::VectorXd before = evidence.mean_square(reference), after = evidence.mean_square(residual);
+  const Eigen::VectorXd before = residuals.mean_square(reference), after = residuals.mean_square(residual);
   double sum = 0.0, all = 0.0;
   for (Eigen::Index k = 0; k < before.size(); ++k) {
     if (before[k] <= 0.0) continue;
@@ -93,22 +94,23 @@ double energy_ratio(const Evidence& evidence, const Eigen::VectorXd& reference,
   return all > 0.0 ? sum / all : 1.0;
 }
 
-double pooled_error(const Evidence& evidence, const SignalKinds& kinds, const Eigen::VectorXd& residual) {
-  const Eigen::VectorXd square = evidence.mean_square(residual);
+double pooled_error(const WhitenedResiduals& residuals, const ComparedChannels& channels,
+                    const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd square = residuals.mean_square(residual);
   double sum = 0.0, signals = 0.0;
-  for (int k = 0; k < kinds.count(); ++k) {
-    const double sigma = kinds.noise_sigma[static_cast<std::size_t>(k)];
-    if (evidence.samples()[k] <= 0.0 || sigma <= 0.0) continue;
+  for (int k = 0; k < channels.count(); ++k) {
+    const double sigma = channels.noise_sigma[static_cast<std::size_t>(k)];
+    if (residuals.samples()[k] <= 0.0 || sigma <= 0.0) continue;
     sum += square[k] / (sigma * sigma);
     signals += 1.0;
   }
   return signals > 0.0 ? std::sqrt(sum / signals) : 0.0;
 }
 
-double floor_share(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& residual,
+double floor_share(const WhitenedResiduals& residuals, const NullModel& null, const Eigen::VectorXd& residual,
                    const Eigen::VectorXd& weights) {
-  if (evidence.empty()) return 1.0;
-  const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(residual);
+  if (residuals.empty()) return 1.0;
+  const Eigen::VectorXd floor = null.floor(residuals.split()), square = residuals.mean_square(residual);
   double sum = 0.0;
   for (Eigen::Index k = 0; k < square.size(); ++k) {
     if (square[k] > 0.0) sum += weights[k] * std::min(1.0, floor[k] / square[k]);

@@ -36,9 +36,9 @@ Eigen::MatrixXd selected(const Eigen::MatrixXd& m, const std::vector<Eigen::Inde
 
 }  // namespace
 
-double autocorrelation_samples(const Evidence& evidence, const Eigen::VectorXd& residual) {
+double autocorrelation_samples(const WhitenedResiduals& residuals, const Eigen::VectorXd& residual) {
   double sum = 0.0, weight = 0.0;
-  for (const Evidence::Part& part : evidence.parts()) {
+  for (const WhitenedResiduals::Part& part : residuals.parts()) {
     const Eigen::Index n = static_cast<Eigen::Index>(part.rows.size());
     sum += static_cast<double>(n) * correlated_samples(residual.segment(part.first, n));
     weight += static_cast<double>(n);
@@ -81,20 +81,21 @@ std::pair<double, Eigen::VectorXd> bounded_gain(const Eigen::MatrixXd& gram,
   return best;
 }
 
-LinearBase::LinearBase(const Evidence& evidence, const Candidate& model, const std::vector<Unknown>& unknowns,
-                       const Eigen::VectorXd& scale_of_kind, int jobs) {
-  weights_ = evidence.weights(scale_of_kind);
-  prediction_ = evidence.predicted(model, jobs);
-  if (prediction_.size() != evidence.size() || evidence.empty()) return;
-  const Eigen::VectorXd raw = evidence.residual_of(prediction_);
+LinearBase::LinearBase(const WhitenedResiduals& residuals, const Candidate& model,
+                       const std::vector<Unknown>& unknowns, const Eigen::VectorXd& scale_of_channel,
+                       int jobs) {
+  weights_ = residuals.weights(scale_of_channel);
+  prediction_ = residuals.predicted(model, jobs);
+  if (prediction_.size() != residuals.size() || residuals.empty()) return;
+  const Eigen::VectorXd raw = residuals.residual_of(prediction_);
   residual_ = raw.cwiseProduct(weights_);
-  autocorrelation_ = omnihil::autocorrelation_samples(evidence, residual_);
+  autocorrelation_ = omnihil::autocorrelation_samples(residuals, residual_);
   for (const Unknown& u : unknowns) {
     const double margin = 1e-6 * std::max(u.scale, 1e-12);
     // A number at its bound does not move along.
     if (u.start > u.lower + margin && u.start < u.upper - margin) unknowns_.push_back(u);
   }
-  jacobian_ = evidence.derivatives(model, unknowns_, jobs);
+  jacobian_ = residuals.derivatives(model, unknowns_, jobs);
   for (Eigen::Index c = 0; c < jacobian_.cols(); ++c) {
     // in steps that matter, so that the normal matrix is well scaled
     jacobian_.col(c) = jacobian_.col(c).cwiseProduct(weights_) * unknowns_[static_cast<std::size_t>(c)].scale;

@@ -16,7 +16,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "identify/estimate/evidence.h"
+#include "identify/estimate/whitened_residuals.h"
 
 namespace omnihil {
 
@@ -36,8 +36,8 @@ struct ProjectedColumns {
 
 class LinearBase {
  public:
-  LinearBase(const Evidence& evidence, const Candidate& model, const std::vector<Unknown>& unknowns,
-             const Eigen::VectorXd& scale_of_kind, int jobs);
+  LinearBase(const WhitenedResiduals& residuals, const Candidate& model, const std::vector<Unknown>& unknowns,
+             const Eigen::VectorXd& scale_of_channel, int jobs);
 
   bool usable() const { return usable_; }
   const Eigen::VectorXd& residual() const { return residual_; }  // weighted
@@ -78,6 +78,6 @@ std::pair<double, Eigen::VectorXd> bounded_gain(const Eigen::MatrixXd& gram,
                                                 const std::vector<bool>& two_sided);
 
 // How many samples of a residual say one thing: 1 + 2 sum of autocorrelations until they fade.
-double autocorrelation_samples(const Evidence& evidence, const Eigen::VectorXd& residual);
+double autocorrelation_samples(const WhitenedResiduals& residuals, const Eigen::VectorXd& residual);
 
 }  // namespace omnihil

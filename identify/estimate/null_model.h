@@ -12,28 +12,28 @@
 #include <cstdint>
 #include <vector>
 
-#include "identify/estimate/evidence.h"
+#include "identify/estimate/whitened_residuals.h"
 
 namespace omnihil {
 
 struct NullModel {
   std::vector<Eigen::VectorXd> fit_noise;
-  std::array<Eigen::MatrixXd, kUses> mean_square;  // [use](replicate, kind)
+  std::array<Eigen::MatrixXd, kSplits> mean_square;  // [use](replicate, kind)
 
   int replicates() const { return static_cast<int>(fit_noise.size()); }
   // per kind: mean over the replicates; 0 where a use has no runs
-  Eigen::VectorXd floor(Use use) const;
+  Eigen::VectorXd floor(Split split) const;
   // per kind: standard deviation over the replicates
-  Eigen::VectorXd spread(Use use) const;
+  Eigen::VectorXd spread(Split split) const;
 };
 
 // What a model leaves of what a simulated world has measured, in the evidence's order; empty: not finite.
 // `predicted`: by the model, for the recording's own inputs (a robot's model follows those of the world).
-Eigen::VectorXd left_in(const Predictor& world, const Evidence& evidence, const Candidate& model,
-                        const Eigen::VectorXd& predicted);
+Eigen::VectorXd simulated_residual(const Predictor& simulated, const WhitenedResiduals& residuals,
+                        const Candidate& model, const Eigen::VectorXd& predicted);
 
 NullModel simulate_null(const Predictor& predictor, const Candidate& truth,
-                        const std::array<Evidence, kUses>& uses, std::uint64_t seed, int replicates,
-                        int jobs);
+                        const std::array<WhitenedResiduals, kSplits>& splits, std::uint64_t seed,
+                        int replicates, int jobs);
 
 }  // namespace omnihil

@@ -172,7 +172,7 @@ std::vector<double> smoothed_velocity(const AxisRecord& record) {
 void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
   const CommandKind kind = axis_command_kind(dataset);
   const Channel* speed_channel = dataset.channel("velocity");
-  s.bench_turns = speed_channel != nullptr && speed_channel->imposed;
+  s.speed_imposed = speed_channel != nullptr && speed_channel->imposed;
   const double rate = 1.0 / r.period_s;
   const double cutoff = cutoff_for(rate);
   s.filter = filter_for(rate);
@@ -185,7 +185,7 @@ void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& 
   in.command = by_torque ? interval_means(linear(r.command)) : steps(r.command);
   for (const double e : steps(r.enable)) in.enable.push_back(e != 0.0 ? 1 : 0);
   if (!by_torque) in.bus_voltage_V = steps(r.bus_V);
-  const bool bench_torque = s.bench_turns && !r.load_torque_Nm.empty();
+  const bool bench_torque = s.speed_imposed && !r.load_torque_Nm.empty();
   if (!bench_torque) in.load_torque_Nm = steps(r.load_torque_Nm);
   std::vector<double> position = linear(position_of(r));
   std::vector<double> velocity = linear(r.velocity);
@@ -216,7 +216,7 @@ void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& 
   if (bench_torque) {
     add_filtered("load_torque", dataset.linear ? "N" : "N m", AxisOutput::kLoadTorque,
                  linear(r.load_torque_Nm));
-  } else if (!s.bench_turns || by_torque || r.current.empty()) {
+  } else if (!s.speed_imposed || by_torque || r.current.empty()) {
     const NeededName needed = needed_name(dataset, kind);
     s.given = zero_phase(s.filter, at_interval_end(in.command));
     add_filtered(needed.name, needed.unit, AxisOutput::kNeededInput, at_interval_end(in.command));

@@ -35,7 +35,7 @@ enum class AxisOutput : std::uint8_t {
 struct AxisSetup {
   Method method = Method::kForward;
   bool steady = false;
-  bool bench_turns = false;  // the speed is imposed by the bench, not by the filter's motion
+  bool speed_imposed = false;  // the speed is imposed by the bench, not by the filter's motion
   AxisInput input;
   std::vector<ComparedSignal> compared;
   std::vector<AxisOutput> outputs;           // one per compared signal

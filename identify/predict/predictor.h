@@ -90,7 +90,7 @@ class Predictor {
   // Can this effect act on this rig and drive input at all; "" or why not ("needs a measured current").
   virtual std::string applies(const EffectEntry& entry) const = 0;
   // Do the readings themselves, one by one, show that this effect made them?
-  virtual bool carries_mark_of(const EffectEntry&) const { return false; }
+  virtual bool shows_signature_of(const EffectEntry&) const { return false; }
 };
 
 // Residuals (or derivatives of predictions) of one signal, filtered so that its sensor noise is white: what a

@@ -87,7 +87,7 @@ class AxisPredictor final : public Predictor {
   std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
     return axis_regimes(setup(n), with_known(candidate, run(n).known), step_for(candidate));
   }
-  bool carries_mark_of(const EffectEntry& effect) const override { return counter_ == &effect; }
+  bool shows_signature_of(const EffectEntry& effect) const override { return counter_ == &effect; }
   std::string applies(const EffectEntry& entry) const override {
     return axis_effect_refusal(entry, *dataset_, *nominal_);
   }
@@ -293,7 +293,7 @@ class AxisPredictor final : public Predictor {
       double worst = 0.0;
       int tried = 0;
       for (int n = 0; n < run_count() && tried < 4; ++n) {
-        if (run(n).use != Use::kFit || setup(n).steady || setup(n).input.time_s.size() < 2) continue;
+        if (run(n).split != Split::kTraining || setup(n).steady || setup(n).input.time_s.size() < 2) continue;
         worst = std::max(worst, distance(n, predict_at(*nominal_, n, h), predict_at(*nominal_, n, 0.25 * h)));
         ++tried;
       }
@@ -322,7 +322,7 @@ class AxisPredictor final : public Predictor {
   // What the sensors would have shown: noise where it comes in, rounding of counts.
   void replace_measurement(const Candidate& truth, int n, std::uint64_t seed) {
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
-    Prediction p = truth_behind_noisy_input(truth, n, seed);
+    Prediction p = ground_truth_prediction(truth, n, seed);
     for (std::size_t c = 0; c < s.compared.size(); ++c) {
       ComparedSignal& signal = s.compared[c];
       const std::uint64_t stream = stream_of(signal.name) + static_cast<std::uint64_t>(n) * 1000003;
@@ -350,7 +350,7 @@ class AxisPredictor final : public Predictor {
   // The bus voltage that drives the model is a measurement too, a mean over a window (axis_record.cc): the
   // world's own differs from it by what the mean leaves of the sensor's noise, which wanders off in speed and
   // position.
-  Prediction truth_behind_noisy_input(const Candidate& truth, int n, std::uint64_t seed) {
+  Prediction ground_truth_prediction(const Candidate& truth, int n, std::uint64_t seed) {
     constexpr std::size_t kWindow = 21;
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     const auto bus = std::find_if(s.compared.begin(), s.compared.end(),

@@ -133,9 +133,9 @@ std::unique_ptr<Predictor> RobotPredictor::simulated(const Candidate& truth, std
     free.noise_seed = own_seed(n);
     const auto model = robot_values<double>(of_run(truth, made.runs[n]), {}, 0);
     // the duties that the world had, before they were rounded; its bus before it was measured
-    RobotRecord world = with_input_noise(records_[n], own_seed(n));
-    world.bus_voltage_V = records_[n].bus_voltage_V;
-    motions.push_back(run_robot(model, world, free));
+    RobotRecord true_input = with_input_noise(records_[n], own_seed(n));
+    true_input.bus_voltage_V = records_[n].bus_voltage_V;
+    motions.push_back(run_robot(model, true_input, free));
     measure_robot(records_[n], motions.back(), signals_[n], own_seed(n), made.runs[n]);
   }
   auto null = std::make_unique<RobotPredictor>(made, nominal_, options_);

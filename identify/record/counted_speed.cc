@@ -6,21 +6,22 @@
 namespace omnihil {
 namespace {
 
-constexpr double kLongest_s = 0.05;   // of a window: slower than any loop that lives on it
+constexpr double kLongest_s = 0.05;   // of a window: slower than any speed loop that uses it; a choice
 constexpr double kFewestPeriods = 2;  // shorter, the reading is the difference of two samples
-constexpr double kOffStep = 0.02;     // of a step: digits that a file was written with
-constexpr int kFewestSteps = 3;       // different readings
+constexpr double kOffStep = 0.02;  // of a step: decimals of a file; a choice, below the 0.5 of a wrong step
+constexpr int kFewestSteps = 3;    // different readings; fewer fit any step
 
 // A window that slides changes its reading by each pulse that comes in and by each that goes out, and by
 // nothing else: 2 |omega| T / pulse changes per sample of T where the motion is slow and even, less those
 // where both fall into one sample (a quarter, measured on simulated Halls: 0.72 to 0.83 remain). A speed
-// differenced from an encoder flickers at every sample (1.0 to 2.4), one rounded to a number format where its
-// noise or its course will have it.
+// differenced from an encoder changes at every sample (1.0 to 2.4 times as often), one rounded to a number
+// format wherever its noise or the motion crosses a rounding limit.
 bool slides(const std::vector<double>& values, double step, double window_samples) {
-  constexpr double kLeast = 0.6, kMost = 0.9;        // of the changes that are expected
-  constexpr double kSlowest = 0.05, kFastest = 0.6;  // changes per sample
-  constexpr double kUneven = 0.5;
-  constexpr double kFewest = 100.0;
+  constexpr double kLeast = 0.6, kMost = 0.9;  // of the expected changes; between the measured ranges above
+  constexpr double kSlowest = 0.05,
+                   kFastest = 0.6;   // changes per sample: "slow" of the law above; tuned on it
+  constexpr double kUneven = 0.5;    // change of speed over a window, of the speed: "even"; tuned
+  constexpr double kFewest = 100.0;  // expected changes: their number is then within 10 % (Poisson)
   const std::size_t n = values.size();
   std::vector<double> sum(n + 1, 0.0), missing(n + 1, 0.0);
   for (std::size_t k = 0; k < n; ++k) {
@@ -44,11 +45,12 @@ bool slides(const std::vector<double>& values, double step, double window_sample
   return expected >= kFewest && changes >= kLeast * expected && changes <= kMost * expected;
 }
 
-// Nothing changes within a window, and what changes does so by its clock.
+// A window that is held: the reading stays for whole windows and changes at multiples of the window alone.
 bool is_held(const std::vector<double>& values, double step, double window_samples) {
-  constexpr double kOff = 0.02;  // of the changes: a clock that slips
-  constexpr double kFewest = 50.0;
-  constexpr double kShortest = 4.0;  // samples: shorter, any change is near some tick of that clock
+  constexpr double kOff = 0.02;     // of the changes, off the window's clock: jitter of time stamps; a choice
+  constexpr double kFewest = 50.0;  // changes: one of them off is 2 %
+  constexpr double kShortest =
+      4.0;  // samples, of which ±1 is allowed: shorter, any change would do (derived)
   if (window_samples < kShortest) return false;
   std::size_t last = 0;
   double changes = 0.0, off = 0.0;
@@ -64,7 +66,7 @@ bool is_held(const std::vector<double>& values, double step, double window_sampl
   return changes >= kFewest && off <= kOff * changes;
 }
 
-// Rounded down to pulses, less itself.
+// Rounding error of an angle counted in whole pulses, in rad: -pulse_rad to 0.
 double rounding(double angle_rad, double pulse_rad, double start) {
   const double pulses = angle_rad / pulse_rad + start;
   return (std::floor(pulses) - pulses) * pulse_rad;

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 
+#include "identify/record/statistics.h"
+
 namespace omnihil {
 
-std::string_view use_name(Use use) {
-  switch (use) {
-    case Use::kFit:
+std::string_view split_name(Split split) {
+  switch (split) {
+    case Split::kTraining:
       return "fit";
-    case Use::kHoldout:
+    case Split::kValidation:
       return "holdout";
-    case Use::kExtrapolation:
+    case Split::kExtrapolation:
       return "extrapolation";
   }
   return "";
@@ -24,10 +26,7 @@ const std::vector<double>* Run::signal(std::string_view name) const {
 double median_period_s(const std::vector<double>& time_s) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
-  if (steps.empty()) return 0.0;
-  const auto mid = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), mid, steps.end());
-  return *mid;
+  return median_in_place(steps);
 }
 
 const Channel* Dataset::channel(std::string_view signal) const {
@@ -36,8 +35,8 @@ const Channel* Dataset::channel(std::string_view signal) const {
   return found == channels.end() ? nullptr : &*found;
 }
 
-bool Dataset::has(Use use) const {
-  return std::any_of(runs.begin(), runs.end(), [&](const Run& r) { return r.use == use; });
+bool Dataset::has(Split split) const {
+  return std::any_of(runs.begin(), runs.end(), [&](const Run& r) { return r.split == split; });
 }
 
 }  // namespace omnihil

@@ -17,14 +17,15 @@ namespace omnihil {
 
 enum class Rig : std::uint8_t { kAxis, kRobot };
 
-// What a run may be used for.
-enum class Use : std::uint8_t {
-  kFit,            // to estimate parameters and to choose effects
-  kHoldout,        // same kind of motion, never estimated on: decides whether an effect stays
+// Which part a run plays in cross-validation. The file format calls them "fit", "holdout", "extrapolation".
+// Unscoped on purpose: a split is also the index of arrays that hold one thing per split.
+enum Split : std::uint8_t {
+  kTraining,       // to estimate parameters and to choose effects
+  kValidation,     // same kind of motion, never estimated on: decides whether an effect stays
   kExtrapolation,  // another kind of motion: an effect that makes this worse is rejected
 };
-inline constexpr int kUses = 3;
-std::string_view use_name(Use use);  // "fit", "holdout", "extrapolation"
+inline constexpr int kSplits = 3;
+std::string_view split_name(Split split);  // as the file format has it: "fit", "holdout", "extrapolation"
 
 struct Channel {
   std::string signal;  // "velocity", "encoder_2"
@@ -41,18 +42,18 @@ struct Channel {
 
 struct Run {
   std::string file;
-  Use use = Use::kFit;
+  Split split = Split::kTraining;
   std::string excitation;
   bool steady = false;                                // independent settled points instead of a time series
   std::vector<std::pair<std::string, double>> known;  // model parameters by path, for this run alone
-  std::vector<double> time_s;                         // increasing
-  std::map<std::string, std::vector<double>, std::less<>> signals;
+  std::vector<double> time_s;                         // increasing; n samples
+  std::map<std::string, std::vector<double>, std::less<>> signals;  // n samples each, in Channel::unit
 
   const std::vector<double>* signal(std::string_view name) const;
   double duration_s() const { return time_s.empty() ? 0.0 : time_s.back() - time_s.front(); }
 };
 
-// 0: less than two samples.
+// Median of the n - 1 differences of n time stamps; 0: fewer than two.
 double median_period_s(const std::vector<double>& time_s);
 
 struct Dataset {
@@ -65,7 +66,7 @@ struct Dataset {
   std::vector<std::string> notes;  // what was left out, counted; what a reader should know
 
   const Channel* channel(std::string_view signal) const;
-  bool has(Use use) const;
+  bool has(Split split) const;
 };
 
 }  // namespace omnihil

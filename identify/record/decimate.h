@@ -15,8 +15,10 @@
 
 namespace omnihil {
 
+// Frequencies in any one unit; ripple in dB, peak to peak of the pass band.
 LowPass chebyshev(int order, double ripple_dB, double edge_Hz, double rate_Hz);
 
+// n samples to ceil(n / factor), of x's unit: those of index 0, factor, 2 factor, … of the filtered record.
 std::vector<double> decimate(std::span<const double> x, int factor);
 
 }  // namespace omnihil

@@ -9,7 +9,7 @@
 namespace omnihil {
 namespace {
 
-// Runs x through the section in place, starting as if x[0] had been there for ever.
+// Filters x by one section in place, from the section's steady state for the constant input x[0].
 void run(const Biquad& s, std::vector<double>& x) {
   const double gain = (s.b0 + s.b1 + s.b2) / (1.0 + s.a1 + s.a2);
   const double first = x.front();

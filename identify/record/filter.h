@@ -26,11 +26,12 @@ struct LowPass {
 
 LowPass butterworth(int order, double cutoff_Hz, double rate_Hz);
 
+// n samples to n samples, of x's unit.
 std::vector<double> zero_phase(const LowPass& filter, std::span<const double> x);
-// Every column.
+// Every column of [n samples x m] by itself.
 Eigen::MatrixXd zero_phase(const LowPass& filter, const Eigen::MatrixXd& columns);
 
-// Slope per sample by central differences, one-sided at the ends.
+// Slope per sample (x's unit) by central differences, one-sided at the ends; n samples to n.
 std::vector<double> central_differences(std::span<const double> x);
 
 }  // namespace omnihil

@@ -3,7 +3,7 @@
 //
 //   parallel_for(jobs, n, [&](int k) { out[k] = work(k); });
 //
-// An exception of a piece is thrown again here, after all have ended: that of the lowest number.
+// An exception of a piece is thrown again here, after all pieces have ended: that of the lowest index k.
 #pragma once
 #include <atomic>
 #include <exception>

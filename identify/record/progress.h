@@ -1,4 +1,4 @@
-// How far a long computation is; asked for by who runs it, told while it runs.
+// Progress report of a long computation, passed to the caller's function while it runs.
 //
 //   options.progress = [](const Progress& p) { return p.share < 0.2; };   // false: stop with what is known
 #pragma once

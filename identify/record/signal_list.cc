@@ -3,7 +3,7 @@
 namespace omnihil {
 namespace {
 
-using enum SignalKind;
+using enum SignalRole;
 
 constexpr SignalRow kRows[] = {
     {"time", "s", "s", kTime, Rig::kAxis, ""},
@@ -76,7 +76,7 @@ std::vector<std::string_view> signal_names(Rig rig) {
 std::vector<std::string_view> drive_group_signals(Rig rig, std::string_view group) {
   std::vector<std::string_view> names;
   for (const SignalRow& row : kRows) {
-    if (row.rig == rig && row.kind == SignalKind::kDrive && row.drive_group == group)
+    if (row.rig == rig && row.role == SignalRole::kDrive && row.drive_group == group)
       names.push_back(row.name);
   }
   return names;

@@ -15,20 +15,20 @@
 
 namespace omnihil {
 
-enum class SignalKind : std::uint8_t {
+enum class SignalRole : std::uint8_t {
   kTime,
   kDrive,     // what was asked of the drive
-  kMotion,    // position, speed, counts, pose: what the model has to explain
-  kCounts,    // the same, as cumulative encoder counts
+  kMotion,    // position, speed, pose: outputs that the model has to explain
+  kCounts,    // position as cumulative encoder counts
   kFlag,      // 0 or 1
-  kMeasured,  // what else a sensor shows
+  kMeasured,  // any other sensor: current, voltage, temperature, acceleration
 };
 
 struct SignalRow {
   std::string_view name;
   std::string_view unit;
   std::string_view linear_unit;  // "": the signal has no meaning on a linear axis
-  SignalKind kind;
+  SignalRole role;
   Rig rig;
   std::string_view drive_group;  // of a drive signal
 };

@@ -36,12 +36,12 @@ double unweighted_gain(const Eigen::VectorXd& parent, const Eigen::VectorXd& chi
 
 // How much more an addition leaves in a use than its parent, both counted only from where the simulated null
 // ends: what measured inputs' noise makes of the slowest part of a residual goes up or down with every refit.
-double rise_above_null(const Evidence& evidence, const NullModel& null, const Eigen::VectorXd& parent,
-                       const Eigen::VectorXd& child) {
-  const Eigen::VectorXd level = null.floor(evidence.use()) + null.spread(evidence.use());
-  const Eigen::VectorXd before = evidence.mean_square(parent).cwiseMax(level),
-                        after = evidence.mean_square(child).cwiseMax(level);
-  const Eigen::VectorXd weights = weights_for(evidence, null, parent, child);
+double rise_above_null(const WhitenedResiduals& residuals, const NullModel& null,
+                       const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {
+  const Eigen::VectorXd level = null.floor(residuals.split()) + null.spread(residuals.split());
+  const Eigen::VectorXd before = residuals.mean_square(parent).cwiseMax(level),
+                        after = residuals.mean_square(child).cwiseMax(level);
+  const Eigen::VectorXd weights = weights_for(residuals, null, parent, child);
   double sum = 0.0;
   for (Eigen::Index k = 0; k < before.size(); ++k) {
     if (before[k] > 0.0) sum += weights[k] * (after[k] / before[k] - 1.0);
@@ -52,13 +52,16 @@ double rise_above_null(const Evidence& evidence, const NullModel& null, const Ei
 // Of the extrapolation runs; 0 where the bootstrap does not see one, or where nobody would who looks at the
 // signals: the slowest part of a residual, whitened, tells of a last digit of a base parameter.
 double extrapolation_rise(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
-                          const UseGain& gain) {
-  const Evidence& evidence = (*context.splits)[2];
-  if (evidence.empty() || gain.best <= 1.0) return 0.0;
-  const bool known_as_seen = child.unweighted[2].size() > 0 && parent.unweighted[2].size() > 0;
-  if (known_as_seen && unweighted_gain(child.unweighted[2], parent.unweighted[2]) < kSeen) return 0.0;
-  return std::min(gain.ratio - 1.0,
-                  rise_above_null(evidence, *context.null, parent.residual[2], child.residual[2]));
+                          const SplitGain& gain) {
+  const WhitenedResiduals& residuals = (*context.splits)[kExtrapolation];
+  if (residuals.empty() || gain.best <= 1.0) return 0.0;
+  const bool known_as_seen =
+      child.unweighted[kExtrapolation].size() > 0 && parent.unweighted[kExtrapolation].size() > 0;
+  if (known_as_seen &&
+      unweighted_gain(child.unweighted[kExtrapolation], parent.unweighted[kExtrapolation]) < kSeen)
+    return 0.0;
+  return std::min(gain.ratio - 1.0, rise_above_null(residuals, *context.null, parent.residual[kExtrapolation],
+                                                    child.residual[kExtrapolation]));
 }
 
 // Why an addition that gains little is believed all the same; empty: it is not.
@@ -79,7 +82,7 @@ std::string reason_by_prior(const Fitted& parent, const Fitted& child, const Acc
 
 Fitted fitted(const Splits& splits, const Splits& unweighted, FitResult fit, int jobs) {
   Fitted out{.fit = std::move(fit), .residual = {}, .finite = true};
-  for (std::size_t u = 0; u < kUses; ++u) {
+  for (std::size_t u = 0; u < kSplits; ++u) {
     if (splits[u].empty()) continue;
     out.residual[u] = splits[u].residual(out.fit.model, jobs);
     if (out.residual[u].size() != splits[u].size()) {
@@ -100,18 +103,18 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
     out.why = "the model with it does not stay finite";
     return out;
   }
-  std::array<UseGain*, kUses> gains{&out.fit, &out.holdout, &out.extrapolation};
-  for (std::size_t u = 0; u < kUses; ++u) {
+  std::array<SplitGain*, kSplits> gains{&out.fit, &out.holdout, &out.extrapolation};
+  for (std::size_t u = 0; u < kSplits; ++u) {
     if ((*context.splits)[u].empty()) continue;
-    const Evidence& evidence = (*context.splits)[u];
+    const WhitenedResiduals& residuals = (*context.splits)[u];
     const Eigen::VectorXd weights =
-        weights_for(evidence, *context.null, parent.residual[u], child.residual[u]);
+        weights_for(residuals, *context.null, parent.residual[u], child.residual[u]);
     *gains[u] = context.bootstrap[u]->gain(parent.residual[u], child.residual[u], weights);
-    gains[u]->floor = floor_share(evidence, *context.null, parent.residual[u], weights);
+    gains[u]->floor = floor_share(residuals, *context.null, parent.residual[u], weights);
   }
-  const Use decides = (*context.splits)[1].empty() ? Use::kFit : Use::kHoldout;
+  const Split decides = (*context.splits)[kValidation].empty() ? Split::kTraining : Split::kValidation;
   const std::size_t d = static_cast<std::size_t>(decides);
-  const UseGain& held = *gains[d];
+  const SplitGain& held = *gains[d];
   const double needed = kMatters + kMattersAtFloor * held.floor;
   out.decisive = 1.0 - held.ratio > kPlain && held.worst < 1.0;
   const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
@@ -127,7 +130,7 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
         held.ratio > 1.0
             ? fmt::format(
                   "it lowers the error that it was fitted to, and raises the {} error energy by {:.1f} %",
-                  decides == Use::kHoldout ? "held-out" : "fit", 100.0 * (held.ratio - 1.0))
+                  decides == Split::kValidation ? "held-out" : "fit", 100.0 * (held.ratio - 1.0))
             : fmt::format("it takes {:.1f} % of the held-out error energy; {:.1f} % would matter",
                           100.0 * (1.0 - held.ratio), 100.0 * needed);
   } else if (const double unweighted = unweighted_gain(parent.unweighted[d], child.unweighted[d]);

@@ -7,22 +7,22 @@
 #include <string>
 #include <vector>
 
-#include "identify/estimate/evidence.h"
 #include "identify/estimate/fit.h"
 #include "identify/estimate/gain.h"
 #include "identify/estimate/null_model.h"
+#include "identify/estimate/whitened_residuals.h"
 
 namespace omnihil {
 
-using Splits = std::array<Evidence, kUses>;
-using Residuals = std::array<Eigen::VectorXd, kUses>;
+using Splits = std::array<WhitenedResiduals, kSplits>;
+using Residuals = std::array<Eigen::VectorXd, kSplits>;
 
 // A fitted model and what it leaves.
 struct Fitted {
   FitResult fit;
-  Residuals residual;                               // whitened
-  std::array<Eigen::VectorXd, kUses> unweighted{};  // mean square per kind of signal, not whitened
-  bool finite = false;                              // in every use
+  Residuals residual;                                 // whitened
+  std::array<Eigen::VectorXd, kSplits> unweighted{};  // mean square per kind of signal, not whitened
+  bool finite = false;                                // in every use
 };
 Fitted fitted(const Splits& splits, const Splits& unweighted, FitResult fit, int jobs);
 
@@ -31,13 +31,13 @@ struct AcceptanceResult {
   bool decisive = false;  // it takes so much that no further question decides
   bool by_prior = false;  // accepted for what it lets come back, not for its gain
   std::string why;
-  UseGain fit, holdout, extrapolation;
+  SplitGain fit, holdout, extrapolation;
 };
 
 struct AcceptanceContext {
   const Splits* splits = nullptr;
   const NullModel* null = nullptr;
-  std::array<const BlockBootstrap*, kUses> bootstrap{};
+  std::array<const BlockBootstrap*, kSplits> bootstrap{};
   double rate_Hz = 0.0;  // of the samples; 0: not known
 };
 

@@ -47,8 +47,9 @@ Addition add_effect(const Dataset& dataset, const Candidate& nominal, const Effe
   const Screened start = screened_alone(task, context.base(), use, chance);
   say("refitting with " + start.name, 0.6);
   Fitted with = refit(context.setup(false, stop), context.base(), start);
-  const double gained =
-      (energy_ratio(context.splits()[0], with.residual[0], context.base().residual[0]) - 1.0);
+  const double gained = (energy_ratio(context.splits()[kTraining], with.residual[kTraining],
+                                      context.base().residual[kTraining]) -
+                         1.0);
   const double signal_to_null =
       start.tried ? start.gain / std::max(chance, 1e-300) : (gained > 0.0 ? 1e9 : 0.0);
   const AcceptanceResult acceptance = test_acceptance(task.acceptance_context, context.base(), with,

@@ -126,7 +126,8 @@ class Diagnosing {
     Fitted without = refit_as_it_is(context_.setup(true, stop()),
                                     without_effect(best.fitted.fit.model, best.screened.name), 1);
     if (!without.finite) return false;
-    const double ratio = energy_ratio(context_.splits()[0], current_.residual[0], without.residual[0]);
+    const double ratio =
+        energy_ratio(context_.splits()[kTraining], current_.residual[kTraining], without.residual[kTraining]);
     if (ratio > 1.0 - kShort) return false;
     current_ = std::move(without);
     if (out_.effects.empty()) rebase();
@@ -191,8 +192,8 @@ class Diagnosing {
       RefitSetup setup = context_.setup(false, stop());
       setup.robust = true;
       const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);
-      if (last.finite &&
-          energy_ratio(context_.splits()[0], current_.residual[0], last.residual[0]) < kRobustLoss)
+      if (last.finite && energy_ratio(context_.splits()[kTraining], current_.residual[kTraining],
+                                      last.residual[kTraining]) < kRobustLoss)
         current_ = last;
     }
     ResidualExcess rest = residual_excess();
@@ -217,16 +218,16 @@ class Diagnosing {
   }
 
   ResidualExcess residual_excess() {
-    return residual_excess_of(context_.predictor(), context_.kinds(), out_.baseline.model, current_.fit.model,
-                              options_.seed, options_.jobs);
+    return residual_excess_of(context_.predictor(), context_.channels(), out_.baseline.model,
+                              current_.fit.model, options_.seed, options_.jobs);
   }
 
   // Less than what an adequate model leaves: to search on there finds laws that bend to the noise. But a base
   // parameter that nobody believes hides something, however well it does so.
   bool worth_another_iteration() {
-    const std::size_t u = context_.splits()[1].empty() ? 0 : 1;
+    const std::size_t u = context_.splits()[kValidation].empty() ? kTraining : kValidation;
     return largest_prior_deviation(current_.fit).sigmas > kImplausible_sigmas ||
-           structure_in(context_.splits()[u], context_.null(), context_.kinds(), current_.residual[u]) ||
+           structure_in(context_.splits()[u], context_.null(), context_.channels(), current_.residual[u]) ||
            structure_in_excess(residual_excess());
   }
 

@@ -51,7 +51,8 @@ std::vector<Where> where_of(const Comparison& comparison, double order) {
   std::vector<Where> all;
   for (const RegimeError& r : comparison.regimes) {
     // A measured bus voltage is given to the model: what it leaves there is no structure of the drive.
-    if (r.signal == "bus_voltage" || r.use == Use::kExtrapolation || r.explained_fraction < kLeastExplained)
+    if (r.signal == "bus_voltage" || r.split == Split::kExtrapolation ||
+        r.explained_fraction < kLeastExplained)
       continue;
     const auto same = std::find_if(
         all.begin(), all.end(), [&](const Where& w) { return w.signal == r.signal && w.against == r.axis; });

@@ -56,7 +56,7 @@ NextExperiment next_experiment(const Dataset& dataset, const Diagnosis& diagnosi
     next.separates = {r.effect};
     return next;
   }
-  if (!dataset.has(Use::kExtrapolation)) {
+  if (!dataset.has(Split::kExtrapolation)) {
     next.what =
         "Record another kind of motion (steps to full scale, or very slow turning) as an extrapolation run: "
         "so far the model is only tried on motion like that it was fitted to.";

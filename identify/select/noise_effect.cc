@@ -33,29 +33,29 @@ struct Energies {
 };
 
 // A measured bus voltage is given to the model: what it leaves there is no noise of an effect.
-bool counts(const Predictor& predictor, const Evidence::Part& part) {
+bool counts(const Predictor& predictor, const WhitenedResiduals::Part& part) {
   return predictor.compared(part.run)[static_cast<std::size_t>(part.signal)].name != "bus_voltage";
 }
 
 // Which bin each sample is in, for two tracks at once: [sample], -1 in none; and what the model says there.
 class Binning {
  public:
-  Binning(const Predictor& predictor, const Evidence& evidence, const Candidate& model)
-      : predictor_(&predictor), evidence_(&evidence), predicted_(evidence.predicted(model)) {
-    for (const char* name : {"speed", "acceleration"}) tracks_.push_back(bins(evidence.track(model, name)));
+  Binning(const Predictor& predictor, const WhitenedResiduals& residuals, const Candidate& model)
+      : predictor_(&predictor), residuals_(&residuals), predicted_(residuals.predicted(model)) {
+    for (const char* name : {"speed", "acceleration"}) tracks_.push_back(bins(residuals.track(model, name)));
   }
 
-  const Evidence& evidence() const { return *evidence_; }
+  const WhitenedResiduals& residuals() const { return *residuals_; }
   const Eigen::VectorXd& predicted() const { return predicted_; }
 
   Energies energies(const Eigen::VectorXd& r) const {
-    const auto kinds = static_cast<std::size_t>(evidence_->samples().size());
-    const Eigen::Index size = static_cast<Eigen::Index>(tracks_.size() * kinds * kBins);
+    const auto channels = static_cast<std::size_t>(residuals_->samples().size());
+    const Eigen::Index size = static_cast<Eigen::Index>(tracks_.size() * channels * kBins);
     Energies e{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size)};
     for (std::size_t t = 0; t < tracks_.size(); ++t) {
-      for (const Evidence::Part& part : evidence_->parts()) {
+      for (const WhitenedResiduals::Part& part : residuals_->parts()) {
         if (!counts(*predictor_, part)) continue;
-        const std::size_t row = (t * kinds + static_cast<std::size_t>(part.kind)) * kBins;
+        const std::size_t row = (t * channels + static_cast<std::size_t>(part.channel)) * kBins;
         for (Eigen::Index i = part.first; i < part.first + static_cast<Eigen::Index>(part.rows.size()); ++i) {
           const int bin = tracks_[t][static_cast<std::size_t>(i)];
           if (bin < 0 || !std::isfinite(r[i])) continue;
@@ -89,27 +89,29 @@ class Binning {
   }
 
   const Predictor* predictor_;
-  const Evidence* evidence_;
+  const WhitenedResiduals* residuals_;
   Eigen::VectorXd predicted_;
   std::vector<std::vector<int>> tracks_;
 };
 
 // The residual's autocorrelation, per signal one after the other, lags 1 to kLags.
-Eigen::VectorXd autocorrelations(const Predictor& predictor, const Evidence& evidence,
+Eigen::VectorXd autocorrelations(const Predictor& predictor, const WhitenedResiduals& residuals,
                                  const Eigen::VectorXd& r) {
-  const Eigen::Index kinds = evidence.samples().size();
-  Eigen::VectorXd products = Eigen::VectorXd::Zero(kinds * kLags), energy = Eigen::VectorXd::Zero(kinds);
-  for (const Evidence::Part& part : evidence.parts()) {
+  const Eigen::Index channels = residuals.samples().size();
+  Eigen::VectorXd products = Eigen::VectorXd::Zero(channels * kLags),
+                  energy = Eigen::VectorXd::Zero(channels);
+  for (const WhitenedResiduals::Part& part : residuals.parts()) {
     if (!counts(predictor, part)) continue;
     const auto n = static_cast<Eigen::Index>(part.rows.size());
     const auto own =
         r.segment(part.first, n).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }).eval();
-    energy[part.kind] += own.squaredNorm();
+    energy[part.channel] += own.squaredNorm();
     for (Eigen::Index lag = 1; lag <= kLags && lag < n; ++lag) {
-      products[part.kind * kLags + lag - 1] += own.head(n - lag).dot(own.tail(n - lag));
+      products[part.channel * kLags + lag - 1] += own.head(n - lag).dot(own.tail(n - lag));
     }
   }
-  for (Eigen::Index k = 0; k < kinds; ++k) products.segment(k * kLags, kLags) /= std::max(energy[k], 1e-300);
+  for (Eigen::Index k = 0; k < channels; ++k)
+    products.segment(k * kLags, kLags) /= std::max(energy[k], 1e-300);
   return products;
 }
 
@@ -126,7 +128,7 @@ class Trial {
 
   std::optional<NoiseEffect> run() {
     const Splits& unweighted = *search_.unweighted;
-    const Evidence& fit = unweighted[0];
+    const WhitenedResiduals& fit = unweighted[kTraining];
     const Binning bins(*search_.predictor, fit, *search_.model);
     if (bins.predicted().size() != fit.size()) return std::nullopt;
     const Energies measured = bins.energies(fit.residual_of(bins.predicted()));
@@ -158,7 +160,7 @@ class Trial {
     return use;
   }
 
-  std::unique_ptr<Predictor> world(double strength, int replicate) const {
+  std::unique_ptr<Predictor> simulated(double strength, int replicate) const {
     const std::uint64_t seed =
         random_bits(search_.seed, stream_of("noise effect"), static_cast<std::uint64_t>(replicate));
     return search_.predictor->simulated(with_use(*search_.model, at(strength)), seed);
@@ -168,7 +170,8 @@ class Trial {
   Eigen::VectorXd simulated(const Binning& bins, double strength) const {
     Eigen::VectorXd mean;
     for (int k = 0; k < kReplicates; ++k) {
-      Eigen::VectorXd left = left_in(*world(strength, k), bins.evidence(), *search_.model, bins.predicted());
+      Eigen::VectorXd left =
+          simulated_residual(*simulated(strength, k), bins.residuals(), *search_.model, bins.predicted());
       if (left.size() == 0) return left;
       const Eigen::VectorXd e = bins.energies(left).mean();
       mean = k == 0 ? e : Eigen::VectorXd(mean + e);
@@ -203,8 +206,9 @@ class Trial {
   std::optional<NoiseEffect> checked(double strength, const Binning& fit_bins, const Energies& fit_measured,
                                      const Eigen::VectorXd& fit_own) const {
     const Splits& unweighted = *search_.unweighted;
-    const Evidence& judge = unweighted[1].empty() ? unweighted[0] : unweighted[1];
-    const bool same = unweighted[1].empty();
+    const WhitenedResiduals& judge =
+        unweighted[kValidation].empty() ? unweighted[kTraining] : unweighted[kValidation];
+    const bool same = unweighted[kValidation].empty();
     const Binning bins = same ? fit_bins : Binning(*search_.predictor, judge, *search_.model);
     if (bins.predicted().size() != judge.size()) return std::nullopt;
     const Eigen::VectorXd residual = judge.residual_of(bins.predicted());
@@ -227,7 +231,7 @@ class Trial {
         .use = at(strength), .strength = {}, .explained = before > 0.0 ? 1.0 - after / before : 0.0};
     if (all < kExcess * floor || out.explained < kExplained) return std::nullopt;
     const Eigen::VectorXd drawn =
-        left_in(*world(strength, kReplicates), judge, *search_.model, bins.predicted());
+        simulated_residual(*simulated(strength, kReplicates), judge, *search_.model, bins.predicted());
     if (drawn.size() == 0) return std::nullopt;
     const Eigen::VectorXd apart = autocorrelations(*search_.predictor, judge, residual) -
                                   autocorrelations(*search_.predictor, judge, drawn);

@@ -19,13 +19,14 @@ constexpr double kDriftAllowed_sigmas = 0.7;  // further out than it was before
 // A base parameter that the addition pushes out of its tolerance; empty: none.
 std::string pushed_out(const FitResult& parent, const FitResult& child) {
   for (const ParameterEstimate& p : child.parameters) {
-    if (p.prior_sigma <= 0.0 || std::abs(p.drift_sigmas) < kPushedOut_sigmas) continue;
+    if (p.prior_sigma <= 0.0 || std::abs(p.prior_deviation_sigmas) < kPushedOut_sigmas) continue;
     const auto before = std::find_if(parent.parameters.begin(), parent.parameters.end(),
                                      [&](const ParameterEstimate& q) { return q.path == p.path; });
     if (before == parent.parameters.end()) continue;  // of the effect itself
-    if (std::abs(p.drift_sigmas) > std::abs(before->drift_sigmas) + kDriftAllowed_sigmas) {
+    if (std::abs(p.prior_deviation_sigmas) >
+        std::abs(before->prior_deviation_sigmas) + kDriftAllowed_sigmas) {
       return fmt::format("it pushes {} out of its tolerance ({:+.1f} sigma, before {:+.1f})", p.path,
-                         p.drift_sigmas, before->drift_sigmas);
+                         p.prior_deviation_sigmas, before->prior_deviation_sigmas);
     }
   }
   return "";
@@ -107,7 +108,8 @@ PriorDeviation largest_prior_deviation(const FitResult& fit) {
   for (const ParameterEstimate& p : fit.parameters) {
     if (p.prior_sigma <= 0.0 || !p.identifiable || find_effect(p.path.substr(0, p.path.find('.'))) != nullptr)
       continue;
-    if (std::abs(p.drift_sigmas) > worst.sigmas) worst = {.sigmas = std::abs(p.drift_sigmas), .path = p.path};
+    if (std::abs(p.prior_deviation_sigmas) > worst.sigmas)
+      worst = {.sigmas = std::abs(p.prior_deviation_sigmas), .path = p.path};
   }
   return worst;
 }

@@ -34,9 +34,9 @@ Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::
   options.max_iterations = setup.max_iterations;
   options.starts = starts;
   options.seed = setup.seed;
-  options.quick = setup.quick;
-  options.profile = setup.profile && !setup.quick;
-  options.valley = setup.valley;
+  options.coarse = setup.coarse;
+  options.profile = setup.profile && !setup.coarse;
+  options.finish_undamped = setup.finish_undamped;
   options.robust = setup.robust;
   options.stop = setup.stop;
   const Candidate start = with_values(candidate, unknowns, values);
@@ -98,14 +98,15 @@ Fitted reset_unidentifiable(const RefitSetup& setup, const Fitted& parent, Fitte
     const ParameterEstimate& p = as_fitted.fit.parameters[i];
     const std::optional<double> was = value_at(parent.fit.model, p.path);
     if (i >= as_fitted.fit.unknowns.size() || as_fitted.fit.unknowns[i].effect >= 0) break;
-    if (p.identifiable || !p.trades_with.empty() || !was || *was == p.value) continue;
+    if (p.identifiable || !p.correlated_with.empty() || !was || *was == p.value) continue;
     FitResult fit = child.fit;
     fit.model = with_values(fit.model, {&as_fitted.fit.unknowns[i], 1}, {&*was, 1});
     fit.parameters[i].value = *was;
-    if (p.prior_sigma > 0.0) fit.parameters[i].drift_sigmas = (*was - p.prior_mean) / p.prior_sigma;
+    if (p.prior_sigma > 0.0) fit.parameters[i].prior_deviation_sigmas = (*was - p.prior_mean) / p.prior_sigma;
     Fitted stayed = fitted(*setup.splits, *setup.unweighted, std::move(fit), setup.jobs);
-    const Evidence& evidence = (*setup.splits)[0];
-    if (stayed.finite && energy_ratio(evidence, as_fitted.residual[0], stayed.residual[0]) <= kFree)
+    const WhitenedResiduals& residuals = (*setup.splits)[kTraining];
+    if (stayed.finite &&
+        energy_ratio(residuals, as_fitted.residual[kTraining], stayed.residual[kTraining]) <= kFree)
       child = std::move(stayed);
   }
   return child;
@@ -113,7 +114,7 @@ Fitted reset_unidentifiable(const RefitSetup& setup, const Fitted& parent, Fitte
 
 double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& child) {
   if (!child.finite) return 1e300;
-  return energy_ratio((*setup.splits)[0], parent.residual[0], child.residual[0]);
+  return energy_ratio((*setup.splits)[kTraining], parent.residual[kTraining], child.residual[kTraining]);
 }
 
 }  // namespace
@@ -140,7 +141,7 @@ Fitted refit(const RefitSetup& of_round, const Fitted& parent, const Screened& e
     return largest_prior_deviation(f.fit).sigmas > kImplausible_sigmas;
   };
   RefitSetup setup = of_round;
-  setup.valley =
+  setup.finish_undamped =
       is_bent(parent) || prior_deviation(parent.fit, effect.aliased_parameter()) >= kPriorRejected_sigmas;
   const Candidate with = with_use(parent.fit.model, effect.start);
   std::vector<Unknown> unknowns = unknowns_with_priors(with, *setup.nominal);

@@ -21,11 +21,11 @@ struct RefitSetup {
   std::uint64_t seed = 1;
   int jobs = 1;
   int max_iterations = 12;
-  bool quick = true;           // rough covariance: for rankings
-  bool profile = true;         // FitOptions, where not quick
-  bool valley = false;         // FitOptions
-  bool robust = false;         // FitOptions
-  std::function<bool()> stop;  // true: give up early
+  bool coarse = true;            // rough covariance: for rankings
+  bool profile = true;           // FitOptions, where not quick
+  bool finish_undamped = false;  // FitOptions
+  bool robust = false;           // FitOptions
+  std::function<bool()> stop;    // true: give up early
 };
 
 // The candidate's unknowns, starting where it is, with the nominal model's priors.

@@ -28,11 +28,11 @@ std::vector<bool> sides(const EffectVariant& variant) {
 Scored score(const ScreeningTask& task, EffectVariant variant) {
   Scored out{.variant = std::move(variant), .two_sided = {}, .columns = {}, .fit = {}};
   out.two_sided = sides(out.variant);
-  Eigen::MatrixXd columns(task.evidence->size(), static_cast<Eigen::Index>(out.variant.columns.size()));
+  Eigen::MatrixXd columns(task.residuals->size(), static_cast<Eigen::Index>(out.variant.columns.size()));
   for (std::size_t c = 0; c < out.variant.columns.size(); ++c) {
     const Eigen::VectorXd with =
-        task.evidence->predicted(with_use(*task.model, setting(out.variant, out.variant.columns[c])));
-    if (with.size() != task.evidence->size()) return out;
+        task.residuals->predicted(with_use(*task.model, setting(out.variant, out.variant.columns[c])));
+    if (with.size() != task.residuals->size()) return out;
     columns.col(static_cast<Eigen::Index>(c)) =
         (with - task.base->prediction()).cwiseProduct(task.base->weights());
   }
@@ -240,15 +240,15 @@ std::string Screened::aliased_parameter() const {
   return std::find(twins.begin(), twins.end(), closest_parameter) != twins.end() ? closest_parameter : "";
 }
 
-std::vector<RegimeMask> regime_masks(const Evidence& evidence, const Candidate& model) {
+std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const Candidate& model) {
   std::vector<RegimeMask> masks;
-  const Eigen::VectorXd speed = evidence.track(model, "speed");
-  const Eigen::VectorXd acceleration = evidence.track(model, "acceleration");
+  const Eigen::VectorXd speed = residuals.track(model, "speed");
+  const Eigen::VectorXd acceleration = residuals.track(model, "acceleration");
   const std::vector<double> speeds = finite_sizes(speed), accelerations = finite_sizes(acceleration);
   constexpr std::size_t kLeast = 200;  // samples, for a regime to be worth looking at
   const auto add = [&](const char* name, auto&& is_inside) {
-    RegimeMask mask{.name = name, .inside = Eigen::VectorXd::Zero(evidence.size())};
-    for (Eigen::Index i = 0; i < evidence.size(); ++i) mask.inside[i] = is_inside(i) ? 1.0 : 0.0;
+    RegimeMask mask{.name = name, .inside = Eigen::VectorXd::Zero(residuals.size())};
+    for (Eigen::Index i = 0; i < residuals.size(); ++i) mask.inside[i] = is_inside(i) ? 1.0 : 0.0;
     if (mask.inside.sum() >= static_cast<double>(kLeast)) masks.push_back(std::move(mask));
   };
   if (speeds.size() >= kLeast) {

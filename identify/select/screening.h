@@ -26,10 +26,10 @@ struct RegimeMask {
   std::string name;        // "slow"
   Eigen::VectorXd inside;  // 1 or 0
 };
-std::vector<RegimeMask> regime_masks(const Evidence& evidence, const Candidate& model);
+std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const Candidate& model);
 
 struct ScreeningTask {
-  const Evidence* evidence = nullptr;  // of the fit runs
+  const WhitenedResiduals* residuals = nullptr;  // of the fit runs
   const Candidate* model = nullptr;
   const LinearBase* base = nullptr;
   std::vector<Eigen::VectorXd> noise;  // weighted residuals of the null

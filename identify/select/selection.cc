@@ -44,16 +44,16 @@ double floor_of(const CandidateEffect& c, bool has_holdout) {
 }
 
 void set_selection_frequencies(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
-  const std::size_t use = (*task.splits)[1].empty() ? 0 : 1;
-  const BlockBootstrap* bootstrap = task.acceptance_context.bootstrap[use];
+  const std::size_t split = (*task.splits)[kValidation].empty() ? kTraining : kValidation;
+  const BlockBootstrap* bootstrap = task.acceptance_context.bootstrap[split];
   if (bootstrap == nullptr || bootstrap->empty() || iteration.candidates.empty()) return;
   std::vector<Eigen::VectorXd> draws;
   for (const CandidateEffect& c : iteration.candidates) {
     draws.emplace_back();
     if (!c.fitted.finite) continue;
-    const Eigen::VectorXd &before = parent.residual[use], &after = c.fitted.residual[use];
+    const Eigen::VectorXd &before = parent.residual[split], &after = c.fitted.residual[split];
     draws.back() =
-        bootstrap->ratios(before, after, weights_for((*task.splits)[use], *task.null, before, after));
+        bootstrap->ratios(before, after, weights_for((*task.splits)[split], *task.null, before, after));
   }
   const Eigen::Index count = bootstrap->draws();
   // Where no gain decides, what lets a base parameter come back has the draws that go to "none" otherwise.
@@ -106,7 +106,7 @@ double cosine_similarity(const Screened& a, const Screened& b) {
 }
 
 void select_best(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
-  const bool has_holdout = !(*task.splits)[1].empty();
+  const bool has_holdout = !(*task.splits)[kValidation].empty();
   set_selection_frequencies(task, parent, iteration);
   std::stable_sort(iteration.candidates.begin(), iteration.candidates.end(),
                    [&](const CandidateEffect& a, const CandidateEffect& b) {
@@ -119,7 +119,7 @@ void select_best(const SelectionTask& task, const Fitted& parent, Iteration& ite
   const double floor = floor_of(best, has_holdout);
   std::vector<std::size_t> equals{0};
   const auto marked = [&](const CandidateEffect& c) {
-    return task.predictor->carries_mark_of(*c.screened.entry);
+    return task.predictor->shows_signature_of(*c.screened.entry);
   };
   // Of those that leave the same, the one whose mark the readings carry, else the one with the fewest
   // numbers.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kReplicates = 12;
 constexpr int kThoroughIterations = 30;
-constexpr int kQuickIterations = 12;
+constexpr int kCoarseIterations = 12;
 
 // Of the first run that has samples at a rate.
 double rate_Hz(const Predictor& predictor) {
@@ -28,14 +28,15 @@ SelectionContext::SelectionContext(const Dataset& dataset, const Candidate& nomi
       nominal_(nominal),
       options_(options),
       predictor_(make_predictor(dataset, nominal, {})),
-      kinds_(signal_kinds(*predictor_)),
-      splits_{Evidence(*predictor_, kinds_, Use::kFit), Evidence(*predictor_, kinds_, Use::kHoldout),
-              Evidence(*predictor_, kinds_, Use::kExtrapolation)},
-      unweighted_{Evidence(*predictor_, kinds_, Use::kFit, Weighing::kAsSeen),
-                  Evidence(*predictor_, kinds_, Use::kHoldout, Weighing::kAsSeen),
-                  Evidence(*predictor_, kinds_, Use::kExtrapolation, Weighing::kAsSeen)} {}
+      channels_(compared_channels(*predictor_)),
+      splits_{WhitenedResiduals(*predictor_, channels_, Split::kTraining),
+              WhitenedResiduals(*predictor_, channels_, Split::kValidation),
+              WhitenedResiduals(*predictor_, channels_, Split::kExtrapolation)},
+      unweighted_{WhitenedResiduals(*predictor_, channels_, Split::kTraining, Weighing::kUnweighted),
+                  WhitenedResiduals(*predictor_, channels_, Split::kValidation, Weighing::kUnweighted),
+                  WhitenedResiduals(*predictor_, channels_, Split::kExtrapolation, Weighing::kUnweighted)} {}
 
-RefitSetup SelectionContext::setup(bool quick, const std::function<bool()>& stop) const {
+RefitSetup SelectionContext::setup(bool coarse, const std::function<bool()>& stop) const {
   RefitSetup s;
   s.predictor = predictor_.get();
   s.splits = &splits_;
@@ -43,8 +44,8 @@ RefitSetup SelectionContext::setup(bool quick, const std::function<bool()>& stop
   s.nominal = &nominal_;
   s.seed = options_.seed;
   s.jobs = options_.jobs;
-  s.quick = quick;
-  s.max_iterations = quick ? kQuickIterations : kThoroughIterations;
+  s.coarse = coarse;
+  s.max_iterations = coarse ? kCoarseIterations : kThoroughIterations;
   s.stop = stop;
   return s;
 }
@@ -55,13 +56,13 @@ bool SelectionContext::fit_base(const std::function<bool()>& stop) {
   base_ = refit_to_convergence(thorough, refit_as_it_is(thorough, nominal_, 1));
   thorough.profile = true;  // once, where it ends
   if (base_.finite && !stop()) base_ = refit_as_it_is(thorough, base_.fit.model, 1);
-  return base_.finite && !splits_[0].empty();
+  return base_.finite && !splits_[kTraining].empty();
 }
 
 void SelectionContext::simulate() {
   null_ = simulate_null(*predictor_, base_.fit.model, splits_, options_.seed, kReplicates, options_.jobs);
   bootstrap_.clear();
-  for (std::size_t u = 0; u < kUses; ++u) bootstrap_.emplace_back(splits_[u], options_.seed + u);
+  for (std::size_t u = 0; u < kSplits; ++u) bootstrap_.emplace_back(splits_[u], options_.seed + u);
 }
 
 SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) const {
@@ -69,14 +70,15 @@ SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) c
   task.dataset = &dataset_;
   task.predictor = predictor_.get();
   task.nominal = &nominal_;
-  task.kinds = &kinds_;
+  task.channels = &channels_;
   task.splits = &splits_;
   task.unweighted = &unweighted_;
   task.null = &null_;
-  task.acceptance_context = {.splits = &splits_,
-                             .null = &null_,
-                             .bootstrap = {&bootstrap_[0], &bootstrap_[1], &bootstrap_[2]},
-                             .rate_Hz = rate_Hz(*predictor_)};
+  task.acceptance_context = {
+      .splits = &splits_,
+      .null = &null_,
+      .bootstrap = {&bootstrap_[kTraining], &bootstrap_[kValidation], &bootstrap_[kExtrapolation]},
+      .rate_Hz = rate_Hz(*predictor_)};
   task.seed = options_.seed;
   task.jobs = options_.jobs;
   for (const EffectEntry* e : all_effects()) {

@@ -25,7 +25,7 @@ class SelectionContext {
   SelectionContext& operator=(const SelectionContext&) = delete;
 
   const Predictor& predictor() const { return *predictor_; }
-  const SignalKinds& kinds() const { return kinds_; }
+  const ComparedChannels& channels() const { return channels_; }
   const Splits& splits() const { return splits_; }
   const Splits& unweighted() const { return unweighted_; }  // not whitened
   const NullModel& null() const { return null_; }
@@ -33,7 +33,7 @@ class SelectionContext {
   const Candidate& nominal() const { return nominal_; }
 
   // The numbers of a refit; `quick`: for rankings.
-  RefitSetup setup(bool quick, const std::function<bool()>& stop) const;
+  RefitSetup setup(bool coarse, const std::function<bool()>& stop) const;
   // False: no fit runs, or the model does not stay finite.
   bool fit_base(const std::function<bool()>& stop);
   // A better fit of the same model.
@@ -48,7 +48,7 @@ class SelectionContext {
   const Candidate& nominal_;
   SelectionOptions options_;
   std::unique_ptr<Predictor> predictor_;
-  SignalKinds kinds_;
+  ComparedChannels channels_;
   Splits splits_;
   Splits unweighted_;
   NullModel null_;

@@ -21,7 +21,7 @@ constexpr double kNotSeen = 1.0;            // typical size gains less than chan
 
 DataScale scale_of(const SelectionTask& task, const Fitted& parent, const LinearBase& base) {
   DataScale scale;
-  const Evidence& fit = (*task.splits)[0];
+  const WhitenedResiduals& fit = (*task.splits)[kTraining];
   const auto top = [&](const char* name) {
     double most = 0.0;
     for (const double v : fit.track(parent.fit.model, name)) {
@@ -42,9 +42,9 @@ DataScale scale_of(const SelectionTask& task, const Fitted& parent, const Linear
 
 // Signals weigh the same however well the model explains each: by what it leaves now.
 Eigen::VectorXd scales_now(const SelectionTask& task, const Fitted& parent) {
-  Eigen::VectorXd scale = (*task.splits)[0].mean_square(parent.residual[0]).cwiseSqrt();
+  Eigen::VectorXd scale = (*task.splits)[kTraining].mean_square(parent.residual[kTraining]).cwiseSqrt();
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    scale[k] = std::max(scale[k], task.kinds->noise_sigma[static_cast<std::size_t>(k)]);
+    scale[k] = std::max(scale[k], task.channels->noise_sigma[static_cast<std::size_t>(k)]);
   }
   return scale;
 }
@@ -64,7 +64,7 @@ std::vector<const EffectEntry*> not_yet(const SelectionTask& task, const Candida
 std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const Fitted& parent,
                                    const Predictor& predictor) {
   std::vector<std::size_t> order, out;
-  const auto marked = [&](std::size_t i) { return predictor.carries_mark_of(*screened[i].entry); };
+  const auto marked = [&](std::size_t i) { return predictor.shows_signature_of(*screened[i].entry); };
   for (std::size_t i = 0; i < screened.size(); ++i) {
     const Screened& s = screened[i];
     const bool above_chance =
@@ -183,10 +183,10 @@ void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& it
     r.probability = c.probability;
     r.parameters = parameters_of(c.fitted.fit, c.screened.name);
     const auto ratio = [&](std::size_t u) {
-      const Evidence& evidence = (*task.splits)[u];
-      if (evidence.empty() || !c.fitted.finite) return 1.0;
-      return pooled_error(evidence, *task.kinds, c.fitted.residual[u]) /
-             std::max(pooled_error(evidence, *task.kinds, parent.residual[u]), 1e-300);
+      const WhitenedResiduals& residuals = (*task.splits)[u];
+      if (residuals.empty() || !c.fitted.finite) return 1.0;
+      return pooled_error(residuals, *task.channels, c.fitted.residual[u]) /
+             std::max(pooled_error(residuals, *task.channels, parent.residual[u]), 1e-300);
     };
     r.fit_error_ratio = ratio(0);
     r.holdout_error_ratio = ratio(1);
@@ -220,12 +220,12 @@ std::vector<ParameterEstimate> parameters_of(const FitResult& fit, const std::st
 Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
                               const std::vector<const EffectEntry*>& effects) {
   Iteration iteration;
-  const Evidence& fit = (*task.splits)[0];
+  const WhitenedResiduals& fit = (*task.splits)[kTraining];
   const LinearBase base(fit, parent.fit.model, unknowns_with_priors(parent.fit.model, *task.nominal),
                         scales_now(task, parent), task.jobs);
   if (!base.usable()) return iteration;
   ScreeningTask screening;
-  screening.evidence = &fit;
+  screening.residuals = &fit;
   screening.model = &parent.fit.model;
   screening.base = &base;
   for (const Eigen::VectorXd& n : task.null->fit_noise)
@@ -249,7 +249,8 @@ Iteration selection_iteration(const SelectionTask& task, const Fitted& parent) {
   if (!iteration.stopped)
     refit_shortlist(task, parent, shortlist(iteration.screened, parent, *task.predictor), iteration);
   if (!iteration.stopped)
-    refit_shortlist(task, parent, confounded_with_best(iteration, !(*task.splits)[1].empty()), iteration);
+    refit_shortlist(task, parent, confounded_with_best(iteration, !(*task.splits)[kValidation].empty()),
+                    iteration);
   select_best(task, parent, iteration);
   make_ranking(task, parent, iteration);
   return iteration;

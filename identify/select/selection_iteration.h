@@ -21,7 +21,7 @@ struct SelectionTask {
   const Dataset* dataset = nullptr;
   const Predictor* predictor = nullptr;
   const Candidate* nominal = nullptr;
-  const SignalKinds* kinds = nullptr;
+  const ComparedChannels* channels = nullptr;
   const Splits* splits = nullptr;
   const Splits* unweighted = nullptr;  // the same, not whitened
   const NullModel* null = nullptr;

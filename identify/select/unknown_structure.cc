@@ -30,7 +30,7 @@ struct Library {
 // The signal of one term, at a size at which it is comparable with the residual.
 ProjectedColumns signal_of(const SelectionTask& task, const Fitted& last, const LinearBase& base,
                            const std::string& adds_to, UnknownTerm& term) {
-  const Evidence& fit = (*task.splits)[0];
+  const WhitenedResiduals& fit = (*task.splits)[kTraining];
   for (int attempt = 0; attempt < 3; ++attempt) {
     const EffectUse use = formula_use("rest", adds_to, {term}, {term.size}, last.fit.model.file.linear);
     if (use.entry == nullptr) return {};
@@ -132,7 +132,7 @@ double torque_scale(const SelectionTask& task, const Candidate& model) {
 std::vector<RegimeError> telling_curves(const Comparison& comparison) {
   std::vector<RegimeError> curves;
   for (const RegimeError& r : comparison.regimes) {
-    if (r.use == Use::kFit && r.explained_fraction > 0.0) curves.push_back(r);
+    if (r.split == Split::kTraining && r.explained_fraction > 0.0) curves.push_back(r);
   }
   std::stable_sort(curves.begin(), curves.end(), [](const RegimeError& a, const RegimeError& b) {
     return a.explained_fraction > b.explained_fraction;
@@ -187,8 +187,8 @@ Found formula_of(const SelectionTask& task, const Fitted& last, const LinearBase
 UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last,
                                    const Comparison& comparison) {
   UnknownStructure out;
-  const Evidence& fit = (*task.splits)[0];
-  Eigen::VectorXd scale = fit.mean_square(last.residual[0]).cwiseSqrt();
+  const WhitenedResiduals& fit = (*task.splits)[kTraining];
+  Eigen::VectorXd scale = fit.mean_square(last.residual[kTraining]).cwiseSqrt();
   const LinearBase base(fit, last.fit.model, unknowns_with_priors(last.fit.model, *task.nominal), scale,
                         task.jobs);
   out.curves = telling_curves(comparison);

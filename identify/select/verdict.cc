@@ -14,13 +14,13 @@ constexpr double kUnexplained = 0.10;
 constexpr double kSpreads = 5.0;  // of the null's replicates
 
 // Excess of each signal's energy over the null's.
-Eigen::VectorXd excess_of(const Evidence& evidence, const NullModel& null, const SignalKinds& kinds,
-                          const Eigen::VectorXd& residual) {
-  const Eigen::VectorXd floor = null.floor(evidence.use()), square = evidence.mean_square(residual);
+Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& null,
+                          const ComparedChannels& channels, const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd floor = null.floor(residuals.split()), square = residuals.mean_square(residual);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(square.size());
   for (Eigen::Index k = 0; k < out.size(); ++k) {
     // A measured bus voltage is given to the model: what it leaves there is no structure of the drive.
-    if (kinds.name[static_cast<std::size_t>(k)] == "bus_voltage") continue;
+    if (channels.name[static_cast<std::size_t>(k)] == "bus_voltage") continue;
     if (floor[k] > 0.0) out[k] = square[k] / floor[k] - 1.0;
   }
   return out;
@@ -28,26 +28,26 @@ Eigen::VectorXd excess_of(const Evidence& evidence, const NullModel& null, const
 
 }  // namespace
 
-ResidualExcess residual_excess_of(const Predictor& predictor, const SignalKinds& kinds,
+ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChannels& channels,
                                   const Candidate& baseline, const Candidate& last, std::uint64_t seed,
                                   int jobs) {
   constexpr int kReplicates = 8;
   ResidualExcess out;
-  const Splits splits{Evidence(predictor, kinds, Use::kFit, Weighing::kAsSeen),
-                      Evidence(predictor, kinds, Use::kHoldout, Weighing::kAsSeen),
-                      Evidence(predictor, kinds, Use::kExtrapolation, Weighing::kAsSeen)};
-  const std::size_t u = splits[1].empty() ? 0 : 1;
+  const Splits splits{WhitenedResiduals(predictor, channels, Split::kTraining, Weighing::kUnweighted),
+                      WhitenedResiduals(predictor, channels, Split::kValidation, Weighing::kUnweighted),
+                      WhitenedResiduals(predictor, channels, Split::kExtrapolation, Weighing::kUnweighted)};
+  const std::size_t u = splits[kValidation].empty() ? kTraining : kValidation;
   const Eigen::VectorXd first = splits[u].residual(baseline, jobs), now = splits[u].residual(last, jobs);
   if (splits[u].empty() || first.size() == 0 || now.size() == 0) return out;
   const NullModel null = simulate_null(predictor, last, splits, seed, kReplicates, jobs);
-  const Eigen::VectorXd before = excess_of(splits[u], null, kinds, first);
-  const Eigen::VectorXd after = excess_of(splits[u], null, kinds, now);
+  const Eigen::VectorXd before = excess_of(splits[u], null, channels, first);
+  const Eigen::VectorXd after = excess_of(splits[u], null, channels, now);
   Eigen::Index worst = 0;
   out.excess = after.maxCoeff(&worst);
   out.excess_before = before[worst];
-  out.signal = kinds.name[static_cast<std::size_t>(worst)];
-  const double floor = null.floor(splits[u].use())[worst];
-  out.spread = floor > 0.0 ? null.spread(splits[u].use())[worst] / floor : 0.0;
+  out.signal = channels.name[static_cast<std::size_t>(worst)];
+  const double floor = null.floor(splits[u].split())[worst];
+  out.spread = floor > 0.0 ? null.spread(splits[u].split())[worst] / floor : 0.0;
   double left = 0.0, all = 0.0;
   for (Eigen::Index k = 0; k < after.size(); ++k) {
     if (before[k] <= 0.0) continue;
@@ -65,11 +65,11 @@ bool structure_remains(const ResidualExcess& rest, bool effects_added) {
   return !effects_added || rest.unexplained > kUnexplained;
 }
 
-bool structure_in(const Evidence& evidence, const NullModel& null, const SignalKinds& kinds,
+bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, const ComparedChannels& channels,
                   const Eigen::VectorXd& residual) {
-  if (evidence.empty() || residual.size() != evidence.size()) return false;
-  const Eigen::VectorXd excess = excess_of(evidence, null, kinds, residual);
-  const Eigen::VectorXd floor = null.floor(evidence.use()), spread = null.spread(evidence.use());
+  if (residuals.empty() || residual.size() != residuals.size()) return false;
+  const Eigen::VectorXd excess = excess_of(residuals, null, channels, residual);
+  const Eigen::VectorXd floor = null.floor(residuals.split()), spread = null.spread(residuals.split());
   for (Eigen::Index k = 0; k < excess.size(); ++k) {
     if (excess[k] >= kStructure && excess[k] * floor[k] > kSpreads * spread[k]) return true;
   }

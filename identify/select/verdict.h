@@ -25,14 +25,14 @@ struct ResidualExcess {
 };
 
 // Counted in signals as they are seen, not whitened: how large it is to somebody who looks.
-ResidualExcess residual_excess_of(const Predictor& predictor, const SignalKinds& kinds,
+ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChannels& channels,
                                   const Candidate& baseline, const Candidate& last, std::uint64_t seed,
                                   int jobs);
 
 bool structure_remains(const ResidualExcess& rest, bool effects_added);
 // The same question of a whitened residual: what a coarse sensor's noise hides from the eye may stand out
 // there.
-bool structure_in(const Evidence& evidence, const NullModel& null, const SignalKinds& kinds,
+bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, const ComparedChannels& channels,
                   const Eigen::VectorXd& residual);
 std::string residual_sentence(const ResidualExcess& rest, bool effects_added);
 

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "sim/drive/bench_turn.h"
+#include "sim/drive/imposed_speed.h"
 #include "sim/drive/shaft_step.h"
 
 namespace omnihil {
@@ -311,8 +311,8 @@ INLINE void DriveSim<T>::turn_output(DriveState<T>& state, const DriveInput<T>& 
 template <typename T>
 INLINE void DriveSim<T>::turn(const DriveState<T>& state, Step& s) const {
   if (s.imposed) [[unlikely]] {
-    const BenchTurn<T> bench =
-        turn_by_bench(s.imposed_start, s.imposed_end, step_s_, inertia_kg_m2_, s.tau_outside, s.load);
+    const ImposedSpeed<T> bench =
+        impose_speed(s.imposed_start, s.imposed_end, step_s_, inertia_kg_m2_, s.tau_outside, s.load);
     s.omega_end = T(s.imposed_end);
     s.mean_omega = T(0.5 * (s.imposed_start + s.imposed_end));
     s.outside = bench.outside_Nm;

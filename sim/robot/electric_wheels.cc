@@ -23,7 +23,7 @@ std::int64_t whole_ns(double time_s) { return std::llround(time_s * 1e9); }
 
 }  // namespace
 
-struct ElectricWheels::Course {
+struct ElectricWheels::StepIntegrals {
   double start_rad_s = 0.0;
   double angle_rad = 0.0, impulse_Nm_s = 0.0, heat_J = 0.0;
   bool held = true;  // in every period
@@ -95,7 +95,7 @@ int ElectricWheels::hall(std::size_t wheel, double theta_rotor_rad, std::int64_t
 
 // One period of one wheel, with the friction that holds or brakes it.
 PeriodFlow ElectricWheels::advance_wheel(ElectricMemory& memory, std::size_t wheel, const WheelDriveInput& in,
-                                         std::int64_t now_ns, Course& course) const {
+                                         std::int64_t now_ns, StepIntegrals& integrals) const {
   const WheelElectrics& drive = wheels_[wheel];
   WheelElectricState& x = memory.wheel[wheel];
   const double level_Nm = friction_Nm_[wheel];
@@ -120,10 +120,10 @@ PeriodFlow ElectricWheels::advance_wheel(ElectricMemory& memory, std::size_t whe
     f = drive.advance(x, with_faults(drive.own_command(x, bridge, code), in), period);
   }
   if (level_Nm > 0.0 && x.omega_rotor_rad_s * direction < 0.0) x.omega_rotor_rad_s = 0.0;
-  course.held = course.held && period.held;
-  course.angle_rad += f.angle_rad;
-  course.impulse_Nm_s += f.impulse_Nm_s;
-  course.heat_J += f.winding_heat_J;
+  integrals.held = integrals.held && period.held;
+  integrals.angle_rad += f.angle_rad;
+  integrals.impulse_Nm_s += f.impulse_Nm_s;
+  integrals.heat_J += f.winding_heat_J;
   return f;
 }
 
@@ -174,10 +174,10 @@ void ElectricWheels::see(ElectricMemory& memory, const std::array<PeriodSample, 
 void ElectricWheels::begin_step(ElectricMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
                                 std::int64_t now_ns, MotorControl* control,
                                 std::array<WheelStep, kWheels>& steps) {
-  std::array<Course, kWheels> course;
+  std::array<StepIntegrals, kWheels> integrals;
   for (std::size_t i = 0; i < kWheels; ++i) {
     WheelElectricState& x = memory.wheel[i];
-    x.omega_rotor_rad_s = course[i].start_rad_s = model_.gear_ratio * inputs[i].omega_wheel_rad_s;
+    x.omega_rotor_rad_s = integrals[i].start_rad_s = model_.gear_ratio * inputs[i].omega_wheel_rad_s;
     x.theta_rotor_rad = model_.gear_ratio * inputs[i].theta_wheel_rad;
     friction_Nm_[i] = model_.motor.coulomb_friction_Nm + inputs[i].friction_rotor_Nm;
     wheels_[i].keep_warm(x);
@@ -188,7 +188,7 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const std::array<WheelDr
     const std::int64_t begin_ns = now_ns + whole_ns(n * period_s);
     double bus_charge_C = 0.0;
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const PeriodFlow f = advance_wheel(memory, i, inputs[i], begin_ns, course[i]);
+      const PeriodFlow f = advance_wheel(memory, i, inputs[i], begin_ns, integrals[i]);
       samples[i] = f.sample;
       bus_charge_C += f.bus_charge_C;
       memory.book.bus_J += f.bus_charge_C * memory.at_bridges_V();
@@ -204,18 +204,18 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const std::array<WheelDr
   for (std::size_t i = 0; i < kWheels; ++i) {
     WheelElectricState& x = memory.wheel[i];
     WheelStep step;
-    step.drive.mean_torque_Nm = course[i].impulse_Nm_s / step_s_;
+    step.drive.mean_torque_Nm = integrals[i].impulse_Nm_s / step_s_;
     step.drive.mean_current_A = step.drive.mean_torque_Nm / wheels_[i].torque_constant_Nm_per_A();
     step.drive.omega_end_rad_s = x.omega_rotor_rad_s;
-    step.direction = sign_of(course[i].start_rad_s);
-    step.torque.locked = course[i].held;
+    step.direction = sign_of(integrals[i].start_rad_s);
+    step.torque.locked = integrals[i].held;
     // J (omega_1 - omega_0) / h = T - floor - b mean omega
     const double gain_Nm =
-        wheels_[i].inertia_kg_m2() * (x.omega_rotor_rad_s - course[i].start_rad_s) / step_s_;
-    const double viscous_Nm = model_.motor.viscous_friction_Nm_s_per_rad * course[i].angle_rad / step_s_;
+        wheels_[i].inertia_kg_m2() * (x.omega_rotor_rad_s - integrals[i].start_rad_s) / step_s_;
+    const double viscous_Nm = model_.motor.viscous_friction_Nm_s_per_rad * integrals[i].angle_rad / step_s_;
     if (!step.torque.locked) step.torque.torque_Nm.fill(gain_Nm + inputs[i].contact_Nm + viscous_Nm);
     steps[i] = step;
-    if (electric_.has_heat()) advance_thermal(thermal_, x.rise, course[i].heat_J / step_s_, step_s_);
+    if (electric_.has_heat()) advance_thermal(thermal_, x.rise, integrals[i].heat_J / step_s_, step_s_);
   }
 }
 
@@ -223,9 +223,9 @@ double ElectricWheels::end_wheel(std::size_t wheel, const WheelStep& step, doubl
                                  double omega_wheel_after_rad_s) const {
   const double friction_Nm = friction_Nm_[wheel];
   if (step.torque.locked || friction_Nm == 0.0) return omega_wheel_after_rad_s;
-  const double foreseen_rad_s = step.drive.omega_end_rad_s;
-  if (foreseen_rad_s == 0.0) return 0.0;  // friction stopped it within the step
-  if (foreseen_rad_s * omega_wheel_after_rad_s >= 0.0) return omega_wheel_after_rad_s;
+  const double predicted_rad_s = step.drive.omega_end_rad_s;
+  if (predicted_rad_s == 0.0) return 0.0;  // friction stopped it within the step
+  if (predicted_rad_s * omega_wheel_after_rad_s >= 0.0) return omega_wheel_after_rad_s;
   // passed zero against the forecast: past zero |net| - 2 tau_c, never against the motion
   const double net_Nm = std::abs(omega_wheel_after_rad_s - omega_wheel_before_rad_s) / step_s_ *
                         wheels_[wheel].inertia_kg_m2() * model_.gear_ratio;

@@ -62,9 +62,9 @@ class ElectricWheels {
   double motor_current_A(const ElectricMemory& memory, std::size_t wheel) const;  // torque-equivalent, now
 
  private:
-  struct Course;  // of one wheel through a mechanical step
+  struct StepIntegrals;  // of one wheel through a mechanical step
   PeriodFlow advance_wheel(ElectricMemory& memory, std::size_t wheel, const WheelDriveInput& in,
-                           std::int64_t now_ns, Course& course) const;
+                           std::int64_t now_ns, StepIntegrals& integrals) const;
   void advance_bus(ElectricMemory& memory, double bus_charge_C) const;
   void see(ElectricMemory& memory, const std::array<PeriodSample, kWheels>& samples,
            std::int64_t at_ns) const;

@@ -88,7 +88,7 @@ void Plant::advance(std::int64_t duration_ns) {
   p.look_for_fault();
 }
 
-RobotSensors Plant::read(int robot) const {
+RobotSensors Plant::sample_sensors(int robot) {
   Impl& p = *impl_;
   const auto n = static_cast<std::size_t>(robot);
   const RobotModel& model = p.models[n];

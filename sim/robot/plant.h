@@ -3,7 +3,7 @@
 //   Plant plant(robots, {.physics = Physics::kPlanar});
 //   plant.write(0, drive);          // held until written again
 //   plant.advance(1'000'000);       // 1 ms of virtual time, an integer number of mechanical steps
-//   RobotSensors s = plant.read(0);
+//   RobotSensors s = plant.sample_sensors(0);
 //
 // Bit-reproducible: state is a function of the models, the options and the sequence of calls.
 // Effects of a model (RobotModel::effects) act where robot_effects.h and floor_effects.h say; without any,
@@ -15,8 +15,8 @@
 // A robot whose model has electrics of its own (electric_model.h) goes through electric_wheels.h instead.
 // Sensors: encoder counts of the rotor angle; gyro = yaw rate; accelerometer = the geometric centre's mean
 // acceleration over the last mechanical step, in the level body frame; bus voltage = the model's constant;
-// motor current = mean since the last read() of that robot (read() therefore counts as a call in the sequence
-// above). A robot whose wheels are all held by friction and that slides slower than 1 pm/s stops exactly
+// motor current = mean since that robot's last sample_sensors(), which begins a new mean and remembers the
+// encoder counts it gave (it is therefore a call in the sequence above, and not const). A robot whose wheels are all held by friction and that slides slower than 1 pm/s stops exactly
 // (planar joint). Cannot represent: contact between robots, walls and ball; sensor noise, bias
 // and filtering; a sagging bus without [battery] in the model or the effect battery_sag.
 #pragma once
@@ -104,7 +104,8 @@ class Plant {
   void set_faults(int robot, const RobotFaults& faults);
   const RobotFaults& faults(int robot) const;
   void advance(std::int64_t duration_ns);  // asserts: a multiple of the mechanical step
-  RobotSensors read(int robot) const;
+  // What the sensors show now. Changes state: ends the motor currents' averaging interval and begins the next.
+  RobotSensors sample_sensors(int robot);
   RobotTruth truth(int robot) const;
   VisionPose vision(int robot) const;
 

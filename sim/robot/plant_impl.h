@@ -29,11 +29,11 @@ struct RobotMemory {
   RobotDrive drive{};
   std::array<DcDriveState, kWheels> winding{};
   std::array<double, kWheels> motor_torque_Nm{};  // mean of the last step
-  std::array<double, kWheels> current_sum_A{};    // of the steps since the last read
+  std::array<double, kWheels> current_sum_A{};    // of the steps since the last sample
   std::int64_t current_steps = 0;
   double accel_x_m_s2 = 0.0, accel_y_m_s2 = 0.0;
   RobotFaults faults{};
-  std::array<std::int64_t, kWheels> counts_read{};  // at the last read
+  std::array<std::int64_t, kWheels> counts_read{};  // at the last sample
 };
 static_assert(std::is_trivially_copyable_v<RobotMemory>);
 

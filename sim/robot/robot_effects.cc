@@ -185,8 +185,8 @@ void RobotEffects::advance(RobotEffectMemory& memory, const std::array<WheelDriv
 namespace {
 
 // Course of the torque through the step for the mechanics, which takes viscous friction of its own.
-WheelTorque torque_course(const WheelDriveLaw& law, const DriveResult<double>& r, double start_A,
-                          const DriveState<double>& end, const WheelDriveInput& in, double inertia_kg_m2) {
+WheelTorque torque_profile(const WheelDriveLaw& law, const DriveResult<double>& r, double start_A,
+                           const DriveState<double>& end, const WheelDriveInput& in, double inertia_kg_m2) {
   const auto& motor = law.turning.constants;
   const double k = motor.torque_constant_Nm_per_A;
   const double rest_Nm = r.mean_shaft_torque_Nm - k * r.mean_current_A;
@@ -198,15 +198,15 @@ WheelTorque torque_course(const WheelDriveLaw& law, const DriveResult<double>& r
   // first half of the parabola through the three: (5 start + 8 middle - end) / 24
   const double half_Nm = (5.0 * start_Nm + 8.0 * middle_Nm - end_Nm) / 24.0 - 0.5 * in.contact_Nm;
   const double start_rad_s = law.gear_ratio * in.omega_wheel_rad_s;
-  WheelTorque course;
-  course.omega_rad_s = {start_rad_s, start_rad_s + half_Nm * law.step_s / inertia_kg_m2,
-                        end.omega_rotor_rad_s, start_rad_s};
-  course.torque_Nm = {start_Nm, middle_Nm, end_Nm, mean_Nm};
+  WheelTorque profile;
+  profile.omega_rad_s = {start_rad_s, start_rad_s + half_Nm * law.step_s / inertia_kg_m2,
+                         end.omega_rotor_rad_s, start_rad_s};
+  profile.torque_Nm = {start_Nm, middle_Nm, end_Nm, mean_Nm};
   // the mechanics takes b omega off again
   for (std::size_t part = 0; part < 4; ++part) {
-    course.torque_Nm[part] += law.viscous_Nm_s_per_rad * course.omega_rad_s[part];
+    profile.torque_Nm[part] += law.viscous_Nm_s_per_rad * profile.omega_rad_s[part];
   }
-  return course;
+  return profile;
 }
 
 double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
@@ -265,11 +265,11 @@ void RobotEffects::begin_step(const WheelDriveLaw& law, RobotEffectMemory& memor
     } else if (r.held) {
       step.torque.locked = true;
     } else {
-      step.torque = torque_course(law, r, start_A[i], end, inputs[i], drives_[i].inertia_kg_m2());
+      step.torque = torque_profile(law, r, start_A[i], end, inputs[i], drives_[i].inertia_kg_m2());
       const double used = std::abs(end.current_A) * links_->wheel[i].inverse_limit_per_A;
       if (inputs[i].bridge.mode == OMNIHIL_DRIVE_DUTY && used < 1.0 - 1e-9) {
         step.torque.slope_Nm_s_per_rad =
-            law.turning.constants.torque_constant_Nm_per_A * law.mean_answer_A_s_per_rad;
+            law.turning.constants.torque_constant_Nm_per_A * law.mean_sensitivity_A_s_per_rad;
       }
     }
     steps[i] = step;
@@ -283,8 +283,8 @@ double RobotEffects::end_wheel(const WheelDriveLaw& law, RobotEffectMemory& memo
   DriveState<double>& state = memory.drive[wheel];
   if (!step.torque.locked && step.torque.slope_Nm_s_per_rad > 0.0) {
     const double departed_rad_s = law.gear_ratio * omega_wheel_after_rad_s - step.drive.omega_end_rad_s;
-    state.current_A -= law.end_answer_A_s_per_rad * departed_rad_s;
-    const double mean_A = -law.mean_answer_A_s_per_rad * 0.5 * departed_rad_s;
+    state.current_A -= law.end_sensitivity_A_s_per_rad * departed_rad_s;
+    const double mean_A = -law.mean_sensitivity_A_s_per_rad * 0.5 * departed_rad_s;
     step.drive.mean_current_A += mean_A;
     step.drive.mean_torque_Nm += law.turning.constants.torque_constant_Nm_per_A * mean_A;
   }
@@ -292,9 +292,9 @@ double RobotEffects::end_wheel(const WheelDriveLaw& law, RobotEffectMemory& memo
   const Link& link = links_->wheel[wheel];
   const double friction_Nm = two_masses() ? link.friction_wheel_Nm : link.friction_Nm;
   if (step.torque.locked || friction_Nm == 0.0) return omega_wheel_after_rad_s;
-  const double foreseen_rad_s = two_masses() ? step.direction : step.drive.omega_end_rad_s;
-  if (foreseen_rad_s == 0.0) return 0.0;  // friction stopped it within the step
-  if (foreseen_rad_s * omega_wheel_after_rad_s >= 0.0) return omega_wheel_after_rad_s;
+  const double predicted_rad_s = two_masses() ? step.direction : step.drive.omega_end_rad_s;
+  if (predicted_rad_s == 0.0) return 0.0;  // friction stopped it within the step
+  if (predicted_rad_s * omega_wheel_after_rad_s >= 0.0) return omega_wheel_after_rad_s;
   // net torque before zero |net|; past zero |net| - 2 tau_c, never against the motion
   const double net_Nm = std::abs(omega_wheel_after_rad_s - omega_wheel_before_rad_s) / law.step_s *
                         law.spin_inertia_kg_m2 / law.gear_ratio;

@@ -27,11 +27,11 @@ struct RollingBalance {
   Eigen::Matrix4d answer;  // A: rim speed per floor force
   // per rotor: speed without floor force and friction, speed per torque, radius over gear, what friction
   // takes
-  Vector4 hub, rotor, quick, lever, up, down;
+  Vector4 hub, rotor, speed_per_torque, lever, up, down;
 
   const Grip<T>& grip(Eigen::Index i) const { return *grips[static_cast<std::size_t>(i)]; }
   double omega(Eigen::Index i, double force_N) const {
-    return shrunk(rotor(i) - quick(i) * lever(i) * force_N, up(i), down(i));
+    return shrunk(rotor(i) - speed_per_torque(i) * lever(i) * force_N, up(i), down(i));
   }
   Vector4 forces(const Vector4& slip) const {
     Vector4 force;
@@ -50,7 +50,7 @@ struct RollingBalance {
       const double slope = grip(i).slope(slip(i));
       const double turns = omega(i, -grip(i).force(slip(i))) != 0.0 ? 1.0 : 0.0;
       out.col(i) = answer.col(i) * slope;
-      out(i, i) += 1.0 + turns * lever(i) * lever(i) * quick(i) * slope;
+      out(i, i) += 1.0 + turns * lever(i) * lever(i) * speed_per_torque(i) * slope;
     }
     return out;
   }

@@ -39,8 +39,8 @@ struct RollingRobot<T>::LinkEffect {
 template <typename T>
 struct RollingRobot<T>::Wheel {
   DriveResult<T> drive;
-  T omega_start = T(0), omega_foreseen = T(0);
-  T effective_inertia = T(0), slope = T(0), end_answer = T(0), mean_answer = T(0);
+  T omega_start = T(0), omega_predicted = T(0);
+  T effective_inertia = T(0), slope = T(0), end_sensitivity = T(0), mean_sensitivity = T(0);
   T lever_m = T(0);  // radius over gear
   T friction_up_Nm = T(0), friction_down_Nm = T(0);
   T added_torque_Nm = T(0);  // at the rotor, by forces of effects along the drive direction
@@ -127,7 +127,7 @@ void RollingRobot<T>::make_body() {
   inverse_mass_ = mass.inverse();
   for (std::size_t i = 0; i < kWheels; ++i) {
     rim_[i] = Vector3(-g.sin_angle[i], g.cos_angle[i], p_.wheel_center_radius_m);
-    rim_answer_[i] = inverse_mass_ * rim_[i];
+    rim_mobility_[i] = inverse_mass_ * rim_[i];
   }
 }
 
@@ -159,7 +159,7 @@ void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput& in, double
   ask_floor(x, in, s);
   ask_body(x, in, s);
   drives(x, in, s);
-  foresee(x, s);
+  predict(x, s);
   solve(x, s);
   finish(x, in, s);
 }
@@ -262,21 +262,21 @@ void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput& in,
 
 // The winding answers another speed by another current, if a voltage is held: wheel_drive.h.
 template <typename T>
-void RollingRobot<T>::answer_of_winding(bool enabled, const Link& link, const DriveState<T>& state, double h,
-                                        Wheel& w) const {
+void RollingRobot<T>::winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state,
+                                                double h, Wheel& w) const {
   w.slope = p_.drive.viscous_friction_Nm_s_per_rad;
   const double used = std::abs(value_of(state.current_A)) * value_of(link.inverse_limit_per_A);
   if (!enabled || used >= 1.0 - 1e-9) return;
   const T settled = p_.drive.torque_constant_Nm_per_A / p_.drive.resistance_ohm;
-  w.mean_answer = w.end_answer = settled;
+  w.mean_sensitivity = w.end_sensitivity = settled;
   if (value_of(p_.drive.inductance_H) > 0.0) {
     using std::exp;
     const T time = h * p_.drive.resistance_ohm / p_.drive.inductance_H;
     const T rest = 1.0 - (1.0 - exp(-time)) / time;
-    w.end_answer = settled * rest;
-    w.mean_answer = settled * (1.0 - 2.0 * rest / time);
+    w.end_sensitivity = settled * rest;
+    w.mean_sensitivity = settled * (1.0 - 2.0 * rest / time);
   }
-  w.slope += p_.drive.torque_constant_Nm_per_A * w.mean_answer;
+  w.slope += p_.drive.torque_constant_Nm_per_A * w.mean_sensitivity;
 }
 
 // Four drives, each against the floor's force and the friction of the step before.
@@ -310,8 +310,8 @@ void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput& in, Step& s
     const Link& link = *links_[i];
     w.friction_up_Nm += link.friction_positive_Nm;
     w.friction_down_Nm += link.friction_negative_Nm;
-    w.omega_foreseen = state.omega_rotor_rad_s;
-    answer_of_winding(in.enabled[i], link, state, s.h, w);
+    w.omega_predicted = state.omega_rotor_rad_s;
+    winding_speed_sensitivity(in.enabled[i], link, state, s.h, w);
     w.effective_inertia = inertia_at_rotor(p_.drive) + 0.5 * s.h * w.slope;
   }
 }
@@ -319,7 +319,7 @@ void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput& in, Step& s
 // ----------------------------------------------------------------------------- what comes of it
 
 template <typename T>
-void RollingRobot<T>::foresee(const RollingState<T>& x, Step& s) const {
+void RollingRobot<T>::predict(const RollingState<T>& x, Step& s) const {
   using std::cos;
   using std::sin;
   const T half = 0.5 * s.h * (x.velocity[2] + 0.5 * x.turn_change_rad_s);  // mid-step, looked ahead
@@ -328,7 +328,7 @@ void RollingRobot<T>::foresee(const RollingState<T>& x, Step& s) const {
   s.turned = s.half_turned(s.half_turned(Vector3(x.velocity[0], x.velocity[1], x.velocity[2])));
   s.free = s.turned + s.half_turned(inverse_mass_ * s.force) * T(s.h);
   for (std::size_t j = 0; j < kWheels; ++j) {
-    const Vector3 moved = s.half_turned(rim_answer_[j]) * T(s.h);
+    const Vector3 moved = s.half_turned(rim_mobility_[j]) * T(s.h);
     for (std::size_t i = 0; i < kWheels; ++i) {
       s.answer(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rim_[i].dot(moved);
     }
@@ -341,10 +341,11 @@ template <typename T>
 T RollingRobot<T>::rotor_end(const RollingState<T>& x, const Step& s, std::size_t i, const T& force_N,
                              T* friction_Nm) const {
   const Wheel& w = s.wheel[i];
-  const T quickness = s.h / w.effective_inertia;  // speed per torque
-  const T y = w.omega_foreseen - quickness * (w.lever_m * (force_N - x.force_N[i]) - x.friction_Nm[i]);
-  const T omega = shrunk(y, T(quickness * w.friction_up_Nm), T(quickness * w.friction_down_Nm));
-  if (friction_Nm != nullptr) *friction_Nm = (y - omega) / quickness;
+  const T speed_per_torque = s.h / w.effective_inertia;  // speed per torque
+  const T y =
+      w.omega_predicted - speed_per_torque * (w.lever_m * (force_N - x.force_N[i]) - x.friction_Nm[i]);
+  const T omega = shrunk(y, T(speed_per_torque * w.friction_up_Nm), T(speed_per_torque * w.friction_down_Nm));
+  if (friction_Nm != nullptr) *friction_Nm = (y - omega) / speed_per_torque;
   return omega;
 }
 
@@ -358,12 +359,12 @@ Eigen::Vector4d RollingRobot<T>::solve_values(const RollingState<T>& x, const St
     const Wheel& w = s.wheel[n];
     balance.grips[n] = &w.grip;
     balance.lever(i) = value_of(w.lever_m);
-    balance.quick(i) = s.h / value_of(w.effective_inertia);
-    balance.up(i) = balance.quick(i) * value_of(w.friction_up_Nm);
-    balance.down(i) = balance.quick(i) * value_of(w.friction_down_Nm);
+    balance.speed_per_torque(i) = s.h / value_of(w.effective_inertia);
+    balance.up(i) = balance.speed_per_torque(i) * value_of(w.friction_up_Nm);
+    balance.down(i) = balance.speed_per_torque(i) * value_of(w.friction_down_Nm);
     balance.hub(i) = value_of(w.hub_free_m_s);
     const double held_Nm = balance.lever(i) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]);
-    balance.rotor(i) = value_of(w.omega_foreseen) + balance.quick(i) * held_Nm;
+    balance.rotor(i) = value_of(w.omega_predicted) + balance.speed_per_torque(i) * held_Nm;
     for (Eigen::Index j = 0; j < kWheels; ++j) balance.answer(i, j) = value_of(s.answer(i, j));
   }
   Eigen::Vector4d slip(x.slip_m_s[0], x.slip_m_s[1], x.slip_m_s[2], x.slip_m_s[3]);
@@ -412,13 +413,13 @@ void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput& in, Step& s
   for (std::size_t i = 0; i < kWheels; ++i) {
     const Wheel& w = s.wheel[i];
     DriveState<T>& state = x.drive[i];
-    pushed += rim_answer_[i] * s.force_N[i];
+    pushed += rim_mobility_[i] * s.force_N[i];
     const T drive_N = s.force_N[i] + w.added_N;
     floor_x += rim_[i](0) * drive_N + rim_[i](1) * w.lateral_N;
     floor_y += rim_[i](1) * drive_N - rim_[i](0) * w.lateral_N;
-    const T departed = s.omega_end[i] - w.omega_foreseen;
-    state.current_A -= w.end_answer * departed;
-    x.charge_C[i] += s.h * (w.drive.mean_current_A - 0.5 * w.mean_answer * departed);
+    const T departed = s.omega_end[i] - w.omega_predicted;
+    state.current_A -= w.end_sensitivity * departed;
+    x.charge_C[i] += s.h * (w.drive.mean_current_A - 0.5 * w.mean_sensitivity * departed);
     x.theta_rotor_rad[i] += 0.5 * s.h * (w.omega_start + s.omega_end[i]);
     state.omega_rotor_rad_s = s.omega_end[i];
     state.omega_change_rad_s = s.omega_end[i] - w.omega_start;

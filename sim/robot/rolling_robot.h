@@ -100,9 +100,9 @@ class RollingRobot {
   void set_grip(const RollingState<T>& x, std::size_t wheel, const T& hub_m_s, const ContactPort<T>& port,
                 Wheel& w) const;
   void ask_body(const RollingState<T>& x, const RollingInput& in, Step& s) const;
-  void foresee(const RollingState<T>& x, Step& s) const;
-  void answer_of_winding(bool enabled, const Link& link, const DriveState<T>& state, double h,
-                         Wheel& w) const;
+  void predict(const RollingState<T>& x, Step& s) const;
+  void winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state, double h,
+                                 Wheel& w) const;
   T rotor_end(const RollingState<T>& x, const Step& s, std::size_t wheel, const T& force_N,
               T* friction_Nm) const;
   Eigen::Vector4d solve_values(const RollingState<T>& x, const Step& s, Eigen::Matrix4d& jacobian);
@@ -116,8 +116,8 @@ class RollingRobot {
   std::vector<EffectEntry> link_entries_;
   std::vector<DriveSim<T>> drives_;
   WheelLoadLaw<T> load_;
-  std::array<Vector3, kWheels> rim_;         // rows of G
-  std::array<Vector3, kWheels> rim_answer_;  // M^-1 G'
+  std::array<Vector3, kWheels> rim_;           // rows of G
+  std::array<Vector3, kWheels> rim_mobility_;  // M^-1 G'
   Eigen::Matrix<T, 3, 3> inverse_mass_;
   double step_s_ = 0.0;
   double unsolved_ = 0.0;

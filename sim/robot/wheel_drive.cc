@@ -12,8 +12,8 @@ namespace {
 constexpr double kHeldRotorInertia_kg_m2 = 1e12;
 
 // Torque and foreseen speed at the step's start, middle and end, from the winding's currents and their mean.
-WheelTorque torque_course(const WheelDriveLaw& law, const WheelStep& step, double start_A, double end_A,
-                          const DcDriveInput& input) {
+WheelTorque torque_profile(const WheelDriveLaw& law, const WheelStep& step, double start_A, double end_A,
+                           const DcDriveInput& input) {
   const auto& motor = law.turning.constants;
   const double coulomb_Nm = step.direction * law.coulomb_Nm;
   const double mean_Nm = step.drive.mean_torque_Nm - coulomb_Nm;
@@ -26,11 +26,11 @@ WheelTorque torque_course(const WheelDriveLaw& law, const WheelStep& step, doubl
   const double others_Nm = input.tau_load_Nm - coulomb_Nm;
   const double half_Nm = (5.0 * start_Nm + 8.0 * middle_Nm - end_Nm) / 24.0 - 0.5 * others_Nm;
   const double start_rad_s = input.omega_rotor_rad_s;
-  WheelTorque course;
-  course.torque_Nm = {start_Nm, middle_Nm, end_Nm, mean_Nm};
-  course.omega_rad_s = {start_rad_s, start_rad_s + half_Nm * law.step_s / motor.inertia_kg_m2,
-                        step.drive.omega_end_rad_s, start_rad_s};
-  return course;
+  WheelTorque profile;
+  profile.torque_Nm = {start_Nm, middle_Nm, end_Nm, mean_Nm};
+  profile.omega_rad_s = {start_rad_s, start_rad_s + half_Nm * law.step_s / motor.inertia_kg_m2,
+                         step.drive.omega_end_rad_s, start_rad_s};
+  return profile;
 }
 
 double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
@@ -58,8 +58,8 @@ WheelDriveLaw wheel_drive_law(const RobotModel& model, double electrical_step_s,
     end = 1.0 - faded;
     mean = 1.0 - 2.0 * end / x;
   }
-  law.mean_answer_A_s_per_rad = settled_A_s_per_rad * mean;
-  law.end_answer_A_s_per_rad = settled_A_s_per_rad * end;
+  law.mean_sensitivity_A_s_per_rad = settled_A_s_per_rad * mean;
+  law.end_sensitivity_A_s_per_rad = settled_A_s_per_rad * end;
   return law;
 }
 
@@ -87,13 +87,13 @@ WheelStep begin_wheel_step(const WheelDriveLaw& law, DcDriveState& state, const 
   const double start_A = state.current_A;
   input.tau_load_Nm = contact_Nm + law.viscous_Nm_s_per_rad * omega_rotor_rad_s + coulomb_Nm;
   step.drive = advance_drive(law.turning, state, input, law.substeps);
-  step.torque = torque_course(law, step, start_A, state.current_A, input);
+  step.torque = torque_profile(law, step, start_A, state.current_A, input);
   const double limit_A = law.turning.current_limit_A;
   const bool voltage_held =
       bridge.mode == OMNIHIL_DRIVE_DUTY && (limit_A == 0.0 || std::abs(state.current_A) < limit_A);
   if (voltage_held) {
     step.torque.slope_Nm_s_per_rad =
-        law.turning.constants.torque_constant_Nm_per_A * law.mean_answer_A_s_per_rad;
+        law.turning.constants.torque_constant_Nm_per_A * law.mean_sensitivity_A_s_per_rad;
   }
   return step;
 }
@@ -104,8 +104,8 @@ double end_wheel_step(const WheelDriveLaw& law, DcDriveState& state, WheelStep& 
   if (step.torque.slope_Nm_s_per_rad > 0.0) {
     const double departed_rad_s = law.gear_ratio * omega_wheel_after_rad_s -
                                   step.torque.omega_rad_s[static_cast<std::size_t>(StepPart::kEnd)];
-    state.current_A -= law.end_answer_A_s_per_rad * departed_rad_s;
-    const double mean_A = -law.mean_answer_A_s_per_rad * 0.5 * departed_rad_s;
+    state.current_A -= law.end_sensitivity_A_s_per_rad * departed_rad_s;
+    const double mean_A = -law.mean_sensitivity_A_s_per_rad * 0.5 * departed_rad_s;
     step.drive.mean_current_A += mean_A;
     step.drive.mean_torque_Nm += law.turning.constants.torque_constant_Nm_per_A * mean_A;
   }

@@ -36,11 +36,11 @@ struct WheelDriveLaw {
   double coulomb_Nm = 0.0;
   double viscous_Nm_s_per_rad = 0.0;
   double gear_ratio = 1.0;
-  double spin_inertia_kg_m2 = 0.0;       // wheel and rotor, at the wheel
-  int substeps = 1;                      // electrical, per mechanical step
-  double step_s = 0.0;                   // mechanical
-  double mean_answer_A_s_per_rad = 0.0;  // (k/R) phi: mean current per mean speed departed
-  double end_answer_A_s_per_rad = 0.0;   // current at the step's end per speed departed there
+  double spin_inertia_kg_m2 = 0.0;            // wheel and rotor, at the wheel
+  int substeps = 1;                           // electrical, per mechanical step
+  double step_s = 0.0;                        // mechanical
+  double mean_sensitivity_A_s_per_rad = 0.0;  // (k/R) phi: mean current per mean speed departed
+  double end_sensitivity_A_s_per_rad = 0.0;   // current at the step's end per speed departed there
 };
 
 struct WheelStep {

@@ -1,7 +1,7 @@
 // A predictor whose measurements and predictions the test writes itself.
 //
 //   FakePredictor fake;
-//   fake.add(Use::kFit, measured, model).track("speed", "rad/s", speed);
+//   fake.add(Split::kTraining, measured, model).track("speed", "rad/s", speed);
 #pragma once
 #include <string>
 #include <utility>
@@ -26,11 +26,11 @@ class FakePredictor : public Predictor {
   };
 
   // One run with one signal, sampled at 1 kHz.
-  FakeRun& add(Use use, std::vector<double> measured, std::vector<double> model, double noise_sigma = 1.0,
+  FakeRun& add(Split split, std::vector<double> measured, std::vector<double> model, double noise_sigma = 1.0,
                const std::string& signal = "velocity") {
     FakeRun made;
     made.run.file = "run_" + std::to_string(runs_.size()) + ".csv";
-    made.run.use = use;
+    made.run.split = split;
     for (std::size_t i = 0; i < measured.size(); ++i)
       made.run.time_s.push_back(static_cast<double>(i) * 1e-3);
     ComparedSignal compared;

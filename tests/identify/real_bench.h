@@ -3,7 +3,7 @@
 //
 //   const RealSet set("emps");                        // inside a RealTest
 //   const FitResult r = set.fitted({"coulomb_friction"});
-//   EXPECT_NEAR(set.rmse(r.model, Use::kFit, "velocity"), 9.80, 0.05 * 9.80);
+//   EXPECT_NEAR(set.rmse(r.model, Split::kTraining, "velocity"), 9.80, 0.05 * 9.80);
 #pragma once
 #include <gtest/gtest.h>
 
@@ -62,15 +62,15 @@ class RealSet {
   }
 
   // Root mean square over all samples of a use; `steady`: points, or series.
-  double rmse(const Candidate& c, Use use, const std::string& signal, bool steady = false) const {
+  double rmse(const Candidate& c, Split split, const std::string& signal, bool steady = false) const {
     double square = 0.0, n = 0.0;
-    each(c, use, signal, steady, [&](int, double r) { square += r * r, n += 1.0; });
+    each(c, split, signal, steady, [&](int, double r) { square += r * r, n += 1.0; });
     return std::sqrt(square / n);
   }
   // Mean of |error| per run, averaged over the runs.
-  double mean_absolute(const Candidate& c, Use use, const std::string& signal) const {
+  double mean_absolute(const Candidate& c, Split split, const std::string& signal) const {
     std::map<int, std::pair<double, double>> runs;
-    each(c, use, signal, false, [&](int run, double r) {
+    each(c, split, signal, false, [&](int run, double r) {
       runs[run].first += std::abs(r);
       runs[run].second += 1.0;
     });
@@ -85,9 +85,9 @@ class RealSet {
 
  private:
   template <typename Visit>
-  void each(const Candidate& c, Use use, const std::string& signal, bool steady, Visit visit) const {
+  void each(const Candidate& c, Split split, const std::string& signal, bool steady, Visit visit) const {
     for (int run = 0; run < predictor->run_count(); ++run) {
-      if (predictor->run(run).use != use || predictor->run(run).steady != steady) continue;
+      if (predictor->run(run).split != split || predictor->run(run).steady != steady) continue;
       const Prediction p = predictor->predict(c, run);
       EXPECT_TRUE(p.finite) << predictor->run(run).file;
       const std::vector<ComparedSignal>& compared = predictor->compared(run);

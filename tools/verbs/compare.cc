@@ -96,9 +96,9 @@ int run(const Arguments& a) {
     if (const auto offset = clock_offset(*predictor, predictions, name))
       report.offsets.emplace_back(name, *offset);
   }
-  for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation}) {
-    if (const auto error = force_error(*predictor, predictions, use))
-      report.force_errors.emplace_back(use, *error);
+  for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation}) {
+    if (const auto error = force_error(*predictor, predictions, split))
+      report.force_errors.emplace_back(split, *error);
   }
   for (const Tube& tube : tubes) report.tubes.emplace_back(tube, hold_in_tube(*predictor, predictions, tube));
   if (a.json == "-") {

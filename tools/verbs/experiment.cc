@@ -107,7 +107,8 @@ Rival rival_of(const std::string& name, const Candidate& nominal, const Predicto
   if (predictor == nullptr) return {name, typical};
   std::optional<FitResult> best;
   for (const Candidate& start : {plain, typical}) {
-    FitResult r = fit(*predictor, start, unknowns_with_priors(start, nominal), {.jobs = jobs, .quick = true});
+    FitResult r =
+        fit(*predictor, start, unknowns_with_priors(start, nominal), {.jobs = jobs, .coarse = true});
     if (!best || r.cost < best->cost) best = std::move(r);
     if (name == kBase) break;
   }

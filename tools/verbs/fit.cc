@@ -60,7 +60,7 @@ std::vector<Unknown> chosen(const Candidate& c, const Arguments& a, std::vector<
       if (std::any_of(all.begin(), all.end(), [&](const Unknown& u) { return meant(word, u); })) continue;
       const std::string_view near = nearest_spelling(word, paths);
       const char* option = words == &a.free ? "--free" : "--freeze";
-      faults.push_back(fmt::format("{} {}: no number of this model that could move; {}", option, word,
+      faults.push_back(fmt::format("{} {}: no parameter of this model that could move; {}", option, word,
                                    near.empty() ? "a number with a tolerance, or one of an effect, can"
                                                 : fmt::format("did you mean \"{}\"?", near)));
     }

@@ -43,8 +43,8 @@ TEST_F(DatasetReaderTest, ReadsChannelsRunsAndModel) {
   EXPECT_EQ(r.dataset->rig, Rig::kAxis);
   EXPECT_EQ(r.dataset->name, folder.path());
   ASSERT_EQ(r.dataset->runs.size(), 2u);
-  EXPECT_EQ(r.dataset->runs[0].use, Use::kFit);
-  EXPECT_EQ(r.dataset->runs[1].use, Use::kHoldout);
+  EXPECT_EQ(r.dataset->runs[0].split, Split::kTraining);
+  EXPECT_EQ(r.dataset->runs[1].split, Split::kValidation);
   EXPECT_EQ(r.dataset->runs[0].time_s, (std::vector<double>{0.0, 0.001, 0.002}));
   EXPECT_EQ(*r.dataset->runs[0].signal("velocity"), (std::vector<double>{0.0, 1.0, 2.0}));
   EXPECT_EQ(r.dataset->channel("velocity")->unit, "rad/s");

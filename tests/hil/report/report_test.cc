@@ -24,7 +24,7 @@ std::size_t count(const std::string& text, const std::string& what) {
 }
 
 TEST(ReportThinTest, APeakOfOneSampleStaysItsFullHeight) {
-  const ReportOverlay o = sample_overlay("run", Use::kFit, "velocity", 20.0);
+  const ReportOverlay o = sample_overlay("run", Split::kTraining, "velocity", 20.0);
   const ThinClock clock = thin_clock(o.time_s, 100);
   const std::vector<double> thin = thinned(clock, o.measured);
   ASSERT_EQ(thin.size(), 200u);
@@ -125,8 +125,8 @@ TEST(ReportTest, EveryPartIsThere) {
 
 TEST(ReportTest, TheVerdictSaysHowFarTheHeldOutErrorFell) {
   const Diagnosis d = sample_diagnosis();
-  const double before = d.baseline_comparison.pooled(Use::kHoldout),
-               after = d.final_comparison.pooled(Use::kHoldout);
+  const double before = d.baseline_comparison.pooled(Split::kValidation),
+               after = d.final_comparison.pooled(Split::kValidation);
   EXPECT_NE(verdict_sentence(d).find(figure(before) + " to " + figure(after)), std::string::npos)
       << verdict_sentence(d);
   EXPECT_NE(verdict_sentence(d).find(change_percent(before, after)), std::string::npos);
@@ -151,11 +151,12 @@ TEST(ReportTest, AnInterruptedOrEmptyDiagnosisStillHasItsPage) {
 TEST(ReportTest, LongAndManyRecordingsStayBelowThreeMegabytes) {
   ReportInput in = sample_input();
   in.overlays.clear();
-  for (int i = 0; i < 8; ++i) in.overlays.push_back(sample_overlay("long.csv", Use::kFit, "velocity", 200.0));
+  for (int i = 0; i < 8; ++i)
+    in.overlays.push_back(sample_overlay("long.csv", Split::kTraining, "velocity", 200.0));
   EXPECT_LT(report_html(in).size(), kMostBytes);
   in.overlays.clear();
   for (int i = 0; i < 600; ++i)
-    in.overlays.push_back(sample_overlay("run" + std::to_string(i), Use::kFit, "velocity", 2.0));
+    in.overlays.push_back(sample_overlay("run" + std::to_string(i), Split::kTraining, "velocity", 2.0));
   EXPECT_LT(report_html(in).size(), kMostBytes);
   const auto data = nlohmann::json::parse(chart_data(in));
   EXPECT_EQ(data["overlays"].size() + data["overlays_left_out"].get<std::size_t>(), 600u);

@@ -15,9 +15,9 @@ inline constexpr double kPeak_rad_s = 55.5;  // one sample of the longest signal
 inline constexpr double kPeakTime_s = 7.7;
 inline const std::string kNastyName = "</script><img src=x onerror=\"alert('1')\"> & Söhne";
 
-inline ReportOverlay sample_overlay(const std::string& run, Use use, const std::string& signal,
+inline ReportOverlay sample_overlay(const std::string& run, Split split, const std::string& signal,
                                     double duration_s) {
-  ReportOverlay o{run, use, signal, signal == "velocity" ? "rad/s" : "A", 0.4, {}, {}, {}, {}};
+  ReportOverlay o{run, split, signal, signal == "velocity" ? "rad/s" : "A", 0.4, {}, {}, {}, {}};
   for (int i = 0; i * 1e-3 < duration_s; ++i) {
     const double t = i * 1e-3, slow = 30.0 * std::sin(0.8 * t), angle = 37.5 * (1.0 - std::cos(0.8 * t));
     const double noise = 0.4 * std::sin(1e4 * t * t + 17.0 * i);
@@ -33,13 +33,13 @@ inline ReportOverlay sample_overlay(const std::string& run, Use use, const std::
 
 inline Comparison sample_comparison(double size) {
   Comparison c;
-  for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation}) {
-    const double factor = size * (use == Use::kExtrapolation ? 1.6 : 1.0);
+  for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation}) {
+    const double factor = size * (split == Split::kExtrapolation ? 1.6 : 1.0);
     const auto add = [&](const char* signal, const char* unit, double noise) {
       SignalError e;
       e.signal = signal;
       e.unit = unit;
-      e.use = use;
+      e.split = split;
       e.samples = 20000;
       e.rmse = noise * factor;
       e.nrmse_percent = 2.0 * factor;
@@ -52,8 +52,8 @@ inline Comparison sample_comparison(double size) {
   }
   for (const std::string axis : {"speed", "rotor_angle", "time", "abs_current", "acceleration", "direction",
                                  "time_since_step", "temperature", "bus_voltage", "position"}) {
-    RegimeError curve{"velocity",    axis, axis == "speed" ? "rad/s" : "1",
-                      Use::kHoldout, {},   0.6 / size + 0.05};
+    RegimeError curve{"velocity",         axis, axis == "speed" ? "rad/s" : "1",
+                      Split::kValidation, {},   0.6 / size + 0.05};
     for (int k = 0; k < 20; ++k) {
       const double share = k == 10 ? 0.62 : 0.02;
       curve.bins.push_back(
@@ -63,7 +63,7 @@ inline Comparison sample_comparison(double size) {
   }
   c.worst.push_back({.signal = "velocity",
                      .axis = "speed",
-                     .use = Use::kHoldout,
+                     .split = Split::kValidation,
                      .share = 0.62,
                      .time_share = 0.11,
                      .sentence = "62 % of the error energy of velocity is below 3 rad/s (11 % of the time)"});
@@ -152,9 +152,9 @@ inline ReportInput sample_input(double duration_s = 20.0) {
   in.program = "omnihil";
   in.elapsed_s = 12.3;
   in.notes = {"2 rows were left out: " + kNastyName};
-  in.overlays = {sample_overlay("steps.csv", Use::kFit, "velocity", duration_s),
-                 sample_overlay("steps.csv", Use::kFit, "motor_current", duration_s),
-                 sample_overlay(kNastyName, Use::kHoldout, "velocity", duration_s)};
+  in.overlays = {sample_overlay("steps.csv", Split::kTraining, "velocity", duration_s),
+                 sample_overlay("steps.csv", Split::kTraining, "motor_current", duration_s),
+                 sample_overlay(kNastyName, Split::kValidation, "velocity", duration_s)};
   OrderSpectrum spectrum{"velocity", "rad/s", "rotor_angle", {}, {}, {}, 0.3};
   for (int n = 1; n <= 60; ++n) {
     spectrum.order.push_back(n);

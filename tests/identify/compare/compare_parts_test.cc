@@ -28,7 +28,7 @@ FakePredictor late_by(double late_s) {
     measured.push_back(motion(t - late_s) + 0.3 * gaussian(1, 0, static_cast<std::uint64_t>(i)));
     model.push_back(motion(t));
   }
-  fake.add(Use::kFit, measured, model);
+  fake.add(Split::kTraining, measured, model);
   return fake;
 }
 
@@ -51,7 +51,7 @@ TEST(ClockOffset, IsFoundInSparseSignalsToo) {
     measured.push_back(i % 12 == 0 ? motion(t - 0.02) : NAN);
     model.push_back(i % 12 == 0 ? motion(t) : NAN);
   }
-  fake.add(Use::kFit, measured, model);
+  fake.add(Split::kTraining, measured, model);
   const auto offset = clock_offset(fake, predictions_of(fake), "velocity");
   ASSERT_TRUE(offset);
   EXPECT_NEAR(offset->seconds, 0.02, 1e-3);
@@ -81,7 +81,7 @@ TEST(Tube, IsReadFromItsText) {
 
 TEST(Tube, CountsWhatLiesOutsideAndNamesTheWorst) {
   FakePredictor fake;
-  fake.add(Use::kFit, {0.0, 1.0, 2.5, -4.0}, {0.0, 0.0, 0.0, 0.0});
+  fake.add(Split::kTraining, {0.0, 1.0, 2.5, -4.0}, {0.0, 0.0, 0.0, 0.0});
   const TubeResult r = hold_in_tube(fake, predictions_of(fake), {.signal = "velocity", .tolerance = 1.0});
   EXPECT_EQ(r.samples, 4u);
   EXPECT_EQ(r.outside, 2u);
@@ -92,7 +92,7 @@ TEST(Tube, CountsWhatLiesOutsideAndNamesTheWorst) {
 
 TEST(Tube, WidthInTimeForgivesAStepThatIsOneSampleLate) {
   FakePredictor fake;
-  fake.add(Use::kFit, {0.0, 0.0, 0.0, 10.0}, {0.0, 0.0, 10.0, 10.0});
+  fake.add(Split::kTraining, {0.0, 0.0, 0.0, 10.0}, {0.0, 0.0, 10.0, 10.0});
   const auto predictions = predictions_of(fake);
   EXPECT_EQ(hold_in_tube(fake, predictions, {.signal = "velocity", .tolerance = 1.0}).outside, 1u);
   EXPECT_EQ(
@@ -108,10 +108,10 @@ TEST(ForceError, IsTheRatioOfNorms) {
     model.push_back(0.97 * force.back());
   }
   for (std::size_t i = 0; i < 50; ++i) force[i] = force[4999 - i] = NAN;
-  fake.add(Use::kFit, force, model, 1.0, "motor_torque");
+  fake.add(Split::kTraining, force, model, 1.0, "motor_torque");
   const auto predictions = predictions_of(fake);
-  EXPECT_NEAR(*force_error(fake, predictions, Use::kFit), 0.03, 1e-9);
-  EXPECT_FALSE(force_error(fake, predictions, Use::kHoldout));
+  EXPECT_NEAR(*force_error(fake, predictions, Split::kTraining), 0.03, 1e-9);
+  EXPECT_FALSE(force_error(fake, predictions, Split::kValidation));
 }
 
 }  // namespace

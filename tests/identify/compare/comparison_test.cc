@@ -15,9 +15,9 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Comparison, ErrorsOfTwoSamplesByHand) {
   FakePredictor fake;
-  fake.add(Use::kFit, {1.0, 5.0}, {4.0, 1.0}, 2.0);  // model minus measurement: 3, -4
+  fake.add(Split::kTraining, {1.0, 5.0}, {4.0, 1.0}, 2.0);  // model minus measurement: 3, -4
   const Comparison c = compare(fake, {});
-  const SignalError& e = *c.error(Use::kFit, "velocity");
+  const SignalError& e = *c.error(Split::kTraining, "velocity");
   EXPECT_EQ(e.samples, 2u);
   EXPECT_DOUBLE_EQ(e.rmse, std::sqrt((9.0 + 16.0) / 2.0));
   EXPECT_DOUBLE_EQ(e.mean_absolute, 3.5);
@@ -25,48 +25,48 @@ TEST(Comparison, ErrorsOfTwoSamplesByHand) {
   EXPECT_DOUBLE_EQ(e.nrmse_percent, 100.0 * e.rmse / 2.0);  // 1 and 5 deviate by 2 from 3
   EXPECT_DOUBLE_EQ(e.in_sigmas, e.rmse / 2.0);
   EXPECT_DOUBLE_EQ(e.relative, std::sqrt(25.0) / std::sqrt(26.0));
-  EXPECT_DOUBLE_EQ(c.pooled(Use::kFit), e.in_sigmas);
-  EXPECT_EQ(c.error(Use::kHoldout, "velocity"), nullptr);
+  EXPECT_DOUBLE_EQ(c.pooled(Split::kTraining), e.in_sigmas);
+  EXPECT_EQ(c.error(Split::kValidation, "velocity"), nullptr);
 }
 
 TEST(Comparison, MissingSamplesCountNothing) {
   FakePredictor fake;
-  fake.add(Use::kFit, {1.0, kMissing, 5.0, 7.0}, {1.0, 100.0, 5.0, kMissing});
-  const SignalError e = *compare(fake, {}).error(Use::kFit, "velocity");
+  fake.add(Split::kTraining, {1.0, kMissing, 5.0, 7.0}, {1.0, 100.0, 5.0, kMissing});
+  const SignalError e = *compare(fake, {}).error(Split::kTraining, "velocity");
   EXPECT_EQ(e.samples, 2u);
   EXPECT_EQ(e.rmse, 0.0);
 }
 
 TEST(Comparison, RunsOfOneUseArePooledAndUsesKeptApart) {
   FakePredictor fake;
-  fake.add(Use::kFit, {0.0, 0.0}, {1.0, 1.0});
-  fake.add(Use::kFit, {0.0, 0.0}, {3.0, 3.0});
-  fake.add(Use::kHoldout, {0.0, 0.0}, {7.0, 7.0});
+  fake.add(Split::kTraining, {0.0, 0.0}, {1.0, 1.0});
+  fake.add(Split::kTraining, {0.0, 0.0}, {3.0, 3.0});
+  fake.add(Split::kValidation, {0.0, 0.0}, {7.0, 7.0});
   const Comparison c = compare(fake, {});
-  EXPECT_DOUBLE_EQ(c.error(Use::kFit, "velocity")->rmse, std::sqrt((1.0 + 1.0 + 9.0 + 9.0) / 4.0));
-  EXPECT_DOUBLE_EQ(c.error(Use::kHoldout, "velocity")->rmse, 7.0);
+  EXPECT_DOUBLE_EQ(c.error(Split::kTraining, "velocity")->rmse, std::sqrt((1.0 + 1.0 + 9.0 + 9.0) / 4.0));
+  EXPECT_DOUBLE_EQ(c.error(Split::kValidation, "velocity")->rmse, 7.0);
   ASSERT_EQ(c.runs.size(), 3u);
   EXPECT_DOUBLE_EQ(c.runs[1].rmse, 3.0);
 }
 
 TEST(Comparison, ARunThatDivergesNeverLooksGood) {
   FakePredictor fake;
-  fake.add(Use::kFit, {0.0, 0.0, 0.0}, {0.0, kMissing, kMissing}).prediction.finite = false;
+  fake.add(Split::kTraining, {0.0, 0.0, 0.0}, {0.0, kMissing, kMissing}).prediction.finite = false;
   const Comparison c = compare(fake, {});
   EXPECT_EQ(c.diverged, std::vector<std::string>{"run_0.csv"});
-  EXPECT_TRUE(std::isinf(c.pooled(Use::kFit)));
+  EXPECT_TRUE(std::isinf(c.pooled(Split::kTraining)));
 }
 
 TEST(Comparison, PoolsSignalsEachInItsNoise) {
   FakePredictor fake;
-  FakePredictor::FakeRun& run = fake.add(Use::kFit, {0.0, 0.0}, {2.0, 2.0}, 1.0);
+  FakePredictor::FakeRun& run = fake.add(Split::kTraining, {0.0, 0.0}, {2.0, 2.0}, 1.0);
   ComparedSignal current = run.compared[0];
   current.name = "motor_current";
   current.noise_sigma = 0.1;
   run.compared.push_back(current);
   run.prediction.values.push_back({0.4, 0.4});
   const Comparison c = compare(fake, {});
-  EXPECT_NEAR(c.pooled(Use::kFit), std::sqrt((2.0 * 2.0 + 4.0 * 4.0) / 2.0), 1e-12);
+  EXPECT_NEAR(c.pooled(Split::kTraining), std::sqrt((2.0 * 2.0 + 4.0 * 4.0) / 2.0), 1e-12);
 }
 
 // 1000 samples of noise 1; below 10 rad/s, a tenth of the time, an error of 5 on top.
@@ -79,7 +79,9 @@ FakePredictor wrong_when_slow() {
     angle.push_back(0.37 * static_cast<double>(i));
     measured.push_back(gaussian(1, stream_of("noise"), i) + (w < 10.0 ? 5.0 : 0.0));
   }
-  fake.add(Use::kFit, measured, model).track("speed", "rad/s", speed).track("rotor_angle", "rad", angle);
+  fake.add(Split::kTraining, measured, model)
+      .track("speed", "rad/s", speed)
+      .track("rotor_angle", "rad", angle);
   return fake;
 }
 
@@ -110,7 +112,7 @@ TEST(Comparison, ErrorSpreadEvenlyHasNoWorstRegime) {
     measured.push_back(gaussian(2, stream_of("noise"), i));
     speed.push_back(uniform(3, 0, i));
   }
-  fake.add(Use::kFit, measured, std::vector<double>(2000, 0.0)).track("speed", "rad/s", speed);
+  fake.add(Split::kTraining, measured, std::vector<double>(2000, 0.0)).track("speed", "rad/s", speed);
   EXPECT_TRUE(compare(fake, {}).worst.empty());
 }
 
@@ -132,11 +134,11 @@ TEST(Comparison, ARepeatedInputShowsWhatNoModelCanReach) {
     a.push_back(2.0 * gaussian(4, 1, i));
     b.push_back(2.0 * gaussian(4, 2, i));
   }
-  fake.add(Use::kFit, a, a).run.signals["duty"] = duty;
-  fake.add(Use::kHoldout, b, b).run.signals["duty"] = duty;
-  EXPECT_NEAR(compare(fake, {}).error(Use::kFit, "velocity")->repeat_sigma, 2.0, 0.1);
+  fake.add(Split::kTraining, a, a).run.signals["duty"] = duty;
+  fake.add(Split::kValidation, b, b).run.signals["duty"] = duty;
+  EXPECT_NEAR(compare(fake, {}).error(Split::kTraining, "velocity")->repeat_sigma, 2.0, 0.1);
   fake.last().run.signals["duty"][100] = 0.4;
-  EXPECT_EQ(compare(fake, {}).error(Use::kFit, "velocity")->repeat_sigma, 0.0);
+  EXPECT_EQ(compare(fake, {}).error(Split::kTraining, "velocity")->repeat_sigma, 0.0);
 }
 
 }  // namespace

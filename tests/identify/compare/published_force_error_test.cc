@@ -20,8 +20,8 @@ Errors errors_with(const DatasetReading& reading, const std::vector<const char*>
   const Candidate fitted = fit(*predictor, model, unknowns_of(model), {}).model;
   std::vector<Prediction> predictions;
   for (int r = 0; r < predictor->run_count(); ++r) predictions.push_back(predictor->predict(fitted, r));
-  return {*force_error(*predictor, predictions, Use::kFit),
-          *force_error(*predictor, predictions, Use::kHoldout)};
+  return {*force_error(*predictor, predictions, Split::kTraining),
+          *force_error(*predictor, predictions, Split::kValidation)};
 }
 
 // A. Janot, M. Gautier, M. Brunot 2019: mass, viscous and Coulomb friction, offset: 4.083 % and 5.982 % of

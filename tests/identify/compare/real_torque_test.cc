@@ -26,7 +26,7 @@ TEST_F(RealTorque, EachFrictionOfTheLinearAxisLowersTheForceErrorAsPublished) {
   // published ladder, relative to viscous friction alone (17.95 %): 7.11, 4.039, 3.058
   const RealSet emps("emps");
   const auto error = [&](const std::vector<std::string>& effects) {
-    return emps.rmse(emps.fitted(effects).model, Use::kFit, "motor_torque");
+    return emps.rmse(emps.fitted(effects).model, Split::kTraining, "motor_torque");
   };
   const double viscous = error({});
   EXPECT_NEAR(error({"coulomb_friction"}) / viscous, 7.11 / 17.95, 0.03);
@@ -48,9 +48,9 @@ TEST_F(RealTorque, TheBrushlessMotorLeavesItsPublishedResidualWithoutItsCogging)
   // published, speed runs: 6.07 / 6.26 mN m; standstill map as measured 4.01
   const RealSet laas("laas_mn4004");
   const Candidate c = laas.fitted({}).model;
-  expect_same(laas.rmse(c, Use::kFit, "motor_torque"), 6.07e-3, 0.06);
-  expect_same(laas.rmse(c, Use::kHoldout, "motor_torque"), 6.26e-3, 0.06);
-  expect_same(laas.rmse(c, Use::kFit, "motor_torque", true), 4.01e-3, 0.02);
+  expect_same(laas.rmse(c, Split::kTraining, "motor_torque"), 6.07e-3, 0.06);
+  expect_same(laas.rmse(c, Split::kValidation, "motor_torque"), 6.26e-3, 0.06);
+  expect_same(laas.rmse(c, Split::kTraining, "motor_torque", true), 4.01e-3, 0.02);
 }
 
 TEST_F(RealTorque, CoggingOfTheBrushlessMotorIsFoundInMapAndMotionAlike) {
@@ -58,8 +58,8 @@ TEST_F(RealTorque, CoggingOfTheBrushlessMotorIsFoundInMapAndMotionAlike) {
   const RealSet laas("laas_mn4004");
   const Candidate c =
       laas.fitted({"coulomb_friction", "cogging", "cogging.order=72", "actuator_delay"}).model;
-  expect_at_most(laas.rmse(c, Use::kFit, "motor_torque"), 2.17e-3, 0.0);
-  expect_at_most(laas.rmse(c, Use::kHoldout, "motor_torque"), 3.26e-3, 0.0);
+  expect_at_most(laas.rmse(c, Split::kTraining, "motor_torque"), 2.17e-3, 0.0);
+  expect_at_most(laas.rmse(c, Split::kValidation, "motor_torque"), 3.26e-3, 0.0);
 }
 
 }  // namespace

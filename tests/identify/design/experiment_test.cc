@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "sim/bench/excitation.h"
-#include "tests/identify/robot_world.h"
+#include "tests/identify/simulated_robot.h"
 
 namespace omnihil::test {
 namespace {
@@ -116,7 +116,7 @@ TEST(Experiment, LimitsHoldInTheProposedRun) {
   const std::vector<Rival> rivals = {{"quadratic_drag", with(base, "quadratic_drag", {2e-8})},
                                      {"base", base}};
   ExperimentOptions o = options(3.0);
-  o.quick = true;
+  o.coarse = true;
   o.limits.speed_rad_s = 150.0;
   o.limits.current_A = 8.0;
   const ExperimentPlan plan = plan_experiment(one_way_axis(0.2, 0.1, 0.05, base), rivals, {}, o);
@@ -134,7 +134,7 @@ TEST(Experiment, NoRunWithinImpossibleLimitsSaysWhichLimit) {
   const std::vector<Rival> rivals = {{"quadratic_drag", with(base, "quadratic_drag", {2e-8})},
                                      {"base", base}};
   ExperimentOptions o = options(2.0);
-  o.quick = true;
+  o.coarse = true;
   o.limits.travel = 1e-6;
   const ExperimentPlan plan = plan_experiment(one_way_axis(0.2, 0.1, 0.05, base), rivals, {}, o);
   EXPECT_FALSE(plan.run);
@@ -144,7 +144,7 @@ TEST(Experiment, NoRunWithinImpossibleLimitsSaysWhichLimit) {
 TEST(Experiment, ANumberIsKnownBetterAfterwards) {
   const Candidate base = axis_candidate();
   ExperimentOptions o = options(4.0);
-  o.quick = true;
+  o.coarse = true;
   const ExperimentPlan plan = plan_experiment(one_way_axis(0.5, 0.05, 0.5, base), {{"base", base}},
                                               {.shrink = "coulomb_friction.torque_Nm"}, o);
   ASSERT_TRUE(plan.run) << plan.problem;
@@ -156,7 +156,7 @@ TEST(Experiment, TheSameForAnyNumberOfThreads) {
   const std::vector<Rival> rivals = {{"quadratic_drag", with(base, "quadratic_drag", {2e-8})},
                                      {"base", base}};
   ExperimentOptions one = options(1.0), many = options(1.0);
-  one.quick = many.quick = true;
+  one.coarse = many.coarse = true;
   one.jobs = 1;
   many.jobs = 3;
   const ExperimentPlan a = plan_experiment(one_way_axis(0.2, 0.1, 0.05, base), rivals, {}, one);
@@ -172,7 +172,7 @@ TEST(Experiment, SlowRobotIsAskedToDriveWhereItsRivalsPart) {
       {"lateral_roller_friction", with(base, "lateral_roller_friction", {0.02})},
       {"rolling_resistance", with(base, "rolling_resistance", {0.02})}};
   ExperimentOptions o = options(6.0);
-  o.quick = true;
+  o.coarse = true;
   o.limits.travel = 2.0;
   const Dataset blank = blank_robot(2.0, true);
   const Dataset given = measured(blank, *make_predictor(blank, base, {})->simulated(rivals[0].model, 3));

@@ -152,7 +152,7 @@ TEST(Fit, WalksToTheEndOfAValleyThatOnlyThePriorsKnow) {
       changed(nominal, {{"motor.rotor_inertia_kg_m2", 0.6e-5}, {"load.inertia_kg_m2", 5.4e-5}});
   const auto predictor = make_predictor(d, nominal, {});
   const FitResult r = fit(*predictor, start, unknowns_with_priors(start, nominal),
-                          {.jobs = 1, .quick = true, .valley = true});
+                          {.jobs = 1, .coarse = true, .finish_undamped = true});
   EXPECT_NEAR(find(r, "motor.rotor_inertia_kg_m2")->value, 1e-5, 0.02e-5);
   EXPECT_NEAR(find(r, "load.inertia_kg_m2")->value, 5e-5, 0.1e-5);
 }

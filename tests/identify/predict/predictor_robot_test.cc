@@ -7,12 +7,13 @@
 #include "identify/compare/comparison.h"
 #include "identify/estimate/fit.h"
 #include "identify/estimate/null_model.h"
-#include "tests/identify/robot_world.h"
+#include "tests/identify/simulated_robot.h"
 
 namespace omnihil::test {
 namespace {
 
-std::unique_ptr<Predictor> world_of(const Candidate& truth, bool bus = true, double duration_s = 8.0) {
+std::unique_ptr<Predictor> simulated_recording(const Candidate& truth, bool bus = true,
+                                               double duration_s = 8.0) {
   return make_predictor(blank_robot(duration_s, bus), robot_candidate(), {})->simulated(truth, 7);
 }
 
@@ -46,8 +47,8 @@ TEST(PredictorRobot, TheModelThatMadeTheDataLeavesTheNoise) {
   for (const bool bus : {false, true}) {
     const Candidate truth =
         with_typical(robot_candidate(), {"cogging", "lateral_roller_friction", "floor_tilt"});
-    const auto world = world_of(truth, bus);
-    for (const auto& [signal, error] : errors(*world, truth)) {
+    const auto simulated = simulated_recording(truth, bus);
+    for (const auto& [signal, error] : errors(*simulated, truth)) {
       EXPECT_NEAR(error, 1.0, 0.15) << signal << ", bus measured: " << bus;
     }
   }
@@ -57,16 +58,18 @@ TEST(PredictorRobot, TheModelThatMadeTheDataLeavesTheNoise) {
 // that model is what its sensors leave, wherever the robot went.
 TEST(PredictorRobot, TheNullIsWhatSensorsLeaveHoweverFarTheRobotStrayed) {
   const Candidate nominal = robot_candidate(), truth = with_typical(nominal, {"motor_mismatch"});
-  const auto strayed = world_of(truth, false);
+  const auto strayed = simulated_recording(truth, false);
   ASSERT_GT(errors(*strayed, nominal)["vision_theta"], 3.0);
-  const SignalKinds kinds = signal_kinds(*strayed);
-  const std::array<Evidence, kUses> uses{Evidence(*strayed, kinds, Use::kFit),
-                                         Evidence(*strayed, kinds, Use::kHoldout),
-                                         Evidence(*strayed, kinds, Use::kExtrapolation)};
-  const NullModel null = simulate_null(*strayed, nominal, uses, 3, 3, 2);
-  for (int k = 0; k < kinds.count(); ++k) {
+  const ComparedChannels channels = compared_channels(*strayed);
+  const std::array<WhitenedResiduals, kSplits> splits{
+      WhitenedResiduals(*strayed, channels, Split::kTraining),
+      WhitenedResiduals(*strayed, channels, Split::kValidation),
+      WhitenedResiduals(*strayed, channels, Split::kExtrapolation)};
+  const NullModel null = simulate_null(*strayed, nominal, splits, 3, 3, 2);
+  for (int k = 0; k < channels.count(); ++k) {
     const auto n = static_cast<std::size_t>(k);
-    EXPECT_NEAR(std::sqrt(null.floor(Use::kFit)[k]) / kinds.noise_sigma[n], 1.0, 0.15) << kinds.name[n];
+    EXPECT_NEAR(std::sqrt(null.floor(Split::kTraining)[k]) / channels.noise_sigma[n], 1.0, 0.15)
+        << channels.name[n];
   }
 }
 
@@ -78,7 +81,7 @@ TEST(PredictorRobot, EveryEffectThatAppliesShows) {
     if (id == "duty_limit" || id == "thermal_derating") continue;  // beyond these duties, beyond this warmth
     if (id == "sample_jitter") continue;                           // no expected value: noise_effect_test.cc
     const bool needs_supply = entry->info->place == Place::kSupply;
-    const auto nothing = world_of(nominal, !needs_supply, 2.0);
+    const auto nothing = simulated_recording(nominal, !needs_supply, 2.0);
     if (!nothing->applies(*entry).empty()) continue;
     const Prediction base = nothing->predict(nominal, 0);
     const Prediction with = nothing->predict(with_typical(nominal, {id}), 0);
@@ -96,11 +99,11 @@ TEST(PredictorRobot, EveryEffectThatAppliesShows) {
 
 TEST(PredictorRobot, AnEffectAtNeutralChangesNoBit) {
   const Candidate nominal = robot_candidate();
-  const auto world = world_of(nominal, false, 1.0);
-  const Prediction base = world->predict(nominal, 0);
+  const auto simulated = simulated_recording(nominal, false, 1.0);
+  const Prediction base = simulated->predict(nominal, 0);
   for (const EffectEntry* entry : all_effects()) {
-    if (entry->info->id == "expression" || !world->applies(*entry).empty()) continue;
-    const Prediction with = world->predict(with_effect(nominal, *entry), 0);
+    if (entry->info->id == "expression" || !simulated->applies(*entry).empty()) continue;
+    const Prediction with = simulated->predict(with_effect(nominal, *entry), 0);
     for (std::size_t s = 0; s < base.values.size(); ++s) {
       for (std::size_t k = 1; k < base.values[s].size(); ++k) {
         if (std::isnan(base.values[s][k])) continue;
@@ -116,9 +119,9 @@ TEST(PredictorRobot, DerivativesAreExact) {
       with_typical(robot_candidate(), {"wheel_slip", "lateral_roller_friction", "rolling_resistance",
                                        "payload", "vision_delay", "center_of_mass_offset", "battery_sag",
                                        "winding_heating", "motor_mismatch", "floor_tilt"});
-  const auto world = world_of(at, false, 1.0);
+  const auto simulated = simulated_recording(at, false, 1.0);
   const std::vector<Unknown> unknowns = unknowns_of(at);
-  const Prediction d = world->predict_with_derivatives(at, unknowns, 0);
+  const Prediction d = simulated->predict_with_derivatives(at, unknowns, 0);
   std::vector<double> x;
   for (const Unknown& u : unknowns) x.push_back(u.start);
   for (std::size_t n = 0; n < unknowns.size(); ++n) {
@@ -126,12 +129,12 @@ TEST(PredictorRobot, DerivativesAreExact) {
     const auto moved = [&](double by) {
       std::vector<double> there = x;
       there[n] += by;
-      return world->predict(with_values(at, unknowns, there), 0);
+      return simulated->predict(with_values(at, unknowns, there), 0);
     };
     const Prediction up = moved(h), down = moved(-h);
     double error = 0.0, size = 0.0;
     for (std::size_t s = 0; s < up.values.size(); ++s) {
-      const double noise = world->compared(0)[s].noise_sigma;
+      const double noise = simulated->compared(0)[s].noise_sigma;
       for (std::size_t k = 0; k < up.values[s].size(); ++k) {
         const double expected = (up.values[s][k] - down.values[s][k]) / (2.0 * h) / noise;
         const double got =
@@ -146,20 +149,20 @@ TEST(PredictorRobot, DerivativesAreExact) {
 }
 
 TEST(PredictorRobot, ALateCameraIsSeenInThePoseAlone) {
-  const auto world = world_of(with_typical(robot_candidate(), {"vision_delay"}));
-  const auto error = errors(*world, robot_candidate());
+  const auto simulated = simulated_recording(with_typical(robot_candidate(), {"vision_delay"}));
+  const auto error = errors(*simulated, robot_candidate());
   EXPECT_GT(std::max(error.at("vision_x"), error.at("vision_y")), 3.0);
   EXPECT_NEAR(error.at("velocity_1"), 1.0, 0.1);
   EXPECT_NEAR(error.at("gyro_z"), 1.0, 0.1);
 }
 
 TEST(PredictorRobot, WhatCannotActSaysWhy) {
-  const auto world = world_of(robot_candidate(), true, 0.5);
+  const auto simulated = simulated_recording(robot_candidate(), true, 0.5);
   for (const char* id : {"backlash", "hall_speed_estimator", "target_speed_limit", "dribbler_drag"}) {
-    EXPECT_NE(world->applies(*find_effect(id)), "") << id;
+    EXPECT_NE(simulated->applies(*find_effect(id)), "") << id;
   }
   for (const char* id : {"wheel_slip", "cogging", "vision_delay", "floor_tilt"}) {
-    EXPECT_EQ(world->applies(*find_effect(id)), "") << id;
+    EXPECT_EQ(simulated->applies(*find_effect(id)), "") << id;
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "identify/estimate/linear_base.h"
 #include "sim/law/random.h"
-#include "tests/identify/fake_evidence.h"
+#include "tests/identify/fake_residuals.h"
 
 namespace omnihil {
 namespace {
@@ -24,22 +24,22 @@ std::vector<double> noise_of(double sigma, std::uint64_t stream) {
 const FakePredictor& three_runs() {
   static const FakePredictor kRuns = [] {
     FakePredictor fake;
-    for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation})
-      fake.add(use, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
+    for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation})
+      fake.add(split, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
     return fake;
   }();
   return kRuns;
 }
 
-struct Court : FakeEvidence {
-  Court() : FakeEvidence(three_runs()) {}
+struct Court : FakeResiduals {
+  Court() : FakeResiduals(three_runs()) {}
 
   // A model that leaves noise of these sizes.
   Fitted leaving(double fit, double holdout, double extrapolation) const {
     Fitted out;
     out.finite = true;
-    const std::array<double, kUses> sizes{fit, holdout, extrapolation};
-    for (std::size_t u = 0; u < kUses; ++u) {
+    const std::array<double, kSplits> sizes{fit, holdout, extrapolation};
+    for (std::size_t u = 0; u < kSplits; ++u) {
       const std::vector<double> r = noise_of(sizes[u], 7);
       out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), kSamples);
       out.unweighted[u] = (*splits)[u].mean_square(out.residual[u]);
@@ -73,7 +73,7 @@ TEST(JudgeTest, RefusesALossOnAnotherKindOfMotion) {
 // Below what the simulated null leaves there, a rise is chance.
 TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatTheNullLeavesAsWell) {
   Court court;
-  court.null.mean_square[2] = Eigen::MatrixXd::Constant(2, 1, 2.0);
+  court.null.mean_square[kExtrapolation] = Eigen::MatrixXd::Constant(2, 1, 2.0);
   EXPECT_TRUE(test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.2), "x", 100)
                   .accepted);
   EXPECT_FALSE(test_acceptance(court.context, court.leaving(1, 1, 1), court.leaving(0.8, 0.8, 1.6), "x", 100)
@@ -95,7 +95,7 @@ TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsSmallBesideTheHeldOutFall)
 TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatIsAFallAsItIsSeen) {
   const Court court;
   Fitted child = court.leaving(0.8, 0.8, 1.2);
-  child.unweighted[2] *= 0.5;
+  child.unweighted[kExtrapolation] *= 0.5;
   EXPECT_TRUE(test_acceptance(court.context, court.leaving(1, 1, 1), child, "x", 100).accepted);
 }
 
@@ -103,9 +103,9 @@ TEST(JudgeTest, AllowsARiseOnAnotherKindOfMotionThatNobodySees) {
   const Court court;
   const Fitted parent = court.leaving(1, 1, 1);
   Fitted child = court.leaving(0.8, 0.8, 1.2);
-  child.unweighted[2] = 1.01 * parent.unweighted[2];
+  child.unweighted[kExtrapolation] = 1.01 * parent.unweighted[kExtrapolation];
   EXPECT_TRUE(test_acceptance(court.context, parent, child, "x", 100).accepted);
-  child.unweighted[2] = 1.03 * parent.unweighted[2];
+  child.unweighted[kExtrapolation] = 1.03 * parent.unweighted[kExtrapolation];
   EXPECT_FALSE(test_acceptance(court.context, parent, child, "x", 100).accepted);
 }
 
@@ -116,7 +116,7 @@ TEST(JudgeTest, TakesWhatLetsABentBaseParameterComeBack) {
   inductance.path = "motor.inductance_H";
   inductance.prior_sigma = 1e-4;
   const auto with_drift = [&](Fitted fitted, double sigmas) {
-    inductance.drift_sigmas = sigmas;
+    inductance.prior_deviation_sigmas = sigmas;
     inductance.value = sigmas * inductance.prior_sigma;
     fitted.fit.parameters = {inductance};
     return fitted;
@@ -148,7 +148,7 @@ TEST(JudgeTest, TakesWhatABaseParameterStandsForWhereItIsNotBelieved) {
     mass.prior_mean = 2.4;
     mass.prior_sigma = 0.05;
     mass.value = mass.prior_mean + sigmas * mass.prior_sigma;
-    mass.drift_sigmas = sigmas;
+    mass.prior_deviation_sigmas = sigmas;
     fitted.fit.parameters = {mass};
     return fitted;
   };
@@ -203,16 +203,16 @@ TEST(JudgeTest, RefusesWhatDoesNotMatter) {
 // A measured bus drives the model: what its supply does beside, no friction explains and none is judged by.
 TEST(JudgeTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
   FakePredictor fake;
-  for (const Use use : {Use::kFit, Use::kHoldout, Use::kExtrapolation}) {
-    fake.add(use, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
-    fake.add(use, noise_of(1.0, 6), std::vector<double>(kSamples, 0.0), 1.0, "bus_voltage");
+  for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation}) {
+    fake.add(split, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
+    fake.add(split, noise_of(1.0, 6), std::vector<double>(kSamples, 0.0), 1.0, "bus_voltage");
   }
-  const FakeEvidence evidence(fake);
-  const Splits& splits = *evidence.splits;
+  const FakeResiduals residuals(fake);
+  const Splits& splits = *residuals.splits;
   const auto leaving = [&](double velocity, double bus) {
     Fitted out;
     out.finite = true;
-    for (std::size_t u = 0; u < kUses; ++u) {
+    for (std::size_t u = 0; u < kSplits; ++u) {
       std::vector<double> r = noise_of(velocity, 7);
       for (const double v : noise_of(bus, 8)) r.push_back(v);
       out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), 2 * kSamples);
@@ -220,7 +220,7 @@ TEST(JudgeTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
     }
     return out;
   };
-  const AcceptanceContext& context = evidence.context;
+  const AcceptanceContext& context = residuals.context;
   const AcceptanceResult j = test_acceptance(context, leaving(1, 3), leaving(0.95, 3), "x", 100);
   EXPECT_NEAR(j.holdout.ratio, 0.95 * 0.95, 1e-9);
   EXPECT_NEAR(j.holdout.floor, 0.01, 1e-3);
@@ -234,9 +234,9 @@ TEST(JudgeTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
   ParameterEstimate r;
   r.path = "motor.resistance_ohm";
   r.prior_sigma = 0.1;
-  r.drift_sigmas = 1.0;
+  r.prior_deviation_sigmas = 1.0;
   parent.fit.parameters = {r};
-  r.drift_sigmas = -5.0;
+  r.prior_deviation_sigmas = -5.0;
   child.fit.parameters = {r};
   const AcceptanceResult j = test_acceptance(court.context, parent, child, "x", 100);
   EXPECT_FALSE(j.accepted);
@@ -296,12 +296,12 @@ TEST(JudgeTest, StrengthsThatTradeWithEachOtherAreToldFromZeroTogether) {
 TEST(BlockBootstrapTest, AGainInOneMomentAloneIsUncertain) {
   const Court court;
   const Fitted parent = court.leaving(1, 1, 1);
-  Eigen::VectorXd everywhere = 0.9 * parent.residual[1], once = parent.residual[1];
+  Eigen::VectorXd everywhere = 0.9 * parent.residual[kValidation], once = parent.residual[kValidation];
   once.head(500) *= 0.1;  // one block of eight loses nearly all
   once.tail(kSamples - 500) *= 1.01;
   const Eigen::VectorXd weights = Eigen::VectorXd::Ones(1);
-  const UseGain sure = court.bootstrap[1].gain(parent.residual[1], everywhere, weights);
-  const UseGain unsure = court.bootstrap[1].gain(parent.residual[1], once, weights);
+  const SplitGain sure = court.bootstrap[kValidation].gain(parent.residual[kValidation], everywhere, weights);
+  const SplitGain unsure = court.bootstrap[kValidation].gain(parent.residual[kValidation], once, weights);
   EXPECT_LT(sure.worst, 1.0);
   EXPECT_GT(unsure.worst, 1.0);
 }

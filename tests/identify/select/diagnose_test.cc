@@ -93,8 +93,8 @@ TEST(SlowDiagnoseTest, NamesCoggingThatIsNoPureSine) {
       steps_with({"cogging.amplitude_Nm=0.008", "cogging.amplitude_2=0.003", "cogging.phase_2=1"})));
   ASSERT_FALSE(d.effects.empty()) << reasons(d);
   EXPECT_EQ(d.effects.front(), "cogging");
-  const double before = d.baseline_comparison.error(Use::kHoldout, "velocity")->rmse;
-  EXPECT_LT(d.final_comparison.error(Use::kHoldout, "velocity")->rmse, before);
+  const double before = d.baseline_comparison.error(Split::kValidation, "velocity")->rmse;
+  EXPECT_LT(d.final_comparison.error(Split::kValidation, "velocity")->rmse, before);
 }
 
 TEST(SlowDiagnoseTest, AnswersTwinsAsASet) {
@@ -164,7 +164,7 @@ TEST(SlowDiagnoseTest, WhatTheDataDoNotDetermineStaysWhereItWas) {
   int undetermined = 0;
   for (const CandidateEffect& c : iteration.candidates) {
     for (const ParameterEstimate& p : c.fitted.fit.parameters) {
-      if (p.path != inductance || p.identifiable || !p.trades_with.empty()) continue;
+      if (p.path != inductance || p.identifiable || !p.correlated_with.empty()) continue;
       ++undetermined;
       EXPECT_EQ(value_at(c.fitted.fit.model, inductance), value_at(work.base().fit.model, inductance))
           << c.screened.name;
@@ -221,7 +221,8 @@ TEST(SlowDiagnoseTest, FittedErrorsNeverRiseAlongTheLadder) {
   for (std::size_t n = 1; n < d.ladder.size(); ++n) {
     if (d.ladder[n].added.starts_with("removed")) continue;
     // whitened, all signals, as the fit weighs them
-    EXPECT_LE(d.ladder[n].comparison.pooled(Use::kFit), d.ladder[n - 1].comparison.pooled(Use::kFit) * 1.01)
+    EXPECT_LE(d.ladder[n].comparison.pooled(Split::kTraining),
+              d.ladder[n - 1].comparison.pooled(Split::kTraining) * 1.01)
         << d.ladder[n].added;
   }
 }
@@ -239,7 +240,8 @@ TEST(SlowAddEffectTest, TakesWhatIsThere) {
   const Bench bench = simulated_bench(steps_with({"cogging.amplitude_Nm=0.008"}));
   const Addition a = add_effect(bench.dataset, bench.nominal, neutral_use(*find_effect("cogging")), {});
   EXPECT_TRUE(a.useful) << a.why;
-  EXPECT_LT(a.after.error(Use::kHoldout, "velocity")->rmse, a.before.error(Use::kHoldout, "velocity")->rmse);
+  EXPECT_LT(a.after.error(Split::kValidation, "velocity")->rmse,
+            a.before.error(Split::kValidation, "velocity")->rmse);
 }
 
 TEST(SlowAddEffectTest, SaysWhyAnEffectCannotAct) {

@@ -2,8 +2,8 @@
 #include "identify/select/noise_effect.h"
 
 #include "identify/select/selection_context.h"
-#include "tests/identify/robot_world.h"
 #include "tests/identify/simulated_bench.h"
+#include "tests/identify/simulated_robot.h"
 
 namespace omnihil::test {
 namespace {

@@ -21,11 +21,11 @@ class RealDiagnosis : public RealTest {
   }
 };
 
-double share_of_force(const RealSet& set, const Candidate& model, Use use) {
+double share_of_force(const RealSet& set, const Candidate& model, Split split) {
   std::vector<Prediction> predictions;
   for (int run = 0; run < set.predictor->run_count(); ++run)
     predictions.push_back(set.predictor->predict(model, run));
-  return force_error(*set.predictor, predictions, use).value_or(NAN);
+  return force_error(*set.predictor, predictions, split).value_or(NAN);
 }
 
 // Published 4.083 % and 5.982 %; the best known before, found by hand, 2.064 % and 2.760 %.
@@ -35,8 +35,8 @@ TEST_F(RealDiagnosis, SlowLinearAxisEndsAtHalfThePublishedForceError) {
   EXPECT_EQ(d.verdict, Verdict::kEffect);
   for (const char* effect : {"coulomb_friction", "friction_asymmetry", "actuator_delay", "grease_drag"})
     EXPECT_TRUE(found(d, effect)) << effect;
-  EXPECT_LE(share_of_force(emps, d.final_fit.model, Use::kFit), 0.021);
-  EXPECT_LE(share_of_force(emps, d.final_fit.model, Use::kHoldout), 0.028);
+  EXPECT_LE(share_of_force(emps, d.final_fit.model, Split::kTraining), 0.021);
+  EXPECT_LE(share_of_force(emps, d.final_fit.model, Split::kValidation), 0.028);
 }
 
 // Servo with a pendulum, eight loads, six gains: mean of |error| per run, averaged over the runs. Best known
@@ -48,8 +48,8 @@ TEST_F(RealDiagnosis, SlowServoHasASpeedLimitADelayAndLoadDependentFriction) {
   EXPECT_EQ(d.verdict, Verdict::kUnknown);
   for (const char* effect : {"target_speed_limit", "actuator_delay", "load_dependent_friction"})
     EXPECT_TRUE(found(d, effect)) << effect;
-  EXPECT_LE(servo.mean_absolute(d.final_fit.model, Use::kHoldout, "position"), 16e-3);
-  EXPECT_LE(servo.mean_absolute(d.final_fit.model, Use::kExtrapolation, "position"), 11e-3);
+  EXPECT_LE(servo.mean_absolute(d.final_fit.model, Split::kValidation, "position"), 16e-3);
+  EXPECT_LE(servo.mean_absolute(d.final_fit.model, Split::kExtrapolation, "position"), 11e-3);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // One round of the search on a robot's record.
 #include "identify/select/selection_context.h"
 #include "identify/select/selection_iteration.h"
-#include "tests/identify/robot_world.h"
+#include "tests/identify/simulated_robot.h"
 
 namespace omnihil::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "sim/law/effect_registry.h"
 #include "sim/law/random.h"
-#include "tests/identify/fake_evidence.h"
+#include "tests/identify/fake_residuals.h"
 
 namespace omnihil {
 namespace {
@@ -16,27 +16,27 @@ constexpr int kSamples = 4000;
 class MarkedPredictor : public FakePredictor {
  public:
   std::string mark;
-  bool carries_mark_of(const EffectEntry& effect) const override { return effect.info->id == mark; }
+  bool shows_signature_of(const EffectEntry& effect) const override { return effect.info->id == mark; }
 };
 
 // One run to fit and one held out, of noise; contenders that leave shares of it.
 struct Ring {
   MarkedPredictor fake;
-  std::unique_ptr<FakeEvidence> evidence;
+  std::unique_ptr<FakeResiduals> residuals;
   SelectionTask task;
   Fitted parent;
   Iteration iteration;
 
   Ring() {
-    for (const Use use : {Use::kFit, Use::kHoldout}) {
-      fake.add(use, std::vector<double>(kSamples, 1.0), std::vector<double>(kSamples, 0.0));
+    for (const Split split : {Split::kTraining, Split::kValidation}) {
+      fake.add(split, std::vector<double>(kSamples, 1.0), std::vector<double>(kSamples, 0.0));
     }
-    evidence = std::make_unique<FakeEvidence>(fake);
+    residuals = std::make_unique<FakeResiduals>(fake);
     task.predictor = &fake;
-    task.kinds = &evidence->kinds;
-    task.splits = evidence->splits.get();
-    task.null = &evidence->null;
-    task.acceptance_context = evidence->context;
+    task.channels = &residuals->channels;
+    task.splits = residuals->splits.get();
+    task.null = &residuals->null;
+    task.acceptance_context = residuals->context;
     parent = leaving(1.0, 1.0);
   }
 

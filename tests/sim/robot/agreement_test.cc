@@ -77,7 +77,7 @@ constexpr std::int64_t kStep_ns = 500'000;
 // out amplifies any difference, the rounding of two back ends too: this drive slips, and recovers.
 void drive_all(Plant& plant, double t_s) {
   for (int ms = 0; ms < 10; ++ms) {
-    for (int n = 0; n < plant.robot_count(); ++n) plant.write(n, wild_drive(0, t_s + ms * 1e-3));
+    for (int n = 0; n < plant.robot_count(); ++n) plant.write(n, excitation_drive(0, t_s + ms * 1e-3));
     plant.advance(1'000'000);
   }
 }

@@ -70,8 +70,8 @@ TEST(ElectricPlant, NumbersOfAThreePhaseDriveThatIsNotThereChangeNothing) {
   electrics(other).saliency_ratio = 1.5;
   ASSERT_FALSE(electrics_of(other).any());
   Plant a = one_robot(sample_robot(), options()), b = one_robot(other, options());
-  drive_wildly(a, 0.5);
-  drive_wildly(b, 0.5);
+  excite(a, 0.5);
+  excite(b, 0.5);
   for (std::size_t i = 0; i < kWheels; ++i) {
     EXPECT_EQ(a.truth(0).theta_rotor_rad[i], b.truth(0).theta_rotor_rad[i]);
     EXPECT_EQ(a.truth(0).motor_current_A[i], b.truth(0).motor_current_A[i]);
@@ -122,7 +122,7 @@ TEST(ElectricPlant, EnergyOfEveryKindOfDriveClosesToAMillionth) {
                                  .diode_forward_V = 0.7};
     Plant plant = one_robot(model, options());
     const double start_V = plant.electric_truth(0).bus_voltage_V;
-    drive_wildly(plant, 0.6);
+    excite(plant, 0.6);
     const ElectricTruth t = plant.electric_truth(0);
     const EnergyBook& b = t.book;
     ASSERT_GT(b.mechanical_J, 1.0);
@@ -139,7 +139,7 @@ TEST(ElectricPlant, WhatTheWindingsGiveIsWhatTheWheelsTake) {
     Plant plant = one_robot(driven_by(kind), options());
     double given_J = 0.0;
     for (int n = 0; n < 1200; ++n) {
-      plant.write(0, wild_drive(0, n * 5e-4));
+      plant.write(0, excitation_drive(0, n * 5e-4));
       const RobotTruth before = plant.truth(0);
       plant.advance(500'000);
       const RobotTruth after = plant.truth(0);
@@ -194,7 +194,7 @@ TEST(ElectricPlant, CurrentLimitHoldsInAHardReversal) {
       const double duty = n < 400 ? 0.9 : -0.9;
       plant.write(0, duty_drive({duty, duty, duty, duty}));
       plant.advance(500'000);
-      const RobotSensors s = plant.read(0);
+      const RobotSensors s = plant.sample_sensors(0);
       for (const double i : s.motor_current_A) largest_A = std::max(largest_A, std::abs(i));
     }
     EXPECT_GT(largest_A, 5.0) << static_cast<int>(kind);
@@ -258,11 +258,11 @@ TEST(ElectricPlant, ABatteryThatGivesWayToNothingIsTheConstantBus) {
   RobotModel plain = symmetric_robot();
   stiff.bus_voltage_V = plain.bus_voltage_V = volt_V;
   Plant a = one_robot(stiff, options()), b = one_robot(plain, options());
-  drive_wildly(a, 1.0);
-  drive_wildly(b, 1.0);
+  excite(a, 1.0);
+  excite(b, 1.0);
   EXPECT_NEAR(a.truth(0).x_m, b.truth(0).x_m, 2e-3);
   EXPECT_NEAR(a.truth(0).yaw_rad, b.truth(0).yaw_rad, 2e-2);
-  EXPECT_NEAR(a.read(0).bus_voltage_V, volt_V, 1e-3);
+  EXPECT_NEAR(a.sample_sensors(0).bus_voltage_V, volt_V, 1e-3);
 }
 
 TEST(ElectricPlant, BatterySagsWithAllMotorsTogetherAndItsChargeIsWhatLeftIt) {
@@ -279,12 +279,12 @@ TEST(ElectricPlant, BatterySagsWithAllMotorsTogetherAndItsChargeIsWhatLeftIt) {
     plant.advance(20'000'000);
     // each takes duty * (duty V / R) from the bus: V = V_0 / (1 + n R_b duty^2 / R)
     const double load = driven * resistance_ohm * duty * duty / model.motor.resistance_ohm;
-    EXPECT_NEAR(plant.read(0).bus_voltage_V, start_V / (1.0 + load), 2e-3) << driven;
+    EXPECT_NEAR(plant.sample_sensors(0).bus_voltage_V, start_V / (1.0 + load), 2e-3) << driven;
   }
 
   Plant plant = one_robot(on_battery(driven_by(DriveKind::kDq), resistance_ohm), options());
   const double start_C = plant.electric_truth(0).battery_charge_C;
-  drive_wildly(plant, 1.0);
+  excite(plant, 1.0);
   const ElectricTruth t = plant.electric_truth(0);
   // no capacitor: the heat in the battery is R integral of i^2, its energy V integral of i
   EXPECT_NEAR((start_C - t.battery_charge_C) * 6 * 3.98, t.book.source_J, 0.01 * t.book.source_J);
@@ -319,11 +319,11 @@ TEST(ElectricPlant, SavedStateGoesOnWithTheSameBits) {
     electrics(model).current_sensor.bits = 12;
     electrics(model).current_sensor.noise_sigma_V = 1e-3;
     Plant a = one_robot(model, options()), b = one_robot(model, options());
-    drive_wildly(a, 0.3);
+    excite(a, 0.3);
     const auto state = a.save();
     ASSERT_TRUE(b.restore(state));
-    drive_wildly(a, 0.2);
-    drive_wildly(b, 0.2);
+    excite(a, 0.2);
+    excite(b, 0.2);
     EXPECT_EQ(a.save(), b.save()) << static_cast<int>(kind);
   }
 }

@@ -135,7 +135,7 @@ TEST(Physics, TheMirrorImageOfADriveIsTheMirrorImageOfItsPath) {
   const RobotModel m = symmetric_robot();  // wheels 0 and 3, 1 and 2 are each other's images
   Plant plant = one_robot(m, planar_options()), image = one_robot(m, planar_options());
   for (int ms = 0; ms < 2000; ++ms) {
-    const RobotDrive d = wild_drive(0, ms * 1e-3);
+    const RobotDrive d = excitation_drive(0, ms * 1e-3);
     plant.write(0, d);
     image.write(0, duty_drive({-d.duty_ratio[3], -d.duty_ratio[2], -d.duty_ratio[1], -d.duty_ratio[0]}));
     plant.advance(1'000'000);
@@ -153,8 +153,8 @@ TEST(Physics, WhereItStartsAndHowItIsTurnedDoesNotMatter) {
   const RobotModel m = sample_robot();
   Plant here = one_robot(m, planar_options()), there = one_robot(m, planar_options());
   there.set_pose(0, 2.0, -1.0, 1.1);
-  drive_wildly(here, 1.0);
-  drive_wildly(there, 1.0);
+  excite(here, 1.0);
+  excite(there, 1.0);
   const RobotTruth a = here.truth(0), b = there.truth(0);
   EXPECT_NEAR(b.x_m, 2.0 + std::cos(1.1) * a.x_m - std::sin(1.1) * a.y_m, 1e-10);
   EXPECT_NEAR(b.y_m, -1.0 + std::sin(1.1) * a.x_m + std::cos(1.1) * a.y_m, 1e-10);
@@ -191,7 +191,7 @@ TEST(Physics, EnergyAndMomentumBalanceUnderHardDriving) {
     return std::array<double, 2>{fx, fy};
   };
   for (int n = 0; n < 20'000; ++n) {
-    if (n % 20 == 0) plant.write(0, wild_drive(0, n * h));
+    if (n % 20 == 0) plant.write(0, excitation_drive(0, n * h));
     plant.advance(50'000);
     const RobotTruth t = plant.truth(0);
     for (std::size_t i = 0; i < kWheels; ++i) {
@@ -224,7 +224,7 @@ double error_at(Integrator integrator, std::int64_t step_ns) {
     o.electrical_step_ns = 10'000;
     Plant plant = one_robot(m, o);
     for (int ms = 0; ms < 300; ++ms) {
-      RobotDrive d = wild_drive(0, ms * 1e-3);
+      RobotDrive d = excitation_drive(0, ms * 1e-3);
       for (double& duty : d.duty_ratio) duty *= 0.5;
       plant.write(0, d);
       plant.advance(1'000'000);

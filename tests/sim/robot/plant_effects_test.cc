@@ -16,9 +16,9 @@ using test::robot_with;
 
 const Physics kAllPhysics[] = {Physics::kSimbody, Physics::kSimbodyFree, Physics::kPlanar};
 
-std::vector<double> numbers_of(const Plant& plant) {
+std::vector<double> numbers_of(Plant& plant) {
   const RobotTruth t = plant.truth(0);
-  const RobotSensors s = plant.read(0);
+  const RobotSensors s = plant.sample_sensors(0);
   std::vector<double> out{
       t.x_m,          t.y_m,          t.yaw_rad,      t.v_forward_m_s, t.v_left_m_s, t.omega_body_rad_s,
       s.gyro_z_rad_s, s.accel_x_m_s2, s.accel_y_m_s2, s.bus_voltage_V};
@@ -43,8 +43,8 @@ TEST(PlantEffects, AtNeutralChangeNothingBitForBit) {
                                 "wheel_slip.compliance_m_s=0", "vision_delay.delay_s=0"},
                                physics);
     Plant without = floor_with(sample_robot(), {}, physics);
-    drive_wildly(neutral, 0.3);
-    drive_wildly(without, 0.3);
+    excite(neutral, 0.3);
+    excite(without, 0.3);
     expect_same_bits(numbers_of(neutral), numbers_of(without));
     EXPECT_EQ(neutral.save().size(), without.save().size());
   }
@@ -54,8 +54,8 @@ TEST(PlantEffects, AtNeutralChangeNothingBitForBit) {
 TEST(PlantEffects, OfVanishingSizeGiveTheNumbersOfTheBaseModel) {
   Plant tiny = floor_with(sample_robot(), {"quadratic_drag.coefficient_Nm_s2_per_rad2=1e-16"});
   Plant without = floor_with(sample_robot(), {});
-  drive_wildly(tiny, 1.0);
-  drive_wildly(without, 1.0);
+  excite(tiny, 1.0);
+  excite(without, 1.0);
   const RobotTruth a = tiny.truth(0), b = without.truth(0);
   EXPECT_NEAR(a.x_m, b.x_m, 2e-5);
   EXPECT_NEAR(a.y_m, b.y_m, 2e-5);
@@ -68,13 +68,13 @@ TEST(PlantEffects, AreSavedAndRestoredWithTheirStates) {
                                          "rolling_resistance"};
   for (const Physics physics : kAllPhysics) {
     Plant plant = floor_with(sample_robot(), effects, physics);
-    drive_wildly(plant, 0.3);
-    (void)plant.read(0);
+    excite(plant, 0.3);
+    (void)plant.sample_sensors(0);
     const auto middle = plant.save();
-    drive_wildly(plant, 0.2);
+    excite(plant, 0.2);
     const auto first = numbers_of(plant);
     ASSERT_TRUE(plant.restore(middle));
-    drive_wildly(plant, 0.2);
+    excite(plant, 0.2);
     expect_same_bits(numbers_of(plant), first);
   }
 }
@@ -94,7 +94,7 @@ TEST(PlantEffects, BatterySagIsOneDipForAllMotorsTogether) {
     const RobotTruth t = plant.truth(0);
     double taken_A = 0.0;
     for (std::size_t i = 0; i < kWheels; ++i) taken_A += duty[i] * t.motor_current_A[i];
-    const double volt = plant.read(0).bus_voltage_V;
+    const double volt = plant.sample_sensors(0).bus_voltage_V;
     EXPECT_NEAR(volt, m.bus_voltage_V - 0.05 * taken_A, 0.02);
     return volt;
   };
@@ -114,8 +114,8 @@ TEST(PlantEffects, HeatingWeakensTheMotorsOfTheRobot) {
   }
   double cold_A = 0.0, hot_A = 0.0;
   for (std::size_t i = 0; i < kWheels; ++i) {
-    cold_A += std::abs(cold.read(0).motor_current_A[i]);
-    hot_A += std::abs(hot.read(0).motor_current_A[i]);
+    cold_A += std::abs(cold.sample_sensors(0).motor_current_A[i]);
+    hot_A += std::abs(hot.sample_sensors(0).motor_current_A[i]);
   }
   EXPECT_NE(cold_A, hot_A);
 }
@@ -126,10 +126,10 @@ TEST(PlantEffects, SamplingDelayShowsAsCountsThatLagBySpeedTimesDelay) {
   Plant plant = floor_with(m, {"sampling_delay.delay_s=0.01"});
   for (int ms = 0; ms < 2000; ++ms) {
     drive_for(plant, duty_drive({0.1, 0.1, 0.1, 0.1}), 1e-3);
-    (void)plant.read(0);
+    (void)plant.sample_sensors(0);
   }
   const RobotTruth t = plant.truth(0);
-  const RobotSensors s = plant.read(0);
+  const RobotSensors s = plant.sample_sensors(0);
   const double counts_per_rad = m.encoder.counts_per_turn / (2.0 * std::numbers::pi);
   EXPECT_NEAR(t.theta_rotor_rad[0] * counts_per_rad - static_cast<double>(s.encoder_counts[0]),
               0.01 * t.omega_rotor_rad_s[0] * counts_per_rad, 2.0);
@@ -156,7 +156,7 @@ TEST(PlantEffects, EccentricityIsSeenByTheEncoderOnly) {
   double most = 0.0;
   for (int ms = 0; ms < 500; ++ms) {
     drive_for(plant, duty_drive({0.05, 0.05, 0.05, 0.05}), 1e-3);
-    const double seen = static_cast<double>(plant.read(0).encoder_counts[0]) / counts_per_rad;
+    const double seen = static_cast<double>(plant.sample_sensors(0).encoder_counts[0]) / counts_per_rad;
     most = std::max(most, std::abs(seen - plant.truth(0).theta_rotor_rad[0]));
   }
   EXPECT_NEAR(most, 0.02, 2e-3);

@@ -53,7 +53,7 @@ TEST(PlantExpression, BrakesTheRotorsAsTheEffectOfTheSameLaw) {
   Plant formula = floor_with_formulas(sample_robot(), kFan);
   Plant effect = floor_with(sample_robot(), {"quadratic_drag.coefficient_Nm_s2_per_rad2=2e-7"});
   Plant without = floor_with(sample_robot(), {});
-  for (Plant* plant : {&formula, &effect, &without}) drive_wildly(*plant, 0.5);
+  for (Plant* plant : {&formula, &effect, &without}) excite(*plant, 0.5);
   for (std::size_t i = 0; i < kWheels; ++i) {
     const double expected = effect.truth(0).omega_rotor_rad_s[i];
     EXPECT_NEAR(formula.truth(0).omega_rotor_rad_s[i], expected, 2e-6);

@@ -73,17 +73,17 @@ TEST_P(PlantFaults, LiftedWheelFeelsNoFloorAndRunsFree) {
 
 TEST_P(PlantFaults, StuckEncoderKeepsItsCountsWhileTheWheelTurns) {
   drive_for(plant_, forward(model_, 0.1), 0.2);
-  const RobotSensors before = plant_.read(0);
+  const RobotSensors before = plant_.sample_sensors(0);
   RobotFaults faults;
   faults.encoder_stuck[2] = true;
   plant_.set_faults(0, faults);
   plant_.advance(200'000'000);
-  const RobotSensors stuck = plant_.read(0);
+  const RobotSensors stuck = plant_.sample_sensors(0);
   EXPECT_EQ(stuck.encoder_counts[2], before.encoder_counts[2]);
   EXPECT_NE(stuck.encoder_counts[1], before.encoder_counts[1]);
   EXPECT_GT(std::abs(omega_wheel_rad_s(2)), 5.0);
   plant_.set_faults(0, {});
-  EXPECT_NE(plant_.read(0).encoder_counts[2], before.encoder_counts[2]);
+  EXPECT_NE(plant_.sample_sensors(0).encoder_counts[2], before.encoder_counts[2]);
 }
 
 TEST_P(PlantFaults, SupplyDipReachesBridgesAndSensor) {
@@ -95,7 +95,7 @@ TEST_P(PlantFaults, SupplyDipReachesBridgesAndSensor) {
   faults.supply_ratio = 0.5;
   plant_.set_faults(0, faults);
   plant_.advance(1'500'000'000);
-  EXPECT_NEAR(plant_.read(0).bus_voltage_V, 0.5 * model_.bus_voltage_V, 1e-9);
+  EXPECT_NEAR(plant_.sample_sensors(0).bus_voltage_V, 0.5 * model_.bus_voltage_V, 1e-9);
   // k omega = duty U less what friction takes: half the voltage, a little less than half the speed
   EXPECT_LT(std::abs(omega_wheel_rad_s(2)), 0.5 * std::abs(full_rad_s));
   EXPECT_GT(std::abs(omega_wheel_rad_s(2)), 0.4 * std::abs(full_rad_s));
@@ -109,25 +109,25 @@ TEST_P(PlantFaults, ForceSpeedsUpABodyInTheAirByNewton) {
   drive_for(plant_, duty_drive({}), 0.5);
   // v = F t / m
   EXPECT_NEAR(plant_.truth(0).v_forward_m_s, 3.0 * 0.5 / model_.mass_kg, 1e-9);
-  EXPECT_NEAR(plant_.read(0).accel_x_m_s2, 3.0 / model_.mass_kg, 1e-9);
+  EXPECT_NEAR(plant_.sample_sensors(0).accel_x_m_s2, 3.0 / model_.mass_kg, 1e-9);
 }
 
 TEST_P(PlantFaults, NeutralFaultsChangeNoBitAndStateGoesOnAfterRestore) {
   Plant other = one_robot(model_, planar_options(500'000));
   other.set_faults(0, {});
-  drive_wildly(plant_, 0.3);
-  drive_wildly(other, 0.3);
+  excite(plant_, 0.3);
+  excite(other, 0.3);
   EXPECT_EQ(plant_.save(), other.save());
   RobotFaults faults;
   faults.blocked[0] = faults.phase_lost[1] = faults.encoder_stuck[3] = true;
   faults.winding_rise_K[2] = 80.0;
   faults.supply_ratio = 0.7;
   plant_.set_faults(0, faults);
-  drive_wildly(plant_, 0.1);
+  excite(plant_, 0.1);
   ASSERT_TRUE(other.restore(plant_.save()));
   EXPECT_EQ(other.faults(0), faults);
-  drive_wildly(plant_, 0.2);
-  drive_wildly(other, 0.2);
+  excite(plant_, 0.2);
+  excite(other, 0.2);
   EXPECT_EQ(plant_.save(), other.save());
 }
 

@@ -41,8 +41,8 @@ TEST(PlantShaft, OfNoGapAndNoComplianceChangesNothingBitForBit) {
     Plant neutral = floor_with(sample_robot(),
                                {"backlash.gap_rad=0", "shaft_compliance.compliance_rad_per_Nm=0"}, physics);
     Plant without = floor_with(sample_robot(), {}, physics);
-    drive_wildly(neutral, 0.2);
-    drive_wildly(without, 0.2);
+    excite(neutral, 0.2);
+    excite(without, 0.2);
     const auto a = motion_of(neutral), b = motion_of(without);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(std::bit_cast<std::uint64_t>(a[i]), std::bit_cast<std::uint64_t>(b[i])) << i;
@@ -54,12 +54,12 @@ TEST(PlantShaft, OfNoGapAndNoComplianceChangesNothingBitForBit) {
 // adds (shaft_step.h).
 TEST(PlantShaft, BecomesTheRigidRobotAsItStiffens) {
   Plant rigid = one_robot(sample_robot(), planar_options(50'000));
-  drive_wildly(rigid, 1.0);
+  excite(rigid, 1.0);
   const RobotTruth limit = rigid.truth(0);
   const auto departure_rad_s = [&](std::vector<std::string> effects) {
     effects.push_back("shaft_compliance.damping_Nm_s_per_rad=0.1");
     Plant plant = floor_with(sample_robot(), effects);
-    drive_wildly(plant, 1.0);
+    excite(plant, 1.0);
     const RobotTruth t = plant.truth(0);
     EXPECT_LT(std::hypot(t.x_m - limit.x_m, t.y_m - limit.y_m), 5e-3);
     double most = 0.0;
@@ -82,8 +82,8 @@ TEST(PlantShaft, IsTheSameInBothBackEnds) {
   const std::vector<std::string> effects{"backlash", "shaft_compliance"};
   Plant planar = floor_with(sample_robot(), effects, Physics::kPlanar);
   Plant simbody = floor_with(sample_robot(), effects, Physics::kSimbody);
-  drive_wildly(planar, 0.4);
-  drive_wildly(simbody, 0.4);
+  excite(planar, 0.4);
+  excite(simbody, 0.4);
   EXPECT_LT(largest_difference(motion_of(planar), motion_of(simbody)), 1e-9);
 }
 
@@ -96,7 +96,7 @@ TEST(PlantShaft, LeavesTheWheelAloneWithinThePlay) {
     for (int n = 0; n < 10; ++n) {
       plant.write(0, turning(0.05));
       plant.advance(500'000);
-      impulse += m.motor.torque_constant_Nm_per_A * plant.read(0).motor_current_A[0] * 5e-4;
+      impulse += m.motor.torque_constant_Nm_per_A * plant.sample_sensors(0).motor_current_A[0] * 5e-4;
     }
     const RobotTruth t = plant.truth(0);
     EXPECT_GT(t.theta_rotor_rad[0], 1e-3);
@@ -157,7 +157,7 @@ TEST(PlantShaft, ShowsAsHysteresisOfTheEncoderAgainstTheCamera) {
     for (int ms = 1; ms <= 2700; ++ms) {
       plant.write(0, turning(0.02 * std::sin(2.0 * M_PI * ms / 4000.0)));
       plant.advance(1'000'000);
-      const double encoder = rad_per_count * static_cast<double>(plant.read(0).encoder_counts[0]);
+      const double encoder = rad_per_count * static_cast<double>(plant.sample_sensors(0).encoder_counts[0]);
       const double lead = encoder - m.wheel_center_radius_m / m.wheel_radius_m * plant.vision(0).yaw_rad;
       if (ms == 700) there = lead;
       if (ms == 2700) back = lead;
@@ -170,12 +170,12 @@ TEST(PlantShaft, ShowsAsHysteresisOfTheEncoderAgainstTheCamera) {
 TEST(PlantShaft, IsSavedAndRestoredWithItsRotors) {
   for (const Physics physics : kAllPhysics) {
     Plant plant = floor_with(sample_robot(), {"backlash", "shaft_compliance", "rolling_resistance"}, physics);
-    drive_wildly(plant, 0.1);
+    excite(plant, 0.1);
     const auto middle = plant.save();
-    drive_wildly(plant, 0.1);
+    excite(plant, 0.1);
     const auto first = motion_of(plant);
     ASSERT_TRUE(plant.restore(middle));
-    drive_wildly(plant, 0.1);
+    excite(plant, 0.1);
     EXPECT_EQ(motion_of(plant), first);
   }
 }
@@ -184,9 +184,9 @@ TEST(PlantShaft, IsSavedAndRestoredWithItsRotors) {
 TEST(PlantShaft, KeepsItsRotorsWhereTheyAreWhenPlaced) {
   Plant plant = floor_with(sample_robot(), {"backlash.gap_rad=0.1"});
   drive_for(plant, turning(0.1), 0.3);
-  const RobotSensors before = plant.read(0);
+  const RobotSensors before = plant.sample_sensors(0);
   plant.set_pose(0, 1.0, 2.0, 0.5);
-  const RobotSensors after = plant.read(0);
+  const RobotSensors after = plant.sample_sensors(0);
   for (std::size_t i = 0; i < kWheels; ++i) EXPECT_EQ(after.encoder_counts[i], before.encoder_counts[i]);
   EXPECT_EQ(plant.truth(0).omega_rotor_rad_s[0], 0.0);
 }

@@ -64,7 +64,7 @@ TEST(Plant, SimbodyStepsInReleaseAndInDebugBuilds) {
 #endif
   for (Physics physics : {Physics::kSimbody, Physics::kSimbodyFree}) {
     Plant plant = three_robots(physics);
-    drive_wildly(plant, 0.05);
+    excite(plant, 0.05);
     EXPECT_EQ(plant.now_ns(), 50'000'000);
     EXPECT_GT(std::abs(plant.truth(1).omega_wheel_rad_s[0]), 1.0);
     EXPECT_FALSE(plant.fault());
@@ -74,19 +74,19 @@ TEST(Plant, SimbodyStepsInReleaseAndInDebugBuilds) {
 TEST(Plant, RestoredStateGivesTheSameBitsAgain) {
   for (Physics physics : kAllPhysics) {
     Plant plant = three_robots(physics);
-    drive_wildly(plant, 0.3);
-    (void)plant.read(1);
+    excite(plant, 0.3);
+    (void)plant.sample_sensors(1);
     const auto middle = plant.save();
-    drive_wildly(plant, 0.2);
+    excite(plant, 0.2);
     const auto end = plant.save();
     ASSERT_NE(middle, end);
     ASSERT_TRUE(plant.restore(middle));
     EXPECT_EQ(plant.now_ns(), 300'000'000);
-    drive_wildly(plant, 0.2);
+    excite(plant, 0.2);
     EXPECT_EQ(plant.save(), end);
     Plant other = three_robots(physics);
     ASSERT_TRUE(other.restore(middle));
-    drive_wildly(other, 0.2);
+    excite(other, 0.2);
     EXPECT_EQ(other.save(), end);
   }
 }
@@ -107,9 +107,9 @@ TEST(Plant, LookingAtTheTruthChangesNothing) {
   for (Physics physics : kAllPhysics) {
     Plant looked_at = three_robots(physics), left_alone = three_robots(physics);
     for (int ms = 0; ms < 100; ++ms) {
-      drive_wildly(looked_at, 0.001);
+      excite(looked_at, 0.001);
       for (int n = 0; n < 3; ++n) (void)looked_at.truth(n);
-      drive_wildly(left_alone, 0.001);
+      excite(left_alone, 0.001);
     }
     EXPECT_EQ(looked_at.save(), left_alone.save());
   }
@@ -117,7 +117,7 @@ TEST(Plant, LookingAtTheTruthChangesNothing) {
 
 TEST(Plant, OneLongAdvanceIsManyShortOnes) {
   Plant a = three_robots(Physics::kPlanar), b = three_robots(Physics::kPlanar);
-  for (int n = 0; n < 3; ++n) a.write(n, wild_drive(n, 0.4)), b.write(n, wild_drive(n, 0.4));
+  for (int n = 0; n < 3; ++n) a.write(n, excitation_drive(n, 0.4)), b.write(n, excitation_drive(n, 0.4));
   a.advance(100'000'000);
   for (int i = 0; i < 200; ++i) b.advance(500'000);
   EXPECT_EQ(a.save(), b.save());
@@ -134,14 +134,14 @@ TEST(Plant, ARobotDrivesTheSameAloneAndAmongOthers) {
   Plant fleet = three_robots(Physics::kPlanar);
   for (int ms = 0; ms < 500; ++ms) {
     const double t_s = ms * 1e-3;
-    alone.write(0, wild_drive(1, t_s));
-    for (int n = 0; n < 3; ++n) fleet.write(n, wild_drive(n, t_s));
+    alone.write(0, excitation_drive(1, t_s));
+    for (int n = 0; n < 3; ++n) fleet.write(n, excitation_drive(n, t_s));
     alone.advance(1'000'000);
     fleet.advance(1'000'000);
   }
   EXPECT_EQ(alone.truth(0).x_m, fleet.truth(1).x_m);
   EXPECT_EQ(alone.truth(0).y_m, fleet.truth(1).y_m);
-  EXPECT_EQ(alone.read(0).encoder_counts[2], fleet.read(1).encoder_counts[2]);
+  EXPECT_EQ(alone.sample_sensors(0).encoder_counts[2], fleet.sample_sensors(1).encoder_counts[2]);
 }
 
 TEST(Plant, ThePlanarPathAllocatesNothingPerStep) {
@@ -149,11 +149,11 @@ TEST(Plant, ThePlanarPathAllocatesNothingPerStep) {
   GTEST_SKIP() << "sanitizers bring their own allocator";
 #endif
   Plant plant = three_robots(Physics::kPlanar);
-  drive_wildly(plant, 0.01);
+  excite(plant, 0.01);
   const long before = allocations.load();
-  drive_wildly(plant, 0.2);
+  excite(plant, 0.2);
   for (int n = 0; n < 3; ++n) {
-    (void)plant.read(n);
+    (void)plant.sample_sensors(n);
     (void)plant.truth(n);
   }
   EXPECT_EQ(allocations.load() - before, 0);
@@ -167,12 +167,12 @@ TEST(Plant, ThePlanarPathWithEffectsAllocatesNothingPerStep) {
       test::floor_with(sample_robot(), {"battery_sag", "cogging", "lugre_friction", "winding_heating",
                                         "actuator_delay", "wheel_slip", "floor_tilt", "sampling_delay",
                                         "encoder_missed_counts", "vision_delay"});
-  drive_wildly(plant, 0.01);
+  excite(plant, 0.01);
   const long before = allocations.load();
   for (int ms = 0; ms < 200; ++ms) {
-    plant.write(0, wild_drive(0, ms * 1e-3));
+    plant.write(0, excitation_drive(0, ms * 1e-3));
     plant.advance(1'000'000);
-    (void)plant.read(0);
+    (void)plant.sample_sensors(0);
     (void)plant.vision(0);
   }
   EXPECT_EQ(allocations.load() - before, 0);
@@ -187,7 +187,7 @@ TEST(Plant, CountsAreTheTrueRotorAngleAndDirectionTurnsThem) {
   plant.advance(700'000'000);
   for (int n = 0; n < 2; ++n) {
     const RobotTruth t = plant.truth(n);
-    const RobotSensors s = plant.read(n);
+    const RobotSensors s = plant.sample_sensors(n);
     const int direction = n == 0 ? 1 : -1;
     for (std::size_t i = 0; i < kWheels; ++i) {
       const double exact = direction * t.theta_rotor_rad[i] / (2 * std::numbers::pi) * 4096;
@@ -197,7 +197,26 @@ TEST(Plant, CountsAreTheTrueRotorAngleAndDirectionTurnsThem) {
   }
 }
 
-TEST(Plant, MotorCurrentIsTheMeanSinceTheLastReading) {
+template <class P>
+concept SamplesSensorsThroughConst = requires(const P& plant) {
+  plant.sample_sensors(0);
+};
+
+// Sampling ends the averaging interval of the motor currents: two samples in a row differ, so it is no getter.
+TEST(Plant, SamplingTheSensorsIsNotConst) {
+  EXPECT_FALSE(SamplesSensorsThroughConst<Plant>);
+  Plant plant = one_robot(sample_robot(), planar_options());
+  plant.write(0, duty_drive({0.3, 0.3, 0.3, 0.3}));
+  plant.advance(1'000'000);
+  const Plant& watched = plant;
+  const double before_A = watched.truth(0).motor_current_A[1];
+  const double mean_A = plant.sample_sensors(0).motor_current_A[1];
+  EXPECT_EQ(watched.truth(0).motor_current_A[1], before_A);         // a look at the truth changes nothing
+  EXPECT_LT(mean_A, before_A);                                      // the current rises within the interval
+  EXPECT_EQ(plant.sample_sensors(0).motor_current_A[1], before_A);  // the next interval is empty
+}
+
+TEST(Plant, MotorCurrentIsTheMeanSinceTheLastSample) {
   Plant plant = one_robot(sample_robot(), planar_options());
   plant.write(0, duty_drive({0.3, 0.3, 0.3, 0.3}));
   double sum_A = 0.0;
@@ -206,9 +225,9 @@ TEST(Plant, MotorCurrentIsTheMeanSinceTheLastReading) {
     // the mean torque of one step is k times its mean current
     sum_A += plant.truth(0).motor_torque_Nm[1] / sample_robot().motor.torque_constant_Nm_per_A;
   }
-  EXPECT_NEAR(plant.read(0).motor_current_A[1], sum_A / 20, 1e-9);
+  EXPECT_NEAR(plant.sample_sensors(0).motor_current_A[1], sum_A / 20, 1e-9);
   // nothing since: the current itself
-  EXPECT_EQ(plant.read(0).motor_current_A[1], plant.truth(0).motor_current_A[1]);
+  EXPECT_EQ(plant.sample_sensors(0).motor_current_A[1], plant.truth(0).motor_current_A[1]);
 }
 
 TEST(Plant, SensorsTellYawRateTimeVoltageAndMeanAcceleration) {
@@ -222,7 +241,7 @@ TEST(Plant, SensorsTellYawRateTimeVoltageAndMeanAcceleration) {
     const RobotTruth before = plant.truth(0);
     plant.advance(250'000);
     const RobotTruth t = plant.truth(0);
-    const RobotSensors s = plant.read(0);
+    const RobotSensors s = plant.sample_sensors(0);
     EXPECT_EQ(s.now_us, 200'250u);
     EXPECT_EQ(s.bus_voltage_V, 24.0);
     EXPECT_EQ(s.gyro_z_rad_s, t.omega_body_rad_s);
@@ -248,13 +267,14 @@ TEST(Plant, DutyIsLimitedByTheModelAndCurrentByItsLimit) {
   asked.write(0, duty_drive({-1.0, -1.0, -1.0, -1.0}));
   for (int ms = 0; ms < 50; ++ms) {
     asked.advance(1'000'000);
-    EXPECT_LE(std::abs(asked.read(0).motor_current_A[0]), sample_robot().motor.current_limit_A * 1.001);
+    EXPECT_LE(std::abs(asked.sample_sensors(0).motor_current_A[0]),
+              sample_robot().motor.current_limit_A * 1.001);
   }
 }
 
 TEST(Plant, AnInputThatIsNotFiniteStopsItAndIsNamed) {
   Plant plant = three_robots(Physics::kPlanar);
-  drive_wildly(plant, 0.01);
+  excite(plant, 0.01);
   plant.write(1, duty_drive({0.1, 0.1, std::numeric_limits<double>::quiet_NaN(), 0.1}));
   plant.advance(1'000'000);
   ASSERT_TRUE(plant.fault());

@@ -69,7 +69,7 @@ inline RobotDrive duty_drive(const std::array<double, kWheels>& duty_ratio) {
 }
 
 // Hard driving: every wheel goes through both directions, through zero and into slip.
-inline RobotDrive wild_drive(int robot, double t_s) {
+inline RobotDrive excitation_drive(int robot, double t_s) {
   std::array<double, kWheels> duty;
   for (std::size_t i = 0; i < kWheels; ++i) {
     const auto wheel = static_cast<double>(i);
@@ -80,11 +80,11 @@ inline RobotDrive wild_drive(int robot, double t_s) {
 }
 
 // Drives all robots wildly for a time, with a new duty each millisecond.
-inline void drive_wildly(Plant& plant, double duration_s) {
+inline void excite(Plant& plant, double duration_s) {
   const auto end_ns = plant.now_ns() + std::llround(duration_s * 1e9);
   while (plant.now_ns() < end_ns) {
     for (int n = 0; n < plant.robot_count(); ++n) {
-      plant.write(n, wild_drive(n, static_cast<double>(plant.now_ns()) * 1e-9));
+      plant.write(n, excitation_drive(n, static_cast<double>(plant.now_ns()) * 1e-9));
     }
     plant.advance(1'000'000);
   }

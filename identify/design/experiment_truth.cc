@@ -1,4 +1,4 @@
-#include "identify/design/experiment_world.h"
+#include "identify/design/experiment_truth.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,7 @@
 
 #include "identify/predict/robot_motion.h"
 #include "identify/record/signal_list.h"
+#include "identify/record/statistics.h"
 #include "sim/model/axis_model.h"
 #include "sim/model/rolling_model.h"
 
@@ -17,15 +18,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-double median_of(const std::vector<double>& values, double otherwise) {
-  std::vector<double> v;
-  for (const double x : values) {
-    if (std::isfinite(x)) v.push_back(x);
-  }
-  if (v.empty()) return otherwise;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
+double median_or(const std::vector<double>& values, double otherwise) {
+  const std::vector<double> finite = finite_values(values);
+  return finite.empty() ? otherwise : median(finite);
 }
 
 double largest_of(const Dataset& given, const std::string& signal) {
@@ -42,12 +37,12 @@ double largest_of(const Dataset& given, const std::string& signal) {
 
 double camera_period(const Run& run) {
   for (const char* name : {"vision_x", "vision_y", "vision_theta"}) {
-    const std::vector<double>* seen = run.signal(name);
-    if (seen == nullptr) continue;
+    const std::vector<double>* pose = run.signal(name);
+    if (pose == nullptr) continue;
     double first = kNaN, last = kNaN;
     int frames = 0;
-    for (std::size_t k = 0; k < seen->size(); ++k) {
-      if (!std::isfinite((*seen)[k])) continue;
+    for (std::size_t k = 0; k < pose->size(); ++k) {
+      if (!std::isfinite((*pose)[k])) continue;
       last = run.time_s[k];
       if (frames++ == 0) first = last;
     }
@@ -56,7 +51,7 @@ double camera_period(const Run& run) {
   return 0.0;
 }
 
-// The noise that the given data showed, where no channel states it.
+// Sensor noise as estimated from the given data, where no channel states it.
 void fill_noise(const Predictor& predictor, Dataset& like) {
   for (int r = 0; r < predictor.run_count(); ++r) {
     for (const ComparedSignal& c : predictor.compared(r)) {
@@ -71,20 +66,20 @@ void fill_noise(const Predictor& predictor, Dataset& like) {
 
 double bus_of(const PlannedBench& bench) {
   const std::vector<double>* bus = bench.example.signal("bus_voltage");
-  return bus != nullptr ? median_of(*bus, bench.supply_V) : bench.supply_V;
+  return bus != nullptr ? median_or(*bus, bench.supply_V) : bench.supply_V;
 }
 
-// The run with its inputs, everything that is measured still zero.
+// The run with its inputs; all measured signals zero so far (bus voltage: at its level).
 Run blank_run(const PlannedBench& bench, const PlannedInputs& inputs) {
   Run run;
   run.file = "planned";
-  run.use = Use::kFit;
+  run.split = Split::kTraining;
   run.time_s = inputs.time_s;
   const std::size_t n = run.time_s.size();
   const double bus_V = bus_of(bench);
   for (const auto& [name, values] : bench.example.signals) {
     const SignalRow* row = find_signal(bench.like.rig, name);
-    const bool drive = row != nullptr && row->kind == SignalKind::kDrive;
+    const bool drive = row != nullptr && row->role == SignalRole::kDrive;
     if (drive && name != "dribbler") continue;
     double level = name == "enable" ? 1.0 : 0.0;
     if (name == "bus_voltage") level = bus_V;
@@ -107,10 +102,11 @@ Dataset with_run(const Dataset& like, Run run) {
   return dataset;
 }
 
-// An axis' answer as its measurement: angles are the sum of its speed, so that laws of the angle see them.
-void measure_axis(const PlannedBench& bench, const Predictor& world, const Candidate& truth, Run& run) {
-  const Prediction y = world.predict(truth, 0);
-  const std::vector<ComparedSignal>& compared = world.compared(0);
+// Takes an axis' simulated response as its measurement; positions and counts are the integral of its speed,
+// so that laws of the angle are given an angle.
+void measure_axis(const PlannedBench& bench, const Predictor& simulated, const Candidate& truth, Run& run) {
+  const Prediction y = simulated.predict(truth, 0);
+  const std::vector<ComparedSignal>& compared = simulated.compared(0);
   const DriveParams<double> drive = drive_of(truth);
   for (std::size_t s = 0; s < compared.size(); ++s) {
     if (auto own = run.signals.find(compared[s].name);
@@ -120,17 +116,19 @@ void measure_axis(const PlannedBench& bench, const Predictor& world, const Candi
     }
     if (compared[s].name != "velocity" && compared[s].name != "encoder_velocity") continue;
     double at = 0.0;
-    std::vector<double> way(run.time_s.size(), 0.0);
-    for (std::size_t k = 1; k < way.size(); ++k) {
+    std::vector<double> displacement(run.time_s.size(), 0.0);
+    for (std::size_t k = 1; k < displacement.size(); ++k) {
       const double v = y.values[s][k];
       if (std::isfinite(v)) at += v * (run.time_s[k] - run.time_s[k - 1]);
-      way[k] = at;
+      displacement[k] = at;
     }
-    if (auto position = run.signals.find("position"); position != run.signals.end()) position->second = way;
+    if (auto position = run.signals.find("position"); position != run.signals.end())
+      position->second = displacement;
     const Channel* encoder = bench.like.channel("encoder");
     if (encoder == nullptr || !run.signals.contains("encoder")) continue;
     const double per_rad = encoder->counts_per_rev / kTurn * (encoder->on_output ? 1.0 : drive.gear_ratio);
-    for (std::size_t k = 0; k < way.size(); ++k) run.signals["encoder"][k] = std::floor(way[k] * per_rad);
+    for (std::size_t k = 0; k < displacement.size(); ++k)
+      run.signals["encoder"][k] = std::floor(displacement[k] * per_rad);
   }
 }
 
@@ -147,7 +145,7 @@ PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const
     return bench;
   }
   for (const Run& run : given.runs) {
-    if (run.use == Use::kFit && !run.steady) {
+    if (run.split == Split::kTraining && !run.steady) {
       bench.example = run;
       break;
     }
@@ -176,8 +174,8 @@ PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const
   return bench;
 }
 
-std::unique_ptr<Predictor> planned_world(const PlannedBench& bench, const PlannedInputs& inputs,
-                                         const Candidate& truth, std::uint64_t seed) {
+std::unique_ptr<Predictor> simulated_truth(const PlannedBench& bench, const PlannedInputs& inputs,
+                                           const Candidate& truth, std::uint64_t seed) {
   Run run = blank_run(bench, inputs);
   if (bench.like.rig == Rig::kRobot) {
     return make_predictor(with_run(bench.like, run), bench.nominal, {})->simulated(truth, seed);
@@ -209,21 +207,21 @@ MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& 
     }
     return out;
   }
-  // Whatever the bench measures: speed and current are simulated.
+  // Speed and current are simulated whether or not the bench measures them.
   PlannedBench all = bench;
   for (const char* name : {"velocity", "motor_current"}) {
     all.example.signals[name] = {};
     if (all.like.channel(name) == nullptr)
       all.like.channels.push_back({.signal = name, .column = name, .unit = "", .sigma = 1.0});
   }
-  const auto world =
+  const auto simulated =
       make_predictor(with_run(all.like, blank_run(all, inputs)), bench.nominal, {.slave_angle = false});
-  const Prediction y = world->predict(model, 0);
+  const Prediction y = simulated->predict(model, 0);
   out.finite = y.finite;
   const double gear = bench.like.linear ? 1.0 : drive_of(model).gear_ratio;
   double at = 0.0;
-  for (std::size_t s = 0; s < world->compared(0).size(); ++s) {
-    const std::string& name = world->compared(0)[s].name;
+  for (std::size_t s = 0; s < simulated->compared(0).size(); ++s) {
+    const std::string& name = simulated->compared(0)[s].name;
     for (std::size_t k = 1; k < y.values[s].size(); ++k) {
       const double v = y.values[s][k];
       if (!std::isfinite(v)) continue;

@@ -1,8 +1,8 @@
 // Measured minus predicted, all runs of one use as one long vector: what screening, refits and verdicts count
 // with.
 //
-//   SignalKinds kinds = signal_kinds(predictor);             // velocity, motor_current, …
-//   Evidence fit(predictor, kinds, Use::kFit);
+//   ComparedChannels kinds = compared_channels(predictor);             // velocity, motor_current, …
+//   WhitenedResiduals fit(predictor, kinds, Split::kTraining);
 //   Eigen::VectorXd r = fit.residual(candidate);             // empty: a run diverged
 //   fit.mean_square(r)[0];                                   // of the first kind of signal
 //   fit.block_sums(r);                                       // the same in blocks of time, for a bootstrap
@@ -22,34 +22,34 @@
 namespace omnihil {
 
 // The signals of a dataset over all its runs, in the order in which they first appear.
-struct SignalKinds {
+struct ComparedChannels {
   std::vector<std::string> name;
   std::vector<double> noise_sigma;  // of the whitened residual; root mean square over the runs
   int count() const { return static_cast<int>(name.size()); }
 };
-SignalKinds signal_kinds(const Predictor& predictor);
+ComparedChannels compared_channels(const Predictor& predictor);
 
 // How residuals enter: whitened, so that sums of squares are likelihoods (what decides), or as they are seen
 // (how large an error is to somebody who looks at the signal).
-enum class Weighing : std::uint8_t { kWhitened, kAsSeen };
+enum class Weighing : std::uint8_t { kWhitened, kUnweighted };
 
-class Evidence {
+class WhitenedResiduals {
  public:
   struct Part {  // one signal of one run
     int run = 0;
     int signal = 0;  // in Predictor::compared(run)
-    int kind = 0;
+    int channel = 0;
     Eigen::Index first = 0;       // of the long vector
     std::vector<int> rows;        // samples of the run
     std::vector<int> time_block;  // per row: which block of time
   };
 
-  Evidence(const Predictor& predictor, const SignalKinds& kinds, Use use,
-           Weighing weighing = Weighing::kWhitened);
+  WhitenedResiduals(const Predictor& predictor, const ComparedChannels& channels, Split split,
+                    Weighing weighing = Weighing::kWhitened);
 
   bool empty() const { return size_ == 0; }
   Eigen::Index size() const { return size_; }
-  Use use() const { return use_; }
+  Split split() const { return split_; }
   const std::vector<Part>& parts() const { return parts_; }
   const std::vector<int>& runs() const { return runs_; }
   int blocks() const { return blocks_; }
@@ -77,22 +77,22 @@ class Evidence {
   Eigen::MatrixXd block_sums(const Eigen::VectorXd& residual) const;
   const Eigen::MatrixXd& block_samples() const { return block_samples_; }
   // 1 / scale of each sample's kind
-  Eigen::VectorXd weights(const Eigen::VectorXd& scale_of_kind) const;
+  Eigen::VectorXd weights(const Eigen::VectorXd& scale_of_channel) const;
 
  private:
-  void add_run(int run, const SignalKinds& kinds);
+  void add_run(int run, const ComparedChannels& channels);
   // Whitened; `values`: per run of this use, per signal, per row.
   Eigen::VectorXd gathered(const std::vector<std::vector<std::vector<double>>>& values) const;
   // Rows of the part, whitened; `rows`: all rows of its run.
   Eigen::MatrixXd whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const;
 
   const Predictor* predictor_;
-  Use use_;
+  Split split_;
   Weighing weighing_;
   std::vector<int> runs_;
   std::vector<Part> parts_;
   Eigen::Index size_ = 0;
-  int kinds_ = 0;
+  int channels_ = 0;
   int blocks_ = 0;
   Eigen::VectorXd measured_;
   Eigen::VectorXd samples_;

@@ -1,4 +1,4 @@
-#include "identify/estimate/evidence.h"
+#include "identify/estimate/whitened_residuals.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr int kMostBlocksPerRun = 200;
 constexpr const char* kBusVoltage = "bus_voltage";
 
 // Least squares of 1, x, x^2 over the rows, taken off each column.
-void take_slow_course_off(Eigen::MatrixXd& columns) {
+void remove_slow_trend(Eigen::MatrixXd& columns) {
   const Eigen::Index n = columns.rows();
   if (n < 6) return;
   Eigen::MatrixXd slow(n, 3);
@@ -28,20 +28,21 @@ void take_slow_course_off(Eigen::MatrixXd& columns) {
   columns -= slow * share;
 }
 
-int kind_of(const SignalKinds& kinds, const std::string& name) {
-  return static_cast<int>(std::find(kinds.name.begin(), kinds.name.end(), name) - kinds.name.begin());
+int channel_of(const ComparedChannels& channels, const std::string& name) {
+  return static_cast<int>(std::find(channels.name.begin(), channels.name.end(), name) -
+                          channels.name.begin());
 }
 
 }  // namespace
 
-SignalKinds signal_kinds(const Predictor& predictor) {
-  SignalKinds kinds;
+ComparedChannels compared_channels(const Predictor& predictor) {
+  ComparedChannels channels;
   std::vector<double> square, count;
   for (int run = 0; run < predictor.run_count(); ++run) {
     for (const ComparedSignal& s : predictor.compared(run)) {
-      const std::size_t k = static_cast<std::size_t>(kind_of(kinds, s.name));
-      if (k == kinds.name.size()) {
-        kinds.name.push_back(s.name);
+      const std::size_t k = static_cast<std::size_t>(channel_of(channels, s.name));
+      if (k == channels.name.size()) {
+        channels.name.push_back(s.name);
         square.push_back(0.0);
         count.push_back(0.0);
       }
@@ -51,25 +52,26 @@ SignalKinds signal_kinds(const Predictor& predictor) {
     }
   }
   for (std::size_t k = 0; k < square.size(); ++k)
-    kinds.noise_sigma.push_back(std::sqrt(square[k] / count[k]));
-  return kinds;
+    channels.noise_sigma.push_back(std::sqrt(square[k] / count[k]));
+  return channels;
 }
 
-Evidence::Evidence(const Predictor& predictor, const SignalKinds& kinds, Use use, Weighing weighing)
-    : predictor_(&predictor), use_(use), weighing_(weighing), kinds_(kinds.count()) {
+WhitenedResiduals::WhitenedResiduals(const Predictor& predictor, const ComparedChannels& channels,
+                                     Split split, Weighing weighing)
+    : predictor_(&predictor), split_(split), weighing_(weighing), channels_(channels.count()) {
   for (int run = 0; run < predictor.run_count(); ++run) {
-    if (predictor.run(run).use == use) add_run(run, kinds);
+    if (predictor.run(run).split == split) add_run(run, channels);
   }
   measured_ = measured_by(predictor);
-  samples_ = Eigen::VectorXd::Zero(kinds_);
-  block_samples_ = Eigen::MatrixXd::Zero(blocks_, kinds_);
+  samples_ = Eigen::VectorXd::Zero(channels_);
+  block_samples_ = Eigen::MatrixXd::Zero(blocks_, channels_);
   for (const Part& part : parts_) {
-    samples_[part.kind] += static_cast<double>(part.rows.size());
-    for (const int block : part.time_block) block_samples_(block, part.kind) += 1.0;
+    samples_[part.channel] += static_cast<double>(part.rows.size());
+    for (const int block : part.time_block) block_samples_(block, part.channel) += 1.0;
   }
 }
 
-void Evidence::add_run(int run, const SignalKinds& kinds) {
+void WhitenedResiduals::add_run(int run, const ComparedChannels& channels) {
   const std::vector<ComparedSignal>& signals = predictor_->compared(run);
   runs_.push_back(run);
   int run_blocks = 0;
@@ -77,7 +79,7 @@ void Evidence::add_run(int run, const SignalKinds& kinds) {
     const ComparedSignal& signal = signals[s];
     Part part{.run = run,
               .signal = static_cast<int>(s),
-              .kind = kind_of(kinds, signal.name),
+              .channel = channel_of(channels, signal.name),
               .first = size_,
               .rows = {},
               .time_block = {}};
@@ -100,7 +102,7 @@ void Evidence::add_run(int run, const SignalKinds& kinds) {
   blocks_ += run_blocks;
 }
 
-Eigen::MatrixXd Evidence::whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const {
+Eigen::MatrixXd WhitenedResiduals::whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const {
   const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(rows.rows(), rows.cols(), std::nan(""));
   for (const int row : part.rows) all.row(row) = rows.row(row);
@@ -108,13 +110,13 @@ Eigen::MatrixXd Evidence::whitened_rows(const Part& part, const Eigen::MatrixXd&
   Eigen::MatrixXd out(part.rows.size(), rows.cols());
   for (std::size_t i = 0; i < part.rows.size(); ++i)
     out.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
-  if (signal.name == kBusVoltage) take_slow_course_off(out);
+  if (signal.name == kBusVoltage) remove_slow_trend(out);
   return out;
 }
 
-void Evidence::whiten_part(const Part& part, Eigen::MatrixXd& columns) const {
+void WhitenedResiduals::whiten_part(const Part& part, Eigen::MatrixXd& columns) const {
   const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
-  if (signal.whitening_s <= 0.0 || weighing_ == Weighing::kAsSeen) return;
+  if (signal.whitening_s <= 0.0 || weighing_ == Weighing::kUnweighted) return;
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(signal.measured.size()),
                                                   columns.cols(), std::nan(""));
   for (std::size_t i = 0; i < part.rows.size(); ++i)
@@ -124,7 +126,8 @@ void Evidence::whiten_part(const Part& part, Eigen::MatrixXd& columns) const {
     columns.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
 }
 
-Eigen::VectorXd Evidence::gathered(const std::vector<std::vector<std::vector<double>>>& values) const {
+Eigen::VectorXd WhitenedResiduals::gathered(
+    const std::vector<std::vector<std::vector<double>>>& values) const {
   Eigen::VectorXd out(size_);
   for (const Part& part : parts_) {
     const std::size_t run =
@@ -136,7 +139,7 @@ Eigen::VectorXd Evidence::gathered(const std::vector<std::vector<std::vector<dou
   return out;
 }
 
-Eigen::VectorXd Evidence::measured_by(const Predictor& other) const {
+Eigen::VectorXd WhitenedResiduals::measured_by(const Predictor& other) const {
   std::vector<std::vector<std::vector<double>>> values(runs_.size());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     for (const ComparedSignal& s : other.compared(runs_[r])) values[r].push_back(s.measured);
@@ -144,12 +147,12 @@ Eigen::VectorXd Evidence::measured_by(const Predictor& other) const {
   return gathered(values);
 }
 
-Eigen::VectorXd Evidence::predicted(const Candidate& candidate, int jobs) const {
+Eigen::VectorXd WhitenedResiduals::predicted(const Candidate& candidate, int jobs) const {
   return predicted_by(*predictor_, candidate, jobs);
 }
 
-Eigen::VectorXd Evidence::predicted_by(const Predictor& predictor, const Candidate& candidate,
-                                       int jobs) const {
+Eigen::VectorXd WhitenedResiduals::predicted_by(const Predictor& predictor, const Candidate& candidate,
+                                                int jobs) const {
   std::vector<std::vector<std::vector<double>>> values(runs_.size());
   std::vector<char> finite(runs_.size(), 1);
   parallel_for(jobs, static_cast<int>(runs_.size()), [&](int r) {
@@ -163,14 +166,14 @@ Eigen::VectorXd Evidence::predicted_by(const Predictor& predictor, const Candida
   return out;
 }
 
-Eigen::VectorXd Evidence::residual(const Candidate& candidate, int jobs) const {
+Eigen::VectorXd WhitenedResiduals::residual(const Candidate& candidate, int jobs) const {
   const Eigen::VectorXd model = predicted(candidate, jobs);
   if (model.size() != size_) return {};
   return measured_ - model;
 }
 
-Eigen::MatrixXd Evidence::derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
-                                      int jobs) const {
+Eigen::MatrixXd WhitenedResiduals::derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                               int jobs) const {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size_, static_cast<Eigen::Index>(unknowns.size()));
   parallel_for(jobs, static_cast<int>(runs_.size()), [&](int r) {
     const int run = runs_[static_cast<std::size_t>(r)];
@@ -186,7 +189,7 @@ Eigen::MatrixXd Evidence::derivatives(const Candidate& candidate, std::span<cons
              : Eigen::MatrixXd(out.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }));
 }
 
-Eigen::VectorXd Evidence::track(const Candidate& candidate, std::string_view name) const {
+Eigen::VectorXd WhitenedResiduals::track(const Candidate& candidate, std::string_view name) const {
   Eigen::VectorXd out = Eigen::VectorXd::Constant(size_, std::nan(""));
   for (const int run : runs_) {
     for (const RegimeTrack& track : predictor_->regimes(candidate, run)) {
@@ -203,30 +206,31 @@ Eigen::VectorXd Evidence::track(const Candidate& candidate, std::string_view nam
   return out;
 }
 
-Eigen::VectorXd Evidence::mean_square(const Eigen::VectorXd& residual) const {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(kinds_);
+Eigen::VectorXd WhitenedResiduals::mean_square(const Eigen::VectorXd& residual) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(channels_);
   for (const Part& part : parts_) {
-    out[part.kind] += residual.segment(part.first, static_cast<Eigen::Index>(part.rows.size())).squaredNorm();
+    out[part.channel] +=
+        residual.segment(part.first, static_cast<Eigen::Index>(part.rows.size())).squaredNorm();
   }
-  for (int k = 0; k < kinds_; ++k) out[k] = samples_[k] > 0.0 ? out[k] / samples_[k] : 0.0;
+  for (int k = 0; k < channels_; ++k) out[k] = samples_[k] > 0.0 ? out[k] / samples_[k] : 0.0;
   return out;
 }
 
-Eigen::MatrixXd Evidence::block_sums(const Eigen::VectorXd& residual) const {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(blocks_, kinds_);
+Eigen::MatrixXd WhitenedResiduals::block_sums(const Eigen::VectorXd& residual) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(blocks_, channels_);
   for (const Part& part : parts_) {
     for (std::size_t i = 0; i < part.rows.size(); ++i) {
       const double r = residual[part.first + static_cast<Eigen::Index>(i)];
-      out(part.time_block[i], part.kind) += r * r;
+      out(part.time_block[i], part.channel) += r * r;
     }
   }
   return out;
 }
 
-Eigen::VectorXd Evidence::weights(const Eigen::VectorXd& scale_of_kind) const {
+Eigen::VectorXd WhitenedResiduals::weights(const Eigen::VectorXd& scale_of_channel) const {
   Eigen::VectorXd out(size_);
   for (const Part& part : parts_) {
-    const double scale = scale_of_kind[part.kind];
+    const double scale = scale_of_channel[part.channel];
     out.segment(part.first, static_cast<Eigen::Index>(part.rows.size()))
         .setConstant(scale > 0.0 ? 1.0 / scale : 0.0);
   }

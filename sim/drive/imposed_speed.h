@@ -1,6 +1,6 @@
 // One sub-step of a rotor whose speed a bench imposes: the torque that the bench must add.
 //
-//   BenchTurn<double> b = turn_by_bench(w0, w1, h, J, tau_outside_Nm, load);   // b.outside_Nm, b.held
+//   ImposedSpeed<double> b = impose_speed(w0, w1, h, J, tau_outside_Nm, load);   // b.outside_Nm, b.held
 //
 // Law: tau_outside = J domega/dt - (all other torques), friction at rest taking what it can.
 // Values in, values out, and never inlined: a drive's sub-step that lent its own numbers by reference to a
@@ -12,16 +12,16 @@
 namespace omnihil {
 
 template <typename T>
-struct BenchTurn {
+struct ImposedSpeed {
   T outside_Nm = T(0);
   bool held = false;  // at rest, by friction alone
 };
 
 template <typename T>
-[[gnu::noinline, gnu::cold]] BenchTurn<T> turn_by_bench(double omega_start_rad_s, double omega_end_rad_s,
-                                                        double h_s, T inertia_kg_m2, T tau_outside_Nm,
-                                                        RotorLoad<T> load) {
-  BenchTurn<T> r;
+[[gnu::noinline, gnu::cold]] ImposedSpeed<T> impose_speed(double omega_start_rad_s, double omega_end_rad_s,
+                                                          double h_s, T inertia_kg_m2, T tau_outside_Nm,
+                                                          RotorLoad<T> load) {
+  ImposedSpeed<T> r;
   const T mean_omega = T(0.5 * (omega_start_rad_s + omega_end_rad_s));
   const double direction = sign_of(mean_omega);
   T inside = load.torque_Nm - tau_outside_Nm;

@@ -85,7 +85,7 @@ inline Dataset blank_robot(double duration_s, bool bus) {
   }
   d.runs.push_back(run);
   d.runs.push_back(run);
-  d.runs[1].use = Use::kHoldout;
+  d.runs[1].split = Split::kValidation;
   return d;
 }
 

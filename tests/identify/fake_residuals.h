@@ -1,0 +1,38 @@
+// What a judgement needs beside the models: evidence of a fake predictor's runs, a null of a hundredth of
+// energy, bootstraps.
+//
+//   fake.add(Split::kTraining, …);  FakeResiduals evidence(fake);   judge(evidence.context, parent, child, "cogging",
+//   100);
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "identify/select/acceptance.h"
+#include "tests/identify/fake_predictor.h"
+
+namespace omnihil {
+
+struct FakeResiduals {
+  ComparedChannels channels;
+  std::unique_ptr<Splits> splits;
+  NullModel null;
+  std::vector<BlockBootstrap> bootstrap;
+  AcceptanceContext context;
+
+  explicit FakeResiduals(const FakePredictor& fake) : channels(compared_channels(fake)) {
+    splits = std::make_unique<Splits>(Splits{WhitenedResiduals(fake, channels, Split::kTraining),
+                                             WhitenedResiduals(fake, channels, Split::kValidation),
+                                             WhitenedResiduals(fake, channels, Split::kExtrapolation)});
+    for (std::size_t u = 0; u < kSplits; ++u) {
+      null.mean_square[u] = Eigen::MatrixXd::Constant(2, channels.count(), 0.01);
+      bootstrap.emplace_back((*splits)[u], 1);
+    }
+    context = {.splits = splits.get(),
+               .null = &null,
+               .bootstrap = {&bootstrap[kTraining], &bootstrap[kValidation], &bootstrap[kExtrapolation]}};
+  }
+  FakeResiduals(const FakeResiduals&) = delete;  // the context points into it
+  FakeResiduals& operator=(const FakeResiduals&) = delete;
+};
+
+}  // namespace omnihil
