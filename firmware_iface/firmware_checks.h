@@ -1,6 +1,5 @@
 // What a firmware may ask for: its table, its robot's configuration and each of its answers, held to the
-// boundary (omnihil_firmware.h). Pure; the same for a firmware in this process, in a guarded one, or
-// emulated.
+// boundary (omnihil_firmware.h). Pure; the same for a firmware in this process, in a guarded one, or emulated.
 //
 //   std::vector<std::string> problems = check_firmware_api(omnihil_firmware_get(OMNIHIL_FIRMWARE_ABI));
 //   check_drive(drive, drives_phases, faults);       // a bad wheel coasts, and is counted

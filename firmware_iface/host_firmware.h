@@ -2,7 +2,7 @@
 //
 //   std::unique_ptr<HostFirmware> firmware = make_reference_firmware(config);
 //   RobotDrive drive = firmware->tick(sensors);      // every control_period_ns()
-//   if (firmware->faults().total() > 0) ...          // what the firmware asked for and did not get
+//   if (firmware->faults().total() > 0) …            // what the firmware asked for and did not get
 //
 // The firmware is not trusted: its table is checked once, every drive it gives is checked at every tick
 // (firmware_checks.h).

@@ -1,6 +1,7 @@
 // Checksums of radio frames.
 //
-//   sum8({0x01, 0xFE, 0x03}) == 0x02      // 258 mod 256
+//   const std::uint8_t frame[] = {0x01, 0xFE, 0x03};
+//   std::uint8_t sum = sum8(frame);       // 02h: 258 mod 256
 //
 // sum8 sees every change of one byte; of changes to several bytes one in 256 passes, and it does not see
 // two bytes swapped.

@@ -3,10 +3,11 @@
 // so a recording replays to the same bytes.
 //
 // Call order, once per loop step at virtual time now_ns:
+//
 //   link.host_bytes(bytes, now_ns);            // what the host wrote since the last step, if anything
 //   link.poll(now_ns, sink);                   // -> sink.deliver(...) for each frame that reached a robot
 //   link.robot_frame(robot, frame, now_ns);    // a frame the firmware itself sent (radio_transmit)
-//   link.robot_feedback(robot, fb, gains, now_ns)  // state for the telemetry the link writes for the robot
+//   link.robot_feedback(robot, fb, gains, now_ns); // state for the telemetry the link writes for the robot
 //   link.take_host_bytes(now_ns, out);         // bytes that have left the dongle towards the host by now
 #pragma once
 #include <cstdint>

@@ -1,6 +1,6 @@
 // What `omnihil experiment` writes: the planned run as a table, as radio packets, and in words.
 //
-//   folder.write("run.csv", planned_csv(run, inputs));
+//   folder.write("run.csv", planned_csv(run));
 //   std::string fault;
 //   folder.write("stream.txt", planned_stream(run, format, {.robot_id = 3}, 100.0, fault));
 #pragma once

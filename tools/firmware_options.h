@@ -1,6 +1,6 @@
 // The options with which a verb lets its user name a firmware: the same words for all of them.
 //
-//   add_firmware_options(*verb, words.firmware);      // --firmware, --board, --firmware-deadline
+//   add_firmware_options(*verb, choice);              // --firmware, --board, --firmware-deadline
 #pragma once
 #include "hil/firmware/open_firmware.h"
 

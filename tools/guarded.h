@@ -1,6 +1,6 @@
 // One place where a verb's exceptions become an exit code and a message.
 //
-//   result.exit_code = guarded("check", [&] { return check(words); });
+//   result.exit_code = guarded("check", [&] { return 0; });
 #pragma once
 #include <cstdio>
 #include <stdexcept>

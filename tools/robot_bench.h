@@ -1,9 +1,8 @@
 // A whole robot on the floor as a virtual test bench: behind `omnihil sim ROBOT --rig robot`.
 //
 //   std::vector<std::string> faults;
-//   std::optional<RobotBench> bench = make_robot_bench(options, faults);    // none: every fault is in
-//   `faults` folder.write(bench->files[0].name, bench->files[0].text);               // dataset.toml,
-//   model.toml, runs
+//   std::optional<RobotBench> bench = make_robot_bench(options, faults);    // none: every fault is in `faults`
+//   folder.write(bench->files[0].name, bench->files[0].text);               // dataset.toml, model.toml, runs
 //
 // An excitation by name drives forward, sideways and turn at once, each by a pattern of its own; the held-out
 // run has other patterns and 0.8 of the amplitude. A CSV file gives time and four duties, or time and one

@@ -1,6 +1,6 @@
 // What a chip is built of: blocks of registers that live in the time of the core clock.
 //
-//   class Watchdog final : public Peripheral { ... };
+//   class Watchdog : public Peripheral { … };
 //   machine.attach(0x40003000, 0x400, watchdog);    // the bus then calls read() and write()
 //
 // Time is counted in cycles of the core clock since reset; nothing here knows seconds but CoreClock, which

@@ -2,7 +2,7 @@
 //
 //   MotorAxis axis(robot_config, BusShaft::kRotor, 500e-6);
 //   axis.sense(counts, current_A, bus_V);           // once per control period
-//   axis.set_speed(30.0, 0.0);                      // or set_torque(), set_voltage(), set_duty(), coast(), …
+//   axis.set_speed(30.0, 0.0);                      // or set_torque(), set_voltage(), set_duty(), coast()
 //   axis.drive(mode, duty_ratio);                   // what the bridge gets
 //
 // Laws. Speed: second-order tracking loop on the count (as ODrive and moteus estimate it, a "PLL"),

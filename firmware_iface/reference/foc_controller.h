@@ -1,9 +1,10 @@
 /* Field-oriented control: two current loops in the rotor's frame, a speed loop around them.
  *
- *   foc_tune(&gains, &motor, 2 * pi * 1000, 2 * pi * 30, 10);     // bandwidths of current and speed, limit
- * 10 A foc_update(&state, &motor, &gains, &input, &output);          // once per PWM period
+ *   foc_tune(&gains, &motor, 2 * pi * 1000, 2 * pi * 30, 10);   // bandwidths of current and speed, limit 10 A
+ *   foc_update(&state, &motor, &gains, &input, &output);        // once per PWM period
  *   // output.duty_ratio[0 .. 2] go to the three half bridges
  *
+ * Law:
  *   i_q* = p_w (omega* - omega) + I_w, within +- limit;  i_d* = 0
  *   v_d = p (i_d* - i_d) + I_d - omega_e L_q i_q,   v_q = p (i_q* - i_q) + I_q + omega_e (L_d i_d + lambda)
  * v is held within bus / sqrt(3) (d first); while it is, the integrals take only what leads back.

@@ -3,8 +3,8 @@
  *   |d(v)/dt| <= 4 m/s^2,  |d(omega)/dt| <= 60 rad/s^2,  no wheel above 95 % of its no-load speed,
  *   no rim force above 0.55 of a quarter of the robot's weight (per mass: 0.55 g / 4; the mass cancels)
  *
- * Example: wheels at 45 deg, straight on: rim force m a / (4 cos 45 deg), so a <= 0.55 g cos 45 deg = 3.8
- * m/s^2. Wheels far to the front and back push sideways badly; the limit there is lower, as it is for the
+ * Example: wheels at 45 deg, straight on: rim force m a / (4 cos 45 deg), so a <= 0.55 g cos 45 deg = 3.8 m/s^2.
+ * Wheels far to the front and back push sideways badly; the limit there is lower, as it is for the
  * tyres. Where wheels would be too fast all four are slowed by one factor, so the robot keeps its direction.
  * The acceleration of the reference is handed on for the feed-forward. It is the inertial one,
  * a = d(v)/dt + omega x v: a robot that drives a circle at constant body velocity still needs force.

@@ -1,17 +1,20 @@
 /* The reference firmware on three-phase bridges: the same robot control, with the motor loop closed here.
  *
  *   const omnihil_firmware_api* api = omnihil_foc_firmware();        // or omnihil_six_step_firmware()
- *   api->init(state, &config); api->motor_init(state, &motors);
- *   every 1 ms: api->tick(...);   every PWM period: api->motor_tick(state, &motor_sensors, &motor_drive);
+ *   api->init(state, &config);
+ *   api->motor_init(state, &motors);
+ *   api->tick(state, &sensors, &drive);                            // every 1 ms
+ *   api->motor_tick(state, &motor_sensors, &motor_drive);          // every PWM period
  *
  * foc        tick() moves the reference as ever (motion_reference.h); motor_tick() runs current loops and a
  *            speed loop (foc_controller.h) per motor, by the angle sensor and the phase currents, speed from
- *            the encoder's counts at 1 kHz. Bandwidths: current 1 kHz (a twentieth of slower PWM), speed 12
- * Hz for the robot's mass on the wheels. WHEEL_DUTY: that voltage along q, no loop. six_step   tick() closes
- * the speed loop as ever; motor_tick() turns its duty into legs by the Hall sensors (six_step_controller.h),
- * slow decay on both sides (complementary). Without motor_init() (a robot without three-phase drives) both
- * drive by duty, as the reference firmware. Gains of the wheels: foc has p in A s/rad and i in A/rad at the
- * rotor, no d. Cannot: what the controllers cannot; find the zero of its angle sensor (it is aligned).
+ *            the encoder's counts at 1 kHz. Bandwidths: current 1 kHz (a twentieth of slower PWM), speed 12 Hz
+ *            for the robot's mass on the wheels. WHEEL_DUTY: that voltage along q, no loop.
+ * six_step   tick() closes the speed loop as ever; motor_tick() turns its duty into legs by the Hall sensors
+ *            (six_step_controller.h), slow decay on both sides (complementary).
+ * Without motor_init() (a robot without three-phase drives) both drive by duty, as the reference firmware.
+ * Gains of the wheels: foc has p in A s/rad and i in A/rad at the rotor, no d.
+ * Cannot: what the controllers cannot; find the zero of its angle sensor (it is aligned).
  */
 #ifndef OMNIHIL_REFERENCE_PHASE_FIRMWARE_H
 #define OMNIHIL_REFERENCE_PHASE_FIRMWARE_H

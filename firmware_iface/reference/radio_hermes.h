@@ -1,6 +1,6 @@
 /* Radio format "ulaval-hermes" at the robot's end: bytes from the air in, checked packets out, and answers.
  *
- *   for each byte: if (hermes_radio_byte(&radio, byte, &message)) act(&message);
+ *   if (hermes_radio_byte(&radio, byte, &message)) …      // for each byte of the air; message is checked
  *
  * Wire: COBS(header 5 + payload), then 00. A frame that fails a check is counted under its cause and dropped
  * whole; the next 00 brings the receiver back in step. Checks, in this order: stuffing, length, version,

@@ -1,8 +1,10 @@
 /* The reference firmware: wheel-speed control of a four-wheel robot, plain C, no heap, no clock, no I/O.
  *
  *   const omnihil_firmware_api* api = omnihil_reference_firmware();   // or omnihil_firmware_get(1)
- *   memset(state, 0, api->state_bytes); api->init(state, &config);
- *   loop every 1 ms: api->command(...) or api->radio_receive(...); api->tick(state, &sensors, &drive);
+ *   memset(state, 0, api->state_bytes);
+ *   api->init(state, &config);
+ *   api->command(state, &command, now_us);                            // or api->radio_receive(); both every 1 ms
+ *   api->tick(state, &sensors, &drive);
  *
  * The state is one struct without pointers: copy it and both copies go on alike.
  * Speaks the radio format "ulaval-hermes" itself; any other format reaches it through command().

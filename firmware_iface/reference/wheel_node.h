@@ -1,10 +1,9 @@
-/* The firmware of a board that drives one wheel: four of them, all listening to the robot's radio, are a
- * robot.
+/* The firmware of a board that drives one wheel: four of them, all listening to the robot's radio, are a robot.
  *
- *   wheel_node_init(&node, &config, 2);                              // this board turns wheel 2
- *   for each byte of the radio: wheel_node_byte(&node, byte);
- *   every 2 ms: drive = wheel_node_control(&node, counts, bus_V);   // 9000 cycles of an ATmega328P
- *   when node.plan_due: wheel_node_plan(&node);                     // 30000, in the main loop
+ *   wheel_node_init(&node, &config, 2);                                    // this board turns wheel 2
+ *   wheel_node_byte(&node, byte);                                          // each byte of the radio
+ *   wheel_node_drive drive = wheel_node_control(&node, counts, bus_V);     // every 2 ms: 9000 cycles of an ATmega328P
+ *   if (node.plan_due) wheel_node_plan(&node);                             // 30000, in the main loop
  *
  * The same parts as the four-wheel firmware has (motion_reference, wheel_encoder, wheel_controller,
  * command_watchdog, radio_hermes), shared out so that an 8-bit core without a multiplier for floats keeps up:

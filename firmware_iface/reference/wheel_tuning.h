@@ -3,9 +3,9 @@
  * Per rotor, J is what the motor feels: J_loaded when the robot moves straight, J_free when the wheel spins
  * in the air. Without delay the speed loop's bandwidth is (p + k) k / (J R). p is the smaller of
  *   - the one that gives 40 rad/s on the floor (J_loaded): quick enough for a robot, gentle to the tyres;
- *   - the one that keeps bandwidth times delay <= 0.8 for a free wheel (J_free): a lifted robot must not
- * howl. i makes the loaded loop critically damped: i = (p + k) bandwidth / 4. Source of the rules:
- * second-order closed loop s^2 + b s + i k / (J R), double root at i = b^2 J R / (4 k). Valid for R, k of any
+ *   - the one that keeps bandwidth times delay <= 0.8 for a free wheel (J_free): a lifted robot must not howl.
+ * i makes the loaded loop critically damped: i = (p + k) bandwidth / 4. Source of the rules: second-order
+ * closed loop s^2 + b s + i k / (J R), double root at i = b^2 J R / (4 k). Valid for R, k of any
  * small brushed or brushless drive; the guesses below are +- 50 %.
  */
 #ifndef OMNIHIL_REFERENCE_WHEEL_TUNING_H

@@ -5,7 +5,7 @@
  *
  *   omnihil_remote_decoder decoder = {0};
  *   omnihil_remote_frame frame;
- *   if (omnihil_remote_decode(&decoder, byte, &frame)) ...                       // frame.type, .payload
+ *   if (omnihil_remote_decode(&decoder, byte, &frame)) …                         // frame.type, .payload
  *
  * Plain C99, no heap, used by both ends. CRC-16: polynomial 1021h, init FFFFh, most significant bit first, no
  * final XOR ("CRC-16/IBM-3740", check value 29B1h of "123456789"), sent low byte first. It sees every burst

@@ -1,14 +1,13 @@
-/* The shim for a board on the desk: its PWM, encoder and radio calls, answered by the bench over a serial
- * line.
+/* The shim for a board on the desk: its PWM, encoder and radio calls, answered by the bench over a serial line.
  *
  *   static omnihil_remote remote;
  *   omnihil_remote_init(&remote, "my robot", "", 1000, uart_write, &uart2);   // 1000 us control period
- *   void uart_rx_isr(uint8_t byte) { omnihil_remote_receive(&remote, byte); } // or from the main loop
+ *   omnihil_remote_receive(&remote, byte);       // in the receive interrupt of the UART, or from the main loop
  *
  *   while (omnihil_remote_tick(&remote)) {       // in place of the timer interrupt: once per control period
  *     int32_t counts = omnihil_remote_encoder(&remote, 0);     // in place of TIMx->CNT
  *     omnihil_remote_set_duty(&remote, 0, duty);               // in place of TIMx->CCR1
- *     omnihil_remote_done(&remote, 0);                         // sends what was set
+ *     omnihil_remote_done(&remote, took_us);                   // sends what was set
  *   }
  *
  * C99, no heap, no floating point beyond float, about 1 kB of RAM. One sender: omnihil_remote_done() and

@@ -4,8 +4,7 @@
 //   stream.feed(bytes, [&](std::span<const std::uint8_t> frame) { … });   // frame with its delimiter
 //
 // Two delimiters in a row enclose nothing: no frame, and not an error (hosts send one to clear the line).
-// More bytes without a delimiter than the longest frame has: one framing error, all dropped up to the next
-// 00.
+// More bytes without a delimiter than the longest frame has: one framing error, all dropped up to the next 00.
 #pragma once
 #include <array>
 #include <cassert>

@@ -1,10 +1,13 @@
 // What dongles have in common, whatever their air: counts by cause, bytes that wait for a host which reads
 // late, which way a packet may go, whom it is for, and its hand-over to a robot's firmware.
 //
-//   class MyDongle final : public Dongle {
+//   struct MyDongle : Dongle {
 //     MyDongle(const RadioFormat& f, const RadioLinkConfig& c) : Dongle(f, c, 16384) {}
-//     …
-//     from_host_.count(for_addressed(address_of(values), [&](int id) { return keep_for(id, values); }));
+//     PacketError keep_for(int id, const Values& values);
+//     void packet(const Values& values) {
+//       from_host_.count(for_addressed(address_of(values), [&](int id) { return keep_for(id, values); }));
+//     }
+//   };
 //
 // Around it: ring.h (bounded queue), outbox.h (latest command and queue of a robot), robot_table.h,
 // kept_packet.h, heartbeat.h, delimited_stream.h and sized_stream.h (bytes into frames). plain_dongle.h is

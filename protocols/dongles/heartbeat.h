@@ -1,7 +1,7 @@
 // A sign of life at whole multiples of a period of virtual time.
 //
 //   Heartbeat heartbeat(1'000'000'000);
-//   if (heartbeat.due(now_ns)) send_status();      // once per period, however many were missed
+//   if (heartbeat.due(now_ns)) …      // once per period, however many were missed
 #pragma once
 #include <cstdint>
 

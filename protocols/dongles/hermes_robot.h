@@ -1,9 +1,8 @@
 // The radio end of a RoboCup ULaval robot: HERMES packets -> SI commands and answers. Pure.
 //
 //   HermesRobot robot;
-//   if (auto command = robot.receive(values, now_ns)) sink.deliver(*command);
-//   robot.answer(robot_id, feedback, answer);      // `answer` is of the packet that the request's table
-//   names
+//   if (auto command = robot.receive(values, now_ns)) …      // for the firmware
+//   robot.answer(robot_id, feedback, answer);                // `answer` is of the packet that the request's table names
 //
 // Facts (RobotMCU 44cc54f, hermes/commands.c and motors/ctrl_task.c): the control loop's state, set by
 // SET_REGISTER and closed at the start, decides whether speeds or duties drive; each is forgotten 500 ms

@@ -1,7 +1,7 @@
 // One packet as a dongle keeps it: a copy of fixed capacity, no allocation.
 //
 //   const auto kept = KeptPacket<127>::of(bytes);      // at most 127 bytes
-//   send(kept.span());
+//   std::span<const std::uint8_t> copy = kept.span();
 #pragma once
 #include <algorithm>
 #include <array>

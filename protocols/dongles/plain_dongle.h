@@ -3,10 +3,10 @@
 //
 //   host -> SizedStream -> (after to_robot_ns) robot -> answer -> (after to_host_ns) host
 //
-//   constexpr PlainDongle kDongle{.frame_bytes = frame_bytes, .to_robot_ns = 500'000, .to_host_ns = 500'000,
-//                                 .to_command = to_command, .answer = answer};
-//   RadioFormat{…, .dongle = [](const RadioFormat& self, const RadioLinkConfig& config) {
-//                   return make_plain_dongle(self, config, kDongle); }};
+//   static const PlainDongle kDongle{.frame_bytes = frame_bytes, .to_robot_ns = 500'000, .to_host_ns = 500'000,
+//                                    .to_command = to_command, .answer = answer};
+//   RadioFormat format{.dongle = [](const RadioFormat& self, const RadioLinkConfig& config) {
+//                        return make_plain_dongle(self, config, kDongle); }, …};
 //
 // A frame goes to the robot that its table's fields of role kRobot, kTeam, kAllRobots name; packets of role
 // kCommand and kSingleCommand become commands, those of role kKill let the wheels run free.

@@ -1,7 +1,7 @@
 // RoboTeam Twente's base station: USB with SX1280 radios; raw packets, 60 Hz polling of 16 robots. For every
 // version of REM: `format` says which. Behaviour, timing and sources: docs/dongles.md.
 //
-//   RadioFormat{…, .dongle = make_rem_dongle};
+//   RadioFormat format{.id = "roboteam-rem-v8", .dongle = make_rem_dongle, …};
 #pragma once
 #include "protocols/radio_format.h"
 

@@ -2,9 +2,9 @@
 // asked for once, and its own latest state. It turns a packet into a delivery and an air packet into an
 // answer.
 //
-//   if (auto delivery = end.receive(values)) sink.deliver(*delivery, at_ns);
+//   if (auto delivery = end.receive(values)) …                // for the firmware
 //   const auto plan = end.plan(sizes);                        // what the answer will hold, and its length
-//   end.answer(plan, telemetry, header, [&](const Values& packet) { … });
+//   end.answer(plan, telemetry, header, scratch, [&](const Values& packet) { … });
 //
 // Source: microcontroller6.0 5bfe578, Wireless_SendPacket. There the answer may grow past the 127 bytes of an
 // air packet; here what was asked for once goes first, and state info waits for the next answer.

@@ -1,5 +1,6 @@
 // The robots behind a dongle, by their ids.
 //
+//   struct Robot { int id = 0; … };
 //   RobotTable<Robot, 16> robots(config.robot_ids);
 //   if (Robot* robot = robots.find(id)) …                 // nullptr: there is no such robot
 //   for (Robot& robot : robots) …                         // every robot there is, by id

@@ -112,7 +112,7 @@ def main():
     table, given = read_given()
     bad = False
     for path in list(given) + list(table.get("not_compiled", {})):
-        if not (ROOT / path).exists():
+        if not any((ROOT / path).parent.glob(Path(path).name + "*")):
             print(f"{GIVEN.relative_to(ROOT)}: error: there is no {path}")
             bad = True
     args.out.mkdir(parents=True, exist_ok=True)

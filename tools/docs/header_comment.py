@@ -5,14 +5,14 @@
         paragraph.lines           # [(number of the line in the file, text without the comment's marks)]
 
 A paragraph all of whose lines are indented by three columns or more stands by itself. It is C++ where one of its lines ends, but for
-a comment, in ; { or }, unless it begins as TOML does ([section]), as a shell's line does ($ command) or as JSON does ({"key"). Whatever
+a comment, in ; { } or `) …`, unless it begins as TOML does ([section]), as a shell's line does ($ command) or as JSON does ({"key"). Whatever
 else is indented so (a table, the bytes of a packet) is a table and kept as written.
 """
 import re
 from dataclasses import dataclass
 
 INDENT = "   "
-STATEMENT_ENDS = (";", "{", "}")
+STATEMENT_ENDS = (";", "{", "}", ") …")
 NOT_CPP = re.compile(r"\s*(\[[\w.]+\]$|\$ |\{\")")  # a TOML section, a shell's line, JSON
 
 

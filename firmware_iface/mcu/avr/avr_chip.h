@@ -1,7 +1,7 @@
 // The AVR chips that a board file may name: their pins, PWM channels, serial ports and interrupts.
 //
 //   const AvrChip* chip = find_avr_chip("atmega328p");
-//   chip->channel("OC1A")->tccra          // 0x80, a data address
+//   chip->channel("OC1A")->tccra;         // 0x80, a data address
 //
 // The chip itself is emulated by a program of its own (avr/README.md); this is what the wiring needs.
 // Numbers: data sheets DS40002061B (ATmega48A to 328P) and 7766J (ATmega16U4/32U4).

@@ -3,7 +3,7 @@
 //   McuBoard board(spec, image);                 // throws std::invalid_argument naming what does not fit
 //   board.set_world(world);                      // shafts, currents, voltage at board.now_ns()
 //   board.run_until_ns(end_ns);
-//   board.wire(2)->end(end_ns)                   // what motor 2's bridge did on the mean
+//   board.wire(2)->end(end_ns);                  // what motor 2's bridge did on the mean
 //
 // Deterministic: a function of spec, image, worlds and packets with their instants.
 #pragma once

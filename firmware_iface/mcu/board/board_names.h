@@ -1,7 +1,7 @@
 // The chip that a board file speaks of, for its reader: which names there are.
 //
 //   BoardNames names(*find_chip("stm32f405"));
-//   names.channel("TIM1.3")             // or none, where the chip has no such channel
+//   names.has_channel(*parse_channel("TIM1.3"));     // false where the chip has no such channel
 #pragma once
 #include <memory>
 #include <optional>

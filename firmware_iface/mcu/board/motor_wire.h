@@ -2,8 +2,7 @@
 //
 //   MotorWire wire(entry, chip, [&] { return machine.to_ns(machine.now()); });
 //   wire.begin(t0_ns);  machine.run_until_ns(t1_ns);
-//   BridgeDrive mean = wire.end(t1_ns);         // duty weighted by the time it was held, changes at their
-//   instants
+//   BridgeDrive mean = wire.end(t1_ns);  // duty weighted by the time it was held, changes at their instants
 //
 // One channel and a direction pin: duty with that sign. One channel alone: both halves in turn, 2 d - 1. Two
 // channels: the difference of the halves. Three: phases. With gates of the lower switches on pins of their

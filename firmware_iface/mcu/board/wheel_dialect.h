@@ -1,14 +1,12 @@
-// How a robot's main board talks to the boards that drive its wheels: what it says to one of them, each
-// period.
+// How a robot's main board talks to the boards that drive its wheels: what it says to one of them, each period.
 //
 //   const WheelDialect* dialect = find_wheel_dialect("ateam-stspin-2025");
 //   WheelWords words;
-//   dialect->speak(0, speeds_of_its_motors_rad_s, words);      // bytes for its serial port, frames for its
-//   CAN
+//   dialect->speak(0, motor_speeds_rad_s, words);      // bytes for its serial port, frames for its CAN
 //
-// Adding one is adding a file to firmware_iface/mcu/wheel_dialects/ that defines `const WheelDialect&
-// wheel_dialect_STEM()`. Cannot represent: what such boards answer (it is drained and dropped), arbitration
-// on a bus that boards share.
+// Adding one is adding a file to firmware_iface/mcu/wheel_dialects/ that defines
+// `const WheelDialect& wheel_dialect_STEM()`. Cannot represent: what such boards answer (it is drained and
+// dropped), arbitration on a bus that boards share.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,8 +1,8 @@
 // The register map that InvenSense's six-axis sensors share: settings kept, data evaluated when they are
 // read.
 //
-//   InvensenseRegisters registers(world, 0x98);        // WHO_AM_I
-//   registers.read(0x47)                               // high byte of the gyroscope's z axis
+//   InvensenseRegisters registers(world, 0x98, 0x40);  // WHO_AM_I, PWR_MGMT_1
+//   registers.read(0x47);                              // high byte of the gyroscope's z axis
 //
 // Source: register maps of MPU-6050 (RM-MPU-6000A-00) and ICM-20689 (RM-000030). Sixteen-bit data, full
 // scales of GYRO_CONFIG and ACCEL_CONFIG. z is up, gravity on it. A burst reads data of one instant (of its

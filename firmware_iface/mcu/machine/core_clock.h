@@ -2,7 +2,7 @@
 //
 //   CoreClock clock(16'000'000);
 //   clock.change(cycles, 168'000'000);
-//   clock.to_ns(cycles + 168) == clock.to_ns(cycles) + 1000
+//   clock.to_ns(cycles + 168) == clock.to_ns(cycles) + 1000;
 //
 // Within a stretch of one rate the conversion is exact (integers); where the rate changes the instant is kept
 // in femtoseconds, rounded down.

@@ -2,8 +2,8 @@
 //
 //   ElfImage image;
 //   std::vector<std::string> problems;
-//   if (!read_elf(bytes, image, problems)) ...
-//   image.address_of("main")
+//   if (!read_elf(bytes, image, problems)) …
+//   image.address_of("main");
 //
 // 32-bit, little-endian executables for ARM or AVR. Nothing in the file is trusted: every offset is checked.
 // Symbols are for reports and tests; a broken symbol table is no problem, the image then has fewer.

@@ -1,7 +1,9 @@
 // A microcontroller: core, memory, exceptions, and whatever peripherals are attached to its bus.
 //
-//   Machine machine({.variant = kCortexM4F, .flash_bytes = 1 << 20, .ram_bytes = 128 << 10, .reset_hz =
-//   16e6}); machine.attach(0x40003000, 0x400, watchdog); machine.load(image, problems); machine.power_on();
+//   Machine machine({.variant = kCortexM4F, .flash_bytes = 1 << 20, .ram_bytes = 128 << 10, .reset_hz = 16'000'000});
+//   machine.attach(0x40003000, 0x400, watchdog);
+//   machine.load(image, problems);
+//   machine.power_on();
 //   machine.run_until_ns(1'000'000);
 //
 // The same image with the same inputs at the same instants gives the same bytes, however the time is cut into

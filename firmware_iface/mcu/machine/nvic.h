@@ -1,6 +1,6 @@
 // Exceptions and their priorities: what is pending, active, enabled (DDI 0403E.e B1.5, B3.4).
 //
-//   nvic.set_line(37, true);                       // an interrupt's level
+//   nvic.set_line(37, true, now);                  // an interrupt's level
 //   const int e = nvic.best(execution_priority);   // what would be taken now, 0: nothing
 #pragma once
 #include <array>

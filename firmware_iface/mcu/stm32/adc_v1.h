@@ -1,7 +1,7 @@
 // ADC registers of F4 and F7 (RM0090 §13), and the block common to the three of them.
 //
 //   AdcV1Common common(context);
-//   AdcV1 adc(1, irq_line_number, common, triggers, context);
+//   AdcV1 adc(1, irq, common, triggers, context);
 #pragma once
 #include "firmware_iface/mcu/stm32/adc.h"
 

@@ -3,8 +3,7 @@
 //
 //   can.on_transmit([](const CanFrame& frame, Cycles end) { … });   // when its last bit has left
 //   can.receive(frame);                                             // its last bit has arrived, now
-//   can_frame_bits(frame)                                           // 47 + 8 n + stuff bits, for classic
-//   frames
+//   can_frame_bits(frame);                                          // 47 + 8 n + stuff bits, for classic frames
 //
 // Law: ISO 11898-1, bit stuffing counted exactly for classic frames (SOF .. CRC). CAN FD: stuffing of the
 // arbitration phase is taken at its mean of one in ten; its data phase runs at the data rate where BRS is

@@ -5,8 +5,7 @@
 //   Chip chip(*spec, machine);
 //   attach(chip, machine);
 //
-// Adding a chip is adding a file to firmware_iface/mcu/stm32/chips/ that defines `const ChipSpec&
-// chip_STEM()`.
+// Adding a chip is adding a file to firmware_iface/mcu/stm32/chips/ that defines `const ChipSpec& chip_STEM()`.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -1,7 +1,7 @@
 // The parts that chips of one family have alike, for the files of chips/.
 //
 //   add_ports(chip, "ABCDEFGHI", 0x40020000);
-//   add_exti(chip, 0x40013C00, 0x40013800);
+//   add_exti(chip, 0x40013C00, 0x40013800, {{0, 0, 6}, …});
 //   add_timer(chip, 0x40010000, {.number = 1, …});
 #pragma once
 #include <string_view>
@@ -10,12 +10,12 @@
 #include "firmware_iface/mcu/stm32/adc_v1.h"
 #include "firmware_iface/mcu/stm32/adc_v2.h"
 #include "firmware_iface/mcu/stm32/chip.h"
+#include "firmware_iface/mcu/stm32/clock/pwr.h"
+#include "firmware_iface/mcu/stm32/clock/rcc.h"
 #include "firmware_iface/mcu/stm32/dma_v1.h"
 #include "firmware_iface/mcu/stm32/dma_v2.h"
 #include "firmware_iface/mcu/stm32/exti.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
-#include "firmware_iface/mcu/stm32/clock/pwr.h"
-#include "firmware_iface/mcu/stm32/clock/rcc.h"
 #include "firmware_iface/mcu/stm32/spi.h"
 #include "firmware_iface/mcu/stm32/stored_block.h"
 #include "firmware_iface/mcu/stm32/timer/timer.h"

@@ -2,7 +2,7 @@
 //
 //   const DeviceKind* kind = find_device("nrf24l01");
 //   std::unique_ptr<Device> radio = kind->make(world);
-//   spi.connect(radio->spi(), …);
+//   spi.connect(*radio->spi());
 //
 // Adding one is adding a file to firmware_iface/mcu/devices/ that defines `const DeviceKind& device_STEM()`.
 #pragma once

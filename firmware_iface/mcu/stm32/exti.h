@@ -1,6 +1,6 @@
 // Pin changes to interrupts: EXTI with the pin selection of SYSCFG.
 //
-//   Exti exti(context, {{0, 0, 6}, …, {5, 9, 23}, {10, 15, 40}});     // lines first..last -> interrupt
+//   Exti exti(syscfg, {{0, 0, 6}, …, {5, 9, 23}, {10, 15, 40}}, context);     // lines first..last -> interrupt
 //   exti.pin_changed(port, pin, level);                                // from the GPIO ports
 //
 // Lines 0..15 (pins). The lines above them (RTC, comparators, USB) are kept in their registers, and never

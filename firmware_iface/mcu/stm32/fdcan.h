@@ -1,6 +1,6 @@
 // FDCAN (G4): frames in a message RAM of fixed layout, filters, two receive FIFOs, transmit FIFO or queue.
 //
-//   FdcanRam ram(context);                                   // 0x4000A400, shared by the three
+//   FdcanRam ram;                                            // 0x4000A400, shared by the three
 //   Fdcan can(1, {21, 22}, ram, context);
 //
 // Law: RM0440 §44. Classic and FD frames; bit time (NBRP + 1)(3 + NTSEG1 + NTSEG2) of PCLK1, data phase by

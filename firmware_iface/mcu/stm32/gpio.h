@@ -2,7 +2,7 @@
 //
 //   port.drive(3, true);                                   // the outside pulls pin 3 high, at system.now()
 //   port.on_output(13, [](bool level) { … });              // called at every change of what the pin gives
-//   port.mode(8) == PinMode::kAlternate && port.alternate(8) == 1
+//   port.mode(8) == PinMode::kAlternate && port.alternate(8) == 1;
 //
 // A pin that nobody drives reads its pull-up (1) or else 0. Cannot represent: open-drain against an outside
 // driver, slew rate, analogue levels between 0 and 1.

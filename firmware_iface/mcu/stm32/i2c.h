@@ -1,8 +1,9 @@
 // I2C master: v1 (F4) and v2 (F0, F3, F7, G4) registers; devices on the bus answer to their address, nobody
 // else does.
 //
-//   std::unique_ptr<I2c> i2c = make_i2c({.name = "I2C1", .v2 = false, .bus = Bus::kApb1, .irq_event = 31, …},
-//   context); i2c->connect(device);
+//   I2cSpec spec{.name = "I2C1", .v2 = false, .bus = Bus::kApb1, .irq_event = 31, …};
+//   std::unique_ptr<I2c> i2c = make_i2c(spec, context);
+//   i2c->connect(device);
 //
 // Law: RM0090 §27, RM0316 §28. Every byte takes nine clocks of the bus; an address that no device has is not
 // acknowledged (AF, NACKF): a driver's time-outs see what they would with the part missing.

@@ -2,7 +2,7 @@
 // bits are kept and which kept bits the model does not act on.
 //
 //   constexpr RegisterInfo kRegisters[] = {{0x00, "CR", 0, 0x3}, {0x04, "SR", 0x2, 0}};
-//   class Thing final : public RegisterBlock { Thing(…) : RegisterBlock("THING", system, kRegisters) {} … };
+//   class Thing : public RegisterBlock { Thing(System& s) : RegisterBlock("THING", s, kRegisters) {} … };
 //
 // An access to an offset that the table lacks reads as zero, is ignored on writing, and is reported; so is
 // the first setting of a bit without effect. Narrow accesses: load() is asked for the whole word; store()

@@ -1,7 +1,11 @@
 // A register table with repeated groups, made at start-up: names live as long as the table.
 //
-//   static const RegisterTable table = [] { RegisterTable t; t.add(0x00, "ISR"); t.add(0x08, "CCR1"); return
-//   t; }();
+//   static const RegisterTable table = [] {
+//     RegisterTable t;
+//     t.add(0x00, "ISR");
+//     t.add(0x08, "CCR1");
+//     return t;
+//   }();
 #pragma once
 #include <deque>
 #include <string>

@@ -1,8 +1,8 @@
 // SPI master: v1 (F4) and v2 (F0, F3, F7, G4) over one law. Devices hang on it behind chip-select pins.
 //
 //   Spi spi({.name = "SPI1", .v2 = false, .bus = Bus::kApb2, .irq = 35}, context);
-//   spi.connect(device);                       // takes part while select() said so: Spi::select(device,
-//   true)
+//   spi.connect(device);                 // takes part while select() said so
+//   spi.select(device, true);
 //
 // Law: RM0090 §28, RM0316 §30. A frame of 4..16 bits takes 2^(BR+1) bus clocks per bit; what the device
 // answers is there with the last of them. Frames of 16 bits are two bytes to the device, high byte first. No

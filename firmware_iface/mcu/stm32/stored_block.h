@@ -1,7 +1,7 @@
 // Blocks that are there but not modelled, and constants in memory.
 //
-//   StoredBlock usb("OTG_FS", {{0x10, 0x80000000}}, 0x1000, context);   // GRSTCTL: AHB idle, so that an init
-//   ends Signature id("unique id", 0x7A10, bytes);
+//   StoredBlock usb("OTG_FS", {{0x10, 0x80000000}}, 0x1000, context);   // GRSTCTL: AHB idle, so that an init ends
+//   Signature id("unique id", context, 12);
 //
 // A StoredBlock keeps what is written and gives it back with the fixed bits set; its first use is reported.
 #pragma once

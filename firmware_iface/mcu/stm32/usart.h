@@ -2,8 +2,7 @@
 //
 //   Usart usart({.number = 1, .v2 = false, .bus = Bus::kApb2, .irq = 37}, context);
 //   usart.on_transmit([](std::uint8_t byte, Cycles end) { … });   // when its stop bit has left
-//   usart.feed(bytes, at_ns);                                      // from the other end, one frame after the
-//   other
+//   usart.feed(bytes, at_ns);                        // from the other end, one frame after the other
 //
 // Law: RM0090 §30, RM0316 §29. A frame takes start + data + stop bits of BRR clock periods each; a received
 // byte is there at the end of its frame; the line is idle one frame after the last. Both ends are assumed to

@@ -1,8 +1,7 @@
 // What frequencies the buses of a chip have, as ratios to the core clock, which is AHB's.
 //
-//   tree.timers(Bus::kApb1)      // {1, 2}: one timer tick per two core cycles
-//   tree.listen(timer);          // its clock_changed() is called at every change, with the new ratios in
-//   place
+//   tree.timers(Bus::kApb1);     // {1, 2}: one timer tick per two core cycles
+//   tree.listen(timer);          // its clock_changed() is called at every change, with the new ratios in place
 //
 // Set by the RCC of the chip alone. Law: an APB timer runs at PCLK where the APB prescaler is 1, else at
 // twice PCLK (RM0090 §7.2, RM0316 §9.2). Cannot represent: start-up times of oscillators and PLLs (ready at

@@ -1,6 +1,6 @@
 // Flash controller: wait states, unlock keys, erase and programming of the chip's flash.
 //
-//   Flash flash(FlashFamily::kF4, context);
+//   Flash flash(FlashFamily::kF4, 1 << 20, 16 << 10, irq, context);
 //   machine.set_flash_writes(&flash);       // stores of the core into flash
 //
 // Programming and erasing take no time (BSY is never seen). A store without PG is ignored, as silicon does

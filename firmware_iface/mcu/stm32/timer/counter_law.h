@@ -1,8 +1,8 @@
 // How a timer counts: positions in one period, from which count, direction and update instants follow.
 //
 //   CounterLaw law{CounterLaw::Way::kCentre, 999};
-//   law.period()            // 1998 ticks
-//   law.count(1200)         // 798, counting down
+//   law.period();           // 1998 ticks
+//   law.count(1200);        // 798, counting down
 //
 // Law (RM0090 §17.3.2): up 0..ARR, down ARR..0: ARR + 1 ticks, an update at each wrap; centre-aligned
 // 0..ARR-1, ARR..1: 2 ARR ticks, an update at either end. Validity: ARR > 0 (a counter with ARR = 0 stands

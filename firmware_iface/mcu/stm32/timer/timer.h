@@ -1,10 +1,9 @@
 // A timer: counter, PWM with complementary outputs, capture, encoder, master and slave.
 //
 //   Timer timer({.number = 1, .bus = Bus::kApb2, .channels = 4, .advanced = true, …}, context);
-//   timer.on_output([&](std::int64_t now_ns) { … timer.output(0).high_ratio … });     // duty changes, at the
-//   instant they act timer.set_shaft([&](std::int64_t at_ns) { return counts; }); // encoder inputs:
-//   quadrature counts over time timer.set_input(0, true);                                    // a Hall edge
-//   on channel 1, now
+//   timer.on_output([&](std::int64_t now_ns) { timer.output(0); });     // duty changes, at their instant
+//   timer.set_shaft([&](std::int64_t at_ns) { return counts; });      // encoder inputs: counts over time
+//   timer.set_input(0, true);                                         // a Hall edge on channel 1, now
 //
 // Law: reference manuals RM0090 §17-20, RM0316 §20-23, RM0440 §29-31. Counter, flags and outputs are worked
 // out from the core clock when they are looked at; only instants that somebody listens to are scheduled. The
@@ -19,8 +18,8 @@
 #include <vector>
 
 #include "firmware_iface/mcu/stm32/chip_context.h"
-#include "firmware_iface/mcu/stm32/timer/counter_law.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
+#include "firmware_iface/mcu/stm32/timer/counter_law.h"
 
 namespace omnihil::mcu {
 
