@@ -11,14 +11,25 @@ function(omnihil_stems out dir)
 endfunction()
 
 # omnihil_list(OUT.cc DIR HEADER NAMESPACE TYPE PREFIX FUNCTION): writes generated/OUT.cc, where FUNCTION gives PREFIX_stem()
-# of every DIR/stem.cc, in order of their names, each a `const TYPE&`.
+# of every DIR/stem.cc, in order of their names, each a `const TYPE&`. With FUNCTIONS at the end TYPE is a function's type,
+# and FUNCTION gives the functions PREFIX_stem themselves.
 function(omnihil_list out dir header namespace type prefix function)
   omnihil_stems(stems ${dir})
+  if("FUNCTIONS" IN_LIST ARGN)
+    set(element "${type}")
+  else()
+    set(element "const ${type}")
+  endif()
   set(decls "")
   set(rows "")
   foreach(stem ${stems})
-    string(APPEND decls "const ${type}& ${prefix}_${stem}();\n")
-    string(APPEND rows "      &${prefix}_${stem}(),\n")
+    if("FUNCTIONS" IN_LIST ARGN)
+      string(APPEND decls "${type} ${prefix}_${stem};\n")
+      string(APPEND rows "      &${prefix}_${stem},\n")
+    else()
+      string(APPEND decls "const ${type}& ${prefix}_${stem}();\n")
+      string(APPEND rows "      &${prefix}_${stem}(),\n")
+    endif()
   endforeach()
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${dir})
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/${out} @ONLY CONTENT
@@ -26,8 +37,8 @@ function(omnihil_list out dir header namespace type prefix function)
 #include \"@header@\"
 namespace @namespace@ {
 @decls@
-std::span<const @type@* const> @function@() {
-  static const @type@* const kAll[] = {
+std::span<@element@* const> @function@() {
+  static @element@* const kAll[] = {
 @rows@  };
   return kAll;
 }

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(omnihil::kExitCodeHelp);
   omnihil::VerbResult result;
-  omnihil::add_all_verbs(app, result);
+  for (omnihil::VerbAdder* add : omnihil::all_verbs()) add(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace omnihil {
@@ -25,6 +26,7 @@ struct BusFrame {
   bool fd = false;              // CAN FD
   bool bitrate_switch = false;  // data phase at the higher rate
   std::uint8_t size = 0;
+  std::uint8_t pad = 0;  // what fills a CAN FD frame up to the next length there is
   std::array<std::uint8_t, kCapacity> data{};
 
   std::span<const std::uint8_t> bytes() const { return {data.data(), size}; }
@@ -67,6 +69,20 @@ inline void put_u32(BusFrame& f, std::size_t at, std::uint32_t value) {
 inline void put_f32(BusFrame& f, std::size_t at, double value) {
   put_u32(f, at, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
+
+// Where a number stands in a frame: said once, for the end that writes and the end that reads.
+//
+//   constexpr BusField<float> kSpeed{.at = 0};
+//   kSpeed.put(frame, 1.5F);
+//   float turns_s = kSpeed.get(frame);
+template <class T>
+struct BusField {
+  std::size_t at = 0;
+  using Raw = std::make_unsigned_t<std::conditional_t<std::is_same_v<T, float>, std::int32_t, T>>;
+
+  constexpr T get(const BusFrame& f) const { return std::bit_cast<T>(get_le<Raw>(f.data, at)); }
+  constexpr void put(BusFrame& f, T value) const { put_le(std::span(f.data), at, std::bit_cast<Raw>(value)); }
+};
 
 // Frames that wait to be sent; a full queue drops the newest and counts it.
 class FrameQueue {

@@ -10,7 +10,7 @@
 namespace omnihil {
 namespace {
 
-constexpr std::uint8_t kNop = 0x50, kWriteError = 0x30, kReadError = 0x31;
+constexpr std::uint8_t kWriteError = 0x30, kReadError = 0x31;
 constexpr std::size_t kBytes[] = {1, 2, 4, 4};
 constexpr std::int32_t kMost[] = {127, 32767, 2147483647};
 constexpr std::uint32_t kMaxRegisters = 64;  // more than a frame has bytes
@@ -89,7 +89,7 @@ MultiplexStatus read_multiplex(std::span<const std::uint8_t> data, std::vector<R
   Reader reader(data);
   while (!reader.done()) {
     const std::uint8_t head = reader.byte();
-    if (head == kNop) continue;
+    if (head == kMultiplexNop) continue;
     const unsigned kind = head >> 4;
     if (kind > 1) return MultiplexStatus::kUnknownSubframe;
     const auto type = static_cast<MultiplexType>(head >> 2 & 3U);

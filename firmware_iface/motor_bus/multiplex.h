@@ -17,6 +17,8 @@
 
 namespace omnihil {
 
+inline constexpr std::uint8_t kMultiplexNop = 0x50;  // a subframe that says nothing
+
 // How a register's unit is scaled in int8, int16 and int32; floats are SI or turns as they are.
 struct RegisterScale {
   double int8, int16, int32;

@@ -29,11 +29,6 @@ std::string with_id(std::string text, std::uint32_t id) {
   return text;
 }
 
-bool fits(std::string_view scheme, BusCarrier carrier) {
-  if (carrier == BusCarrier::kUart) return scheme == "uart" || scheme == "serial";
-  return scheme == "can" || scheme == "slcan" || scheme == "fdcanusb";
-}
-
 bool read_order(const std::string& text, std::array<std::uint8_t, kWheels>& order) {
   if (text.size() != 2 * kWheels - 1) return false;
   std::array<bool, kWheels> seen{};
@@ -57,15 +52,57 @@ std::vector<std::string> split_list(const std::string& text) {
   return parts;
 }
 
-std::unique_ptr<FramePort> open_wire(const Url& url, const MotorBusKind& kind, std::string& problem) {
-  const BusCarrier carrier = kind.carrier;
-  if (url.scheme == "serial") {
-    return open_uart_serial(split_list(url.rest), kind.bit_rate, kind.even_parity, problem);
+// The ways a bus may run over, in the order a user reads them.
+struct WireScheme {
+  std::string_view scheme;
+  std::string_view rest;  // what follows the colon
+  bool uart;              // for buses on UARTs; else for CAN
+  std::unique_ptr<FramePort> (*open)(const std::string& rest, const MotorBusKind& kind, std::string& problem);
+};
+constexpr WireScheme kSchemes[] = {
+    {"uart", "PATH", true,
+     [](const std::string& rest, const MotorBusKind&, std::string& problem) {
+       return open_uart_ptys(rest, kWheels, problem);
+     }},
+    {"serial", "DEVICE,DEVICE,DEVICE,DEVICE", true,
+     [](const std::string& rest, const MotorBusKind& kind, std::string& problem) {
+       return open_uart_serial(split_list(rest), kind.bit_rate, kind.even_parity, problem);
+     }},
+    {"can", "INTERFACE", false,
+     [](const std::string& rest, const MotorBusKind& kind, std::string& problem) {
+       return open_socketcan(rest, kind.carrier, problem);
+     }},
+    {"slcan", "PATH", false,
+     [](const std::string& rest, const MotorBusKind&, std::string& problem) {
+       return AdapterPort::open(rest, "slcan", make_slcan_adapter(), problem);
+     }},
+    {"fdcanusb", "PATH", false,
+     [](const std::string& rest, const MotorBusKind&, std::string& problem) {
+       return AdapterPort::open(rest, "fdcanusb", make_fdcanusb_adapter(), problem);
+     }},
+};
+
+bool fits(const WireScheme& wire, const MotorBusKind& kind) {
+  return wire.uart == (kind.carrier == BusCarrier::kUart);
+}
+
+// nullptr: the bus does not run over this.
+const WireScheme* scheme_of(const MotorBusKind& kind, std::string_view scheme) {
+  for (const WireScheme& wire : kSchemes) {
+    if (wire.scheme == scheme && fits(wire, kind)) return &wire;
   }
-  if (url.scheme == "can") return open_socketcan(url.rest, carrier, problem);
-  if (url.scheme == "slcan") return AdapterPort::open(url.rest, url.scheme, make_slcan_adapter(), problem);
-  if (url.scheme == "uart") return open_uart_ptys(url.rest, kWheels, problem);
-  return AdapterPort::open(url.rest, url.scheme, make_fdcanusb_adapter(), problem);
+  return nullptr;
+}
+
+// "can:INTERFACE, slcan:PATH or fdcanusb:PATH"
+std::string schemes_of(const MotorBusKind& kind) {
+  std::vector<std::string> ways;
+  for (const WireScheme& wire : kSchemes) {
+    if (fits(wire, kind)) ways.push_back(fmt::format("{}:{}", wire.scheme, wire.rest));
+  }
+  const std::string last = ways.back();
+  ways.pop_back();
+  return fmt::format("{} or {}", fmt::join(ways, ", "), last);
 }
 
 void check_bus(const MotorBusChoice& choice, const MotorBusKind* kind, std::vector<std::string>& problems) {
@@ -79,11 +116,9 @@ void check_bus(const MotorBusChoice& choice, const MotorBusKind* kind, std::vect
     return;
   }
   const std::string scheme = split(choice.port).scheme;
-  if (!fits(scheme, kind->carrier)) {
-    problems.push_back(fmt::format("motor bus port: \"{}\": {} runs over {}", choice.port, kind->id,
-                                   kind->carrier == BusCarrier::kUart
-                                       ? "uart:PATH or serial:DEVICE,DEVICE,DEVICE,DEVICE"
-                                       : "can:INTERFACE, slcan:PATH or fdcanusb:PATH"));
+  if (scheme_of(*kind, scheme) == nullptr) {
+    problems.push_back(
+        fmt::format("motor bus port: \"{}\": {} runs over {}", choice.port, kind->id, schemes_of(*kind)));
   }
   const std::size_t devices = split_list(choice.port).size();
   if (scheme == "serial" && devices != kWheels) {
@@ -125,7 +160,8 @@ Session::FirmwareMaker bus_firmware(const MotorBusChoice& choice, const SessionC
   const BusShaft shaft = choice.shaft == "wheel" ? BusShaft::kWheel : BusShaft::kRotor;
   return [kind, setup, shaft, port = choice.port](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     std::string problem;
-    std::unique_ptr<FramePort> wire = open_wire(split(with_id(port, config.robot_id)), *kind, problem);
+    const Url url = split(with_id(port, config.robot_id));
+    std::unique_ptr<FramePort> wire = scheme_of(*kind, url.scheme)->open(url.rest, *kind, problem);
     if (!wire) throw_problems({"motor bus: " + problem});
     return std::make_unique<MotorBusFirmware>(*kind, setup, shaft, config, std::move(wire));
   };

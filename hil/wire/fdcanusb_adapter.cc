@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t kMaxLine = 256;
 constexpr std::uint32_t kMaxStandardId = 0x7FF;
-constexpr std::uint8_t kPad = 0x50;  // a moteus NOP, as the real adapter pads
 
 std::uint8_t crc8(std::string_view text) {
   unsigned crc = 0;
@@ -52,7 +51,7 @@ class FdcanusbAdapter final : public CanAdapter {
     std::string line = fmt::format("rcv {:x} ", f.id);
     for (const std::uint8_t byte : f.bytes()) line += fmt::format("{:02x}", byte);
     const int padded = can_fd_length(can_fd_code(f.size));
-    for (int i = f.size; f.fd && i < padded; ++i) line += fmt::format("{:02x}", kPad);
+    for (int i = f.size; f.fd && i < padded; ++i) line += fmt::format("{:02x}", f.pad);
     line += fmt::format(" {} {} {}", f.extended ? 'E' : 'e', f.bitrate_switch ? 'B' : 'b', f.fd ? 'F' : 'f');
     say(line, answer);
     return true;

@@ -44,7 +44,7 @@ class SlcanAdapter final : public CanAdapter {
     answer += fmt::format("{:X}", code);
     if (!f.remote) {
       for (const std::uint8_t byte : f.bytes()) answer += fmt::format("{:02X}", byte);
-      for (int i = f.size; i < can_fd_length(code); ++i) answer += "00";
+      for (int i = f.size; i < can_fd_length(code); ++i) answer += fmt::format("{:02X}", f.pad);
     }
     answer += '\r';
     return true;

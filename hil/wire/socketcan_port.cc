@@ -89,7 +89,7 @@ bool SocketCanPort::write(const BusFrame& frame) {
   raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U) | (frame.remote ? CAN_RTR_FLAG : 0U);
   raw.len = frame.fd ? static_cast<std::uint8_t>(can_fd_length(can_fd_code(frame.size))) : frame.size;
   raw.flags = frame.bitrate_switch ? CANFD_BRS : 0;
-  std::fill_n(raw.data, raw.len, std::uint8_t{0x50});  // padding: a moteus NOP; no other FD bus is served
+  std::fill_n(raw.data, raw.len, frame.pad);
   std::copy_n(frame.data.begin(), frame.size, raw.data);
   const auto bytes = static_cast<ssize_t>(frame.fd ? CANFD_MTU : CAN_MTU);
   if (::write(socket_, &raw, static_cast<std::size_t>(bytes)) == bytes) return true;

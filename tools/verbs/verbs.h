@@ -1,7 +1,7 @@
 // The verbs of `omnihil`. One file per verb; CMake collects the file stems, so a file added is a verb added:
 // tools/verbs/NAME.cc defines `void add_verb_NAME(CLI::App&, VerbResult&)`.
 #pragma once
-#include <functional>
+#include <span>
 
 namespace CLI {
 class App;
@@ -14,7 +14,10 @@ struct VerbResult {
   int exit_code = 0;
 };
 
-// Adds every verb, in alphabetical order (generated).
-void add_all_verbs(CLI::App& app, VerbResult& result);
+// Adds a verb to the program.
+using VerbAdder = void(CLI::App& app, VerbResult& result);
+
+// Of every verb, in alphabetical order (generated).
+std::span<VerbAdder* const> all_verbs();
 
 }  // namespace omnihil

@@ -7,8 +7,8 @@
 #include "firmware_iface/mcu/board/board_keys.h"
 #include "firmware_iface/mcu/board/board_names.h"
 #include "firmware_iface/mcu/board/board_spec.h"
-#include "firmware_iface/mcu/board/wheel_dialect.h"
 #include "firmware_iface/mcu/stm32/device.h"
+#include "firmware_iface/motor_bus/motor_bus.h"
 #include "firmware_iface/robot_io.h"
 
 namespace omnihil::mcu {
@@ -346,17 +346,19 @@ void Reader::read_wheel_commands() {
   if (top_.contains("radio")) keys_.wrong(top_, "", "wheel_commands", "beside [radio]", "one of the two");
   keys_.only(*t, "wheel_commands", {"dialect", "via", "reversed"});
   std::string dialects;
-  for (const WheelDialect* d : all_wheel_dialects())
-    dialects += (dialects.empty() ? "" : ", ") + std::string(d->name);
+  for (const MotorBusKind* bus : motor_buses()) {
+    if (bus->main_board.dialect.empty()) continue;
+    dialects += (dialects.empty() ? "" : ", ") + std::string(bus->main_board.dialect);
+  }
   WheelCommands& commands = spec_.wheel_commands;
-  commands.dialect = find_wheel_dialect(keys_.text(*t, "wheel_commands", "dialect").value_or(""));
-  if (commands.dialect == nullptr) {
+  commands.bus = find_dialect(keys_.text(*t, "wheel_commands", "dialect").value_or(""));
+  if (commands.bus == nullptr) {
     keys_.wrong(*t, "wheel_commands", "dialect", t->contains("dialect") ? "unknown" : "missing", dialects);
   }
   commands.via = keys_.text(*t, "wheel_commands", "via").value_or("");
   commands.sign = keys_.flag(*t, "wheel_commands", "reversed").value_or(false) ? -1.0 : 1.0;
-  if (commands.dialect == nullptr || !names_) return;
-  const bool can = commands.dialect->on_can;
+  if (commands.bus == nullptr || !names_) return;
+  const bool can = commands.bus->carrier != BusCarrier::kUart;
   if (can ? !names_->has_can(commands.via) : !names_->has_serial(commands.via)) {
     keys_.wrong(*t, "wheel_commands", "via", can ? "not a CAN of the chip" : "not a serial port of the chip",
                 can ? "CAN1, … as the chip has them" : names_->serials());

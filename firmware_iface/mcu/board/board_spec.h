@@ -17,11 +17,14 @@
 
 #include "firmware_iface/mcu/board/board_problem.h"
 
+namespace omnihil {
+struct MotorBusKind;
+}
+
 namespace omnihil::mcu {
 
 struct ChipSpec;
 struct DeviceKind;
-struct WheelDialect;
 
 struct PinName {  // "PA3"
   char port = 'A';
@@ -88,9 +91,9 @@ struct FlashEntry {
 
 // A board that drives wheels as the robot's main board tells it, which the bench stands in for.
 struct WheelCommands {
-  const WheelDialect* dialect = nullptr;  // null: none
-  std::string via;                        // a serial port or a CAN
-  double sign = 1.0;                      // -1: its forward is the plant's backward
+  const MotorBusKind* bus = nullptr;  // whose main board speaks; null: none
+  std::string via;                    // a serial port or a CAN
+  double sign = 1.0;                  // -1: its forward is the plant's backward
 };
 
 struct BoardSpec {

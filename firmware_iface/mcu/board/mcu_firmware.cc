@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware_iface/mcu/board/wheel_dialect.h"
+#include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/usart.h"
+#include "firmware_iface/motor_bus/motor_bus.h"
 
 namespace omnihil::mcu {
 
@@ -18,6 +19,18 @@ BoardSpec numbered(BoardSpec spec, int number) {
     entry.words[static_cast<std::size_t>(entry.board_number_at)] = static_cast<std::uint32_t>(number);
   }
   return spec;
+}
+
+CanFrame can_frame_of(const BusFrame& f) {
+  CanFrame frame{.id = f.id,
+                 .extended = f.extended,
+                 .remote = f.remote,
+                 .fd = f.fd,
+                 .fast = f.bitrate_switch,
+                 .bytes = f.size,
+                 .data = {}};
+  std::copy_n(f.data.begin(), frame.data.size(), frame.data.begin());
+  return frame;
 }
 }  // namespace
 
@@ -60,7 +73,7 @@ std::size_t McuFirmware::radio_transmit(std::span<std::uint8_t> out) {
 
 void McuFirmware::command(const RobotCommand& command, std::int64_t now_ns) {
   const bool speeds = command.mode != OMNIHIL_MODE_WHEEL_DUTY;
-  if (spec_.wheel_commands.dialect == nullptr || !speeds) ++commands_ignored_;
+  if (spec_.wheel_commands.bus == nullptr || !speeds) ++commands_ignored_;
   command_ = command;
   command_at_ns_ = now_ns;
   commanded_ = speeds;
@@ -86,16 +99,21 @@ std::array<double, kWheels> McuFirmware::commanded_wheels_rad_s(std::int64_t now
 // What the main board says to each of its boards, on its own period.
 void McuFirmware::speak(std::int64_t now_ns) {
   const WheelCommands& to = spec_.wheel_commands;
-  if (to.dialect == nullptr || now_ns % to.dialect->period_ns != 0) return;
+  if (to.bus == nullptr || now_ns % to.bus->main_board.period_ns != 0) return;
   std::array<double, kWheels> speeds_rad_s = commanded_wheels_rad_s(now_ns);
   for (double& speed : speeds_rad_s) speed *= to.sign * config_.gear_ratio;  // of the motor
   for (std::size_t b = 0; b < boards_.size(); ++b) {
     const auto n = std::min(static_cast<std::size_t>(wheels_per_board_), spec_.motors.size());
-    WheelWords words;
-    to.dialect->speak(static_cast<int>(b), std::span(speeds_rad_s).subspan(b * n, n), words);
+    std::vector<BusFrame> frames;
+    to.bus->main_board.speak(static_cast<int>(b), std::span(speeds_rad_s).subspan(b * n, n), frames);
     McuBoard& board = *boards_[b];
-    if (!words.serial.empty()) board.chip().find<Usart>(to.via)->feed(words.serial, board.now_ns());
-    for (const CanFrame& frame : words.can) board.chip().find<CanPort>(to.via)->receive(frame);
+    for (const BusFrame& frame : frames) {
+      if (to.bus->carrier == BusCarrier::kUart) {
+        board.chip().find<Usart>(to.via)->feed(frame.bytes(), board.now_ns());
+      } else {
+        board.chip().find<CanPort>(to.via)->receive(can_frame_of(frame));
+      }
+    }
   }
 }
 

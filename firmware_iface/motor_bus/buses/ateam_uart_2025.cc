@@ -29,6 +29,10 @@ constexpr std::uint8_t kParametersCommand = 0x20, kMotionCommand = 0x21, kParame
 constexpr std::uint8_t kCommandBytes = 52, kReplyBytes = 56;
 constexpr std::int64_t kTelemetry_ns = 5'000'000;
 constexpr std::uint32_t kReset = 1, kTelemetry = 2;
+// Of a command for motion.
+constexpr BusField<std::uint8_t> kTypeField{.at = 0}, kKindField{.at = 12};
+constexpr BusField<std::uint32_t> kFlagsField{.at = 8};
+constexpr BusField<float> kSetpointField{.at = 16};
 enum Kind : std::uint8_t { kOpenLoop = 0, kVelocity = 1, kTorque = 2, kBoth = 3 };
 constexpr std::size_t kGains = 8;
 constexpr std::size_t kTimeRow = 0, kClampRow = 9;  // rows of the update mask; the gains lie between
@@ -71,22 +75,22 @@ class AteamUart2025 final : public MotorBus {
 BusVerdict AteamUart2025::receive(const BusFrame& f, std::int64_t now_ns) {
   if (f.id >= kWheels) return BusVerdict::kNotOurs;
   if (f.size != kCommandBytes) return BusVerdict::kLength;
-  if (f.data[0] == kMotionCommand) return motion(motors_[f.id], f, now_ns);
-  if (f.data[0] == kParametersCommand) return parameters(f.id, f);
+  if (kTypeField.get(f) == kMotionCommand) return motion(motors_[f.id], f, now_ns);
+  if (kTypeField.get(f) == kParametersCommand) return parameters(f.id, f);
   return BusVerdict::kUnknownCommand;
 }
 
 BusVerdict AteamUart2025::motion(Motor& motor, const BusFrame& f, std::int64_t now_ns) {
-  if (f.data[12] > kBoth) return BusVerdict::kUnsupported;
-  const float setpoint = get_f32(f, 16);
+  if (kKindField.get(f) > kBoth) return BusVerdict::kUnsupported;
+  const float setpoint = kSetpointField.get(f);
   if (!std::isfinite(setpoint)) return BusVerdict::kNotFinite;
-  const std::uint32_t flags = get_u32(f, 8);
+  const std::uint32_t flags = kFlagsField.get(f);
   if ((flags & kReset) != 0) {
     motor = Motor{};
     return BusVerdict::kOk;
   }
   motor.telemetry = (flags & kTelemetry) != 0;
-  motor.kind = static_cast<Kind>(f.data[12]);
+  motor.kind = static_cast<Kind>(kKindField.get(f));
   motor.setpoint = setpoint;
   motor.set_ns = now_ns;
   motor.commanded = true;
@@ -164,13 +168,21 @@ void AteamUart2025::tick(std::int64_t now_ns) {
   }
 }
 
+// What the main board says to a board, which has one motor and a UART of its own: its speed, every 10 ms.
+void speak(int board, std::span<const double> omega_rotor_rad_s, std::vector<BusFrame>& out) {
+  BusFrame f = can_frame(static_cast<std::uint32_t>(board), kCommandBytes);
+  kTypeField.put(f, kMotionCommand);
+  kFlagsField.put(f, kTelemetry);
+  kKindField.put(f, kVelocity);
+  kSetpointField.put(f, static_cast<float>(omega_rotor_rad_s.empty() ? 0.0 : omega_rotor_rad_s[0]));
+  out.push_back(f);
+}
+
 std::unique_ptr<MotorBus> make(const MotorBusContext& context) {
   return std::make_unique<AteamUart2025>(context);
 }
 
-}  // namespace
-
-extern const MotorBusKind kMotorBus_ateam_uart_2025{
+constexpr MotorBusKind kKind{
     .id = "ateam-uart-2025",
     .title = "SSL A-Team wheel motor controllers of 2025, a UART each",
     .carrier = BusCarrier::kUart,
@@ -180,7 +192,12 @@ extern const MotorBusKind kMotorBus_ateam_uart_2025{
     .max_first_id = -1,
     .default_watchdog_s = 0.1,
     .even_parity = true,
+    .main_board = {.dialect = "ateam-stspin-2025", .period_ns = 10'000'000, .speak = speak},
     .make = make,
 };
+
+}  // namespace
+
+const MotorBusKind& motor_bus_ateam_uart_2025() { return kKind; }
 
 }  // namespace omnihil

@@ -169,9 +169,7 @@ std::unique_ptr<MotorBus> make(const MotorBusContext& context) {
   return std::make_unique<AteamUart2026>(context);
 }
 
-}  // namespace
-
-extern const MotorBusKind kMotorBus_ateam_uart_2026{
+constexpr MotorBusKind kKind{
     .id = "ateam-uart-2026",
     .title = "SSL A-Team wheel motor controllers of 2026, a UART each",
     .carrier = BusCarrier::kUart,
@@ -183,5 +181,9 @@ extern const MotorBusKind kMotorBus_ateam_uart_2026{
     .even_parity = true,
     .make = make,
 };
+
+}  // namespace
+
+const MotorBusKind& motor_bus_ateam_uart_2026() { return kKind; }
 
 }  // namespace omnihil

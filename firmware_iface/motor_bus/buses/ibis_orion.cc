@@ -27,6 +27,9 @@ constexpr double kMaxRev_s = 80.0;
 constexpr double kAboveBackEmf_V = 6.0;
 constexpr std::int64_t kLoop_ns = 1'000'000, kSlow_ns = 16 * kLoop_ns;
 constexpr double kTemperature_degC = 25.0;
+constexpr std::uint32_t kSpeedId = 0x100;  // of motor 0, the others follow
+constexpr BusField<float> kSpeed_rev_s{.at = 0};
+constexpr std::uint8_t kSpeedBytes = 8;
 constexpr double kAngleSteps = 65535.0;  // of a 16-bit angle word
 
 struct Motor {
@@ -59,7 +62,7 @@ class IbisBus final : public MotorBus {
 
 BusVerdict IbisBus::receive(const BusFrame& f, std::int64_t now_ns) {
   if (f.fd || f.extended || f.remote) return BusVerdict::kWrongKind;
-  if (f.id >= 0x100 && f.id < 0x100 + kWheels) return set_speed(f.id - 0x100, f, now_ns);
+  if (f.id >= kSpeedId && f.id < kSpeedId + kWheels) return set_speed(f.id - kSpeedId, f, now_ns);
   switch (f.id) {
     case 0x010:
       if (f.size < 2) return BusVerdict::kLength;
@@ -87,7 +90,7 @@ BusVerdict IbisBus::receive(const BusFrame& f, std::int64_t now_ns) {
 
 BusVerdict IbisBus::set_speed(std::size_t m, const BusFrame& f, std::int64_t now_ns) {
   if (f.size < 4) return BusVerdict::kLength;
-  const double rev_s = get_f32(f, 0);
+  const double rev_s = kSpeed_rev_s.get(f);
   if (!std::isfinite(rev_s)) return BusVerdict::kNotFinite;
   motors_[m].held_rev_s = std::clamp(rev_s, -kMaxRev_s, kMaxRev_s);
   motors_[m].held = true;
@@ -148,11 +151,19 @@ void IbisBus::tick(std::int64_t now_ns) {
   }
 }
 
+// What the main board says to a board of two motors: forgotten after 100 ms, so every 2 ms.
+void speak(int board, std::span<const double> omega_rotor_rad_s, std::vector<BusFrame>& out) {
+  for (std::size_t m = 0; m < omega_rotor_rad_s.size(); ++m) {
+    const auto motor = static_cast<std::uint32_t>(2 * board) + static_cast<std::uint32_t>(m);
+    BusFrame f = can_frame(kSpeedId + motor, kSpeedBytes);
+    kSpeed_rev_s.put(f, static_cast<float>(omega_rotor_rad_s[m] / kTwoPi));
+    out.push_back(f);
+  }
+}
+
 std::unique_ptr<MotorBus> make(const MotorBusContext& context) { return std::make_unique<IbisBus>(context); }
 
-}  // namespace
-
-extern const MotorBusKind kMotorBus_ibis_orion{
+constexpr MotorBusKind kKind{
     .id = "ibis-orion",
     .title = "ibis-ssl Orion BLDC boards",
     .carrier = BusCarrier::kCan,
@@ -161,7 +172,12 @@ extern const MotorBusKind kMotorBus_ibis_orion{
     .default_first_id = -1,
     .max_first_id = -1,
     .default_watchdog_s = 0.1,
+    .main_board = {.dialect = "ibis-orion-can", .period_ns = 2'000'000, .speak = speak},
     .make = make,
 };
+
+}  // namespace
+
+const MotorBusKind& motor_bus_ibis_orion() { return kKind; }
 
 }  // namespace omnihil

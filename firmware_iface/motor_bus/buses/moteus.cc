@@ -174,6 +174,7 @@ BusVerdict MoteusBus::receive(const BusFrame& frame, std::int64_t now_ns) {
   answer.id = to << 8 | (source & 0x7FU);
   answer.extended = answer.id > 0x7FF;
   answer.fd = true;
+  answer.pad = kMultiplexNop;
   answer.bitrate_switch = frame.bitrate_switch;
   answer.size = static_cast<std::uint8_t>(reply.size());
   c_.out.push(answer);
@@ -410,9 +411,7 @@ std::unique_ptr<MotorBus> make(const MotorBusContext& context) {
   return std::make_unique<MoteusBus>(context);
 }
 
-}  // namespace
-
-extern const MotorBusKind kMotorBus_moteus{
+constexpr MotorBusKind kKind{
     .id = "moteus",
     .title = "mjbots moteus, registers over CAN FD",
     .carrier = BusCarrier::kCanFd,
@@ -423,5 +422,9 @@ extern const MotorBusKind kMotorBus_moteus{
     .default_watchdog_s = 0.1,
     .make = make,
 };
+
+}  // namespace
+
+const MotorBusKind& motor_bus_moteus() { return kKind; }
 
 }  // namespace omnihil

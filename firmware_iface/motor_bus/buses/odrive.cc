@@ -302,9 +302,7 @@ std::unique_ptr<MotorBus> make(const MotorBusContext& context) {
   return std::make_unique<OdriveBus>(context);
 }
 
-}  // namespace
-
-extern const MotorBusKind kMotorBus_odrive{
+constexpr MotorBusKind kKind{
     .id = "odrive",
     .title = "ODrive CANSimple, one node per motor",
     .carrier = BusCarrier::kCan,
@@ -315,5 +313,9 @@ extern const MotorBusKind kMotorBus_odrive{
     .default_watchdog_s = 0.0,
     .make = make,
 };
+
+}  // namespace
+
+const MotorBusKind& motor_bus_odrive() { return kKind; }
 
 }  // namespace omnihil

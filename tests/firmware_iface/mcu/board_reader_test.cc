@@ -130,7 +130,7 @@ TEST(BoardReader, ReadsABoardThatIsSeveralTimesInARobot) {
   ASSERT_TRUE(spec);
   EXPECT_EQ(spec->boards_per_robot, 2);
   EXPECT_EQ(spec->flash[0].board_number_at, 1);
-  EXPECT_NE(spec->wheel_commands.dialect, nullptr);
+  EXPECT_NE(spec->wheel_commands.bus, nullptr);
   EXPECT_EQ(spec->wheel_commands.via, "CAN1");
   EXPECT_EQ(spec->wheel_commands.sign, -1.0);
 }

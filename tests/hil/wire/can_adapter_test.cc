@@ -96,6 +96,7 @@ TEST(FdcanusbTest, takes_the_vendors_example) {
 TEST(FdcanusbTest, says_frames_of_the_bus_and_pads_them) {
   Stick stick = fdcanusb();
   BusFrame f = fd_frame(0x100, "2404000a005000000170");
+  f.pad = 0x50;  // as its sender wants it
   EXPECT_EQ(stick.hear(f), "rcv 100 2404000a0050000001705050 e B F\r\n");
   f.id = 0x10001;
   f.extended = true;
