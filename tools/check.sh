@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Format, style, rooms, static checks, sanitizers, a minute of fuzzing. Called by `./dev check [STEP…]`.
+# Format, style, rooms, API reference, static checks, sanitizers, a minute of fuzzing. Called by `./dev check [STEP…]`.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 steps=("$@")
-[ ${#steps[@]} -gt 0 ] || steps=(format style rooms tidy sanitizers fuzz)
+[ ${#steps[@]} -gt 0 ] || steps=(format style rooms docs tidy sanitizers fuzz)
 failed=()
 
 sources() { git ls-files '*.cc' '*.h' '*.c'; }
@@ -11,6 +11,7 @@ sources() { git ls-files '*.cc' '*.h' '*.c'; }
 check_format() { sources | xargs clang-format --dry-run -Werror; }
 check_style() { python3 tools/style_check.py; }
 check_rooms() { python3 tools/rooms.py --check; }
+check_docs() { mkdir -p build && python3 tools/docs/reference.py build/docs; }
 check_tidy() {
   # without the options that only gcc knows
   mkdir -p build/tidy

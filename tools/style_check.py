@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The rules of STYLE.md that a program can hold: file length, line length, marks of unfinished work.
+"""The rules of STYLE.md that a program can hold: file length, line length, a word at each header's head, marks of unfinished
+work.
 
 Prints file:line: rule for each breach; exit 1 when there is one.
 """
@@ -8,6 +9,8 @@ import subprocess
 import sys
 
 MAX_LINES = {"tests/": 600, "": 500}
+MAX_COLUMNS = 135  # the formatter holds code to 110; a table in a comment may be wider
+C_LIKE = (".cc", ".h", ".c", ".inc")
 CODE = (".cc", ".h", ".c", ".inc", ".py")
 FORBIDDEN = [
     (re.compile(r"\b(TODO|FIXME|XXX)\b"), "unfinished mark"),
@@ -26,7 +29,11 @@ def limit_of(path):
 def breaches(path, lines):
     if len(lines) > limit_of(path):
         yield len(lines), f"{len(lines)} lines, at most {limit_of(path)}: one idea per file"
+    if path.endswith((".h", ".inc")) and not lines[0].startswith(("// ", "/* ")):
+        yield 1, "a header opens with what it is"
     for number, line in enumerate(lines, 1):
+        if path.endswith(C_LIKE) and len(line) > MAX_COLUMNS:
+            yield number, f"{len(line)} columns, at most {MAX_COLUMNS}"
         for pattern, rule in FORBIDDEN:
             if pattern.search(line) and not path.endswith("style_check.py"):
                 if rule.startswith("Simbody") and path.startswith("sim/robot/chassis"):

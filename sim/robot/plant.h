@@ -16,9 +16,10 @@
 // Sensors: encoder counts of the rotor angle; gyro = yaw rate; accelerometer = the geometric centre's mean
 // acceleration over the last mechanical step, in the level body frame; bus voltage = the model's constant;
 // motor current = mean since that robot's last sample_sensors(), which begins a new mean and remembers the
-// encoder counts it gave (it is therefore a call in the sequence above, and not const). A robot whose wheels are all held by friction and that slides slower than 1 pm/s stops exactly
-// (planar joint). Cannot represent: contact between robots, walls and ball; sensor noise, bias
-// and filtering; a sagging bus without [battery] in the model or the effect battery_sag.
+// encoder counts it gave (it is therefore a call in the sequence above, and not const). A robot whose wheels
+// are all held by friction and that slides slower than 1 pm/s stops exactly (planar joint).
+// Cannot represent: contact between robots, walls and ball; sensor noise, bias and filtering; a sagging bus
+// without [battery] in the model or the effect battery_sag.
 #pragma once
 #include <array>
 #include <cstdint>
