@@ -8,7 +8,6 @@
 #include "firmware_iface/mcu/board/board_names.h"
 #include "firmware_iface/mcu/board/board_spec.h"
 #include "firmware_iface/mcu/stm32/device.h"
-#include "firmware_iface/motor_bus/motor_bus.h"
 #include "firmware_iface/robot_io.h"
 
 namespace omnihil::mcu {

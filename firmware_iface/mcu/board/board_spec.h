@@ -16,10 +16,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/board/board_problem.h"
-
-namespace omnihil {
-struct MotorBusKind;
-}
+#include "firmware_iface/motor_bus/motor_bus.h"
 
 namespace omnihil::mcu {
 

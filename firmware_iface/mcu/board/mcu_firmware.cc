@@ -7,7 +7,6 @@
 
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/usart.h"
-#include "firmware_iface/motor_bus/motor_bus.h"
 
 namespace omnihil::mcu {
 
