@@ -8,8 +8,8 @@
 //   implicit midpoint: mean tau = K (x + h mean x' / 2 - side) + D mean x',  A = K h / 2 + D
 //   output: mean w_out = w_out + h / (2 J_out) (mean tau + tau_outside), put into the line above
 // Source: Nordin, Gutman, Automatica 38(10), 2002 (dead zone model; no pulling contact). Second order;
-// without damping energy is kept, the share below aside. A stiff shaft cannot be resolved: to c is added h^2
-// / (4 J), J both masses in parallel (5e-5 s and 6e-6 kg m2: 1e-4 rad/(N m)), and where that dominates
+// without damping energy is kept, the share below aside. A stiff shaft cannot be resolved: to c is added
+// h^2 / (4 J), J both masses in parallel (5e-5 s and 6e-6 kg m2: 1e-4 rad/(N m)), and where that dominates
 // damping makes contact without bounce.
 #pragma once
 #include "sim/law/effect_ports.h"

@@ -11,8 +11,8 @@
 // within -1..1 for equal signs and within -2..2 when the wheel turns against the motion.
 // At standstill eq. (6) is 0/0; with the floor, slip is proportional to the sliding speed there. The price:
 // a robot at rest is held by viscous force, not by stiction, so under a steady side force it would creep; on
-// a level floor none acts. The rollers are not driven, so across the drive direction R omega = 0: slip = v /
-// max(|v|, floor).
+// a level floor none acts. The rollers are not driven, so across the drive direction R omega = 0:
+// slip = v / max(|v|, floor).
 #pragma once
 
 namespace omnihil {

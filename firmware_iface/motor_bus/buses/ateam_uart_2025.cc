@@ -1,12 +1,11 @@
-// SSL A-Team wheel motor controllers, 2025: a UART per motor, 2 Mbaud 8E1, one struct per burst,
-// little-endian.
+// SSL A-Team wheel motor controllers, 2025: a UART per motor, 2 Mbaud 8E1, one little-endian struct per burst.
 //
 //   to the motor  52 bytes: 0 type (20h parameters, 21h motion), 4 crc (0, unchecked), then
-//     motion      8 flags (1 reset, 2 telemetry), 12 kind (0 open loop, 1 velocity, 2 torque, 3 both), 16
-//     float set-point parameters  8 what to write (bits), 12 time, 16 eight floats: velocity p i d i_max,
-//     current p i d i_max, 48 clamp
-//   from it       56 bytes: 80h parameters (one per parameter command), 81h motion every 5 ms while telemetry
-//   is on
+//     motion      8 flags (1 reset, 2 telemetry), 12 kind (0 open loop, 1 velocity, 2 torque, 3 both),
+//                 16 float set-point
+//     parameters  8 what to write (bits), 12 time, 16 eight floats: velocity p i d i_max, current p i d i_max,
+//                 48 clamp
+//   from it       56 bytes: 80h parameters (one per parameter command), 81h motion every 5 ms while telemetry is on
 //
 // Source: SSL A-Team firmware f8968a4 and software-communication 0719fbf (behaviour of the running binary).
 // Set-points in rad/s, N m for torque; open loop is its linear fit, clamped duty of

@@ -4,8 +4,7 @@
 //     motion      8 flags (1 reset, 2 telemetry, 4 enable, 8 calibrate current),
 //                 12 kind (0 off, 1 duty, 2 voltage, 3 current, 4 velocity, 5 velocity and current),
 //                 14 int16 current mA, 16 float set-point (duty, V or rad/s)
-//     parameter   8 id, 9 operation (0 read, 1 write), 10 direction (0 command, 1 reply), 12 four bytes of
-//     value
+//     parameter   8 id, 9 operation (0 read, 1 write), 10 direction (0 command, 1 reply), 12 four bytes of value
 //   from it       68 bytes: 0 type (80h, 81h), 1 sequence, 4 time ms, 8 sixty bytes of telemetry
 //
 // Source: SSL A-Team packet layout of 2026 (transcribed; the binary was not run). Set-points of kind 5: the

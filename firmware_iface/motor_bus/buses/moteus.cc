@@ -1,7 +1,7 @@
 // mjbots moteus: registers over CAN FD, one device per motor.
 //
-//   id 8001 [01 00 0a  0e 20 0000c07f 00004040  11 00]   to device 1, reply to 0: position mode, velocity 3
-//   Hz id 0100 [21 00 0a]                                   its answer
+//   id 8001 [01 00 0a  0e 20 0000c07f 00004040  11 00]   to device 1, reply to 0: position mode, velocity 3 Hz
+//   id 0100 [21 00 0a]                                   its answer
 //
 // id = source << 8 | destination; bit 15 asks for a reply, which goes from destination to source. Frames with
 // ids above 7FFh are 29-bit ones. Protocol: multiplex.h; registers and scales: mjbots moteus
