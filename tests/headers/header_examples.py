@@ -4,7 +4,7 @@
     header_examples.py --flags FILE --out DIR ROOM...        (ROOM: sim, identify, ...; run from anywhere)
 
 What an example takes as given (its `model`, its `t`) is named in given.toml: words of a whole room, parameters of one example.
-In an example … stands for what is left out: `{.bits = 14, …}`, `if (late) …`. An error names the header and the line.
+In an example … stands for what is left out: `{.bits = 14, …}`, `.axis = …`, `if (late) …`. An error names the header and the line.
 """
 import argparse
 import re
@@ -27,6 +27,7 @@ def code_of(line):
     """A line of an example as a compiler takes it: without its comment, … left out."""
     parts = re.split(r'("(?:[^"\\]|\\.)*")', without_comment(line))
     for i in range(0, len(parts), 2):
+        parts[i] = re.sub(r"=\s*…", "= {}", parts[i])
         parts[i] = re.sub(r",\s*…", "", parts[i])
         parts[i] = re.sub(r"([({])\s*…\s*([)}])", r"\1\2", parts[i])
         parts[i] = parts[i].replace("…", ";")
@@ -85,9 +86,11 @@ def names_of(table, room):
 def unit_of(room, headers, table, given):
     """The text of the translation unit of a room, and what is wrong before any compiler is asked."""
     faults, functions = [], []
-    skipped = tuple(table.get("not_compiled", {}))
-    texts = {path: (ROOT / path).read_text(encoding="utf-8") for path in headers if not path.startswith(skipped or "/")}
+    not_compiled, not_included = tuple(table.get("not_compiled", {})), tuple(table.get("not_included", {}))
+    texts = {path: (ROOT / path).read_text(encoding="utf-8") for path in headers if not path.startswith(not_included)}
     for number, (path, text) in enumerate(texts.items()):
+        if path.startswith(not_compiled):
+            continue
         faults += looks_unfinished(path, text)
         function = example_of(path, text, given.get(path), number, path in table.get("namespace_scope", []))
         if function:
@@ -111,7 +114,7 @@ def main():
     args = parser.parse_args()
     table, given = read_given()
     bad = False
-    for path in list(given) + list(table.get("not_compiled", {})):
+    for path in [*given, *table.get("not_compiled", {}), *table.get("not_included", {})]:
         if not any((ROOT / path).parent.glob(Path(path).name + "*")):
             print(f"{GIVEN.relative_to(ROOT)}: error: there is no {path}")
             bad = True
