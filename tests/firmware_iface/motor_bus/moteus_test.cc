@@ -26,6 +26,17 @@ std::vector<std::uint8_t> ask(BusRig& rig, const char* data) {
   return data_of(rig.wire->last(kFrom1));
 }
 
+TEST(MoteusTest, what_fills_an_answer_up_to_a_length_of_can_fd_says_nothing) {
+  BusRig rig("moteus");
+  rig.send(fd_frame(kTo1, "11 00"));
+  rig.run_ms(1);
+  const BusFrame answer = rig.wire->last(kFrom1);
+  ASSERT_EQ(data_of(answer), hex("21 00 00"));
+  std::vector<RegisterAccess> said;
+  EXPECT_EQ(read_multiplex(std::vector<std::uint8_t>(5, answer.pad), said), MultiplexStatus::kOk);
+  EXPECT_TRUE(said.empty());
+}
+
 TEST(MultiplexTest, reads_the_vendors_example) {
   std::vector<RegisterAccess> a;
   ASSERT_EQ(read_multiplex(hex("01000a07206000200150ff140400130d"), a), MultiplexStatus::kOk);

@@ -64,6 +64,9 @@ TEST(SlcanTest, says_frames_of_the_bus) {
   EXPECT_EQ(stick.hear(frame(0x7F, "DE AD")), "t07F2DEAD\r");
   EXPECT_EQ(stick.hear(fd_frame(0x8001, "01 02 03 04 05 06 07 08 09")),
             "B000080019010203040506070809000000\r");
+  BusFrame padded = fd_frame(0x8001, "01 02 03 04 05 06 07 08 09");
+  padded.pad = 0x50;  // as its sender wants it
+  EXPECT_EQ(stick.hear(padded), "B000080019010203040506070809505050\r");
 }
 
 TEST(SlcanTest, refuses_what_is_no_frame) {
