@@ -26,6 +26,8 @@ struct Row {
                              // at the end
   enum Kind { kA,  // first
               kB };
+  virtual void at(int /*field*/, char c = '"') {}
+  int after = 0;  // counted
   double get() const {
     // within a function
     return 1.0;  // likewise
@@ -57,6 +59,7 @@ class Filter(unittest.TestCase):
     def test_a_comment_behind_a_member_documents_it_and_may_go_on(self):
         self.assertTrue(line_with("speed_rad_s").endswith("///< of the \\<rotor\\>"))
         self.assertEqual(line_with("at the end"), "///< at the end")
+        self.assertTrue(line_with("after").endswith("///< counted"))
         self.assertTrue(line_with("kA").endswith("///< first"))
 
     def test_other_comments_are_left_alone(self):

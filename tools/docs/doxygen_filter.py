@@ -93,9 +93,10 @@ class Scopes:
 
 
 def code_and_comment(line):
-    """(code with strings blanked, column of // or /* or None, the mark)"""
+    """(code with strings and inner comments blanked, column of // or /* or None, the mark)"""
     blank = re.sub(r'"(?:[^"\\]|\\.)*"', lambda m: '"' + "S" * (len(m[0]) - 2) + '"', line)
-    blank = re.sub(r"'(?:[^'\\]|\\.)'", "' '", blank) if len(blank) == len(line) else blank
+    blank = re.sub(r"'(?:[^'\\]|\\.)'", lambda m: "'" + " " * (len(m[0]) - 2) + "'", blank)
+    blank = re.sub(r"/\*.*?\*/(?=\s*[^\s/])", lambda m: " " * len(m[0]), blank)  # within the code
     found = re.search(r"//|/\*", blank)
     if not found:
         return blank, None, ""
