@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "hil/loop/model_store.h"
+#include "hil/text/program_files.h"
 #include "sim/bench/axis_signal.h"
 #include "sim/bench/excitation.h"
 #include "sim/law/effect_registry.h"
@@ -22,7 +23,7 @@ constexpr double kHoldoutRatio = 1.0 / 3.0;  // of a file's time, at its end
 constexpr double kHoldoutAmplitude = 0.8;    // of the fit run's
 
 std::optional<AxisModel> open_model(const std::string& name, std::vector<std::string>& faults) {
-  const StoredModel stored = load_model(name, {OMNIHIL_SOURCE_MODELS});
+  const StoredModel stored = load_model(name, {data_folder("models")});
   if (stored.bundle.robot_text.empty()) {
     for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
     return std::nullopt;

@@ -2,11 +2,36 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <string>
+#include <system_error>
 
+#include "tools/command_tree.h"
 #include "tools/exit_codes.h"
+#include "tools/manual.h"
+#include "tools/misspelt.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
+
+namespace {
+
+// Not shown by --help: installations call it. It is of the program, not of a verb: it writes what all of them say.
+void add_manual(CLI::App& app, omnihil::VerbResult& result) {
+  auto folder = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("manual", "write manual pages and shell completion below FOLDER/share");
+  verb->group("");
+  verb->add_option("FOLDER", *folder, "made where it is missing")->required();
+  verb->callback([&app, &result, folder] {
+    try {
+      omnihil::write_manual(omnihil::command_tree(app), OMNIHIL_VERSION, *folder);
+    } catch (const std::system_error& error) {
+      std::fprintf(stderr, "omnihil manual: %s\n", error.what());
+      result.exit_code = omnihil::kExitIo;
+    }
+  });
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"omnihil: the test bench for the low level of an omni-directional soccer robot"};
@@ -15,10 +40,15 @@ int main(int argc, char** argv) {
   app.footer(omnihil::kExitCodeHelp);
   omnihil::VerbResult result;
   for (omnihil::VerbAdder* add : omnihil::all_verbs()) add(app, result);
+  add_manual(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? omnihil::kExitOk : omnihil::kExitBadInput;
+    const std::string misspelt =
+        error.get_exit_code() == 0 ? "" : omnihil::misspelt_words(omnihil::command_tree(app));
+    if (misspelt.empty()) return app.exit(error) == 0 ? omnihil::kExitOk : omnihil::kExitBadInput;
+    std::fputs(misspelt.c_str(), stderr);
+    return omnihil::kExitBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "omnihil: %s\n", error.what());
     return omnihil::kExitDiverged;

@@ -10,6 +10,7 @@
 
 #include "hil/dataset/dataset_model.h"
 #include "hil/loop/effect_overrides.h"
+#include "hil/text/program_files.h"
 #include "hil/text/recording_text.h"
 #include "sim/bench/excitation.h"
 #include "sim/drive/sensor_chain.h"
@@ -240,7 +241,7 @@ void check_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
 
 std::optional<RobotBench> make_robot_bench(const BenchOptions& options, std::vector<std::string>& faults) {
   check_numbers(options, faults);
-  StoredModel stored = load_robot_model(options.model, {OMNIHIL_SOURCE_MODELS});
+  StoredModel stored = load_robot_model(options.model, {data_folder("models")});
   for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
   if (!stored.model) return std::nullopt;
   ModelBundle bundle = stored.bundle;

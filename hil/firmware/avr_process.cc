@@ -12,7 +12,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "hil/firmware/child_program.h"
+#include "hil/firmware/signal_words.h"
+#include "hil/text/program_files.h"
 
 namespace omnihil {
 namespace {
@@ -38,7 +39,7 @@ AvrProcess::~AvrProcess() {
 }
 
 void AvrProcess::start() {
-  const std::string path = child_program(kProgram, OMNIHIL_AVR_PROGRAM);
+  const std::string path = helper_program(kProgram);
   const char* words[] = {path.c_str(), nullptr};
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {

@@ -13,7 +13,8 @@
 #include <cstring>
 #include <system_error>
 
-#include "hil/firmware/child_program.h"
+#include "hil/firmware/signal_words.h"
+#include "hil/text/program_files.h"
 
 namespace omnihil {
 namespace {
@@ -45,7 +46,7 @@ void FirmwareProcess::start() {
   page_ = new (page) WirePage();
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) fail("socket pair");
-  const std::string path = child_program(kProgram, OMNIHIL_FIRMWARE_PROCESS);
+  const std::string path = helper_program(kProgram);
   const std::string socket_word = std::to_string(ends[1]), page_word = std::to_string(page_file);
   const char* words[] = {path.c_str(), socket_word.c_str(), page_word.c_str(), nullptr};
   child_ = ::fork();

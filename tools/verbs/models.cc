@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hil/loop/model_store.h"
+#include "hil/text/program_files.h"
 #include "sim/model/model_figures.h"
 #include "sim/model/model_keys.h"
 #include "sim/robot/validate.h"
@@ -17,7 +18,10 @@
 namespace omnihil {
 namespace {
 
-const std::vector<std::string> kFolders = {OMNIHIL_SOURCE_MODELS};
+const std::vector<std::string>& folders() {
+  static const std::vector<std::string> kFolders = {data_folder("models")};
+  return kFolders;
+}
 
 struct Arguments {
   std::string model;
@@ -30,7 +34,7 @@ void print_problems(const StoredModel& stored) {
 }
 
 int list() {
-  for (const ModelListing& listed : list_models(kFolders)) {
+  for (const ModelListing& listed : list_models(folders())) {
     const StoredModel stored = load_model(listed.path, {});
     const std::string what = stored.model ? stored.model->name
                                           : fmt::format("unusable: {} (omnihil models --check {})",
@@ -78,7 +82,7 @@ void print_parameters(const ModelFile& model) {
 }
 
 int explain(const std::string& path_or_name) {
-  const StoredModel stored = load_model(path_or_name, kFolders);
+  const StoredModel stored = load_model(path_or_name, folders());
   print_problems(stored);
   if (!stored.model) return kExitBadInput;
   const ModelFile& model = *stored.model;
@@ -108,7 +112,7 @@ std::vector<std::string> plant_problems_of(const StoredModel& stored) {
 int check(const std::vector<std::string>& files) {
   std::size_t problems = 0;
   for (const std::string& file : files) {
-    const StoredModel stored = load_model(file, kFolders);
+    const StoredModel stored = load_model(file, folders());
     print_problems(stored);
     const std::vector<std::string> refused = plant_problems_of(stored);
     for (const std::string& problem : refused)

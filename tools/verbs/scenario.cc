@@ -11,6 +11,7 @@
 #include "hil/recording/recording_header.h"
 #include "hil/scenario/scenario_rows.h"
 #include "hil/scenario/scenario_suite.h"
+#include "hil/text/program_files.h"
 #include "tools/exit_codes.h"
 #include "tools/firmware_options.h"
 #include "tools/guarded.h"
@@ -48,7 +49,7 @@ void print_rows() {
 
 int list(const Arguments& a) {
   if (a.paths.empty() && a.level.empty()) print_rows();
-  const SuiteReading suite = read_suite(a.paths, a.level, OMNIHIL_SOURCE_SCENARIOS);
+  const SuiteReading suite = read_suite(a.paths, a.level, data_folder("examples/scenarios"));
   for (const std::string& problem : suite.problems) fmt::print(stderr, "omnihil scenario: {}\n", problem);
   if (!suite.problems.empty()) return kExitBadInput;
   if (a.paths.empty()) fmt::print("{}Shipped scenarios:\n", a.level.empty() ? "\n" : "");
@@ -66,11 +67,11 @@ void write_junit(const std::string& path, const std::vector<ScenarioOutcome>& ou
 }
 
 int run(Arguments& a) {
-  const SuiteReading suite = read_suite(a.paths, a.level, OMNIHIL_SOURCE_SCENARIOS);
+  const SuiteReading suite = read_suite(a.paths, a.level, data_folder("examples/scenarios"));
   for (const std::string& problem : suite.problems) fmt::print(stderr, "omnihil scenario: {}\n", problem);
   if (!suite.problems.empty()) return kExitBadInput;
   if (suite.scenarios.empty()) throw std::invalid_argument("no scenario of level \"" + a.level + "\"");
-  a.suite.model_folders = {OMNIHIL_SOURCE_MODELS};
+  a.suite.model_folders = {data_folder("models")};
   a.suite.physics = *parse_physics(a.physics);
   if (a.no_plots) a.suite.plots.clear();
   std::vector<ScenarioOutcome> outcomes;

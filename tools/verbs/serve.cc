@@ -13,6 +13,7 @@
 #include "hil/loop/model_store.h"
 #include "hil/recording/recording_header.h"
 #include "hil/recording/session_setup.h"
+#include "hil/text/program_files.h"
 #include "protocols/radio_format.h"
 #include "tools/exit_codes.h"
 #include "tools/firmware_options.h"
@@ -49,7 +50,7 @@ void complain(const std::string& lines) { std::fprintf(stderr, "omnihil serve:\n
 std::string understand(Words& words) {
   std::vector<std::string> problems;
   SessionSetup& setup = words.setup;
-  const StoredModel stored = load_robot_model(words.robot, {OMNIHIL_SOURCE_MODELS});
+  const StoredModel stored = load_robot_model(words.robot, {data_folder("models")});
   for (const ModelProblem& problem : stored.problems) problems.push_back(problem.text());
   setup.model = stored.bundle;
   if (stored.problems.empty()) add_effects(setup.model, words.with, problems);

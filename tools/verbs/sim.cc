@@ -9,6 +9,7 @@
 
 #include "hil/loop/model_store.h"
 #include "hil/text/dataset_files.h"
+#include "hil/text/program_files.h"
 #include "sim/model/model_document.h"
 #include "tools/axis_bench.h"
 #include "tools/exit_codes.h"
@@ -61,7 +62,7 @@ int run_robot(const Arguments& arguments) {
 // A robot's model file is the whole robot unless one of its drives is asked for.
 bool wants_robot(const Arguments& arguments) {
   if (!arguments.rig.empty()) return arguments.rig == "robot";
-  const StoredModel stored = load_model(arguments.bench.model, {OMNIHIL_SOURCE_MODELS});
+  const StoredModel stored = load_model(arguments.bench.model, {data_folder("models")});
   std::vector<ModelProblem> said_later;
   const auto document = parse_document(stored.bundle.robot_text, stored.bundle.robot_file, said_later);
   if (!document || document->table["rig"].value_or(std::string()) != "robot") return false;

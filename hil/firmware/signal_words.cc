@@ -1,23 +1,10 @@
-#include "hil/firmware/child_program.h"
+#include "hil/firmware/signal_words.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <csignal>
-#include <filesystem>
-#include <system_error>
 
 namespace omnihil {
-
-std::string child_program(const std::string& name, const std::string& built) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path here = fs::read_symlink("/proc/self/exe", error);
-  for (const fs::path& path : {here.parent_path() / name, fs::path(built)}) {
-    if (!error && ::access(path.c_str(), X_OK) == 0) return path.string();
-  }
-  return name;
-}
 
 std::string signal_words(int signal) {
   switch (signal) {
