@@ -2,8 +2,8 @@
 // command line left over. Whoever writes pages or advice from it needs no header of CLI11.
 //
 //   const Command program = command_tree(app);
-//   program.verbs[0].words                    // "omnihil add"
-//   program.verbs[0].options[0].names         // "-h,--help"
+//   program.verbs[0].words;                   // "omnihil add"
+//   program.verbs[0].options[0].names;        // "-h,--help"
 #pragma once
 #include <string>
 #include <vector>

@@ -5,7 +5,7 @@
 //   share/omnihil/NAME             models, boards, examples (build tree: links to the sources)
 //
 //   load_model("omni_default", {data_folder("models")});
-//   helper_program("omnihil-avr")           // "/usr/libexec/omnihil/omnihil-avr"
+//   helper_program("omnihil-avr");          // "/usr/libexec/omnihil/omnihil-avr"
 //
 // Both are found from the program's own place, so that what was installed may be moved as a whole.
 #pragma once
