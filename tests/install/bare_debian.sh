@@ -53,15 +53,14 @@ unshare --mount --propagation private bash -euo pipefail -c '
   mount --bind /dev "$system/dev"
   mount -t devpts devpts "$system/dev/pts" -o newinstance,ptmxmode=0666 2>/dev/null || mount --bind /dev/pts "$system/dev/pts"
   in_system() { chroot "$system" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
-  apt="apt-get -qq -y --no-install-recommends -o APT::Sandbox::User=root -o Binary::apt-get::APT::Keep-Downloaded-Packages=true"
-  rm -f "$system/etc/apt/apt.conf.d/docker-clean"
+  apt="apt-get -qq -y --no-install-recommends -o APT::Sandbox::User=root"
   if ! in_system $apt --download-only install /tmp/omnihil.deb >/dev/null 2>&1; then  # lists of another day, or none
     in_system $apt update >"$cache/apt.log" 2>&1 || { tail -n 3 "$cache/apt.log"; exit 77; }
     in_system $apt --download-only install /tmp/omnihil.deb >"$cache/apt.log" 2>&1 || {
       cat "$cache/apt.log"; ! grep -q "Failed to fetch\|Could not resolve" "$cache/apt.log" || exit 77; exit 1; }
-    cp -n "$system/var/cache/apt/archives/"*.deb "$cache/archives/"
     rm -rf "$cache/lists" && cp -a "$system/var/lib/apt/lists" "$cache/lists"
   fi
+  cp -n "$system/var/cache/apt/archives/"*.deb "$cache/archives/"
   in_system $apt install /tmp/omnihil.deb >"$cache/install.log" 2>&1 || { cat "$cache/install.log"; exit 1; }
   cd /
   in_system omnihil --version
