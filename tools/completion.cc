@@ -43,6 +43,7 @@ std::vector<std::string> dashed(const CommandOption& o) {
 
 std::vector<std::string> names_of(const std::vector<Command>& verbs) {
   std::vector<std::string> names;
+  names.reserve(verbs.size());
   for (const Command& verb : verbs) names.push_back(verb.name);
   return names;
 }
