@@ -14,8 +14,8 @@ namespace omnihil {
 namespace {
 
 constexpr double kExplained = 0.5;  // R^2 of the line of input over speed; tuned
-constexpr double kChanging =
-    0.3;  // of the rows, with a new input: that of a controller is never still; tuned
+// Of the rows, with a new input: that of a controller is never still.
+constexpr double kChanging = 0.3;  // tuned
 
 std::vector<double> speed_of(const RunView& view, const DriveView& drive) {
   if (drive.velocity != nullptr) return *drive.velocity;

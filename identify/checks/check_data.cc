@@ -19,8 +19,8 @@ bool same_kind(const DataFinding& a, const DataFinding& b) {
   return a.kind == b.kind && a.signal == b.signal && a.grade == b.grade;
 }
 
-// A finding of one kind, signal and grade in more than kSaidSingly runs is said once, with the run where its
-// size is largest.
+// A finding of one kind, signal and grade in more than kSaidSingly runs is reported once, with the run where
+// its size is largest.
 std::vector<DataFinding> merged(const std::vector<DataFinding>& all) {
   constexpr std::ptrdiff_t kSaidSingly = 3;  // lines that a reader still reads: a choice
   std::vector<DataFinding> out;

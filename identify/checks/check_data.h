@@ -18,7 +18,7 @@ struct DataFinding {
                        // "late_timestamps", "saturated_command", "position_against_speed", "closed_loop", …
   std::string run;     // file; empty: all
   std::string signal;  // empty: none in particular
-  double size = 0.0;   // in the signal's unit, or as the sentence says
+  double size = 0.0;   // in the signal's unit, or the sentence's
   std::string sentence;
 };
 

@@ -1,11 +1,11 @@
 // Scales of current and speed, held against the motor's own equation.
 //
 // With a current: i = u / R - (k / R) w over windows, so that R and k come out separately: R far from the
-// model's says the current has a wrong scale, k far from it says the speed has. Without a current the speed
-// per volt alone: w = u / k' - friction, k' = k (1 + R b / k^2). Windows of 0.2 s leave inductance and delays
-// out. Effects move these numbers by some ten per cent, rarely by half: a fault needs a factor that no effect
-// brings, or the same factor in the acceleration (J dw/dt = k i - friction), which a wrong back-EMF leaves
-// alone. Runs of another kind of motion (extrapolation) are left out.
+// model's means a wrong scale of the current, k far from it one of the speed. Without a current the speed
+// per volt alone: w = u / k' - friction, k' = k (1 + R b / k^2). Windows of 0.2 s average inductance and
+// delays out. Effects change R and k by some ten per cent, rarely by half: a fault needs a factor that no
+// effect brings, or the same factor in the acceleration (J dw/dt = k i - friction), which a wrong back-EMF
+// leaves alone. Runs of another kind of motion (extrapolation) are left out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ constexpr std::size_t kLeastWindows = 15;  // several per coefficient of the lin
 constexpr double kDoubtful = 0.28, kWrong = 0.33;
 constexpr double kWrongAlone = 0.8;  // likewise, where the acceleration does not confirm it
 constexpr double kTolerances = 4.0;  // prior deviations of the model's parameter: p = 6e-5 of a normal
-constexpr double kWrongCurrent =
-    1.1;  // |log|: a factor of three; winding heat and friction bring less; tuned
+// |log|: a factor of three; winding heat and friction bring less.
+constexpr double kWrongCurrent = 1.1;  // tuned
 
 struct Windows {
   std::vector<double> u, w, i, side;  // voltage, rotor speed, current, sign of the voltage
@@ -94,8 +94,8 @@ void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double
 
 // Acceleration over what current and nominal inertia allow; 1 where it cannot be told.
 double acceleration_ratio(const CheckContext& data, std::size_t wheel) {
-  constexpr double kShortWindow_s =
-      0.02;  // within one acceleration of a small motor, beyond its L/R; a choice
+  // Within one acceleration of a small motor, beyond its L/R.
+  constexpr double kShortWindow_s = 0.02;  // a choice
   const double gear = nominal_value(data.nominal, "gear.ratio").value_or(1.0);
   std::vector<double> torque, acceleration, speed, side;
   const DriveParams<double> nominal = drive_of(data.nominal);

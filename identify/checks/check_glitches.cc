@@ -76,7 +76,7 @@ void check_signal(const RunView& view, const std::string& name, const std::vecto
     const double period = std::max(s.t[k] - s.t[k - 1], s.t[k + 1] - s.t[k]);
     const double bound = std::max({kOutstanding * robust, kQuanta * quantum, highest * period});
     if (std::abs(second[k]) <= bound) continue;
-    // the neighbours of a single spike show half of it, the other way
+    // a single spike makes second differences of minus half its size at its neighbours
     if (std::abs(second[k - 1]) > std::abs(second[k]) || std::abs(second[k + 1]) > std::abs(second[k]))
       continue;
     if (count++ == 0) first = k;

@@ -1,4 +1,4 @@
-// Records too short to tell anything.
+// Records too short to identify anything.
 #include <fmt/format.h>
 
 #include "identify/checks/check_list.h"

@@ -1,10 +1,10 @@
-// The checks of data quality: each looks for one kind of fault and says it in plain language.
+// The checks of data quality: each looks for one kind of fault and reports it in a sentence.
 //
 //   void check_clock(const CheckContext& data, std::vector<DataFinding>& findings);
 //
 // A check is one function in a file check_NAME.cc; kChecks in check_data.cc lists them. Grades: a fault is
 // something that would be taken for physics; a doubt may be; a note is worth knowing. On sound data, with or
-// without effects hidden in them, checks say no faults.
+// without effects hidden in them, no check reports a fault.
 //
 // Thresholds. "tuned" at a threshold of a check means: set so that the sound simulated records of
 // tests/identify/checks/check_data_test.cc (every drive, every hidden effect) and the published recordings of
@@ -19,7 +19,7 @@
 
 namespace omnihil {
 
-// One drive in one run: what was asked of it and what its sensors say. Null: not measured.
+// One drive in one run: its input and its sensors' signals, n samples each. Null: not measured.
 struct DriveView {
   std::string suffix;      // "": an axis; "_1" … "_4": a robot's wheels
   std::string drive_name;  // "duty_1", "motor_torque"; empty: not driven by a signal of its own

@@ -1,4 +1,4 @@
-// Records that hardly move: they show a limit of friction and little else.
+// Records that hardly move: they determine a bound of static friction and little else.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -34,7 +34,7 @@ void check_supply(const CheckContext& data, std::vector<DataFinding>& findings) 
   // Relative to nominal. A choice: a cell of 3.7 V stays within from 3.4 V to 4.0 V; freshly charged, at 4.2
   // V, it is worth a sentence. Or 4 prior deviations (p = 6e-5 of a normal), where the model's tolerance is
   // wider.
-  constexpr double kLeast = 0.10;
+  constexpr double kLeast = 0.10;  // a choice
   const auto nominal_V = nominal_value(data.nominal, "supply.voltage_V");
   const double allowed = std::max(kLeast, 4.0 * tolerance_of(data.nominal, "supply.voltage_V"));
   for (const RunView& view : data.runs) {

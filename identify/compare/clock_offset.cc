@@ -11,7 +11,7 @@ namespace {
 constexpr int kStretches = 8;          // a spread from so many is known within 27 % (1 / sqrt(2 (n - 1)))
 constexpr int kMostSteps = 60;         // periods, to either side: what the search costs; a choice
 constexpr double kMostSeconds = 0.15;  // beyond what a radio, a bus or a camera's chain delays; a choice
-constexpr std::size_t kLeastSamples = 200;  // per stretch, several times 2 kMostSteps would leave; a choice
+constexpr std::size_t kLeastSamples = 200;  // per stretch; a choice
 
 struct Stretch {
   const ComparedSignal* signal;

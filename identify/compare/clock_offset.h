@@ -6,8 +6,8 @@
 //
 // The lag at which the squared error of model(t - lag) is least, in steps of the sample period, refined by a
 // parabola through the three best. From eight stretches of the record, so that its spread is known.
-// Cannot: tell a late clock from a delay of the drive or a missing inductance; see an offset that the model's
-// error drowns.
+// Cannot: separate a late clock from a delay of the drive or a missing inductance; find an offset that the
+// model's error drowns.
 #pragma once
 #include <optional>
 #include <span>

@@ -6,7 +6,7 @@
 //
 // A run in which the model stops being finite has an infinite error: it never looks good by having few
 // samples. Noise: what the predictor's signals state or show; where the same input was given twice, the
-// difference of the two answers is a floor of its own (`repeat_sigma`).
+// difference of the two responses is a floor of its own (`repeat_sigma`).
 #pragma once
 #include <span>
 #include <string>
@@ -28,7 +28,7 @@ struct SignalError {
   double bias = 0.0;           // mean of model minus measurement
   double noise_sigma = 0.0;    // floor that no model can pass
   bool noise_is_stated = false;
-  double repeat_sigma = 0.0;  // of answers to the same input; 0: no input was given twice
+  double repeat_sigma = 0.0;  // of responses to the same input; 0: no input was given twice
   double in_sigmas = 0.0;     // rms of the whitened residual over its noise: 1 is perfect
   double relative = 0.0;      // norm of the error over norm of the measured signal
 };

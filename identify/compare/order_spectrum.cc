@@ -14,8 +14,8 @@ namespace {
 constexpr int kHighestOrder = 200;    // periods per turn; cogging of 14 poles and 12 slots has 84; a choice
 constexpr double kFastest_rad = 2.0;  // phase per sample, 2/3 of Nyquist's pi: a faster order is not resolved
 constexpr double kStandsOut = 8.0;    // times the median over all orders; tuned, sensitivity not measured
-constexpr double kLeastShare =
-    0.01;  // of the residual's energy; a third of what an effect has to take; a choice
+// Of the residual's energy; a third of what an effect has to take.
+constexpr double kLeastShare = 0.01;  // a choice
 
 // Sine and cosine of one order after another, by the recurrence s(n+1) = 2 cos(x) s(n) - s(n-1).
 struct Angles {

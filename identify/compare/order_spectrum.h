@@ -3,11 +3,11 @@
 //   std::vector<OrderPeak> p = strong_orders(predictor, residuals, model, weighted_residual, 4);
 //   p[0].order;        // 48
 //
-// A torque A sin(n theta + p) shows in the speed behind the drive's own lag T = J / (k^2/R + b); sine and
+// A torque A sin(n theta + p) appears in the speed behind the drive's own lag T = J / (k^2/R + b); sine and
 // cosine of every whole order are sent through that lag and held against the residual (least squares, two
 // coefficients per order and signal). The strongest is taken out, then the next is looked for, while one
 // stands out from its neighbours by far. Where the drive input is compared (inverse method) there is no lag.
-// Cannot: tell orders apart that never passed at different speeds; see orders that pass faster than a third
+// Cannot: separate orders that never passed at different speeds; find orders that pass faster than a third
 // of the sampling rate; fractions of an order.
 #pragma once
 #include <vector>

@@ -8,7 +8,7 @@
 // turn, in 48 bins. The standard error of a bin's mean comes from blocks of successive samples, since
 // residuals are autocorrelated: var = sum_k (S_k - m n_k)^2 / (sum n_k)^2 * K / (K - 1), S_k, n_k sum and
 // count of block k (ratio estimator: W. G. Cochran, Sampling Techniques, 3rd ed. 1977, sec. 6.3).
-// Cannot: tell two axes apart that move together in the record.
+// Cannot: separate two axes that are correlated in the record.
 #pragma once
 #include <string>
 #include <string_view>
@@ -26,7 +26,7 @@ struct RegimeSamples {
 };
 
 // Over all samples of a split: a standard error from 64 blocks is known within 9 % (1 / sqrt(2 (K - 1))).
-inline constexpr int kBlocks = 64;
+inline constexpr int kBlocks = 64;  // a choice
 
 // The caller fills in signal, split and unit.
 RegimeError regime_error(std::string_view axis, const RegimeSamples& samples);

@@ -8,13 +8,13 @@
 namespace omnihil {
 namespace {
 
-constexpr double kLeastExcess =
-    0.10;  // share of the error less share of the time: less is not reported; a choice
+// Share of the error less share of the time: less is not reported.
+constexpr double kLeastExcess = 0.10;  // a choice
 
 struct AxisWords {
   std::string_view axis;
   std::string_view low, high;  // "below", "above" and the like
-  std::string_view what;       // after the number; "" for speeds, which their unit tells
+  std::string_view what;       // after value and unit; "" for speeds, whose unit is enough
 };
 constexpr AxisWords kWords[] = {
     {"time", "before", "after", ""},

@@ -7,8 +7,8 @@
 //   NextExperiment next = propose_experiment(dataset, rivals, options);     // its sentence alone
 //
 // Every excitation of a menu (experiment_menu.h) is simulated with one rival as the truth, and the other is
-// refitted to it: what is left, in units of the noise, is how far the run would tell them apart. Refitted
-// means: all its unknowns move, held by their priors and by what the given data say of them:
+// refitted to it: the remaining residual, in units of the noise, is their separation by the run. Refitted:
+// all its unknowns are free, with their priors and the given data's information on them:
 //     d^2 = min over x of |(y_truth - y_rival(x)) / s|^2 + (x - x_given)' P (x - x_given)
 // by Gauss and Newton, P the information of the given data with the priors. The smaller of the two directions
 // counts, but for a model that nests the other: refitted, it predicts whatever that one does. s is the noise,
@@ -44,7 +44,8 @@ struct ExperimentLimits {
   double voltage_V = 0.0;
   double current_A = 0.0;    // of one motor
   double speed_rad_s = 0.0;  // of the rotor; of a linear axis m/s
-  double travel = 0.0;       // from the start, either way: rad at the output, m of a linear axis or a robot
+  double travel =
+      0.0;  // from the start, in either direction: rad at the output, m of a linear axis or a robot
   double duration_s = 20.0;
 };
 
@@ -80,7 +81,7 @@ struct TriedRun {
 
 struct ExperimentPlan {
   NextExperiment next;
-  std::optional<PlannedRun> run;  // none: every one was refused, or there is nothing to tell apart
+  std::optional<PlannedRun> run;  // none: every one was refused, or there are no rivals to separate
   double expected_sigmas = 0.0;
   double generic_sigmas = 0.0;  // of the usual steps within the same limits
   double given_sigmas = 0.0;    // in the given data

@@ -177,7 +177,7 @@ std::vector<MenuRun> robot_menu(const std::vector<double>& time_s, const std::ar
                     }));
     }
   }
-  // One wheel against all four: what they share (the supply) shows as the difference.
+  // One wheel against all four: the difference is due to what they share, the supply.
   MenuRun single{"one_and_all", "each wheel alone, then all four together, again and again",
                  std::vector<std::vector<double>>(kWheels)};
   for (const double now_s : time_s) {

@@ -14,7 +14,7 @@ namespace {
 
 bool weights_moved(const std::map<std::string, SignalWeight>& a,
                    const std::map<std::string, SignalWeight>& b) {
-  constexpr double kShare = 0.1;
+  constexpr double kShare = 0.1;  // of a scale s_c; a choice, sensitivity not measured
   for (const auto& [name, w] : a) {
     const auto other = b.find(name);
     if (other == b.end() || std::abs(other->second.size - w.size) > kShare * w.size) return true;
@@ -52,7 +52,7 @@ FitResult fit(const Predictor& predictor, const Candidate& candidate, const std:
     if (d.cost < best.cost || best.x.size() == 0) best = std::move(d);
     if (stopped()) break;
   }
-  // The residuals are smaller now: weigh again, and go on from there.
+  // The residuals are smaller now: weigh again and descend from there, three times at most (a choice).
   for (int pass = 0; pass < 3 && !stopped(); ++pass) {
     const auto before = problem.weights();
     if (!problem.reweigh(best.x) || !weights_moved(before, problem.weights())) break;
@@ -62,7 +62,8 @@ FitResult fit(const Predictor& predictor, const Candidate& candidate, const std:
     if (d.cost <= same.cost()) best = std::move(d);
   }
   if (options.finish_undamped && !stopped()) best = finish_undamped(problem, std::move(best));
-  // Never above where it started; a model whose effects start at neutral is its parent there.
+  // The result is never worse than the start. A model with an effect at neutral nests its parent there: its
+  // noise cost must not rise either.
   const FitPoint start = problem.at(given, false), end = problem.at(best.x, false);
   const bool nested = std::any_of(candidate.effects.begin(), candidate.effects.end(), is_neutral);
   const bool above = nested && problem.noise_cost(best.x) > problem.noise_cost(given);

@@ -17,7 +17,7 @@ Eigen::VectorXd scales_of(const FitProblem& problem) {
   return scale;
 }
 
-// Gauss-Newton matrix of data and priors, unknowns in units of their scale.
+// Gauss-Newton matrix of data and priors, p x p, unknowns in units of their scale.
 Eigen::MatrixXd curvature(const FitProblem& problem, const FitPoint& p, const Eigen::VectorXd& scale) {
   Eigen::MatrixXd h = scale.asDiagonal() * p.information * scale.asDiagonal();
   for (Eigen::Index i = 0; i < scale.size(); ++i) {
@@ -27,7 +27,7 @@ Eigen::MatrixXd curvature(const FitProblem& problem, const FitPoint& p, const Ei
   return h;
 }
 
-// One unknown stays where it is.
+// Removes one unknown from the normal equations h (p x p), g (p).
 void hold(Eigen::MatrixXd& h, Eigen::VectorXd& g, Eigen::Index unknown) {
   g[unknown] = 0.0;
   h.row(unknown).setZero();
@@ -62,7 +62,7 @@ class Condensed : public ceres::CostFunction {
     if (held_ >= 0) {
       hold(h, g, held_);
     }
-    // a direction of which nobody knows anything must not stop the rest
+    // ridge, so that a direction with neither data nor prior leaves the matrix positive definite
     h.diagonal().array() += 1e-12 * std::max(h.diagonal().maxCoeff(), 1e-300);
     const Eigen::LLT<Eigen::MatrixXd> llt(h);
     if (llt.info() != Eigen::Success) return false;
@@ -85,7 +85,7 @@ class Condensed : public ceres::CostFunction {
   Eigen::Index held_;  // does not move; -1: none
 };
 
-// Gauss-Newton's step downwards, to be subtracted; what is pressed against its bound stays.
+// Gauss-Newton's step, size p, to be subtracted from x; an unknown pressed against its bound stays fixed.
 Eigen::VectorXd full_step(const FitProblem& problem, const FitPoint& p, const Eigen::VectorXd& x,
                           const Eigen::VectorXd& scale) {
   Eigen::VectorXd g = scale.cwiseProduct(p.gradient);
@@ -126,10 +126,13 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = iterations;
+  // Relative; cost in a ranking needs to be known within what tells candidates apart (a per cent). Choices,
+  // hundred times and more below that; Ceres' own defaults are 1e-6 and 1e-8. Sensitivity not measured.
   solver.function_tolerance = options.coarse ? 1e-4 : 1e-6;
   solver.parameter_tolerance = options.coarse ? 1e-5 : 1e-7;
-  solver.initial_trust_region_radius = 1e3;
-  // With bounds each step is followed by a line search; by halves, or each trial would cost the derivatives.
+  solver.initial_trust_region_radius = 1e3;  // damping 1e-3 of the curvature; Ceres' default is 1e4
+  // With bounds each step is followed by a line search; by halves, or each trial would cost the derivatives
+  // (DECISIONS 36: a fifth of the time, same optimum). Four halvings: a choice.
   solver.line_search_interpolation_type = ceres::BISECTION;
   solver.max_num_line_search_step_size_iterations = 4;
   solver.logging_type = ceres::SILENT;
@@ -149,12 +152,13 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
 }
 
 Descent finish_undamped(const FitProblem& problem, Descent d) {
-  constexpr int kMostSteps = 3, kMostHalvings = 4;
+  constexpr int kMostSteps = 3;     // Gauss-Newton converges quadratically near the optimum; a choice
+  constexpr int kMostHalvings = 4;  // down to 1/16 of a step; a choice
   const Eigen::VectorXd scale = scales_of(problem);
   for (int step = 0; step < kMostSteps; ++step) {
     const FitPoint p = problem.at(d.x, true);
     if (!p.finite) return d;
-    d.cost = p.cost();  // by the weights of today
+    d.cost = p.cost();  // with the current weights; d.cost was with the previous ones
     const double before = d.cost;
     const Eigen::VectorXd change = full_step(problem, p, d.x, scale);
     if (!change.allFinite()) return d;

@@ -12,19 +12,20 @@
 namespace omnihil {
 
 struct Descent {
-  Eigen::VectorXd x;
+  Eigen::VectorXd x;  // size p, in the unknowns' own units
   double cost = INFINITY;
   int iterations = 0;
   bool converged = false;
 };
 
-// `held`: index of an unknown that stays where it is; -1: none.
+// start: size p, in the unknowns' own units. `held`: index of an unknown that stays fixed; -1: none.
 Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int iterations,
                 const FitOptions& options, Eigen::Index held = -1);
 
-// Gauss-Newton without damping, from where a descent ended, as far as the cost falls. Where the data know a
-// sum (mass and payload) and only the priors its parts, the damping, a thousandth of the data's curvature, is
-// far stiffer than the priors: a descent ends where it first meets the valley, and not at its lowest point.
+// Gauss-Newton without damping from the end of a descent, as long as the cost falls. Along a weakly
+// identifiable direction (data determine a sum, as of mass and payload, and only the priors its parts)
+// Levenberg and Marquardt's damping, 1e-3 of the data's curvature (1 over the initial trust region radius),
+// exceeds the priors' curvature, so that a descent stops short of the optimum (DECISIONS 56).
 Descent finish_undamped(const FitProblem& problem, Descent descent);
 
 }  // namespace omnihil

@@ -12,12 +12,15 @@
 namespace omnihil {
 namespace {
 
-constexpr double kNothing = 1e-9;  // of the largest eigenvalue: below, the data say nothing
+// Share of the largest eigenvalue below which a direction is not determined by the data. Between rounding of
+// J'J (1e-16 times the samples' number) and any real information; numerical, sensitivity not measured.
+constexpr double kNothing = 1e-9;  // numerical
 
-// Unknowns in units of their scale, so that directions can be compared.
+// Eigenvectors of the information matrix, unknowns in units of their scale, so that directions can be
+// compared.
 struct Directions {
-  Eigen::VectorXd strength;  // eigenvalues of the scaled information, ascending
-  Eigen::MatrixXd members;   // columns
+  Eigen::VectorXd strength;  // size p: eigenvalues of the scaled information, ascending
+  Eigen::MatrixXd members;   // p x p: eigenvectors, as columns
 };
 
 Directions directions_of(const Eigen::MatrixXd& information, const Eigen::VectorXd& scale) {
@@ -40,12 +43,13 @@ double data_variance(const Directions& d, Eigen::Index i, double scale) {
   return variance * scale * scale;
 }
 
-// Whom each unknown trades against: correlations of the data's own covariance, made finite by a prior a
-// hundred times wider than the real one; strongest first.
+// The unknowns that unknown i is strongly correlated with in the data's own covariance, made finite by a
+// prior sigma of a hundred times each scale; strongest first.
 std::vector<std::string> partners(const Eigen::MatrixXd& information, const Eigen::VectorXd& scale,
                                   Eigen::Index i, const std::vector<Unknown>& unknowns) {
-  constexpr double kWeak = 1e-4, kCorrelated = 0.5;
-  constexpr std::size_t kMost = 3;
+  constexpr double kWeak = 1e-4;       // 1 / 100^2
+  constexpr double kCorrelated = 0.5;  // a quarter of the variance in common; a choice
+  constexpr std::size_t kMost = 3;     // names in a sentence
   Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   scaled.diagonal().array() += kWeak;
   const Eigen::MatrixXd covariance =
@@ -66,7 +70,8 @@ bool at(double x, double bound, double scale) {
   return std::abs(x - bound) <= 1e-6 * scale + 1e-12 * std::abs(bound);
 }
 
-// A bound that a fit presses on although nature goes no further: friction below zero, and the like.
+// Sentence for an estimate at its bound; a physical bound (no friction below zero) that the gradient presses
+// on is told from a bound of the search.
 std::string bound_sentence(const Unknown& u, double x, double gradient) {
   const bool lower = at(x, u.lower, u.scale);
   if (lower && gradient > 0.0 && u.lower == 0.0) {
@@ -84,15 +89,15 @@ std::string sentence_of(const Unknown& u, const ParameterEstimate& p, double gra
     return fmt::format("not determined by these data: trades against {}", fmt::join(p.correlated_with, ", "));
   }
   if (!p.identifiable) return "not determined by these data";
-  constexpr double kDrift = 3.0;
-  if (std::abs(p.prior_deviation_sigmas) > kDrift && u.effect < 0) {
+  constexpr double kDeviation = 3.0;  // two-sided p = 0.3 % of a normal prior
+  if (std::abs(p.prior_deviation_sigmas) > kDeviation && u.effect < 0) {
     return fmt::format("{:.1f} tolerances from what the model file believed: a missing effect may hide in it",
                        std::abs(p.prior_deviation_sigmas));
   }
   return "";
 }
 
-// Straight line of the drive input over the measured speed: {gain, R^2}.
+// Regression of the drive input (n samples) on the measured speed (n): {gain, R^2}.
 std::pair<double, double> loop_gain(const std::vector<double>& u, const std::vector<double>& v) {
   double n = 0.0, su = 0.0, sv = 0.0, suu = 0.0, svv = 0.0, suv = 0.0;
   for (std::size_t k = 0; k < u.size() && k < v.size(); ++k) {
@@ -106,7 +111,7 @@ std::pair<double, double> loop_gain(const std::vector<double>& u, const std::vec
 
 void name_closed_loop(const Predictor& predictor, const FitResult& result,
                       std::vector<std::string>& findings) {
-  constexpr double kFollows = 0.9;  // share of the input's variance that follows the speed
+  constexpr double kFollows = 0.9;  // R^2 of the input on the speed; tuned, sensitivity not measured
   for (int n = 0; n < predictor.run_count(); ++n) {
     const Run& run = predictor.run(n);
     const std::vector<double>* speed = run.signal("velocity");
@@ -161,11 +166,11 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
     if (u.prior_sigma > 0.0) p.prior_deviation_sigmas = (x[i] - u.prior_mean) / u.prior_sigma;
     const bool phase = u.path.find("phase") != std::string::npos;
     p.at_bound = !phase && (at(x[i], u.lower, u.scale) || at(x[i], u.upper, u.scale));
-    // a strength that the fit leaves at neutral stands at a bound of no meaning
+    // a strength that stays at neutral is at a bound too, but not pressed against it
     const bool pressed = point.gradient[i] * (at(x[i], u.lower, u.scale) ? 1.0 : -1.0) > 0.0;
     p.unphysical = p.at_bound && u.lower == 0.0 && at(x[i], 0.0, u.scale) && pressed;
-    const double belief = u.prior_sigma > 0.0 ? u.prior_sigma : std::max(std::abs(x[i]), u.scale);
-    p.identifiable = p.data_sigma < belief;
+    const double prior_width = u.prior_sigma > 0.0 ? u.prior_sigma : std::max(std::abs(x[i]), u.scale);
+    p.identifiable = p.data_sigma < prior_width;
     if (!p.identifiable) p.correlated_with = partners(point.information, scale, i, unknowns);
     p.sentence = sentence_of(u, p, point.gradient[i]);
     if (!p.sentence.empty()) result.findings.push_back(p.path + ": " + p.sentence);

@@ -1,13 +1,13 @@
-// What a fit has found about each unknown, with its uncertainty, in numbers and in words.
+// Estimates of a fit with their uncertainty, as numbers and as sentences.
 //
-//   describe(problem, predictor, point, x, nominal_unknowns, result);
+//   describe(problem, predictor, point, x, result);     // fills result.parameters, covariance, findings
 //
 // Posterior covariance: (J'J + priors)^-1, J weighted by residual size and autocorrelation time
-// (fit_problem.h). data_sigma: the same without priors; infinite along directions in which the data say
-// nothing. An unknown counts as not identifiable where the data alone leave more than its prior does (without
-// a prior: more than its own value or typical size). What it trades against: the other members of the weakest
-// direction of the data's information that it is part of. Closed loops: a drive input that follows the
-// measured speed with a constant gain is named.
+// (fit_problem.h). data_sigma: without priors; infinite along directions that the data do not determine. An
+// unknown counts as not identifiable where data_sigma is not below its prior sigma (flat prior: not below its
+// own value or typical size). It is named with the unknowns that it is correlated with in the data's own
+// covariance. Closed loops: a drive input that follows the measured speed with a constant gain is named. x:
+// size p, in the unknowns' own units.
 #pragma once
 #include "identify/estimate/fit.h"
 #include "identify/estimate/fit_problem.h"

@@ -4,13 +4,16 @@
 #include <cmath>
 
 #include "identify/record/parallel.h"
+#include "identify/record/statistics.h"
 #include "sim/law/scalar.h"
 
 namespace omnihil {
 namespace {
 
-constexpr double kHuber = 6.0;          // sizes
-constexpr double kRobustHuber = 1.345;  // of sizes by the median
+// In units of s_c. Six, far beyond the 1.345 of full robustness: the residual of a wrong model is not
+// Gaussian and must keep its weight in a search, a glitch is farther out. A choice; sensitivity not measured.
+constexpr double kHuber = 6.0;          // a choice
+constexpr double kRobustHuber = 1.345;  // Holland, Welsch 1977
 
 // Residual of one signal, whitened, zero where it was not measured.
 Eigen::VectorXd residual_of(const ComparedSignal& signal, const std::vector<double>& model) {
@@ -23,20 +26,13 @@ Eigen::VectorXd residual_of(const ComparedSignal& signal, const std::vector<doub
   return out;
 }
 
-// Of a Gaussian, its sigma; half of the values say it, however far the others are.
-double size_by_median(std::vector<double> sizes) {
-  if (sizes.empty()) return 0.0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
-}
-
-// 1 + 2 sum of autocorrelations, up to a window of five such times (Sokal). Gaps count as zero.
+// Autocorrelation time of n samples: 1 + 2 sum of autocorrelations, up to a window of five such times (Sokal
+// 1997). Gaps count as zero. At most n / 10 lags, or 4000: bounds the cost; a choice.
 double autocorrelation_time(const Eigen::VectorXd& r) {
   const Eigen::Index n = r.size();
   const double energy = r.squaredNorm();
   if (n < 8 || !(energy > 0.0)) return 1.0;
-  constexpr double kWindow = 5.0;
+  constexpr double kWindow = 5.0;  // Sokal 1997: 4 to 10, truncation against noise of the sum
   double time = 1.0;
   const Eigen::Index longest = std::min<Eigen::Index>(n / 10, 4000);
   for (Eigen::Index lag = 1; lag < longest; ++lag) {
@@ -86,7 +82,7 @@ bool FitProblem::reweigh(const Eigen::VectorXd& x) {
   };
   std::map<std::string, Sum> sums;
   std::map<std::string, std::vector<double>> all_sizes;
-  for (int pass = 0; pass < 3; ++pass) {  // the size without what is beyond six sizes
+  for (int pass = 0; pass < 3; ++pass) {  // trimmed rms: without samples beyond kHuber of the pass before
     std::map<std::string, Sum> next;
     for (std::size_t n = 0; n < runs_.size(); ++n) {
       const auto& compared = predictor_.compared(runs_[n]);
@@ -116,7 +112,7 @@ bool FitProblem::reweigh(const Eigen::VectorXd& x) {
   for (const auto& [name, sum] : sums) {
     if (!(sum.count > 0.0)) continue;
     double size = std::sqrt(std::max(sum.square, sum.noise) / sum.count);
-    if (robust_) size = std::max(size_by_median(all_sizes[name]), std::sqrt(sum.noise / sum.count));
+    if (robust_) size = std::max(sigma_by_mad(all_sizes[name]), std::sqrt(sum.noise / sum.count));
     weights_[name] = {.size = size > 0.0 ? size : 1.0,
                       .autocorrelation = std::max(1.0, sum.time / sum.count),
                       .samples = sum.count};
@@ -140,7 +136,7 @@ FitProblem::RunPart FitProblem::part(int run, const Prediction& values,
     if (found == weights_.end()) continue;
     const SignalWeight& w = found->second;
     Eigen::VectorXd r = residual_of(compared[s], values.values[s]) / w.size;
-    Eigen::VectorXd weight(r.size());  // square root of what each sample counts
+    Eigen::VectorXd weight(r.size());  // square root of each sample's weight
     for (Eigen::Index k = 0; k < r.size(); ++k) {
       const double a = std::abs(r[k]);
       const bool known = std::isfinite(compared[s].measured[static_cast<std::size_t>(k)]);

@@ -1,17 +1,19 @@
-// What a fit minimises, at one point: value, gradient and Gauss-Newton matrix, all fit runs together.
+// The cost function of a fit at one point: value, gradient and Gauss-Newton matrix, all training runs
+// together.
 //
 //   FitProblem problem(predictor, candidate, unknowns, jobs);
 //   problem.reweigh(x);                        // sizes and autocorrelation of the residuals at x
-//   FitPoint p = problem.at(x, true);          // p.cost, p.gradient, p.information (data), with priors apart
+//   FitPoint p = problem.at(x, true);          // p.cost(), p.gradient, p.information (data alone)
 //
 // Law: cost = 1/2 sum over signals c, samples i of rho(r_ci^2 / s_c^2) / t_c + 1/2 sum over unknowns of ((x -
-// m) / p)^2, r whitened (predictor.h). s_c: the larger of the signal's noise and its residual's size, so that
-// no signal drowns the others where the model is far off; t_c: the residual's autocorrelation time in
-// samples, so that data and priors are weighed as what they tell. rho: Huber's, linear beyond six sizes: a
-// rare glitch pulls with bounded force, and no sample of a model that is merely wrong is touched. `robust`:
-// linear beyond 1.345 sizes, sizes by the median, so that a run whose conditions are known wrongly does not
-// bend the numbers of all others; 95 % as efficient as least squares where the residual is Gaussian. Sources:
-// Huber 1964; Holland, Welsch 1977 (1.345); Sokal 1997 (autocorrelation time).
+// m_p) / s_p)^2, r whitened (predictor.h). s_c: the larger of the signal's noise and its residual's rms, so
+// that no signal dominates the others where the model is far off; t_c: the residual's autocorrelation time in
+// samples, so that data count as many independent samples as they hold, beside the priors. rho: Huber's,
+// linear beyond 6 s_c: a rare glitch has bounded influence, and samples of a model that is merely wrong stay
+// quadratic. `robust`: linear beyond 1.345 s_c, s_c by the median, so that a run whose conditions are known
+// wrongly does not bias the estimates; 95 % as efficient as least squares where the residual is Gaussian. p
+// unknowns: x, gradient of size p, information of p x p, in the unknowns' own units and their inverses.
+// Sources: Huber 1964; Holland, Welsch 1977 (1.345); Sokal 1997 (autocorrelation time).
 #pragma once
 #include <Eigen/Core>
 #include <map>
@@ -25,14 +27,14 @@ struct FitPoint {
   bool finite = false;
   double data_cost = 0.0;  // half the weighted sum of squares
   double prior_cost = 0.0;
-  Eigen::VectorXd gradient;     // of both
-  Eigen::MatrixXd information;  // J' J of the data alone, weighted
+  Eigen::VectorXd gradient;     // size p, of data and priors; empty without derivatives
+  Eigen::MatrixXd information;  // p x p: J' J of the data alone, weighted
   double cost() const { return data_cost + prior_cost; }
 };
 
 struct SignalWeight {
-  double size = 1.0;             // s_c
-  double autocorrelation = 1.0;  // t_c
+  double size = 1.0;             // s_c, in the whitened signal's unit
+  double autocorrelation = 1.0;  // t_c, in samples
   double samples = 0.0;
 };
 
@@ -45,7 +47,7 @@ class FitProblem {
   bool empty() const { return runs_.empty(); }
   Candidate candidate_at(const Eigen::VectorXd& x) const;
 
-  // Sizes and autocorrelation at x; false where the model is not finite there.
+  // Sets s_c and t_c from the residuals at x; false where the model is not finite there.
   bool reweigh(const Eigen::VectorXd& x);
   const std::map<std::string, SignalWeight>& weights() const { return weights_; }
 

@@ -6,9 +6,9 @@
 namespace omnihil {
 namespace {
 
-constexpr int kMost = 4;
-constexpr int kIterations = 4;
-constexpr double kFlat = 0.1;  // of a squared sigma
+constexpr int kMost = 4;        // unknowns profiled: two refits each; bounds the cost, a choice
+constexpr int kIterations = 4;  // of each refit; a choice, convergence not checked
+constexpr double kFlat = 0.1;   // squared sigmas where 1 is expected: three times the sigma or more; a choice
 
 // Twice the rise of the cost with unknown i held at `value`; infinite where the model is not finite there.
 double rise(const FitProblem& problem, const Eigen::VectorXd& x, double cost, Eigen::Index i, double value,
@@ -27,6 +27,7 @@ void profile(const FitProblem& problem, const Eigen::VectorXd& x, const FitOptio
   for (std::size_t n = 0; n < result.parameters.size(); ++n) {
     const ParameterEstimate& p = result.parameters[n];
     const double known = p.prior_sigma > 0.0 ? p.sigma / p.prior_sigma : (p.identifiable ? 0.0 : 1.0);
+    // the prior gives 9 % of the information or more (0.3^2); a choice
     if (p.at_bound || known > 0.3) doubtful.emplace_back(-known, n);
   }
   std::sort(doubtful.begin(), doubtful.end());
@@ -39,11 +40,11 @@ void profile(const FitProblem& problem, const Eigen::VectorXd& x, const FitOptio
     double sum = 0.0, sides = 0.0;
     for (const double side : {-1.0, 1.0}) {
       const double value = std::clamp(x[i] + side * p.sigma, u.lower, u.upper);
-      const double way = std::abs(value - x[i]);
-      if (!(way > 0.1 * p.sigma)) continue;
+      const double displacement = std::abs(value - x[i]);
+      if (!(displacement > 0.1 * p.sigma)) continue;  // at the bound: no room on this side
       const double squared = rise(problem, x, cost, i, value, options);
       if (!std::isfinite(squared)) continue;
-      sum += squared / (way * way), sides += 1.0;
+      sum += squared / (displacement * displacement), sides += 1.0;
     }
     if (sides == 0.0) continue;
     const double curvature = sum / sides;

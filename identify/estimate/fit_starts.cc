@@ -48,7 +48,7 @@ std::map<int, EffectPlaces> effects_at_neutral(const FitProblem& problem, const 
   return out;
 }
 
-// By how much a strength alone would lower the cost, and its Gauss-Newton step.
+// Reduction of the cost by one strength alone, and its Gauss-Newton step.
 struct Slope {
   double gain = 0.0;
   double step = 0.0;
@@ -84,7 +84,7 @@ void choose_phases(const FitProblem& problem, const EffectPlaces& places, Eigen:
 }
 
 void choose_shapes(const FitProblem& problem, const EffectPlaces& places, Eigen::VectorXd& x) {
-  constexpr double kFactors[] = {0.2, 1.0, 5.0};
+  constexpr double kFactors[] = {0.2, 1.0, 5.0};  // of a typical shape: a decade and a half; a choice
   for (const Eigen::Index shape : places.shapes) {
     Eigen::VectorXd best = x;
     double best_gain = -1.0;
@@ -104,7 +104,7 @@ void choose_strengths(const FitProblem& problem, const EffectPlaces& places, Eig
     const Unknown& u = problem.unknowns()[static_cast<std::size_t>(strength)];
     const double neutral = x[strength];
     std::vector<double> sizes = {neutral + slope_at(problem, x, strength).step};
-    for (const double share : {0.1, 0.3, 1.0}) {
+    for (const double share : {0.1, 0.3, 1.0}) {  // of its typical size; a choice
       sizes.push_back(neutral + share * u.scale);
       if (u.lower < neutral) sizes.push_back(neutral - share * u.scale);
     }

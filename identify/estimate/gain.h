@@ -1,12 +1,15 @@
-// How much of the error energy an addition takes away, and how sure that is.
+// By how much an addition lowers the error energy (sum of squared whitened residuals), with a bootstrap
+// interval.
 //
 //   const Eigen::VectorXd weights = weights_for(holdout, null, parent, child);   // whitened residuals
 //   SplitGain g = BlockBootstrap(holdout, 1).gain(parent, child, weights);
 //   g.ratio;        // error energy of the child over the parent's, mean over the signals
 //   g.worst;        // ratio that 95 % of the bootstrap's draws stay below
 //
-// Residuals are autocorrelated, so samples are no evidence one by one: blocks of half a second are drawn with
+// Residuals are autocorrelated, so samples are not independent: blocks of half a second are drawn with
 // replacement (Kuensch 1989, block bootstrap), the same draws for every candidate.
+// Shapes: n samples, m channels, B blocks (whitened_residuals.h), D draws. Residuals: size n; weights: size
+// m, of no unit; ratios of energies have none either.
 #pragma once
 #include <cstdint>
 
@@ -19,7 +22,7 @@ struct SplitGain {
   double ratio = 1.0;
   double best = 1.0;   // 5 % of the draws are below
   double worst = 1.0;  // 95 % are below
-  double floor = 1.0;  // share of the sensors' own noise in the reference's energy
+  double floor = 1.0;  // share of the sensors' noise (the null's floor) in the reference's energy
 };
 
 class BlockBootstrap {
@@ -27,7 +30,7 @@ class BlockBootstrap {
   BlockBootstrap(const WhitenedResiduals& residuals, std::uint64_t seed);
   bool empty() const { return counts_.rows() == 0; }
   int draws() const { return static_cast<int>(counts_.rows()); }
-  // Per draw: energy of `residual` over that of `reference`, mean over the signals with these weights.
+  // Size D: energy of `residual` over that of `reference` per draw, weighted mean over the channels.
   Eigen::VectorXd ratios(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
                          const Eigen::VectorXd& weights) const;
   SplitGain gain(const Eigen::VectorXd& reference, const Eigen::VectorXd& residual,
@@ -35,24 +38,24 @@ class BlockBootstrap {
 
  private:
   const WhitenedResiduals* residuals_;
-  Eigen::MatrixXd counts_;  // [draw, block]
+  Eigen::MatrixXd counts_;  // D x B: how often a draw has a block
 };
 
-// Ratio of error energies, mean over the signals that the reference has, with these weights (empty: equal).
+// Ratio of error energies, weighted mean over the channels that the reference has (empty weights: equal).
 double energy_ratio(const WhitenedResiduals& residuals, const Eigen::VectorXd& reference,
                     const Eigen::VectorXd& residual, const Eigen::VectorXd& weights = {});
-// What each signal counts for an addition: its share of error energy above the sensors' floor, so that a
-// signal at its floor does not water down what another one shows. A signal that the addition leaves to the
-// last digit as it was (a measured bus voltage drives the model: no friction changes it) says nothing of it
-// and counts nothing.
+// Size m: weight of each channel for an addition: its share of error energy above the null's floor, so that a
+// channel at its floor does not dilute the gain in another one. A channel whose residual the addition does
+// not change (a measured bus voltage is the model's input: no friction changes it) has weight 0 (DECISIONS
+// 43).
 Eigen::VectorXd weights_for(const WhitenedResiduals& residuals, const NullModel& null,
                             const Eigen::VectorXd& parent, const Eigen::VectorXd& child);
-// sqrt of the mean over signals of mean((residual / noise)^2)
+// sqrt of the mean over channels of mean((residual / noise)^2); 1: at the stated noise.
 double pooled_error(const WhitenedResiduals& residuals, const ComparedChannels& channels,
                     const Eigen::VectorXd& residual);
 
-// Share of the energy that is the sensors' own, mean over the signals with these weights; 1: nothing else is
-// left.
+// Share of the sensors' noise (the null's floor) in the residual's energy, weighted mean over the channels;
+// 1: the residual is at the floor.
 double floor_share(const WhitenedResiduals& residuals, const NullModel& null, const Eigen::VectorXd& residual,
                    const Eigen::VectorXd& weights);
 

@@ -6,10 +6,12 @@
 namespace omnihil {
 namespace {
 
-constexpr double kFaded = 0.1;  // autocorrelation that no longer counts
-constexpr int kMostLags = 400;
+// Where the sum of autocorrelations is cut: beyond, their estimate is noise (Sokal 1997 cuts by a window
+// instead).
+constexpr double kFaded = 0.1;  // a choice; sensitivity not measured
+constexpr int kMostLags = 400;  // 0.4 s at 1 kHz, beyond a drive's time constants; bounds the cost; a choice
 
-// One part's sum of autocorrelations.
+// Autocorrelation time of one part's residual, in samples.
 double correlated_samples(const Eigen::Ref<const Eigen::VectorXd>& r) {
   const Eigen::Index n = r.size();
   const double energy = r.squaredNorm();
@@ -49,7 +51,7 @@ double autocorrelation_samples(const WhitenedResiduals& residuals, const Eigen::
 std::pair<double, Eigen::VectorXd> bounded_gain(const Eigen::MatrixXd& gram,
                                                 const Eigen::VectorXd& correlation,
                                                 const std::vector<bool>& two_sided) {
-  constexpr std::size_t kMostOneSided = 4;
+  constexpr std::size_t kMostOneSided = 4;  // 2^4 subsets are solved; further columns are two-sided; a choice
   std::vector<Eigen::Index> one_sided;
   for (std::size_t c = 0; c < two_sided.size(); ++c) {
     if (!two_sided[c] && one_sided.size() < kMostOneSided) one_sided.push_back(static_cast<Eigen::Index>(c));
@@ -64,7 +66,7 @@ std::pair<double, Eigen::VectorXd> bounded_gain(const Eigen::MatrixXd& gram,
     }
     if (rows.empty()) continue;
     Eigen::MatrixXd g = selected(gram, rows);
-    g.diagonal() *= 1.0 + 1e-9;  // columns may be copies of each other
+    g.diagonal() *= 1.0 + 1e-9;  // ridge, far above rounding: columns may be copies of each other
     Eigen::VectorXd b(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) b[static_cast<Eigen::Index>(i)] = correlation[rows[i]];
     const Eigen::VectorXd a = g.ldlt().solve(b);
@@ -92,7 +94,7 @@ LinearBase::LinearBase(const WhitenedResiduals& residuals, const Candidate& mode
   autocorrelation_ = omnihil::autocorrelation_samples(residuals, residual_);
   for (const Unknown& u : unknowns) {
     const double margin = 1e-6 * std::max(u.scale, 1e-12);
-    // A number at its bound does not move along.
+    // A base parameter at its bound stays fixed.
     if (u.start > u.lower + margin && u.start < u.upper - margin) unknowns_.push_back(u);
   }
   jacobian_ = residuals.derivatives(model, unknowns_, jobs);

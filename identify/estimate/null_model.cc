@@ -8,9 +8,10 @@
 namespace omnihil {
 namespace {
 
-// A robot's model follows the measured heading and place (predictor_robot.h): those of its own world, or the
-// way that the fitted model strays from the measured one would count as noise.
-bool follows_its_place(const Predictor& predictor) {
+// A robot's model takes measured heading and position as inputs (predictor_robot.h). In a null replicate they
+// must come from the simulated truth; with the recording's, the fitted model's error of path would be counted
+// as noise (DECISIONS 41).
+bool has_pose_inputs(const Predictor& predictor) {
   for (int run = 0; run < predictor.run_count(); ++run) {
     for (const ComparedSignal& s : predictor.compared(run)) {
       if (s.name.starts_with("gyro") || s.name.starts_with("vision")) return true;
@@ -36,9 +37,9 @@ Eigen::VectorXd NullModel::spread(Split split) const {
 }
 
 Eigen::VectorXd simulated_residual(const Predictor& simulated, const WhitenedResiduals& residuals,
-                        const Candidate& model, const Eigen::VectorXd& predicted) {
+                                   const Candidate& model, const Eigen::VectorXd& predicted) {
   const Eigen::VectorXd own =
-      follows_its_place(simulated) ? residuals.predicted_by(simulated, model) : predicted;
+      has_pose_inputs(simulated) ? residuals.predicted_by(simulated, model) : predicted;
   return own.size() == residuals.size() ? Eigen::VectorXd(residuals.measured_by(simulated) - own)
                                         : Eigen::VectorXd();
 }

@@ -1,12 +1,14 @@
-// The simulated null: what the sensors alone would leave as a residual if the fitted base model were true.
+// Parametric bootstrap of the null hypothesis "the fitted base model is true": residuals of recordings that
+// are simulated with it, through the same sensors with their noise.
 //
-//   NullModel null = simulate_null(predictor, baseline.model, fit, holdout, extrapolation, {.seed = 1});
-//   null.fit_noise[k];              // residual of replicate k, sample by sample
-//   null.mean_square[0](k, kind);   // its size per use
+//   NullModel null = simulate_null(predictor, baseline.model, splits, seed, replicates, jobs);
+//   null.fit_noise[k];                          // residual of replicate k on the training runs, size n
+//   null.mean_square[kTraining](k, channel);    // its mean square
 //
-// Every gain that an effect is credited with is held against the gain that the same search finds in these.
-// Without it every recording is blamed on something. Cannot: know of disturbances that the sensors' own noise
-// does not have; for those an addition must also matter, and hold on other runs.
+// The gain of an effect is compared with the gain that the same search finds in these replicates; without
+// them every recording would have an effect to blame. Cannot: contain disturbances beyond the sensors' own
+// noise; against those an addition must also be large, and hold on other runs. Shapes: K replicates, m
+// channels, n samples of a split (whitened_residuals.h), whose units hold.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,20 +19,21 @@
 namespace omnihil {
 
 struct NullModel {
-  std::vector<Eigen::VectorXd> fit_noise;
-  std::array<Eigen::MatrixXd, kSplits> mean_square;  // [use](replicate, kind)
+  std::vector<Eigen::VectorXd> fit_noise;            // [replicate], size n of the training split each
+  std::array<Eigen::MatrixXd, kSplits> mean_square;  // [split] K x m; zeros: no runs
 
   int replicates() const { return static_cast<int>(fit_noise.size()); }
-  // per kind: mean over the replicates; 0 where a use has no runs
+  // Size m: mean over the replicates, the noise floor of each channel.
   Eigen::VectorXd floor(Split split) const;
-  // per kind: standard deviation over the replicates
+  // Size m: standard deviation over the replicates.
   Eigen::VectorXd spread(Split split) const;
 };
 
-// What a model leaves of what a simulated world has measured, in the evidence's order; empty: not finite.
-// `predicted`: by the model, for the recording's own inputs (a robot's model follows those of the world).
+// Size n: residual of `model` against a simulated measurement, in the order of `residuals`; empty: not
+// finite. `predicted`: size n, by the model on the recording's own inputs. Where the inputs include heading
+// or position (a robot) they are those of the simulation, and the model is run again.
 Eigen::VectorXd simulated_residual(const Predictor& simulated, const WhitenedResiduals& residuals,
-                        const Candidate& model, const Eigen::VectorXd& predicted);
+                                   const Candidate& model, const Eigen::VectorXd& predicted);
 
 NullModel simulate_null(const Predictor& predictor, const Candidate& truth,
                         const std::array<WhitenedResiduals, kSplits>& splits, std::uint64_t seed,

@@ -9,14 +9,15 @@
 namespace omnihil {
 namespace {
 
-// Blocks hold the slowest autocorrelation of a drive's residual (mechanical time constants of 10 to 200 ms)
-// a few times over, yet leave enough of them to draw from.
-constexpr double kBlock_s = 0.5;
-constexpr int kMostBlocksPerRun = 200;
+// A block is a few times the slowest autocorrelation of a drive's residual (mechanical time constants of 10
+// to 200 ms), as a block bootstrap needs (Kuensch 1989), yet a recording of ten seconds still has twenty.
+// Sensitivity not measured.
+constexpr double kBlock_s = 0.5;        // a choice
+constexpr int kMostBlocksPerRun = 200;  // of a longer run blocks grow: bounds the bootstrap's cost; a choice
 
 constexpr const char* kBusVoltage = "bus_voltage";
 
-// Least squares of 1, x, x^2 over the rows, taken off each column.
+// Subtracts from each column its least-squares parabola over the rows.
 void remove_slow_trend(Eigen::MatrixXd& columns) {
   const Eigen::Index n = columns.rows();
   if (n < 6) return;

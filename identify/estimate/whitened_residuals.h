@@ -1,15 +1,18 @@
-// Measured minus predicted, all runs of one use as one long vector: what screening, refits and verdicts count
-// with.
+// Whitened residuals, measured minus predicted: all runs of one split as one long vector, on which screening,
+// refits and verdicts are computed.
 //
-//   ComparedChannels kinds = compared_channels(predictor);             // velocity, motor_current, …
-//   WhitenedResiduals fit(predictor, kinds, Split::kTraining);
-//   Eigen::VectorXd r = fit.residual(candidate);             // empty: a run diverged
-//   fit.mean_square(r)[0];                                   // of the first kind of signal
-//   fit.block_sums(r);                                       // the same in blocks of time, for a bootstrap
+//   ComparedChannels channels = compared_channels(predictor);   // velocity, motor_current, …
+//   WhitenedResiduals training(predictor, channels, Split::kTraining);
+//   Eigen::VectorXd r = training.residual(candidate);           // empty: a run diverged
+//   training.mean_square(r)[0];                                 // of the first channel
+//   training.block_sums(r);                                     // the same by blocks of time
 //
-// Only samples that were measured are in it, whitened (predictor.h), so that sums of squares mean something.
-// Of a measured bus voltage the slow course of the battery (a parabola per run) is left out: the model is
-// given it. Residuals are autocorrelated: blocks of time, not samples, are what may be drawn at random.
+// Shapes: n samples of all runs and channels of the split, one part (a signal of a run) after another; m
+// channels; B blocks of time; p unknowns. A sample has its signal's unit (a whitened speed of counts: the
+// position's). Only samples that were measured are in it, whitened (predictor.h), so that a sum of squares
+// over the noise is a log-likelihood. From a measured bus voltage the battery's slow trend (a parabola per
+// run) is removed: it is the model's input. Residuals are autocorrelated: blocks of time, not samples, are
+// the units of resampling.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -21,7 +24,7 @@
 
 namespace omnihil {
 
-// The signals of a dataset over all its runs, in the order in which they first appear.
+// The m distinct signals that are compared in any run, in the order in which they first appear.
 struct ComparedChannels {
   std::vector<std::string> name;
   std::vector<double> noise_sigma;  // of the whitened residual; root mean square over the runs
@@ -29,8 +32,8 @@ struct ComparedChannels {
 };
 ComparedChannels compared_channels(const Predictor& predictor);
 
-// How residuals enter: whitened, so that sums of squares are likelihoods (what decides), or as they are seen
-// (how large an error is to somebody who looks at the signal).
+// Whitened, so that sums of squares are log-likelihoods (they decide), or unweighted: the plain error of the
+// signal, as a plot shows it.
 enum class Weighing : std::uint8_t { kWhitened, kUnweighted };
 
 class WhitenedResiduals {
@@ -39,7 +42,7 @@ class WhitenedResiduals {
     int run = 0;
     int signal = 0;  // in Predictor::compared(run)
     int channel = 0;
-    Eigen::Index first = 0;       // of the long vector
+    Eigen::Index first = 0;       // index in the long vector
     std::vector<int> rows;        // samples of the run
     std::vector<int> time_block;  // per row: which block of time
   };
@@ -54,36 +57,37 @@ class WhitenedResiduals {
   const std::vector<int>& runs() const { return runs_; }
   int blocks() const { return blocks_; }
 
-  // The candidate's prediction; empty when a run of it stopped being finite.
+  // Size n: the candidate's prediction, whitened like the measurement; empty when a run of it diverged.
   Eigen::VectorXd predicted(const Candidate& candidate, int jobs = 1) const;
   Eigen::VectorXd residual(const Candidate& candidate, int jobs = 1) const;
   Eigen::VectorXd residual_of(const Eigen::VectorXd& predicted) const { return measured_ - predicted; }
+  // n x p: of the prediction, after the unknowns in their own units; not finite: 0.
   Eigen::MatrixXd derivatives(const Candidate& candidate, std::span<const Unknown> unknowns, int jobs) const;
-  // The same by another predictor of the same dataset.
+  // Size n: the prediction by another predictor of the same dataset.
   Eigen::VectorXd predicted_by(const Predictor& predictor, const Candidate& candidate, int jobs = 1) const;
-  // What another predictor of the same dataset has measured, in this order (NaN: it has not).
+  // Size n: the measurement of another predictor of the same dataset, in this order (NaN: missing there).
   Eigen::VectorXd measured_by(const Predictor& other) const;
 
-  // A signal's record over one part's own rows (as predicted: not whitened), whitened in place.
+  // Whitens in place: [part.rows.size() x any] columns of one part.
   void whiten_part(const Part& part, Eigen::MatrixXd& columns) const;
 
-  // A track of the runs' regimes, sample by sample; NaN where a run does not have it.
+  // Size n: a regime variable (RegimeTrack), in its own unit; NaN where a run does not have it.
   Eigen::VectorXd track(const Candidate& candidate, std::string_view name) const;
 
-  // per kind; 0 where there are no samples
+  // Size m: mean square per channel, in its unit squared; 0 where there are no samples.
   Eigen::VectorXd mean_square(const Eigen::VectorXd& residual) const;
-  const Eigen::VectorXd& samples() const { return samples_; }
-  // [block, kind]: sums of squares, and numbers of samples
+  const Eigen::VectorXd& samples() const { return samples_; }  // size m: count per channel
+  // B x m: sums of squares, and counts of samples.
   Eigen::MatrixXd block_sums(const Eigen::VectorXd& residual) const;
   const Eigen::MatrixXd& block_samples() const { return block_samples_; }
-  // 1 / scale of each sample's kind
+  // Size n: 1 / scale of each sample's channel (`scale_of_channel`: size m, its unit); 0 for a scale of 0.
   Eigen::VectorXd weights(const Eigen::VectorXd& scale_of_channel) const;
 
  private:
   void add_run(int run, const ComparedChannels& channels);
-  // Whitened; `values`: per run of this use, per signal, per row.
+  // Whitened, size n; `values`: [run of this split][signal][row].
   Eigen::VectorXd gathered(const std::vector<std::vector<std::vector<double>>>& values) const;
-  // Rows of the part, whitened; `rows`: all rows of its run.
+  // [part.rows.size() x c]: the part's rows of [rows of the run x c], whitened.
   Eigen::MatrixXd whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const;
 
   const Predictor* predictor_;

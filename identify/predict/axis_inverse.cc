@@ -6,14 +6,16 @@
 #include <cmath>
 #include <limits>
 
+#include "identify/record/statistics.h"
+
 namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr int kOrder = 4;
-constexpr double kShareOfNyquist = 0.2;  // as the published recipe of the linear axis (Janot 2019)
-constexpr double kHighestCutoff_Hz = 100.0;
-constexpr double kEndsInPeriods = 5.0;  // of the cutoff, left out at either end
+constexpr int kOrder = 4;                // with the cutoff's share: the published recipe of the linear axis
+constexpr double kShareOfNyquist = 0.2;  // Janot, Gautier, Brunot 2019
+constexpr double kHighestCutoff_Hz = 100.0;  // of faster records: beyond a drive's mechanics; a choice
+constexpr double kEndsInPeriods = 5.0;  // of the cutoff, left out at either end: the filter settles; a choice
 
 LowPass filter_for(double rate_Hz) {
   return butterworth(kOrder, std::min(kHighestCutoff_Hz, kShareOfNyquist * 0.5 * rate_Hz), rate_Hz);
@@ -30,7 +32,8 @@ std::vector<double> even_clock(const AxisRecord& r) {
   return t;
 }
 
-// Straight lines between known values, flat outside; held: steps instead. Empty stays empty.
+// Linear interpolation between known values, constant outside; held: zero-order hold instead. Empty stays
+// empty.
 std::vector<double> resampled(const AxisRecord& r, const std::vector<double>& x,
                               const std::vector<double>& clock, bool held) {
   std::vector<double> t, v;
@@ -66,7 +69,7 @@ std::vector<double> at_interval_end(const std::vector<double>& x) {
   return out;
 }
 
-// Values at instants, straight between them: the mean from each sample to the next.
+// Mean of a linearly interpolated signal from each sample to the next.
 std::vector<double> interval_means(std::vector<double> x) {
   for (std::size_t k = 0; k + 1 < x.size(); ++k) x[k] = 0.5 * (x[k] + x[k + 1]);
   return x;
@@ -78,9 +81,7 @@ double band_noise(const std::vector<double>& raw, const std::vector<double>& low
   std::vector<double> above;
   for (std::size_t i = 0; i < raw.size(); ++i) above.push_back(std::abs(raw[i] - low[i]));
   if (above.empty()) return 0.0;
-  const auto mid = above.begin() + static_cast<std::ptrdiff_t>(above.size() / 2);
-  std::nth_element(above.begin(), mid, above.end());
-  return 1.4826 * *mid * std::sqrt(cutoff_Hz / (0.5 * rate_Hz - cutoff_Hz));
+  return sigma_by_mad(std::move(above)) * std::sqrt(cutoff_Hz / (0.5 * rate_Hz - cutoff_Hz));
 }
 
 double rms_about_mean(const std::vector<double>& x) {
@@ -114,14 +115,14 @@ void add(AxisSetup& s, std::string name, std::string unit, AxisOutput output, st
                    .time_s = s.input.time_s,
                    .measured = std::move(measured),
                    .left_out = {}};
-  const double least = 1e-4 * rms_about_mean(c.measured);
+  const double least = kLeastNoiseShare * rms_about_mean(c.measured);
   c.noise_sigma = c.whitened_sigma = std::max(sigma, least);
   c.noise_is_stated = stated;
   s.compared.push_back(std::move(c));
   s.outputs.push_back(output);
 }
 
-// Ends, where the filter invents, and gaps, where the clock does.
+// Leaves out the ends, where the filter has transients, and the gaps, where samples are interpolated.
 void leave_out(const AxisRecord& r, double ends_s, AxisSetup& s) {
   const std::vector<double>& clock = s.input.time_s;
   std::vector<bool> out(clock.size());
@@ -231,7 +232,7 @@ void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& 
 }
 
 void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
-  constexpr double kShareOfRange = 1e-3;
+  constexpr double kShareOfRange = 1e-3;  // hysteresis of the approach's direction; a choice (axis_inverse.h)
   AxisInput& in = s.input;
   in.kind = axis_command_kind(dataset);
   in.time_s = r.time_s;
@@ -253,11 +254,11 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
     double turned_at = s.position.front(), direction = 0.0;
     std::size_t first = r.size();
     for (std::size_t k = 1; k < r.size(); ++k) {
-      const double way = s.position[k] - turned_at;
-      if (way * direction > 0.0) {
+      const double displacement = s.position[k] - turned_at;
+      if (displacement * direction > 0.0) {
         turned_at = s.position[k];
-      } else if (std::abs(way) > least) {
-        direction = way > 0.0 ? 1.0 : -1.0;
+      } else if (std::abs(displacement) > least) {
+        direction = displacement > 0.0 ? 1.0 : -1.0;
         turned_at = s.position[k];
         first = std::min(first, k);
       }

@@ -2,18 +2,13 @@
 #include <cmath>
 
 #include "identify/predict/axis_setup.h"
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
 
-double median(std::vector<double> v) {
-  if (v.empty()) return 0.0;
-  const auto mid = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), mid, v.end());
-  return *mid;
-}
-
-// Smallest step between the values of a record that has few different ones.
+// Smallest step between the values of a record in which each occurs three times or more on average (a
+// choice); 0: not quantised. Steps below 1e-7 of the range are rounding of a file's digits.
 double quantum_of(std::vector<double> v) {
   std::sort(v.begin(), v.end());
   const double range = v.back() - v.front();
@@ -32,10 +27,7 @@ double quantum_of(std::vector<double> v) {
 }  // namespace
 
 NoiseEstimate estimate_noise(const std::vector<double>& values) {
-  std::vector<double> finite;
-  for (const double v : values) {
-    if (std::isfinite(v)) finite.push_back(v);
-  }
+  const std::vector<double> finite = finite_values(values);
   NoiseEstimate out;
   if (finite.size() < 4) return out;
   std::vector<double> second;
@@ -44,14 +36,12 @@ NoiseEstimate estimate_noise(const std::vector<double>& values) {
     if (std::isfinite(d)) second.push_back(std::abs(d));
   }
   out.quantum = quantum_of(finite);
-  // white noise: variance of the second difference is 6 sigma^2; 1.4826 median of the absolute: sigma of a
-  // normal
-  const double robust = 1.4826 * median(second) / std::sqrt(6.0);
+  // white noise: variance of the second difference is 6 sigma^2
+  const double robust = sigma_by_mad(std::move(second)) / std::sqrt(6.0);
   double mean = 0.0, square = 0.0;
   for (const double v : finite) mean += v / static_cast<double>(finite.size());
   for (const double v : finite) square += (v - mean) * (v - mean) / static_cast<double>(finite.size());
-  constexpr double kLeastShare = 1e-4;  // no sensor is better than this share of its signal: a guess
-  out.sigma = std::max({robust, out.quantum / std::sqrt(12.0), kLeastShare * std::sqrt(square)});
+  out.sigma = std::max({robust, out.quantum / std::sqrt(12.0), kLeastNoiseShare * std::sqrt(square)});
   return out;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Drive input per torque that lacks at the rotor: what would have to be added to make up for it.
+// Drive input per torque that is missing at the rotor: duty, V, A or N m per N m.
 template <typename T>
 T input_per_torque(CommandKind kind, const DriveParams<T>& p, double bus_V) {
   switch (kind) {
@@ -54,7 +54,7 @@ T output_of(const AxisSetup& s, const DriveParams<T>& p, AxisOutput what,
     case AxisOutput::kNeededInput: {
       if (k == 0) return T(0);
       const double load = s.input.load_torque_Nm.empty() ? 0.0 : s.input.load_torque_Nm[k - 1];
-      // what the bench would have to add at the rotor, beyond the load that was there
+      // torque that the bench would have to add at the rotor, beyond the measured load
       const T lacking = (now.load_torque_Nm - load) / p.gear_ratio;
       return lacking * input_per_torque(s.input.kind, p, bus_at(s.input, k - 1));
     }
@@ -62,7 +62,7 @@ T output_of(const AxisSetup& s, const DriveParams<T>& p, AxisOutput what,
   return T(kMissing);
 }
 
-// Settled points: a step so long that the winding has settled, twice.
+// Steady points: two steps so long that the winding has settled in each.
 template <typename T>
 std::vector<std::vector<T>> steady_outputs(const AxisSetup& s, const DriveParams<T>& p,
                                            const EffectSet<T>& effects) {

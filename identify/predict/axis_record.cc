@@ -8,6 +8,7 @@
 
 #include "identify/predict/axis_setup.h"
 #include "identify/record/bus_voltage.h"
+#include "identify/record/statistics.h"
 #include "sim/bench/axis_signal.h"
 
 namespace omnihil {
@@ -36,9 +37,9 @@ std::vector<double> as_measured(const std::vector<double>* column, std::size_t f
   return out;
 }
 
-// Speed at the first of the positions x(t), by a parabola through them (least squares). Zero where that is
-// within three of its standard errors and a tenth of the speed gained over the span: most records start at
-// rest.
+// Speed at the first of the positions x(t), by a least-squares parabola. Zero where it is within three of its
+// standard errors (p = 0.3 %) plus a tenth of the speed gained over the span (error of the parabola itself; a
+// choice): most records start at rest.
 double first_slope(const std::vector<double>& t, const std::vector<double>& x, std::size_t from,
                    std::size_t to) {
   std::vector<Eigen::Vector3d> rows;
@@ -65,10 +66,11 @@ double first_slope(const std::vector<double>& t, const std::vector<double>& x, s
   return std::abs(fit[1]) > 3.0 * error + 0.1 * gained ? fit[1] : 0.0;
 }
 
-// The measured bus voltage drives the model: its sensor's noise would come out as current. What a window of
-// 21 samples shows beyond the noise is kept, the rest is the window's mean (J.-S. Lee, IEEE PAMI 2(2), 1980).
+// The measured bus voltage is an input of the model: its sensor's noise would appear as current. Local linear
+// minimum mean square error filter: window mean plus the deviation times its share of variance beyond the
+// noise (J.-S. Lee, IEEE PAMI 2(2), 1980).
 std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
-  constexpr std::size_t kHalf = 10;
+  constexpr std::size_t kHalf = kBusWindow / 2;
   const std::size_t n = x.size();
   if (n < 2 * kHalf + 1 || !(sigma > 0.0)) return x;
   std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
@@ -91,12 +93,12 @@ std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
 }  // namespace
 
 bool AxisRecord::gap_before(std::size_t k) const {
-  constexpr double kGapPeriods = 10.0;
+  constexpr double kGapPeriods = 10.0;  // a lost row or a late one is bridged, a pause is not; a choice
   return k > 0 && time_s[k] - time_s[k - 1] > kGapPeriods * period_s;
 }
 
 std::vector<double> AxisRecord::angle() const {
-  constexpr double kLeastCountsPerRotorTurn = 200.0;
+  constexpr double kLeastCountsPerRotorTurn = 200.0;  // four per period of an order of 48 (cogging); derived
   if (!position.empty()) return position;
   const double per_rotor_turn = counts_per_output_rad * 2.0 * std::numbers::pi / gear_ratio;
   if (counts.empty() || per_rotor_turn < kLeastCountsPerRotorTurn) return {};
@@ -108,7 +110,8 @@ std::vector<double> AxisRecord::angle() const {
 // theta_k = sum (t_i - t_{i-1}) (v_i + v_{i-1}) / 2; white noise of the speed makes it wander off by
 // sigma sqrt(dt T) in the time T, where a model's own angle is off by its speed's error times T.
 std::vector<double> AxisRecord::angle_by_speed() const {
-  constexpr double kMostWander_rad = 0.1;  // of the rotor, at the end of the record
+  // 1-sigma of the rotor's angle at the end of the record: an order of 10 is then off by 1 rad. A choice.
+  constexpr double kMostWander_rad = 0.1;  // a choice
   if (velocity.empty() || size() < 2 || !angle().empty()) return {};
   const double wander =
       velocity_sigma_rad_s * std::sqrt(period_s * (time_s.back() - time_s.front())) * gear_ratio;
@@ -125,10 +128,11 @@ std::vector<double> AxisRecord::angle_by_speed() const {
 }
 
 double AxisRecord::speed_near(std::size_t k) const {
-  constexpr std::size_t kSamples = 5;    // of a measured speed: their median
-  constexpr double kSlopeSpan_s = 0.01;  // of positions
-  // Counts before a speed that a drive reports: such a speed may be stale.
-  const std::vector<double>& way = counts.empty() ? position : counts;
+  // Median of that many measured speeds: two glitches are rejected.
+  constexpr std::size_t kSamples = 5;    // a choice
+  constexpr double kSlopeSpan_s = 0.01;  // of positions: below a drive's mechanical time constant; a choice
+  // The encoder is preferred to a speed that a drive reports, which may be delayed.
+  const std::vector<double>& displacement = counts.empty() ? position : counts;
   const double per_rad = counts.empty() ? 1.0 : counts_per_output_rad;
   std::vector<double> near;
   for (std::size_t i = k; i < size() && i < k + kSamples && !velocity.empty(); ++i) {
@@ -139,22 +143,23 @@ double AxisRecord::speed_near(std::size_t k) const {
   const auto slope = [&] {
     std::size_t end = k;
     while (end < size() && (end < k + 8 || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
-    return first_slope(time_s, way, k, end) / per_rad;
+    return first_slope(time_s, displacement, k, end) / per_rad;
   };
-  // n counts tell a slope to count / (span sqrt(n)): often far better than what a noisy speed says at once.
+  // Standard error of a slope through n counted positions: about count / (span sqrt(n)), often far below the
+  // noise of one measured speed.
   const double slope_sigma = 1.0 / per_rad / kSlopeSpan_s / std::sqrt(std::max(1.0, kSlopeSpan_s / period_s));
-  constexpr double kBetter = 5.0;
+  constexpr double kBetter = 5.0;  // so that a rough error estimate does not decide; a choice
   if (!counts.empty() && velocity_sigma_rad_s > kBetter * slope_sigma) {
     if (const double by_counts = slope(); std::isfinite(by_counts)) return by_counts;
   }
   if (!near.empty() && std::isfinite(velocity[k])) {
-    // Where the speed itself moves on in these few samples, their median is that of a later instant.
-    constexpr double kMoves = 6.0;  // sigmas
+    // Where the speed changes within these samples, their median is the speed of a later instant (DECISIONS
+    // 37).
+    constexpr double kMoves = 6.0;  // sigmas of one reading: 4.2 of the difference of two, p = 2e-5
     if (std::abs(near.back() - near.front()) > kMoves * velocity_sigma_rad_s) return near.front();
-    std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2), near.end());
-    return near[near.size() / 2];
+    return median_in_place(near);
   }
-  return way.empty() ? kMissing : slope();
+  return displacement.empty() ? kMissing : slope();
 }
 
 AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, const Run& run) {

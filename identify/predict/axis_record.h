@@ -1,18 +1,24 @@
-// The columns of one run of an axis, as a drive needs them: no missing drive input, motion at the output
-// shaft.
+// The columns of one run of an axis as the simulation needs them: no missing drive input, motion at the
+// output shaft. n samples each; s, rad (m), rad/s (m/s), A, V, N m (N), degC, counts.
 //
 //   AxisRecord r = make_axis_record(dataset, nominal, run);
 //   r.command[k];        // held from r.time_s[k] on
 //
-// A missing drive input, bus voltage or enable holds its last value; what stands before the first drive input
-// is left out. Motion keeps its missing samples as NaN.
+// A missing drive input, bus voltage or enable holds its last value; rows before the first drive input are
+// left out. Motion keeps its missing samples as NaN.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "identify/predict/candidate.h"
 #include "identify/record/dataset.h"
 
 namespace omnihil {
+
+// Window of the local mean by which a measured bus voltage is smoothed, in samples: 21 ms at 1 kHz, longer
+// than a PWM or sensor ripple, shorter than the bus sags under a step of the load. A choice; sensitivity not
+// measured.
+inline constexpr std::size_t kBusWindow = 21;
 
 struct AxisRecord {
   std::size_t first_row = 0;
@@ -29,12 +35,12 @@ struct AxisRecord {
 
   std::size_t size() const { return time_s.size(); }
   bool gap_before(std::size_t k) const;
-  // Position of the output from its sensor or its encoder; empty where it is not measured, or too coarse to
-  // tell an angle (fewer than 200 counts per rotor turn).
+  // Position of the output from its sensor or its encoder; empty where it is not measured, or too coarse for
+  // laws of the angle (fewer than 200 counts per rotor turn).
   std::vector<double> angle() const;
-  // Where no angle is measured: angle of the output turned through since the first sample, from the measured
-  // speed. NaN from the first gap on; empty where the speed is not measured, or its noise adds up to more
-  // than a rotor angle means.
+  // Where no angle is measured: angle of the output since the first sample, by integrating the measured
+  // speed. NaN from the first gap on; empty where the speed is not measured, or its integrated noise exceeds
+  // 0.1 rad of the rotor (DECISIONS 44).
   std::vector<double> angle_by_speed() const;
   // Speed of the output at sample k: measured, else from the positions around it; NaN where neither is known.
   double speed_near(std::size_t k) const;

@@ -1,4 +1,4 @@
-// On what axes the errors of an axis are sorted, and which effects can act on it at all.
+// Regime variables of an axis, and which effects can act on it at all.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Time since the input last moved by more than a twentieth of its range.
+// Time since the input last moved by more than a twentieth of its range (a choice; a robot's: kStep_duty).
 std::vector<double> since_step(const AxisInput& in) {
   const auto [low, high] = std::minmax_element(in.command.begin(), in.command.end());
   const double step = 0.05 * (*high - *low);

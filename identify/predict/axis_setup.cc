@@ -188,7 +188,7 @@ class ForwardSetup {
   AxisSetup& s_;
 };
 
-// The first known temperature: the winding starts there.
+// The first measured temperature, which the winding starts at.
 double first_known(const std::vector<double>& x) {
   const auto at = std::find_if(x.begin(), x.end(), finite);
   return at == x.end() ? 0.0 : *at;

@@ -24,7 +24,7 @@ double coulomb_of(const Candidate& candidate) {
   return 0.0;
 }
 
-// What the file's other fields hold of the table and of the effects, made equal to them again.
+// Updates the file's derived fields (models built from table and effects) after a change of either.
 void refresh(Candidate& candidate) {
   ParameterTable& table = candidate.file.parameters;
   const bool linear = candidate.file.linear;
@@ -59,7 +59,8 @@ std::pair<int, int> effect_row(const Candidate& candidate, std::string_view path
   return {-1, 0};
 }
 
-// Any row that this rig may have; null: none such. A row that no file gave is added, as an exact number.
+// The parameter of any row that this rig may have; null: none such. A row that no file gave is added, as
+// known exactly.
 Parameter* table_parameter(Candidate& candidate, std::string_view path) {
   if (Parameter* p = candidate.file.parameters.find(path); p != nullptr) return p;
   const std::size_t dot = path.rfind('.');
@@ -83,32 +84,34 @@ std::optional<Unknown> base_unknown(const Parameter& p) {
   const ParameterRow& row = *p.row;
   const bool number = row.kind == ParameterKind::kNumber && p.values.size() == 1;
   if (!number || is_effects_row(row) || !p.tolerance || *p.tolerance <= 0.0) return std::nullopt;
-  constexpr double kLeastShare = 1e-4;  // of the value, where the bound itself is not allowed
+  // Of the value: in place of a bound that is excluded (R > 0).
+  constexpr double kLeastShare = 1e-4;  // numerical
   const double value = p.value();
   const double lower = row.above_lower ? std::max(row.lower, kLeastShare * value) : row.lower;
   Unknown u{.path = parameter_path(row), .unit = std::string(row.unit)};
   u.start = u.prior_mean = value;
   u.lower = std::min(lower, value);
   u.upper = row.upper;
-  u.prior_sigma = *p.tolerance * std::abs(value);  // a tolerance of zero's share of nothing: flat
+  u.prior_sigma =
+      *p.tolerance * std::abs(value);  // relative tolerance of a zero value: sigma 0, a flat prior
   u.scale = u.prior_sigma > 0.0 ? u.prior_sigma : 1e-3 * std::min(row.upper, 1.0);
   return u;
 }
 
-// A count that the make of the thing decides.
+// An integer fixed by construction (orders, pulses per turn).
 bool is_whole_by_make(const EffectUse& use, const EffectParam& row) {
   return use.owner == nullptr && row.role == ParamRole::kShape && row.prior_scale == 0.0 && row.lower >= 1.0;
 }
 
-// A strength that a file gives without a tolerance is known exactly; the file says nothing of one that the
-// program has found, nor of one that it leaves out.
+// A strength that a file gives without a tolerance is known exactly; not one that the program has found (it
+// has an owner), nor one at neutral, which the file leaves out.
 bool is_stated(const EffectUse& use, std::size_t i) {
   const EffectParam& row = use.entry->info->params[i];
   const bool from_file = use.owner == nullptr && i < use.tolerances.size() && !use.tolerances[i];
   return from_file && row.role != ParamRole::kShape && use.values[i] != row.neutral;
 }
 
-// With it its shapes, unless they have a tolerance of their own.
+// The shapes of an exactly known strength are known exactly too, unless they have a tolerance of their own.
 bool is_known_shape(const EffectUse& use, std::size_t i) {
   const std::span<const EffectParam> rows = use.entry->info->params;
   if (rows[i].role != ParamRole::kShape || i >= use.tolerances.size() || use.tolerances[i]) return false;
@@ -121,7 +124,7 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
   const bool linear = candidate.file.linear;
   const EffectParam& row = use.entry->info->params[i];
   const std::span<const EffectParam> rows = use.entry->info->params;
-  constexpr double kNotGiven = -1.0;
+  constexpr double kNotGiven = -1.0;  // a marker: tolerances are not negative
   const double tolerance = i < use.tolerances.size() ? use.tolerances[i].value_or(kNotGiven) : kNotGiven;
   const ParamRange range = param_range(row, linear);
   if (tolerance == 0.0 || is_stated(use, i) || is_known_shape(use, i)) return std::nullopt;
@@ -146,7 +149,7 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
   }
   double usual = row.typical;
   if (row.start_for != nullptr) {
-    // Where the drive decides what is usual, it decides how far a belief reaches.
+    // Where the typical value depends on the drive, the prior's width scales with it (DECISIONS 49).
     const DriveParams<double> drive = drive_of(candidate);
     usual = start_of(row, &drive);
     if (row.typical != 0.0 && tolerance <= 0.0) u.prior_sigma *= std::abs(usual / row.typical);
@@ -300,7 +303,8 @@ RobotModel robot_of(const Candidate& candidate) {
 }
 
 std::string candidate_text(const Candidate& candidate) {
-  constexpr double kFound = 1.0;  // relative 1-sigma of what a fit has found: a start, not a belief
+  // Relative 1-sigma of a parameter that a fit has found: so wide that it is a start.
+  constexpr double kFound = 1.0;  // as above
   std::vector<EffectUse> effects = candidate.effects;
   for (EffectUse& use : effects) {
     if (!use.tolerances.empty() || use.owner != nullptr) continue;

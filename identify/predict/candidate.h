@@ -1,15 +1,16 @@
-// A model under test: base parameters, effects, and which of their numbers a fit may move.
+// A model under test: base parameters, effects, and which of their parameters are unknowns of a fit.
 //
 //   Candidate c = …;                                            // from the nominal model file
 //   std::vector<Unknown> u = unknowns_of(c);                    // R, k, J, b, …, cogging.amplitude_Nm, …
 //   Candidate moved = with_values(c, u, x);
 //
-// A base number is an unknown when its file gives it a tolerance (its prior: normal, relative 1-sigma; cut to
-// the row's bounds); a bare number is known exactly, a strength of an effect and its shapes like any other.
-// Of an effect that the program has added every strength is an unknown, a shape where it has a range to move
-// in, a detail only where it is not neutral; not what its file gives a tolerance of 0, and no shape that is a
-// whole number by construction (orders, pulses per turn: flat from 1 on). Priors of effects: effect.h, or the
-// file's own tolerance where it gives one; what a search has found is written with a tolerance of 1.
+// A base parameter is an unknown if its file gives it a tolerance (prior: normal, relative 1-sigma, truncated
+// to the row's bounds); without one it is known exactly. Strengths and shapes of an effect in a file
+// likewise. Of an effect that the program has added, unknowns are: every strength; a shape whose range is not
+// empty; a detail that is not neutral. Never: a parameter with a tolerance of 0 in its file, and a shape that
+// is an integer by construction (orders, pulses per turn: flat from 1 on). Priors of effects: effect.h, or
+// the file's tolerance where it gives one; a parameter that a search has found is written with a tolerance of
+// 1. Values are in the unknowns' own units.
 #pragma once
 #include <optional>
 #include <span>
@@ -25,7 +26,7 @@
 namespace omnihil {
 
 struct Candidate {
-  ModelFile file;                  // its parameter table holds the base numbers
+  ModelFile file;                  // its parameter table holds the base parameters
   std::vector<EffectUse> effects;  // coulomb_friction among them, where the file has it
 };
 
@@ -42,25 +43,25 @@ struct Unknown {
   double scale = 1.0;        // a step that matters: tolerance * value, or the effect's typical size
 };
 
-// From what the readers of a model file give. A robot's coulomb_friction, a number of its base model
-// elsewhere, is an effect here.
+// From what the readers of a model file give. A robot's coulomb_friction, a base parameter elsewhere, is an
+// effect here.
 Candidate candidate_of(ModelFile file, std::vector<EffectUse> effects);
 Candidate candidate_of(const ModelFile& robot);
 
 // Effects by id; of a formula "expression.NAME".
 std::string effect_name(const EffectUse& use);
 
-std::vector<Unknown> unknowns_of(const Candidate& candidate);
+std::vector<Unknown> unknowns_of(const Candidate& candidate);  // p of them: base parameters first
 
 Candidate with_values(const Candidate& candidate, std::span<const Unknown> unknowns,
                       std::span<const double> values);
 
-// One number by path, a base parameter's or an effect's ("cogging.amplitude_Nm", also with "effects." before
+// One parameter by path, of the base or of an effect ("cogging.amplitude_Nm", also with "effects." before
 // it). set_value: "" or what is wrong; bounds are held.
 std::optional<double> value_at(const Candidate& candidate, std::string_view path);
 std::string set_value(Candidate& candidate, std::string_view path, double value);
 
-// The candidate with what a run knows of itself (Run::known) put in; a known number is no unknown there. What
+// The candidate with the parameters that a run states (Run::known) put in; those are no unknowns there. What
 // set_value refuses is left as it was: the dataset's reader has said so.
 Candidate with_known(const Candidate& candidate, std::span<const std::pair<std::string, double>> known);
 
@@ -69,14 +70,14 @@ Candidate with_effect(const Candidate& candidate, const EffectEntry& entry);
 Candidate with_effect(const Candidate& candidate, EffectUse use);  // a user's formula
 Candidate without_effect(const Candidate& candidate, std::string_view name);
 
-// Numbers of the drive: a rig "axis", or one wheel of a robot, lifted. Without coulomb_friction, which is
+// Parameters of the drive: a rig "axis", or one wheel of a robot, lifted. Without coulomb_friction, which is
 // among the effects.
 DriveParams<double> drive_of(const Candidate& candidate);
-// A rig "robot", with the numbers of its table and all effects in their places (coulomb_friction in its
+// A rig "robot", with the parameters of its table and all effects in their places (coulomb_friction in its
 // motor).
 RobotModel robot_of(const Candidate& candidate);
 
-// Text of a model file (omnihil-model/1) with these numbers; tolerances and sources kept.
+// Text of a model file (omnihil-model/1) with these parameters; tolerances and sources kept.
 std::string candidate_text(const Candidate& candidate);
 
 }  // namespace omnihil

@@ -1,10 +1,10 @@
-// Which effect made the measured speed of an axis, if it was counted from pulses; its signals then get that
-// noise.
+// Finds whether the measured speed of an axis was counted from pulses, and by which effect; its signals then
+// get the noise of a count (DECISIONS 54).
 //
 //   const EffectEntry* e = find_counted_speed(setups, drive);   // null: it was not counted
 //
-// Decided on the readings of all runs together: a speed that is counted in one run is so in all. Needs the
-// motor's pole pairs. counted_speed.h has the law.
+// Decided on the readings of all runs together: a speed that is counted in one run is counted in all. Needs
+// the motor's pole pairs. Law: counted_speed.h.
 #pragma once
 #include <vector>
 

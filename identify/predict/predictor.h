@@ -1,5 +1,5 @@
-// What a model says the sensors would have shown: the model run on the measured inputs, through the same
-// sensor chain as the measurement (counts, means over a period, filters, delays), signal by signal.
+// Predicted sensor readings: the model simulated on the measured inputs, through the same sensor chain as the
+// measurement (counts, means over a period, filters, delays), signal by signal.
 //
 //   std::unique_ptr<Predictor> p = make_predictor(dataset, nominal, {});
 //   Prediction y = p->predict(candidate, run);                           // y.values[s][i]
@@ -36,35 +36,37 @@ namespace omnihil {
 
 enum class Method : std::uint8_t { kForward, kInverse };
 
-// One signal of one run, measured: what a prediction is held against.
+// One measured signal of one run, with its noise: what a prediction is compared with. n samples.
 struct ComparedSignal {
   std::string name;  // "velocity"; "motor_torque" where the method is inverse
   std::string unit;
   std::vector<double> time_s;
   std::vector<double> measured;  // NaN: not measured, or left out (said in `left_out`)
-  double noise_sigma = 0.0;      // per sample, after the chain's own filters: stated, or estimated
+  double noise_sigma =
+      0.0;  // 1-sigma per sample in `unit`, after the chain's own filters: stated, or estimated
   bool noise_is_stated = false;
   double quantum = 0.0;    // of a counting sensor, in the signal's unit; 0: none
   CountedSpeed counted{};  // of a speed that is pulses over a window
   // The noise of differenced counts or positions is blue: successive errors cancel. See whitened().
-  double whitening_s = 0.0;     // 0: the noise is white as it is
+  double whitening_s = 0.0;     // time constant of the whitening filter; 0: the noise is white already
   double whitened_sigma = 0.0;  // of whitened(), per sample; noise_sigma where whitening_s is 0
   std::string left_out;         // how many samples were left out and why; empty: none
 };
 
-// What the motion was like at each compared sample: the axes on which errors are sorted into regimes.
-// Measured where it was measured, else the model's. NaN where neither is known.
+// A regime variable at each compared sample, along which errors are sorted into bins: measured, else the
+// model's; NaN where neither is known.
 struct RegimeTrack {
   std::string name;  // "speed", "abs_current", "rotor_angle", "output_angle", "acceleration", "time",
       // "direction", "time_since_step", "temperature", "bus_voltage", "position", "command_age"
   std::string unit;
-  std::vector<double> value;  // on the clock of the compared signals of the run
+  std::vector<double> value;  // n samples, on the clock of the run's compared signals
 };
 
 struct Prediction {
-  std::vector<std::vector<double>> values;   // [signal][sample]
-  std::vector<Eigen::MatrixXd> derivatives;  // [signal](sample, unknown); empty unless asked for
-  bool finite = true;                        // false: the run diverged; values after that are NaN
+  std::vector<std::vector<double>> values;  // [signal][sample], n samples each, in the signal's unit
+  std::vector<Eigen::MatrixXd>
+      derivatives;     // [signal] n x p, per the unknown's own unit; empty unless asked for
+  bool finite = true;  // false: the run diverged; values after that are NaN
 };
 
 struct PredictOptions {
@@ -84,21 +86,22 @@ class Predictor {
   virtual Prediction predict(const Candidate& candidate, int run) const = 0;
   virtual Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
                                               int run) const = 0;
-  // A predictor of the same dataset whose measurement is what `truth` would have given: the null. Noise of
-  // the compared signals' size, through the same sensors, drawn from `seed`.
+  // A predictor of the same dataset whose measurement is simulated with `truth` (parametric bootstrap): noise
+  // of the compared signals' size, through the same sensors, drawn from `seed`.
   virtual std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const = 0;
   // Can this effect act on this rig and drive input at all; "" or why not ("needs a measured current").
   virtual std::string applies(const EffectEntry& entry) const = 0;
-  // Do the readings themselves, one by one, show that this effect made them?
+  // Do the readings carry this effect's quantisation signature (counted_speed.h)?
   virtual bool shows_signature_of(const EffectEntry&) const { return false; }
 };
 
-// Residuals (or derivatives of predictions) of one signal, filtered so that its sensor noise is white: what a
-// fit and every score weigh. A speed v_i = (x_i - x_{i-1}) / dt_i from a position with white noise is
-// integrated with a leak, y_i = exp(-dt_i / tau) y_{i-1} + r_i dt_i: the position's residual above 1 / (2 pi
-// tau), so that low-frequency errors of speed keep their full weight and the counts' rounding cancels. The
-// result has sigma `whitened_sigma`. Other signals are returned as they are. A missing sample (NaN) stays
-// missing and is passed over; it does not reset the integral.
+// Residuals (or derivatives of predictions) of one signal, filtered so that its sensor noise is white; fits
+// and scores are computed on them. `columns`: n x any, filtered in place; `residual`: n. A speed v_i = (x_i -
+// x_{i-1}) / dt_i from a position with white noise is integrated with a leak, y_i = exp(-dt_i / tau) y_{i-1}
+// + r_i dt_i: the position's residual above 1 / (2 pi tau), so that low-frequency errors of speed keep their
+// full weight and the counts' rounding cancels. The result has sigma `whitened_sigma`, in the position's
+// unit. Other signals are returned as they are. A missing sample (NaN) stays missing and is passed over; it
+// does not reset the integral.
 void whiten(const ComparedSignal& signal, Eigen::Ref<Eigen::MatrixXd> columns);
 std::vector<double> whitened(const ComparedSignal& signal, std::vector<double> residual);
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "identify/predict/axis_outputs.h"
+#include "identify/predict/axis_record.h"
 #include "identify/predict/counted_setups.h"
 #include "sim/law/random.h"
 #include "sim/model/axis_model.h"
@@ -13,14 +14,15 @@ namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLongestStep_s = 1e-3;
+// Below mechanical time constants; a choice, checked by choose_step().
+constexpr double kLongestStep_s = 1e-3;  // as above
 
 bool is_known(const Run& run, const std::string& path) {
   return std::any_of(run.known.begin(), run.known.end(),
                      [&](const auto& k) { return k.first == path || k.first == "effects." + path; });
 }
 
-// The numbers of a candidate as dual numbers: unknown `first + j` is number j of this pass.
+// The parameters of a candidate as dual numbers: unknown `first + j` is component j of this pass.
 struct Seeded {
   DriveParams<Jet> params;
   std::vector<Jet> values;
@@ -51,7 +53,7 @@ Seeded seeded(const Candidate& c, const Run& run, std::span<const Unknown> unkno
   return out;
 }
 
-// Is there an effect of this kind that acts? At neutral it is as if it were not there, to the last digit.
+// Is there an effect with this numerical property that is not neutral? A neutral one changes no bit.
 bool acts(const Candidate& c, std::uint32_t numerics) {
   return std::any_of(c.effects.begin(), c.effects.end(), [&](const EffectUse& use) {
     return (use.entry->info->numerics & numerics) != 0 && !is_neutral(use);
@@ -144,13 +146,15 @@ class AxisPredictor final : public Predictor {
   }
 
  private:
-  static constexpr double kSecant = 0.05;  // of the step that matters
+  // Half width of a secant, in Unknown::scale: large beside an impact's jump, small beside a shape's
+  // curvature. A choice (DECISIONS 29); sensitivity not measured.
+  static constexpr double kSecant = 0.05;  // DECISIONS 29
 
-  // Does a step of the size that matters move a signal, to first order, by several times the signal itself?
-  // Then the derivative is that of one impact or one slip after the other (play, sticking), multiplied up,
-  // while the motion itself stays bounded: it says nothing of a step of any size.
+  // Would a step of Unknown::scale change a signal, to first order, by several times its rms? Then the
+  // derivative has grown from impact to impact (play, sticking) while the motion stays bounded: it holds for
+  // no finite step.
   static bool explodes(const AxisSetup& s, const Unknown& unknown, Eigen::Index u, const Prediction& p) {
-    constexpr double kMost = 3.0;
+    constexpr double kMost = 3.0;  // times the signal's rms, where a bounded change is below 2; a choice
     for (std::size_t c = 0; c < p.derivatives.size(); ++c) {
       double moved = 0.0, signal = 0.0;
       for (Eigen::Index k = 0; k < p.derivatives[c].rows(); ++k) {
@@ -185,7 +189,8 @@ class AxisPredictor final : public Predictor {
 
   const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
   double step_for(const Candidate& c) const {
-    constexpr double kFineStep_s = 200e-6;
+    // Measured: DECISIONS 32 (torque ripple) and 38 (late measurement).
+    constexpr double kFineStep_s = 200e-6;  // as above
     if (acts(c, kStiff)) return std::min(step_s_, options_.step_s);
     return acts(c, kFine) ? std::min(step_s_, std::max(options_.step_s, kFineStep_s)) : step_s_;
   }
@@ -252,7 +257,7 @@ class AxisPredictor final : public Predictor {
     }
   }
 
-  // Root mean square of (a - b) / noise, the largest of the signals, as they are seen and whitened.
+  // Root mean square of (a - b) / noise, the largest of the signals, unweighted and whitened.
   double distance(int n, const Prediction& a, const Prediction& b) const {
     double largest = 0.0;
     for (std::size_t c = 0; c < a.values.size(); ++c) {
@@ -275,9 +280,10 @@ class AxisPredictor final : public Predictor {
 
   void choose_step() {
     step_s_ = options_.step_s;
-    constexpr double kTrial_s = 10.0;  // of a run are enough
-    // In the error energy 0.5 %: a sixth of what an effect has to take to be named.
-    constexpr double kShareOfNoise = 0.07;
+    constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
+    // Error of the sub-step over the noise: 0.07^2 = 0.5 % of the error energy, a sixth of what an effect has
+    // to take to be named (DECISIONS 42).
+    constexpr double kShareOfNoise = 0.07;  // DECISIONS 42
     double longest = options_.step_s;
     std::vector<AxisSetup> whole;
     for (AxisSetup& s : setups_) {
@@ -319,7 +325,8 @@ class AxisPredictor final : public Predictor {
     cut(in.time_s);
   }
 
-  // What the sensors would have shown: noise where it comes in, rounding of counts.
+  // Replaces the run's measurement by one simulated with `truth`: noise where it enters the chain, rounding
+  // of counts.
   void replace_measurement(const Candidate& truth, int n, std::uint64_t seed) {
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     Prediction p = ground_truth_prediction(truth, n, seed);
@@ -347,11 +354,10 @@ class AxisPredictor final : public Predictor {
     }
   }
 
-  // The bus voltage that drives the model is a measurement too, a mean over a window (axis_record.cc): the
-  // world's own differs from it by what the mean leaves of the sensor's noise, which wanders off in speed and
+  // The model's bus voltage is a measurement smoothed over kBusWindow samples (axis_record.h). The true one
+  // differs from it by the mean of the sensor's noise over that window, which integrates into speed and
   // position.
   Prediction ground_truth_prediction(const Candidate& truth, int n, std::uint64_t seed) {
-    constexpr std::size_t kWindow = 21;
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     const auto bus = std::find_if(s.compared.begin(), s.compared.end(),
                                   [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
@@ -361,16 +367,16 @@ class AxisPredictor final : public Predictor {
     const std::uint64_t stream = stream_of("bus_voltage input") + static_cast<std::uint64_t>(n) * 1000003;
     double sum = 0.0;
     for (std::size_t k = 0; k < given.size(); ++k) {
-      sum += gaussian(seed, stream, k) - (k >= kWindow ? gaussian(seed, stream, k - kWindow) : 0.0);
-      s.input.bus_voltage_V[k] += bus->noise_sigma * sum / static_cast<double>(kWindow);
+      sum += gaussian(seed, stream, k) - (k >= kBusWindow ? gaussian(seed, stream, k - kBusWindow) : 0.0);
+      s.input.bus_voltage_V[k] += bus->noise_sigma * sum / static_cast<double>(kBusWindow);
     }
     Prediction p = as_drawn(truth, n);
     s.input.bus_voltage_V = given;
     return p;
   }
 
-  // With what effects draw by chance; the seed goes again. A counted speed has the noise of its own count,
-  // not also that of the effect that made it.
+  // Prediction with the random draws of its effects; the seed is cleared afterwards. The noise of a counted
+  // speed is added by add_counting_noise(): that of the effect behind it is left out here, its delay is kept.
   Prediction as_drawn(const Candidate& truth, int n) {
     AxisSetup& s = setups_[static_cast<std::size_t>(n)];
     Candidate others = truth;
@@ -380,7 +386,7 @@ class AxisPredictor final : public Predictor {
     const Prediction drawn = counts ? predict(others, n) : Prediction{};
     s.input.noise_seed.reset();
     if (!counts) return p;
-    // the window's lag, and what the others draw
+    // the expected value with the window's delay, plus the other effects' random part
     const Prediction lagging = predict(truth, n), still = predict(others, n);
     for (std::size_t c = 0; c < s.compared.size(); ++c) {
       if (s.compared[c].counted.window_s <= 0.0) continue;
@@ -390,7 +396,8 @@ class AxisPredictor final : public Predictor {
     return p;
   }
 
-  // A sensor that rounds rounds its noise as well; noise_sigma holds the rounding's own sigma^2 = q^2 / 12.
+  // Reading of a quantised sensor: noise is added before rounding; noise_sigma^2 includes the rounding's q^2
+  // / 12.
   static double read(double value, const ComparedSignal& signal, double normal) {
     const double q = signal.quantum;
     const double rest = signal.noise_sigma * signal.noise_sigma - q * q / 12.0;
@@ -401,7 +408,7 @@ class AxisPredictor final : public Predictor {
   template <typename Draw>
   static void differenced_noise(const AxisSetup& s, const ComparedSignal& signal, std::vector<double>& v,
                                 double start, Draw draw) {
-    // the position behind the speed, read through a rounding sensor, and differenced again
+    // the speed integrated to a position, which is rounded by the sensor and differenced again
     const auto& t = s.input.time_s;
     const double dt = t.size() > 1 ? (t.back() - t.front()) / static_cast<double>(t.size() - 1) : 1.0;
     const double q = signal.quantum * dt;

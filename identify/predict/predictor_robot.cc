@@ -95,9 +95,10 @@ class RobotPredictor : public Predictor {
     const RobotMotion<double> other = run_robot(values, with_input_noise(record, kNoiseSeed), motion_);
     if (motion.finite && other.finite) omnihil::add_input_noise(record, motion, other, signals);
   }
-  static constexpr std::uint64_t kNoiseSeed = 1;  // of a floor's size alone
+  // Any: the draw is used for the rms of the noise floor alone.
+  static constexpr std::uint64_t kNoiseSeed = 1;  // as above
 
-  // Those that the run knows keep their places, but nothing depends on them.
+  // Unknowns that the run states as known keep their index, but have no path: their derivatives are zero.
   static std::vector<Unknown> open_unknowns(std::span<const Unknown> unknowns, const Run& run) {
     std::vector<Unknown> open(unknowns.begin(), unknowns.end());
     for (Unknown& u : open) {
@@ -132,7 +133,7 @@ std::unique_ptr<Predictor> RobotPredictor::simulated(const Candidate& truth, std
     free.follow_camera = false;
     free.noise_seed = own_seed(n);
     const auto model = robot_values<double>(of_run(truth, made.runs[n]), {}, 0);
-    // the duties that the world had, before they were rounded; its bus before it was measured
+    // the true inputs: duties before rounding, bus voltage without its sensor's noise
     RobotRecord true_input = with_input_noise(records_[n], own_seed(n));
     true_input.bus_voltage_V = records_[n].bus_voltage_V;
     motions.push_back(run_robot(model, true_input, free));
@@ -146,7 +147,7 @@ std::unique_ptr<Predictor> RobotPredictor::simulated(const Candidate& truth, std
         measure_robot_bus(records_[n], motions[n], own_seed(n), signal);
         null->compared_[n][s] = signal.compared;
       }
-      // the sensors are the same, whatever their noise was taken from
+      // the sensors are those of the recording: sigmas are not estimated anew
       signal.channel_sigma = signals_[n][s].channel_sigma;
       null->compared_[n][s].noise_sigma = compared_[n][s].noise_sigma;
       null->compared_[n][s].whitened_sigma = compared_[n][s].whitened_sigma;

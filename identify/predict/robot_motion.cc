@@ -10,7 +10,9 @@
 namespace omnihil {
 namespace {
 
-constexpr double kFollow_s = 0.5;  // over which the model's way is drawn to the camera's
+// Time constant of the model path's correction towards the camera: an error of speed dv appears as 0.5 s dv,
+// above a camera's millimetres for 10 mm/s. A choice; sensitivity not measured.
+constexpr double kFollow_s = 0.5;  // a choice
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Everything true, at the samples.
@@ -21,7 +23,7 @@ struct Truth {
   std::vector<T> accel_x, accel_y, bus, supply;
 };
 
-// Place of a time among the samples: between `from` and `from` + 1.
+// Linear interpolation at a time between the samples `from` and `from` + 1.
 template <typename T>
 struct Instant {
   std::size_t from = 0;
@@ -41,7 +43,7 @@ Instant<T> instant(const std::vector<double>& time_s, const T& at_s) {
   Instant<T> i;
   i.from = k - 1;
   i.share = (at_s - time_s[k - 1]) / (time_s[k] - time_s[k - 1]);
-  // before the first sample it stood as it stood there
+  // before the first sample: its value, constant
   if (value_of(i.share) < 0.0) i.share = T(0);
   return i;
 }
@@ -127,7 +129,7 @@ class Runner {
       }
     }
     if (out_.finite) return;
-    // values after a run diverged are none
+    // samples after a divergence repeat the last state; `finite` marks the run as diverged
     const std::size_t known = truth_.bus.size();
     for (std::size_t k = known; k < n; ++k) {
       keep(x);
@@ -201,7 +203,7 @@ class Runner {
     NoiseKey key{options_.noise_seed.value_or(0), stream_of("sensor") + i, k};
     port.theta_rotor_rad = port.encoder_angle_rad = theta;
     if (record_.has_all_encoders && options_.slave_angle) {
-      // the error of a wheel's angle depends on where it stands: the law sees where it stood
+      // an encoder's error depends on the angle: the law takes the angle at the sampled (earlier) instant
       port.theta_rotor_rad = T(record_.theta_rotor_rad[k][i]);
       port.encoder_angle_rad = port.theta_rotor_rad;
     }
@@ -215,7 +217,7 @@ class Runner {
     return theta + (port.encoder_angle_rad - port.theta_rotor_rad);
   }
 
-  // Way and heading by the trapezoidal rule, and what the camera sees of them.
+  // Path and heading by the trapezoidal rule, and their values at the camera's frames.
   void see() {
     using std::cos;
     using std::sin;
@@ -269,9 +271,10 @@ class Runner {
     }
   }
 
-  // The way at the frames, drawn to what the camera saw before.
-  std::vector<T> follow(const std::vector<T>& way, double CameraFrame::*seen) const {
-    std::vector<T> out(way.size(), T(kNaN));
+  // One coordinate of the path at the frames (n samples, NaN between), corrected by the camera's earlier
+  // frames: first order filter of the camera's difference to the path.
+  std::vector<T> follow(const std::vector<T>& path, double CameraFrame::*seen) const {
+    std::vector<T> out(path.size(), T(kNaN));
     T correction = T(0);
     double last_s = kNaN, frames = 0.0;
     for (const CameraFrame& f : record_.frames) {
@@ -279,13 +282,13 @@ class Runner {
       const double now_s = record_.time_s[f.sample];
       const T there =
           is_exactly(camera_age_s_, 0.0)
-              ? way[f.sample]
-              : instant(record_.time_s, T(now_s - camera_age_s_)).of([&](std::size_t j) { return way[j]; });
+              ? path[f.sample]
+              : instant(record_.time_s, T(now_s - camera_age_s_)).of([&](std::size_t j) { return path[j]; });
       if (!std::isfinite(last_s)) {
-        correction = f.*seen - there;  // the first frame says where the robot is; it is not compared
+        correction = f.*seen - there;  // the first frame is the path's origin, and is not compared
       } else {
         out[f.sample] = there + correction;
-        // at first the mean of the frames so far, so that the first one's noise does not linger
+        // at first the mean of the frames so far, so that the first one's noise is averaged out
         const double gain = std::max(-std::expm1(-(now_s - last_s) / kFollow_s), 1.0 / (frames + 1.0));
         correction += (f.*seen - out[f.sample]) * gain;
       }

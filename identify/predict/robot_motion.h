@@ -1,7 +1,7 @@
-// A robot's run as a model says it went: the record's inputs through rolling_robot.h, sample by sample, and
-// what its sensors saw of it.
+// Simulated motion of a robot's run: the record's inputs through rolling_robot.h, sample by sample, and the
+// outputs of its sensors.
 //
-//   RobotModelValues<Jet> m = robot_values<Jet>(candidate, unknowns, 0);      // unknown n is Jet's number n
+//   RobotModelValues<Jet> m = robot_values<Jet>(candidate, unknowns, 0);      // unknown n is the Jet's component n
 //   RobotMotion<Jet> y = run_robot(m, record, {});
 //   y.encoder_rad[k][i], y.current_A[k][i], y.gyro_rad_s[k], y.x_m[k] …
 //
@@ -15,26 +15,28 @@
 
 namespace omnihil {
 
-// A candidate's numbers on a scalar.
+// A candidate's parameters on a scalar.
 template <typename T>
 struct RobotModelValues {
   RollingParams<T> params;
   std::vector<EffectUse> uses;
-  std::vector<T> values;  // of all uses, one after another
+  std::vector<T> values;  // of all `uses`, concatenated
 };
 
-// For Jet: unknown `first` + n is the Jet's number n. Known numbers of a run stay known.
+// For Jet: unknown `first` + n is the Jet's component n. Parameters that a run states as known have no
+// derivative.
 template <typename T>
 RobotModelValues<T> robot_values(const Candidate& candidate, std::span<const Unknown> unknowns,
                                  std::size_t first);
 
 struct RobotMotionOptions {
   double step_s = 1e-3;       // at most; a sample period is parted into equal steps
-  bool slave_angle = true;    // laws of the angle see the measured angle
-  bool follow_camera = true;  // false: heading and way are the model's own, from the record's start
+  bool slave_angle = true;    // laws of the angle take the measured angle
+  bool follow_camera = true;  // false: heading and path are the model's own, from the record's start
   std::optional<std::uint64_t> noise_seed;  // for effects that draw random numbers; none: expected values
 };
 
+// n samples of the record each.
 template <typename T>
 struct RobotMotion {
   std::vector<std::array<T, kWheels>> encoder_rad;  // unrounded, at the rotor
@@ -42,9 +44,9 @@ struct RobotMotion {
   std::vector<T> gyro_rad_s, accel_x_m_s2, accel_y_m_s2;
   std::vector<T> bus_voltage_V, supply_voltage_V;  // RollingState
   std::vector<T> temperature_rise_K;               // mean of the four windings
-  std::vector<std::array<T, 3>> velocity;          // body frame: true, not as seen
-  // As a camera would see it, the corrections of follow_camera included; NaN between frames (follow_camera)
-  // or everywhere the record has none.
+  std::vector<std::array<T, 3>> velocity;          // body frame, true: without sensor; m/s, m/s, rad/s
+  // Pose as the camera reports it, the corrections of follow_camera included; NaN between frames
+  // (follow_camera) or where the record has none.
   std::vector<T> x_m, y_m, theta_rad;
   bool finite = true;
 };

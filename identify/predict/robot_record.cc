@@ -13,8 +13,11 @@ namespace omnihil {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kHeadingMemory_s = 1.0;  // over which the gyro's integral is held to the camera's heading
-constexpr double kStartSpan_s = 0.02;     // from which the speeds at the start are read
+// Time constant of the correction of the gyro's integral to the camera's heading: some tens of frames average
+// the camera's noise, a gyro's bias drifts by millirads. A choice; sensitivity not measured.
+constexpr double kHeadingMemory_s = 1.0;  // a choice
+// For the parabola of the speeds at the start: tens of samples.
+constexpr double kStartSpan_s = 0.02;  // a choice
 
 std::string numbered(std::string_view name, std::size_t wheel) {
   return std::string(name) + "_" + std::to_string(wheel + 1);
@@ -35,13 +38,16 @@ double first_of(const std::vector<double>& signal, double otherwise) {
   return found == signal.end() ? otherwise : *found;
 }
 
-// The measured bus voltage drives the model, so its sensor's noise would come out as speed: a white noise of
-// 20 mV moves a rotor's angle ten times as much as an encoder's rounding. Each sample is the mean of the
-// longest of three windows that shows no more than noise; where the shortest shows more, what goes beyond is
-// kept (J.-S. Lee, IEEE PAMI 2(2), 1980).
+// The measured bus voltage is an input of the model, so its sensor's noise would appear as speed: white noise
+// of 20 mV moves a rotor's angle ten times as much as an encoder's rounding. Each sample is the mean of the
+// longest of three windows whose variance is not above the noise's; where the shortest one's is, the
+// deviation is kept by its share of variance beyond the noise (J.-S. Lee, IEEE PAMI 2(2), 1980).
 std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
-  constexpr std::array<std::size_t, 3> kHalf = {250, 50, 10};  // samples
-  constexpr double kNoMoreThanNoise = 1.2;                     // of the variance
+  constexpr std::array<std::size_t, 3> kHalf = {250, 50,
+                                                10};  // samples; the shortest as of an axis; a choice
+  // Of the noise's variance: three standard errors of a variance from 500 samples (sqrt(2 / n) = 6 %), well
+  // within one from 21.
+  constexpr double kNoMoreThanNoise = 1.2;  // derived
   const std::size_t n = x.size();
   if (!(sigma > 0.0)) return x;
   std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
@@ -76,12 +82,12 @@ void read_drive(const Run& run, RobotRecord& r) {
   }
 }
 
-// A record with few decimals: the last of them is what its duties are known to.
+// Step that duties are rounded to by the decimals of their record; 0: full precision.
 double rounding_of(const std::vector<std::array<double, kWheels>>& duties) {
   std::vector<double> all;
   for (const auto& duty : duties) all.insert(all.end(), duty.begin(), duty.end());
   std::sort(all.begin(), all.end());
-  constexpr std::ptrdiff_t kEnough = 20;  // different values; fewer may be round by choice
+  constexpr std::ptrdiff_t kEnough = 20;  // different values; fewer may be round set points; a choice
   std::vector<double> different = all;
   different.erase(std::unique(different.begin(), different.end()), different.end());
   if (static_cast<std::ptrdiff_t>(different.size()) < kEnough) return 0.0;
@@ -95,7 +101,7 @@ double rounding_of(const std::vector<std::array<double, kWheels>>& duties) {
   return 0.0;
 }
 
-// Straight lines over gaps.
+// Linear interpolation over gaps.
 std::vector<double> without_gaps(const std::vector<double>& time_s, const std::vector<double>& signal) {
   std::vector<double> out = signal;
   std::size_t last = signal.size();
@@ -153,7 +159,7 @@ void read_frames(const Run& run, RobotRecord& r) {
   }
 }
 
-// The gyro knows by how many turns the heading went on between two frames.
+// Unwraps the camera's heading: whole turns between two frames from the gyro's integral.
 void unwrap_by_gyro(RobotRecord& r) {
   if (r.turned_rad.empty()) return;
   double offset = std::nan("");
@@ -166,7 +172,7 @@ void unwrap_by_gyro(RobotRecord& r) {
   }
 }
 
-// theta = theta_0 + v t + a t^2 / 2 over the first moments, by least squares: v.
+// v of theta = theta_0 + v t + a t^2 / 2 over the first kStartSpan_s, by least squares; rad/s.
 double speed_at_start(const RobotRecord& r, std::size_t wheel, std::size_t last) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -189,7 +195,7 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const RollingParams<do
     g.cos_angle[i] = std::cos(nominal.wheel_angle_rad[i]);
     g.sin_angle[i] = std::sin(nominal.wheel_angle_rad[i]);
     omega_wheel[i] = speed_at_start(r, i, last) / nominal.drive.gear_ratio;
-    // within a count or two it stands
+    // a displacement of up to two counts is no motion
     const double count_rad = kTurn / r.counts_per_rotor_turn[i];
     if (std::abs(r.theta_rotor_rad[last][i] - r.theta_rotor_rad[0][i]) < 2.5 * count_rad)
       omega_wheel[i] = 0.0;
@@ -260,7 +266,7 @@ RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {
 
 namespace {
 
-// Value of straight lines through (time, values) at a time that may carry derivatives.
+// Linear interpolation of (time, values) at a time that may carry derivatives.
 template <typename T>
 T line_at(const std::vector<double>& time_s, const std::vector<double>& values, const T& at_s) {
   const auto after = std::upper_bound(time_s.begin(), time_s.end(), value_of(at_s));
@@ -271,7 +277,7 @@ T line_at(const std::vector<double>& time_s, const std::vector<double>& values, 
   return values[k - 1] + slope * (at_s - time_s[k - 1]);
 }
 
-// Means over both sides, weighed by exp(-|dt| / memory).
+// Means over both sides, weighted by exp(-|dt| / memory).
 template <typename T>
 std::vector<T> smoothed(const std::vector<double>& time_s, const std::vector<T>& values, double memory_s) {
   const std::size_t n = values.size();

@@ -1,11 +1,11 @@
-// One run of rig "robot" as the simulation needs it: what the bridges were asked, what is measured of angles
-// and headings, and where the robot started.
+// One run of rig "robot" as the simulation needs it: inputs of the bridges, measured angles and headings,
+// velocity at the start. n samples each, at the units of the names.
 //
 //   RobotRecord r = robot_record(dataset, run, gear_ratio, geometry);
 //   r.input(k);                         // held from sample k to the next
 //   headings<Jet>(r, camera_age);       // of the body in the field, per sample
 //
-// An empty duty is a bridge that is off. A missing sample of an input is the one before.
+// An empty duty is a bridge that is off. A missing sample of an input holds the one before.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace omnihil {
 
 struct CameraFrame {
   std::size_t sample = 0;
-  double x_m = 0.0, y_m = 0.0, theta_rad = 0.0;  // NaN: not seen; theta runs on over a turn
+  double x_m = 0.0, y_m = 0.0, theta_rad = 0.0;  // NaN: not seen; theta is unwrapped
 };
 
 struct RobotRecord {
@@ -28,7 +28,7 @@ struct RobotRecord {
   std::vector<std::array<bool, kWheels>> enabled;
   std::vector<double> bus_voltage_V;  // less its sensor's noise; empty: not measured
   double bus_sigma_V = 0.0;           // of the sensor; 0: not stated
-  double duty_quantum = 0.0;          // decimals that the record's duties are rounded to; 0: none seen
+  double duty_quantum = 0.0;          // step that the record's duties are rounded to; 0: none found
   std::vector<double> dribbler_rad_s;
   std::array<double, kWheels> counts_per_rotor_turn{};         // 0: no encoder there
   std::vector<std::array<double, kWheels>> encoder_rotor_rad;  // as counted
@@ -46,11 +46,11 @@ struct RobotRecord {
 // encoders on the wheel.
 RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal);
 
-// The record with inputs as another throw of their own noise would have it: duties off by their rounding, the
-// bus voltage by its sensor.
+// The record with another draw of its inputs' noise: uniform rounding error of the duties, the bus sensor's
+// normal one.
 RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed);
 
-// Heading of the body per sample, as measured; empty where neither gyro nor camera give one.
+// Heading of the body in rad, n samples, as measured; empty where neither gyro nor camera give one.
 // A camera's frame is `age` older than its stamp.
 template <typename T>
 std::vector<T> headings(const RobotRecord& record, const T& camera_age_s);

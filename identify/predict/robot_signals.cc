@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "identify/record/statistics.h"
 #include "sim/law/random.h"
 
 namespace omnihil {
@@ -14,7 +15,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Source {
   RobotOutput output;
-  std::string_view channel;  // without the wheel's number
+  std::string_view channel;  // without the wheel's index
   std::string_view unit;
   bool per_wheel;
 };
@@ -39,7 +40,8 @@ bool is_vision(RobotOutput o) {
   return o == RobotOutput::kVisionX || o == RobotOutput::kVisionY || o == RobotOutput::kVisionTheta;
 }
 
-// White noise under a smooth signal: the third difference has the variance 20 sigma^2. Robust.
+// Robust sigma of white noise under a smooth signal: the third difference has the variance 20 sigma^2. In y's
+// unit.
 double noise_under(const std::vector<double>& y) {
   std::vector<double> size;
   for (std::size_t k = 3; k < y.size(); ++k) {
@@ -50,12 +52,11 @@ double noise_under(const std::vector<double>& y) {
   for (const double v : y) {
     if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
   }
-  constexpr double kLeastShare = 1e-4;  // no sensor is better than this share of its signal: a guess
+  // Of the largest value: no sensor is better; a guess (kLeastNoiseShare: of the rms).
+  constexpr double kLeastShare = 1e-4;  // as above
   const double least = std::max(kLeastShare * largest, 1e-12);
   if (size.empty()) return least;
-  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), middle, size.end());
-  return std::max(least, 1.4826 * *middle / std::sqrt(20.0));
+  return std::max(least, sigma_by_mad(std::move(size)) / std::sqrt(20.0));
 }
 
 void take_velocity(const Channel& channel, const RobotRecord& r, RobotSignal& s) {
@@ -69,17 +70,16 @@ void take_velocity(const Channel& channel, const RobotRecord& r, RobotSignal& s)
     c.measured[k] = (r.encoder_rotor_rad[k][s.wheel] - r.encoder_rotor_rad[k - 1][s.wheel]) / dt_s;
   }
   if (periods.empty()) return;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
+  const double period_s = median(std::move(periods));
   const double rad_per_count = 2.0 * std::numbers::pi / r.counts_per_rotor_turn[s.wheel];
-  c.quantum = rad_per_count / *middle;
-  // two edges, each somewhere within a count; and the channel's own noise
+  c.quantum = rad_per_count / period_s;
+  // variance of one reading in counts^2: rounding, uniform over a count, and the channel's own noise
   const double counts2 = 1.0 / 12.0 + channel.sigma * channel.sigma;
   s.channel_sigma = channel.sigma;
   c.noise_sigma = std::sqrt(2.0 * counts2) * c.quantum;
   c.noise_is_stated = true;
-  // Not whitened (predictor.h): what a floor does to a robot at random adds up to more angle than the
-  // rounding of counts hides, and would be taken for physics.
+  // Not whitened (predictor.h): random forces of the floor integrate to more angle than the counts' rounding,
+  // and would be taken for a law of motion.
   c.whitened_sigma = c.noise_sigma;
 }
 
@@ -92,7 +92,7 @@ void take_frames(const Channel& channel, const RobotRecord& r, RobotSignal& s) {
     const double v = f.*frame_member(s.output);
     if (!std::isfinite(v)) continue;
     seen.push_back(v);
-    if (!first) c.measured[f.sample] = v;  // the first says where the robot stands
+    if (!first) c.measured[f.sample] = v;  // the first frame is the origin of the path
     first = false;
   }
   s.channel_sigma = channel.sigma > 0.0 ? channel.sigma : noise_under(seen);
@@ -104,7 +104,7 @@ void take(const Channel& channel, const Run& run, const RobotRecord& r, RobotSig
     take_frames(channel, r, s);
   } else {
     s.compared.measured = *run.signal(s.channel);
-    // the mean over a period that nobody saw begin
+    // the mean over a period whose beginning was not recorded
     const bool mean = s.output == RobotOutput::kCurrent || s.output == RobotOutput::kBusVoltage;
     if (mean && !s.compared.measured.empty()) s.compared.measured[0] = kNaN;
     s.channel_sigma = channel.sigma > 0.0 ? channel.sigma : noise_under(s.compared.measured);
@@ -218,8 +218,10 @@ void add_input_noise(const RobotRecord& r, const RobotMotion<double>& m, const R
 
 namespace {
 
-constexpr double kMoving_m_s = 0.02;  // below it a direction of travel means nothing
-constexpr double kStep_duty = 0.05;   // a change of duty that counts as a step
+// Least speed with a direction of travel: above the speeds' noise.
+constexpr double kMoving_m_s = 0.02;  // a choice
+// Change of duty from row to row that is a step; a choice (an axis: of its range).
+constexpr double kStep_duty = 0.05;  // as above
 
 std::vector<double> time_since_step(const RobotRecord& r) {
   std::vector<double> out(r.size(), 0.0);
@@ -293,7 +295,7 @@ void measure_robot(const RobotRecord& r, const RobotMotion<double>& m,
     std::vector<double>& out = run.signals.find(s.channel)->second;
     const std::uint64_t stream = stream_of(s.channel);
     const auto noise = [&](std::size_t k) { return s.channel_sigma * gaussian(seed, stream, k); };
-    if (s.output == RobotOutput::kBusVoltage) {  // an input: the world had it without its sensor's noise
+    if (s.output == RobotOutput::kBusVoltage) {  // an input: the true one has no sensor's noise
       for (std::size_t k = 0; k < r.size(); ++k) {
         if (std::isfinite(out[k])) out[k] = r.bus_voltage_V[k] + noise(k);
       }
@@ -308,7 +310,7 @@ void measure_robot(const RobotRecord& r, const RobotMotion<double>& m,
       continue;
     }
     const std::vector<double> values = robot_signal_values(s, r, m);
-    double first = kNaN;  // where the camera first saw it
+    double first = kNaN;  // difference of the camera's origin to the simulation's
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;
       if (!std::isfinite(first)) first = is_vision(s.output) ? out[k] - values[k] : 0.0;

@@ -49,8 +49,8 @@ bool slides(const std::vector<double>& values, double step, double window_sample
 bool is_held(const std::vector<double>& values, double step, double window_samples) {
   constexpr double kOff = 0.02;     // of the changes, off the window's clock: jitter of time stamps; a choice
   constexpr double kFewest = 50.0;  // changes: one of them off is 2 %
-  constexpr double kShortest =
-      4.0;  // samples, of which ±1 is allowed: shorter, any change would do (derived)
+  // Samples, of which ±1 is allowed: shorter, any change would do.
+  constexpr double kShortest = 4.0;  // derived
   if (window_samples < kShortest) return false;
   std::size_t last = 0;
   double changes = 0.0, off = 0.0;

@@ -24,7 +24,7 @@ enum Split : std::uint8_t {
   kValidation,     // same kind of motion, never estimated on: decides whether an effect stays
   kExtrapolation,  // another kind of motion: an effect that makes this worse is rejected
 };
-inline constexpr int kSplits = 3;
+inline constexpr int kSplits = 3;          // of the enum above
 std::string_view split_name(Split split);  // as the file format has it: "fit", "holdout", "extrapolation"
 
 struct Channel {

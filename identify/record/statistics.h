@@ -20,10 +20,10 @@
 
 namespace omnihil {
 
-inline constexpr double kSigmaPerMad =
-    1.4826;  // 1 / Phi^-1(3/4) = 1.482602, as Hampel 1974 and R's mad() have it
+// 1 / Phi^-1(3/4) = 1.482602, as Hampel 1974 and R's mad() have it.
+inline constexpr double kSigmaPerMad = 1.4826;  // as above
 
-// Index of the value that stands for the share p of n sorted ones.
+// Index, among n sorted values, of the p quantile.
 enum class QuantileRank : std::uint8_t {
   kNearest,  // round(p (n - 1))
   kLower,    // floor(p (n - 1))
