@@ -203,8 +203,8 @@ class AxisRun {
     port.speed_is_the_encoders = !has_encoder();
     if (input_.encoder_on_output) port.encoder_turns_per_rotor_turn = 1.0 / sim_.params().gear_ratio;
     if (sim_.effects().sensor.empty()) return port;
-    const T way = seen.theta_rad - previous_.theta_rad;
-    port.travel_rad = value_of(way) < 0.0 ? -way : way;
+    const T turned_rad = seen.theta_rad - previous_.theta_rad;
+    port.travel_rad = value_of(turned_rad) < 0.0 ? -turned_rad : turned_rad;
     port.counts_per_turn = T(input_.encoder_counts_per_turn);
     port.time_s = input_.time_s[k];
     port.dt_s = dt;

@@ -17,8 +17,8 @@
 //   A firmware that sets the legs (MotorControl) is called after each period with what its sensors saw in it;
 //   what it gives acts from the next one on.
 // Coupling to the mechanics: held torques on either side, first order in the mechanical step.
-// Cannot represent: effects that act in the drive (validate.h refuses them), the winding's answer to a speed
-//   other than the foreseen one within a mechanical step.
+// Cannot represent: effects that act in the drive (validate.h refuses them), the winding's response to a
+//   departure from the predicted speed within a mechanical step.
 #pragma once
 #include <array>
 #include <cstdint>

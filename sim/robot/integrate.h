@@ -7,7 +7,7 @@
 //
 // Law: semi-implicit Euler, u += h f(q, u), q += h N(q) u (order 1, one evaluation), and the classical
 //      Runge-Kutta method of order 4 on (q, u) (four evaluations). The first sees the mean torques of
-//      the step, the second their course (mechanics.h).
+//      the step, the second their profile (mechanics.h).
 // Expects back.set_state(q, u) to have been called for the step's start.
 // Both are explicit: stable only while the stiffest contact mode is slow against the step; validate.h refuses
 // models for which it is not.

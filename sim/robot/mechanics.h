@@ -33,11 +33,11 @@ enum class StepPart : std::size_t { kStart = 0, kMiddle = 1, kEnd = 2, kHeld = 3
 
 // What the winding and Coulomb friction do to one rotor through one mechanical step:
 //   torque = torque_Nm[part] - slope (omega_rotor - omega_rad_s[part])
-// The slope is the winding's answer to a speed other than the foreseen one. Viscous friction is the back
+// The slope is the winding's sensitivity to a departure from the predicted speed. Viscous friction is the back
 // end's.
 struct WheelTorque {
   std::array<double, 4> torque_Nm{};    // by StepPart; start, middle and end make the mean by Simpson's rule
-  std::array<double, 4> omega_rad_s{};  // of the rotor, as the winding foresaw it
+  std::array<double, 4> omega_rad_s{};  // of the rotor, as the winding's solution predicts it
   double slope_Nm_s_per_rad = 0.0;
   bool locked = false;  // static friction holds this wheel at zero speed: no acceleration
 

@@ -184,7 +184,7 @@ void RobotEffects::advance(RobotEffectMemory& memory, const std::array<WheelDriv
 
 namespace {
 
-// Course of the torque through the step for the mechanics, which takes viscous friction of its own.
+// Profile of the torque within the step for the mechanics, which takes viscous friction of its own.
 WheelTorque torque_profile(const WheelDriveLaw& law, const DriveResult<double>& r, double start_A,
                            const DriveState<double>& end, const WheelDriveInput& in, double inertia_kg_m2) {
   const auto& motor = law.turning.constants;

@@ -7,9 +7,9 @@
 //
 // Law: each wheel's drive is DriveSim (drive_sim.h: command, supply, bridge, winding, torque) with the
 //   floor's force of the step's start held over the step. The mechanics gets the mean torque of all that is
-//   inside the drive; of its course within the step only the winding current's part is given (Simpson's rule
-//   through start, mean and end), the rest as its mean. The winding's answer to a speed other than the
-//   foreseen one is that of wheel_drive.h, with the base model's winding.
+//   inside the drive; of its profile within the step only the winding current's part is given (Simpson's rule
+//   through start, mean and end), the rest as its mean. The winding's sensitivity to a departure from the
+//   predicted speed is that of wheel_drive.h, with the base model's winding.
 //   Supply: where an effect acts on it, the four drives advance one electrical sub-step at a time and each is
 //   told what the other three take from the bus; all see the same dip at the same time.
 //   Rolling resistance is a level of dry friction on its wheel and joins the friction of the drive, so that a

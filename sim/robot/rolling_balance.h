@@ -11,9 +11,9 @@
 
 namespace omnihil {
 
-// What floor, rotors and body must agree on in one step, as values:
+// Equations of floor, rotors and body for one step, as values:
 //   s - (hub + A F) + lever omega+ = 0,  F = -f(s)
-// A is symmetric but for the step's turn and positive, f and the rotors' answer rise: one solution, but for
+// A is symmetric but for the step's turn and positive, f and the rotors' response are increasing: one solution, but for
 // the falling part of a tyre's curve.
 template <typename T>
 struct RollingBalance {
@@ -24,7 +24,7 @@ struct RollingBalance {
   static constexpr int kHalvings = 8;
   static constexpr int kIterations = 12;
   std::array<const Grip<T>*, kWheels> grips{};
-  Eigen::Matrix4d answer;  // A: rim speed per floor force
+  Eigen::Matrix4d mobility;  // A: rim speed per floor force
   // per rotor: speed without floor force and friction, speed per torque, radius over gear, what friction
   // takes
   Vector4 hub, rotor, speed_per_torque, lever, up, down;
@@ -40,7 +40,7 @@ struct RollingBalance {
   }
   Vector4 residual(const Vector4& slip) const {
     const Vector4 force = forces(slip);
-    Vector4 r = slip - hub - answer * force;
+    Vector4 r = slip - hub - mobility * force;
     for (Eigen::Index i = 0; i < kWheels; ++i) r(i) += lever(i) * omega(i, force(i));
     return r;
   }
@@ -49,7 +49,7 @@ struct RollingBalance {
     for (Eigen::Index i = 0; i < kWheels; ++i) {
       const double slope = grip(i).slope(slip(i));
       const double turns = omega(i, -grip(i).force(slip(i))) != 0.0 ? 1.0 : 0.0;
-      out.col(i) = answer.col(i) * slope;
+      out.col(i) = mobility.col(i) * slope;
       out(i, i) += 1.0 + turns * lever(i) * lever(i) * speed_per_torque(i) * slope;
     }
     return out;
@@ -74,10 +74,10 @@ struct RollingBalance {
   void sweep(Vector4& slip) const {
     for (Eigen::Index i = 0; i < kWheels; ++i) {
       const Vector4 force = forces(slip);
-      const double others = hub(i) + answer.row(i).dot(force) - answer(i, i) * force(i);
+      const double others = hub(i) + mobility.row(i).dot(force) - mobility(i, i) * force(i);
       const auto left = [&](double at) {
         const double own_N = -grip(i).force(at);
-        return at - others - answer(i, i) * own_N + lever(i) * omega(i, own_N);
+        return at - others - mobility(i, i) * own_N + lever(i) * omega(i, own_N);
       };
       double low = -kFastest_m_s, high = kFastest_m_s;
       for (int n = 0; n < kBisections; ++n) {

@@ -56,8 +56,8 @@ struct RollingRobot<T>::Step {
   std::array<Wheel, kWheels> wheel;
   Vector3 force;  // of effects and of turning, on the body
   T cos_half = T(1), sin_half = T(0);
-  Vector3 turned, free;                       // velocity carried into the end's frame; the same with `force`
-  Eigen::Matrix<T, kWheels, kWheels> answer;  // h G M^-1 G': rim speeds per floor force
+  Vector3 turned, free;  // velocity carried into the end's frame; the same with `force`
+  Eigen::Matrix<T, kWheels, kWheels> mobility;  // h G M^-1 G': rim speeds per floor force
   std::array<T, kWheels> force_N, omega_end, friction_Nm;
 
   // By half a step's turn, into the frame of the step's end.
@@ -260,7 +260,7 @@ void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput& in,
   s.force(2) += port.torque_z_Nm;
 }
 
-// The winding answers another speed by another current, if a voltage is held: wheel_drive.h.
+// Sensitivity of the winding's current to a departure from the predicted speed, if a voltage is held: wheel_drive.h.
 template <typename T>
 void RollingRobot<T>::winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state,
                                                 double h, Wheel& w) const {
@@ -330,7 +330,7 @@ void RollingRobot<T>::predict(const RollingState<T>& x, Step& s) const {
   for (std::size_t j = 0; j < kWheels; ++j) {
     const Vector3 moved = s.half_turned(rim_mobility_[j]) * T(s.h);
     for (std::size_t i = 0; i < kWheels; ++i) {
-      s.answer(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rim_[i].dot(moved);
+      s.mobility(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rim_[i].dot(moved);
     }
   }
   for (std::size_t i = 0; i < kWheels; ++i) s.wheel[i].hub_free_m_s = rim_[i].dot(s.free);
@@ -341,7 +341,7 @@ template <typename T>
 T RollingRobot<T>::rotor_end(const RollingState<T>& x, const Step& s, std::size_t i, const T& force_N,
                              T* friction_Nm) const {
   const Wheel& w = s.wheel[i];
-  const T speed_per_torque = s.h / w.effective_inertia;  // speed per torque
+  const T speed_per_torque = s.h / w.effective_inertia;
   const T y =
       w.omega_predicted - speed_per_torque * (w.lever_m * (force_N - x.force_N[i]) - x.friction_Nm[i]);
   const T omega = shrunk(y, T(speed_per_torque * w.friction_up_Nm), T(speed_per_torque * w.friction_down_Nm));
@@ -365,7 +365,7 @@ Eigen::Vector4d RollingRobot<T>::solve_values(const RollingState<T>& x, const St
     balance.hub(i) = value_of(w.hub_free_m_s);
     const double held_Nm = balance.lever(i) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]);
     balance.rotor(i) = value_of(w.omega_predicted) + balance.speed_per_torque(i) * held_Nm;
-    for (Eigen::Index j = 0; j < kWheels; ++j) balance.answer(i, j) = value_of(s.answer(i, j));
+    for (Eigen::Index j = 0; j < kWheels; ++j) balance.mobility(i, j) = value_of(s.mobility(i, j));
   }
   Eigen::Vector4d slip(x.slip_m_s[0], x.slip_m_s[1], x.slip_m_s[2], x.slip_m_s[3]);
   if (!balance.newton(slip)) {
@@ -392,7 +392,7 @@ void RollingRobot<T>::solve(RollingState<T>& x, Step& s) {
     residual[i] =
         slip(row) - s.wheel[i].hub_free_m_s + s.wheel[i].lever_m * rotor_end(x, s, i, force[i], nullptr);
     for (std::size_t j = 0; j < kWheels; ++j) {
-      residual[i] -= s.answer(row, static_cast<Eigen::Index>(j)) * force[j];
+      residual[i] -= s.mobility(row, static_cast<Eigen::Index>(j)) * force[j];
     }
   }
   for (std::size_t i = 0; i < kWheels; ++i) {

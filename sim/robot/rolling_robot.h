@@ -14,7 +14,7 @@
 //     body    v+     = v_f + h M^-1 G' F          in the turning frame, by its mean direction over the step
 //     floor   F_i    = -f(s_i),  s_i = (G v+)_i - lever omega+_i
 //   omega_f: the rotor's end speed by DriveSim with the step before's floor force and friction; J_e: inertia
-//   plus half a step of the winding's answer to another speed (wheel_drive.h); c: friction level; four
+//   plus half a step of the winding's speed sensitivity (wheel_drive.h); c: friction level; four
 //   unknown slips, Newton's method on the values, and one more Newton step on the scalar with derivatives,
 //   which makes them exact (implicit function theorem).
 //   Without a tyre f is a line so steep that 1 N slides 1 um/s: rolling. With wheel_slip, or a tyre, f is the

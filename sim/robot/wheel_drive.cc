@@ -11,7 +11,7 @@ namespace {
 // A rotor that does not turn: so heavy that no motor moves it by a rounding error within a run's step.
 constexpr double kHeldRotorInertia_kg_m2 = 1e12;
 
-// Torque and foreseen speed at the step's start, middle and end, from the winding's currents and their mean.
+// Torque and predicted speed at the step's start, middle and end, from the winding's currents and their mean.
 WheelTorque torque_profile(const WheelDriveLaw& law, const WheelStep& step, double start_A, double end_A,
                            const DcDriveInput& input) {
   const auto& motor = law.turning.constants;
@@ -49,7 +49,7 @@ WheelDriveLaw wheel_drive_law(const RobotModel& model, double electrical_step_s,
   law.spin_inertia_kg_m2 = spin_inertia_kg_m2(model);
   law.substeps = substeps;
   law.step_s = electrical_step_s * substeps;
-  // x = h R / L, faded = (1 - e^-x) / x; without inductance x is infinite and the winding answers at once
+  // x = h R / L, faded = (1 - e^-x) / x; without inductance x is infinite and the winding responds at once
   const double settled_A_s_per_rad = motor.torque_constant_Nm_per_A / motor.resistance_ohm;
   double mean = 1.0, end = 1.0;
   if (motor.inductance_H > 0.0) {

@@ -9,9 +9,9 @@
 // Law: the winding is advanced exactly over the step's electrical sub-steps (dc_drive.h) with floor and
 //   friction torque of the step's start held. The mechanics gets its torque at start and end and, between,
 //   the value that makes the step's mean by Simpson's rule: the current's rise within the step is not lost.
-//   The floor's force changes within the step, so the rotor's true speed departs from the foreseen one, to
-//   first order linearly: d t. A winding at a held voltage answers by L di/dt + R i = -k d t. With
-//   x = h R / L over the step h, the answer's
+//   The floor's force changes within the step, so the rotor's true speed departs from the predicted one, to
+//   first order linearly: d t. The current of a winding at a held voltage departs by L di/dt + R i = -k d t. With
+//   x = h R / L over the step h, this departure's
 //     mean         -(k/R) phi d h/2,  phi = 1 - 2 (1 - (1 - e^-x) / x) / x:  the mechanics sees its slope, (k^2/R) phi
 //     value at h   -(k/R) d h (1 - (1 - e^-x) / x):  corrects the current after the step
 //   None while coasting or at the current limit: no voltage is held then.
@@ -64,7 +64,7 @@ WheelStep begin_wheel_step(const WheelDriveLaw& law, DcDriveState& state, const 
                            double omega_rotor_rad_s, double contact_Nm);
 
 // The wheel's speed after the step, with the crossing of zero settled; `state` and `step.drive` get the
-// winding's answer to the speed that came out.
+// winding's response to the departure of that speed from the predicted one.
 double end_wheel_step(const WheelDriveLaw& law, DcDriveState& state, WheelStep& step,
                       double omega_wheel_before_rad_s, double omega_wheel_after_rad_s);
 
