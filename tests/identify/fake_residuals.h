@@ -1,8 +1,8 @@
-// What a judgement needs beside the models: evidence of a fake predictor's runs, a null of a hundredth of
+// An acceptance test's context: residuals of a fake predictor's runs by split, a null of a hundredth of their
 // energy, bootstraps.
 //
-//   fake.add(Split::kTraining, …);  FakeResiduals evidence(fake);   judge(evidence.context, parent, child, "cogging",
-//   100);
+//   fake.add(Split::kTraining, …);
+//   FakeResiduals residuals(fake);     // residuals.context, residuals.splits, residuals.channels
 #pragma once
 #include <memory>
 #include <vector>

@@ -61,7 +61,7 @@ class RealSet {
     return fit(*predictor, c, unknowns_of(c), options);
   }
 
-  // Root mean square over all samples of a use; `steady`: points, or series.
+  // Root mean square over all samples of a split; `steady`: points, or series.
   double rmse(const Candidate& c, Split split, const std::string& signal, bool steady = false) const {
     double square = 0.0, n = 0.0;
     each(c, split, signal, steady, [&](int, double r) { square += r * r, n += 1.0; });

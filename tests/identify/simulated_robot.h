@@ -1,4 +1,5 @@
-// A robot that nobody has measured: a model file's text, lively duties, and sensors to be filled by a model.
+// A simulated robot's recording: a model file's text, duties that excite all axes, and sensors that a model
+// fills.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -49,7 +49,7 @@ TEST_F(RealSpeed, PlainModelsFitAsWellAsPublished) {
 }
 
 TEST_F(RealSpeed, DryFrictionIsWhatTheBrushedMotorLacked) {
-  // best known, four numbers: 3.94 / 4.12 / 3.15
+  // best known, four parameters: 3.94 / 4.12 / 3.15
   const RealSet motor("kmutt_dc_motor");
   const Candidate c = motor.fitted({"coulomb_friction"}).model;
   expect_at_most(motor.rmse(c, Split::kTraining, "velocity"), 3.94, 0.0);

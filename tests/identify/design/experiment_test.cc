@@ -34,7 +34,7 @@ Candidate axis_candidate() {
   return candidate_of(*reading.model);
 }
 
-// A drive that was only ever run one way: duty at a bias with some steps on top.
+// A drive that was run in one direction only: duty at a bias with some steps on top.
 Dataset one_way_axis(double bias, double swing, double current_sigma_A, const Candidate& truth) {
   Dataset d;
   Run run;

@@ -1,5 +1,5 @@
-// A fit gives back the numbers that made a record, says how well it knows them, and never ends above its
-// parent.
+// A fit recovers the parameters that a record was simulated with, states their uncertainty, and never ends
+// above its parent.
 #include "identify/estimate/fit.h"
 
 #include <gtest/gtest.h>

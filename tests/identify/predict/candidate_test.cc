@@ -1,4 +1,4 @@
-// A candidate model: which numbers are unknowns, with which priors, and that its text reads back the same.
+// A candidate model: which parameters are unknowns, with which priors, and that its text reads back the same.
 #include "identify/predict/candidate.h"
 
 #include <gtest/gtest.h>

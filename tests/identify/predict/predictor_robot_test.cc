@@ -54,9 +54,9 @@ TEST(PredictorRobot, TheModelThatMadeTheDataLeavesTheNoise) {
   }
 }
 
-// A robot whose motors differ strays by metres from the way of a model that does not know it. The null of
-// that model is what its sensors leave, wherever the robot went.
-TEST(PredictorRobot, TheNullIsWhatSensorsLeaveHoweverFarTheRobotStrayed) {
+// A robot whose motors differ departs by metres from the path of a model without that effect. The null's mean
+// square of that model is the sensors' noise nevertheless, since its pose inputs are those of each replicate.
+TEST(PredictorRobot, TheNullIsTheSensorsNoiseHoweverFarThePathDeparts) {
   const Candidate nominal = robot_candidate(), truth = with_typical(nominal, {"motor_mismatch"});
   const auto strayed = simulated_recording(truth, false);
   ASSERT_GT(errors(*strayed, nominal)["vision_theta"], 3.0);

@@ -25,7 +25,7 @@ double yaw_after(double duty, double path_m, const std::vector<std::string>& eff
   return plant.truth(0).yaw_rad;
 }
 
-// Signature: yaw grows with the way, at any speed alike, to the side of the smaller wheels.
+// Signature: yaw grows with the path, at any speed alike, to the side of the smaller wheels.
 TEST(WheelRadiusMismatch, ShowsAsYawThatGrowsWithTheWayAtAnySpeed) {
   const std::vector<std::string> effects{"wheel_radius_mismatch.ratio_1=1.02",
                                          "wheel_radius_mismatch.ratio_2=1.02"};

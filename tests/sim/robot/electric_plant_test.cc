@@ -26,8 +26,8 @@ RobotModel driven_by(DriveKind kind) {
   return m;
 }
 
-// Small inductance and quick PWM: what a six-step drive loses by commutation is small (docs/three-phase.md).
-RobotModel quick_switched() {
+// Small inductance and fast PWM: the torque that a six-step drive loses by commutation is small (docs/three-phase.md).
+RobotModel fast_switched() {
   RobotModel m = driven_by(DriveKind::kSwitched);
   electrics(m).back_emf = {BackEmfShape::kTrapezoid, 2.0 * std::numbers::pi / 3.0};
   electrics(m).inverter.pwm_frequency_Hz = 80e3;
@@ -88,7 +88,7 @@ TEST(ElectricPlant, AveragedDriveTurnsTheWheelsAsTheDcEquivalentOneOverTheWholeD
 }
 
 TEST(ElectricPlant, SwitchedSixStepTurnsTheWheelsAsTheDcEquivalentOneOverTheWholeDutyRange) {
-  const RobotModel model = quick_switched();
+  const RobotModel model = fast_switched();
   for (const double duty : {-1.0, -0.3, 0.1, 0.3, 0.6, 1.0}) {
     const double dc = settled_speed_rad_s(dc_twin(model), duty);
     EXPECT_NEAR(settled_speed_rad_s(model, duty), dc, 0.01 * std::abs(dc)) << duty;

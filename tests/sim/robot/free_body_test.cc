@@ -96,7 +96,7 @@ TEST(FreeBody, QuaternionKeepsItsLength) {
   EXPECT_NEAR(norm, 1.0, 1e-12);
 }
 
-// Stated difference: under moderate driving (below 3 m/s^2) position within 3 % of the way, yaw within 0.05
+// Stated difference: under moderate driving (below 3 m/s^2) position within 3 % of the path, yaw within 0.05
 // rad and speed within 3 %: pitch, roll and the springs' delay are what the planar joint leaves out.
 TEST(FreeBody, FollowsThePlanarJointUnderModerateDriving) {
   const RobotModel m = sample_robot();

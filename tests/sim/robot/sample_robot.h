@@ -79,7 +79,7 @@ inline RobotDrive excitation_drive(int robot, double t_s) {
   return duty_drive(duty);
 }
 
-// Drives all robots wildly for a time, with a new duty each millisecond.
+// Drives all robots by excitation_drive() for a time, with a new duty each millisecond.
 inline void excite(Plant& plant, double duration_s) {
   const auto end_ns = plant.now_ns() + std::llround(duration_s * 1e9);
   while (plant.now_ns() < end_ns) {
