@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 
+#include "identify/record/statistics.h"
+
 namespace omnihil {
 namespace {
 
@@ -56,12 +58,6 @@ OrderSums order_sums(std::span<const double> angle_rad, std::span<const double> 
   return sums;
 }
 
-double order_floor(const std::vector<double>& amplitude) {
-  if (amplitude.empty()) return 0.0;
-  std::vector<double> sorted = amplitude;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return 3.0 * *middle;
-}
+double order_floor(const std::vector<double>& amplitude) { return 3.0 * median(amplitude); }
 
 }  // namespace omnihil

@@ -14,8 +14,7 @@ namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-// Below mechanical time constants; a choice, checked by choose_step().
-constexpr double kLongestStep_s = 1e-3;  // as above
+constexpr double kLongestStep_s = 1e-3;  // a choice; choose_step() takes it where it is fine enough
 
 bool is_known(const Run& run, const std::string& path) {
   return std::any_of(run.known.begin(), run.known.end(),
@@ -146,9 +145,8 @@ class AxisPredictor final : public Predictor {
   }
 
  private:
-  // Half width of a secant, in Unknown::scale: large beside an impact's jump, small beside a shape's
-  // curvature. A choice (DECISIONS 29); sensitivity not measured.
-  static constexpr double kSecant = 0.05;  // DECISIONS 29
+  // Half width of a secant, in Unknown::scale (DECISIONS 29).
+  static constexpr double kSecant = 0.05;  // a choice; sensitivity not measured
 
   // Would a step of Unknown::scale change a signal, to first order, by several times its rms? Then the
   // derivative has grown from impact to impact (play, sticking) while the motion stays bounded: it holds for
@@ -189,8 +187,7 @@ class AxisPredictor final : public Predictor {
 
   const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
   double step_for(const Candidate& c) const {
-    // Measured: DECISIONS 32 (torque ripple) and 38 (late measurement).
-    constexpr double kFineStep_s = 200e-6;  // as above
+    constexpr double kFineStep_s = 200e-6;  // measured: DECISIONS 32 and 38
     if (acts(c, kStiff)) return std::min(step_s_, options_.step_s);
     return acts(c, kFine) ? std::min(step_s_, std::max(options_.step_s, kFineStep_s)) : step_s_;
   }

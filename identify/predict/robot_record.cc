@@ -13,9 +13,8 @@ namespace omnihil {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-// Time constant of the correction of the gyro's integral to the camera's heading: some tens of frames average
-// the camera's noise, a gyro's bias drifts by millirads. A choice; sensitivity not measured.
-constexpr double kHeadingMemory_s = 1.0;  // a choice
+// Time constant of the correction of the gyro's integral to the camera's heading.
+constexpr double kHeadingMemory_s = 1.0;  // a choice; sensitivity not measured
 // For the parabola of the speeds at the start: tens of samples.
 constexpr double kStartSpan_s = 0.02;  // a choice
 
@@ -43,11 +42,11 @@ double first_of(const std::vector<double>& signal, double otherwise) {
 // longest of three windows whose variance is not above the noise's; where the shortest one's is, the
 // deviation is kept by its share of variance beyond the noise (J.-S. Lee, IEEE PAMI 2(2), 1980).
 std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
-  constexpr std::array<std::size_t, 3> kHalf = {250, 50,
-                                                10};  // samples; the shortest as of an axis; a choice
-  // Of the noise's variance: three standard errors of a variance from 500 samples (sqrt(2 / n) = 6 %), well
-  // within one from 21.
-  constexpr double kNoMoreThanNoise = 1.2;  // derived
+  // Half widths in samples, the shortest as of an axis (kBusWindow); a choice.
+  constexpr std::array<std::size_t, 3> kHalf = {250, 50, 10};
+  // Of the noise's variance: three standard errors of a variance from 501 samples (sqrt(2 / n) = 6 %), within one
+  // of a variance from 21.
+  constexpr double kNoMoreThanNoise = 1.2;  // a choice; sensitivity not measured
   const std::size_t n = x.size();
   if (!(sigma > 0.0)) return x;
   std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);

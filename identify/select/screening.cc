@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "identify/record/parallel.h"
+#include "identify/record/statistics.h"
 #include "sim/model/effect_reader.h"
 
 namespace omnihil {
@@ -216,12 +217,8 @@ Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
   return out;
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const std::size_t at =
-      std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
+double quantile_of(std::vector<double> values, double share) {
+  return quantile(std::move(values), share, QuantileRank::kAbove);
 }
 
 std::vector<double> finite_sizes(const Eigen::VectorXd& track) {
@@ -252,14 +249,14 @@ std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const C
     if (mask.inside.sum() >= static_cast<double>(kLeast)) masks.push_back(std::move(mask));
   };
   if (speeds.size() >= kLeast) {
-    const double top = quantile(speeds, 0.98);
+    const double top = quantile_of(speeds, 0.98);
     add("slow", [&](Eigen::Index i) { return std::abs(speed[i]) < 0.1 * top; });
     add("fast", [&](Eigen::Index i) { return std::abs(speed[i]) > 0.6 * top; });
   }
   if (accelerations.size() >= kLeast) {
-    const double calm = quantile(accelerations, 0.5), wild = quantile(accelerations, 0.85);
-    add("steady", [&](Eigen::Index i) { return std::abs(acceleration[i]) < calm; });
-    add("transient", [&](Eigen::Index i) { return std::abs(acceleration[i]) > wild; });
+    const double quasi_static = quantile_of(accelerations, 0.5), dynamic = quantile_of(accelerations, 0.85);
+    add("steady", [&](Eigen::Index i) { return std::abs(acceleration[i]) < quasi_static; });
+    add("transient", [&](Eigen::Index i) { return std::abs(acceleration[i]) > dynamic; });
   }
   return masks;
 }
