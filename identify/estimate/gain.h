@@ -1,8 +1,8 @@
 // By how much an addition lowers the error energy (sum of squared whitened residuals), with a bootstrap
 // interval.
 //
-//   const Eigen::VectorXd weights = weights_for(holdout, null, parent, child);   // whitened residuals
-//   SplitGain g = BlockBootstrap(holdout, 1).gain(parent, child, weights);
+//   const Eigen::VectorXd weights = weights_for(validation, null, parent, child);   // whitened residuals
+//   SplitGain g = BlockBootstrap(validation, 1).gain(parent, child, weights);
 //   g.ratio;        // error energy of the child over the parent's, mean over the signals
 //   g.worst;        // ratio that 95 % of the bootstrap's draws stay below
 //

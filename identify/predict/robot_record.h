@@ -1,9 +1,9 @@
 // One run of rig "robot" as the simulation needs it: inputs of the bridges, measured angles and headings,
 // velocity at the start. n samples each, at the units of the names.
 //
-//   RobotRecord r = robot_record(dataset, run, gear_ratio, geometry);
+//   RobotRecord r = robot_record(dataset, run, nominal);
 //   r.input(k);                         // held from sample k to the next
-//   headings<Jet>(r, camera_age);       // of the body in the field, per sample
+//   headings<Jet>(r, camera_age_s);     // of the body in the field, per sample
 //
 // An empty duty is a bridge that is off. A missing sample of an input holds the one before.
 #pragma once
