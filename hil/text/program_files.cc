@@ -16,7 +16,9 @@ fs::path program_folder() {
   std::error_code error;
   fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error) {
-    const auto* started_as = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+    // The kernel gives the address as a number.
+    const auto* started_as =
+        reinterpret_cast<const char*>(::getauxval(AT_EXECFN));  // NOLINT(performance-no-int-to-ptr)
     program = fs::canonical(started_as == nullptr ? "" : started_as, error);
   }
   return program.parent_path();

@@ -72,6 +72,8 @@ unshare --mount --propagation private bash -euo pipefail -c '
   in_system test -s /usr/share/man/man1/omnihil-serve.1 || in_system grep -q "path-exclude.*man" -r /etc/dpkg
   in_system bash -c "source /usr/share/bash-completion/completions/omnihil && complete -p omnihil" >/dev/null
   in_system dpkg --verify omnihil
+  umount "$system/proc"  # then the program is found by the path that it was started by
+  in_system omnihil models | grep -q "^omni_default "
 ' || status=$?
 rm -rf --one-file-system "$system"
 [ $status -ne 77 ] || skip "the packages that it depends on could not be fetched from $mirror"
