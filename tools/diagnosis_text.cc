@@ -38,7 +38,7 @@ std::string verdict_text(const Diagnosis& d) {
   out += "\n";
   if (!d.complete) out += "  Interrupted: this is what was known by then.\n";
   if (!d.unknown.sentence.empty()) out += "  " + d.unknown.sentence + "\n";
-  for (const ConfoundedSet& set : d.indistinguishable) out += "  " + set.sentence + "\n";
+  for (const ConfoundedSet& set : d.confounded) out += "  " + set.sentence + "\n";
   return out + "\n";
 }
 
@@ -56,12 +56,20 @@ std::string ladder_text(const Diagnosis& d) {
   return out + "\n";
 }
 
+// "98 %" of the draws; "prior", "noise": no gain decided, so no share of draws tells anything.
+std::string selection_text(const RankedEffect& r) {
+  if (r.accepted_by == AcceptedBy::kPrior || r.accepted_by == AcceptedBy::kNoise)
+    return std::string(accepted_by_name(r.accepted_by));
+  return fmt::format("{:.0f} %", 100.0 * r.selection_frequency);
+}
+
 std::string ranking_text(const Diagnosis& d) {
   if (d.ranking.empty()) return "";
-  std::string out = "First ranking\n";
+  std::string out =
+      "First ranking (share of bootstrap draws that select it; prior, noise: accepted by that)\n";
   for (std::size_t i = 0; i < d.ranking.size() && i < kRankingLines; ++i) {
     const RankedEffect& r = d.ranking[i];
-    out += fmt::format("  {:3.0f} %  {:26}  held-out error x {:.3f}  {}\n", 100.0 * r.probability, r.effect,
+    out += fmt::format("  {:>5}  {:26}  held-out error x {:.3f}  {}\n", selection_text(r), r.effect,
                        r.holdout_error_ratio, r.why);
   }
   return out + "\n";
@@ -69,8 +77,8 @@ std::string ranking_text(const Diagnosis& d) {
 
 std::string where_text(const Diagnosis& d) {
   if (d.where.empty()) return "";
-  std::string out =
-      d.verdict == Verdict::kUnknown ? "Where the rest lives\n" : "Where the base model's error lives\n";
+  std::string out = d.verdict == Verdict::kUnknown ? "What the residual depends on\n"
+                                                   : "What the base model's error depends on\n";
   for (const Where& w : d.where) {
     out += fmt::format("  {} against {}: {:.0f} %{}\n", w.signal, w.against, 100.0 * w.explained_fraction,
                        w.order > 0.0 ? fmt::format(", order {:g} stands out", w.order) : "");
@@ -126,7 +134,7 @@ std::string diagnosis_text(const Diagnosis& d) {
   std::string out = findings_text(d) + verdict_text(d) + ladder_text(d) + ranking_text(d) + where_text(d);
   out += "Parameters of the last model\n" + parameters_text(d.final_fit.parameters) + "\n";
   if (!d.unknown.expression_toml.empty()) {
-    out += "A formula for what is left, to paste into the model\n" + d.unknown.expression_toml + "\n";
+    out += "A formula for the residual, to paste into the model\n" + d.unknown.expression_toml + "\n";
   }
   if (!d.next_experiment.what.empty()) out += "Next: " + d.next_experiment.what + "\n";
   return out;

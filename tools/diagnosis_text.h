@@ -12,7 +12,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis);
 std::string errors_text(const Comparison& comparison);
 // "velocity rad/s   fit 3.10 -> 0.40 …"
 std::string errors_change_text(const Comparison& before, const Comparison& after);
-// One line per parameter: value, interval, drift against what the model file believed, what to say of it.
+// One line per parameter: value, interval, deviation from its prior, what to say of it.
 std::string parameters_text(const std::vector<ParameterEstimate>& parameters);
 
 }  // namespace omnihil

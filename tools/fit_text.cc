@@ -16,11 +16,11 @@ std::string uncertain(const ParameterEstimate& p) {
   return fmt::format("{:.4g} .. {:.4g}", p.value - kNinety * p.sigma, p.value + kNinety * p.sigma);
 }
 
-std::string believed(const ParameterEstimate& p) {
+std::string prior(const ParameterEstimate& p) {
   return p.prior_sigma > 0.0 ? fmt::format("{:.4g} ± {:.2g}", p.prior_mean, p.prior_sigma) : "-";
 }
 
-std::string drift(const ParameterEstimate& p) {
+std::string deviation(const ParameterEstimate& p) {
   return p.prior_sigma > 0.0 ? fmt::format("{:+.1f}", p.prior_deviation_sigmas) : "-";
 }
 
@@ -28,13 +28,15 @@ std::string parameter_table(const FitResult& fit) {
   std::size_t wide = 9;
   for (const ParameterEstimate& p : fit.parameters) wide = std::max(wide, p.path.size());
   std::string out = fmt::format("{:<{}}  {:>11} {:<10} {:>24}  {:>20}  {:>6}\n", "parameter", wide, "value",
-                                "unit", "90 % interval", "model file", "drift");
+                                "unit", "90 % interval", "prior", "dev.");
   for (const ParameterEstimate& p : fit.parameters) {
     out += fmt::format("{:<{}}  {:>11.5g} {:<10} {:>24}  {:>20}  {:>6}{}\n", p.path, wide, p.value, p.unit,
-                       uncertain(p), believed(p), drift(p), p.sentence.empty() ? "" : "  !");
+                       uncertain(p), prior(p), deviation(p), p.sentence.empty() ? "" : "  !");
   }
   return out +
-         "drift: from what the model file believed, in its tolerances (for an effect: in its usual size)\n";
+         "prior: the model file's value and tolerance (for an effect: zero and its typical size); dev.: "
+         "deviation from it, in "
+         "tolerances\n";
 }
 
 std::string error_table(const FitReport& r) {
@@ -84,9 +86,9 @@ std::string fit_json(const FitReport& r) {
                           {"at_bound", p.at_bound},
                           {"identifiable", p.identifiable},
                           {"unphysical", p.unphysical},
-                          {"drift_tolerances",
+                          {"prior_deviation_sigmas",
                            p.prior_sigma > 0.0 ? number(p.prior_deviation_sigmas) : nlohmann::json(nullptr)},
-                          {"trades_with", p.correlated_with},
+                          {"correlated_with", p.correlated_with},
                           {"sentence", p.sentence}};
   }
   nlohmann::json out = {{"format", "omnihil-fit/1"},  {"dataset", r.dataset},

@@ -17,8 +17,8 @@ Json parameter_json(const ParameterEstimate& p) {
               {"at_bound", p.at_bound},
               {"identifiable", p.identifiable}};
   if (p.unphysical) out["unphysical"] = true;
-  if (p.prior_sigma > 0.0) out["drift_sigmas"] = number(p.prior_deviation_sigmas);
-  if (!p.correlated_with.empty()) out["trades_with"] = p.correlated_with;
+  if (p.prior_sigma > 0.0) out["prior_deviation_sigmas"] = number(p.prior_deviation_sigmas);
+  if (!p.correlated_with.empty()) out["correlated_with"] = p.correlated_with;
   if (!p.sentence.empty()) out["sentence"] = p.sentence;
   return out;
 }
@@ -59,14 +59,16 @@ Json ranking_json(const std::vector<RankedEffect>& ranking) {
   Json out = Json::array();
   for (const RankedEffect& r : ranking) {
     out.push_back({{"effect", r.effect},
-                   {"probability", number(r.probability)},
+                   {"selection_frequency", number(r.selection_frequency)},
+                   {"accepted_by", accepted_by_name(r.accepted_by)},
+                   {"noise_share", number(r.noise_share)},
                    {"holdout_error_ratio", number(r.holdout_error_ratio)},
                    {"parameters", parameters_json(r.parameters)},
                    {"fit_error_ratio", number(r.fit_error_ratio)},
                    {"extrapolation_error_ratio", number(r.extrapolation_error_ratio)},
                    {"score", number(r.score)},
                    {"refitted", r.refitted},
-                   {"accepted", r.accepted},
+                   {"accepted", r.accepted()},
                    {"why", r.why}});
   }
   return out;
@@ -124,8 +126,8 @@ std::string diagnosis_json(const Diagnosis& d, const DiagnosisJsonOptions& optio
   add_errors(d.final_comparison, last);
   last["parameters"] = parameters_json(d.final_fit.parameters);
   last["model"] = options.model;
-  Json twins = Json::array();
-  for (const ConfoundedSet& set : d.indistinguishable) twins.push_back(set.members);
+  Json confounded = Json::array();
+  for (const ConfoundedSet& set : d.confounded) confounded.push_back(set.members);
   const Json out = {
       {"format", "omnihil-diagnosis/1"},
       {"dataset", d.dataset},
@@ -136,7 +138,7 @@ std::string diagnosis_json(const Diagnosis& d, const DiagnosisJsonOptions& optio
       {"verdict", verdict_name(d.verdict)},
       {"effects", d.effects},
       {"ranking", ranking_json(d.ranking)},
-      {"indistinguishable", std::move(twins)},
+      {"indistinguishable", std::move(confounded)},
       {"where", where_json(d.where)},
       {"next_experiment", {{"what", d.next_experiment.what}, {"separates", d.next_experiment.separates}}},
       {"final", std::move(last)},

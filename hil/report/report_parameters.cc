@@ -24,7 +24,7 @@ std::string interval(const ParameterEstimate* p) {
                      figure(p->value + half));
 }
 
-std::string believed(const ParameterEstimate& p) {
+std::string prior(const ParameterEstimate& p) {
   if (!(p.prior_sigma > 0.0)) return "anything within bounds";
   return fmt::format("{} ± {}", figure(p.prior_mean), figure(p.prior_sigma));
 }
@@ -48,21 +48,23 @@ std::string parameters_section(const Diagnosis& d) {
       has_model(d.final_fit) ? d.final_fit.parameters : d.baseline.parameters;
   if (last.empty()) return "<p>No number was estimated.</p>\n";
   std::string html =
-      "<p>Intervals are 90 %. Drift is how far the final value is from what the model file believed, in its "
-      "own tolerances; "
-      "a missing effect hides as a drift that goes away once the effect is in.</p>\n"
+      "<p>Intervals are 90 %. The prior is what the model file says: value and tolerance. The prior "
+      "deviation is how far "
+      "the final value is from it, in tolerances; a missing effect hides as a deviation that goes away once "
+      "the effect is "
+      "in the model.</p>\n"
       "<div class=\"chart\" data-chart=\"drift\"></div>\n<table "
       "class=\"wide\"><caption>Parameters</caption>\n<thead><tr>"
-      "<th scope=\"col\">parameter</th><th scope=\"col\">unit</th><th scope=\"col\">believed (±1 σ)</th><th "
+      "<th scope=\"col\">parameter</th><th scope=\"col\">unit</th><th scope=\"col\">prior (±1 σ)</th><th "
       "scope=\"col\">"
-      "refitted, before</th><th scope=\"col\">final</th><th scope=\"col\">drift, σ</th><th "
+      "refitted, before</th><th scope=\"col\">final</th><th scope=\"col\">prior deviation, σ</th><th "
       "scope=\"col\">remarks</th></tr></thead><tbody>\n";
   for (const ParameterEstimate& p : last) {
     html += fmt::format(
         "<tr><th "
         "scope=\"row\"><code>{}</code></th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</"
         "td></tr>\n",
-        escaped(p.path), escaped(p.unit), believed(p), interval(find(d.baseline.parameters, p.path)),
+        escaped(p.path), escaped(p.unit), prior(p), interval(find(d.baseline.parameters, p.path)),
         interval(&p), p.prior_sigma > 0.0 ? figure(p.prior_deviation_sigmas) : "–", marks(p));
   }
   html += "</tbody></table>\n";

@@ -38,6 +38,13 @@ const char* verdict_class(const Diagnosis& d) {
   return d.verdict == Verdict::kAdequate ? "adequate" : d.verdict == Verdict::kEffect ? "effect" : "unknown";
 }
 
+// "gain", "prior", "noise (93 %)"; empty: refused.
+std::string acceptance_cell(const RankedEffect& r) {
+  const std::string_view by = accepted_by_name(r.accepted_by);
+  return r.accepted_by == AcceptedBy::kNoise ? fmt::format("{} ({:.0f} %)", by, 100.0 * r.noise_share)
+                                             : std::string(by);
+}
+
 }  // namespace
 
 std::string verdict_section(const ReportInput& input) {
@@ -52,7 +59,7 @@ std::string verdict_section(const ReportInput& input) {
     html += fmt::format("<p>Before: {}</p>\n", escaped(d.baseline_comparison.worst.front().sentence));
   }
   if (!d.effects.empty() && !d.final_comparison.worst.empty()) {
-    html += fmt::format("<p>What is left: {}</p>\n", escaped(d.final_comparison.worst.front().sentence));
+    html += fmt::format("<p>Residual: {}</p>\n", escaped(d.final_comparison.worst.front().sentence));
   }
   if (!d.next_experiment.what.empty()) {
     html += fmt::format("<p>Next: {}</p>\n", escaped(d.next_experiment.what));
@@ -104,41 +111,49 @@ std::string errors_table(const Diagnosis& d) {
 std::string ranking_section(const Diagnosis& d) {
   if (d.ranking.empty()) return "<p>No effect was ranked.</p>\n";
   std::string html =
-      "<p>First round, best first. Ratios are the error with the effect over that of the refitted nominal "
-      "model: below 1 "
-      "is better. Effects that only screening has seen carry no ratio.</p>\n<table "
-      "class=\"wide\"><caption>Effects</caption>\n"
-      "<thead><tr><th scope=\"col\">effect</th><th scope=\"col\">probability</th><th "
+      "<p>First iteration, best first. Selected: the share of bootstrap draws of the held-out runs in which "
+      "no candidate "
+      "leaves less error; it says how stable the choice among these effects is, not how probable it is that "
+      "one is "
+      "present. Accepted by: gain, a lower held-out error; prior, a base parameter that returns to what the "
+      "model file "
+      "says; noise, the share of the variance above the sensors' noise that the effect explains. Ratios are "
+      "the error "
+      "with the effect over that of the refitted nominal model: below 1 is better. Effects that were "
+      "screened only carry "
+      "no ratio.</p>\n<table class=\"wide\"><caption>Effects</caption>\n"
+      "<thead><tr><th scope=\"col\">effect</th><th scope=\"col\">selected</th><th scope=\"col\">accepted "
+      "by</th><th "
       "scope=\"col\">fit</th><th scope=\"col\">"
-      "holdout</th><th scope=\"col\">extrapolation</th><th scope=\"col\">numbers (±1 σ)</th><th "
-      "scope=\"col\">cannot be told "
-      "from</th><th scope=\"col\">why</th></tr></thead><tbody>\n";
+      "holdout</th><th scope=\"col\">extrapolation</th><th scope=\"col\">parameters (±1 σ)</th><th "
+      "scope=\"col\">confounded with</th><th scope=\"col\">why</th></tr></thead><tbody>\n";
   for (const RankedEffect& r : d.ranking) {
-    std::string numbers, twins;
+    std::string parameters, confounded;
     for (const ParameterEstimate& p : r.parameters) {
-      numbers += fmt::format("{}<code>{}</code> {} ± {} {}", numbers.empty() ? "" : "<br>", escaped(p.path),
-                             figure(p.value), figure(p.sigma), escaped(p.unit));
+      parameters += fmt::format("{}<code>{}</code> {} ± {} {}", parameters.empty() ? "" : "<br>",
+                                escaped(p.path), figure(p.value), figure(p.sigma), escaped(p.unit));
     }
-    for (const ConfoundedSet& set : d.indistinguishable) {
+    for (const ConfoundedSet& set : d.confounded) {
       if (std::ranges::find(set.members, r.effect) == set.members.end()) continue;
       std::vector<std::string> others;
       std::ranges::copy_if(set.members, std::back_inserter(others),
                            [&](const std::string& m) { return m != r.effect; });
-      twins += (twins.empty() ? "" : "; ") + names(others);
+      confounded += (confounded.empty() ? "" : "; ") + names(others);
     }
     const auto ratio = [&](double value) { return r.refitted ? figure(value) : "–"; };
     html += fmt::format(
         "<tr{}><th scope=\"row\"><code>{}</code>{}</th><td><span class=\"bar\" "
-        "style=\"width:{:.0f}px\"></span> {:.0f} %</td>"
+        "style=\"width:{:.0f}px\"></span> {:.0f} %</td><td>{}</td>"
         "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        r.accepted ? " class=\"accepted\"" : "", escaped(r.effect), r.accepted ? " ✓" : "",
-        60.0 * std::clamp(r.probability, 0.0, 1.0), 100.0 * r.probability, ratio(r.fit_error_ratio),
-        ratio(r.holdout_error_ratio), ratio(r.extrapolation_error_ratio), numbers, twins, escaped(r.why));
+        r.accepted() ? " class=\"accepted\"" : "", escaped(r.effect), r.accepted() ? " ✓" : "",
+        60.0 * std::clamp(r.selection_frequency, 0.0, 1.0), 100.0 * r.selection_frequency, acceptance_cell(r),
+        ratio(r.fit_error_ratio), ratio(r.holdout_error_ratio), ratio(r.extrapolation_error_ratio),
+        parameters, confounded, escaped(r.why));
   }
   html += "</tbody></table>\n";
-  if (d.indistinguishable.empty()) return html;
-  html += "<h3>Twins</h3>\n<ul>\n";
-  for (const ConfoundedSet& set : d.indistinguishable) {
+  if (d.confounded.empty()) return html;
+  html += "<h3>Confounded effects</h3>\n<ul>\n";
+  for (const ConfoundedSet& set : d.confounded) {
     html += fmt::format("<li>{}: {}</li>\n", names(set.members), escaped(set.sentence));
   }
   return html + "</ul>\n";
@@ -194,7 +209,7 @@ std::string unknown_section(const Diagnosis& d) {
   const std::vector<Where>& where = d.unknown.where.empty() ? d.where : d.unknown.where;
   if (!where.empty()) {
     html +=
-        "<table><caption>Where the rest lives</caption>\n<thead><tr><th scope=\"col\">signal</th><th "
+        "<table><caption>What the residual depends on</caption>\n<thead><tr><th scope=\"col\">signal</th><th "
         "scope=\"col\">against"
         "</th><th scope=\"col\">share explained</th><th scope=\"col\">order</th></tr></thead><tbody>\n";
     for (const Where& w : where) {
@@ -210,7 +225,7 @@ std::string unknown_section(const Diagnosis& d) {
     html += fmt::format("<p>Ready to paste into the model file:</p>\n<pre><code>{}</code></pre>\n",
                         escaped(d.unknown.expression_toml));
   }
-  return html.empty() ? "<p>Nothing is left that stands out of the noise.</p>\n" : html;
+  return html.empty() ? "<p>No residual is left above the noise.</p>\n" : html;
 }
 
 }  // namespace omnihil

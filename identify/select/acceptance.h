@@ -1,7 +1,15 @@
-// Does an addition earn its place: gains on other runs than those it was fitted to, held against chance.
+// The acceptance test of one addition: is its gain on runs that it was not fitted to real, large enough and
+// physically plausible?
 //
-//   const AcceptanceResult j = judge(context, parent, child, "cogging", signal_to_null);
-//   if (!j.accepted) say(j.why);    // "it takes 1.2 % of the held-out error energy; 3.5 % would matter"
+//   const AcceptanceResult result = test_acceptance(context, parent, child, "cogging", signal_to_null);
+//   result.accepted();  result.why;
+//   // "it removes 1.2 % of the held-out error energy; 3.5 % is required"
+//
+// Method: parent and child are compared by the ratio of their whitened residual energies on each split, its
+// interval from a block bootstrap (gain.h) and its level from the simulated null (null_model.h). Eight gates,
+// in the order of test_acceptance; the first one that fails is the reason. Beside them one way without
+// gain: AcceptedBy::kPrior (plausibility.h).
+// Limits: the gates' sizes are tuned, not derived from one error rate; each says so at its line.
 #pragma once
 #include <array>
 #include <string>
@@ -10,39 +18,40 @@
 #include "identify/estimate/fit.h"
 #include "identify/estimate/gain.h"
 #include "identify/estimate/null_model.h"
-#include "identify/estimate/whitened_residuals.h"
+#include "identify/select/ranked_effect.h"
 
 namespace omnihil {
 
 using Splits = std::array<WhitenedResiduals, kSplits>;
 using Residuals = std::array<Eigen::VectorXd, kSplits>;
 
-// A fitted model and what it leaves.
+// A fitted model and its residuals.
 struct Fitted {
   FitResult fit;
-  Residuals residual;                                 // whitened
-  std::array<Eigen::VectorXd, kSplits> unweighted{};  // mean square per kind of signal, not whitened
-  bool finite = false;                                // in every use
+  Residuals residual;                                 // whitened, one per sample of the split
+  std::array<Eigen::VectorXd, kSplits> unweighted{};  // mean square per channel in its own units, squared
+  bool finite = false;                                // in every split
 };
 Fitted fitted(const Splits& splits, const Splits& unweighted, FitResult fit, int jobs);
 
 struct AcceptanceResult {
-  bool accepted = false;
-  bool decisive = false;  // it takes so much that no further question decides
-  bool by_prior = false;  // accepted for what it lets come back, not for its gain
-  std::string why;
+  AcceptedBy accepted_by = AcceptedBy::kNone;
+  bool decisive = false;  // its gain alone proves the strength: no significance test of that
+  std::string why;        // for people
   SplitGain fit, holdout, extrapolation;
+
+  bool accepted() const { return accepted_by != AcceptedBy::kNone; }
 };
 
 struct AcceptanceContext {
   const Splits* splits = nullptr;
   const NullModel* null = nullptr;
   std::array<const BlockBootstrap*, kSplits> bootstrap{};
-  double rate_Hz = 0.0;  // of the samples; 0: not known
+  double rate_Hz = 0.0;  // of the samples; 0: unknown
 };
 
-// `signal_to_null`: the screening's gain over what the simulated null's replicates gave; `aliased_parameter`: the
-// base parameter that data cannot part it from (screening.h).
+// `signal_to_null`: the screening's gain over the largest gain in the simulated null's replicates;
+// `aliased_parameter`: the base parameter that these data cannot separate from the effect (screening.h).
 AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
                                  const std::string& name, double signal_to_null,
                                  std::string_view aliased_parameter = {});

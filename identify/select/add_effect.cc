@@ -6,11 +6,11 @@
 namespace omnihil {
 namespace {
 
-// Screened alone: shapes and sizes that the data ask for.
+// Screened alone: shapes and sizes of largest gain.
 Screened screened_alone(const SelectionTask& task, const Fitted& parent, const EffectUse& use,
-                        double& chance) {
+                        double& null_gain) {
   Iteration iteration = screening_iteration(task, parent, {use.entry});
-  chance = iteration.largest_null_gain;
+  null_gain = iteration.largest_null_gain;
   Screened s = iteration.screened.empty() ? Screened{} : std::move(iteration.screened.front());
   if (!s.tried || use.owner != nullptr) {
     s.start = use;
@@ -43,18 +43,18 @@ Addition add_effect(const Dataset& dataset, const Candidate& nominal, const Effe
   context.simulate();
   std::vector<std::string> ignored;
   const SelectionTask task = context.task(ignored);
-  double chance = 0.0;
-  const Screened start = screened_alone(task, context.base(), use, chance);
+  double null_gain = 0.0;
+  const Screened start = screened_alone(task, context.base(), use, null_gain);
   say("refitting with " + start.name, 0.6);
   Fitted with = refit(context.setup(false, stop), context.base(), start);
   const double gained = (energy_ratio(context.splits()[kTraining], with.residual[kTraining],
                                       context.base().residual[kTraining]) -
                          1.0);
   const double signal_to_null =
-      start.tried ? start.gain / std::max(chance, 1e-300) : (gained > 0.0 ? 1e9 : 0.0);
+      start.tried ? start.gain / std::max(null_gain, 1e-300) : (gained > 0.0 ? 1e9 : 0.0);
   const AcceptanceResult acceptance = test_acceptance(task.acceptance_context, context.base(), with,
                                                       start.name, signal_to_null, start.aliased_parameter());
-  out.useful = acceptance.accepted;
+  out.useful = acceptance.accepted();
   out.why = acceptance.why;
   out.fit_after = with.fit;
   out.after = compare(context.predictor(), with.fit.model);

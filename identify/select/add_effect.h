@@ -1,10 +1,10 @@
-// One effect added to a model by hand: what it changes, and whether it earns its place.
+// One effect added to a model by hand: what it changes, and whether it passes the acceptance test.
 //
 //   Addition a = add_effect(dataset, nominal, use, {.seed = 1, .jobs = 2});
-//   a.before.error(Split::kValidation, "velocity")->rmse;   a.after…
+//   a.before.error(Split::kValidation, "velocity")->rmse;
 //   a.useful; a.why;       // "held-out error energy falls by 31 %"
 //
-// The base parameters are fitted without it and with it; the same rules decide as in a diagnosis.
+// The base parameters are fitted without it and with it; the acceptance test is that of a diagnosis.
 #pragma once
 #include "identify/select/selection_context.h"
 

@@ -19,13 +19,17 @@
 namespace omnihil {
 namespace {
 
-// Shares of the work, in order; rounds take what is between.
+// For the progress shown: shares of the work, in order; the iterations take what is between. Guesses.
 constexpr double kAfterBaseline = 0.12;
 constexpr double kAfterNull = 0.16;
 constexpr double kAfterRounds = 0.85;
-constexpr double kShort = 0.02;  // of the error energy, that a fit of the same model may miss
+// Fall of the energy at which the parent's fit counts as not converged: two thirds of the smallest gain of
+// interest. Restarts for that, by cost. Tuned on the open cases; sensitivity not measured.
+constexpr double kNotConverged = 0.02;
 constexpr int kMostRestarts = 2;
-constexpr double kRobustLoss = 1.2;  // error energy over that of least squares: more, and a fit went astray
+// Energy of the robust last fit over that of least squares above which it is discarded as diverged. Tuned on
+// the open cases; sensitivity not measured.
+constexpr double kRobustLoss = 1.2;
 
 class Diagnosing {
  public:
@@ -106,8 +110,8 @@ class Diagnosing {
         order_ = iteration.orders.empty() ? 0.0 : iteration.orders.front();
       out_.ladder.back().ranking = iteration.ranking;
       if (iteration.chosen < 0) return;
-      if (parent_was_short(iteration)) {
-        // The search found better numbers for the model as it is: rank again from there.
+      if (parent_not_converged(iteration)) {
+        // The refit found better base parameters for the parent itself: rank again from there.
         if (++restarts <= kMostRestarts) {
           --n;
           continue;
@@ -119,8 +123,8 @@ class Diagnosing {
     }
   }
 
-  // Is the chosen effect's gain one of the base parameters alone, which the parent's fit had missed?
-  bool parent_was_short(const Iteration& iteration) {
+  // Did the parent's fit stop short? Then part of the effect's gain belongs to the base parameters.
+  bool parent_not_converged(const Iteration& iteration) {
     const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
     if (best.screened.extends) return false;
     Fitted without = refit_as_it_is(context_.setup(true, stop()),
@@ -128,13 +132,13 @@ class Diagnosing {
     if (!without.finite) return false;
     const double ratio =
         energy_ratio(context_.splits()[kTraining], current_.residual[kTraining], without.residual[kTraining]);
-    if (ratio > 1.0 - kShort) return false;
+    if (ratio > 1.0 - kNotConverged) return false;
     current_ = std::move(without);
     if (out_.effects.empty()) rebase();
     return true;
   }
 
-  // The baseline itself was short: what was said of it is said anew.
+  // The baseline itself had not converged: replace it in the answer.
   void rebase() {
     context_.take_base(current_);
     out_.baseline = current_.fit;
@@ -147,15 +151,14 @@ class Diagnosing {
     out_.ranking = iteration.ranking;
     out_.not_visible = not_applicable_;
     for (const RankedEffect& r : iteration.ranking) {
-      if (r.why.starts_with("not visible") || r.why.starts_with("not tried")) {
-        out_.not_visible.push_back(r.effect + ": " + r.why);
-      }
+      if (r.visibility != Visibility::kVisible) out_.not_visible.push_back(r.effect + ": " + r.why);
     }
   }
 
   void take(const Iteration& iteration) {
     const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
-    // The next round would explain what the short refits of this one left on its way.
+    // The shortlist's refits are coarse: the energy that they did not remove would be the next iteration's
+    // structure.
     current_ = refit_to_convergence(context_.setup(true, stop()), best.fitted);
     if (!best.screened.extends) {
       out_.effects.push_back(best.screened.name);
@@ -165,7 +168,7 @@ class Diagnosing {
     note_confounded(iteration, out_);
   }
 
-  // An effect that later ones made superfluous goes.
+  // Backward elimination: an effect that is no longer needed beside later ones is removed.
   void eliminate() {
     for (std::size_t n = 0; out_.effects.size() > 1 && n < out_.effects.size() && !stopped_;) {
       const std::string name = out_.effects[n];
@@ -174,7 +177,7 @@ class Diagnosing {
           refit_as_it_is(context_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
       const AcceptanceResult needed =
           test_acceptance(task_.acceptance_context, less, current_, name, 1e9, aliased_parameter_[name]);
-      if (needed.accepted || needed.decisive || !less.finite || n + 1 == out_.effects.size()) {
+      if (needed.accepted() || needed.decisive || !less.finite || n + 1 == out_.effects.size()) {
         ++n;
         continue;
       }
@@ -188,7 +191,8 @@ class Diagnosing {
     say("last fit", 0.88);
     bool added = !out_.effects.empty();
     if (added && !stopped_) {
-      // What the model has is settled; a few runs that it cannot explain shall not bend its numbers.
+      // The structure is fixed now; a few runs that it cannot explain should not bias its parameters (Huber's
+      // loss).
       RefitSetup setup = context_.setup(false, stop());
       setup.robust = true;
       const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);
@@ -196,21 +200,21 @@ class Diagnosing {
                                       last.residual[kTraining]) < kRobustLoss)
         current_ = last;
     }
-    ResidualExcess rest = residual_excess();
-    if (!misleading() && !stopped_ && structure_in_excess(rest) && take_noise_effect())
-      rest = residual_excess();
+    ResidualExcess excess = residual_excess();
+    if (!misleading() && !stopped_ && structure_in_excess(excess) && take_noise_effect())
+      excess = residual_excess();
     added = !out_.effects.empty();
     out_.final_fit = current_.fit;
     out_.final_comparison =
         added ? compare(context_.predictor(), current_.fit.model) : out_.baseline_comparison;
-    const bool remains = misleading() || structure_remains(rest, added);
+    const bool remains = misleading() || structure_remains(excess, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
-    out_.unknown.sentence = residual_sentence(rest, added);
+    out_.unknown.sentence = residual_sentence(excess, added);
     if (remains && !misleading() && !stopped_) {
       say("looking for a formula", 0.92);
       out_.unknown = unknown_structure(task_, current_, out_.final_comparison);
-      out_.unknown.sentence = residual_sentence(rest, added);
+      out_.unknown.sentence = residual_sentence(excess, added);
     }
     out_.next_experiment = next_experiment(dataset_, out_);
     out_.complete = !stopped_;
@@ -222,21 +226,22 @@ class Diagnosing {
                               current_.fit.model, options_.seed, options_.jobs);
   }
 
-  // Less than what an adequate model leaves: to search on there finds laws that bend to the noise. But a base
-  // parameter that nobody believes hides something, however well it does so.
+  // Stop when the residual is at the null level (DECISIONS 35), unless a base parameter is prior-implausible
+  // (DECISIONS 50).
   bool worth_another_iteration() {
     const std::size_t u = context_.splits()[kValidation].empty() ? kTraining : kValidation;
-    return largest_prior_deviation(current_.fit).sigmas > kImplausible_sigmas ||
+    return is_implausible(current_.fit) ||
            structure_in(context_.splits()[u], context_.null(), context_.channels(), current_.residual[u]) ||
            structure_in_excess(residual_excess());
   }
 
-  // By the measure of a model without any effect.
-  bool structure_in_excess(const ResidualExcess& rest) const { return structure_remains(rest, false); }
+  // Without the allowance for the form of an effect that was added.
+  bool structure_in_excess(const ResidualExcess& excess) const { return structure_remains(excess, false); }
 
-  // What is left may be noise that an effect makes. Its strength was found without the fit, which sees means.
+  // The remaining variance may be noise that an effect makes. Its strength is estimated from variances, not
+  // by the fit, which sees the mean.
   bool take_noise_effect() {
-    say("is the rest an effect's noise", 0.9);
+    say("noise effects", 0.9);
     std::vector<const EffectEntry*> others;
     for (const EffectEntry* e : task_.applicable) {
       if (std::find(out_.effects.begin(), out_.effects.end(), e->info->id) == out_.effects.end())
@@ -256,15 +261,13 @@ class Diagnosing {
     for (std::size_t r = 0; r < out_.ranking.size(); ++r) {
       RankedEffect& ranked = out_.ranking[r];
       if (ranked.effect != name) continue;
-      ranked.accepted = true;
-      ranked.why = fmt::format("explains {:.0f} % of where the held-out runs are louder than their sensors",
+      ranked.accepted_by = AcceptedBy::kNoise;
+      ranked.noise_share = found->explained;
+      ranked.visibility = Visibility::kVisible;
+      ranked.why = fmt::format("explains {:.0f} % of the held-out runs' variance above the sensors' noise",
                                100.0 * found->explained);
       ranked.parameters = parameters_of(current_.fit, name);
       if (out_.effects.size() > 1) continue;
-      ranked.probability = found->explained;
-      for (RankedEffect& other : out_.ranking) {
-        if (other.effect != name) other.probability *= 1.0 - found->explained;
-      }
       std::rotate(out_.ranking.begin(), out_.ranking.begin() + static_cast<std::ptrdiff_t>(r),
                   out_.ranking.begin() + static_cast<std::ptrdiff_t>(r) + 1);
     }

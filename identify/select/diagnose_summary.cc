@@ -8,18 +8,21 @@
 namespace omnihil {
 namespace {
 
-constexpr double kImitated = 0.03;  // share of its signal that is the effect's own
+// For what is printed; no verdict depends on them. Residual fraction (1 - R^2) of an effect's signal below
+// which the base parameter is named beside it, and fraction of a residual's variance that is worth a line: as
+// the smallest gain of interest (acceptance.cc). Lines: a screenful.
+constexpr double kNearlyAliased = 0.03;
 constexpr double kLeastExplained = 0.03;
 constexpr std::size_t kMostWhere = 6;
 
 void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& diagnosis) {
-  for (const ConfoundedSet& set : diagnosis.indistinguishable) {
+  for (const ConfoundedSet& set : diagnosis.confounded) {
     std::vector<std::string> a = set.members, b = members;
     std::sort(a.begin(), a.end());
     std::sort(b.begin(), b.end());
     if (a == b) return;
   }
-  diagnosis.indistinguishable.push_back({.members = std::move(members), .sentence = std::move(sentence)});
+  diagnosis.confounded.push_back({.members = std::move(members), .sentence = std::move(sentence)});
 }
 
 }  // namespace
@@ -27,9 +30,9 @@ void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& 
 void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
   if (iteration.chosen < 0) return;
   const CandidateEffect& chosen = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
-  if (!iteration.twins.empty()) {
+  if (!iteration.confounded.empty()) {
     std::vector<std::string> members{chosen.screened.name};
-    for (const int t : iteration.twins)
+    for (const int t : iteration.confounded)
       members.push_back(iteration.candidates[static_cast<std::size_t>(t)].screened.name);
     add_set(
         members,
@@ -38,26 +41,26 @@ void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
                     fmt::join(members, ", ")),
         diagnosis);
   }
-  if (chosen.screened.kept < kImitated && !chosen.screened.closest_parameter.empty()) {
-    add_set(
-        {chosen.screened.name, chosen.screened.closest_parameter},
-        fmt::format("{:.1f} % of what {} does to these signals is its own; the rest {} can do as well.",
-                    100.0 * chosen.screened.kept, chosen.screened.name, chosen.screened.closest_parameter),
-        diagnosis);
+  if (chosen.screened.residual_fraction < kNearlyAliased && !chosen.screened.closest_parameter.empty()) {
+    add_set({chosen.screened.name, chosen.screened.closest_parameter},
+            fmt::format("{:.1f} % of the signal of {} is its own; {} produces all else as well.",
+                        100.0 * chosen.screened.residual_fraction, chosen.screened.name,
+                        chosen.screened.closest_parameter),
+            diagnosis);
   }
 }
 
 std::vector<Where> where_of(const Comparison& comparison, double order) {
   std::vector<Where> all;
   for (const RegimeError& r : comparison.regimes) {
-    // A measured bus voltage is given to the model: what it leaves there is no structure of the drive.
+    // A measured bus voltage is an input of the model: its residual is no structure of the drive.
     if (r.signal == "bus_voltage" || r.split == Split::kExtrapolation ||
         r.explained_fraction < kLeastExplained)
       continue;
     const auto same = std::find_if(
         all.begin(), all.end(), [&](const Where& w) { return w.signal == r.signal && w.against == r.axis; });
     if (same != all.end()) {
-      // fit and held-out runs agree, or it is chance
+      // the smaller of fit and held-out runs: where they differ it is chance
       same->explained_fraction = std::min(same->explained_fraction, r.explained_fraction);
       continue;
     }

@@ -1,14 +1,15 @@
-// What a diagnosis says in its lists: twins, and where errors live.
+// The lists of a diagnosis: confounded sets, and the variables that explain the residual.
 #pragma once
 #include "identify/select/selection_iteration.h"
 
 namespace omnihil {
 
-// The chosen effect, the contenders that cannot be told from it, and the base parameter that imitates it.
+// Adds the set of the chosen effect with the candidates that are confounded with it, and that of the effect
+// with the base parameter that its signal is aliased with.
 void note_confounded(const Iteration& iteration, Diagnosis& diagnosis);
 
-// The axes that explain most of what a comparison leaves, the most telling first; `order` of the residual
-// along the rotor's angle, 0: none stands out.
+// The variables that explain most of a comparison's residual, the largest fraction first; `order`: dominant
+// in the residual along the rotor's angle, 0: none.
 std::vector<Where> where_of(const Comparison& comparison, double order);
 
 }  // namespace omnihil

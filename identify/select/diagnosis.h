@@ -1,11 +1,12 @@
 // Which physical effect is missing: the whole way from a measurement and a nominal model to a verdict.
 //
 //   Diagnosis d = diagnose(dataset, nominal, {.seed = 1, .jobs = 2});
-//   d.verdict; d.effects; d.ranking[0].probability; d.next_experiment.what;
+//   d.verdict; d.effects; d.ranking[0].selection_frequency; d.next_experiment.what;
 //
-// Way: data quality -> base fit -> simulated null -> screening of every effect, per regime -> forward refit
-// of the best -> greedy addition with re-ranking -> backward elimination -> twins -> verdict -> next
-// experiment. The same for a seed at any number of threads.
+// Method: stepwise selection. Data quality -> fit of the base parameters -> simulated null -> screening of
+// every effect, per regime -> refit of a shortlist -> the best accepted one is added, and all are ranked
+// again -> backward elimination -> confounded sets -> verdict -> next experiment. The same for a seed at any
+// number of threads.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -17,24 +18,12 @@
 #include "identify/design/experiment.h"
 #include "identify/estimate/fit.h"
 #include "identify/record/progress.h"
+#include "identify/select/ranked_effect.h"
 
 namespace omnihil {
 
 enum class Verdict : std::uint8_t { kAdequate, kEffect, kUnknown };
 std::string_view verdict_name(Verdict verdict);  // "adequate", "effect", "unknown"
-
-struct RankedEffect {
-  std::string effect;
-  double probability = 0.0;      // sums to at most 1 with "none"
-  double score = 0.0;            // of the screening, null corrected
-  double fit_error_ratio = 1.0;  // pooled error with the effect over that of the refitted baseline
-  double holdout_error_ratio = 1.0;
-  double extrapolation_error_ratio = 1.0;
-  bool refitted = false;  // false: screening alone
-  bool accepted = false;
-  std::string why;  // in words: why it was accepted or refused; "not visible in these data: …"
-  std::vector<ParameterEstimate> parameters;  // of the effect
-};
 
 // One step of the ladder: the model after an effect was added (the first: the refitted baseline; the
 // one before it: the nominal model as given).
@@ -45,6 +34,8 @@ struct LadderStep {
   std::vector<RankedEffect> ranking;  // the ranking that led to the next step
 };
 
+// What these data cannot tell apart: each member's signal can be made from another's, or they leave the same
+// error.
 struct ConfoundedSet {
   std::vector<std::string> members;  // effect ids and base-parameter paths
   std::string sentence;
@@ -75,9 +66,9 @@ struct Diagnosis {
   Comparison baseline_comparison;
   Verdict verdict = Verdict::kAdequate;
   std::vector<std::string> effects;   // in the order in which they were added
-  std::vector<RankedEffect> ranking;  // first round, best first: every effect that applies to the rig
+  std::vector<RankedEffect> ranking;  // first iteration, best first: every effect that applies
   std::vector<LadderStep> ladder;
-  std::vector<ConfoundedSet> indistinguishable;
+  std::vector<ConfoundedSet> confounded;
   std::vector<Where> where;
   UnknownStructure unknown;
   NextExperiment next_experiment;

@@ -2,9 +2,9 @@
 // visible size, phases as pairs of sine and cosine.
 //
 //   for (const EffectVariant& v : variants_of(entry, candidate, scale)) {
-//     for (const VariantColumn& c : v.columns)
-//       predictor.predict(with_use(candidate, setting(v, c)), run);    // a difference signal
-//     EffectUse start = start_of(v, coefficients, linear);   // of a refit: strengths and phases of the linear fit
+//     for (const VariantColumn& c : v.columns) predict(with_use(candidate, setting(v, c)));
+//     // a difference signal each; their linear coefficients give strengths and phases to start a refit from:
+//     EffectUse start = start_of(v, coefficients, false);
 //   }
 //
 // Law: A sin(n x + p) = A cos p sin(n x) + A sin p cos(n x), so a phase needs two difference signals and no

@@ -16,7 +16,7 @@ const EffectInfo* info_of(const std::string& id) {
   return entry != nullptr ? entry->info : nullptr;
 }
 
-// Effects by the motion that shows them; where one is a base parameter's twin, by a measurement of its own.
+// Effects by the motion that reveals them; confounded with a base parameter, by a measurement of their own.
 std::string revealing(const std::vector<std::string>& members) {
   const bool with_base =
       std::any_of(members.begin(), members.end(), [](const std::string& m) { return info_of(m) == nullptr; });
@@ -34,24 +34,26 @@ std::string revealing(const std::vector<std::string>& members) {
 
 NextExperiment next_experiment(const Dataset& dataset, const Diagnosis& diagnosis) {
   NextExperiment next;
-  if (!diagnosis.indistinguishable.empty()) {
-    next.separates = diagnosis.indistinguishable.front().members;
-    next.what = fmt::format("To part {}: {}", fmt::join(next.separates, " and "), revealing(next.separates));
+  if (!diagnosis.confounded.empty()) {
+    next.separates = diagnosis.confounded.front().members;
+    next.what =
+        fmt::format("To separate {}: {}", fmt::join(next.separates, " and "), revealing(next.separates));
     return next;
   }
   if (diagnosis.verdict == Verdict::kUnknown && !diagnosis.where.empty()) {
     const Where& w = diagnosis.where.front();
     next.what = fmt::format(
-        "Record slow and steady sweeps over {} in both directions, the rest held constant: there {:.0f} % of "
-        "what "
-        "is left of {} lives.",
+        "Record slow and steady sweeps over {} in both directions, all else held constant: it explains "
+        "{:.0f} % of the "
+        "residual of {}.",
         w.against, 100.0 * w.explained_fraction, w.signal);
     return next;
   }
-  // The likeliest of those that these data could not show.
+  // The first in the ranking that these data could not show.
   for (const RankedEffect& r : diagnosis.ranking) {
     const EffectInfo* info = info_of(r.effect);
-    if (info == nullptr || !r.why.starts_with("not visible")) continue;
+    const bool hidden = r.visibility == Visibility::kAliased || r.visibility == Visibility::kBelowNoise;
+    if (info == nullptr || !hidden) continue;
     next.what = fmt::format("To see {}, which these data could not show: {}", r.effect, info->reveals);
     next.separates = {r.effect};
     return next;
@@ -63,7 +65,7 @@ NextExperiment next_experiment(const Dataset& dataset, const Diagnosis& diagnosi
     return next;
   }
   next.what =
-      "Repeat one run unchanged: the difference of two like runs is the floor that no model can pass.";
+      "Repeat one run unchanged: the difference of two like runs is the error that no model can go below.";
   return next;
 }
 

@@ -1,10 +1,9 @@
-// What to measure next: the recording that parts the effects that could not be told apart, or shows what
-// could not be seen.
+// What to measure next: the recording that separates confounded effects, or excites one that was not visible.
 //
 //   diagnosis.next_experiment = next_experiment(dataset, diagnosis);
 //
-// The twins' own descriptions say what reveals each; the distance of their predictions is simulated by the
-// designer of experiments (`omnihil experiment`), not here.
+// Each effect's own page says which motion reveals it; the distance of the confounded effects' predictions is
+// simulated by the design of experiments (`omnihil experiment`), not here.
 #pragma once
 #include "identify/select/diagnosis.h"
 

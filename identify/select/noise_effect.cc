@@ -12,32 +12,35 @@
 namespace omnihil {
 namespace {
 
-constexpr int kBins = 8;  // of equal numbers, per signal and track
-constexpr int kReplicates = 2;
-constexpr int kPasses = 3;
-constexpr double kExplained = 0.75;   // of the bins' excess, held out
-constexpr double kExcess = 0.05;      // of the sensors' energy: less is nothing to explain
-constexpr double kCorrelation = 0.1;  // that residual and simulation may differ at any lag
+// Sizes of the test: tuned on the open cases (DECISIONS 34); sensitivity not measured.
+constexpr int kBins = 8;             // of equal numbers of samples, per channel and track
+constexpr int kReplicates = 2;       // by cost: a simulation of all runs each
+constexpr int kPasses = 3;           // of the estimate of the strength; by cost
+constexpr double kExplained = 0.75;  // least fraction of the bins' excess variance, held out
+constexpr double kExcess = 0.05;     // least excess over the sensors' variance
+constexpr double kCorrelation =
+    0.1;  // largest difference of the autocorrelations at any lag, beside its own error
 constexpr int kLags = 10;
 
-// Sums of squares of one use, by signal and bin.
+// Sums of squares of one split, by channel and bin: [track, channel, bin].
 struct Energies {
   Eigen::VectorXd sum, count, fourth;
   Eigen::VectorXd mean() const { return sum.cwiseQuotient(count.cwiseMax(1.0)); }
-  // As many normal samples would tell the energy as well: var(r^2) = 2 sigma^4 makes 3 (sum r^2)^2 / sum r^4.
-  // Where a few edges are loud and the rest is still, they are few, whatever the bin holds (Kish 1965).
+  // Effective sample size: as many normal samples give the variance as well; var(r^2) = 2 sigma^4 makes 3
+  // (sum r^2)^2 / sum r^4. Where a few edges hold most of the energy they are few, whatever the bin holds
+  // (Kish 1965).
   Eigen::VectorXd weight() const {
     const Eigen::VectorXd normal = 3.0 * sum.cwiseAbs2().cwiseQuotient(fourth.cwiseMax(1e-300));
     return normal.cwiseMin(count);
   }
 };
 
-// A measured bus voltage is given to the model: what it leaves there is no noise of an effect.
+// A measured bus voltage is an input of the model: its residual is no noise of an effect.
 bool counts(const Predictor& predictor, const WhitenedResiduals::Part& part) {
   return predictor.compared(part.run)[static_cast<std::size_t>(part.signal)].name != "bus_voltage";
 }
 
-// Which bin each sample is in, for two tracks at once: [sample], -1 in none; and what the model says there.
+// The bin of each sample, for two tracks: [sample], -1 in none; and the model's prediction there.
 class Binning {
  public:
   Binning(const Predictor& predictor, const WhitenedResiduals& residuals, const Candidate& model)
@@ -77,7 +80,8 @@ class Binning {
     }
     std::sort(sizes.begin(), sizes.end());
     std::vector<int> out(static_cast<std::size_t>(track.size()), -1);
-    if (sizes.size() < 10 * kBins) return out;
+    constexpr std::size_t kLeastPerBin = 10;  // a variance to within 45 % (sqrt(2 / n))
+    if (sizes.size() < kLeastPerBin * kBins) return out;
     for (std::size_t i = 0; i < out.size(); ++i) {
       const double v = std::abs(track[static_cast<Eigen::Index>(i)]);
       if (!std::isfinite(v)) continue;
@@ -94,7 +98,7 @@ class Binning {
   std::vector<std::vector<int>> tracks_;
 };
 
-// The residual's autocorrelation, per signal one after the other, lags 1 to kLags.
+// The residual's autocorrelation at lags 1 to kLags: [channel, lag].
 Eigen::VectorXd autocorrelations(const Predictor& predictor, const WhitenedResiduals& residuals,
                                  const Eigen::VectorXd& r) {
   const Eigen::Index channels = residuals.samples().size();
@@ -135,7 +139,7 @@ class Trial {
     const Eigen::VectorXd own = simulated(bins, 0.0);
     if (own.size() == 0) return std::nullopt;
     const EffectParam& row = entry_.info->params[row_];
-    // A power law about a first guess, then about what that says.
+    // A power law about a first guess, then about its estimate.
     double size = row.typical;
     for (int pass = 0; pass < kPasses; ++pass) {
       const double below = std::max(0.5 * size, 1e-12 * row.typical);
@@ -144,6 +148,7 @@ class Trial {
       more -= own;
       less -= own;
       const double total = more.dot(measured.count), part = less.dot(measured.count);
+      // Variances grow with the square of a strength unless it saturates: the exponent is kept near that.
       double power = 2.0;
       if (total > 0.0 && part > 0.0 && below < size) power = std::log(total / part) / std::log(size / below);
       const double next = most_likely(measured, own, more.cwiseMax(0.0), std::clamp(power, 0.5, 4.0), size);
@@ -166,14 +171,14 @@ class Trial {
     return search_.predictor->simulated(with_use(*search_.model, at(strength)), seed);
   }
 
-  // Mean energies by bin of what the model's sensors would show with this strength.
+  // Mean variances by bin of a simulated residual with this strength: [track, channel, bin].
   Eigen::VectorXd simulated(const Binning& bins, double strength) const {
     Eigen::VectorXd mean;
     for (int k = 0; k < kReplicates; ++k) {
-      Eigen::VectorXd left =
+      Eigen::VectorXd residual =
           simulated_residual(*simulated(strength, k), bins.residuals(), *search_.model, bins.predicted());
-      if (left.size() == 0) return left;
-      const Eigen::VectorXd e = bins.energies(left).mean();
+      if (residual.size() == 0) return residual;
+      const Eigen::VectorXd e = bins.energies(residual).mean();
       mean = k == 0 ? e : Eigen::VectorXd(mean + e);
     }
     return mean / kReplicates;
@@ -191,7 +196,8 @@ class Trial {
       return sum;
     };
     double best = 0.0, least = unlikely(0.0);
-    for (int k = -80; k <= 40; ++k) {  // x^a in steps of half an octave
+    // (x / x_0)^a from 2^-40 to 2^20 in half octaves, then refined to 0.1 %.
+    for (int k = -80; k <= 40; ++k) {
       const double factor = std::exp2(0.5 * k), value = unlikely(factor);
       if (value < least) least = value, best = factor;
     }
@@ -206,19 +212,20 @@ class Trial {
   std::optional<NoiseEffect> checked(double strength, const Binning& fit_bins, const Energies& fit_measured,
                                      const Eigen::VectorXd& fit_own) const {
     const Splits& unweighted = *search_.unweighted;
-    const WhitenedResiduals& judge =
+    const WhitenedResiduals& tested =
         unweighted[kValidation].empty() ? unweighted[kTraining] : unweighted[kValidation];
     const bool same = unweighted[kValidation].empty();
-    const Binning bins = same ? fit_bins : Binning(*search_.predictor, judge, *search_.model);
-    if (bins.predicted().size() != judge.size()) return std::nullopt;
-    const Eigen::VectorXd residual = judge.residual_of(bins.predicted());
+    const Binning bins = same ? fit_bins : Binning(*search_.predictor, tested, *search_.model);
+    if (bins.predicted().size() != tested.size()) return std::nullopt;
+    const Eigen::VectorXd residual = tested.residual_of(bins.predicted());
     const Energies measured = same ? fit_measured : bins.energies(residual);
     const Eigen::VectorXd own = same ? fit_own : simulated(bins, 0.0), with = simulated(bins, strength);
     if (own.size() == 0 || with.size() == 0) return std::nullopt;
     double before = 0.0, after = 0.0, all = 0.0, floor = 0.0;
     const Eigen::VectorXd energy = measured.mean(), weight = measured.weight();
     for (Eigen::Index b = 0; b < own.size(); ++b) {
-      // in units of the sensors' own, so that every signal counts; counts that stand still have none
+      // In units of the sensors' variance, so that every channel counts; at least a fifth of the channel's
+      // mean, since counts at rest have none (tuned on the open cases; sensitivity not measured).
       const double unit = std::max(own[b], 0.2 * own.segment(b - b % kBins, kBins).mean());
       if (!(unit > 0.0)) continue;
       const double n = measured.count[b];
@@ -231,19 +238,21 @@ class Trial {
         .use = at(strength), .strength = {}, .explained = before > 0.0 ? 1.0 - after / before : 0.0};
     if (all < kExcess * floor || out.explained < kExplained) return std::nullopt;
     const Eigen::VectorXd drawn =
-        simulated_residual(*simulated(strength, kReplicates), judge, *search_.model, bins.predicted());
+        simulated_residual(*simulated(strength, kReplicates), tested, *search_.model, bins.predicted());
     if (drawn.size() == 0) return std::nullopt;
-    const Eigen::VectorXd apart = autocorrelations(*search_.predictor, judge, residual) -
-                                  autocorrelations(*search_.predictor, judge, drawn);
-    // A correlation from n samples scatters by 1 / sqrt(n); where few are loud, few count (Kish 1965).
+    const Eigen::VectorXd apart = autocorrelations(*search_.predictor, tested, residual) -
+                                  autocorrelations(*search_.predictor, tested, drawn);
+    // An autocorrelation from n samples has a standard error of 1 / sqrt(n) (Bartlett 1946), n the effective
+    // sample size of the energy (Kish 1965); three of them are allowed.
     const auto finite = residual.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; }).array();
-    const double loud = std::pow(finite.square().sum(), 2) / std::max(finite.square().square().sum(), 1e-300);
-    if (apart.cwiseAbs().maxCoeff() > kCorrelation + 3.0 / std::sqrt(loud)) return std::nullopt;
+    const double effective =
+        std::pow(finite.square().sum(), 2) / std::max(finite.square().square().sum(), 1e-300);
+    if (apart.cwiseAbs().maxCoeff() > kCorrelation + 3.0 / std::sqrt(effective)) return std::nullopt;
     const EffectParam& row = entry_.info->params[row_];
     out.strength.path = std::string(entry_.info->id) + "." + std::string(row.name);
     out.strength.unit = row.unit;
     out.strength.value = strength;
-    // relative: an energy from n samples is known to sqrt(2 / n)
+    // Relative standard error of a variance from n samples: sqrt(2 / n).
     out.strength.sigma = out.strength.data_sigma =
         strength * std::sqrt(2.0 / fit_measured.count.sum()) * (1.0 + floor / std::max(all, 1e-9));
     return out;

@@ -1,9 +1,12 @@
-// Are the numbers that an addition was fitted with such as a drive can have?
+// Are the parameters of a fitted addition such as a drive can have, and the base parameters such as their
+// priors say?
 //
-//   std::string why = unsound(parent.fit, child.fit, "cogging", false);   // empty: nothing against it
+//   std::string why = implausibility(parent.fit, child.fit, "cogging", false);   // empty: nothing against it
 //
-// Against it: a shape at its bound, a sign that is not physical, a strength that is not told from zero (one
-// by one or together, Wald), a base parameter pushed out of the tolerance that the model file states.
+// Against it: a shape estimated at its bound, a sign that is not physical, a strength that is not
+// significantly different from neutral (alone or jointly, Wald), a base parameter moved out of the tolerance
+// that the model file states. Prior deviations are z-scores: (estimate - prior mean) / prior standard
+// deviation.
 #pragma once
 #include <string>
 #include <string_view>
@@ -12,40 +15,48 @@
 
 namespace omnihil {
 
-// How far the base model is from what its file says: the largest drift of a parameter of motor, load or
-// supply that the data determine, in its tolerances.
+// The identifiable base parameter (motor, load, supply) that is farthest from its prior.
 struct PriorDeviation {
-  double sigmas = 0.0;
+  double sigmas = 0.0;  // absolute
   std::string path;
 };
 PriorDeviation largest_prior_deviation(const FitResult& fit);
 
-// Above kBent a base parameter stands for something else: nobody's data sheet is that wrong. What lets it
-// come back within kStraight, at no more error than kNoMore of its energy, has a claim to be what it stood
-// for.
+// A base parameter whose prior deviation exceeds kImplausible (two-sided p = 6e-5) is suspected of absorbing
+// a missing effect. An addition that brings it back within kRestored (p = 5 %), without raising the residual
+// energy by more than kMostEnergyRise, is accepted as that effect. Sizes tuned on the open cases, DECISIONS
+// 50; sensitivity not measured.
 inline constexpr double kImplausible_sigmas = 4.0;
 inline constexpr double kRestored_sigmas = 2.0;
 inline constexpr double kMostEnergyRise = 0.01;
 
-// Where data cannot part an effect from a base parameter (a payload from the mass), beliefs do. Above
-// kDisbelieved (a normal error is that large one way once in a hundred) it is the effect, if the squares of
-// all numbers' distances from their beliefs, the effect's own included, fall by as much.
+// Where data cannot separate an effect from a base parameter (a payload from the mass), the priors decide:
+// the effect is preferred if the base parameter's one-sided prior p-value is below 1 % (the normal
+// distribution's 99 % quantile: derived, DECISIONS 56) and the total prior chi-square falls by at least the
+// square of that.
 inline constexpr double kPriorRejected_sigmas = 2.33;
 
-// Tolerances between a base parameter and what its file says; 0: no such, or no tolerance.
+// Absolute prior deviation of one parameter; 0: no such parameter, or it has no prior. From its value, since
+// ParameterEstimate::prior_deviation_sigmas is 0 where the data do not determine a parameter.
 double prior_deviation(const FitResult& fit, std::string_view path);
 
-// Does the child hold what the parent bent most, and all else, within kStraight; or is it easier to believe,
-// in the parameter that the effect stands for (Screened::aliased_parameter; empty: none)? The path of what came
-// back; empty: no.
+// Is some base parameter farther than kImplausible from its prior?
+bool is_implausible(const FitResult& fit);
+// Is this one farther than kPriorRejected?
+bool is_prior_rejected(const FitResult& fit, std::string_view path);
+
+// The base parameter that the child restores to its prior: the parent's largest deviation with all others
+// within kRestored, or `aliased_parameter` (Screened::aliased_parameter; empty: none) by the rule of
+// kPriorRejected. Empty: none.
 std::string restores_prior(const FitResult& parent, const FitResult& child,
                            std::string_view aliased_parameter = {});
 
-// Is an effect's time (a delay, an inductance) so far below what its page calls visible at this rate that a
-// model's sub-steps and a clock's last digits make as much? Empty: no.
+// Is an effect's time (a delay, an inductance over a resistance) so far below what its page calls visible at
+// this sampling rate that the model's sub-steps and the time stamps' resolution amount to as much? Empty: no.
 std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz);
 
-// `plain`: the addition takes so much that its strength is no question, however it trades against its shapes.
+// `decisive`: skip the significance test of the strength; the gain alone proves it, even if strength and
+// shape are correlated.
 std::string implausibility(const FitResult& parent, const FitResult& child, const std::string& name,
                            bool decisive);
 

@@ -1,10 +1,11 @@
-// A model with one more effect, fitted in full: from the screening's estimate, and from the neutral value
-// where that fails. It never ends above the model without the effect.
+// A model with one more effect, fitted in full: from the screening's estimate, and from other starts where
+// that does not reach what the screening predicts. Its residual energy never exceeds that of the model
+// without the effect.
 //
 //   Fitted child = refit(setup, parent, screened);
-//   child.fit.model;                                  // with the effect, all numbers fitted again
+//   child.fit.model;                                  // with the effect, all parameters fitted again
 //
-// Priors stay those of the nominal model through all additions: a parameter that drifts is seen to drift.
+// Priors stay those of the nominal model through all additions, so prior deviations do too.
 #pragma once
 #include <functional>
 
@@ -16,7 +17,7 @@ namespace omnihil {
 struct RefitSetup {
   const Predictor* predictor = nullptr;
   const Splits* splits = nullptr;
-  const Splits* unweighted = nullptr;  // the same, not whitened
+  const Splits* unweighted = nullptr;  // in the channels' own units
   const Candidate* nominal = nullptr;  // whose priors hold
   std::uint64_t seed = 1;
   int jobs = 1;
@@ -36,8 +37,8 @@ Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effe
 // The same model once more, thoroughly: covariance, flat directions, several starts.
 Fitted refit_as_it_is(const RefitSetup& setup, const Candidate& model, int starts);
 
-// Again from its own end until that is worth no more (at most three times): a fit weighs signals by what they
-// leave at its start, and those of a search are short. Never worse than `model`.
+// Refit from its own optimum, re-weighting the channels by their residuals there, until the energy falls by
+// less than kWorthAnother (at most kMostRepeats times). Never worse than `model`.
 Fitted refit_to_convergence(const RefitSetup& setup, Fitted model);
 
 }  // namespace omnihil

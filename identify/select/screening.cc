@@ -43,8 +43,11 @@ Scored score(const ScreeningTask& task, EffectVariant variant) {
   return out;
 }
 
-// Sizes that the linear fit asks for; false: they are as they are, or cannot be changed.
-bool resize(const ScreeningTask& task, const Scored& scored, EffectVariant& variant, double unseen_factor) {
+// Sizes at which the linear coefficients would be one; false: they are nearly so, or cannot be changed.
+bool resize(const ScreeningTask& task, const Scored& scored, EffectVariant& variant, double idle_factor) {
+  // Largest size tried, of the parameter's bound; smallest, of that; a change of size below this factor is
+  // none. All three only save simulations: the refit starts from the coefficients, whatever the size was.
+  constexpr double kOfBound = 0.9, kLeastOfBound = 1e-6, kSameBelow = 0.7, kSameAbove = 1.4;
   bool changed = false;
   const EffectInfo& info = *variant.shape.entry->info;
   for (std::size_t c = 0; c < variant.columns.size(); ++c) {
@@ -56,21 +59,25 @@ bool resize(const ScreeningTask& task, const Scored& scored, EffectVariant& vari
       const std::size_t other = column.phase == 0.0 ? c + 1 : c - 1;
       factor = std::hypot(factor, scored.fit.coefficients[other]);
     }
-    if (scored.fit.gain <= 0.0) factor = unseen_factor;
+    if (scored.fit.gain <= 0.0) factor = idle_factor;
     if (factor <= 0.0) continue;
-    const double most = 0.9 * (column.size > 0.0 ? range.upper - row.neutral : row.neutral - range.lower);
-    const double size = std::clamp(std::abs(column.size) * factor, 1e-6 * most, most);
+    const double most =
+        kOfBound * (column.size > 0.0 ? range.upper - row.neutral : row.neutral - range.lower);
+    const double size = std::clamp(std::abs(column.size) * factor, kLeastOfBound * most, most);
     const double ratio = size / std::abs(column.size);
-    if (ratio > 0.7 && ratio < 1.4) continue;
+    if (ratio > kSameBelow && ratio < kSameAbove) continue;
     column.size = std::copysign(size, column.size);
     changed = true;
   }
   return changed;
 }
 
-// The best of the shapes, then at the size that the data ask for.
+// The shape of largest gain, then at the size that its coefficient estimates.
 Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& variants) {
-  constexpr int kResizings = 3;
+  constexpr int kResizings = 3;  // by cost: a simulation each
+  // Where no size gained: one well below and, after it, one well above. Tuned on the open cases; sensitivity
+  // not measured.
+  constexpr double kSmaller = 0.3, kLarger = 8.0;
   Scored best;
   for (const EffectVariant& v : variants) {
     if (v.columns.empty()) continue;
@@ -81,8 +88,8 @@ Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& vari
   EffectVariant next = best.variant;
   Scored latest = best;
   for (int k = 0; k < kResizings; ++k) {
-    // A limit may lie above what the data reach, a delay too long for a linear step: try both ways.
-    if (!resize(task, latest, next, k == 0 ? 0.3 : 8.0)) break;
+    // A limit may lie above what the data reach, a delay be too long for the linear range: try both.
+    if (!resize(task, latest, next, k == 0 ? kSmaller : kLarger)) break;
     latest = score(task, next);
     if (!latest.finite) break;
     if (latest.fit.gain > best.fit.gain) best = latest;
@@ -90,14 +97,19 @@ Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& vari
   return best;
 }
 
-// A law that acts from some strength on, a limit that the data reach: sizes one by one, each as it is. A line
-// through one of them would lead back to where nothing is reached.
+// For a law that acts from some strength on only (a limit that the data reach): sizes one by one, each as it
+// is. It has no derivative below that strength, and extrapolating from one above leads back to where it is
+// idle (DECISIONS 33).
 class SizeSearch {
  public:
   explicit SizeSearch(const ScreeningTask& task) : task_(task) {}
 
   Scored run(const std::vector<EffectVariant>& variants) {
+    // Octaves about the typical size: 8 times to a 128th of it. Halvings of the last octave: to 2 % of the
+    // size where it begins to act (2^(1/32)).
     constexpr int kLargest = 3, kSmallest = -7, kHalvings = 5;
+    // Sizes beyond that one. Tuned on the open cases (DECISIONS 33); sensitivity not measured.
+    constexpr double kBeyond[] = {1.08, 1.2, 1.4, 1.7};
     for (const EffectVariant& v : variants) {
       double acts = 0.0, idle = 0.0;  // factors of its typical size
       for (int k = kLargest; k >= kSmallest && idle == 0.0; --k) {
@@ -108,7 +120,7 @@ class SizeSearch {
         const double middle = std::sqrt(acts * idle);
         (attempt(v, middle) ? acts : idle) = middle;
       }
-      for (const double beyond : {1.08, 1.2, 1.4, 1.7}) attempt(v, acts * beyond);
+      for (const double beyond : kBeyond) attempt(v, acts * beyond);
     }
     for (const double refining : {std::exp2(0.25), std::exp2(-0.25)}) {
       if (best_.finite) attempt(EffectVariant(best_.variant), refining);
@@ -117,7 +129,7 @@ class SizeSearch {
   }
 
  private:
-  // Does it change anything at this multiple of its size?
+  // Does it change any signal at this multiple of its size?
   bool attempt(const EffectVariant& variant, double factor) {
     EffectVariant sized = variant;
     VariantColumn& column = sized.columns.front();
@@ -128,7 +140,8 @@ class SizeSearch {
     Scored s = score(task_, std::move(sized));
     if (!s.finite) return true;
     s.fit = task_.base->gain_as_tried(s.columns);
-    const bool acts = s.columns.gram(0, 0) > 1e-6 * task_.base->energy();
+    constexpr double kActs = 1e-6;  // of the residual's energy: above rounding, below anything that gains
+    const bool acts = s.columns.gram(0, 0) > kActs * task_.base->energy();
     if (!best_.finite || s.fit.gain > best_.fit.gain) best_ = std::move(s);
     return acts;
   }
@@ -151,7 +164,7 @@ double share_in(const RegimeMask& regime, const ProjectedColumns& p, const std::
   return std::max(0.0, gain - chance) / energy;
 }
 
-// Which base parameter's signal is most like the effect's.
+// The base parameter with the largest part in the regression of the effect's signal on all of them.
 std::string nearest_base(const LinearBase& base, const Scored& s) {
   std::string nearest;
   double best = 0.0;
@@ -183,7 +196,7 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
       out.best_regime = regime.name;
     }
   }
-  out.kept = best.columns.kept;
+  out.residual_fraction = best.columns.kept;
   out.closest_parameter = nearest_base(base, best);
   out.start = start_of(best.variant, best.fit.coefficients, task.model->file.linear);
   out.base_unknowns = base.unknowns();
@@ -202,13 +215,15 @@ Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
   std::vector<EffectVariant> variants = variants_of(*entry, *task.model, task.scale);
   const bool steps_in = (entry->info->claims & kFlatAtNeutral) != 0 && variants.front().columns.size() == 1;
   Scored best = steps_in ? SizeSearch(task).run(variants) : best_of(task, variants);
-  // At its typical size, whatever the data ask for.
+  // At its typical size, whatever the data estimate: for visibility.
   const Scored typical = score(task, variants.front());
   if (entry->info->id == "cogging" && best.finite) {
     for (const EffectVariant& v : cogging_series(*entry, *task.model, task.scale)) {
       Scored series = score(task, v);
-      // Several orders must earn their numbers.
-      if (series.finite && series.fit.gain > 1.05 * best.fit.gain) best = std::move(series);
+      // Several orders have to gain this factor more than one. Tuned on the open cases; sensitivity not
+      // measured.
+      constexpr double kSeriesGain = 1.05;
+      if (series.finite && series.fit.gain > kSeriesGain * best.fit.gain) best = std::move(series);
     }
   }
   Screened out = finished(task, entry, std::move(best));
@@ -232,9 +247,9 @@ std::vector<double> finite_sizes(const Eigen::VectorXd& track) {
 }  // namespace
 
 std::string Screened::aliased_parameter() const {
-  if (!tried || kept >= kAliasedFraction || closest_parameter.empty()) return "";
-  const auto& twins = entry->info->twins;
-  return std::find(twins.begin(), twins.end(), closest_parameter) != twins.end() ? closest_parameter : "";
+  if (!tried || residual_fraction >= kAliasedFraction || closest_parameter.empty()) return "";
+  const auto& listed = entry->info->twins;
+  return std::find(listed.begin(), listed.end(), closest_parameter) != listed.end() ? closest_parameter : "";
 }
 
 std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const Candidate& model) {
@@ -242,19 +257,25 @@ std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const C
   const Eigen::VectorXd speed = residuals.track(model, "speed");
   const Eigen::VectorXd acceleration = residuals.track(model, "acceleration");
   const std::vector<double> speeds = finite_sizes(speed), accelerations = finite_sizes(acceleration);
-  constexpr std::size_t kLeast = 200;  // samples, for a regime to be worth looking at
+  // Samples in a regime: its mean square is then known to 10 % (sqrt(2 / n)).
+  constexpr std::size_t kLeast = 200;
+  // Limits of the regimes: shares of the top speed (98 % quantile, so that no glitch sets it), quantiles of
+  // the acceleration. Tuned on the open cases; sensitivity not measured.
+  constexpr double kTopQuantile = 0.98, kSlow = 0.1, kFast = 0.6;
+  constexpr double kSteadyQuantile = 0.5, kTransientQuantile = 0.85;
   const auto add = [&](const char* name, auto&& is_inside) {
     RegimeMask mask{.name = name, .inside = Eigen::VectorXd::Zero(residuals.size())};
     for (Eigen::Index i = 0; i < residuals.size(); ++i) mask.inside[i] = is_inside(i) ? 1.0 : 0.0;
     if (mask.inside.sum() >= static_cast<double>(kLeast)) masks.push_back(std::move(mask));
   };
   if (speeds.size() >= kLeast) {
-    const double top = quantile_of(speeds, 0.98);
-    add("slow", [&](Eigen::Index i) { return std::abs(speed[i]) < 0.1 * top; });
-    add("fast", [&](Eigen::Index i) { return std::abs(speed[i]) > 0.6 * top; });
+    const double top = quantile(speeds, kTopQuantile);
+    add("slow", [&](Eigen::Index i) { return std::abs(speed[i]) < kSlow * top; });
+    add("fast", [&](Eigen::Index i) { return std::abs(speed[i]) > kFast * top; });
   }
   if (accelerations.size() >= kLeast) {
-    const double quasi_static = quantile_of(accelerations, 0.5), dynamic = quantile_of(accelerations, 0.85);
+    const double quasi_static = quantile(accelerations, kSteadyQuantile);
+    const double dynamic = quantile(accelerations, kTransientQuantile);
     add("steady", [&](Eigen::Index i) { return std::abs(acceleration[i]) < quasi_static; });
     add("transient", [&](Eigen::Index i) { return std::abs(acceleration[i]) > dynamic; });
   }

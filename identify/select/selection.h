@@ -1,13 +1,17 @@
-// Who wins a round: probabilities, twins, the one that is taken.
+// Model selection among the refitted candidates of one iteration: the best, and those that these data cannot
+// tell from it.
 //
-//   settle(search, parent, round);     // orders round.contenders, sets chosen, twins and probabilities
+//   select_best(task, parent, iteration);
+//   // orders iteration.candidates; sets chosen, confounded and their selection frequencies
 //
-// Probability: in how many draws of a block bootstrap of the held-out runs an effect leaves the least error;
-// those that leave nearly as little share the draw; a draw in which none takes as much as matters goes to
-// "none". Where nothing is accepted but what lets a base parameter come back (soundness.h), that has all.
-// Twins: contenders that pass and either take nearly the same from the error, or whose signals are nearly one
-// and the same once the base parameters have moved along. Of twins the one with the fewest numbers is named
-// first.
+// Selection frequency: in how many draws of a block bootstrap of the held-out runs a candidate leaves the
+// least error; those that leave nearly as little share the draw; a draw in which none gains as much as
+// kLeastDrawGain counts for none. It does not ask whether the candidate passed the acceptance test.
+// Confounded with the best: candidates that pass and either gain nearly the same, or have nearly the same
+// signal once the base parameters have been projected out, or win a tenth of the draws. Of those that leave
+// the same error the one whose quantisation signature the readings show is preferred, else the one with the
+// fewest parameters.
+// Limits: the best is the one of largest penalised gain; no multiplicity control over the shortlist.
 #pragma once
 #include "identify/select/selection_iteration.h"
 
@@ -15,14 +19,14 @@ namespace omnihil {
 
 void select_best(const SelectionTask& task, const Fitted& parent, Iteration& iteration);
 
-// The gain that decides (held-out runs and fit runs alike; without held-out runs the latter), less a little
-// for every further number: a law of many numbers bends to what it does not mean.
+// Gain (mean of held-out and fit runs; without held-out runs the latter) less a penalty per further
+// parameter.
 double penalised_gain(const CandidateEffect& c, bool has_holdout);
 
-// Does either one's page name the other?
+// Does either one's page name the other as easily confused?
 bool listed_as_confounded(const EffectInfo& a, const EffectInfo& b);
 
-// Cosine between the signals of two screened effects, both beside the base parameters.
+// Of the signals of two screened effects, the base parameters projected out of both; 0 to 1.
 double cosine_similarity(const Screened& a, const Screened& b);
 
 }  // namespace omnihil

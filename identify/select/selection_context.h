@@ -1,9 +1,9 @@
-// What every search works with, made once per dataset: predictor, evidence per use, fitted base model,
-// simulated null, bootstrap.
+// What every iteration of the selection uses, made once per dataset: predictor, whitened residuals per split,
+// fitted base model, simulated null, bootstrap.
 //
 //   SelectionContext context(dataset, nominal, {.seed = 1, .jobs = 2});
 //   context.fit_base(stop);  context.simulate();
-//   Round r = selection_iteration(context.search(), context.base());
+//   Iteration iteration = selection_iteration(context.task(not_applicable), context.base());
 #pragma once
 #include <functional>
 #include <memory>
@@ -27,12 +27,12 @@ class SelectionContext {
   const Predictor& predictor() const { return *predictor_; }
   const ComparedChannels& channels() const { return channels_; }
   const Splits& splits() const { return splits_; }
-  const Splits& unweighted() const { return unweighted_; }  // not whitened
+  const Splits& unweighted() const { return unweighted_; }  // in the channels' own units
   const NullModel& null() const { return null_; }
   const Fitted& base() const { return base_; }
   const Candidate& nominal() const { return nominal_; }
 
-  // The numbers of a refit; `quick`: for rankings.
+  // Options of a refit; coarse: for rankings, few iterations and a rough covariance.
   RefitSetup setup(bool coarse, const std::function<bool()>& stop) const;
   // False: no fit runs, or the model does not stay finite.
   bool fit_base(const std::function<bool()>& stop);

@@ -14,10 +14,18 @@
 namespace omnihil {
 namespace {
 
+// Length of the shortlist, by cost: a refit takes seconds. Tuned on the open cases; sensitivity not measured.
 constexpr std::size_t kMostRefits = 6;
-constexpr double kLeastShare = 0.002;       // of the residual's energy, to be worth a refit
-constexpr double kLeastRegimeShare = 0.05;  // of that of one regime
-constexpr double kNotSeen = 1.0;            // typical size gains less than chance
+// Screened share of the residual's energy, of all or of one regime's, that is worth a refit: a fifteenth of
+// the smallest gain of interest, since the screening is linear. Tuned on the open cases; sensitivity not
+// measured.
+constexpr double kLeastShare = 0.002;
+constexpr double kLeastRegimeShare = 0.05;
+// Gain over the null's from which a candidate is refitted: that of the acceptance test (DECISIONS 52).
+constexpr double kLeastSignalToNull = 2.0;
+// An effect whose typical size would gain less than this many times the null's largest gain is not visible:
+// derived, at 1 it cannot be told from chance.
+constexpr double kVisibleSignalToNull = 1.0;
 
 DataScale scale_of(const SelectionTask& task, const Fitted& parent, const LinearBase& base) {
   DataScale scale;
@@ -40,7 +48,8 @@ DataScale scale_of(const SelectionTask& task, const Fitted& parent, const Linear
   return scale;
 }
 
-// Signals weigh the same however well the model explains each: by what it leaves now.
+// Weights of the screening: each channel by its present root mean square residual, at least its noise, so
+// that all count the same however well the model explains each.
 Eigen::VectorXd scales_now(const SelectionTask& task, const Fitted& parent) {
   Eigen::VectorXd scale = (*task.splits)[kTraining].mean_square(parent.residual[kTraining]).cwiseSqrt();
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
@@ -59,20 +68,20 @@ std::vector<const EffectEntry*> not_yet(const SelectionTask& task, const Candida
   return out;
 }
 
-// Which of the screened are refitted: the largest shares, whoever is largest in a regime, whose mark the
-// readings carry, and what a base parameter imitates that is not what its file says.
+// Shortlist: largest screened gain overall, largest per regime, quantisation signature found, or aliased with
+// a prior-implausible base parameter.
 std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const Fitted& parent,
                                    const Predictor& predictor) {
   std::vector<std::size_t> order, out;
-  const auto marked = [&](std::size_t i) { return predictor.shows_signature_of(*screened[i].entry); };
+  const auto has_signature = [&](std::size_t i) { return predictor.shows_signature_of(*screened[i].entry); };
   for (std::size_t i = 0; i < screened.size(); ++i) {
     const Screened& s = screened[i];
-    const bool above_chance =
-        s.gain > 2.0 * s.null_gain && (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare);
-    if (s.tried && (above_chance || marked(i))) order.push_back(i);
+    const bool above_null = s.gain > kLeastSignalToNull * s.null_gain &&
+                            (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare);
+    if (s.tried && (above_null || has_signature(i))) order.push_back(i);
   }
   const auto rank = [&](std::size_t i) {
-    return std::pair(marked(i), screened[i].share);  // whose mark the readings carry comes before all
+    return std::pair(has_signature(i), screened[i].share);  // a signature found comes before any gain
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
@@ -80,23 +89,24 @@ std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const 
     if (out.size() < kMostRefits - 1) out.push_back(i);
   }
   for (std::size_t i = 0; i < screened.size(); ++i) {
-    const bool hidden = prior_deviation(parent.fit, screened[i].aliased_parameter()) >= kPriorRejected_sigmas;
-    if (hidden && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
+    const bool absorbed = is_prior_rejected(parent.fit, screened[i].aliased_parameter());
+    if (absorbed && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
   }
-  const auto corner = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  const auto in_regime = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return screened[a].best_regime_share < screened[b].best_regime_share;
   });
-  if (corner != order.end() && std::find(out.begin(), out.end(), *corner) == out.end())
-    out.push_back(*corner);
+  if (in_regime != order.end() && std::find(out.begin(), out.end(), *in_regime) == out.end())
+    out.push_back(*in_regime);
   return out;
 }
 
-// Its gain over what chance gives: the most that it gave this effect, or half the most that it gave any.
-double signal_to_null(const Screened& s, double chance_of_any) {
-  return s.gain / std::max({s.null_gain, 0.5 * chance_of_any, 1e-300});
+// The screening's gain over the null's: over the largest that this effect had there, or half of the largest
+// that any had. Half: with kLeastSignalToNull = 2 the gain has to exceed what any effect had (DECISIONS 52).
+double signal_to_null(const Screened& s, double largest_null_gain) {
+  return s.gain / std::max({s.null_gain, 0.5 * largest_null_gain, 1e-300});
 }
 
-double chance_of(const std::vector<Screened>& screened) {
+double largest_null_gain_of(const std::vector<Screened>& screened) {
   double most = 0.0;
   for (const Screened& s : screened) most = std::max(most, s.null_gain);
   return most;
@@ -128,48 +138,55 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
   iteration.stopped = stopped;
 }
 
-// Effects that are known to be confused with the leading contender, and were not refitted: the screening is
-// linear, and theirs may be the form that it sees worst.
+// Effects listed as confusable with the best candidate that were not refitted: the screening is linear, and
+// may have underrated them (DECISIONS 53).
 std::vector<std::size_t> confounded_with_best(const Iteration& iteration, bool has_holdout) {
-  const CandidateEffect* leader = nullptr;
+  const CandidateEffect* best = nullptr;
   for (const CandidateEffect& c : iteration.candidates) {
-    if (!c.acceptance.accepted || c.screened.extends) continue;
-    if (leader == nullptr || penalised_gain(c, has_holdout) > penalised_gain(*leader, has_holdout))
-      leader = &c;
+    if (!c.acceptance.accepted() || c.screened.extends) continue;
+    if (best == nullptr || penalised_gain(c, has_holdout) > penalised_gain(*best, has_holdout)) best = &c;
   }
   std::vector<std::size_t> out;
-  for (std::size_t i = 0; leader != nullptr && i < iteration.screened.size(); ++i) {
+  for (std::size_t i = 0; best != nullptr && i < iteration.screened.size(); ++i) {
     const Screened& s = iteration.screened[i];
-    const bool known = std::any_of(iteration.candidates.begin(), iteration.candidates.end(),
-                                   [&](const CandidateEffect& c) { return c.screened.name == s.name; });
-    if (s.tried && !s.extends && !known &&
-        listed_as_confounded(*leader->screened.entry->info, *s.entry->info))
+    const bool refitted = std::any_of(iteration.candidates.begin(), iteration.candidates.end(),
+                                      [&](const CandidateEffect& c) { return c.screened.name == s.name; });
+    if (s.tried && !s.extends && !refitted &&
+        listed_as_confounded(*best->screened.entry->info, *s.entry->info))
       out.push_back(i);
   }
   return out;
 }
 
-std::string unseen(const Screened& s, double chance) {
-  if (!s.tried) return "not tried";
-  if (s.kept < kAliasedFraction && s.typical_gain <= kNotSeen * chance && !s.closest_parameter.empty()) {
-    return fmt::format("not visible in these data: {} imitates it", s.closest_parameter);
-  }
-  if (s.typical_gain <= kNotSeen * chance) {
-    return "not visible in these data: at its typical size its signal is below what the sensors' noise gives";
-  }
-  return "";
+Visibility visibility_of(const Screened& s, double largest_null_gain) {
+  if (!s.tried) return Visibility::kNotTried;
+  if (!(s.typical_gain <= kVisibleSignalToNull * largest_null_gain)) return Visibility::kVisible;
+  const bool aliased = s.residual_fraction < kAliasedFraction && !s.closest_parameter.empty();
+  return aliased ? Visibility::kAliased : Visibility::kBelowNoise;
 }
 
-RankedEffect ranked(const Screened& s, double chance) {
+std::string reason_of_screening(const Screened& s, Visibility visibility) {
+  switch (visibility) {
+    case Visibility::kNotTried:
+      return "not tried";
+    case Visibility::kAliased:
+      return fmt::format("not visible in these data: {} produces the same signal", s.closest_parameter);
+    case Visibility::kBelowNoise:
+      return "not visible in these data: at its typical size it gains no more than in the simulated null";
+    case Visibility::kVisible:
+      break;
+  }
+  return s.share > kLeastShare
+             ? fmt::format("could remove {:.1f} % of the error energy; others remove more", 100.0 * s.share)
+             : "would remove less of the error energy than is worth a refit";
+}
+
+RankedEffect ranked(const Screened& s, double largest_null_gain) {
   RankedEffect r;
   r.effect = s.name;
   r.score = s.share;
-  r.why = unseen(s, chance);
-  if (r.why.empty()) {
-    r.why = s.share > kLeastShare
-                ? fmt::format("could take {:.1f} % of the error energy; others take more", 100.0 * s.share)
-                : "would take less of the error energy than matters";
-  }
+  r.visibility = visibility_of(s, largest_null_gain);
+  r.why = reason_of_screening(s, r.visibility);
   return r;
 }
 
@@ -178,9 +195,10 @@ void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& it
   for (const CandidateEffect& c : iteration.candidates) {
     RankedEffect r = ranked(c.screened, iteration.largest_null_gain);
     r.refitted = true;
-    r.accepted = c.acceptance.accepted;
+    r.visibility = Visibility::kVisible;
+    r.accepted_by = c.acceptance.accepted_by;
     r.why = c.acceptance.why;
-    r.probability = c.probability;
+    r.selection_frequency = c.selection_frequency;
     r.parameters = parameters_of(c.fitted.fit, c.screened.name);
     const auto ratio = [&](std::size_t u) {
       const WhitenedResiduals& residuals = (*task.splits)[u];
@@ -239,7 +257,7 @@ Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
   iteration.orders = screening.scale.orders;
   iteration.screened = screen(screening, effects);
   for (Screened& s : screen_extensions(screening)) iteration.screened.push_back(std::move(s));
-  iteration.largest_null_gain = chance_of(iteration.screened);
+  iteration.largest_null_gain = largest_null_gain_of(iteration.screened);
   return iteration;
 }
 

@@ -1,12 +1,13 @@
-// One round of the search: which effect, if any, should the model have next.
+// One iteration of the stepwise selection: which effect, if any, is added to the model next.
 //
-//   Round r = selection_iteration(search, parent);
-//   r.ranking;                 // every effect that applies, best first
-//   r.chosen                   // index into r.contenders, or -1: none earns its place
+//   Iteration iteration = selection_iteration(task, parent);
+//   iteration.ranking;   // every effect that applies, best first
+//   iteration.chosen;    // index into iteration.candidates, or -1: none is accepted
 //
-// All effects are screened, the few that promise most are refitted in full, each is judged; of those that
-// pass and cannot be told apart the simplest is taken and the others are kept as its twins. The ranking is
-// made anew in every round: what was masked by a larger effect shows once that is in.
+// Method: forward selection. All effects are screened (linear), a shortlist is refitted in full, each
+// candidate takes the acceptance test; of those that pass and are confounded the simplest is chosen, the
+// others are kept as its set. The ranking is made anew in every iteration: what a larger effect masked shows
+// once that one is in the model.
 #pragma once
 #include <functional>
 #include <string>
@@ -17,43 +18,45 @@
 
 namespace omnihil {
 
+// What all iterations share.
 struct SelectionTask {
   const Dataset* dataset = nullptr;
   const Predictor* predictor = nullptr;
   const Candidate* nominal = nullptr;
   const ComparedChannels* channels = nullptr;
-  const Splits* splits = nullptr;
-  const Splits* unweighted = nullptr;  // the same, not whitened
+  const Splits* splits = nullptr;      // whitened
+  const Splits* unweighted = nullptr;  // in the channels' own units
   const NullModel* null = nullptr;
   AcceptanceContext acceptance_context;
   std::vector<const EffectEntry*> applicable;
   std::uint64_t seed = 1;
   int jobs = 1;
-  // share of this round's work; false: stop with what is known
+  // share of this iteration's work; false: stop with what is known
   std::function<bool(const std::string& doing, double share)> progress;
 };
 
+// An effect of the shortlist: screened, fitted in full, tested.
 struct CandidateEffect {
   Screened screened;
   Fitted fitted;
   AcceptanceResult acceptance;
-  double probability = 0.0;
+  double selection_frequency = 0.0;  // share of the bootstrap's draws (selection.h)
 };
 
 struct Iteration {
   std::vector<Screened> screened;
-  std::vector<CandidateEffect> candidates;  // refitted, best first
+  std::vector<CandidateEffect> candidates;  // best first
   std::vector<RankedEffect> ranking;
   int chosen = -1;
-  std::vector<int> twins;          // of the chosen, in `contenders`
-  double largest_null_gain = 0.0;  // the most that any effect gains in any replicate of the null
-  std::vector<double> orders;      // that stand out in the residual along the rotor's angle
+  std::vector<int> confounded;     // with the chosen one, in `candidates`
+  double largest_null_gain = 0.0;  // of any effect in any replicate of the null
+  std::vector<double> orders;      // dominant in the residual along the rotor's angle
   bool stopped = false;
 };
 
 Iteration selection_iteration(const SelectionTask& task, const Fitted& parent);
 
-// The screening alone: what these effects would gain, and what chance would.
+// The screening alone: what these effects would gain, in the data and in the null.
 Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
                               const std::vector<const EffectEntry*>& effects);
 

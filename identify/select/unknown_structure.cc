@@ -16,9 +16,12 @@
 namespace omnihil {
 namespace {
 
+// Terms of a formula, so that it can be read. Least gain of a term, of the residual's energy and over the
+// null's largest: above the acceptance test's 2, since the best of many terms is taken. Tuned on the open
+// cases; sensitivity not measured. Curves in the report: a screenful.
 constexpr std::size_t kMostTerms = 4;
-constexpr double kLeastGain = 0.02;  // of the residual's energy, per term
-constexpr double kOverChance = 3.0;
+constexpr double kLeastGain = 0.02;
+constexpr double kLeastSignalToNull = 3.0;
 constexpr std::size_t kMostCurves = 8;
 
 struct Library {
@@ -27,12 +30,15 @@ struct Library {
   std::vector<ProjectedColumns> signals;  // one column each; empty: the model diverged
 };
 
-// The signal of one term, at a size at which it is comparable with the residual.
+// The signal of one term, at a size at which it is comparable with the residual: a tenth where the model
+// diverges, by its root mean square where it has more than ten times the residual's energy. Guesses; the
+// coefficient is fitted after.
 ProjectedColumns signal_of(const SelectionTask& task, const Fitted& last, const LinearBase& base,
                            const std::string& adds_to, UnknownTerm& term) {
   const WhitenedResiduals& fit = (*task.splits)[kTraining];
-  for (int attempt = 0; attempt < 3; ++attempt) {
-    const EffectUse use = formula_use("rest", adds_to, {term}, {term.size}, last.fit.model.file.linear);
+  constexpr int kAttempts = 3;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const EffectUse use = formula_use("residual", adds_to, {term}, {term.size}, last.fit.model.file.linear);
     if (use.entry == nullptr) return {};
     const Eigen::VectorXd with = fit.predicted(with_use(last.fit.model, use));
     if (with.size() != fit.size()) {
@@ -41,7 +47,7 @@ ProjectedColumns signal_of(const SelectionTask& task, const Fitted& last, const 
     }
     const Eigen::VectorXd d = (with - base.prediction()).cwiseProduct(base.weights());
     const double ratio = d.squaredNorm() / std::max(base.energy(), 1e-300);
-    if (ratio > 10.0 && attempt < 2) {
+    if (ratio > 10.0 && attempt + 1 < kAttempts) {
       term.size *= 1.0 / std::sqrt(ratio);
       continue;
     }
@@ -81,14 +87,15 @@ struct Selection {
   double gain = 0.0;
 };
 
-// The term that adds most; nothing when it adds no more than chance or than what matters.
+// Adds the term of largest gain; false: none gains enough.
 bool add_best(const Library& library, const LinearBase& base, const std::vector<Eigen::VectorXd>& noise,
               Selection& selection) {
-  double best = selection.gain, chance = 0.0;
+  double best = selection.gain, null_gain = 0.0;
   std::size_t which = library.terms.size();
   LinearGain found;
   for (std::size_t t = 0; t < library.terms.size(); ++t) {
-    const bool usable = library.signals[t].columns.cols() == 1 && library.signals[t].kept > 1e-6;
+    constexpr double kRounding = 1e-6;  // residual fraction of a term that the base parameters span
+    const bool usable = library.signals[t].columns.cols() == 1 && library.signals[t].kept > kRounding;
     if (!usable || std::find(selection.chosen.begin(), selection.chosen.end(), t) != selection.chosen.end())
       continue;
     std::vector<std::size_t> chosen = selection.chosen;
@@ -96,7 +103,7 @@ bool add_best(const Library& library, const LinearBase& base, const std::vector<
     const ProjectedColumns columns = joined(library, chosen, base);
     const std::vector<bool> free(chosen.size(), true);
     for (const Eigen::VectorXd& n : noise) {
-      chance = std::max(chance, base.gain_in_noise(library.signals[t], {true}, n));
+      null_gain = std::max(null_gain, base.gain_in_noise(library.signals[t], {true}, n));
     }
     LinearGain gain = base.gain(columns, free);
     if (gain.gain <= best) continue;
@@ -105,7 +112,8 @@ bool add_best(const Library& library, const LinearBase& base, const std::vector<
     found = std::move(gain);
   }
   const double added = best - selection.gain;
-  if (which == library.terms.size() || added < kLeastGain * base.energy() || added < kOverChance * chance)
+  if (which == library.terms.size() || added < kLeastGain * base.energy() ||
+      added < kLeastSignalToNull * null_gain)
     return false;
   selection.chosen.push_back(which);
   selection.coefficients = found.coefficients;
@@ -113,6 +121,8 @@ bool add_best(const Library& library, const LinearBase& base, const std::vector<
   return true;
 }
 
+// A torque of visible size, N m (N): 2 % of the stall torque, else of the largest one recorded. A guess: the
+// size of the first simulation, the coefficient is fitted after.
 double torque_scale(const SelectionTask& task, const Candidate& model) {
   const DriveParams<double> d = drive_of(model);
   if (d.resistance_ohm > 0.0 && d.supply_voltage_V > 0.0) {
@@ -160,7 +170,7 @@ Found formula_of(const SelectionTask& task, const Fitted& last, const LinearBase
     coefficients.push_back(terms.back().size * selection.coefficients[c]);
   }
   Screened start;
-  start.start = formula_use("rest", library.adds_to, terms, coefficients, last.fit.model.file.linear);
+  start.start = formula_use("residual", library.adds_to, terms, coefficients, last.fit.model.file.linear);
   if (start.start.entry == nullptr) return {};
   start.entry = start.start.entry;
   start.name = effect_name(start.start);
@@ -174,8 +184,8 @@ Found formula_of(const SelectionTask& task, const Fitted& last, const LinearBase
   setup.jobs = task.jobs;
   const Fitted with = refit(setup, last, start);
   const AcceptanceResult acceptance =
-      test_acceptance(task.acceptance_context, last, with, start.name, kOverChance);
-  if (!acceptance.accepted) return {};
+      test_acceptance(task.acceptance_context, last, with, start.name, kLeastSignalToNull);
+  if (!acceptance.accepted()) return {};
   for (const EffectUse& use : with.fit.model.effects) {
     if (effect_name(use) == start.name) return {.use = use, .gain = 1.0 - acceptance.holdout.ratio};
   }

@@ -97,7 +97,7 @@ std::vector<UnknownTerm> voltage_terms(const Candidate& model, const DataScale& 
 EffectUse formula_use(const std::string& name, const std::string& adds_to,
                       const std::vector<UnknownTerm>& terms, const std::vector<double>& coefficients,
                       bool linear) {
-  constexpr double kFree = 50.0;  // times the estimate, either sign
+  constexpr double kFree = 50.0;  // bounds, times the estimate, either sign: wide enough to be none. A guess.
   ExpressionText text;
   text.name = name;
   text.adds_to = adds_to == "torque_Nm" ? spelt(adds_to, linear) : adds_to;

@@ -1,7 +1,7 @@
 // The physical terms from which a formula for unknown structure may be put together.
 //
-//   for (const UnknownTerm& t : torque_terms(model, scale, 0.02)) std::cout << t.text << " " << t.unit;
-//   // omega_rotor_rad_s*abs(omega_rotor_rad_s) N m s2/rad2, …
+//   for (const UnknownTerm& t : torque_terms(model, scale, 0.01)) t.text;
+//   // "omega_rotor_rad_s*abs(omega_rotor_rad_s)"
 //
 // Each is written in the variables of user formulas (`omnihil effects expression`), with the unit of what its
 // coefficient must have and a coefficient at which it is of a visible size.

@@ -8,18 +8,23 @@
 namespace omnihil {
 namespace {
 
-constexpr double kStructure = 0.10;  // of the null's energy
-// ... of what the baseline left above the null. The right law in another form leaves a few per cent.
+// Smallest excess over the null's energy that counts as structure. Tuned on the open cases (DECISIONS 35);
+// sensitivity not measured.
+constexpr double kStructure = 0.10;
+// Fraction of the baseline's excess that an accepted effect may leave. Right laws in another form left 4 % at
+// most in 67 cases of the hidden-effect test, wrong ones passed where 20 % was allowed (DECISIONS 46).
 constexpr double kUnexplained = 0.10;
-constexpr double kSpreads = 5.0;  // of the null's replicates
+// Standard deviations of the null's replicates: far out, since that standard deviation comes from few
+// replicates (8: known to 27 %, 1 / sqrt(2 (n - 1))). Tuned on the open cases; sensitivity not measured.
+constexpr double kSpreads = 5.0;
 
-// Excess of each signal's energy over the null's.
+// Excess of each channel's energy over the null's: [channel].
 Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& null,
                           const ComparedChannels& channels, const Eigen::VectorXd& residual) {
   const Eigen::VectorXd floor = null.floor(residuals.split()), square = residuals.mean_square(residual);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(square.size());
   for (Eigen::Index k = 0; k < out.size(); ++k) {
-    // A measured bus voltage is given to the model: what it leaves there is no structure of the drive.
+    // A measured bus voltage is an input of the model: its residual is no structure of the drive.
     if (channels.name[static_cast<std::size_t>(k)] == "bus_voltage") continue;
     if (floor[k] > 0.0) out[k] = square[k] / floor[k] - 1.0;
   }
@@ -31,7 +36,7 @@ Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& n
 ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChannels& channels,
                                   const Candidate& baseline, const Candidate& last, std::uint64_t seed,
                                   int jobs) {
-  constexpr int kReplicates = 8;
+  constexpr int kReplicates = 8;  // by cost: a simulation of all runs each
   ResidualExcess out;
   const Splits splits{WhitenedResiduals(predictor, channels, Split::kTraining, Weighing::kUnweighted),
                       WhitenedResiduals(predictor, channels, Split::kValidation, Weighing::kUnweighted),
@@ -48,21 +53,21 @@ ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChan
   out.signal = channels.name[static_cast<std::size_t>(worst)];
   const double floor = null.floor(splits[u].split())[worst];
   out.spread = floor > 0.0 ? null.spread(splits[u].split())[worst] / floor : 0.0;
-  double left = 0.0, all = 0.0;
+  double remaining = 0.0, all = 0.0;
   for (Eigen::Index k = 0; k < after.size(); ++k) {
     if (before[k] <= 0.0) continue;
-    const double weight = before[k] / (1.0 + before[k]);  // a signal at its floor has nothing to explain
-    left += weight * std::clamp(after[k] / before[k], 0.0, 1.0);
+    const double weight = before[k] / (1.0 + before[k]);  // a channel at its noise has nothing to explain
+    remaining += weight * std::clamp(after[k] / before[k], 0.0, 1.0);
     all += weight;
   }
-  out.unexplained = all > 0.0 ? left / all : 0.0;
+  out.unexplained = all > 0.0 ? remaining / all : 0.0;
   return out;
 }
 
-bool structure_remains(const ResidualExcess& rest, bool effects_added) {
-  const bool above_chance = rest.excess > kSpreads * rest.spread;
-  if (!above_chance || rest.excess < kStructure) return false;
-  return !effects_added || rest.unexplained > kUnexplained;
+bool structure_remains(const ResidualExcess& excess, bool effects_added) {
+  const bool above_chance = excess.excess > kSpreads * excess.spread;
+  if (!above_chance || excess.excess < kStructure) return false;
+  return !effects_added || excess.unexplained > kUnexplained;
 }
 
 bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, const ComparedChannels& channels,
@@ -76,23 +81,21 @@ bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, con
   return false;
 }
 
-std::string residual_sentence(const ResidualExcess& rest, bool effects_added) {
+std::string residual_sentence(const ResidualExcess& excess, bool effects_added) {
   const std::string size = fmt::format(
       "the error energy of {} is {:.0f} % above what the sensors' noise alone would leave "
       "(simulated; its replicates scatter by {:.1f} %)",
-      rest.signal, 100.0 * rest.excess, 100.0 * rest.spread);
-  if (structure_remains(rest, effects_added)) {
+      excess.signal, 100.0 * excess.excess, 100.0 * excess.spread);
+  if (structure_remains(excess, effects_added)) {
     return "Structure remains that no known effect explains: " + size + ".";
   }
-  if (effects_added && rest.excess_before < kStructure) {
-    // named for what the model file says, not for what it takes
-    return "Nothing more that matters can be learned from these data: " + size + ".";
-  }
   if (effects_added) {
-    return fmt::format(
-        "Nothing more that matters can be learned from these data: {}; {:.0f} % of what the base "
-        "model left is explained.",
-        size, 100.0 * (1.0 - rest.unexplained));
+    // An effect accepted for a prior need not explain any energy.
+    const std::string explained = excess.excess_before < kStructure
+                                      ? ""
+                                      : fmt::format("; {:.0f} % of what the base model left is explained",
+                                                    100.0 * (1.0 - excess.unexplained));
+    return "Nothing more that matters can be learned from these data: " + size + explained + ".";
   }
   return "Nothing that matters is missing as far as these data show: " + size + ".";
 }

@@ -61,7 +61,7 @@ function drawDrift(parent) {
     data: [steps.map((_, i) => i), ...moved.map((p) => p.sigmas)],
     series: moved.map((p, i) => ({ label: p.path, points: true, stroke: palette[i % palette.length],
                                    dash: dashes[Math.floor(i / palette.length) % dashes.length] })),
-    x: stepAxis(steps), y: { label: 'drift, tolerances', scale: { range: (u, lo, hi) => [Math.min(-3, lo * 1.1), Math.max(3, hi * 1.1)] } },
+    x: stepAxis(steps), y: { label: 'prior deviation, σ', scale: { range: (u, lo, hi) => [Math.min(-3, lo * 1.1), Math.max(3, hi * 1.1)] } },
     draw: (u) => shade(u, null, [-2, 2], 'soft'),
   });
 }

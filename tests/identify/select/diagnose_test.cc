@@ -36,7 +36,7 @@ std::string reasons(const Diagnosis& d) {
 }
 
 bool same_set(const Diagnosis& d, const std::string& a, const std::string& b) {
-  return std::any_of(d.indistinguishable.begin(), d.indistinguishable.end(), [&](const ConfoundedSet& s) {
+  return std::any_of(d.confounded.begin(), d.confounded.end(), [&](const ConfoundedSet& s) {
     return std::find(s.members.begin(), s.members.end(), a) != s.members.end() &&
            std::find(s.members.begin(), s.members.end(), b) != s.members.end();
   });
@@ -112,7 +112,7 @@ TEST(SlowDiagnoseTest, TheSameAtAnyNumberOfThreads) {
   EXPECT_EQ(diagnosis_json(diagnosed(bench, 1), {}), diagnosis_json(diagnosed(bench, 2), {}));
 }
 
-TEST(SlowDiagnoseTest, ProbabilitiesNeverSumToMoreThanOne) {
+TEST(SlowDiagnoseTest, SelectionFrequenciesNeverSumToMoreThanOne) {
   const Bench bench = simulated_bench(steps_with({"battery_sag.resistance_ohm=0.1"}));
   DiagnoseOptions options;
   options.jobs = 1;
@@ -120,8 +120,8 @@ TEST(SlowDiagnoseTest, ProbabilitiesNeverSumToMoreThanOne) {
   const Diagnosis d = diagnose(bench.dataset, bench.nominal, options);
   double sum = 0.0;
   for (const RankedEffect& r : d.ranking) {
-    EXPECT_GE(r.probability, 0.0) << r.effect;
-    sum += r.probability;
+    EXPECT_GE(r.selection_frequency, 0.0) << r.effect;
+    sum += r.selection_frequency;
   }
   EXPECT_LE(sum, 1.0 + 1e-9);
 }

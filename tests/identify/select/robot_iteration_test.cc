@@ -1,4 +1,4 @@
-// One round of the search on a robot's record.
+// One iteration of the selection on a robot's record.
 #include "identify/select/selection_context.h"
 #include "identify/select/selection_iteration.h"
 #include "tests/identify/simulated_robot.h"
@@ -7,7 +7,7 @@ namespace omnihil::test {
 namespace {
 
 // Nothing in a record parts a payload from a heavier robot; the file, which knows the mass to 2 %, does.
-Iteration round_with_payload(double payload_kg) {
+Iteration iteration_with_payload(double payload_kg) {
   const Dataset data = robot_record({{"payload.mass_kg", payload_kg}}, 6.0);
   const Candidate nominal = robot_candidate();
   SelectionContext bench(data, nominal, {.seed = 1, .jobs = 2});
@@ -17,23 +17,22 @@ Iteration round_with_payload(double payload_kg) {
   return selection_iteration(bench.task(not_applicable), bench.base());
 }
 
-TEST(RobotRound, APayloadIsWhatLetsTheMassComeBack) {
-  const Iteration iteration = round_with_payload(0.14);  // 6 %, 2.9 tolerances
+TEST(RobotIteration, APayloadIsAcceptedByThePriorOfTheMass) {
+  const Iteration iteration = iteration_with_payload(0.14);  // 6 %, 2.9 tolerances
   ASSERT_EQ(iteration.chosen, 0) << iteration.ranking.front().effect << ": " << iteration.ranking.front().why;
   const CandidateEffect& best = iteration.candidates.front();
   EXPECT_EQ(best.screened.name, "payload") << best.acceptance.why;
   EXPECT_NEAR(*value_at(best.fitted.fit.model, "payload.mass_kg"), 0.14, 0.015);
-  EXPECT_GT(best.probability, 0.5);
+  EXPECT_EQ(best.acceptance.accepted_by, AcceptedBy::kPrior);
 }
 
-TEST(RobotRound, AMassWithinItsToleranceIsNoPayload) {
-  const Iteration iteration = round_with_payload(0.07);  // 3 %
+TEST(RobotIteration, AMassWithinItsToleranceIsNoPayload) {
+  const Iteration iteration = iteration_with_payload(0.07);  // 3 %
   EXPECT_EQ(iteration.chosen, -1) << iteration.candidates.front().screened.name << ": "
                                   << iteration.candidates.front().acceptance.why;
 }
 
-// Ten per cent, five tolerances: after the other effect is found nothing remains but a mass that nobody
-// believes.
+// Ten per cent, five tolerances: after the other effect is found nothing remains but a prior-implausible mass.
 TEST(SlowRobotDiagnosis, APayloadIsFoundBesideAnotherEffect) {
   const Dataset data =
       robot_record({{"payload.mass_kg", 0.25}, {"rolling_resistance.coefficient", 0.03}}, 6.0);

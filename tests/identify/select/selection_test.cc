@@ -19,15 +19,15 @@ class MarkedPredictor : public FakePredictor {
   bool shows_signature_of(const EffectEntry& effect) const override { return effect.info->id == mark; }
 };
 
-// One run to fit and one held out, of noise; contenders that leave shares of it.
-struct Ring {
+// One run to fit and one held out; candidates that leave shares of their energy.
+struct SelectionFixture {
   MarkedPredictor fake;
   std::unique_ptr<FakeResiduals> residuals;
   SelectionTask task;
   Fitted parent;
   Iteration iteration;
 
-  Ring() {
+  SelectionFixture() {
     for (const Split split : {Split::kTraining, Split::kValidation}) {
       fake.add(split, std::vector<double>(kSamples, 1.0), std::vector<double>(kSamples, 0.0));
     }
@@ -51,122 +51,134 @@ struct Ring {
     return out;
   }
 
-  void enter(const std::string& effect, Fitted fitted) {
+  void add_candidate(const std::string& effect, Fitted fitted) {
     CandidateEffect c;
     c.screened.entry = find_effect(effect);
     c.screened.name = effect;
     c.fitted = std::move(fitted);
     c.acceptance = test_acceptance(task.acceptance_context, parent, c.fitted, "x", 100.0);
-    EXPECT_TRUE(c.acceptance.accepted) << c.acceptance.why;
+    EXPECT_TRUE(c.acceptance.accepted()) << c.acceptance.why;
     iteration.candidates.push_back(std::move(c));
   }
 
-  // Of no gain; a base parameter comes back with it.
-  void believe(const std::string& effect, const std::string& base) {
+  // Of no gain; a base parameter returns to its prior with it.
+  void accept_by_prior(const std::string& effect, const std::string& base) {
     CandidateEffect c;
     c.screened.entry = find_effect(effect);
     c.screened.name = effect;
     c.screened.tried = true;
     c.screened.closest_parameter = base;
     c.fitted = leaving(1.0, 1.0);
-    c.acceptance.accepted = c.acceptance.by_prior = true;
+    c.acceptance.accepted_by = AcceptedBy::kPrior;
     EXPECT_EQ(c.screened.aliased_parameter(), base);
     iteration.candidates.push_back(std::move(c));
   }
 
-  std::string winner() {
+  std::string best() {
     select_best(task, parent, iteration);
     return iteration.chosen < 0
                ? ""
                : iteration.candidates[static_cast<std::size_t>(iteration.chosen)].screened.name;
   }
 
-  std::vector<std::string> twins() const {
+  std::vector<std::string> confounded() const {
     std::vector<std::string> names;
-    for (const int t : iteration.twins)
+    for (const int t : iteration.confounded)
       names.push_back(iteration.candidates[static_cast<std::size_t>(t)].screened.name);
     return names;
   }
 };
 
-TEST(ContestTest, TheOneThatLeavesLeastWins) {
-  Ring ring;
-  ring.enter("cogging", Ring::leaving(0.8, 0.8));
-  ring.enter("dead_time", Ring::leaving(0.5, 0.5));
-  EXPECT_EQ(ring.winner(), "dead_time");
-  EXPECT_TRUE(ring.twins().empty());
+TEST(SelectionTest, TheCandidateOfLargestGainIsChosen) {
+  SelectionFixture fixture;
+  fixture.add_candidate("cogging", SelectionFixture::leaving(0.8, 0.8));
+  fixture.add_candidate("dead_time", SelectionFixture::leaving(0.5, 0.5));
+  EXPECT_EQ(fixture.best(), "dead_time");
+  EXPECT_TRUE(fixture.confounded().empty());
 }
 
-// Firmware's delay explains a hair more; but the readings are multiples of a pulse.
-TEST(ContestTest, OfThoseThatLeaveTheSameTheOneWhoseMarkTheReadingsCarryWins) {
-  Ring ring;
-  ring.enter("sampling_delay", Ring::leaving(0.500, 0.500));
-  ring.enter("hall_speed_estimator", Ring::leaving(0.502, 0.502));
-  EXPECT_EQ(ring.winner(), "sampling_delay");
-  Ring marked;
+// A delay gains 0.2 % more; but the readings are multiples of a pulse.
+TEST(SelectionTest, OfEqualGainsTheOneWhoseQuantisationTheReadingsShowIsChosen) {
+  SelectionFixture fixture;
+  fixture.add_candidate("sampling_delay", SelectionFixture::leaving(0.500, 0.500));
+  fixture.add_candidate("hall_speed_estimator", SelectionFixture::leaving(0.502, 0.502));
+  EXPECT_EQ(fixture.best(), "sampling_delay");
+  SelectionFixture marked;
   marked.fake.mark = "hall_speed_estimator";
-  marked.enter("sampling_delay", Ring::leaving(0.500, 0.500));
-  marked.enter("hall_speed_estimator", Ring::leaving(0.502, 0.502));
-  EXPECT_EQ(marked.winner(), "hall_speed_estimator");
-  EXPECT_EQ(marked.twins(), std::vector<std::string>{"sampling_delay"});
-  Ring far;
+  marked.add_candidate("sampling_delay", SelectionFixture::leaving(0.500, 0.500));
+  marked.add_candidate("hall_speed_estimator", SelectionFixture::leaving(0.502, 0.502));
+  EXPECT_EQ(marked.best(), "hall_speed_estimator");
+  EXPECT_EQ(marked.confounded(), std::vector<std::string>{"sampling_delay"});
+  SelectionFixture far;
   far.fake.mark = "hall_speed_estimator";
-  far.enter("sampling_delay", Ring::leaving(0.5, 0.5));
-  far.enter("hall_speed_estimator", Ring::leaving(0.8, 0.8));
-  EXPECT_EQ(far.winner(), "sampling_delay");
+  far.add_candidate("sampling_delay", SelectionFixture::leaving(0.5, 0.5));
+  far.add_candidate("hall_speed_estimator", SelectionFixture::leaving(0.8, 0.8));
+  EXPECT_EQ(far.best(), "sampling_delay");
 }
 
 // Each explains another half of the record: which is the better one depends on the draw.
-TEST(ContestTest, WhatSomeDrawsPreferIsATwin) {
-  Ring ring;
-  ring.enter("constant_load", Ring::leaving(0.50, 0.62));
-  ring.enter("back_emf_missing", Ring::leaving(0.62, 0.51));
-  EXPECT_EQ(ring.winner(), "constant_load");
-  EXPECT_EQ(ring.twins(), std::vector<std::string>{"back_emf_missing"});
+TEST(SelectionTest, ACandidateThatSomeDrawsSelectIsConfoundedWithTheBest) {
+  SelectionFixture fixture;
+  fixture.add_candidate("constant_load", SelectionFixture::leaving(0.50, 0.62));
+  fixture.add_candidate("back_emf_missing", SelectionFixture::leaving(0.62, 0.51));
+  EXPECT_EQ(fixture.best(), "constant_load");
+  EXPECT_EQ(fixture.confounded(), std::vector<std::string>{"back_emf_missing"});
 }
 
-TEST(ContestTest, WhatLeavesTwiceAsMuchIsNoTwinWhateverTheDraws) {
-  Ring ring;
-  ring.enter("constant_load", Ring::leaving(0.10, 0.30));
-  ring.enter("back_emf_missing", Ring::leaving(0.80, 0.09));
-  EXPECT_EQ(ring.winner(), "constant_load");
-  EXPECT_GT(ring.iteration.candidates[1].probability, 0.0);
-  EXPECT_TRUE(ring.twins().empty());
+TEST(SelectionTest, ACandidateThatLeavesTwiceTheEnergyIsNotConfoundedWhateverTheDraws) {
+  SelectionFixture fixture;
+  fixture.add_candidate("constant_load", SelectionFixture::leaving(0.10, 0.30));
+  fixture.add_candidate("back_emf_missing", SelectionFixture::leaving(0.80, 0.09));
+  EXPECT_EQ(fixture.best(), "constant_load");
+  EXPECT_GT(fixture.iteration.candidates[1].selection_frequency, 0.0);
+  EXPECT_TRUE(fixture.confounded().empty());
 }
 
-TEST(ContestTest, NamesThreeThatCannotBeToldApartAndNoMore) {
-  Ring ring;
-  ring.fake.mark = "shaft_compliance";
+TEST(SelectionTest, AConfoundedSetHasThreeMembersAtMost) {
+  SelectionFixture fixture;
+  fixture.fake.mark = "shaft_compliance";
   for (const char* name : {"cogging", "imbalance", "gravity_load", "dead_time", "shaft_compliance"})
-    ring.enter(name, Ring::leaving(0.5, 0.5));
-  EXPECT_EQ(ring.winner(), "shaft_compliance");
-  EXPECT_EQ(ring.twins().size(), 2u);
+    fixture.add_candidate(name, SelectionFixture::leaving(0.5, 0.5));
+  EXPECT_EQ(fixture.best(), "shaft_compliance");
+  EXPECT_EQ(fixture.confounded().size(), 2u);
 }
 
-TEST(ContestTest, WhatIsBelievedWinsWhereNothingGains) {
-  Ring ring;
-  ring.believe("payload", "robot.mass_kg");
-  EXPECT_EQ(ring.winner(), "payload");
-  EXPECT_EQ(ring.iteration.candidates.front().probability, 1.0);
-  Ring beside;
-  beside.believe("payload", "robot.mass_kg");
-  beside.enter("dead_time", Ring::leaving(0.5, 0.5));
-  EXPECT_EQ(beside.winner(), "dead_time");
-  EXPECT_TRUE(beside.twins().empty());
+TEST(SelectionTest, ACandidateAcceptedByItsPriorIsChosenWhereNothingGains) {
+  SelectionFixture fixture;
+  fixture.accept_by_prior("payload", "robot.mass_kg");
+  EXPECT_EQ(fixture.best(), "payload");
+  // it gains nothing, so no draw of the bootstrap selects it
+  EXPECT_EQ(fixture.iteration.candidates.front().selection_frequency, 0.0);
+  SelectionFixture beside;
+  beside.accept_by_prior("payload", "robot.mass_kg");
+  beside.add_candidate("dead_time", SelectionFixture::leaving(0.5, 0.5));
+  EXPECT_EQ(beside.best(), "dead_time");
+  EXPECT_TRUE(beside.confounded().empty());
 }
 
-// Each lets another base parameter come back: neither explains what the other does.
-TEST(ContestTest, WhatIsBelievedForDifferentReasonsIsNoTwin) {
-  Ring ring;
-  ring.believe("payload", "robot.mass_kg");
-  ring.believe("quadratic_drag", "motor.viscous_friction_Nm_s_per_rad");
-  EXPECT_FALSE(ring.winner().empty());
-  EXPECT_TRUE(ring.twins().empty());
-  Ring same;
-  same.believe("grease_drag", "motor.viscous_friction_Nm_s_per_rad");
-  same.believe("quadratic_drag", "motor.viscous_friction_Nm_s_per_rad");
-  EXPECT_FALSE(same.winner().empty());
-  EXPECT_EQ(same.twins().size(), 1u);
+// They restore different base parameters to their priors: neither is an alternative to the other.
+TEST(SelectionTest, CandidatesThatRestoreDifferentParametersAreNotConfounded) {
+  SelectionFixture fixture;
+  fixture.accept_by_prior("payload", "robot.mass_kg");
+  fixture.accept_by_prior("quadratic_drag", "motor.viscous_friction_Nm_s_per_rad");
+  EXPECT_FALSE(fixture.best().empty());
+  EXPECT_TRUE(fixture.confounded().empty());
+  SelectionFixture same;
+  same.accept_by_prior("grease_drag", "motor.viscous_friction_Nm_s_per_rad");
+  same.accept_by_prior("quadratic_drag", "motor.viscous_friction_Nm_s_per_rad");
+  EXPECT_FALSE(same.best().empty());
+  EXPECT_EQ(same.confounded().size(), 1u);
+}
+
+// The selection frequency is a share of draws, whether or not a candidate passes the acceptance test.
+TEST(SelectionTest, EqualCandidatesShareEveryDraw) {
+  SelectionFixture fixture;
+  fixture.add_candidate("cogging", SelectionFixture::leaving(0.5, 0.5));
+  fixture.add_candidate("dead_time", SelectionFixture::leaving(0.5, 0.5));
+  fixture.iteration.candidates[1].acceptance.accepted_by = AcceptedBy::kNone;
+  EXPECT_EQ(fixture.best(), "cogging");
+  for (const CandidateEffect& c : fixture.iteration.candidates)
+    EXPECT_NEAR(c.selection_frequency, 0.5, 1e-9) << c.screened.name;
 }
 
 }  // namespace
