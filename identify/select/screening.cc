@@ -269,13 +269,13 @@ std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const C
     if (mask.inside.sum() >= static_cast<double>(kLeast)) masks.push_back(std::move(mask));
   };
   if (speeds.size() >= kLeast) {
-    const double top = quantile(speeds, kTopQuantile);
+    const double top = quantile_of(speeds, kTopQuantile);
     add("slow", [&](Eigen::Index i) { return std::abs(speed[i]) < kSlow * top; });
     add("fast", [&](Eigen::Index i) { return std::abs(speed[i]) > kFast * top; });
   }
   if (accelerations.size() >= kLeast) {
-    const double quasi_static = quantile(accelerations, kSteadyQuantile);
-    const double dynamic = quantile(accelerations, kTransientQuantile);
+    const double quasi_static = quantile_of(accelerations, kSteadyQuantile);
+    const double dynamic = quantile_of(accelerations, kTransientQuantile);
     add("steady", [&](Eigen::Index i) { return std::abs(acceleration[i]) < quasi_static; });
     add("transient", [&](Eigen::Index i) { return std::abs(acceleration[i]) > dynamic; });
   }
