@@ -2,7 +2,7 @@
 // visible size, phases as pairs of sine and cosine.
 //
 //   for (const EffectVariant& v : variants_of(entry, candidate, scale)) {
-//     for (const VariantColumn& c : v.columns) predict(with_use(candidate, setting(v, c)));
+//     for (const VariantColumn& c : v.columns) predictor.predict(with_use(candidate, setting(v, c)), run);
 //     // a difference signal each; their linear coefficients give strengths and phases to start a refit from:
 //     EffectUse start = start_of(v, coefficients, false);
 //   }
