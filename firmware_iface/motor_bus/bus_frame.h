@@ -1,4 +1,4 @@
-// One frame of a motor bus, and where frames come from and go to. Little-endian numbers in and out of it.
+// One frame of a motor bus, and a queue of them. Little-endian numbers in and out of it.
 //
 //   BusFrame frame = can_frame(0x00D, 8);               // classic CAN, 11-bit id, 8 bytes
 //   put_f32(frame, 0, 1.5F);  put_f32(frame, 4, 0.0F);
@@ -11,10 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <vector>
 
 namespace omnihil {
 
@@ -107,17 +104,6 @@ class FrameQueue {
   std::array<BusFrame, 256> frames_{};
   std::size_t first_ = 0, count_ = 0;
   std::uint64_t dropped_ = 0;
-};
-
-// The wire itself, given from outside. Never blocks.
-class FramePort {
- public:
-  virtual ~FramePort() = default;
-  virtual bool read(BusFrame& frame) = 0;                  // false: nothing waits
-  virtual bool write(const BusFrame& frame) = 0;           // false: not taken (counted by the caller)
-  virtual std::string_view failure() const { return {}; }  // why the wire is gone; empty: it is not
-  virtual int handle() const { return -1; }  // readable when frames wait; -1: there is none to watch
-  virtual std::vector<std::string> report() const { return {}; }  // after a run, a line each
 };
 
 }  // namespace omnihil

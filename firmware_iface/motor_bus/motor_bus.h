@@ -15,6 +15,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "firmware_iface/motor_bus/bus_frame.h"
 #include "firmware_iface/motor_bus/motor_axis.h"

@@ -6,12 +6,12 @@ constexpr int kMaxFramesPerTick = 512;  // so that a flood cannot stop the loop
 }
 
 MotorBusFirmware::MotorBusFirmware(const MotorBusKind& kind, const MotorBusSetup& setup, BusShaft shaft,
-                                   const RobotConfig& config, std::unique_ptr<FramePort> port)
+                                   const RobotConfig& config, std::unique_ptr<FrameWire> wire)
     : name_("motor bus " + std::string(kind.id)),
       setup_(setup),
       gear_ratio_(config.gear_ratio),
       shaft_(shaft),
-      port_(std::move(port)) {
+      wire_(std::move(wire)) {
   constexpr double kPeriod_s = static_cast<double>(kPeriod_ns) * 1e-9;
   axes_.fill(MotorAxis(config, shaft, kPeriod_s));
   if (setup_.first_id < 0) setup_.first_id = kind.default_first_id;
@@ -26,11 +26,14 @@ RobotDrive MotorBusFirmware::tick(const RobotSensors& sensors) {
     axes_[m].sense(sensors.encoder_counts[wheel], sensors.motor_current_A[wheel], sensors.bus_voltage_V);
   }
   BusFrame frame;
-  for (int n = 0; n < kMaxFramesPerTick && port_->read(frame); ++n) {
+  for (int n = 0; n < kMaxFramesPerTick && wire_->read(frame); ++n) {
     ++counts_.received[static_cast<std::size_t>(bus_->receive(frame, now_ns))];
   }
   bus_->tick(now_ns);
-  while (out_.pop(frame)) ++(port_->write(frame) ? counts_.sent : counts_.not_sent);
+  while (out_.pop(frame)) ++(wire_->write(frame) ? counts_.sent : counts_.not_sent);
+  if (failure_.empty() && wire_->error()) {
+    failure_ = std::string(wire_->name()) + ": " + wire_->error().message();
+  }
   RobotDrive drive{};
   feedback_.now_us = sensors.now_us;
   feedback_.battery_V = sensors.bus_voltage_V;
@@ -67,7 +70,7 @@ std::vector<std::string> MotorBusFirmware::report() const {
   lines.push_back("frames sent " + std::to_string(all.sent) + ", not taken by the wire " +
                   std::to_string(all.not_sent) + "; motors stopped by time-out " +
                   std::to_string(bus_->timeouts()));
-  for (std::string& line : port_->report()) lines.push_back(std::move(line));
+  for (std::string& line : wire_->report()) lines.push_back(std::move(line));
   return lines;
 }
 

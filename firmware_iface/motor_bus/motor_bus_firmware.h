@@ -1,10 +1,10 @@
 // The motor controllers of a bus as the "firmware" of a robot: the main board outside closes the loop.
 //
-//   MotorBusFirmware firmware(*find_motor_bus("odrive"), setup, BusShaft::kRotor, config, std::move(port));
+//   MotorBusFirmware firmware(*find_motor_bus("odrive"), setup, BusShaft::kRotor, config, std::move(wire));
 //   RobotDrive drive = firmware.tick(sensors);      // frames in, inner loops, frames out
 //
 // One tick per 0.5 ms: frames that have arrived, in order; sensors; timeouts and inner loops; answers.
-// Commands of the radio have no effect: the main board has its own. Pure but for the port that it is given.
+// Commands of the radio have no effect: the main board has its own. Pure but for the wire that it is given.
 // Cannot: bit timing, arbitration, error frames, bus-off; inner loops of tens of kHz.
 #pragma once
 #include <array>
@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware_iface/motor_bus/frame_wire.h"
 #include "firmware_iface/motor_bus/motor_bus.h"
 #include "firmware_iface/ports.h"
 
@@ -29,7 +30,7 @@ class MotorBusFirmware final : public Firmware {
   static constexpr std::int64_t kPeriod_ns = 500'000;
 
   MotorBusFirmware(const MotorBusKind& kind, const MotorBusSetup& setup, BusShaft shaft,
-                   const RobotConfig& config, std::unique_ptr<FramePort> port);
+                   const RobotConfig& config, std::unique_ptr<FrameWire> wire);
 
   std::string_view name() const override { return name_; }
   std::string_view radio_format() const override { return {}; }
@@ -41,7 +42,7 @@ class MotorBusFirmware final : public Firmware {
   RobotGains gains() const override { return {}; }
   RobotDrive tick(const RobotSensors& sensors) override;
   RobotFeedback feedback() const override { return feedback_; }
-  std::string_view failure() const override { return port_->failure(); }
+  std::string_view failure() const override { return failure_; }
   std::vector<std::string> report() const override;
 
   BusCounts counts() const;
@@ -54,7 +55,8 @@ class MotorBusFirmware final : public Firmware {
   BusShaft shaft_;
   std::array<MotorAxis, kWheels> axes_;
   FrameQueue out_;
-  std::unique_ptr<FramePort> port_;
+  std::unique_ptr<FrameWire> wire_;
+  std::string failure_;
   std::unique_ptr<MotorBus> bus_;
   BusCounts counts_;
   RobotFeedback feedback_{};

@@ -6,28 +6,12 @@
 
 #include "firmware_iface/motor_bus/motor_bus_firmware.h"
 #include "hil/loop/session_checks.h"
-#include "hil/wire/adapter_port.h"
-#include "hil/wire/socketcan_port.h"
-#include "hil/wire/uart_port.h"
+#include "hil/wire/burst_wire.h"
+#include "hil/wire/open_wire.h"
 #include "sim/model/params.h"
 
 namespace omnihil {
 namespace {
-
-struct Url {
-  std::string scheme, rest;
-};
-Url split(const std::string& port) {
-  const std::size_t colon = port.find(':');
-  if (colon == std::string::npos) return {"", port};
-  return {port.substr(0, colon), port.substr(colon + 1)};
-}
-
-std::string with_id(std::string text, std::uint32_t id) {
-  for (std::size_t at; (at = text.find("{id}")) != std::string::npos;)
-    text.replace(at, 4, std::to_string(id));
-  return text;
-}
 
 bool read_order(const std::string& text, std::array<std::uint8_t, kWheels>& order) {
   if (text.size() != 2 * kWheels - 1) return false;
@@ -42,67 +26,42 @@ bool read_order(const std::string& text, std::array<std::uint8_t, kWheels>& orde
   return true;
 }
 
-std::vector<std::string> split_list(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    parts.push_back(text.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return parts;
+// What a bus says of its wires where the URL does not; the bench stands for the motors, so others come to it.
+WireQuery usual(const MotorBusKind& kind) {
+  return {{"baud", std::to_string(kind.bit_rate)},
+          {"parity", kind.even_parity ? "even" : "none"},
+          {"listen", "1"},
+          {"fd", kind.carrier == BusCarrier::kCanFd ? "1" : "0"}};
 }
 
-// The ways a bus may run over, in the order a user reads them.
-struct WireScheme {
-  std::string_view scheme;
-  std::string_view rest;  // what follows the colon
-  bool uart;              // for buses on UARTs; else for CAN
-  std::unique_ptr<FramePort> (*open)(const std::string& rest, const MotorBusKind& kind, std::string& problem);
-};
-constexpr WireScheme kSchemes[] = {
-    {"uart", "PATH", true,
-     [](const std::string& rest, const MotorBusKind&, std::string& problem) {
-       return open_uart_ptys(rest, kWheels, problem);
-     }},
-    {"serial", "DEVICE,DEVICE,DEVICE,DEVICE", true,
-     [](const std::string& rest, const MotorBusKind& kind, std::string& problem) {
-       return open_uart_serial(split_list(rest), kind.bit_rate, kind.even_parity, problem);
-     }},
-    {"can", "INTERFACE", false,
-     [](const std::string& rest, const MotorBusKind& kind, std::string& problem) {
-       return open_socketcan(rest, kind.carrier, problem);
-     }},
-    {"slcan", "PATH", false,
-     [](const std::string& rest, const MotorBusKind&, std::string& problem) {
-       return AdapterPort::open(rest, "slcan", make_slcan_adapter(), problem);
-     }},
-    {"fdcanusb", "PATH", false,
-     [](const std::string& rest, const MotorBusKind&, std::string& problem) {
-       return AdapterPort::open(rest, "fdcanusb", make_fdcanusb_adapter(), problem);
-     }},
-};
-
-bool fits(const WireScheme& wire, const MotorBusKind& kind) {
-  return wire.uart == (kind.carrier == BusCarrier::kUart);
+std::unique_ptr<FrameWire> open_wire(const std::string& port, const MotorBusKind& kind,
+                                     WireProblem& problem) {
+  if (kind.carrier != BusCarrier::kUart) return open_frame_wire(read_wire_url(port), usual(kind), problem);
+  std::vector<std::unique_ptr<ByteWire>> lines;
+  for (const WireUrl& url : read_motor_wires(port, kWheels)) {
+    lines.push_back(open_byte_wire(url, usual(kind), problem));
+    if (!lines.back()) return nullptr;
+  }
+  return make_burst_wire(std::move(lines));
 }
 
-// nullptr: the bus does not run over this.
-const WireScheme* scheme_of(const MotorBusKind& kind, std::string_view scheme) {
-  for (const WireScheme& wire : kSchemes) {
-    if (wire.scheme == scheme && fits(wire, kind)) return &wire;
+void check_wire(const std::string& port, const MotorBusKind& kind, std::vector<std::string>& problems) {
+  const auto refuse = [&](const std::string& why) {
+    problems.push_back(fmt::format("motor bus port: \"{}\": {}", port, why));
+  };
+  const bool uart = kind.carrier == BusCarrier::kUart;
+  const std::vector<WireUrl> wires =
+      uart ? read_motor_wires(port, kWheels) : std::vector<WireUrl>{read_wire_url(port)};
+  if (uart && wires.size() != kWheels) {
+    refuse(wires.empty()
+               ? fmt::format("{} has a wire per motor, of {}; put {{motor}} where its number goes, such "
+                             "as pty:./motor{{motor}}",
+                             kind.id, known_wires(WireForm::kBytes))
+               : fmt::format("{} devices; needed: one per motor, {}", wires.size(), kWheels));
+    return;
   }
-  return nullptr;
-}
-
-// "can:INTERFACE, slcan:PATH or fdcanusb:PATH"
-std::string schemes_of(const MotorBusKind& kind) {
-  std::vector<std::string> ways;
-  for (const WireScheme& wire : kSchemes) {
-    if (fits(wire, kind)) ways.push_back(fmt::format("{}:{}", wire.scheme, wire.rest));
-  }
-  const std::string last = ways.back();
-  ways.pop_back();
-  return fmt::format("{} or {}", fmt::join(ways, ", "), last);
+  for (const std::string& why : wire_problems(wires[0], uart ? WireForm::kBytes : WireForm::kFrames))
+    problems.push_back("motor bus port: " + why);
 }
 
 void check_bus(const MotorBusChoice& choice, const MotorBusKind* kind, std::vector<std::string>& problems) {
@@ -115,16 +74,7 @@ void check_bus(const MotorBusChoice& choice, const MotorBusKind* kind, std::vect
                                    fmt::join(known, ", ")));
     return;
   }
-  const std::string scheme = split(choice.port).scheme;
-  if (scheme_of(*kind, scheme) == nullptr) {
-    problems.push_back(
-        fmt::format("motor bus port: \"{}\": {} runs over {}", choice.port, kind->id, schemes_of(*kind)));
-  }
-  const std::size_t devices = split_list(choice.port).size();
-  if (scheme == "serial" && devices != kWheels) {
-    problems.push_back(fmt::format("motor bus port: \"{}\": {} devices; needed: one per motor, {}",
-                                   choice.port, devices, kWheels));
-  }
+  check_wire(choice.port, *kind, problems);
   if (choice.first_id >= 0 && (kind->default_first_id < 0 || choice.first_id > kind->max_first_id)) {
     problems.push_back(kind->default_first_id < 0
                            ? fmt::format("motor bus first id: {} has fixed ids", kind->id)
@@ -159,10 +109,9 @@ Session::FirmwareMaker bus_firmware(const MotorBusChoice& choice, const SessionC
   throw_problems(problems);
   const BusShaft shaft = choice.shaft == "wheel" ? BusShaft::kWheel : BusShaft::kRotor;
   return [kind, setup, shaft, port = choice.port](const RobotConfig& config) -> std::unique_ptr<Firmware> {
-    std::string problem;
-    const Url url = split(with_id(port, config.robot_id));
-    std::unique_ptr<FramePort> wire = scheme_of(*kind, url.scheme)->open(url.rest, *kind, problem);
-    if (!wire) throw_problems({"motor bus: " + problem});
+    WireProblem problem;
+    std::unique_ptr<FrameWire> wire = open_wire(with_number(port, "{id}", config.robot_id), *kind, problem);
+    if (!wire) throw_problems({"motor bus: " + problem.text()});
     return std::make_unique<MotorBusFirmware>(*kind, setup, shaft, config, std::move(wire));
   };
 }

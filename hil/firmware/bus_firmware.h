@@ -3,12 +3,9 @@
 //   MotorBusChoice choice{.bus = "odrive", .port = "slcan:./can"};
 //   Session session(config, bus_firmware(choice, config));
 //
-//   can:vcan0        an interface of this computer (SocketCAN)
-//   slcan:./can      a pty that is a LAWICEL USB-CAN stick to whoever opens it
-//   fdcanusb:./can   a pty that is an mjbots fdcanusb
-//   uart:./motor     ptys ./motor0 to ./motor3 (UART buses)
-//   serial:A,B,C,D   serial ports of this computer, one per motor (UART buses)
-//   {id}             in any of them stands for the robot's id: each robot has a wire of its own
+// The port is a wire's URL (hil/wire/wire_url.h): of one for frames, such as can:vcan0, or, of a UART bus, of one
+// for bytes per motor, {motor} in it standing for the motor's number: pty:./motor{motor}. {id} stands for the
+// robot's id: each robot has a wire of its own.
 #pragma once
 #include <optional>
 #include <string>

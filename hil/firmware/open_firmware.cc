@@ -15,6 +15,7 @@
 #include "hil/loop/reference_firmware.h"
 #include "hil/loop/session_checks.h"
 #include "hil/text/text_file.h"
+#include "hil/wire/wire_url.h"
 #include "sim/robot/electric_model.h"
 
 namespace omnihil {
@@ -87,7 +88,7 @@ Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const Session
     }
     return reference_firmware_for(session);
   }
-  if (is_remote_url(choice.file)) {
+  if (looks_like_wire(choice.file)) {
     if (!choice.board.empty()) {
       throw_problems({fmt::format(
           "board {}: belongs to a microcontroller image; a board on the desk has none", choice.board)});

@@ -5,7 +5,7 @@
 //
 //   (empty)            the reference firmware that the robot's model asks for, in this process
 //   a shared object    of this computer: by the C ABI (omnihil_firmware.h), each robot in a process of its own
-//   serial:DEVICE[,BAUD], can:INTERFACE, canfd:INTERFACE  a board on the desk (hil/firmware/remote_firmware.h)
+//   a wire's URL       serial:/dev/ttyACM0, can:can0, …: a board on the desk (hil/firmware/remote_firmware.h)
 //   a microcontroller image (32-bit ARM executable) with its board file: emulated, one board per robot
 //   an AVR image (ELF or Intel HEX) with its board file: emulated by omnihil-avr, one board per wheel
 #pragma once

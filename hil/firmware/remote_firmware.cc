@@ -3,66 +3,45 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "hil/loop/clock.h"
 #include "hil/loop/session_checks.h"
-#include "hil/wire/can_line.h"
+#include "hil/wire/can_byte_wire.h"
+#include "hil/wire/open_wire.h"
 
 namespace omnihil {
 namespace {
 
-constexpr std::string_view kSerial = "serial:", kCan = "can:", kCanFd = "canfd:";
-constexpr int kDefaultBaud = 921'600;                   // 1 kHz of both frames takes 640 kbit/s
+constexpr const char* kUsualBaud = "921600";            // 1 kHz of both frames takes 640 kbit/s
+constexpr std::size_t kQueue_bytes = 4096;              // what a stopped line may pile up
 constexpr std::int64_t kDriveTimeout_ns = 50'000'000;   // real time
 constexpr std::int64_t kReplyTimeout_ns = 100'000'000;  // lock-step
 constexpr int kMaxMissedInARow = 20;                    // lock-step: 2 s of wall time
 
-struct Url {
-  bool serial = true;
-  std::string device;  // of CAN: the whole text
-  int baud = kDefaultBaud;
-};
-
-std::string read_url(const std::string& text, Url& url) {
-  url.serial = text.starts_with(kSerial);
-  if (text.ends_with(':'))
-    return "no device; such as serial:/dev/ttyACM0, serial:/dev/ttyUSB0,921600 or can:can0";
-  if (!url.serial) {
-    url.device = text;
-    return {};
+// Frames take their time on CAN and are old when they wait: what it does not take now is lost.
+BufferedWire open_line(const WireUrl& url) {
+  const bool frames = find_wire_kind(url.scheme)->open_frames != nullptr;
+  WireProblem problem;
+  std::unique_ptr<ByteWire> wire;
+  if (frames) {
+    std::unique_ptr<FrameWire> can = open_frame_wire(url, {}, problem);
+    const std::string* fd = url.find("fd");
+    if (can) wire = make_can_byte_wire(std::move(can), fd != nullptr && *fd == "1");
+  } else {
+    wire = open_byte_wire(url, {{"baud", kUsualBaud}}, problem);
   }
-  const std::string rest = text.substr(kSerial.size());
-  const std::size_t comma = rest.find(',');
-  url.device = rest.substr(0, comma);
-  if (comma == std::string::npos) return {};
-  const char* const end = rest.data() + rest.size();
-  const auto [stop, error] = std::from_chars(rest.data() + comma + 1, end, url.baud);
-  if (error != std::errc{} || stop != end || url.baud < 9600 || url.baud > 12'000'000) {
-    return fmt::format("baud rate \"{}\"; allowed: 9600 to 12000000", rest.substr(comma + 1));
-  }
-  return {};
-}
-
-std::string with_id(std::string text, std::uint32_t id) {
-  for (std::size_t at; (at = text.find("{id}")) != std::string::npos;)
-    text.replace(at, 4, std::to_string(id));
-  return text;
+  if (!wire) throw_problems({"firmware: " + problem.text()});
+  return {std::move(wire), frames ? 0 : kQueue_bytes};
 }
 
 double ms(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
 
 }  // namespace
 
-bool is_remote_url(const std::string& text) {
-  return text.starts_with(kSerial) || text.starts_with(kCan) || text.starts_with(kCanFd);
-}
-
 Session::FirmwareMaker remote_firmware(const RemoteChoice& choice, const SessionConfig& session) {
   std::vector<std::string> problems;
-  Url url;
-  if (const std::string wrong = read_url(choice.url, url); !wrong.empty()) {
-    problems.push_back(fmt::format("firmware {}: {}", choice.url, wrong));
+  for (const std::string& problem : wire_problems(read_wire_url(choice.url), WireForm::kEither)) {
+    problems.push_back("firmware " + problem);
   }
   if (session.robot_ids.size() > 1 && choice.url.find("{id}") == std::string::npos) {
     problems.push_back(
@@ -71,13 +50,10 @@ Session::FirmwareMaker remote_firmware(const RemoteChoice& choice, const Session
                     choice.url, session.robot_ids.size()));
   }
   throw_problems(problems);
-  return [choice, url](const RobotConfig& config) -> std::unique_ptr<Firmware> {
-    const std::string device = with_id(url.device, config.robot_id);
+  return [choice](const RobotConfig& config) -> std::unique_ptr<Firmware> {
+    const std::string device = with_number(choice.url, "{id}", config.robot_id);
+    RemoteLink link(open_line(read_wire_url(device)));
     std::string problem;
-    std::unique_ptr<ByteLine> line =
-        url.serial ? open_byte_line(device, {.baud = url.baud}, problem) : open_can_line(device, problem);
-    if (!line) throw_problems({"firmware: " + problem});
-    RemoteLink link(std::move(line));
     RemoteHello hello;
     if (!link.hello(config, hello, problem))
       throw_problems({fmt::format("firmware {}: {}", device, problem)});

@@ -1,7 +1,7 @@
 // A real board on the desk as the firmware of a robot: sensors go out over a serial line or CAN, the
 // drive comes back.
 //
-//   Session session(config, remote_firmware({.url = "serial:/dev/ttyACM0,921600"}, config));
+//   Session session(config, remote_firmware({.url = "serial:/dev/ttyACM0?baud=921600"}, config));
 //
 // Real time (serve): the loop never waits. A drive that has come by the next control period is in force from
 // then on, so the board adds at least one period of delay, as its own sampling would. Lock-step (virtual
@@ -21,11 +21,10 @@
 namespace omnihil {
 
 struct RemoteChoice {
-  std::string url;  // "serial:DEVICE[,BAUD]", "can:INTERFACE", "canfd:INTERFACE"; {id}: the robot's number
+  std::string url;         // of any wire (hil/wire/wire_url.h); {id}: the robot's number
   bool lock_step = false;  // virtual time
 };
 
-bool is_remote_url(const std::string& text);
 // Throws std::invalid_argument naming every problem; the maker does when a board does not answer.
 Session::FirmwareMaker remote_firmware(const RemoteChoice& choice, const SessionConfig& session);
 

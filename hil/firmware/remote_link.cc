@@ -13,6 +13,7 @@ namespace {
 constexpr std::int64_t kHelloEvery_ns = 200'000'000, kHelloPatience_ns = 3'000'000'000;
 constexpr std::size_t kHelloBytes = 56, kSensorsBytes = 37, kCommandBytes = 68, kDriveBytes = 18;
 constexpr std::size_t kMaxRadioFrames = 64;
+constexpr std::size_t kBite_bytes = 1024;
 
 // Rounded and held to what the field holds; a sensor at its end of scale.
 std::int16_t to_i16(double value) {
@@ -62,7 +63,7 @@ class Packer {
 void RemoteLink::send(std::uint8_t type, std::uint16_t sequence, std::span<const std::uint8_t> payload) {
   std::array<std::uint8_t, OMNIHIL_REMOTE_WIRE_MAX> wire{};
   const std::size_t n = omnihil_remote_encode(type, sequence, payload.data(), payload.size(), wire.data());
-  if (n == 0 || !line_->write(std::span(wire).first(n))) ++counts_.line_full;
+  if (n == 0 || !line_.write(std::span(wire).first(n))) ++counts_.line_full;
 }
 
 bool RemoteLink::hello(const RobotConfig& config, RemoteHello& answer, std::string& problem) {
@@ -75,7 +76,7 @@ bool RemoteLink::hello(const RobotConfig& config, RemoteHello& answer, std::stri
       .f32(config.motor_torque_constant_Nm_per_A)
       .f32(config.command_timeout_s);
   const std::uint8_t clear_line[] = {0, 0};
-  line_->write(clear_line);
+  line_.write(clear_line);
   const std::int64_t start_ns = monotonic_now_ns();
   std::int64_t next_ns = start_ns;
   std::uint16_t tries = 0;
@@ -84,7 +85,7 @@ bool RemoteLink::hello(const RobotConfig& config, RemoteHello& answer, std::stri
       send(OMNIHIL_REMOTE_HELLO, tries++, p);
       next_ns += kHelloEvery_ns;
     }
-    line_->wait(10'000'000);
+    line_.wait(10'000'000);
     poll();
   }
   answer = hello_;
@@ -132,14 +133,14 @@ void RemoteLink::send_radio(std::span<const std::uint8_t> frame) {
 }
 
 void RemoteLink::poll() {
-  std::array<std::uint8_t, 1024> bytes{};
-  for (std::size_t n; (n = line_->read(bytes)) > 0;) {
-    for (const std::uint8_t byte : std::span(bytes).first(n)) {
+  do {
+    bytes_.clear();
+    line_.read(bytes_, kBite_bytes);
+    for (const std::uint8_t byte : bytes_) {
       omnihil_remote_frame frame{};
       if (omnihil_remote_decode(&decoder_, byte, &frame) != 0) take(frame);
     }
-    if (n < bytes.size()) break;
-  }
+  } while (bytes_.size() == kBite_bytes);
 }
 
 void RemoteLink::take(const omnihil_remote_frame& frame) {

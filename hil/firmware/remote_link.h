@@ -1,6 +1,6 @@
 // The bench's end of the line to a board: frames of remote_frame.h out and in, and how long answers took.
 //
-//   RemoteLink link(std::move(line));
+//   RemoteLink link({std::move(wire), 4096});
 //   RemoteHello answer;
 //   if (!link.hello(robot_config, answer, problem)) …                         // what came instead
 //   link.send_sensors(sensors);
@@ -17,7 +17,7 @@
 #include "firmware_iface/remote_shim/remote_frame.h"
 #include "firmware_iface/robot_io.h"
 #include "hil/loop/clock_lateness.h"
-#include "hil/wire/byte_line.h"
+#include "hil/wire/buffered_wire.h"
 
 namespace omnihil {
 
@@ -37,7 +37,7 @@ struct RemoteCounts {
 class RemoteLink {
  public:
   static constexpr int kWindow = 256;  // sensors that may wait for an answer; older ones count as lost
-  explicit RemoteLink(std::unique_ptr<ByteLine> line) : line_(std::move(line)) {}
+  explicit RemoteLink(BufferedWire line) : line_(std::move(line)) {}
 
   // Asks until the board answers, 3 s at most. False: `problem` says what came instead.
   bool hello(const RobotConfig& config, RemoteHello& answer, std::string& problem);
@@ -45,7 +45,7 @@ class RemoteLink {
   void send_command(const RobotCommand& command);
   void send_radio(std::span<const std::uint8_t> frame);
   void poll();
-  void wait(std::int64_t at_most_ns) { line_->wait(at_most_ns); }
+  void wait(std::int64_t at_most_ns) { line_.wait(at_most_ns); }
 
   const RobotDrive& drive() const { return drive_; }
   std::uint64_t drive_answers() const { return drive_answers_; }  // number of the sensors, from 1; 0: none
@@ -57,7 +57,7 @@ class RemoteLink {
   const omnihil_remote_decoder& decoder() const { return decoder_; }
   const LatenessHistogram& round_trip() const { return round_trip_; }
   const LatenessHistogram& board_time() const { return board_time_; }
-  std::string_view failure() const { return line_->failure(); }
+  std::string_view failure() const { return line_.failure(); }
 
  private:
   void send(std::uint8_t type, std::uint16_t sequence, std::span<const std::uint8_t> payload);
@@ -65,7 +65,8 @@ class RemoteLink {
   void take_hello(const omnihil_remote_frame& frame);
   void take_drive(const omnihil_remote_frame& frame);
 
-  std::unique_ptr<ByteLine> line_;
+  BufferedWire line_;
+  std::vector<std::uint8_t> bytes_;  // of one read
   omnihil_remote_decoder decoder_{};
   std::array<std::int64_t, kWindow> sent_ns_{};  // by number; 0: nothing waits
   RobotDrive drive_{};

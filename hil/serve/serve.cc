@@ -16,7 +16,7 @@
 #include "hil/serve/serve_port.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/serve/status_printer.h"
-#include "hil/wire/pty_transport.h"
+#include "hil/wire/open_wire.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
@@ -69,7 +69,7 @@ class Bench {
   const ServeOptions& options_;
   Session session_;
   StopSignals stop_;
-  std::unique_ptr<PtyTransport> transport_;
+  std::unique_ptr<ByteWire> wire_;
   std::unique_ptr<HostPort> port_;
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<Clock> clock_;
@@ -82,18 +82,20 @@ class Bench {
 };
 
 bool Bench::open(RecordingHeader header) {
-  std::string problem;
-  transport_ = PtyTransport::open(options_.device, problem);
-  if (!transport_) {
-    complain(problem);
+  pace_ = pace_of(find_radio_format(session_.config().radio_format)->carrier, options_);
+  WireQuery usual{{"listen", "1"}};  // the host comes to us
+  if (pace_.baud > 0) usual.emplace_back("baud", std::to_string(pace_.baud));
+  WireProblem problem;
+  wire_ = open_byte_wire(read_wire_url(options_.device, kServeDevice), usual, problem);
+  if (!wire_) {
+    complain(problem.text());
     return false;
   }
-  pace_ = pace_of(find_radio_format(session_.config().radio_format)->carrier, options_);
-  port_ = std::make_unique<HostPort>(*transport_, pace_, HostPortOptions{});
+  port_ = std::make_unique<HostPort>(*wire_, pace_, HostPortOptions{});
   if (options_.fifo) {
-    problem = become_realtime(kFifoPriority);
-    if (!problem.empty()) {
-      complain("--fifo: " + problem);
+    const std::string refused = become_realtime(kFifoPriority);
+    if (!refused.empty()) {
+      complain("--fifo: " + refused);
       return false;
     }
   }
@@ -111,7 +113,8 @@ bool Bench::open(RecordingHeader header) {
 
 void Bench::say_ready() const {
   const SessionConfig& config = session_.config();
-  fmt::print("device {} ready: {} ({}), robots {} of model {}, team {}, {}, {}\n", options_.device,
+  const std::string device(looks_like_wire(options_.device) ? wire_->name() : options_.device);
+  fmt::print("device {} ready: {} ({}), robots {} of model {}, team {}, {}, {}\n", device,
              config.radio_format, carrier_words(find_radio_format(config.radio_format)->carrier, pace_),
              fmt::join(config.robot_ids, " "), model_, config.team == Team::kBlue ? "blue" : "yellow",
              to_string(config.plant.physics), options_.real_time ? "real time" : "free-running");

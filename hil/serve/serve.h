@@ -10,14 +10,17 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "hil/loop/session.h"
 #include "hil/recording/recording.h"
 
 namespace omnihil {
 
+inline constexpr std::string_view kServeDevice = "pty";  // what a bare path is
+
 struct ServeOptions {
-  std::string device = "./dongle";
+  std::string device = "./dongle";  // a wire's URL for bytes; a bare path is a pty's name
   bool pacing = true;
   std::optional<std::int64_t> baud;  // instead of the carrier's; 8N1
   bool real_time = true;             // false: virtual time as fast as it goes

@@ -9,25 +9,24 @@ LinePace carrier_pace(const Carrier& carrier) {
   return {carrier.baud, carrier.bits_per_byte};
 }
 
-HostPort::HostPort(Transport& transport, const LinePace& pace, const HostPortOptions& options)
-    : transport_(transport),
+HostPort::HostPort(ByteWire& wire, const LinePace& pace, const HostPortOptions& options)
+    : wire_(wire),
       options_(options),
       inward_(pace, options.bite_bytes),
-      outward_(pace, options.queue_bytes) {
+      outward_(pace, options.queue_bytes),
+      ready_(options.queue_bytes) {
   bite_.reserve(options.bite_bytes);
-  ready_.reserve(options.queue_bytes + options.queue_bytes / 2);
 }
 
 void HostPort::look_who_is_there() {
-  const bool closed = transport_.take_host_closed();
+  const bool closed = wire_.take_peer_closed();
   if (closed) {
     closing_ = true;
-    counts_.bytes_left_behind += outward_.waiting() + ready_.size() - ready_from_;
+    counts_.bytes_left_behind += outward_.waiting() + ready_.waiting();
     outward_.clear();
     ready_.clear();
-    ready_from_ = 0;
   }
-  const bool there = transport_.host_present();
+  const bool there = wire_.peer_present();
   if (there && (!present_ || closed)) ++counts_.hosts;
   present_ = there;
 }
@@ -38,7 +37,7 @@ std::error_code HostPort::receive(std::int64_t now_ns, std::vector<std::uint8_t>
   // While a close is on its way nothing new is read: it belongs to the next host.
   if (!closing_ && inward_.room() > 0) {
     bite_.clear();
-    error = transport_.read(bite_, inward_.room());
+    error = wire_.read(bite_, inward_.room());
     counts_.bytes_from_host += bite_.size();
     inward_.push(bite_, now_ns);
     look_who_is_there();
@@ -58,27 +57,20 @@ std::error_code HostPort::send(std::int64_t now_ns, std::span<const std::uint8_t
     counts_.bytes_without_host += answer.size();
     return {};
   }
-  const std::size_t waiting = outward_.waiting() + ready_.size() - ready_from_;
+  const std::size_t waiting = outward_.waiting() + ready_.waiting();
   if (waiting + answer.size() > options_.queue_bytes) {
     ++counts_.answers_dropped;
     counts_.bytes_dropped += answer.size();
   } else {
     outward_.push(answer, now_ns);
   }
-  outward_.pop(now_ns, ready_);
+  outward_.pop(now_ns, ready_.tail());
   return flush();
 }
 
 std::error_code HostPort::flush() {
   std::error_code error;
-  if (ready_from_ == ready_.size()) return error;
-  const std::size_t sent = transport_.write(std::span(ready_).subspan(ready_from_), error);
-  counts_.bytes_to_host += sent;
-  ready_from_ += sent;
-  if (ready_from_ == ready_.size() || ready_from_ >= options_.queue_bytes / 2) {
-    ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(ready_from_));
-    ready_from_ = 0;
-  }
+  counts_.bytes_to_host += ready_.flush(wire_, error);
   return error;
 }
 

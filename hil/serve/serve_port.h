@@ -1,12 +1,12 @@
-// Between a transport and the loop: the line's pace both ways, bounded queues, and what was lost by whom.
+// Between a wire and the loop: the line's pace both ways, bounded queues, and what was lost by whom.
 //
-//   HostPort port(transport, carrier_pace(format.carrier), {});
+//   HostPort port(wire, carrier_pace(format.carrier), {});
 //   port.receive(now_ns, host);                        // bytes that have reached the dongle by now
 //   session.step(host, answer);
 //   port.send(session.now_ns(), answer);
 //   if (port.take_host_closed()) session.host_closed();
 //
-// Into the dongle. From the transport no more is taken than the line's buffer holds, so a host that floods
+// Into the dongle. From the wire no more is taken than the line's buffer holds, so a host that floods
 // is held back by its own write(), as a real port would; nothing is lost. Unpaced, a step takes `bite_bytes`
 // at most (4096 bytes per 1 ms step are 4 MB/s, more than USB full speed carries).
 // Out of the dongle. What a host does not fetch waits in the kernel and then in a queue of `queue_bytes`.
@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "hil/wire/pacer.h"
-#include "hil/wire/transport.h"
+#include "hil/wire/send_queue.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
@@ -35,7 +35,7 @@ struct HostPortOptions {
 
 struct HostPortCounts {
   std::uint64_t bytes_from_host = 0;
-  std::uint64_t bytes_to_host = 0;       // taken by the transport
+  std::uint64_t bytes_to_host = 0;       // taken by the wire
   std::uint64_t answers_dropped = 0;     // queue full: the host does not read
   std::uint64_t bytes_dropped = 0;       // in those answers
   std::uint64_t bytes_left_behind = 0;   // the host closed before fetching them
@@ -45,7 +45,7 @@ struct HostPortCounts {
 
 class HostPort {
  public:
-  HostPort(Transport& transport, const LinePace& pace, const HostPortOptions& options);
+  HostPort(ByteWire& wire, const LinePace& pace, const HostPortOptions& options);
 
   // Replaces `host` with what reaches the dongle by now_ns. An error ends the run: the device is gone.
   std::error_code receive(std::int64_t now_ns, std::vector<std::uint8_t>& host);
@@ -59,13 +59,12 @@ class HostPort {
   void look_who_is_there();
   std::error_code flush();
 
-  Transport& transport_;
+  ByteWire& wire_;
   HostPortOptions options_;
   Pacer inward_;
   Pacer outward_;
   std::vector<std::uint8_t> bite_;
-  std::vector<std::uint8_t> ready_;  // crossed the line, not yet taken by the transport
-  std::size_t ready_from_ = 0;
+  SendQueue ready_;  // crossed the line, not yet taken by the wire
   bool present_ = false;
   bool closing_ = false;  // the host left; what it wrote is still on the line
   HostPortCounts counts_;

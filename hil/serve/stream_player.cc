@@ -7,17 +7,20 @@
 #include <optional>
 
 #include "hil/recording/stream_frames.h"
+#include "hil/wire/descriptor.h"
+#include "hil/wire/send_queue.h"
 
 namespace omnihil {
 namespace {
 
 constexpr std::int64_t kLongestWait_ns = 100'000'000;  // how late `stop` may be seen
+constexpr std::size_t kBite_bytes = 4096;
 
 class Player {
  public:
-  Player(const HostStream& stream, ClientPort& port, const PlayOptions& options,
+  Player(const HostStream& stream, ByteWire& wire, const PlayOptions& options,
          const volatile std::sig_atomic_t& stop)
-      : stream_(stream), port_(port), options_(options), stop_(stop) {
+      : stream_(stream), wire_(wire), options_(options), stop_(stop) {
     if (options.format != nullptr) cutter_.emplace(*options.format);
   }
 
@@ -49,16 +52,13 @@ class Player {
   void begin_write(const StreamChunk& chunk) {
     const double late_s = static_cast<double>(now_ns() - due_ns(chunk)) * 1e-9;
     summary_.latest_s = std::max(summary_.latest_s, late_s);
-    waiting_.insert(waiting_.end(), chunk.bytes.begin(), chunk.bytes.end());
+    waiting_.append(chunk.bytes);
     ++summary_.writes;
     write_waiting();
   }
 
   void write_waiting() {
-    if (waiting_.empty() || over()) return;
-    const std::size_t count = port_.write(waiting_, summary_.error);
-    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
-    summary_.bytes_written += count;
+    if (!over()) summary_.bytes_written += waiting_.flush(wire_, summary_.error);
   }
 
   // Reads and writes until the time is reached; past it, what waits is still tried once.
@@ -66,7 +66,8 @@ class Player {
     while (!over()) {
       const std::int64_t left_ns = until_ns - now_ns();
       if (left_ns <= 0) break;
-      port_.wait(std::min(left_ns, kLongestWait_ns), !waiting_.empty());
+      wait_for(wire_.handle(), std::min(left_ns, kLongestWait_ns),
+               waiting_.waiting() > 0);  // read() says why it is gone
       read_answers();
       write_waiting();
     }
@@ -74,7 +75,7 @@ class Player {
 
   void read_answers() {
     std::vector<std::uint8_t> answer;
-    port_.read(answer, summary_.error);
+    summary_.error = wire_.read(answer, kBite_bytes);
     summary_.bytes_read += answer.size();
     if (!cutter_ || answer.empty()) return;
     cutter_->push(answer);
@@ -100,21 +101,21 @@ class Player {
   }
 
   const HostStream& stream_;
-  ClientPort& port_;
+  ByteWire& wire_;
   const PlayOptions& options_;
   const volatile std::sig_atomic_t& stop_;
   std::optional<FrameCutter> cutter_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::int64_t round_start_ns_ = 0;
-  std::vector<std::uint8_t> waiting_;  // bytes that the device has not taken yet
+  SendQueue waiting_;  // bytes that the device has not taken yet
   PlaySummary summary_;
 };
 
 }  // namespace
 
-PlaySummary play_stream(const HostStream& stream, ClientPort& port, const PlayOptions& options,
+PlaySummary play_stream(const HostStream& stream, ByteWire& wire, const PlayOptions& options,
                         const volatile std::sig_atomic_t& stop) {
-  return Player(stream, port, options, stop).run();
+  return Player(stream, wire, options, stop).run();
 }
 
 std::string PlaySummary::text() const {

@@ -1,8 +1,8 @@
-// Plays a host's stream into a serial device at its own times, and counts what comes back: an AI host
+// Plays a host's stream into a byte wire at its own times, and counts what comes back: an AI host
 // without the AI.
 //
 //   PlayOptions options{.speed = 1.0};
-//   PlaySummary summary = play_stream(stream, *port, options, stop);
+//   PlaySummary summary = play_stream(stream, *wire, options, stop);
 //
 // Times are wall-clock times of this computer; a write that the device does not take at once is kept and
 // written as soon as it does. `stop` ends it early from a signal handler.
@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "hil/recording/stream_file.h"
-#include "hil/wire/stream_port.h"
+#include "hil/wire/byte_wire.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
@@ -40,7 +40,7 @@ struct PlaySummary {
   std::string text() const;  // several lines for a person
 };
 
-PlaySummary play_stream(const HostStream& stream, ClientPort& port, const PlayOptions& options,
+PlaySummary play_stream(const HostStream& stream, ByteWire& wire, const PlayOptions& options,
                         const volatile std::sig_atomic_t& stop);
 
 }  // namespace omnihil

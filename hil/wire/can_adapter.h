@@ -1,8 +1,8 @@
 // A USB-CAN adapter's serial language, from the adapter's side. Pure: bytes in, frames and answers out.
 //
-//   SlcanAdapter adapter;
-//   adapter.receive(bytes, frames, answer);      // what the host wrote; `answer` goes back to it
-//   adapter.send(frame, answer);                 // a frame of the bus, as the host reads it
+//   std::unique_ptr<CanAdapter> adapter = make_slcan_adapter();
+//   adapter->receive(bytes, frames, answer);      // what the host wrote; `answer` goes back to it
+//   adapter->send(frame, answer);                 // a frame of the bus, as the host reads it
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -27,7 +27,7 @@ class CanAdapter {
   std::uint64_t bad_lines_ = 0;
 };
 
-// LAWICEL / CAN232 ASCII, as slcand, python-can "slcan" and most USB-CAN sticks speak it.
+// Their wires: hil/wire/kinds. LAWICEL / CAN232 ASCII, as slcand, python-can "slcan" and most USB-CAN sticks speak it.
 std::unique_ptr<CanAdapter> make_slcan_adapter();
 // mjbots fdcanusb, as the moteus client library speaks it.
 std::unique_ptr<CanAdapter> make_fdcanusb_adapter();

@@ -12,24 +12,13 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "hil/wire/terminal.h"
+
 namespace omnihil {
 namespace {
 
 int open_slave(int master) {
   return ::ioctl(master, TIOCGPTPEER, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-}
-
-// Raw, 8 bits, no echo, no flow control; cfmakeraw leaves IXOFF, IXANY and CRTSCTS as they were.
-bool make_raw(int fd) {
-  termios modes{};
-  if (::tcgetattr(fd, &modes) != 0) return false;
-  ::cfmakeraw(&modes);
-  modes.c_iflag &= ~static_cast<tcflag_t>(IXOFF | IXANY | INPCK);
-  modes.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS);
-  modes.c_cflag |= CLOCAL | CREAD;
-  modes.c_cc[VMIN] = 1;
-  modes.c_cc[VTIME] = 0;
-  return ::tcsetattr(fd, TCSANOW, &modes) == 0;
 }
 
 std::string failed(const char* call) { return std::string(call) + " failed: " + std::strerror(errno); }

@@ -222,6 +222,9 @@ TEST_F(RecordingVerbs, PlayNamesWhatIsWrong) {
   const Ran radio = run_omnihil("play" + shell(stream) + "--radio smoke --device" + shell(device));
   EXPECT_EQ(radio.exit_code, 2) << radio.text;
   EXPECT_TRUE(radio.says("ulaval-hermes")) << radio.text;
+  const Ran wire = run_omnihil("play" + shell(stream) + "--device serail:/dev/ttyACM0");
+  EXPECT_EQ(wire.exit_code, 2) << wire.text;
+  EXPECT_TRUE(wire.says("did you mean serial?")) << wire.text;
   fake::write_text(stream, "0 xx\n");
   EXPECT_EQ(run_omnihil("play" + shell(stream) + "--device" + shell(device)).exit_code, 2);
 }

@@ -14,6 +14,7 @@
 #include "hil/recording/recording_header.h"
 #include "hil/recording/session_setup.h"
 #include "hil/text/program_files.h"
+#include "hil/wire/open_wire.h"
 #include "protocols/radio_format.h"
 #include "tools/exit_codes.h"
 #include "tools/firmware_options.h"
@@ -57,6 +58,10 @@ std::string understand(Words& words) {
   setup.radio_format = words.radio;
   if (setup.radio_format.empty() && stored.model) setup.radio_format = stored.model->radio;
   if (setup.radio_format.empty()) setup.radio_format = kDefaultRadio;
+  for (const std::string& problem :
+       wire_problems(read_wire_url(words.options.device, kServeDevice), WireForm::kBytes)) {
+    problems.push_back("--device: " + problem);
+  }
   setup.robot_ids = parse_robot_list(words.robots, problems);
   setup.team = words.team == "blue" ? Team::kBlue : Team::kYellow;
   setup.plant.physics = *parse_physics(words.physics);
@@ -131,8 +136,8 @@ void add_bus_options(CLI::App& verb, MotorBusChoice& choice) {
                   "(docs/motor-buses.md)");
   verb.add_option(
       "--bus-port", choice.port,
-      "the bus's wire: can:vcan0, slcan:./can, fdcanusb:./can, uart:./motor or serial:A,B,C,D (a port "
-      "per motor); {id} is the robot's number");
+      "the bus's wire (omnihil wires): can:vcan0, slcan:./can, pty:./motor{motor} (a wire per motor); "
+      "{id} is the robot's number");
   verb.add_option("--bus-shaft", choice.shaft, "a turn on the bus is one of the rotor or the wheel")
       ->capture_default_str();
   verb.add_option("--bus-order", choice.order, "wheel of the model that is motor 0, 1, 2, 3 of the bus")
@@ -156,7 +161,9 @@ void add_verb_serve(CLI::App& app, VerbResult& result) {
                    "add an effect to every robot: ID.parameter=value, or ID for its typical size; several "
                    "allowed");
   verb->add_option("--radio", w.radio, "radio format (default: the robot model's own, else ulaval-hermes)");
-  verb->add_option("--device", w.options.device, "name of the serial device to make")->capture_default_str();
+  verb->add_option("--device", w.options.device,
+                   "name of the serial device to make, or a wire's URL (omnihil wires)")
+      ->capture_default_str();
   verb->add_option("--robots", w.robots, "robot ids: 0-5 or 0,2,7")->capture_default_str();
   verb->add_option("--team", w.team, "team colour")
       ->check(CLI::IsMember({"blue", "yellow"}))

@@ -63,9 +63,10 @@ struct Wire {
   }
 };
 
-class WirePort final : public FramePort {
+class WireEnd final : public FrameWire {
  public:
-  explicit WirePort(std::shared_ptr<Wire> wire) : wire_(std::move(wire)) {}
+  explicit WireEnd(std::shared_ptr<Wire> wire) : wire_(std::move(wire)) {}
+  std::string_view name() const override { return "test"; }
   bool read(BusFrame& f) override {
     if (wire_->to_motors.empty()) return false;
     f = wire_->to_motors.front();
@@ -97,7 +98,7 @@ struct BusRig {
     words.plant.physics = Physics::kPlanar;
     session = std::make_unique<Session>(session_config(words), [&](const RobotConfig& config) {
       auto made =
-          std::make_unique<MotorBusFirmware>(*kind, setup, shaft, config, std::make_unique<WirePort>(wire));
+          std::make_unique<MotorBusFirmware>(*kind, setup, shaft, config, std::make_unique<WireEnd>(wire));
       firmware = made.get();
       return made;
     });

@@ -184,6 +184,7 @@ TEST(RemoteFirmwareTest, bad_words_are_named) {
   EXPECT_NE(refusal("serial:", one).find("no device"), std::string::npos);
   EXPECT_NE(refusal("serial:/dev/ttyACM0,12", one).find("baud rate \"12\""), std::string::npos);
   EXPECT_NE(refusal("serial:/dev/no_such_port", one).find("/dev/no_such_port: look up"), std::string::npos);
+  EXPECT_NE(refusal("serial:/dev/ttyACM0?bauds=9600", one).find("did you mean baud?"), std::string::npos);
   SessionConfig two = one;
   two.robots.push_back(two.robots[0]);
   two.robot_ids = {0, 1};

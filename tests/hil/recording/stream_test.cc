@@ -12,7 +12,7 @@
 #include "hil/recording/stream_file.h"
 #include "hil/recording/stream_frames.h"
 #include "hil/serve/stream_player.h"
-#include "hil/wire/stream_port.h"
+#include "hil/wire/open_wire.h"
 #include "tests/hil/recording/real_run.h"
 
 namespace omnihil {
@@ -222,9 +222,9 @@ class FarEnd {
 
 TEST(StreamPlayer, WritesEveryByteUnchangedAndCountsWhatComesBack) {
   FarEnd dongle;
-  std::error_code error;
-  const auto port = ClientPort::open(dongle.path(), error);
-  ASSERT_TRUE(port) << error.message();
+  WireProblem problem;
+  const auto port = open_byte_wire(read_wire_url(dongle.path(), "serial"), {}, problem);
+  ASSERT_TRUE(port) << problem.text();
   Bytes every(256);
   for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<std::uint8_t>(i);
   HostStream stream;
@@ -251,9 +251,9 @@ TEST(StreamPlayer, WritesEveryByteUnchangedAndCountsWhatComesBack) {
 
 TEST(StreamPlayer, EndsWithAnErrorWhenTheDeviceIsUnplugged) {
   FarEnd dongle;
-  std::error_code error;
-  const auto port = ClientPort::open(dongle.path(), error);
-  ASSERT_TRUE(port) << error.message();
+  WireProblem problem;
+  const auto port = open_byte_wire(read_wire_url(dongle.path(), "serial"), {}, problem);
+  ASSERT_TRUE(port) << problem.text();
   dongle.hang_up();
   HostStream stream;
   stream.chunks = {{0, {1}}, {3'600'000'000'000, {2}}};  // an hour: it must not be waited for
@@ -265,9 +265,9 @@ TEST(StreamPlayer, EndsWithAnErrorWhenTheDeviceIsUnplugged) {
 
 TEST(StreamPlayer, StopsWhenAsked) {
   FarEnd dongle;
-  std::error_code error;
-  const auto port = ClientPort::open(dongle.path(), error);
-  ASSERT_TRUE(port) << error.message();
+  WireProblem problem;
+  const auto port = open_byte_wire(read_wire_url(dongle.path(), "serial"), {}, problem);
+  ASSERT_TRUE(port) << problem.text();
   HostStream stream;
   stream.chunks = {{0, {1}}, {3'600'000'000'000, {2}}};
   const volatile std::sig_atomic_t stop = 1;
@@ -276,14 +276,14 @@ TEST(StreamPlayer, StopsWhenAsked) {
   EXPECT_EQ(summary.bytes_written, 0U);
 }
 
-TEST(ClientPort, RefusesWhatIsNoSerialDevice) {
+TEST(SerialWire, RefusesWhatIsNoSerialDevice) {
   const fake::TempFolder folder;
   fake::write_text(folder / "file", "text");
-  std::error_code error;
-  EXPECT_FALSE(ClientPort::open(folder / "file", error));
-  EXPECT_EQ(error.value(), ENOTTY);
-  EXPECT_FALSE(ClientPort::open(folder / "nothing", error));
-  EXPECT_EQ(error, std::errc::no_such_file_or_directory);
+  WireProblem problem;
+  EXPECT_FALSE(open_byte_wire({"serial", folder / "file", {}}, {}, problem));
+  EXPECT_EQ(problem.code.value(), ENOTTY);
+  EXPECT_FALSE(open_byte_wire({"serial", folder / "nothing", {}}, {}, problem));
+  EXPECT_EQ(problem.code, std::errc::no_such_file_or_directory);
 }
 
 }  // namespace

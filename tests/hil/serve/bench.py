@@ -53,10 +53,10 @@ class Report:
 
 
 class Bench:
-    def __init__(self, arguments=(), columns=None):
-        """columns: the bench sees a terminal that wide instead of a pipe."""
+    def __init__(self, arguments=(), columns=None, device=None):
+        """columns: the bench sees a terminal that wide instead of a pipe. device: a wire instead of a path."""
         self.folder = tempfile.mkdtemp(prefix="omnihil-serve-")
-        self.device = self.path("dongle")
+        self.device = device or self.path("dongle")
         self.program = os.environ["OMNIHIL_PROGRAM"]
         arguments = [argument.replace("{folder}", self.folder) for argument in arguments]
         if columns:
@@ -68,7 +68,8 @@ class Bench:
                                         stdin=subprocess.DEVNULL, stdout=end, stderr=subprocess.STDOUT)
         os.close(end)
         self.text = ""
-        self.wait_for(f"device {self.device} ready")
+        self.wait_for(" ready: ")
+        self.device = re.search(r"device (\S+) ready: ", self.text).group(1)  # a wire's name may say more
 
     def path(self, name):
         return os.path.join(self.folder, name)

@@ -39,6 +39,7 @@ constexpr int kSkipped = 77;
   }
 
 SCRIPT_TEST(ServeTest, "serial_client.py", drives_a_robot_through_the_serial_port)
+SCRIPT_TEST(ServeTest, "serial_client.py", serves_a_socket_as_it_does_a_serial_port)
 SCRIPT_TEST(ServeTest, "serial_client.py", works_through_a_socat_relay)
 SCRIPT_TEST(ServeTest, "serial_client.py", can_be_closed_and_opened_again)
 SCRIPT_TEST(ServeTest, "serial_client.py", serves_two_clients_one_after_the_other)

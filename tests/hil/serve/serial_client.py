@@ -41,6 +41,16 @@ def drives_a_robot_through_the_serial_port():
         assert end["true_x_m"] > 0.02 and abs(end["true_y_m"]) < 0.1 * end["true_x_m"], end
 
 
+def serves_a_socket_as_it_does_a_serial_port():
+    with Bench(ONE, device="tcp:0") as bench:
+        for _ in range(2):
+            with serial.serial_for_url(bench.device.replace("tcp:", "socket://"), timeout=DEADLINE_S) as port:
+                for _ in range(20):
+                    hermes.ping(port)
+        report = bench.stop()
+        assert report.code == 0 and report.good == 2 * 20 and report.refused == 0, report.text
+
+
 def works_through_a_socat_relay():
     with Bench(ONE) as bench:
         relay = bench.path("relay")
@@ -285,6 +295,12 @@ def names_every_bad_argument():
         assert done.returncode == 2, done
         for words in ('"x"', "id 2 stands twice", "did you mean ulaval-hermes?", "roboteam-rem-v8"):
             assert words in done.stderr, (words, done.stderr)
+        for option, wire, words in (("--device", "ptty:./x", "did you mean pty?"),
+                                    ("--device", "can:can0", "carries frames; needed: pty:"),
+                                    ("--firmware", "serail:/dev/ttyACM0", "did you mean serial?")):
+            done = subprocess.run([other.program, "serve", option, wire], capture_output=True, text=True,
+                                  timeout=DEADLINE_S, check=False, cwd=other.folder)
+            assert done.returncode == 2 and words in done.stderr, (wire, done)
         done = subprocess.run([other.program, "serve", "--robot", "omni_defalt"], capture_output=True, text=True,
                               timeout=DEADLINE_S, check=False, cwd=other.folder)
         assert done.returncode == 2 and "omni_default" in done.stderr, done

@@ -14,9 +14,9 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 constexpr std::int64_t kMs = 1'000'000;
 
-class FakeTransport : public Transport {
+class FakeWire : public ByteWire {
  public:
-  std::string_view url() const override { return "fake:"; }
+  std::string_view name() const override { return "fake:"; }
   std::error_code read(Bytes& out, std::size_t limit) override {
     largest_bite = std::max(largest_bite, limit);
     for (; limit > 0 && !from_host.empty(); --limit) {
@@ -36,8 +36,8 @@ class FakeTransport : public Transport {
     to_host.insert(to_host.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
     return n;
   }
-  bool host_present() const override { return present; }
-  bool take_host_closed() override { return std::exchange(closed, false); }
+  bool peer_present() const override { return present; }
+  bool take_peer_closed() override { return std::exchange(closed, false); }
 
   std::deque<std::uint8_t> from_host;
   Bytes to_host;
@@ -55,7 +55,7 @@ Bytes take(HostPort& port, std::int64_t now_ns) {
 }
 
 TEST(HostPortTest, TakesNoMoreThanItsBiteFromAFloodPerStep) {
-  FakeTransport transport;
+  FakeWire transport;
   transport.from_host.assign(10'000, 0x11);
   HostPort port(transport, {}, {.bite_bytes = 4096, .queue_bytes = 100});
   EXPECT_EQ(take(port, 0).size(), 4096u);
@@ -64,7 +64,7 @@ TEST(HostPortTest, TakesNoMoreThanItsBiteFromAFloodPerStep) {
 }
 
 TEST(HostPortTest, AHostOnAUartIsAdmittedAtTheLinesRateAndLosesNothing) {
-  FakeTransport transport;
+  FakeWire transport;
   transport.from_host.assign(3000, 0x22);
   HostPort port(transport, {115200, 10}, {.bite_bytes = 512, .queue_bytes = 100});
   std::size_t admitted = 0;
@@ -76,7 +76,7 @@ TEST(HostPortTest, AHostOnAUartIsAdmittedAtTheLinesRateAndLosesNothing) {
 }
 
 TEST(HostPortTest, AnswersLeaveAtTheLinesRate) {
-  FakeTransport transport;
+  FakeWire transport;
   HostPort port(transport, {9600, 10}, {});
   take(port, 0);
   ASSERT_FALSE(port.send(0, Bytes(2000, 0x33)));
@@ -85,7 +85,7 @@ TEST(HostPortTest, AnswersLeaveAtTheLinesRate) {
 }
 
 TEST(HostPortTest, AHostThatDoesNotReadLosesWholeAnswersTheNewestFirst) {
-  FakeTransport transport;
+  FakeWire transport;
   transport.host_takes = 0;
   HostPort port(transport, {}, {.bite_bytes = 64, .queue_bytes = 100});
   take(port, 0);
@@ -103,7 +103,7 @@ TEST(HostPortTest, AHostThatDoesNotReadLosesWholeAnswersTheNewestFirst) {
 }
 
 TEST(HostPortTest, AHostThatReadsByDribletsGetsEveryByteInOrder) {
-  FakeTransport transport;
+  FakeWire transport;
   HostPort port(transport, {}, {.bite_bytes = 64, .queue_bytes = 1000});
   take(port, 0);
   Bytes sent;
@@ -120,7 +120,7 @@ TEST(HostPortTest, AHostThatReadsByDribletsGetsEveryByteInOrder) {
 }
 
 TEST(HostPortTest, ACloseComesAfterEveryByteThatIsStillOnTheLine) {
-  FakeTransport transport;
+  FakeWire transport;
   transport.from_host.assign(100, 0x44);
   transport.leaves_when_empty = true;
   HostPort port(transport, {115200, 10}, {.bite_bytes = 512, .queue_bytes = 100});
@@ -137,7 +137,7 @@ TEST(HostPortTest, ACloseComesAfterEveryByteThatIsStillOnTheLine) {
 }
 
 TEST(HostPortTest, WhatTheLastHostLeftUnreadIsNotGivenToTheNext) {
-  FakeTransport transport;
+  FakeWire transport;
   transport.host_takes = 0;
   HostPort port(transport, {}, {});
   take(port, 0);

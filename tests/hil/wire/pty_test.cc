@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "hil/wire/pty_transport.h"
+#include "hil/wire/pty_wire.h"
 
 namespace omnihil {
 namespace {
@@ -31,25 +31,25 @@ class PtyTest : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  std::unique_ptr<PtyTransport> make() {
+  std::unique_ptr<PtyWire> make() {
     std::string problem;
-    auto port = PtyTransport::open(device_, problem);
+    auto port = PtyWire::open(device_, problem);
     EXPECT_EQ(problem, "");
     return port;
   }
   int open_host(int flags = O_RDWR) { return ::open(device_.c_str(), flags | O_NOCTTY | O_NONBLOCK); }
   // Reads until `n` bytes are there: the kernel hands bytes over in its own time, so it is asked again.
-  static Bytes read_all(PtyTransport& port, std::size_t n, std::size_t limit = 4096) {
+  static Bytes read_all(PtyWire& port, std::size_t n, std::size_t limit = 4096) {
     Bytes bytes;
     for (int tries = 0; bytes.size() < n && tries < 1'000'000; ++tries) {
       EXPECT_FALSE(port.read(bytes, limit));
     }
     return bytes;
   }
-  static void read_until_closed(PtyTransport& port, Bytes& bytes) {
+  static void read_until_closed(PtyWire& port, Bytes& bytes) {
     for (int tries = 0; tries < 1'000'000; ++tries) {
       ASSERT_FALSE(port.read(bytes, 4096));
-      if (port.take_host_closed()) return;
+      if (port.take_peer_closed()) return;
     }
     FAIL() << "the close was never seen";
   }
@@ -89,16 +89,16 @@ TEST_F(PtyTest, KnowsWhetherAHostHasThePortOpen) {
   auto port = make();
   Bytes bytes;
   ASSERT_FALSE(port->read(bytes, 100));
-  EXPECT_FALSE(port->host_present());
+  EXPECT_FALSE(port->peer_present());
   const int host = open_host();
   ASSERT_FALSE(port->read(bytes, 100));
-  EXPECT_TRUE(port->host_present());
-  EXPECT_FALSE(port->take_host_closed());
+  EXPECT_TRUE(port->peer_present());
+  EXPECT_FALSE(port->take_peer_closed());
   ::close(host);
   ASSERT_FALSE(port->read(bytes, 100));
-  EXPECT_FALSE(port->host_present());
-  EXPECT_TRUE(port->take_host_closed());
-  EXPECT_FALSE(port->take_host_closed());  // once
+  EXPECT_FALSE(port->peer_present());
+  EXPECT_TRUE(port->take_peer_closed());
+  EXPECT_FALSE(port->take_peer_closed());  // once
 }
 
 TEST_F(PtyTest, BytesWrittenRightBeforeACloseArriveBeforeTheCloseIsSeen) {
@@ -108,7 +108,7 @@ TEST_F(PtyTest, BytesWrittenRightBeforeACloseArriveBeforeTheCloseIsSeen) {
   ASSERT_EQ(::write(host, sent.data(), sent.size()), 3000);
   ::close(host);
   Bytes got;
-  while (!port->take_host_closed()) ASSERT_FALSE(port->read(got, 64));
+  while (!port->take_peer_closed()) ASSERT_FALSE(port->read(got, 64));
   EXPECT_EQ(got, sent);
 }
 
@@ -122,11 +122,11 @@ TEST_F(PtyTest, ACloseAndReopenBetweenTwoReadsIsSeenBeforeTheNewHostsBytes) {
   ASSERT_EQ(::write(host, "new", 3), 3);
   Bytes bytes;
   ASSERT_FALSE(port->read(bytes, 100));
-  EXPECT_TRUE(port->take_host_closed());
+  EXPECT_TRUE(port->take_peer_closed());
   EXPECT_TRUE(bytes.empty());
-  EXPECT_TRUE(port->host_present());
+  EXPECT_TRUE(port->peer_present());
   EXPECT_EQ(read_all(*port, 3), (Bytes{'n', 'e', 'w'}));
-  EXPECT_FALSE(port->take_host_closed());
+  EXPECT_FALSE(port->take_peer_closed());
   ::close(host);
 }
 
@@ -139,11 +139,11 @@ TEST_F(PtyTest, ASecondHostLeavingDoesNotCloseThePortOfTheFirst) {
   ASSERT_FALSE(port->read(bytes, 100));
   ::close(second);
   ASSERT_FALSE(port->read(bytes, 100));
-  EXPECT_FALSE(port->take_host_closed());
-  EXPECT_TRUE(port->host_present());
+  EXPECT_FALSE(port->take_peer_closed());
+  EXPECT_TRUE(port->peer_present());
   ::close(first);
   ASSERT_FALSE(port->read(bytes, 100));
-  EXPECT_TRUE(port->take_host_closed());
+  EXPECT_TRUE(port->take_peer_closed());
 }
 
 TEST_F(PtyTest, AHundredHostsInARowAreAllServed) {
@@ -306,7 +306,7 @@ TEST_F(PtyTest, TheNameIsALinkThatGoesWhenTheTransportGoes) {
 TEST_F(PtyTest, AFileOfThatNameIsNeverTouched) {
   std::ofstream(device_) << "precious";
   std::string problem;
-  EXPECT_EQ(PtyTransport::open(device_, problem), nullptr);
+  EXPECT_EQ(PtyWire::open(device_, problem), nullptr);
   EXPECT_NE(problem.find(device_), std::string::npos) << problem;
   EXPECT_NE(problem.find("a file of that name is in the way"), std::string::npos) << problem;
   std::ifstream in(device_);
@@ -318,7 +318,7 @@ TEST_F(PtyTest, AFileOfThatNameIsNeverTouched) {
 TEST_F(PtyTest, ALinkToSomethingAliveIsNeverTouched) {
   auto other = make();
   std::string problem;
-  EXPECT_EQ(PtyTransport::open(device_, problem), nullptr);
+  EXPECT_EQ(PtyWire::open(device_, problem), nullptr);
   EXPECT_NE(problem.find("which exists"), std::string::npos) << problem;
   EXPECT_EQ(fs::read_symlink(device_).string(), other->slave_path());
 }
@@ -333,7 +333,7 @@ TEST_F(PtyTest, ALinkThatAKilledBenchLeftIsReplaced) {
 TEST_F(PtyTest, AFolderThatDoesNotExistIsNamed) {
   std::string problem;
   const std::string path = (folder_ / "nowhere" / "dongle").string();
-  EXPECT_EQ(PtyTransport::open(path, problem), nullptr);
+  EXPECT_EQ(PtyWire::open(path, problem), nullptr);
   EXPECT_NE(problem.find("nowhere does not exist"), std::string::npos) << problem;
 }
 

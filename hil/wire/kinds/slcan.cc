@@ -11,7 +11,8 @@
 
 #include <algorithm>
 
-#include "hil/wire/can_adapter.h"
+#include "hil/wire/adapter_wire.h"
+#include "hil/wire/wire_kind.h"
 
 namespace omnihil {
 namespace {
@@ -129,5 +130,17 @@ class SlcanAdapter final : public CanAdapter {
 }  // namespace
 
 std::unique_ptr<CanAdapter> make_slcan_adapter() { return std::make_unique<SlcanAdapter>(); }
+
+const WireKind& wire_slcan() {
+  static constexpr WireKind kKind{
+      .scheme = "slcan",
+      .says = "a pseudo-terminal that is a USB-CAN stick (LAWICEL ASCII) to whoever opens it",
+      .address = "name",
+      .example = "slcan:./can",
+      .open_frames = [](const WireUrl& url, WireProblem& problem) {
+        return open_adapter_wire(url, make_slcan_adapter(), problem);
+      }};
+  return kKind;
+}
 
 }  // namespace omnihil

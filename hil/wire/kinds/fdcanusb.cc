@@ -9,7 +9,8 @@
 // "can on", "can off", "can std", "can ext" and "can status" are answered OK without effect.
 #include <fmt/format.h>
 
-#include "hil/wire/can_adapter.h"
+#include "hil/wire/adapter_wire.h"
+#include "hil/wire/wire_kind.h"
 
 namespace omnihil {
 namespace {
@@ -119,5 +120,16 @@ class FdcanusbAdapter final : public CanAdapter {
 }  // namespace
 
 std::unique_ptr<CanAdapter> make_fdcanusb_adapter() { return std::make_unique<FdcanusbAdapter>(); }
+
+const WireKind& wire_fdcanusb() {
+  static constexpr WireKind kKind{.scheme = "fdcanusb",
+                                  .says = "a pseudo-terminal that is an mjbots fdcanusb to whoever opens it",
+                                  .address = "name",
+                                  .example = "fdcanusb:./can",
+                                  .open_frames = [](const WireUrl& url, WireProblem& problem) {
+                                    return open_adapter_wire(url, make_fdcanusb_adapter(), problem);
+                                  }};
+  return kKind;
+}
 
 }  // namespace omnihil

@@ -2,7 +2,7 @@
 // of its team's radio dongle, closes and opens it again any time; the bench's side outlives all of that.
 //
 //   std::string problem;
-//   auto port = PtyTransport::open("./dongle", problem);  // nullptr: `problem` says why
+//   auto port = PtyWire::open("./dongle", problem);  // nullptr: `problem` says why
 //   port->read(bytes, 4096);
 //
 // Comings and goings, line modes: hil/wire/pty.h. The name: hil/wire/pty_name.h.
@@ -11,31 +11,33 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <utility>
 
+#include "hil/wire/byte_wire.h"
 #include "hil/wire/pty.h"
 #include "hil/wire/pty_name.h"
-#include "hil/wire/transport.h"
 
 namespace omnihil {
 
-class PtyTransport : public Transport {
+class PtyWire final : public ByteWire {
  public:
-  static std::unique_ptr<PtyTransport> open(const std::string& path, std::string& problem);
+  static std::unique_ptr<PtyWire> open(const std::string& path, std::string& problem);
 
-  std::string_view url() const override { return url_; }
+  std::string_view name() const override { return label_; }
   std::error_code read(std::vector<std::uint8_t>& out, std::size_t limit) override;
   std::size_t write(std::span<const std::uint8_t> bytes, std::error_code& error) override;
-  bool host_present() const override { return present_; }
-  bool take_host_closed() override;
+  int handle() const override { return present_ ? pty_->master() : -1; }  // without a peer it is always ready
+  bool peer_present() const override { return present_; }
+  bool take_peer_closed() override { return std::exchange(closed_, false); }
   const std::string& slave_path() const { return pty_->slave_path(); }
 
  private:
-  PtyTransport() = default;
+  PtyWire() = default;
   std::error_code host_left();
 
   std::unique_ptr<Pty> pty_;
   PtyName name_;
-  std::string url_;
+  std::string label_;  // "pty:./dongle"
   bool present_ = false;
   bool visited_ = false;  // somebody has opened it since the line was made fresh
   bool closed_ = false;

@@ -1,0 +1,91 @@
+// UDP datagrams to a port, or, with listen=1, to whoever sent the last one that came. Their boundaries mean
+// nothing here: what one write() takes is one datagram, what read() gives are the bytes of all that came.
+// Datagrams that the network loses are lost.
+#include <algorithm>
+#include <array>
+#include <cerrno>
+
+#include "hil/wire/socket.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::size_t kLargest_bytes = 65'507;  // of an IPv4 datagram: 65535 less 20 (IP) and 8 (UDP)
+
+class UdpWire final : public ByteWire {
+ public:
+  UdpWire(SocketEnd end, bool listens) : end_(std::move(end)), listens_(listens) {}
+
+  std::string_view name() const override { return end_.name; }
+  int handle() const override { return end_.socket.get(); }
+  bool peer_present() const override { return !listens_ || known_; }
+
+  // A datagram that does not fit whole stays with the system until its last byte has been read, so that the
+  // handle is readable until then.
+  std::error_code read(std::vector<std::uint8_t>& out, std::size_t limit) override {
+    while (limit > 0) {
+      SocketAddress sender;
+      const ssize_t n = ::recvfrom(end_.socket.get(), datagram_.data(), datagram_.size(), MSG_PEEK,
+                                   sender.get(), &sender.size);
+      if (n < 0) return errno == EINTR || nobody_there(errno) ? std::error_code{} : last_error();
+      if (listens_) peer_ = sender;
+      known_ = true;
+      const auto size = static_cast<std::size_t>(n);
+      const std::size_t part = std::min(limit, size - at_);
+      const auto from = datagram_.begin() + static_cast<std::ptrdiff_t>(at_);
+      out.insert(out.end(), from, from + static_cast<std::ptrdiff_t>(part));
+      at_ += part;
+      limit -= part;
+      if (at_ < size) break;
+      at_ = 0;
+      ::recv(end_.socket.get(), nullptr, 0, 0);  // takes it away
+    }
+    return {};
+  }
+
+  std::size_t write(std::span<const std::uint8_t> bytes, std::error_code& error) override {
+    error.clear();
+    if (!peer_present() || bytes.empty()) return 0;
+    const std::span<const std::uint8_t> part = bytes.first(std::min(bytes.size(), kLargest_bytes));
+    const sockaddr* to = listens_ ? peer_.get() : nullptr;
+    const ssize_t n = ::sendto(end_.socket.get(), part.data(), part.size(), 0, to, listens_ ? peer_.size : 0);
+    if (n >= 0) return static_cast<std::size_t>(n);
+    if (errno != EINTR && !nobody_there(errno)) error = last_error();
+    return 0;
+  }
+
+ private:
+  // Nothing waits, or the other computer has said that nobody listens there yet.
+  static bool nobody_there(int why) { return why == EAGAIN || why == ECONNREFUSED; }
+
+  SocketEnd end_;
+  bool listens_;
+  SocketAddress peer_;
+  bool known_ = false;  // a datagram has come
+  std::array<std::uint8_t, kLargest_bytes> datagram_;
+  std::size_t at_ = 0;  // bytes of the datagram that waits that have been read
+};
+
+std::unique_ptr<ByteWire> open(const WireUrl& url, WireProblem& problem) {
+  const bool listens = url.number("listen") == 1;
+  SocketEnd end;
+  if (!open_socket_end(url, SOCK_DGRAM, listens, end, problem)) return nullptr;
+  return std::make_unique<UdpWire>(std::move(end), listens);
+}
+
+}  // namespace
+
+const WireKind& wire_udp() {
+  static constexpr WireParameter kParameters[] = {
+      {.name = "listen", .says = "answer to whoever sends", .usual = "0", .words = kWireNoYes},
+  };
+  static constexpr WireKind kKind{.scheme = "udp",
+                                  .says = "UDP datagrams; without a host: this computer (127.0.0.1)",
+                                  .address = "[host:]port",
+                                  .example = "udp:127.0.0.1:5000",
+                                  .parameters = kParameters,
+                                  .open_bytes = open};
+  return kKind;
+}
+
+}  // namespace omnihil
