@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "hil/wire/wire_kind.h"
 #include "protocols/emit/emit.h"
 #include "tests/protocols/packet_util.h"
 
@@ -220,6 +221,17 @@ TEST_F(Verbs, FormatsListsAllAndPrintsWhatWasAskedFor) {
     EXPECT_EQ(run("formats " + id + " --c-header", "").out, emit_c_header(*format));
   }
   EXPECT_EQ(run("formats --wireshark", "").exit_code, 2);
+}
+
+TEST_F(Verbs, WiresListsEveryKindWithItsParameters) {
+  const Output list = run("wires", "");
+  EXPECT_EQ(list.exit_code, 0);
+  for (const WireKind* kind : wire_kinds()) {
+    EXPECT_NE(list.out.find(kind->example), std::string::npos) << list.out;
+    EXPECT_NE(list.out.find(kind->says), std::string::npos) << list.out;
+    for (const WireParameter& parameter : kind->parameters)
+      EXPECT_NE(list.out.find(parameter.allowed()), std::string::npos) << list.out;
+  }
 }
 
 TEST_F(Verbs, EncodeAndDecodeAgreeWithTheTeamsVectors) {
