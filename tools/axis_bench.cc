@@ -183,7 +183,8 @@ std::optional<AxisBench> make_bench(const BenchOptions& options, std::vector<std
   bench.noise.position_rad *= options.noise_scale;
   bench.noise.winding_K *= options.noise_scale;
   bench.has_temperature = std::any_of(effects.begin(), effects.end(), [](const EffectUse& u) {
-    return u.entry->info->id == "winding_heating" || u.entry->info->needs == "winding_heating";
+    const EffectEntry* read = find_effect(u.entry->info->needs);
+    return ((u.entry->info->claims | (read != nullptr ? read->info->claims : 0u)) & kWarmsWinding) != 0;
   });
   const EffectSet<double> set(effects);
   std::uint64_t seed = options.seed;

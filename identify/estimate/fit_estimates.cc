@@ -109,8 +109,8 @@ std::pair<double, double> loop_gain(const std::vector<double>& u, const std::vec
   return {cuv / cvv, cuv * cuv / (cvv * cuu)};
 }
 
-void name_closed_loop(const Predictor& predictor, const FitResult& result,
-                      std::vector<std::string>& findings) {
+void name_closed_loop(const Predictor& predictor, const std::vector<Unknown>& unknowns,
+                      const FitResult& result, std::vector<std::string>& findings) {
   constexpr double kFollows = 0.9;  // R^2 of the input on the speed; tuned, sensitivity not measured
   for (int n = 0; n < predictor.run_count(); ++n) {
     const Run& run = predictor.run(n);
@@ -126,10 +126,10 @@ void name_closed_loop(const Predictor& predictor, const FitResult& result,
                       "loop. A fit of friction to "
                       "such a record finds minus the controller's gain",
                       run.file, name, gain, 100.0 * share));
-      for (const ParameterEstimate& p : result.parameters) {
-        if (p.path.find("viscous") != std::string::npos && p.at_bound) {
-          findings.push_back(p.path + ": its bound is where the controller's gain ends up, see " + run.file);
-        }
+      for (std::size_t i = 0; i < unknowns.size(); ++i) {
+        if (unknowns[i].trait != ParamTrait::kDamping || !result.parameters[i].at_bound) continue;
+        findings.push_back(unknowns[i].path + ": its bound is where the controller's gain ends up, see " +
+                           run.file);
       }
       return;
     }
@@ -164,8 +164,8 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
     p.prior_mean = u.prior_mean;
     p.prior_sigma = u.prior_sigma;
     if (u.prior_sigma > 0.0) p.prior_deviation_sigmas = (x[i] - u.prior_mean) / u.prior_sigma;
-    const bool phase = u.path.find("phase") != std::string::npos;
-    p.at_bound = !phase && (at(x[i], u.lower, u.scale) || at(x[i], u.upper, u.scale));
+    p.at_bound =
+        u.trait != ParamTrait::kPeriodic && (at(x[i], u.lower, u.scale) || at(x[i], u.upper, u.scale));
     // a strength that stays at neutral is at a bound too, but not pressed against it
     const bool pressed = point.gradient[i] * (at(x[i], u.lower, u.scale) ? 1.0 : -1.0) > 0.0;
     p.unphysical = p.at_bound && u.lower == 0.0 && at(x[i], 0.0, u.scale) && pressed;
@@ -176,7 +176,7 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
     if (!p.sentence.empty()) result.findings.push_back(p.path + ": " + p.sentence);
     result.parameters.push_back(std::move(p));
   }
-  name_closed_loop(predictor, result, result.findings);
+  name_closed_loop(predictor, unknowns, result, result.findings);
 }
 
 }  // namespace omnihil

@@ -38,7 +38,7 @@ std::map<int, EffectPlaces> effects_at_neutral(const FitProblem& problem, const 
       places.strengths.push_back(i);
       const bool same = x[i] == neutral_of(c, u);
       neutral[u.effect] = same && (neutral.contains(u.effect) ? neutral[u.effect] : true);
-    } else if (u.path.find(".phase") != std::string::npos || u.path.find(".direction") != std::string::npos) {
+    } else if (u.trait == ParamTrait::kPeriodic) {
       places.phases.push_back(i);
     } else {
       places.shapes.push_back(i);
@@ -147,7 +147,7 @@ std::vector<Eigen::VectorXd> fit_starts(const FitProblem& problem, const Eigen::
     for (std::size_t u = 0; u < problem.unknowns().size(); ++u) {
       const Unknown& unknown = problem.unknowns()[u];
       const double normal = gaussian(seed, stream_of("fit_starts") + u, static_cast<std::uint64_t>(n));
-      const bool periodic = unknown.path.find(".phase") != std::string::npos;
+      const bool periodic = unknown.trait == ParamTrait::kPeriodic;
       const double sigma =
           unknown.prior_sigma > 0.0 ? std::min(unknown.prior_sigma, unknown.scale) : 0.3 * unknown.scale;
       x[static_cast<Eigen::Index>(u)] += normal * (periodic ? 1.5 : sigma);

@@ -1,4 +1,4 @@
-// Regime variables of an axis, and which effects can act on it at all.
+// Regime variables of an axis.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -82,51 +82,6 @@ std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model
   add("temperature", "degC", warm);
   add("bus_voltage", "V", in.bus_voltage_V);
   return out;
-}
-
-std::string axis_effect_refusal(const EffectEntry& entry, const Dataset& dataset, const Candidate& nominal) {
-  const EffectInfo& e = *entry.info;
-  const std::string_view id = e.id;
-  const CommandKind kind = axis_command_kind(dataset);
-  const Method method = axis_method(dataset);
-  const DriveParams<double> drive = drive_of(nominal);
-  const bool by_duty = kind == CommandKind::kDuty || kind == CommandKind::kPositionTarget;
-  const bool electric = by_duty || kind == CommandKind::kMotorVoltage;
-  const auto any_signal = [&](std::string_view name) { return dataset.channel(name) != nullptr; };
-  const auto unknown = [&](std::string_view path) {
-    const Parameter* p = nominal.file.parameters.find(path);
-    return p != nullptr && p->tolerance.value_or(0.0) > 0.0;
-  };
-  if ((e.rigs & kOnAxis) == 0 || e.place == Place::kContact || e.place == Place::kBody)
-    return "acts on a robot on the floor";
-  if (id == "vision_delay") return "needs a camera";
-  if (id == "motor_mismatch") return "needs more than one motor";
-  if (e.place == Place::kSupply && !electric) return "the drive has no supply in these data";
-  const bool ripple_of_current =
-      kind == CommandKind::kMotorCurrent && (e.place == Place::kWinding || e.place == Place::kBridge);
-  if ((e.place == Place::kBridge || e.place == Place::kWinding) && !electric && !ripple_of_current) {
-    return "needs a drive by duty, voltage or current";
-  }
-  if (id == "target_speed_limit" && kind != CommandKind::kPositionTarget) return "needs a position target";
-  if ((id == "duty_limit" || id == "pwm_dead_band") && !by_duty) return "needs a drive by duty";
-  if (id == "thermal_derating" && !electric) return "needs a winding";
-  if (id == "winding_inductance" && unknown("motor.inductance_H"))
-    return "the base model's motor.inductance_H is free";
-  if (id == "gravity_load" && drive.gravity_torque_Nm > 0.0)
-    return "the base model has load.gravity_torque_Nm";
-  if (e.place == Place::kShaft && !(drive.load_inertia_kg_m2 > 0.0 && drive.rotor_inertia_kg_m2 > 0.0)) {
-    return "needs an inertia on either side of the shaft";
-  }
-  if (e.place == Place::kSensor || e.place == Place::kTiming) {
-    if (method == Method::kInverse)
-      return "the motion is taken as measured; actuator_delay shows the same lag";
-    if (id == "hall_speed_estimator" && !any_signal("velocity"))
-      return "needs a speed that the drive reports";
-    if (id == "encoder_missed_counts" && !any_signal("encoder")) return "needs an encoder";
-    if (id == "encoder_eccentricity" && !any_signal("encoder") && !any_signal("position"))
-      return "needs an encoder";
-  }
-  return "";
 }
 
 }  // namespace omnihil

@@ -80,6 +80,15 @@ std::string linear_unit(std::string_view unit, std::string_view key, std::string
   return out;
 }
 
+// A base number that is friction in proportion to speed; the others are plain.
+ParamTrait base_trait(std::string_view path) {
+  for (const DriveParamPath& p : drive_param_paths()) {
+    const bool damping = p.value == &DriveParams<double>::viscous_friction_Nm_s_per_rad;
+    if (damping && (p.path == path || p.linear_path == path)) return ParamTrait::kDamping;
+  }
+  return ParamTrait::kPlain;
+}
+
 std::optional<Unknown> base_unknown(const Parameter& p) {
   const ParameterRow& row = *p.row;
   const bool number = row.kind == ParameterKind::kNumber && p.values.size() == 1;
@@ -89,6 +98,7 @@ std::optional<Unknown> base_unknown(const Parameter& p) {
   const double value = p.value();
   const double lower = row.above_lower ? std::max(row.lower, kLeastShare * value) : row.lower;
   Unknown u{.path = parameter_path(row), .unit = std::string(row.unit)};
+  u.trait = base_trait(u.path);
   u.start = u.prior_mean = value;
   u.lower = std::min(lower, value);
   u.upper = row.upper;
@@ -96,11 +106,6 @@ std::optional<Unknown> base_unknown(const Parameter& p) {
       *p.tolerance * std::abs(value);  // relative tolerance of a zero value: sigma 0, a flat prior
   u.scale = u.prior_sigma > 0.0 ? u.prior_sigma : 1e-3 * std::min(row.upper, 1.0);
   return u;
-}
-
-// An integer fixed by construction (orders, pulses per turn).
-bool is_whole_by_make(const EffectUse& use, const EffectParam& row) {
-  return use.owner == nullptr && row.role == ParamRole::kShape && row.prior_scale == 0.0 && row.lower >= 1.0;
 }
 
 // A strength that a file gives without a tolerance is known exactly; not one that the program has found (it
@@ -128,7 +133,7 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
   const double tolerance = i < use.tolerances.size() ? use.tolerances[i].value_or(kNotGiven) : kNotGiven;
   const ParamRange range = param_range(row, linear);
   if (tolerance == 0.0 || is_stated(use, i) || is_known_shape(use, i)) return std::nullopt;
-  if (!(range.upper > range.lower) || is_whole_by_make(use, row)) return std::nullopt;
+  if (!(range.upper > range.lower) || is_whole(row)) return std::nullopt;
   if (row.role == ParamRole::kDetail && use.values[i] == row.neutral) return std::nullopt;
   const bool of_absent_detail = row.role == ParamRole::kShape && i > 0 &&
                                 rows[i - 1].role == ParamRole::kDetail &&
@@ -138,6 +143,7 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
   const double size = range.upper == row.upper || row.upper == 0.0 ? 1.0 : range.upper / row.upper;
   Unknown u{.path = effect_name(use) + "." + key, .unit = linear_unit(row.unit, key, row.name)};
   u.row = static_cast<int>(i);
+  u.trait = row.trait;
   u.start = use.values[i];
   u.lower = range.lower;
   u.upper = range.upper;

@@ -41,6 +41,7 @@ struct Unknown {
   double prior_mean = 0.0;
   double prior_sigma = 0.0;  // 0: flat within the bounds
   double scale = 1.0;        // a step that matters: tolerance * value, or the effect's typical size
+  ParamTrait trait = ParamTrait::kPlain;
 };
 
 // From what the readers of a model file give. A robot's coulomb_friction, a base parameter elsewhere, is an

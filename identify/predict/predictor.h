@@ -89,8 +89,10 @@ class Predictor {
   // A predictor of the same dataset whose measurement is simulated with `truth` (parametric bootstrap): noise
   // of the compared signals' size, through the same sensors, drawn from `seed`.
   virtual std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const = 0;
-  // Can this effect act on this rig and drive input at all; "" or why not ("needs a measured current").
-  virtual std::string applies(const EffectEntry& entry) const = 0;
+  // What this rig, its drive input and its sensors have that effects may need (sim/law/demands.h).
+  virtual Capabilities capabilities() const = 0;
+  // Can this effect act here at all; "" or why not ("needs a camera").
+  std::string applies(const EffectEntry& entry) const { return refusal(*entry.info, capabilities()); }
   // Do the readings carry this effect's quantisation signature (counted_speed.h)?
   virtual bool shows_signature_of(const EffectEntry&) const { return false; }
 };

@@ -89,9 +89,7 @@ class AxisPredictor final : public Predictor {
     return axis_regimes(setup(n), with_known(candidate, run(n).known), step_for(candidate));
   }
   bool shows_signature_of(const EffectEntry& effect) const override { return counter_ == &effect; }
-  std::string applies(const EffectEntry& entry) const override {
-    return axis_effect_refusal(entry, *dataset_, *nominal_);
-  }
+  Capabilities capabilities() const override { return axis_capabilities(*dataset_, *nominal_); }
 
   Prediction predict(const Candidate& candidate, int n) const override {
     return predict_at(candidate, n, step_for(candidate));

@@ -17,8 +17,8 @@ namespace omnihil {
 std::unique_ptr<Predictor> make_axis_predictor(const Dataset& dataset, const Candidate& nominal,
                                                const PredictOptions& options);
 
-// Why an effect cannot act on this rig and drive input; "" where it can.
-std::string axis_effect_refusal(const EffectEntry& entry, const Dataset& dataset, const Candidate& nominal);
+// By what drives it and what is measured.
+Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal);
 
 // Tracks of a run for sorting errors; `model`: the run as the model has it, for what was not measured.
 std::vector<RegimeTrack> axis_regimes(const AxisSetup& setup, const Candidate& model, double step_s);

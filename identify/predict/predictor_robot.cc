@@ -85,7 +85,7 @@ class RobotPredictor : public Predictor {
   }
 
   std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const override;
-  std::string applies(const EffectEntry& entry) const override;
+  Capabilities capabilities() const override;
 
  private:
   void add_input_noise(const Candidate& model, const RobotRecord& record, std::vector<RobotSignal>& signals) {
@@ -156,19 +156,27 @@ std::unique_ptr<Predictor> RobotPredictor::simulated(const Candidate& truth, std
   return null;
 }
 
-std::string RobotPredictor::applies(const EffectEntry& entry) const {
-  const EffectInfo& e = *entry.info;
-  const auto is = [&](std::string_view id) { return e.id == id; };
-  if ((e.rigs & kOnRobot) == 0) return "acts on a single axis";
-  if (e.place == Place::kShaft) return "needs a freedom between rotor and wheel, which a robot's model lacks";
-  if (is("target_speed_limit")) return "needs a position servo";
-  if (is("hall_speed_estimator")) return "needs a speed that the drive's electronics estimate";
-  if (is("vision_delay") && !has_channel("vision")) return "needs a camera";
-  if (is("dribbler_drag") && !has_channel("dribbler")) return "needs the dribbler's speed (channel dribbler)";
-  const bool has_body = has_channel("vision") || has_channel("gyro") || has_channel("accel");
-  if (is("wheel_slip") && !has_body) return "needs a body's speed: camera, gyro or accelerometer";
-  if (e.place == Place::kSensor && !has_channel("encoder")) return "needs encoders";
-  return "";
+Capabilities RobotPredictor::capabilities() const {
+  const bool camera = has_channel("vision");
+  const bool body = camera || has_channel("gyro") || has_channel("accel");
+  // Four drives by duty from one bus, simulated as a whole. Base parameters exclude no effect: what a tolerance
+  // of an inductance trades with is for the fit to say.
+  constexpr std::uint32_t kAlways = kNeedsFloor | kNeedsSeveralMotors | kNeedsSupply | kNeedsWinding |
+                                    kNeedsDuty | kNeedsVoltage | kNeedsSimulation;
+  return {
+      .rig = kOnRobot,
+      .other_rig = "acts on a single axis",
+      .list = {{kAlways, true, ""},
+               {kNeedsTwoInertias, false,
+                "needs a freedom between rotor and wheel, which a robot's model lacks"},
+               {kNeedsPositionServo, false, "needs a position servo"},
+               {kNeedsReportedSpeed, false, "needs a speed that the drive's electronics estimate"},
+               {kNeedsCamera, camera, "needs a camera"},
+               {kNeedsDribbler, has_channel("dribbler"), "needs the dribbler's speed (channel dribbler)"},
+               {kNeedsBodySpeed, body, "needs a body's speed: camera, gyro or accelerometer"},
+               {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle, has_channel("encoder"), "needs encoders"}},
+      .free_base = {},
+      .present_base = {}};
 }
 
 }  // namespace

@@ -14,17 +14,11 @@ namespace {
 
 constexpr double kQuarterTurn_rad = std::numbers::pi / 2.0;
 
-bool is_phase(const EffectParam& row) {
-  return row.role == ParamRole::kShape && row.unit == "rad" &&
-         (row.name.starts_with("phase") || row.name.starts_with("direction"));
-}
-bool is_order(const EffectParam& row) { return row.role == ParamRole::kShape && row.name == "order"; }
-
 // The phase that belongs to a strength: the next such row before another strength.
 int phase_of(const EffectInfo& info, std::size_t strength) {
   for (std::size_t i = strength + 1; i < info.params.size() && info.params[i].role == ParamRole::kShape;
        ++i) {
-    if (is_phase(info.params[i])) return static_cast<int>(i);
+    if (info.params[i].trait == ParamTrait::kPeriodic) return static_cast<int>(i);
   }
   return -1;
 }
@@ -79,26 +73,40 @@ std::vector<double> order_grid(const EffectParam& row, double start, const Candi
   return grid;
 }
 
+// What the values of a grid are multiples of; 0: the data do not say.
+double grid_unit(GridOf of, double start, const DataScale& scale) {
+  switch (of) {
+    case GridOf::kStart:
+      return start;
+    case GridOf::kStartInTime:
+      return scale.duration_s > 0.0 ? start : 0.0;
+    case GridOf::kTopSpeed:
+      return scale.top_speed_rad_s;
+    case GridOf::kTopCurrent:
+      return scale.top_current_A;
+    case GridOf::kAbsolute:
+      return 1.0;
+  }
+  return 0.0;
+}
+
 // Values that a shape is tried at.
 std::vector<double> shape_grid(const EffectParam& row, double start, const Candidate& candidate,
                                const DataScale& scale) {
-  if (is_order(row)) return order_grid(row, start, candidate, scale);
+  if (row.trait == ParamTrait::kOrder) return order_grid(row, start, candidate, scale);
+  const double unit = grid_unit(row.grid.of, start, scale);
   std::vector<double> grid;
-  if (row.unit == "rad/(N m)") return {start, 0.15 * start};
-  if (is_phase(row) || row.start_for != nullptr || row.unit == "1") return {start};
-  if (row.unit == "rad/s" && scale.top_speed_rad_s > 0.0) {
-    for (const double share : {0.01, 0.04, 0.15}) grid.push_back(share * scale.top_speed_rad_s);
-  } else if (row.unit == "A" && scale.top_current_A > 0.0) {
-    for (const double share : {0.02, 0.1}) grid.push_back(share * scale.top_current_A);
-  } else if (row.unit == "degC") {
-    grid = {35.0, 40.0, 47.0, 58.0, 75.0};  // ever wider above ambient
-  } else if (row.unit == "J/K" && scale.duration_s > 0.0) {
-    grid = {start, 4.0 * start, 16.0 * start};
-  } else {
-    grid = {start};
+  for (const double at : row.grid.at) {
+    if (at != 0.0 && unit != 0.0) grid.push_back(std::clamp(at * unit, row.lower, row.upper));
   }
-  for (double& v : grid) v = std::clamp(v, row.lower, row.upper);
-  return grid;
+  return grid.empty() ? std::vector<double>{std::clamp(start, row.lower, row.upper)} : grid;
+}
+
+// The row of the order that an effect's series belongs to.
+std::size_t order_row_of(const EffectInfo& info) {
+  std::size_t row = 0;
+  while (row + 1 < info.params.size() && info.params[row].series.count == 0) ++row;
+  return row;
 }
 
 std::vector<std::size_t> rows_of_role(const EffectInfo& info, ParamRole role) {
@@ -109,13 +117,15 @@ std::vector<std::size_t> rows_of_role(const EffectInfo& info, ParamRole role) {
   return rows;
 }
 
-// A ringing at one frequency is nothing like one at twice it: no line leads from one size to another.
-void add_stiffer(std::vector<EffectVariant>& variants) {
-  constexpr double kStiffer = 0.2;
+// A strength's further sizes, where no line leads from one size to another.
+void add_sizes(const SearchGrid& grid, std::vector<EffectVariant>& variants) {
   const std::size_t count = variants.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    variants.push_back(variants[i]);
-    for (VariantColumn& c : variants.back().columns) c.size *= kStiffer;
+  for (const double size : grid.at) {
+    if (size == 0.0 || size == 1.0) continue;
+    for (std::size_t i = 0; i < count; ++i) {
+      variants.push_back(variants[i]);
+      for (VariantColumn& c : variants.back().columns) c.size *= size;
+    }
   }
 }
 
@@ -157,7 +167,7 @@ std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate
       add_columns(info, row, candidate, v);
     }
   }
-  if (info.params[first_strength(info)].unit == "rad/(N m)") add_stiffer(variants);
+  add_sizes(info.params[first_strength(info)].grid, variants);
   return variants;
 }
 
@@ -165,15 +175,15 @@ std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& 
                                          const DataScale& scale) {
   std::vector<EffectVariant> variants;
   const EffectInfo& info = *use.entry->info;
-  const bool series = info.id == "cogging";
+  const HarmonicSeries series = series_of(info);
   for (const std::size_t row : rows_of_role(info, ParamRole::kDetail)) {
     if (use.values[row] != info.params[row].neutral) continue;
-    if (series) {
-      // harmonic k stands at rows 3 + 2 (k - 2); only those whose order shows in the residual
-      const double order = use.values[1] * (2.0 + (static_cast<double>(row) - 3.0) / 2.0);
+    if (const int k = harmonic_of(series, row); k > 0) {
+      // the first two, and those whose order shows in the residual
+      const double order = use.values[order_row_of(info)] * k;
       const bool shows = std::any_of(scale.orders.begin(), scale.orders.end(),
                                      [&](double n) { return std::abs(n - order) < 0.5; });
-      if (!shows && row > 5) continue;
+      if (!shows && k > 3) continue;
     }
     EffectVariant v{.shape = use, .columns = {}};
     add_columns(info, row, candidate, v);
@@ -182,10 +192,11 @@ std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& 
   return variants;
 }
 
-std::vector<EffectVariant> cogging_series(const EffectEntry& entry, const Candidate& candidate,
-                                          const DataScale& scale) {
+std::vector<EffectVariant> series_variants(const EffectEntry& entry, const Candidate& candidate,
+                                           const DataScale& scale) {
   constexpr int kMostOrders = 4;  // by cost, a fit of two parameters each; sensitivity not measured
-  constexpr int kHarmonics = 24;
+  const HarmonicSeries series = series_of(*entry.info);
+  if (series.count == 0) return {};
   std::vector<int> orders;
   for (const double n : scale.orders) {
     if (n > 1.5 && std::abs(n - std::round(n)) < 1e-6 && static_cast<int>(orders.size()) < kMostOrders) {
@@ -199,12 +210,12 @@ std::vector<EffectVariant> cogging_series(const EffectEntry& entry, const Candid
     for (std::size_t i = 0; i < count; ++i) common = std::gcd(common, orders[i]);
     const int highest =
         *std::max_element(orders.begin(), orders.begin() + static_cast<std::ptrdiff_t>(count));
-    if (highest > kHarmonics * common) continue;
+    if (highest > (series.count + 1) * common) continue;
     EffectVariant v{.shape = neutral_use(entry, &drive), .columns = {}};
-    v.shape.values[1] = common;
+    v.shape.values[order_row_of(*entry.info)] = common;
     for (std::size_t i = 0; i < count; ++i) {
       const int k = orders[i] / common;
-      const std::size_t row = k == 1 ? 0 : 3 + 2 * (static_cast<std::size_t>(k) - 2);
+      const std::size_t row = k == 1 ? first_strength(*entry.info) : harmonic_row(series, k);
       add_columns(*entry.info, row, candidate, v);
     }
     variants.push_back(std::move(v));

@@ -50,11 +50,11 @@ std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate
 std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& candidate,
                                          const DataScale& scale);
 
-// Cogging of several orders at once: order = their greatest common divisor, one harmonic each.
-// Empty where there are fewer than two orders, or their common divisor is too small for the harmonics there
-// are.
-std::vector<EffectVariant> cogging_series(const EffectEntry& entry, const Candidate& candidate,
-                                          const DataScale& scale);
+// An effect with a series of harmonics (cogging), at several orders at once: order = their greatest common
+// divisor, one harmonic each. Empty where it has none, where there are fewer than two orders, or their common
+// divisor is too small for the harmonics there are.
+std::vector<EffectVariant> series_variants(const EffectEntry& entry, const Candidate& candidate,
+                                           const DataScale& scale);
 
 EffectUse setting(const EffectVariant& variant, const VariantColumn& column);
 // `coefficients`: multiples of the columns' sizes that fit best. Kept within the rows' bounds.

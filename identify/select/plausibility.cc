@@ -42,7 +42,7 @@ std::string moved_out_of_tolerance(const FitResult& parent, const FitResult& chi
 bool suspicious_bound(const ParameterEstimate& p, const EffectParam* row) {
   if (!p.at_bound || row == nullptr) return false;
   if (row->role != ParamRole::kShape) return std::abs(p.value - row->neutral) > 1e-3 * std::abs(row->typical);
-  return !row->name.starts_with("phase") && row->name != "exponent";
+  return row->trait != ParamTrait::kPeriodic && row->trait != ParamTrait::kExponent;
 }
 
 // Joint significance of several strengths: those that are correlated (four ratios that share their scale with
@@ -160,7 +160,7 @@ std::string below_time_resolution(const FitResult& child, const std::string& nam
   const EffectEntry* entry = find_effect(name);
   if (entry == nullptr || entry->info->min_visible == nullptr || rate_Hz <= 0.0) return "";
   const EffectParam& row = entry->info->params[first_strength(*entry->info)];
-  if (row.unit != "s" && row.unit != "H") return "";
+  if (row.trait != ParamTrait::kTime) return "";
   const double visible = entry->info->min_visible({.rate_Hz = rate_Hz});
   for (const ParameterEstimate& p : child.parameters) {
     if (p.path != name + "." + std::string(row.name)) continue;

@@ -217,8 +217,8 @@ Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
   Scored best = steps_in ? SizeSearch(task).run(variants) : best_of(task, variants);
   // At its typical size, whatever the data estimate: for visibility.
   const Scored typical = score(task, variants.front());
-  if (entry->info->id == "cogging" && best.finite) {
-    for (const EffectVariant& v : cogging_series(*entry, *task.model, task.scale)) {
+  if (best.finite) {
+    for (const EffectVariant& v : series_variants(*entry, *task.model, task.scale)) {
       Scored series = score(task, v);
       // Several orders have to gain this factor more than one. Tuned on the open cases; sensitivity not
       // measured.

@@ -85,7 +85,7 @@ SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) c
   task.seed = options_.seed;
   task.jobs = options_.jobs;
   for (const EffectEntry* e : all_effects()) {
-    if (e->info->id == "expression") continue;  // user formulas, and unknown structure
+    if (is_formula(*e->info)) continue;  // user formulas, and unknown structure
     const std::string why_not = predictor_->applies(*e);
     if (why_not.empty()) {
       task.applicable.push_back(e);

@@ -212,7 +212,7 @@ UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last
   }
   out.where = where_of(comparison, data.orders.empty() ? 0.0 : data.orders.front());
   const bool no_formulas =
-      task.dataset->rig != Rig::kAxis || !task.predictor->applies(*find_effect("expression")).empty();
+      task.dataset->rig != Rig::kAxis || !task.predictor->applies(example_expression()->entry).empty();
   if (no_formulas) return out;
   std::vector<Eigen::VectorXd> noise;
   for (const Eigen::VectorXd& n : task.null->fit_noise) noise.push_back(n.cwiseProduct(base.weights()));

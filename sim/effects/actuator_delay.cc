@@ -15,7 +15,8 @@ struct ActuatorDelay {
        .prior_scale = 0.01,
        .what = "time from asking to doing",
        .how = "steps or a multisine: phase of the speed that grows in proportion to the frequency at "
-              "unchanged gain"},
+              "unchanged gain",
+       .trait = ParamTrait::kTime},
   };
   static constexpr EffectInfo kInfo{
       .id = "actuator_delay",

@@ -10,20 +10,17 @@ namespace omnihil {
 namespace {
 
 // Number k = 2 … kHarmonics: two rows each, amplitude and phase.
-#define HARMONIC(k)                                                                                      \
-  {.name = "amplitude_" #k,                                                                              \
-   .unit = "N m",                                                                                        \
-   .role = ParamRole::kDetail,                                                                           \
-   .typical = 0.0005,                                                                                    \
-   .lower = -10,                                                                                         \
-   .upper = 10,                                                                                          \
-   .prior_scale = 0.002,                                                                                 \
-   .what = "amplitude at " #k " times the order",                                                        \
-   .how = "as amplitude_Nm"},                                                                            \
-  {                                                                                                      \
-    .name = "phase_" #k, .unit = "rad", .role = ParamRole::kShape, .neutral = kNoNeutral, .lower = -6.3, \
-    .upper = 6.3, .what = "phase at " #k " times the order", .how = "as phase_rad"                       \
-  }
+#define HARMONIC(k)                               \
+  {.name = "amplitude_" #k,                       \
+   .unit = "N m",                                 \
+   .role = ParamRole::kDetail,                    \
+   .typical = 0.0005,                             \
+   .lower = -10,                                  \
+   .upper = 10,                                   \
+   .prior_scale = 0.002,                          \
+   .what = "amplitude at " #k " times the order", \
+   .how = "as amplitude_Nm"},                     \
+      phase_row("phase at " #k " times the order", "as phase_rad", "phase_" #k)
 
 struct Cogging {
   static constexpr int kHarmonics = 24;
@@ -44,24 +41,10 @@ struct Cogging {
        .prior_scale = 0.01,
        .what = "amplitude at the order",
        .how = "standstill map: holding current against angle, mean of both directions"},
-      {.name = "order",
-       .unit = "1",
-       .role = ParamRole::kShape,
-       .neutral = kNoNeutral,
-       .typical = 48,
-       .lower = 1,
-       .upper = 400,
-       .what = "periods per rotor turn",
-       .how = "least common multiple of poles and slots; divisors of it when the motor is uneven",
-       .start_for = order_of},
-      {.name = "phase_rad",
-       .unit = "rad",
-       .role = ParamRole::kShape,
-       .neutral = kNoNeutral,
-       .lower = -6.3,
-       .upper = 6.3,
-       .what = "phase at rotor angle zero",
-       .how = "as amplitude_Nm"},
+      order_row(48, 400, "periods per rotor turn",
+                "least common multiple of poles and slots; divisors of it when the motor is uneven", order_of,
+                {.first_row = kFirstHarmonic, .stride = 2, .count = kHarmonics - 1}),
+      phase_row("phase at rotor angle zero", "as amplitude_Nm"),
       HARMONIC(2),
       HARMONIC(3),
       HARMONIC(4),

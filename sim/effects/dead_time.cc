@@ -28,7 +28,8 @@ struct DeadTime {
        .upper = 10,
        .prior_scale = 0.3,
        .what = "current at which 71 % of it is there: half the ripple current within a PWM period",
-       .how = "as voltage_V: curvature of the line near zero current"},
+       .how = "as voltage_V: curvature of the line near zero current",
+       .grid = {GridOf::kTopCurrent, {0.02, 0.1}}},
   };
   static constexpr EffectInfo kInfo{
       .id = "dead_time",

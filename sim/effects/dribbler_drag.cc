@@ -44,6 +44,7 @@ struct DribblerDrag {
           },
       .claims = kDissipative | kOdd,
       .rigs = kOnRobot,
+      .demands = kNeedsDribbler,
       .params = kParams,
   };
 

@@ -37,6 +37,7 @@ struct DutyLimit {
             return 3.0 * 6.283185307179586 / s.counts_per_turn / (400.0 * 0.1);
           },
       .claims = kOdd | kFlatAtNeutral,
+      .demands = kNeedsDuty,
       .params = kParams,
       .plot = {.excitation = "ramp", .x = "duty", .y = "velocity", .from_s = 0.0, .to_s = 8.0},
   };

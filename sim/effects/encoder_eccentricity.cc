@@ -17,14 +17,7 @@ struct EncoderEccentricity {
        .prior_scale = 0.02,
        .what = "amplitude of the angle error, at the encoder's shaft",
        .how = "constant speed: ripple of the measured speed over the angle, divided by the speed"},
-      {.name = "phase_rad",
-       .unit = "rad",
-       .role = ParamRole::kShape,
-       .neutral = kNoNeutral,
-       .lower = -6.3,
-       .upper = 6.3,
-       .what = "phase at encoder angle zero",
-       .how = "as amplitude_rad"},
+      phase_row("phase at encoder angle zero", "as amplitude_rad"),
   };
   static constexpr EffectInfo kInfo{
       .id = "encoder_eccentricity",
@@ -48,6 +41,7 @@ struct EncoderEccentricity {
             const double step_rad = 6.283185307179586 / s.counts_per_turn;
             return 3.0 * step_rad / std::sqrt(12.0) * std::sqrt(2.0 / (s.rate_Hz * s.duration_s));
           },
+      .demands = kNeedsAngle,
       .params = kParams,
       .plot = {.excitation = "turn", .x = "rotor_angle", .y = "encoder_error", .from_s = 0.0, .to_s = 4.0},
   };

@@ -42,6 +42,7 @@ struct EncoderMissedCounts {
             return 3.0 / (s.counts_per_turn * 100.0 / 6.283185307179586 * s.duration_s);
           },
       .claims = kOdd | kRandom,
+      .demands = kNeedsEncoder,
       .params = kParams,
       .states = kStates,
       .plot = {.excitation = "steps", .x = "time", .y = "encoder_error", .from_s = 0.0, .to_s = 2.0},

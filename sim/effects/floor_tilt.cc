@@ -19,15 +19,9 @@ struct FloorTilt {
        .prior_scale = 0.02,
        .what = "slope of the floor against the horizontal",
        .how = "spirit level; or coasting from rest: acceleration over gravity"},
-      {.name = "direction_rad",
-       .unit = "rad",
-       .role = ParamRole::kShape,
-       .neutral = kNoNeutral,
-       .typical = 0.5,
-       .lower = -6.3,
-       .upper = 6.3,
-       .what = "downhill direction in the field, from x towards y",
-       .how = "direction in which the robot drifts when it coasts, whatever way it looks"},
+      phase_row("downhill direction in the field, from x towards y",
+                "direction in which the robot drifts when it coasts, whatever way it looks", "direction_rad",
+                0.5),
   };
   static constexpr EffectInfo kInfo{
       .id = "floor_tilt",

@@ -24,7 +24,8 @@ struct FrictionAsymmetry {
        .upper = 1,
        .prior_scale = 0.2,
        .what = "viscous friction: positive minus negative direction, over their sum",
-       .how = "steady current at many speeds each way: difference of the slopes over their sum"},
+       .how = "steady current at many speeds each way: difference of the slopes over their sum",
+       .trait = ParamTrait::kDamping},
   };
   static constexpr EffectInfo kInfo{
       .id = "friction_asymmetry",

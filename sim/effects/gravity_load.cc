@@ -18,14 +18,8 @@ struct GravityLoad {
        .prior_scale = 0.1,
        .what = "m g l at the output shaft",
        .how = "holding current against angle over a turn: amplitude at once per turn"},
-      {.name = "phase_rad",
-       .unit = "rad",
-       .role = ParamRole::kShape,
-       .neutral = kNoNeutral,
-       .lower = -6.3,
-       .upper = 6.3,
-       .what = "angle of the output at zero, from hanging straight down",
-       .how = "as torque_Nm: where the current is zero"},
+      phase_row("angle of the output at zero, from hanging straight down",
+                "as torque_Nm: where the current is zero"),
   };
   static constexpr EffectInfo kInfo{
       .id = "gravity_load",
@@ -46,6 +40,7 @@ struct GravityLoad {
             return 3.0 * 0.03 * s.current_sigma_A * std::sqrt(2.0 / (s.rate_Hz * s.duration_s));
           },
       .claims = kConservative,
+      .excludes = {"load.gravity_torque_Nm", BaseExclusion::kWherePresent},
       .params = kParams,
       .plot = {.excitation = "turn", .x = "rotor_angle", .y = "load_torque", .from_s = 0.0, .to_s = 4.0},
   };

@@ -28,7 +28,8 @@ struct GreaseDrag {
        .upper = 500,
        .prior_scale = 20,
        .what = "rotor speed at which 63 % of it is there",
-       .how = "as torque_Nm: where the curve bends"},
+       .how = "as torque_Nm: where the curve bends",
+       .grid = {GridOf::kTopSpeed, {0.01, 0.04, 0.15}}},
   };
   static constexpr EffectInfo kInfo{
       .id = "grease_drag",

@@ -24,7 +24,8 @@ struct HallSpeedEstimator {
        .upper = 1000,
        .what = "pulses per rotor turn: six per electrical turn",
        .how = "count them over a turn by hand",
-       .start_for = pulses_of},
+       .start_for = pulses_of,
+       .trait = ParamTrait::kCount},
       {.name = "window_s",
        .unit = "s",
        .typical = 0.02,  // 9 to 68 samples of a student drive, 27 ms claimed by its author (measured)
@@ -32,7 +33,8 @@ struct HallSpeedEstimator {
        .upper = 0.5,
        .prior_scale = 0.02,
        .what = "time over which pulses are counted, and for which the result is held",
-       .how = "steps: the measured speed against the slope of the position"},
+       .how = "steps: the measured speed against the slope of the position",
+       .trait = ParamTrait::kTime},
   };
   static constexpr EffectState kStates[] = {
       {.name = "speed_rad_s", .unit = "rad/s"},
@@ -61,6 +63,7 @@ struct HallSpeedEstimator {
       .visible = "a lag of a fifth of a sample with steps of full duty",
       .min_visible = [](const SensorSet& s) { return 0.2 / s.rate_Hz; },
       .claims = kRandom | kCountsPulses,
+      .demands = kNeedsReportedSpeed,
       .params = kParams,
       .states = kStates,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.3, .to_s = 0.7},

@@ -18,14 +18,7 @@ struct Imbalance {
        .prior_scale = 0.005,
        .what = "m g e of the rotor with its shaft horizontal",
        .how = "current or speed at slow turning: amplitude at once per rotor turn"},
-      {.name = "phase_rad",
-       .unit = "rad",
-       .role = ParamRole::kShape,
-       .neutral = kNoNeutral,
-       .lower = -6.3,
-       .upper = 6.3,
-       .what = "rotor angle at zero, from hanging straight down",
-       .how = "as torque_Nm: phase of that line"},
+      phase_row("rotor angle at zero, from hanging straight down", "as torque_Nm: phase of that line"),
   };
   static constexpr EffectInfo kInfo{
       .id = "imbalance",

@@ -37,6 +37,7 @@ struct MotorMismatch {
             return speed_step_rad_s / s.rate_Hz / 300.0;
           },
       .rigs = kOnRobot,
+      .demands = kNeedsSeveralMotors,
       .params = kParams,
   };
 

@@ -44,6 +44,7 @@ struct PwmDeadBand {
             return 3.0 * s.current_sigma_A / 10.0 / (samples > 1 ? std::sqrt(samples) : 1.0);
           },
       .claims = kOdd | kFlatAtNeutral,
+      .demands = kNeedsDuty,
       .params = kParams,
       .plot = {.excitation = "creep", .x = "duty", .y = "motor_current", .from_s = 0.0, .to_s = 8.0},
   };

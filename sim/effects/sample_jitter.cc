@@ -18,7 +18,8 @@ struct SampleJitter {
        .prior_scale = 0.001,
        .what = "standard deviation of the sample instants about their stamps",
        .how = "histogram of the raw time stamps' differences; at constant speed, noise of the position over "
-              "the speed"},
+              "the speed",
+       .trait = ParamTrait::kTime},
   };
   static constexpr EffectInfo kInfo{
       .id = "sample_jitter",

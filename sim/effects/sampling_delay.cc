@@ -14,7 +14,8 @@ struct SamplingDelay {
        .upper = 0.1,
        .prior_scale = 0.005,
        .what = "how much older than its stamp a measurement of the drive is",
-       .how = "an externally imposed motion with a second sensor of known delay"},
+       .how = "an externally imposed motion with a second sensor of known delay",
+       .trait = ParamTrait::kTime},
   };
   static constexpr EffectInfo kInfo{
       .id = "sampling_delay",

@@ -24,7 +24,9 @@ struct ShaftCompliance {
        .prior_scale = 0.5,
        .what = "twist per torque, at the output",
        .how = "hold the rotor, load the output with a known torque, read the twist; or the resonance",
-       .start_for = compliance_of},
+       .start_for = compliance_of,
+       // a ringing at one frequency is nothing like one at twice it: no line leads from one size to another
+       .grid = {GridOf::kStart, {1.0, 0.2}}},
       {.name = "damping_Nm_s_per_rad",
        .unit = "N m s/rad",
        .role = ParamRole::kShape,

@@ -26,7 +26,8 @@ struct StribeckFriction {
        .upper = 500,
        .prior_scale = 10,
        .what = "rotor speed at which 37 % of it is left",
-       .how = "steady current at many low speeds, both ways: where the fall is steepest"},
+       .how = "steady current at many low speeds, both ways: where the fall is steepest",
+       .grid = {GridOf::kTopSpeed, {0.01, 0.04, 0.15}}},
       {.name = "exponent",
        .unit = "1",
        .role = ParamRole::kShape,
@@ -36,7 +37,8 @@ struct StribeckFriction {
        .upper = 4,
        .prior_scale = 0.5,
        .what = "how sharply it falls; 2: a bell curve",
-       .how = "as speed_rad_s: shape of the fall"},
+       .how = "as speed_rad_s: shape of the fall",
+       .trait = ParamTrait::kExponent},
   };
   static constexpr EffectInfo kInfo{
       .id = "stribeck_friction",

@@ -44,6 +44,7 @@ struct TargetSpeedLimit {
           },
       .claims = kOdd | kFlatAtNeutral,
       .numerics = kHidesDelays,
+      .demands = kNeedsPositionServo,
       .params = kParams,
       .states = kStates,
       .plot = {.excitation = "servo", .x = "time", .y = "position", .from_s = 0.0, .to_s = 2.0},

@@ -40,7 +40,9 @@ struct ThermalDerating {
        .upper = 200,
        .prior_scale = 20,
        .what = "winding temperature from which the limit falls; ambient is 25 degC",
-       .how = "as current_drop_A_per_K"},
+       .how = "as current_drop_A_per_K",
+       // ever wider above an ambient of 20 to 30 degC (a choice)
+       .grid = {GridOf::kAbsolute, {35.0, 40.0, 47.0, 58.0, 75.0}}},
       {.name = "full_current_A",
        .unit = "A",
        .role = ParamRole::kShape,
@@ -73,6 +75,7 @@ struct ThermalDerating {
             return 3.0 * s.current_sigma_A / 20.0 / std::sqrt(samples);
           },
       .claims = kOdd | kFlatAtNeutral,
+      .demands = kNeedsVoltage,
       .params = kParams,
       .needs = "winding_heating",
       .plot = {.excitation = "stall", .x = "time", .y = "motor_current", .from_s = 0.0, .to_s = 20.0},

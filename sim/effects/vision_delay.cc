@@ -14,7 +14,8 @@ struct VisionDelay {
        .upper = 0.5,
        .prior_scale = 0.02,
        .what = "how much older than its stamp a vision frame is",
-       .how = "a robot that swings to and fro: its encoders against its position in the frames"},
+       .how = "a robot that swings to and fro: its encoders against its position in the frames",
+       .trait = ParamTrait::kTime},
   };
   static constexpr EffectInfo kInfo{
       .id = "vision_delay",
@@ -32,6 +33,7 @@ struct VisionDelay {
           [](const SensorSet& s) { return 0.2 / 75.0 / (s.duration_s > 1.0 ? s.duration_s : 1.0); },
       .claims = kOdd,
       .rigs = kOnRobot,
+      .demands = kNeedsCamera,
       .params = kParams,
   };
 

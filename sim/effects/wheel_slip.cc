@@ -56,6 +56,7 @@ struct WheelSlip {
             return 2.0 * rim_step_m_s / std::sqrt(0.1 * s.rate_Hz) * 2.0;
           },
       .rigs = kOnRobot,
+      .demands = kNeedsBodySpeed,
       .params = kParams,
   };
 

@@ -37,7 +37,8 @@ struct WindingHeating {
        .upper = 1e4,
        .prior_scale = 5,
        .what = "of the winding",
-       .how = "loss over the rate of rise at the start of a hold"},
+       .how = "loss over the rate of rise at the start of a hold",
+       .grid = {GridOf::kStartInTime, {1.0, 4.0, 16.0}}},
       {.name = "housing_thermal_resistance_K_per_W",
        .unit = "K/W",
        .role = ParamRole::kDetail,
@@ -56,7 +57,8 @@ struct WindingHeating {
        .upper = 1e5,
        .prior_scale = 50,
        .what = "of the housing",
-       .how = "time constant of the slow part of the rise over its thermal resistance"},
+       .how = "time constant of the slow part of the rise over its thermal resistance",
+       .grid = {GridOf::kStartInTime, {1.0, 4.0, 16.0}}},
   };
   static constexpr EffectState kStates[] = {
       {.name = "winding_rise", .unit = "K"},
@@ -88,7 +90,7 @@ struct WindingHeating {
                 3.0 * (s.voltage_sigma_V + 1.2 * s.current_sigma_A) / 2.0 / std::sqrt(s.rate_Hz);
             return d_R_ohm / (1.2 * 40.0);
           },
-      .claims = kDissipative | kOdd,
+      .claims = kDissipative | kOdd | kWarmsWinding,
       .params = kParams,
       .states = kStates,
       .plot = {.excitation = "steps", .x = "time", .y = "winding_rise", .from_s = 0.0, .to_s = 8.0},

@@ -18,7 +18,8 @@ struct WindingInductance {
        .what = "inductance on top of the model's, terminal to terminal",
        .how =
            "locked rotor, chirp of the duty from 100 to 500 Hz: current's gain falls, or time constant of a "
-           "step, at 5 kHz or faster"},
+           "step, at 5 kHz or faster",
+       .trait = ParamTrait::kTime},
   };
   static constexpr EffectInfo kInfo{
       .id = "winding_inductance",
@@ -39,6 +40,7 @@ struct WindingInductance {
             return 1.2 / s.rate_Hz * (0.1 + 3.0 * s.current_sigma_A / 5.0 / std::sqrt(steps));
           },
       .claims = kOdd,
+      .excludes = {"motor.inductance_H", BaseExclusion::kWhereFree},
       .params = kParams,
       .plot = {.excitation = "prbs", .x = "time", .y = "motor_current", .from_s = 0.1, .to_s = 0.2},
   };

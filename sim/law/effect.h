@@ -8,14 +8,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string_view>
 
-namespace omnihil {
+#include "sim/law/demands.h"
+#include "sim/law/effect_param.h"
 
-template <typename T>
-struct DriveParams;  // sim/law/drive_params.h
+namespace omnihil {
 
 // Where an effect acts, in the order in which a step meets them.
 enum class Place : std::uint8_t {
@@ -32,34 +31,6 @@ enum class Place : std::uint8_t {
 };
 inline constexpr int kPlaces = 10;
 std::string_view place_name(Place place);
-
-// What a parameter is to its effect.
-enum class ParamRole : std::uint8_t {
-  kStrength,  // at its neutral value the effect is exactly absent (all strengths and details at neutral)
-  kShape,     // no effect of its own: order, phase, width
-  kDetail,    // a further strength that stays at neutral unless it is asked for (a second harmonic)
-};
-
-inline constexpr double kNoNeutral =
-    std::numeric_limits<double>::quiet_NaN();  // compile-time mark of shape rows
-
-struct EffectParam {
-  std::string_view name;  // the unit is its suffix
-  std::string_view unit;  // "N m"; "1": a ratio
-  ParamRole role = ParamRole::kStrength;
-  double neutral = 0.0;  // kStrength and kDetail
-  double typical = 0.0;  // a visible size, used by documentation and tests; start value of a shape
-  double lower = 0.0;
-  double upper = 0.0;
-  // Prior of a fit: half-normal (normal if the bounds straddle neutral) of this scale about neutral, with
-  // finite density there; a shape's is normal about its start value. 0: flat within the bounds.
-  double prior_scale = 0.0;
-  std::string_view what;  // one line
-  std::string_view how;   // how to measure it
-  // Start value of a shape, visible size of a strength, from the motor at hand (a cogging order from poles
-  // and slots, the compliance that rings at some frequency); null: `typical`.
-  double (*start_for)(const DriveParams<double>&) = nullptr;
-};
 
 struct EffectState {
   std::string_view name;
@@ -78,6 +49,7 @@ enum ClaimBit : std::uint32_t {
   // A fit that starts there alone never leaves: give it a second start away from neutral.
   kFlatAtNeutral = 1u << 4,
   kCountsPulses = 1u << 5,  // makes a speed of pulses; its first parameter says how many there are in a turn
+  kWarmsWinding = 1u << 6,  // gives the winding a temperature of its own
 };
 
 // What a numerical treatment has to know of a law, besides its equation.
@@ -127,6 +99,8 @@ struct EffectInfo {
   std::uint32_t claims = kClaimNone;
   std::uint32_t numerics = kNumericsPlain;
   std::uint32_t rigs = kOnBoth;
+  std::uint32_t demands = kNeedsNothing;  // of the rig, beyond what its place needs
+  BaseExclusion excludes{};               // a base parameter that does the same
   std::span<const EffectParam> params;
   std::span<const EffectState> states{};
   // An effect whose states this one reads; it is run along, at neutral strength if the model does not have
@@ -135,11 +109,22 @@ struct EffectInfo {
   EffectPlot plot{};
 };
 
+// A user's formula: no effect that a search may name.
+constexpr bool is_formula(const EffectInfo& info) { return !info.target.empty(); }
+
 // The row that an effect's size is told by: its first strength.
 constexpr std::size_t first_strength(const EffectInfo& info) {
   std::size_t row = 0;
   while (row + 1 < info.params.size() && info.params[row].role != ParamRole::kStrength) ++row;
   return row;
+}
+
+// The series of harmonics that an effect has, by the order's row; count 0: none.
+constexpr HarmonicSeries series_of(const EffectInfo& info) {
+  for (const EffectParam& row : info.params) {
+    if (row.series.count > 0) return row.series;
+  }
+  return {};
 }
 
 }  // namespace omnihil

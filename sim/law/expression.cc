@@ -115,6 +115,8 @@ void add_rows(Expression& e) {
     row.lower = p.lower;
     row.upper = p.upper;
     row.prior_scale = strength[i] ? 0.5 * (p.upper - p.lower) : 0.0;
+    // A formula has no other way to say so: its parameter "phase…" is an angle that goes round.
+    if (p.name.starts_with("phase")) row.trait = ParamTrait::kPeriodic;
     e.rows.push_back(row);
   }
   if (e.shared) {
@@ -209,7 +211,7 @@ EffectUse use_of_expression(std::shared_ptr<const Expression> expression) {
 }
 
 const Expression* expression_of(const EffectUse& use) {
-  return use.entry->info->id == "expression" ? static_cast<const Expression*>(use.entry->context) : nullptr;
+  return is_formula(*use.entry->info) ? static_cast<const Expression*>(use.entry->context) : nullptr;
 }
 
 std::string override_expression(std::string_view text, std::vector<EffectUse>& uses) {

@@ -25,7 +25,7 @@ std::string with_word(std::string key, std::string_view from, std::string_view t
 }  // namespace
 
 std::string param_key(const EffectParam& row, bool linear) {
-  if (!linear || row.name.starts_with("phase")) return std::string(row.name);
+  if (!linear || row.trait == ParamTrait::kPeriodic) return std::string(row.name);
   return with_word(with_word(std::string(row.name), "Nm", "N"), "rad", "m");
 }
 

@@ -10,7 +10,7 @@
 
 namespace omnihil {
 
-// "amplitude_Nm" -> "amplitude_N" where the axis is linear; phases are kept.
+// "amplitude_Nm" -> "amplitude_N" where the axis is linear; angles that go round (phases) are kept.
 std::string param_key(const EffectParam& row, bool linear);
 
 // Bounds and prior scale; forces of a linear axis may be a thousand times what torques of a motor may be,

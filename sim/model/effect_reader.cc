@@ -132,7 +132,7 @@ std::vector<EffectUse> read_effects(const ModelDocument& document, const EffectC
   for (const auto& [key, node] : *effects->as_table()) {
     const std::string id(key.str());
     const EffectEntry* entry = find_effect(id);
-    if (id == "expression") {
+    if (entry != nullptr && is_formula(*entry->info)) {
       read_expressions(document, node, context.linear, uses, problems);
     } else if (entry == nullptr) {
       reader.add(key.source(), "effects." + id, "", "there is no such effect", unknown_effect_hint(id));
@@ -152,7 +152,7 @@ std::string add_override(std::string_view text, const EffectContext& context, st
   const std::size_t dot = path.find('.');
   const std::string_view id = path.substr(0, dot);
   const EffectEntry* entry = find_effect(id);
-  if (id == "expression" && std::count(path.begin(), path.end(), '.') == 2) {
+  if (entry != nullptr && is_formula(*entry->info) && std::count(path.begin(), path.end(), '.') == 2) {
     return override_expression(text, uses);
   }
   if (entry == nullptr) return fmt::format("{}: there is no such effect; {}", id, unknown_effect_hint(id));

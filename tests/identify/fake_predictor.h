@@ -56,7 +56,9 @@ class FakePredictor : public Predictor {
     return at(r).prediction;
   }
   std::unique_ptr<Predictor> simulated(const Candidate&, std::uint64_t) const override { return nullptr; }
-  std::string applies(const EffectEntry&) const override { return ""; }
+  Capabilities capabilities() const override {
+    return {.rig = kOnBoth, .list = {{~0U, true, ""}}, .free_base = {}, .present_base = {}};
+  }
 
   Method method_ = Method::kForward;
 

@@ -84,7 +84,7 @@ std::vector<std::string> check_names(const std::vector<std::string>& names, cons
     if (name == kBase) continue;
     const EffectEntry* entry = find_effect(name);
     const std::string_view near = entry == nullptr ? nearest_effect(name) : "";
-    if (entry == nullptr || name == "expression") {
+    if (entry == nullptr || is_formula(*entry->info)) {
       faults.push_back(fmt::format("--separate {}: there is no such effect; {}", name,
                                    near.empty() ? "allowed: effects of `omnihil effects`, or \"base\""
                                                 : fmt::format("did you mean \"{}\"?", near)));

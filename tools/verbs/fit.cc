@@ -36,7 +36,7 @@ Candidate with_effects(Candidate c, const std::vector<std::string>& ids, std::ve
       faults.push_back(fmt::format(
           "--with {}: there is no such effect; {}", id,
           near.empty() ? "`omnihil effects` lists them" : fmt::format("did you mean \"{}\"?", near)));
-    } else if (id == "expression") {
+    } else if (is_formula(*entry->info)) {
       faults.push_back(
           "--with expression: a formula is written into the model file, [effects.expression.NAME]");
     } else if (std::none_of(c.effects.begin(), c.effects.end(),

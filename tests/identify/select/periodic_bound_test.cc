@@ -1,0 +1,44 @@
+// A bound of an angle that goes round says nothing against an effect; a bound of another shape does.
+#include <gtest/gtest.h>
+
+#include "identify/select/plausibility.h"
+#include "sim/law/effect_registry.h"
+#include "tests/identify/simulated_robot.h"
+
+namespace omnihil::test {
+namespace {
+
+// A fit whose strength is beyond question, with one shape at a bound.
+FitResult at_bound(const std::string& strength, const std::string& shape, double bound) {
+  FitResult fit;
+  fit.model = robot_candidate();
+  ParameterEstimate size, angle;
+  size.path = strength;
+  size.value = 0.02;
+  size.sigma = 1e-4;
+  angle.path = shape;
+  angle.unit = "rad";
+  angle.value = bound;
+  angle.at_bound = true;
+  fit.parameters = {size, angle};
+  return fit;
+}
+
+TEST(PeriodicBound, SpeaksAgainstNoEffect) {
+  const FitResult parent;
+  EXPECT_EQ(
+      implausibility(parent, at_bound("cogging.amplitude_Nm", "cogging.phase_rad", 6.3), "cogging", false),
+      "");
+  EXPECT_EQ(implausibility(parent, at_bound("floor_tilt.angle_rad", "floor_tilt.direction_rad", 6.3),
+                           "floor_tilt", false),
+            "");
+}
+
+TEST(PeriodicBound, OfAnotherShapeIsASymptom) {
+  EXPECT_EQ(
+      implausibility({}, at_bound("wheel_slip.compliance_m_s", "wheel_slip.grip", 2.0), "wheel_slip", false),
+      "wheel_slip.grip ends at a bound (2 rad): a symptom, not a result");
+}
+
+}  // namespace
+}  // namespace omnihil::test
