@@ -1,7 +1,11 @@
-# omnihil_stems(OUT DIR): the stems of DIR/*.cc, sorted; re-globbed at every build, so a file added is a part added.
-function(omnihil_stems out dir)
-  file(GLOB files CONFIGURE_DEPENDS "${dir}/*.cc")
-  list(SORT files)
+# omnihil_stems(OUT DIRS): the stems of DIR/*.cc, sorted; re-globbed at every build, so a file added is a part added.
+function(omnihil_stems out dirs)
+  set(files "")
+  foreach(dir ${dirs})
+    file(GLOB found CONFIGURE_DEPENDS "${dir}/*.cc")
+    list(APPEND files ${found})
+  endforeach()
+  list(SORT files COMPARE FILE_BASENAME)
   set(stems "")
   foreach(file ${files})
     get_filename_component(stem "${file}" NAME_WE)
@@ -11,10 +15,10 @@ function(omnihil_stems out dir)
 endfunction()
 
 # omnihil_list(OUT.cc DIR HEADER NAMESPACE TYPE PREFIX FUNCTION): writes generated/OUT.cc, where FUNCTION gives PREFIX_stem()
-# of every DIR/stem.cc, in order of their names, each a `const TYPE&`. With FUNCTIONS at the end TYPE is a function's type,
-# and FUNCTION gives the functions PREFIX_stem themselves.
+# of every DIR/stem.cc, in order of their names, each a `const TYPE&`; DIR may be several, separated by ;. With FUNCTIONS at the
+# end TYPE is a function's type, and FUNCTION gives the functions PREFIX_stem themselves.
 function(omnihil_list out dir header namespace type prefix function)
-  omnihil_stems(stems ${dir})
+  omnihil_stems(stems "${dir}")
   if("FUNCTIONS" IN_LIST ARGN)
     set(element "${type}")
   else()
@@ -31,7 +35,8 @@ function(omnihil_list out dir header namespace type prefix function)
       string(APPEND rows "      &${prefix}_${stem}(),\n")
     endif()
   endforeach()
-  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${dir})
+  list(GET dir 0 folder)
+  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${folder})
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/${out} @ONLY CONTENT
 "// Generated from the files in @folder@/.
 #include \"@header@\"
