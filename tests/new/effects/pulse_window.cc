@@ -30,7 +30,9 @@ struct PulseWindow {
        .how = "steps: the measured speed against the slope of the position",
        .trait = ParamTrait::kTime},
   };
-  static constexpr EffectState kStates[] = {{.name = "speed_rad_s", .unit = "rad/s"}};
+  enum State { kSpeed, kStarted };
+  static constexpr EffectState kStates[] = {{.name = "speed_rad_s", .unit = "rad/s"},
+                                            {.name = "started", .unit = "1"}};
   static constexpr EffectInfo kInfo{
       .id = "pulse_window",
       .title = "Speed over a window of pulses",
@@ -48,9 +50,14 @@ struct PulseWindow {
 
   template <typename T>
   static void apply(const T* p, T* x, SensorPort<T>& port) {
-    // w x' = omega - x, implicit
-    x[0] += (port.measured_speed_rad_s - x[0]) * (port.dt_s / (port.dt_s + p[kWindow]));
-    port.measured_speed_rad_s = x[0];
+    if (value_of(x[kStarted]) == 0.0 && port.dt_s <= 0.0) {
+      x[kSpeed] = port.measured_speed_rad_s;
+    } else {
+      // w x' = omega - x, implicit
+      x[kSpeed] += (port.measured_speed_rad_s - x[kSpeed]) * (port.dt_s / (port.dt_s + p[kWindow]));
+    }
+    x[kStarted] = T(1);
+    port.measured_speed_rad_s = x[kSpeed];
   }
 };
 
