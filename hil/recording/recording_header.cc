@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "hil/text/json_text.h"
 #include "hil/text/recording_text.h"
 
 namespace omnihil {
@@ -201,12 +202,12 @@ std::string to_json(const RecordingHeader& header) {
   json["sample_every"] = header.sample_every;
   json["columns"] = header.columns;
   json["units"] = header.units;
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 std::optional<RecordingHeader> parse_recording_header(std::string_view text,
                                                       std::vector<std::string>& problems) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = json_of(text);
   if (!json.is_object()) {
     problems.push_back("found " + in_quotes(text) + ", allowed: the header as one JSON object");
     return std::nullopt;

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "hil/recording/recording_header.h"
+#include "hil/text/json_text.h"
 #include "hil/text/recording_text.h"
 
 namespace omnihil {
@@ -161,7 +162,7 @@ bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) 
 }
 
 void RecordingReader::parse_end(std::string_view text) {
-  const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
+  const auto json = json_of(text);
   const std::optional<RecordingEnd> read = end_of(json);
   if (!read) {
     problem("end line: found " + in_quotes(text) +

@@ -9,6 +9,7 @@
 
 #include "hil/recording/recording_header.h"
 #include "hil/recording/recording_memory.h"
+#include "hil/text/json_text.h"
 #include "hil/text/recording_text.h"
 
 namespace omnihil {
@@ -107,7 +108,7 @@ void RecordingWriter::finish(const RecordingEnd& end) {
   for (const auto& [name, count] : end.counters) counters[name] = count;
   const nlohmann::ordered_json line = {
       {"end", {{"now_ns", end.now_ns}, {"wall_s", end.wall_s}, {"counters", counters}}}};
-  buffer_ += "# " + line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  buffer_ += "# " + json_text(line) + "\n";
   flush();
 }
 

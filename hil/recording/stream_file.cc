@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "hil/recording/recording_reader.h"
+#include "hil/text/json_text.h"
 #include "hil/text/recording_text.h"
 
 namespace omnihil {
@@ -92,7 +93,7 @@ const Json& pick_session(const Json& sessions, const std::string& name, std::str
 }
 
 HostStream parse_json(const std::string& text, const std::string& name, std::string session) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = json_of(text);
   if (!json.is_object() || !json.contains("sessions") || !json["sessions"].is_object()) {
     throw BadStream(
         {name + ": found " + in_quotes(text) + R"(, allowed: {"sessions": {NAME: [[SECONDS, "HEX"], …]}})"});

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hil/text/json_text.h"
+
 namespace omnihil {
 namespace {
 
@@ -148,7 +150,7 @@ std::string diagnosis_json(const Diagnosis& d, const DiagnosisJsonOptions& optio
       {"not_visible", d.not_visible},
       {"ladder", ladder_json(d.ladder)},
   };
-  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(out, 2) + "\n";
 }
 
 }  // namespace omnihil

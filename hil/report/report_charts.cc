@@ -12,6 +12,7 @@
 
 #include "hil/report/report_text.h"
 #include "hil/report/report_thin.h"
+#include "hil/text/json_text.h"
 
 namespace omnihil {
 namespace {
@@ -210,7 +211,7 @@ std::string chart_data(const ReportInput& input) {
                             {"floor", number(s.floor)}});
   }
   // "<" would let a name end the element that holds the JSON; invalid UTF-8 is replaced.
-  const std::string text = j.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = json_text(j);
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);

@@ -151,6 +151,13 @@ ModelFile model_of(const Merged& all, ParameterTable table) {
 
 }  // namespace
 
+ModelFile::ModelFile() = default;
+ModelFile::ModelFile(const ModelFile&) = default;
+ModelFile::ModelFile(ModelFile&&) noexcept = default;
+ModelFile& ModelFile::operator=(const ModelFile&) = default;
+ModelFile& ModelFile::operator=(ModelFile&&) noexcept = default;
+ModelFile::~ModelFile() = default;
+
 ModelReading read_model(std::string_view text, const std::string& shown_name,
                         const MotorFileLoader& load_motor) {
   ModelReading reading;
