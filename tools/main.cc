@@ -6,6 +6,7 @@
 #include <string>
 #include <system_error>
 
+#include "tools/command_line.h"
 #include "tools/command_tree.h"
 #include "tools/exit_codes.h"
 #include "tools/manual.h"
@@ -39,7 +40,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(omnihil::kExitCodeHelp);
   omnihil::VerbResult result;
-  for (omnihil::VerbAdder* add : omnihil::all_verbs()) add(app, result);
+  omnihil::Verb program(&app);
+  for (omnihil::VerbAdder* add : omnihil::all_verbs()) add(program, result);
   add_manual(app, result);
   try {
     app.parse(argc, argv);

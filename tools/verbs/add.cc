@@ -1,7 +1,6 @@
 // omnihil add DATASET EFFECT: one effect added by hand, and what it changes.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -12,6 +11,7 @@
 #include "identify/select/add_effect.h"
 #include "sim/law/expression.h"
 #include "sim/model/effect_reader.h"
+#include "tools/command_line.h"
 #include "tools/diagnosis_text.h"
 #include "tools/exit_codes.h"
 #include "tools/formula_argument.h"
@@ -114,25 +114,25 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-void add_verb_add(CLI::App& app, VerbResult& result) {
+void add_verb_add(Verb& program, VerbResult& result) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("add", "add one effect to a model, and see what it changes");
-  verb->add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml")->required();
-  verb->add_option("EFFECT", a->effect,
-                   "id of an effect, or a formula: \"torque_Nm += -a*omega_rotor_rad_s; a = 2e-6\"")
-      ->required();
-  verb->add_option("--model", a->model, "model to start from, in place of the dataset's own");
-  verb->add_option("--write", a->write, "the model with it; a file that is there is kept as FILE.1");
-  verb->add_flag("--force", a->force, "write it even when it is not useful");
-  verb->add_option("--seed", a->seed, "of the simulated null and of the bootstrap")->capture_default_str();
-  verb->add_option("--jobs", a->jobs, "threads; the result does not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  verb->footer(
+  Verb verb = program.add_subcommand("add", "add one effect to a model, and see what it changes");
+  verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
+  verb.add_option("EFFECT", a->effect,
+                  "id of an effect, or a formula: \"torque_Nm += -a*omega_rotor_rad_s; a = 2e-6\"")
+      .required();
+  verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
+  verb.add_option("--write", a->write, "the model with it; a file that is there is kept as FILE.1");
+  verb.add_flag("--force", a->force, "write it even when it is not useful");
+  verb.add_option("--seed", a->seed, "of the simulated null and of the bootstrap").capture_default_str();
+  verb.add_option("--jobs", a->jobs, "threads; the result does not depend on it")
+      .range(1, 256)
+      .capture_default_str();
+  verb.footer(
       "Exit code 1: it earns no place in the model, for the reason that is printed; nothing was written (but "
       "with\n"
       "--force). To undo an addition, take FILE.1.");
-  verb->callback([a, &result] { result.exit_code = guarded("add", [&] { return run(*a); }); });
+  verb.callback([a, &result] { result.exit_code = guarded("add", [&] { return run(*a); }); });
 }
 
 }  // namespace omnihil

@@ -1,7 +1,6 @@
 // `omnihil check`: one recording, one command, one verdict.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,6 +12,7 @@
 #include "hil/recording/recording_reader.h"
 #include "hil/recording/replay_report.h"
 #include "hil/recording/replay_run.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/program_commit.h"
@@ -102,19 +102,18 @@ int run_check(const CheckWords& words) {
 
 }  // namespace
 
-void add_verb_check(CLI::App& app, VerbResult& result) {
+void add_verb_check(Verb& program, VerbResult& result) {
   auto words = std::make_shared<CheckWords>();
-  CLI::App* verb =
-      app.add_subcommand("check", "replays a recording and compares the answers; the verdict for CI");
-  verb->add_option("RECORDING", words->recording, "file that serve --record wrote")->required();
-  verb->add_option("--tolerance", words->tolerances,
-                   "KEY=VALUE, a file of such lines, or 'default'; may be given several times");
-  verb->add_flag("--exact", words->exact, "bytes and samples must be identical in every bit");
-  verb->add_option("--physics", words->physics,
-                   "instead of the recorded one: simbody, planar or simbody-free")
-      ->check(CLI::IsMember({"simbody", "planar", "simbody-free"}));
-  verb->add_flag("--quiet", words->quiet, "without the table of signals");
-  verb->footer(
+  Verb verb =
+      program.add_subcommand("check", "replays a recording and compares the answers; the verdict for CI");
+  verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
+  verb.add_option("--tolerance", words->tolerances,
+                  "KEY=VALUE, a file of such lines, or 'default'; may be given several times");
+  verb.add_flag("--exact", words->exact, "bytes and samples must be identical in every bit");
+  verb.add_option("--physics", words->physics, "instead of the recorded one: simbody, planar or simbody-free")
+      .one_of({"simbody", "planar", "simbody-free"});
+  verb.add_flag("--quiet", words->quiet, "without the table of signals");
+  verb.footer(
       "Exact when the recording was made by this same commit, else within tolerances, which are absolute and "
       "in the\n"
       "signal's unit. KEY is a column of the recording (with or without its wheel number), MESSAGE.FIELD of "
@@ -126,8 +125,7 @@ void add_verb_check(CLI::App& app, VerbResult& result) {
       "Exit codes: 0 agrees, 1 differs (the first difference is named: time, robot, field, both values, "
       "tolerance),\n"
       "2 unusable recording or arguments, 3 a file could not be read.");
-  verb->callback(
-      [words, &result] { result.exit_code = guarded("check", [&] { return run_check(*words); }); });
+  verb.callback([words, &result] { result.exit_code = guarded("check", [&] { return run_check(*words); }); });
 }
 
 }  // namespace omnihil

@@ -1,7 +1,6 @@
 // omnihil compare DATASET: how far a model is from a measurement, and where it is worst.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "hil/text/dataset_files.h"
 #include "hil/text/toml_keys.h"
 #include "identify/compare/force_error.h"
+#include "tools/command_line.h"
 #include "tools/compare_report.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
@@ -113,20 +113,19 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-void add_verb_compare(CLI::App& app, VerbResult& result) {
+void add_verb_compare(Verb& program, VerbResult& result) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb =
-      app.add_subcommand("compare", "how far a model is from a measurement, and where it is worst");
-  verb->add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml")->required();
-  verb->add_option("--model", a->model, "model file in place of the dataset's own");
-  verb->add_option(
+  Verb verb =
+      program.add_subcommand("compare", "how far a model is from a measurement, and where it is worst");
+  verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
+  verb.add_option("--model", a->model, "model file in place of the dataset's own");
+  verb.add_option(
       "--tube", a->tubes,
       "SIGNAL=TOLERANCE[%][/SECONDS]: exit with 1 when a sample is farther from the model (%: of the "
       "measured range; seconds: and not met within that time either)");
-  verb->add_flag("--runs", a->runs, "errors of every run as well");
-  verb->add_option("--json", a->json,
-                   "write the result as JSON; - for standard output in place of the table");
-  verb->callback([a, &result] { result.exit_code = guarded("compare", [&] { return run(*a); }); });
+  verb.add_flag("--runs", a->runs, "errors of every run as well");
+  verb.add_option("--json", a->json, "write the result as JSON; - for standard output in place of the table");
+  verb.callback([a, &result] { result.exit_code = guarded("compare", [&] { return run(*a); }); });
 }
 
 }  // namespace omnihil

@@ -1,7 +1,6 @@
 // `omnihil convert`: a recording as a dataset for fits, as one CSV, or as a stream to play.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "hil/recording/session_setup.h"
 #include "hil/recording/stream_file.h"
 #include "hil/text/dataset_files.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/verbs/verbs.h"
@@ -73,28 +73,27 @@ int run_convert(const ConvertWords& words) {
 
 }  // namespace
 
-void add_verb_convert(CLI::App& app, VerbResult& result) {
+void add_verb_convert(Verb& program, VerbResult& result) {
   auto words = std::make_shared<ConvertWords>();
-  CLI::App* verb =
-      app.add_subcommand("convert", "a recording as a dataset, as one CSV, or as a stream to play");
-  verb->add_option("RECORDING", words->recording, "file that serve --record wrote")->required();
-  verb->add_option("--to", words->to,
-                   "dataset: a folder with dataset.toml, model.toml and one CSV per run; csv; stream")
-      ->check(CLI::IsMember({"dataset", "csv", "stream"}))
-      ->required();
-  verb->add_option("--out", words->out,
-                   "folder (dataset) or file to make; what is there is never overwritten")
-      ->required();
-  verb->add_option("--robot", words->robot, "one robot only (default: all)")->check(CLI::Range(0, 255));
-  verb->add_option("--camera-hz", words->camera_Hz, "rate of the vision columns of a dataset")
-      ->check(CLI::Range(0.1, 10000.0))
-      ->capture_default_str();
-  verb->footer(
+  Verb verb =
+      program.add_subcommand("convert", "a recording as a dataset, as one CSV, or as a stream to play");
+  verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
+  verb.add_option("--to", words->to,
+                  "dataset: a folder with dataset.toml, model.toml and one CSV per run; csv; stream")
+      .one_of({"dataset", "csv", "stream"})
+      .required();
+  verb.add_option("--out", words->out, "folder (dataset) or file to make; what is there is never overwritten")
+      .required();
+  verb.add_option("--robot", words->robot, "one robot only (default: all)").range(0, 255);
+  verb.add_option("--camera-hz", words->camera_Hz, "rate of the vision columns of a dataset")
+      .range(0.1, 10000.0)
+      .capture_default_str();
+  verb.footer(
       "A dataset of several robots has a run each, the last held out; of one robot, the last third of its "
       "time is\n"
       "held out. Nothing is left half written. For a measurement, record every tick (serve --sample-every "
       "1).");
-  verb->callback(
+  verb.callback(
       [words, &result] { result.exit_code = guarded("convert", [&] { return run_convert(*words); }); });
 }
 

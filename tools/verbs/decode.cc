@@ -1,9 +1,9 @@
 // omnihil decode FORMAT: hex lines of whole wire frames to JSON lines.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 #include <string>
 
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/packet_json.h"
@@ -73,12 +73,12 @@ int run(const std::string& format_id) {
 
 }  // namespace
 
-void add_verb_decode(CLI::App& app, VerbResult& result) {
+void add_verb_decode(Verb& program, VerbResult& result) {
   auto format = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("decode", "radio packets in hex to JSON lines");
-  verb->add_option("FORMAT", *format, "radio format, e.g. ulaval-hermes; see `omnihil formats`")->required();
-  verb->footer(kExample);
-  verb->callback([format, &result] { result.exit_code = run(*format); });
+  Verb verb = program.add_subcommand("decode", "radio packets in hex to JSON lines");
+  verb.add_option("FORMAT", *format, "radio format, e.g. ulaval-hermes; see `omnihil formats`").required();
+  verb.footer(kExample);
+  verb.callback([format, &result] { result.exit_code = run(*format); });
 }
 
 }  // namespace omnihil

@@ -1,7 +1,6 @@
 // omnihil diagnose DATASET: which physical effect is the model missing.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "hil/report/report_html.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/text/dataset_files.h"
+#include "tools/command_line.h"
 #include "tools/diagnosis_text.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
@@ -86,27 +86,27 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-void add_verb_diagnose(CLI::App& app, VerbResult& result) {
+void add_verb_diagnose(Verb& program, VerbResult& result) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb =
-      app.add_subcommand("diagnose", "which physical effect a model lacks, and what to measure next");
-  verb->add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml")->required();
-  verb->add_option("--model", a->model, "model to start from, in place of the dataset's own");
-  verb->add_option("--json", a->json,
-                   "diagnosis as JSON (omnihil-diagnosis/1); - : to stdout, in place of the text");
-  verb->add_option("--report", a->report, "diagnosis as one HTML file");
-  verb->add_option("--write", a->write, "the mended model; a file that is there is kept as FILE.1");
-  verb->add_option("--seed", a->options.seed, "of the simulated null and of the bootstrap")
-      ->capture_default_str();
-  verb->add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  verb->add_flag("--quick", a->quick, "the first effect only");
-  verb->footer(
+  Verb verb =
+      program.add_subcommand("diagnose", "which physical effect a model lacks, and what to measure next");
+  verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
+  verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
+  verb.add_option("--json", a->json,
+                  "diagnosis as JSON (omnihil-diagnosis/1); - : to stdout, in place of the text");
+  verb.add_option("--report", a->report, "diagnosis as one HTML file");
+  verb.add_option("--write", a->write, "the mended model; a file that is there is kept as FILE.1");
+  verb.add_option("--seed", a->options.seed, "of the simulated null and of the bootstrap")
+      .capture_default_str();
+  verb.add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
+      .range(1, 256)
+      .capture_default_str();
+  verb.add_flag("--quick", a->quick, "the first effect only");
+  verb.footer(
       "A verdict is no failure: exit code 0 whatever it is. Ctrl-C says what is known by then and ends with "
       "130;\n"
       "no model is written then.");
-  verb->callback([a, &result] { result.exit_code = guarded("diagnose", [&] { return run(*a); }); });
+  verb.callback([a, &result] { result.exit_code = guarded("diagnose", [&] { return run(*a); }); });
 }
 
 }  // namespace omnihil

@@ -1,7 +1,6 @@
 // omnihil effects [ID]: lists the physical effects a model can have, or explains one.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 
 #include "sim/law/effect_registry.h"
 #include "sim/pages/effect_page.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/verbs/verbs.h"
 
@@ -76,13 +76,13 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_verb_effects(CLI::App& app, VerbResult& result) {
+void add_verb_effects(Verb& program, VerbResult& result) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("effects", "list the physical effects, or explain one");
-  CLI::Option* id = verb->add_option("ID", arguments->id, "explain this effect (Markdown)");
-  verb->add_option("--docs", arguments->docs, "write a page and a picture per effect into this folder")
-      ->excludes(id);
-  verb->callback([arguments, &result] { result.exit_code = run(*arguments); });
+  Verb verb = program.add_subcommand("effects", "list the physical effects, or explain one");
+  const Option id = verb.add_option("ID", arguments->id, "explain this effect (Markdown)");
+  verb.add_option("--docs", arguments->docs, "write a page and a picture per effect into this folder")
+      .excludes(id);
+  verb.callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 
 }  // namespace omnihil

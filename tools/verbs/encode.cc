@@ -1,10 +1,10 @@
 // omnihil encode FORMAT PACKET: JSON objects, one per line, to hex lines of whole wire frames.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/packet_json.h"
@@ -71,14 +71,14 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_verb_encode(CLI::App& app, VerbResult& result) {
+void add_verb_encode(Verb& program, VerbResult& result) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("encode", "JSON lines to radio packets in hex");
-  verb->add_option("FORMAT", arguments->format, "radio format, e.g. ulaval-hermes; see `omnihil formats`")
-      ->required();
-  verb->add_option("PACKET", arguments->packet, "the team's name of the packet, e.g. SPEED_MOVE")->required();
-  verb->footer(kExample);
-  verb->callback([arguments, &result] { result.exit_code = run(*arguments); });
+  Verb verb = program.add_subcommand("encode", "JSON lines to radio packets in hex");
+  verb.add_option("FORMAT", arguments->format, "radio format, e.g. ulaval-hermes; see `omnihil formats`")
+      .required();
+  verb.add_option("PACKET", arguments->packet, "the team's name of the packet, e.g. SPEED_MOVE").required();
+  verb.footer(kExample);
+  verb.callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 
 }  // namespace omnihil

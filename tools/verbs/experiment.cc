@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -17,6 +16,7 @@
 #include "sim/law/effect_registry.h"
 #include "sim/model/params.h"
 #include "tools/axis_bench.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/experiment_files.h"
 #include "tools/guarded.h"
@@ -189,49 +189,44 @@ int run(Arguments a) {
 
 }  // namespace
 
-void add_verb_experiment(CLI::App& app, VerbResult& result) {
+void add_verb_experiment(Verb& program, VerbResult& result) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb =
-      app.add_subcommand("experiment", "the run to record next: tells effects apart, or shrinks a number");
-  verb->add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml");
-  verb->add_option("--model", a->model,
-                   "model in place of the dataset's own; without a DATASET: a simulated bench");
-  verb->add_option("--separate", a->separate, "effects to tell apart, or \"base\" for none: A,B");
-  verb->add_option("--shrink", a->question.shrink, "number to know better: its path in the model")
-      ->type_name("PATH");
+  Verb verb = program.add_subcommand("experiment",
+                                     "the run to record next: tells effects apart, or shrinks a number");
+  verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml");
+  verb.add_option("--model", a->model,
+                  "model in place of the dataset's own; without a DATASET: a simulated bench");
+  verb.add_option("--separate", a->separate, "effects to tell apart, or \"base\" for none: A,B");
+  verb.add_option("--shrink", a->question.shrink, "number to know better: its path in the model")
+      .type_name("PATH");
   ExperimentLimits& limits = a->options.limits;
-  verb->add_option("--max-voltage", limits.voltage_V, "at the motor, V")->check(CLI::PositiveNumber);
-  verb->add_option("--max-current", limits.current_A, "of a motor, A")->check(CLI::PositiveNumber);
-  verb->add_option("--max-speed", limits.speed_rad_s, "of the rotor, rad/s (linear axis: m/s)")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--max-travel", limits.travel, "from the start, rad at the output (linear axis, robot: m)")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--duration", limits.duration_s, "of the run, s")
-      ->check(CLI::Range(1.0, 600.0))
-      ->capture_default_str();
-  verb->add_option("--rate", a->options.rate_Hz, "samples per second")
-      ->check(CLI::Range(10.0, 10000.0))
-      ->capture_default_str();
-  verb->add_option("--out", a->out, "new folder: run.csv, plan.txt, stream.txt");
-  verb->add_option("--radio", a->radio, "write the run as packets of this format too (robots)");
-  verb->add_option("--robot", a->robot.robot_id, "that the packets are for")
-      ->check(CLI::Range(0, 15))
-      ->capture_default_str();
-  verb->add_option("--team", a->team, "of the robot")
-      ->check(CLI::IsMember({"blue", "yellow"}))
-      ->capture_default_str();
-  verb->add_option("--packets", a->packets_Hz, "radio packets per second")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  verb->add_option("--seed", a->options.seed, "of the random excitations")->capture_default_str();
-  verb->add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  verb->footer(
+  verb.add_option("--max-voltage", limits.voltage_V, "at the motor, V").positive();
+  verb.add_option("--max-current", limits.current_A, "of a motor, A").positive();
+  verb.add_option("--max-speed", limits.speed_rad_s, "of the rotor, rad/s (linear axis: m/s)").positive();
+  verb.add_option("--max-travel", limits.travel, "from the start, rad at the output (linear axis, robot: m)")
+      .positive();
+  verb.add_option("--duration", limits.duration_s, "of the run, s").range(1.0, 600.0).capture_default_str();
+  verb.add_option("--rate", a->options.rate_Hz, "samples per second")
+      .range(10.0, 10000.0)
+      .capture_default_str();
+  verb.add_option("--out", a->out, "new folder: run.csv, plan.txt, stream.txt");
+  verb.add_option("--radio", a->radio, "write the run as packets of this format too (robots)");
+  verb.add_option("--robot", a->robot.robot_id, "that the packets are for")
+      .range(0, 15)
+      .capture_default_str();
+  verb.add_option("--team", a->team, "of the robot").one_of({"blue", "yellow"}).capture_default_str();
+  verb.add_option("--packets", a->packets_Hz, "radio packets per second")
+      .range(1.0, 1000.0)
+      .capture_default_str();
+  verb.add_option("--seed", a->options.seed, "of the random excitations").capture_default_str();
+  verb.add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
+      .range(1, 256)
+      .capture_default_str();
+  verb.footer(
       "Every excitation is simulated; one that would break a limit is refused and listed. The expected "
       "separation\n"
       "is in sigmas of the noise, with one model refitted to the other.");
-  verb->callback([a, &result] {
+  verb.callback([a, &result] {
     a->robot.team = a->team == "blue" ? Team::kBlue : Team::kYellow;
     result.exit_code = guarded("experiment", [&] { return run(*a); });
   });

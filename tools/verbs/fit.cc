@@ -1,7 +1,6 @@
 // omnihil fit DATASET: the numbers of a model that explain a measurement best, and how well it tells them.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include "hil/text/dataset_files.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/params.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/fit_text.h"
 #include "tools/guarded.h"
@@ -114,36 +114,36 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-void add_verb_fit(CLI::App& app, VerbResult& result) {
+void add_verb_fit(Verb& program, VerbResult& result) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("fit", "the numbers of a model that explain a measurement best");
-  verb->add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml")->required();
-  verb->add_option("--model", a->model, "model to start from, in place of the dataset's own");
-  verb->add_option("--with", a->with, "add this effect, starting without influence (several)")
-      ->type_name("EFFECT");
-  verb->add_option("--free", a->free, "move only these: a path, an effect, a section (several)")
-      ->type_name("PATH");
-  verb->add_option("--freeze", a->freeze, "leave these as they are (several)")->type_name("PATH");
-  verb->add_option("--write", a->write, "the fitted model; a file that is there is kept as FILE.1")
-      ->type_name("MODEL");
-  verb->add_option("--json", a->json, "result as JSON (omnihil-fit/1); - : to stdout, in place of the text")
-      ->type_name("OUT");
-  verb->add_flag(
+  Verb verb = program.add_subcommand("fit", "the numbers of a model that explain a measurement best");
+  verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
+  verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
+  verb.add_option("--with", a->with, "add this effect, starting without influence (several)")
+      .type_name("EFFECT");
+  verb.add_option("--free", a->free, "move only these: a path, an effect, a section (several)")
+      .type_name("PATH");
+  verb.add_option("--freeze", a->freeze, "leave these as they are (several)").type_name("PATH");
+  verb.add_option("--write", a->write, "the fitted model; a file that is there is kept as FILE.1")
+      .type_name("MODEL");
+  verb.add_option("--json", a->json, "result as JSON (omnihil-fit/1); - : to stdout, in place of the text")
+      .type_name("OUT");
+  verb.add_flag(
       "--robust", a->options.robust,
       "large residuals pull linearly, not squared: a few runs that the model cannot explain count less");
-  verb->add_option("--starts", a->options.starts,
-                   "starts; all but the first are drawn from the model file's tolerances")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  verb->add_option("--seed", a->options.seed, "of those starts")->capture_default_str();
-  verb->add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  verb->footer(
+  verb.add_option("--starts", a->options.starts,
+                  "starts; all but the first are drawn from the model file's tolerances")
+      .range(1, 100)
+      .capture_default_str();
+  verb.add_option("--seed", a->options.seed, "of those starts").capture_default_str();
+  verb.add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
+      .range(1, 256)
+      .capture_default_str();
+  verb.footer(
       "Numbers with a tolerance in the model file move, and those of its effects; bare base numbers are "
       "exact.\n"
       "Only runs of use \"fit\" are fitted; the table shows the error on the others as well.");
-  verb->callback([a, &result] { result.exit_code = guarded("fit", [&] { return run(*a); }); });
+  verb.callback([a, &result] { result.exit_code = guarded("fit", [&] { return run(*a); }); });
 }
 
 }  // namespace omnihil

@@ -1,9 +1,9 @@
 // omnihil formats [ID]: lists the radio formats; documentation, dissector or C header of one.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
 
 #include "protocols/emit/emit.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/verbs/verbs.h"
@@ -44,15 +44,15 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_verb_formats(CLI::App& app, VerbResult& result) {
+void add_verb_formats(Verb& program, VerbResult& result) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("formats", "list the radio formats, or describe one");
-  verb->add_option("ID", arguments->id, "print the documentation of this format (Markdown)");
-  CLI::Option* wireshark =
-      verb->add_flag("--wireshark", arguments->wireshark, "print a Wireshark dissector (Lua)");
-  verb->add_flag("--c-header", arguments->c_header, "print the places of all fields as C macros")
-      ->excludes(wireshark);
-  verb->callback([arguments, &result] { result.exit_code = run(*arguments); });
+  Verb verb = program.add_subcommand("formats", "list the radio formats, or describe one");
+  verb.add_option("ID", arguments->id, "print the documentation of this format (Markdown)");
+  const Option wireshark =
+      verb.add_flag("--wireshark", arguments->wireshark, "print a Wireshark dissector (Lua)");
+  verb.add_flag("--c-header", arguments->c_header, "print the places of all fields as C macros")
+      .excludes(wireshark);
+  verb.callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 
 }  // namespace omnihil

@@ -1,7 +1,6 @@
 // omnihil models [NAME|PATH] [--check FILE…] [--keys]: lists, explains or checks model files.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -12,6 +11,7 @@
 #include "sim/model/model_figures.h"
 #include "sim/model/model_keys.h"
 #include "sim/robot/validate.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/verbs/verbs.h"
 
@@ -134,18 +134,19 @@ int print_keys() {
 
 }  // namespace
 
-void add_verb_models(CLI::App& app, VerbResult& result) {
+void add_verb_models(Verb& program, VerbResult& result) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("models", "list robots and motors, explain one, or check model files");
-  verb->add_option("MODEL", arguments->model, "explain this model: every number, its tolerance and source");
-  CLI::Option* files =
-      verb->add_option("--check", arguments->check, "check these files; all problems with line and column")
-          ->type_name("FILE")
-          ->excludes(verb->get_option("MODEL"));
-  verb->add_flag("--keys", arguments->keys, "print every key a model file may have (Markdown)")
-      ->excludes(files);
-  verb->footer("A name is looked for in $OMNIHIL_MODELS, then among the models that come with the program.");
-  verb->callback([arguments, &result] {
+  Verb verb = program.add_subcommand("models", "list robots and motors, explain one, or check model files");
+  const Option model = verb.add_option("MODEL", arguments->model,
+                                       "explain this model: every number, its tolerance and source");
+  const Option files =
+      verb.add_option("--check", arguments->check, "check these files; all problems with line and column")
+          .type_name("FILE")
+          .excludes(model);
+  verb.add_flag("--keys", arguments->keys, "print every key a model file may have (Markdown)")
+      .excludes(files);
+  verb.footer("A name is looked for in $OMNIHIL_MODELS, then among the models that come with the program.");
+  verb.callback([arguments, &result] {
     result.exit_code = arguments->keys             ? print_keys()
                        : !arguments->check.empty() ? check(arguments->check)
                        : !arguments->model.empty() ? explain(arguments->model)

@@ -1,7 +1,6 @@
 // `omnihil play`: a recorded host's stream into a serial device at its own times, as the host sent it.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "hil/recording/stream_file.h"
 #include "hil/serve/stream_player.h"
 #include "hil/wire/open_wire.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/verbs/verbs.h"
@@ -81,28 +81,28 @@ int run_play(PlayWords& words) {
 
 }  // namespace
 
-void add_verb_play(CLI::App& app, VerbResult& result) {
+void add_verb_play(Verb& program, VerbResult& result) {
   auto words = std::make_shared<PlayWords>();
   PlayWords& w = *words;
-  CLI::App* verb =
-      app.add_subcommand("play", "plays a recorded host's packets into a serial device, as a client");
-  verb->add_option("STREAM", w.stream,
-                   "text stream (TIME_S HEX), JSON stream, or a recording: its host's bytes")
-      ->required();
-  verb->add_option("--device", w.device, "serial device to open, or a wire's URL (omnihil wires)")
-      ->capture_default_str();
-  verb->add_option("--radio", w.radio, "decode what comes back as this radio format, and count it");
-  verb->add_option("--session", w.session, "which session of a JSON stream (default: the only one)");
-  verb->add_option("--speed", w.options.speed, "times as fast as recorded")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->capture_default_str();
-  verb->add_option("--linger", w.options.linger_s, "listen this long after the last write, in s")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  verb->add_flag("--loop", w.options.loop, "again from the start until Ctrl-C");
-  verb->add_flag("--wait", w.wait, fmt::format("wait for the device to appear, {} s at most", kWait_s));
-  verb->footer("Opens the device raw, at 115200 baud unless its URL says otherwise.");
-  verb->callback([words, &result] { result.exit_code = guarded("play", [&] { return run_play(*words); }); });
+  Verb verb =
+      program.add_subcommand("play", "plays a recorded host's packets into a serial device, as a client");
+  verb.add_option("STREAM", w.stream,
+                  "text stream (TIME_S HEX), JSON stream, or a recording: its host's bytes")
+      .required();
+  verb.add_option("--device", w.device, "serial device to open, or a wire's URL (omnihil wires)")
+      .capture_default_str();
+  verb.add_option("--radio", w.radio, "decode what comes back as this radio format, and count it");
+  verb.add_option("--session", w.session, "which session of a JSON stream (default: the only one)");
+  verb.add_option("--speed", w.options.speed, "times as fast as recorded")
+      .range(0.001, 1000.0)
+      .capture_default_str();
+  verb.add_option("--linger", w.options.linger_s, "listen this long after the last write, in s")
+      .range(0.0, 3600.0)
+      .capture_default_str();
+  verb.add_flag("--loop", w.options.loop, "again from the start until Ctrl-C");
+  verb.add_flag("--wait", w.wait, fmt::format("wait for the device to appear, {} s at most", kWait_s));
+  verb.footer("Opens the device raw, at 115200 baud unless its URL says otherwise.");
+  verb.callback([words, &result] { result.exit_code = guarded("play", [&] { return run_play(*words); }); });
 }
 
 }  // namespace omnihil

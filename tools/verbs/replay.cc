@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,6 +13,7 @@
 #include "hil/recording/recording_writer.h"
 #include "hil/recording/replay_report.h"
 #include "hil/recording/replay_run.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/program_commit.h"
@@ -79,23 +79,22 @@ int run_replay(const ReplayWords& words) {
 
 }  // namespace
 
-void add_verb_replay(CLI::App& app, VerbResult& result) {
+void add_verb_replay(Verb& program, VerbResult& result) {
   auto words = std::make_shared<ReplayWords>();
-  CLI::App* verb =
-      app.add_subcommand("replay", "runs a recording again; says whether the same bytes come back");
-  verb->add_option("RECORDING", words->recording, "file that serve --record wrote")->required();
-  verb->add_option("--out", words->out, "write the new run to this file, as a recording");
-  verb->add_option("--physics", words->physics,
-                   "instead of the recorded one: simbody, planar or simbody-free")
-      ->check(CLI::IsMember({"simbody", "planar", "simbody-free"}));
-  verb->add_flag("--sha256", words->sha256_only,
-                 "print only the SHA-256 of all outputs: bytes with their times, every tick's values");
-  verb->footer(
+  Verb verb =
+      program.add_subcommand("replay", "runs a recording again; says whether the same bytes come back");
+  verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
+  verb.add_option("--out", words->out, "write the new run to this file, as a recording");
+  verb.add_option("--physics", words->physics, "instead of the recorded one: simbody, planar or simbody-free")
+      .one_of({"simbody", "planar", "simbody-free"});
+  verb.add_flag("--sha256", words->sha256_only,
+                "print only the SHA-256 of all outputs: bytes with their times, every tick's values");
+  verb.footer(
       "The host's bytes are fed at the virtual times at which they came; models are taken from the "
       "recording.\n"
       "Exit code 1: the dongle's bytes are not those of the recording (not with --physics). Tolerances: see "
       "check.");
-  verb->callback(
+  verb.callback(
       [words, &result] { result.exit_code = guarded("replay", [&] { return run_replay(*words); }); });
 }
 

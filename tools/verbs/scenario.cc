@@ -1,7 +1,6 @@
 // omnihil scenario run FILE|FOLDER …: a test bench for controllers. The work is in hil/scenario/.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "hil/scenario/scenario_rows.h"
 #include "hil/scenario/scenario_suite.h"
 #include "hil/text/program_files.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/firmware_options.h"
 #include "tools/guarded.h"
@@ -90,49 +90,49 @@ int run(Arguments& a) {
   return firmware_failed ? kExitFirmware : passed ? kExitOk : kExitDiffers;
 }
 
-void add_run(CLI::App& verb, const std::shared_ptr<Arguments>& a, VerbResult& result) {
-  CLI::App* sub = verb.add_subcommand("run", "run scenarios and judge them");
-  sub->add_option("PATH", a->paths,
-                  "scenario files, folders of them, or names of shipped ones; none: all shipped");
-  add_firmware_options(*sub, a->suite.firmware);
-  sub->add_option("--level", a->level,
-                  "wheel: what a firmware of one wheel can do, too; robot; without it: all")
-      ->check(CLI::IsMember({"wheel", "robot"}));
-  sub->add_option("--robot", a->suite.robot, "robot model instead of the scenarios' own, by name or path");
-  sub->add_option("--with", a->suite.with, "add an effect: ID.parameter=value, or ID; several allowed");
-  sub->add_option("--radio", a->suite.radio, "radio format instead of the robot model's");
-  sub->add_option("--physics", a->physics, "planar, simbody or simbody-free")
-      ->check(CLI::IsMember({"simbody", "planar", "simbody-free"}))
-      ->capture_default_str();
-  sub->add_option("--seed", a->suite.seed, "of everything random")->capture_default_str();
-  sub->add_option("--junit", a->junit, "write JUnit XML to this file");
+void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result) {
+  Verb sub = verb.add_subcommand("run", "run scenarios and judge them");
+  sub.add_option("PATH", a->paths,
+                 "scenario files, folders of them, or names of shipped ones; none: all shipped");
+  add_firmware_options(sub, a->suite.firmware);
+  sub.add_option("--level", a->level,
+                 "wheel: what a firmware of one wheel can do, too; robot; without it: all")
+      .one_of({"wheel", "robot"});
+  sub.add_option("--robot", a->suite.robot, "robot model instead of the scenarios' own, by name or path");
+  sub.add_option("--with", a->suite.with, "add an effect: ID.parameter=value, or ID; several allowed");
+  sub.add_option("--radio", a->suite.radio, "radio format instead of the robot model's");
+  sub.add_option("--physics", a->physics, "planar, simbody or simbody-free")
+      .one_of({"simbody", "planar", "simbody-free"})
+      .capture_default_str();
+  sub.add_option("--seed", a->suite.seed, "of everything random").capture_default_str();
+  sub.add_option("--junit", a->junit, "write JUnit XML to this file");
   a->suite.plots = "scenario-plots";
-  sub->add_option("--plots", a->suite.plots, "folder for one SVG per failed scenario; made when one fails")
-      ->capture_default_str();
-  sub->add_flag("--no-plots", a->no_plots, "no plots");
-  sub->add_flag("--all", a->all, "print passed checks, too");
-  sub->footer(
+  sub.add_option("--plots", a->suite.plots, "folder for one SVG per failed scenario; made when one fails")
+      .capture_default_str();
+  sub.add_flag("--no-plots", a->no_plots, "no plots");
+  sub.add_flag("--all", a->all, "print passed checks, too");
+  sub.footer(
       "`omnihil scenario list` says which steps, checks and signals there are; docs/firmware.md is the "
       "tutorial.\n"
       "Exit codes: 0 all checks passed, 1 a check failed, 2 unusable scenario, robot or firmware, 3 a file "
       "could\n"
       "not be read or written, 6 the firmware crashed or hung.");
-  sub->callback([a, &result] { result.exit_code = guarded("scenario", [&] { return run(*a); }); });
+  sub.callback([a, &result] { result.exit_code = guarded("scenario", [&] { return run(*a); }); });
 }
 
 }  // namespace
 
-void add_verb_scenario(CLI::App& app, VerbResult& result) {
-  CLI::App* verb = app.add_subcommand("scenario", "a test bench for controllers: steps, faults, checks");
-  verb->require_subcommand(1);
+void add_verb_scenario(Verb& program, VerbResult& result) {
+  Verb verb = program.add_subcommand("scenario", "a test bench for controllers: steps, faults, checks");
+  verb.require_subcommand(1);
   auto a = std::make_shared<Arguments>();
-  add_run(*verb, a, result);
+  add_run(verb, a, result);
   auto b = std::make_shared<Arguments>();
-  CLI::App* sub =
-      verb->add_subcommand("list", "what can stand in a scenario; or the scenarios in files and folders");
-  sub->add_option("PATH", b->paths, "scenario files, or folders of them");
-  sub->add_option("--level", b->level, "wheel or robot")->check(CLI::IsMember({"wheel", "robot"}));
-  sub->callback([b, &result] { result.exit_code = guarded("scenario", [&] { return list(*b); }); });
+  Verb sub =
+      verb.add_subcommand("list", "what can stand in a scenario; or the scenarios in files and folders");
+  sub.add_option("PATH", b->paths, "scenario files, or folders of them");
+  sub.add_option("--level", b->level, "wheel or robot").one_of({"wheel", "robot"});
+  sub.callback([b, &result] { result.exit_code = guarded("scenario", [&] { return list(*b); }); });
 }
 
 }  // namespace omnihil

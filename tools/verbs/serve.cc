@@ -1,7 +1,6 @@
 // `omnihil serve`: robots behind a virtual radio dongle. Options here, the work in hil/serve/serve.h.
 #include "hil/serve/serve.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 #include "hil/text/program_files.h"
 #include "hil/wire/open_wire.h"
 #include "protocols/radio_format.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/firmware_options.h"
 #include "tools/program_commit.h"
@@ -130,7 +130,7 @@ int run(Words& words) {
   return kExitDiverged;
 }
 
-void add_bus_options(CLI::App& verb, MotorBusChoice& choice) {
+void add_bus_options(Verb& verb, MotorBusChoice& choice) {
   verb.add_option("--motor-bus", choice.bus,
                   "no firmware: the robot is its motor controllers on a bus, odrive for one "
                   "(docs/motor-buses.md)");
@@ -139,66 +139,62 @@ void add_bus_options(CLI::App& verb, MotorBusChoice& choice) {
       "the bus's wire (omnihil wires): can:vcan0, slcan:./can, pty:./motor{motor} (a wire per motor); "
       "{id} is the robot's number");
   verb.add_option("--bus-shaft", choice.shaft, "a turn on the bus is one of the rotor or the wheel")
-      ->capture_default_str();
+      .capture_default_str();
   verb.add_option("--bus-order", choice.order, "wheel of the model that is motor 0, 1, 2, 3 of the bus")
-      ->capture_default_str();
+      .capture_default_str();
   verb.add_option("--bus-first-id", choice.first_id, "node id of motor 0 (default: the bus's own)")
-      ->check(CLI::NonNegativeNumber);
+      .not_negative();
   verb.add_option("--bus-watchdog", choice.watchdog_ms,
                   "ms without a command after which a motor stops; 0: never (default: the device's own)")
-      ->check(CLI::NonNegativeNumber);
+      .not_negative();
 }
 
 }  // namespace
 
-void add_verb_serve(CLI::App& app, VerbResult& result) {
+void add_verb_serve(Verb& program, VerbResult& result) {
   auto words = std::make_shared<Words>();
-  CLI::App* verb = app.add_subcommand(
+  Verb verb = program.add_subcommand(
       "serve", "robots behind a virtual radio dongle that an AI host opens as a serial port");
   Words& w = *words;
-  verb->add_option("--robot", w.robot, "robot model: a name or a .toml file")->capture_default_str();
-  verb->add_option("--with", w.with,
-                   "add an effect to every robot: ID.parameter=value, or ID for its typical size; several "
-                   "allowed");
-  verb->add_option("--radio", w.radio, "radio format (default: the robot model's own, else ulaval-hermes)");
-  verb->add_option("--device", w.options.device,
-                   "name of the serial device to make, or a wire's URL (omnihil wires)")
-      ->capture_default_str();
-  verb->add_option("--robots", w.robots, "robot ids: 0-5 or 0,2,7")->capture_default_str();
-  verb->add_option("--team", w.team, "team colour")
-      ->check(CLI::IsMember({"blue", "yellow"}))
-      ->capture_default_str();
-  add_firmware_options(*verb, w.firmware);
-  add_bus_options(*verb, w.motor_bus);
-  verb->add_option("--record", w.options.record, "write a recording to this file");
-  verb->add_option("--sample-every", w.sample_every,
-                   "of each robot's control ticks, record every Nth (bytes are all recorded)")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  verb->add_option("--seed", w.setup.plant.seed, "seed of everything random")->capture_default_str();
-  verb->add_option("--physics", w.physics,
-                   "simbody, planar (closed form, fast) or simbody-free (pitch, roll, lift)")
-      ->check(CLI::IsMember({"simbody", "planar", "simbody-free"}))
-      ->capture_default_str();
-  verb->add_option("--clock", w.clock, "real: real time; free: virtual time as fast as it goes")
-      ->check(CLI::IsMember({"real", "free"}))
-      ->capture_default_str();
-  verb->add_option("--duration", w.duration_s, "end after this much simulated time, in s (default: never)")
-      ->check(CLI::NonNegativeNumber);
-  verb->add_option("--step", w.step_ms, "loop step in ms")
-      ->check(CLI::Range(0.05, 100.0))
-      ->capture_default_str();
-  verb->add_option("--epoch-ms", w.setup.epoch_ms,
-                   "Unix time in ms at simulated time 0, for packets that carry one")
-      ->capture_default_str();
-  verb->add_flag("--no-pacing", w.no_pacing, "do not hold bytes to the carrier's rate");
-  verb->add_option("--baud", w.baud, "hold bytes to this rate (8N1) instead of the carrier's")
-      ->check(CLI::Range(std::int64_t{50}, std::int64_t{100'000'000}));
-  verb->add_flag("--strict", w.options.strict,
-                 "end with exit code 5 when this computer cannot keep up with real time");
-  verb->add_flag("--fifo", w.options.fifo, "real-time scheduling (SCHED_FIFO) and locked memory");
-  verb->add_flag("--quiet", w.options.quiet, "only the ready line and errors");
-  verb->callback([words, &result] { result.exit_code = run(*words); });
+  verb.add_option("--robot", w.robot, "robot model: a name or a .toml file").capture_default_str();
+  verb.add_option("--with", w.with,
+                  "add an effect to every robot: ID.parameter=value, or ID for its typical size; several "
+                  "allowed");
+  verb.add_option("--radio", w.radio, "radio format (default: the robot model's own, else ulaval-hermes)");
+  verb.add_option("--device", w.options.device,
+                  "name of the serial device to make, or a wire's URL (omnihil wires)")
+      .capture_default_str();
+  verb.add_option("--robots", w.robots, "robot ids: 0-5 or 0,2,7").capture_default_str();
+  verb.add_option("--team", w.team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
+  add_firmware_options(verb, w.firmware);
+  add_bus_options(verb, w.motor_bus);
+  verb.add_option("--record", w.options.record, "write a recording to this file");
+  verb.add_option("--sample-every", w.sample_every,
+                  "of each robot's control ticks, record every Nth (bytes are all recorded)")
+      .range(1, 1'000'000)
+      .capture_default_str();
+  verb.add_option("--seed", w.setup.plant.seed, "seed of everything random").capture_default_str();
+  verb.add_option("--physics", w.physics,
+                  "simbody, planar (closed form, fast) or simbody-free (pitch, roll, lift)")
+      .one_of({"simbody", "planar", "simbody-free"})
+      .capture_default_str();
+  verb.add_option("--clock", w.clock, "real: real time; free: virtual time as fast as it goes")
+      .one_of({"real", "free"})
+      .capture_default_str();
+  verb.add_option("--duration", w.duration_s, "end after this much simulated time, in s (default: never)")
+      .not_negative();
+  verb.add_option("--step", w.step_ms, "loop step in ms").range(0.05, 100.0).capture_default_str();
+  verb.add_option("--epoch-ms", w.setup.epoch_ms,
+                  "Unix time in ms at simulated time 0, for packets that carry one")
+      .capture_default_str();
+  verb.add_flag("--no-pacing", w.no_pacing, "do not hold bytes to the carrier's rate");
+  verb.add_option("--baud", w.baud, "hold bytes to this rate (8N1) instead of the carrier's")
+      .range(std::int64_t{50}, std::int64_t{100'000'000});
+  verb.add_flag("--strict", w.options.strict,
+                "end with exit code 5 when this computer cannot keep up with real time");
+  verb.add_flag("--fifo", w.options.fifo, "real-time scheduling (SCHED_FIFO) and locked memory");
+  verb.add_flag("--quiet", w.options.quiet, "only the ready line and errors");
+  verb.callback([words, &result] { result.exit_code = run(*words); });
 }
 
 }  // namespace omnihil

@@ -1,7 +1,6 @@
 // omnihil sim MODEL --excite NAME|FILE … --out DATASET: a virtual bench for one drive or a whole robot.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "hil/text/program_files.h"
 #include "sim/model/model_document.h"
 #include "tools/axis_bench.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/robot_bench.h"
@@ -93,32 +93,31 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_verb_sim(CLI::App& app, VerbResult& result) {
+void add_verb_sim(Verb& program, VerbResult& result) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("sim", "a virtual bench: drive a model, write a dataset");
-  verb->add_option("MODEL", a->bench.model, "model of an axis, a motor or a robot, by name or path")
-      ->required();
-  verb->add_option(
+  Verb verb = program.add_subcommand("sim", "a virtual bench: drive a model, write a dataset");
+  verb.add_option("MODEL", a->bench.model, "model of an axis, a motor or a robot, by name or path")
+      .required();
+  verb.add_option(
           "--excite", a->bench.excitations,
           "steps, ramp, chirp, prbs, creep, or a CSV file of time and command; several give several runs")
-      ->required();
-  verb->add_option("--rig", a->rig,
-                   "axis: one drive; robot: the whole robot on the floor; without it: what the model is")
-      ->check(CLI::IsMember({"axis", "robot"}));
-  verb->add_option("--out", a->out, "new folder of the dataset")->required();
-  verb->add_option("--with", a->bench.with,
-                   "add an effect: ID.parameter=value, or ID for its typical size; several allowed");
-  verb->add_option("--drive", a->bench.drive,
-                   "what is asked: duty, motor_voltage, motor_current, motor_torque, position_target");
-  verb->add_option("--amplitude", a->bench.amplitude, "of what is asked, in its unit")->capture_default_str();
-  verb->add_option("--duration", a->bench.duration_s, "of a run, s")->capture_default_str();
-  verb->add_option("--rate", a->bench.rate_Hz, "samples per second")->capture_default_str();
-  verb->add_option("--step", a->bench.step_s, "electrical sub-step, s")->capture_default_str();
-  verb->add_option("--seed", a->bench.seed, "of noise and of the excitations' pattern")
-      ->capture_default_str();
-  verb->add_option("--noise", a->bench.noise_scale, "of the sensors, times the usual; 0: none")
-      ->capture_default_str();
-  verb->callback([a, &result] { result.exit_code = guarded("sim", [&] { return run(*a); }); });
+      .required();
+  verb.add_option("--rig", a->rig,
+                  "axis: one drive; robot: the whole robot on the floor; without it: what the model is")
+      .one_of({"axis", "robot"});
+  verb.add_option("--out", a->out, "new folder of the dataset").required();
+  verb.add_option("--with", a->bench.with,
+                  "add an effect: ID.parameter=value, or ID for its typical size; several allowed");
+  verb.add_option("--drive", a->bench.drive,
+                  "what is asked: duty, motor_voltage, motor_current, motor_torque, position_target");
+  verb.add_option("--amplitude", a->bench.amplitude, "of what is asked, in its unit").capture_default_str();
+  verb.add_option("--duration", a->bench.duration_s, "of a run, s").capture_default_str();
+  verb.add_option("--rate", a->bench.rate_Hz, "samples per second").capture_default_str();
+  verb.add_option("--step", a->bench.step_s, "electrical sub-step, s").capture_default_str();
+  verb.add_option("--seed", a->bench.seed, "of noise and of the excitations' pattern").capture_default_str();
+  verb.add_option("--noise", a->bench.noise_scale, "of the sensors, times the usual; 0: none")
+      .capture_default_str();
+  verb.callback([a, &result] { result.exit_code = guarded("sim", [&] { return run(*a); }); });
 }
 
 }  // namespace omnihil

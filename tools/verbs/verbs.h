@@ -1,11 +1,9 @@
 // The verbs of `omnihil`. One file per verb; CMake collects the file stems, so a file added is a verb added:
-// tools/verbs/NAME.cc defines `void add_verb_NAME(CLI::App&, VerbResult&)`.
+// tools/verbs/NAME.cc defines `void add_verb_NAME(Verb& program, VerbResult&)`.
 #pragma once
 #include <span>
 
-namespace CLI {
-class App;
-}
+#include "tools/command_line.h"
 
 namespace omnihil {
 
@@ -15,7 +13,7 @@ struct VerbResult {
 };
 
 // Adds a verb to the program.
-using VerbAdder = void(CLI::App& app, VerbResult& result);
+using VerbAdder = void(Verb& program, VerbResult& result);
 
 // Of every verb, in alphabetical order (generated).
 std::span<VerbAdder* const> all_verbs();

@@ -1,10 +1,10 @@
 // omnihil wires: the wires that --device, --firmware and --bus-port take, and their parameters.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "hil/wire/open_wire.h"
+#include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/verbs/verbs.h"
 
@@ -24,11 +24,10 @@ void print_list() {
 
 }  // namespace
 
-void add_verb_wires(CLI::App& app, VerbResult& result) {
-  CLI::App* verb =
-      app.add_subcommand("wires", "list the wires that --device, --firmware and --bus-port take");
-  verb->footer("A wire is named scheme:address?parameter=value&parameter=value.");
-  verb->callback([&result] {
+void add_verb_wires(Verb& program, VerbResult& result) {
+  Verb verb = program.add_subcommand("wires", "list the wires that --device, --firmware and --bus-port take");
+  verb.footer("A wire is named scheme:address?parameter=value&parameter=value.");
+  verb.callback([&result] {
     print_list();
     result.exit_code = kExitOk;
   });

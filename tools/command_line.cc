@@ -1,0 +1,83 @@
+#include "tools/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+namespace omnihil {
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::capture_default_str() {
+  option_->capture_default_str();
+  return *this;
+}
+
+Option& Option::type_name(const std::string& name) {
+  option_->type_name(name);
+  return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Option& Option::range(double low, double high) {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+
+Option& Option::range(int low, int high) {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+
+Option& Option::range(std::int64_t low, std::int64_t high) {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+
+Option& Option::positive() {
+  option_->check(CLI::PositiveNumber);
+  return *this;
+}
+
+Option& Option::not_negative() {
+  option_->check(CLI::NonNegativeNumber);
+  return *this;
+}
+
+Option& Option::one_of(const std::vector<std::string>& words) {
+  option_->check(CLI::IsMember(words));
+  return *this;
+}
+
+Verb Verb::add_subcommand(const std::string& name, const std::string& what) {
+  return Verb(app_->add_subcommand(name, what));
+}
+
+template <typename T>
+Option Verb::add_option(const std::string& name, T& value, const std::string& what) {
+  return Option(app_->add_option(name, value, what));
+}
+template Option Verb::add_option(const std::string&, std::string&, const std::string&);
+template Option Verb::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option Verb::add_option(const std::string&, double&, const std::string&);
+template Option Verb::add_option(const std::string&, int&, const std::string&);
+template Option Verb::add_option(const std::string&, std::int64_t&, const std::string&);
+template Option Verb::add_option(const std::string&, std::uint64_t&, const std::string&);
+
+Option Verb::add_flag(const std::string& name, bool& value, const std::string& what) {
+  return Option(app_->add_flag(name, value, what));
+}
+
+void Verb::footer(const std::string& text) { app_->footer(text); }
+
+void Verb::callback(std::function<void()> run) { app_->callback(std::move(run)); }
+
+void Verb::require_subcommand(int count) { app_->require_subcommand(count); }
+
+}  // namespace omnihil
