@@ -18,6 +18,8 @@ PICTURE, PAGE = ROOT / "docs/img/rooms.svg", ROOT / "docs/architecture.md"
 CODE = (".cc", ".h", ".c", ".inc")
 INCLUDE = re.compile(r'\s*#\s*include\s*"([^"]+)"')
 MOST_FILES = 50  # of one folder: what a reader still takes in as a list
+# A file per effect, looked up by its name as in a dictionary: the next effect is no reason for a wall.
+CATALOGUES = ("sim/effects", "tests/sim/effects", "docs/effects", "docs/effects/img")
 BEGIN, END = "<!-- rooms: written by tools/rooms.py -->", "<!-- end of rooms -->"
 
 
@@ -73,7 +75,7 @@ def breaches(files, rooms):
         if file.endswith(CODE) and file.split("/")[0] in tops and room_of(file, rooms) is None:
             yield f"{file}:1: stands in no room of tools/rooms.toml"
     for folder, count in Counter(f.rpartition("/")[0] for f in files if f.endswith((*CODE, ".py", ".md", ".svg"))).items():
-        if count > MOST_FILES:
+        if count > MOST_FILES and folder not in CATALOGUES:
             yield f"{folder}: {count} files, at most {MOST_FILES}: a room without walls"
     try:
         floors(uses)
