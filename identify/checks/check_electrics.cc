@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "identify/checks/check_list.h"
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
@@ -26,17 +27,20 @@ constexpr double kWrongAlone = 0.8;  // likewise, where the acceleration does no
 constexpr double kTolerances = 4.0;  // prior deviations of the model's parameter: p = 6e-5 of a normal
 // |log|: a factor of three; winding heat and friction bring less.
 constexpr double kWrongCurrent = 1.1;  // tuned
+// Share of the ideal speed. Derived: half is the least wrong scale that there is (one edge counted of two).
+constexpr double kFastEnough = 0.5;
 
 struct Windows {
   std::vector<double> u, w, i, side;  // voltage, rotor speed, current, sign of the voltage
 };
 
-Windows windows_of(const CheckContext& data, std::size_t wheel) {
+Windows windows_of(const CheckContext& data, std::size_t wheel, bool also_extrapolation = false) {
   Windows out;
   const double gear = nominal_value(data.nominal, "gear.ratio").value_or(1.0);
   for (const RunView& view : data.runs) {
     const DriveView& drive = view.drives[wheel];
-    if (view.run->steady || view.period_s > 0.05 || view.run->split == Split::kExtrapolation) continue;
+    if (view.run->steady || view.period_s > 0.05) continue;
+    if (view.run->split == Split::kExtrapolation && !also_extrapolation) continue;
     if (drive.position == nullptr && drive.velocity == nullptr) continue;
     std::vector<double> u = asked_voltage(data, view, drive);
     if (u.empty()) continue;
@@ -152,6 +156,20 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
   return true;
 }
 
+// Friction, loads and dead bands only slow a drive: how fast it gets for its voltage bounds its scale from below. The third
+// largest w k' / u over windows of all runs in which at least half of the highest voltage is asked (three windows, 0.6 s:
+// not a reversal by chance; a choice); 0: fewer windows.
+double fastest_ratio(const CheckContext& data, std::size_t wheel, double ideal_rad_s_per_V) {
+  constexpr std::size_t kWindows = 3;
+  const Windows all = windows_of(data, wheel, true);
+  const double highest_V = largest_size(all.u);
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < all.u.size(); ++k) {
+    if (std::abs(all.u[k]) >= 0.5 * highest_V) ratios.push_back(all.w[k] / all.u[k] / ideal_rad_s_per_V);
+  }
+  return ratios.size() < kWindows ? 0.0 : order_statistic(ratios, ratios.size() - kWindows);
+}
+
 void by_speed_per_volt(const CheckContext& data, std::size_t wheel, const Windows& all,
                        std::vector<DataFinding>& findings) {
   const double resistance = nominal_value(data.nominal, "motor.resistance_ohm").value_or(0.0);
@@ -163,6 +181,7 @@ void by_speed_per_volt(const CheckContext& data, std::size_t wheel, const Window
   const double drag = resistance * viscous / (constant * constant);
   const double ratio = line.coefficient[0] * constant * (1.0 + drag);
   if (ratio <= 0.0) return;  // said by check_direction
+  if (ratio < 1.0 && fastest_ratio(data, wheel, 1.0 / (constant * (1.0 + drag))) > kFastEnough) return;
   // A speed that is too low may come from a load; where viscous drag R b / k^2 is below kLightDrag it may
   // not, unless less than kLoaded of the speed is left. Both tuned.
   constexpr double kLightDrag = 0.1, kLoaded = 0.25;

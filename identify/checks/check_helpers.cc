@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "identify/checks/check_list.h"
+#include "identify/record/quantum.h"
 #include "identify/record/statistics.h"
 
 namespace omnihil {
@@ -23,6 +24,7 @@ void add_position(const Dataset& dataset, const Candidate& nominal, const Run& r
   } else if (view.suffix.empty() && run.signal("position") != nullptr) {
     view.position_name = "position";
     view.position = run.signal("position");
+    view.quantum = quantum_of(*view.position);
   }
 }
 

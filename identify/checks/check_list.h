@@ -26,8 +26,8 @@ struct DriveView {
   const std::vector<double>* drive = nullptr;
   std::string position_name;  // "encoder_1", "position"
   const std::vector<double>* position = nullptr;
-  double rad_per_position = 1.0;                  // to rad (m) of the output shaft
-  double quantum = 0.0;                           // of the position, in its own unit; 0: no counter
+  double rad_per_position = 1.0;  // to rad (m) of the output shaft
+  double quantum = 0.0;  // of the position, in its own unit: counts, or the step that it shows; 0: none
   const std::vector<double>* velocity = nullptr;  // of the output
   const std::vector<double>* current = nullptr;
 };

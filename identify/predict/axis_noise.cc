@@ -2,30 +2,10 @@
 #include <cmath>
 
 #include "identify/predict/axis_setup.h"
+#include "identify/record/quantum.h"
 #include "identify/record/statistics.h"
 
 namespace omnihil {
-namespace {
-
-// Smallest step between the values of a record in which each occurs three times or more on average (a
-// choice); 0: not quantised. Steps below 1e-7 of the range are rounding of a file's digits.
-double quantum_of(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  const double range = v.back() - v.front();
-  const double least = 1e-7 * range;
-  double smallest = range;
-  std::size_t different = 1;
-  for (std::size_t i = 1; i < v.size(); ++i) {
-    const double step = v[i] - v[i - 1];
-    if (step <= least) continue;
-    ++different;
-    smallest = std::min(smallest, step);
-  }
-  return different * 3 < v.size() && different > 1 ? smallest : 0.0;
-}
-
-}  // namespace
-
 NoiseEstimate estimate_noise(const std::vector<double>& values) {
   const std::vector<double> finite = finite_values(values);
   NoiseEstimate out;

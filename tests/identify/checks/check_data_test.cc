@@ -331,6 +331,48 @@ TEST(CheckDataPosition, DegreesInPlaceOfRadiansAreNamed) {
   EXPECT_NE(f->sentence.find("degrees for radians"), std::string::npos) << text_of(findings);
 }
 
+// A potentiometer on a converter of ten bits: the angle stands still for rows and moves on by a step of 3.5 degrees, and
+// single readings are off by a step or two.
+TEST(CheckDataPosition, AConverterOfFewBitsDropsNoCounts) {
+  constexpr double kStep_rad = 0.0614;
+  Bench bench = simulated_bench({.amplitude = 0.15, .with = {}, .counts_per_turn = 0.0, .model = ""});
+  for (omnihil::Run& run : bench.dataset.runs) {
+    std::vector<double>& x = run.signals.find("position")->second;
+    for (std::size_t k = 0; k < x.size(); ++k)
+      x[k] = kStep_rad * std::round(x[k] / kStep_rad + 0.3 * gaussian(1, 2, k));
+  }
+  const auto findings = check(bench);
+  EXPECT_EQ(count(findings, Grade::kFault), 0) << text_of(findings);
+  EXPECT_EQ(find(findings, "dropped_counts"), nullptr) << text_of(findings);
+  EXPECT_EQ(find(findings, "glitch"), nullptr) << text_of(findings);
+}
+
+// Speed against voltage of a drive whose bridge takes most of what a slow controller asks: a fifth of the ideal slope,
+// through zero. In one run it is driven fully and reaches its speed, so the scale is right; without that run nobody can tell.
+TEST(CheckDataElectrics, ADriveThatADeadBandEatsHasNoWrongScale) {
+  constexpr double kIdeal_rad_s_per_V = 1.0 / 0.0335;
+  const auto bench_with_fastest = [&](double fast_share) {
+    Bench bench = simulated_bench({.with = {}, .counts_per_turn = 0.0, .model = ""});
+    for (omnihil::Run& run : bench.dataset.runs) {
+      const bool fast = run.file == bench.dataset.runs.back().file;
+      run.split = fast ? Split::kExtrapolation : Split::kTraining;
+      std::vector<double>& x = run.signals.find("position")->second;
+      std::vector<double>& duty = run.signals.find("duty")->second;
+      double angle = 0.0;
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        duty[k] = (fast ? 1.0 : 0.3) * std::sin(2e-3 * static_cast<double>(k));
+        angle += 1e-3 * duty[k] * 24.0 * kIdeal_rad_s_per_V * (fast ? fast_share : 0.2) /
+                 3.0;  // at the output, gear 3
+        x[k] = angle;
+      }
+    }
+    return bench;
+  };
+  EXPECT_EQ(find(check(bench_with_fastest(0.9)), "wrong_scale"), nullptr)
+      << text_of(check(bench_with_fastest(0.9)));
+  EXPECT_NE(find(check(bench_with_fastest(0.2)), "wrong_scale"), nullptr);
+}
+
 TEST(CheckDataClosedLoop, TheControllersGainIsNamed) {
   Bench bench = simulated_bench({.drive = CommandKind::kMotorTorque,
                                  .drive_name = "motor_torque",
@@ -361,7 +403,7 @@ TEST(SharedDataQuality, NoFolderHasAFault) {
   const auto data = shared_data();
   if (!data) GTEST_SKIP() << "OMNIHIL_SHARED names no folder of measurements";
   for (const auto& entry : std::filesystem::directory_iterator(*data)) {
-    if (!entry.is_directory()) continue;
+    if (!std::filesystem::exists(entry.path() / "dataset.toml")) continue;  // raw recordings
     const DatasetReading r = read_dataset(entry.path().string());
     ASSERT_TRUE(r.dataset) << all_text(r.problems);
     const auto findings = check_data(*r.dataset, *r.nominal);
