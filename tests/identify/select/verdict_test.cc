@@ -1,0 +1,69 @@
+// Structure is what stands above the simulated null by more than chance and by a size that matters.
+#include "identify/select/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/identify/fake_residuals.h"
+
+namespace omnihil {
+namespace {
+
+ResidualExcess excess(double now, double before, double spread, double unexplained) {
+  return {.excess = now,
+          .excess_before = before,
+          .spread = spread,
+          .unexplained = unexplained,
+          .signal = "velocity"};
+}
+
+TEST(Verdict, StructureIsATenthAboveTheNull) {
+  EXPECT_FALSE(structure_remains(excess(0.09, 0.09, 0.001, 1.0), false));
+  EXPECT_TRUE(structure_remains(excess(0.11, 0.11, 0.001, 1.0), false));
+}
+
+TEST(Verdict, StructureIsMoreThanFiveTimesTheScatterOfTheReplicates) {
+  EXPECT_FALSE(structure_remains(excess(0.5, 0.5, 0.11, 1.0), false));
+  EXPECT_TRUE(structure_remains(excess(0.5, 0.5, 0.09, 1.0), false));
+}
+
+TEST(Verdict, WhatIsLeftBesideAnEffectCountsAsAShareOfWhatWasThere) {
+  EXPECT_FALSE(structure_remains(excess(0.5, 10.0, 0.01, 0.09), true));
+  EXPECT_TRUE(structure_remains(excess(0.5, 10.0, 0.01, 0.11), true));
+  EXPECT_TRUE(structure_remains(excess(0.5, 10.0, 0.01, 0.09), false));  // nothing was added
+}
+
+TEST(Verdict, TheSentenceSaysSizeSignalAndShare) {
+  const std::string remains = residual_sentence(excess(0.25, 0.25, 0.01, 1.0), false);
+  EXPECT_NE(remains.find("velocity is 25 % above"), std::string::npos) << remains;
+  EXPECT_NE(remains.find("no known effect explains"), std::string::npos) << remains;
+  const std::string done = residual_sentence(excess(0.02, 4.0, 0.01, 0.03), true);
+  EXPECT_NE(done.find("97 % of what the base model left is explained"), std::string::npos) << done;
+  const std::string nothing = residual_sentence(excess(0.02, 0.02, 0.01, 1.0), false);
+  EXPECT_NE(nothing.find("Nothing that matters is missing"), std::string::npos) << nothing;
+}
+
+// A null of a hundredth of energy, without scatter: a tenth more is structure.
+TEST(Verdict, AWhitenedResidualIsHeldAgainstTheNullsMeanSquare) {
+  FakePredictor fake;
+  for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation})
+    fake.add(split, std::vector<double>(1000, 0.0), std::vector<double>(1000, 0.0));
+  const FakeResiduals scene(fake);
+  const WhitenedResiduals& training = (*scene.splits)[kTraining];
+  const auto level = [&](double mean_square) -> Eigen::VectorXd {
+    return Eigen::VectorXd::Constant(training.size(), std::sqrt(mean_square));
+  };
+  EXPECT_FALSE(structure_in(training, scene.null, scene.channels, level(0.0109)));
+  EXPECT_TRUE(structure_in(training, scene.null, scene.channels, level(0.0111)));
+}
+
+TEST(Verdict, AMeasuredBusVoltageIsGivenToTheModelAndNoStructureOfTheDrive) {
+  FakePredictor fake;
+  for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation})
+    fake.add(split, std::vector<double>(1000, 0.0), std::vector<double>(1000, 0.0), 1.0, "bus_voltage");
+  const FakeResiduals scene(fake);
+  const WhitenedResiduals& training = (*scene.splits)[kTraining];
+  EXPECT_FALSE(structure_in(training, scene.null, scene.channels, Eigen::VectorXd::Ones(training.size())));
+}
+
+}  // namespace
+}  // namespace omnihil
