@@ -309,7 +309,8 @@ RobotModel robot_of(const Candidate& candidate) {
 }
 
 std::string candidate_text(const Candidate& candidate) {
-  constexpr double kFound = 1.0;  // relative 1-sigma of a found parameter: wide, so that it is a start; a choice
+  constexpr double kFound =
+      1.0;  // relative 1-sigma of a found parameter: wide, so that it is a start; a choice
   std::vector<EffectUse> effects = candidate.effects;
   for (EffectUse& use : effects) {
     if (!use.tolerances.empty() || use.owner != nullptr) continue;

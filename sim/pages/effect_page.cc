@@ -107,7 +107,8 @@ std::string effect_page(const EffectEntry& entry) {
     out += fmt::format("It reads what [`{0}`]({0}.md) models, which runs along with it.\n\n", info.needs);
   }
   if ((info.rigs & kOnAxis) != 0) {
-    out += fmt::format("![{} against {}, with and without](img/{}.svg)\n\n", info.plot.y, info.plot.x, info.id);
+    out +=
+        fmt::format("![{} against {}, with and without](img/{}.svg)\n\n", info.plot.y, info.plot.x, info.id);
   }
   const std::string claims = claims_of(info);
   if (!claims.empty()) out += "Tested for it:\n\n" + claims + "\n";
