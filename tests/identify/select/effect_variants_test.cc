@@ -55,15 +55,15 @@ TEST(EffectVariants, OrdersOfCoggingAreThoseThatStandOutWhereTheyDo) {
 // 12 and 84 have the common divisor 12: harmonics 1 and 7 of it.
 TEST(EffectVariants, SeveralOrdersAtOnceAreHarmonicsOfTheirCommonDivisor) {
   const std::vector<EffectVariant> series =
-      cogging_series(cogging(), axis_with_unknown_friction(), {.orders = {84.0, 12.0}});
+      series_variants(cogging(), axis_with_unknown_friction(), {.orders = {84.0, 12.0}});
   ASSERT_EQ(series.size(), 1u);
   EXPECT_EQ(series[0].shape.values[row_of(cogging(), "order")], 12.0);
   std::set<std::string_view> raised;
   for (const VariantColumn& c : series[0].columns)
     raised.insert(cogging().info->params[static_cast<std::size_t>(c.row)].name);
   EXPECT_EQ(raised, (std::set<std::string_view>{"amplitude_Nm", "amplitude_7"}));
-  EXPECT_TRUE(cogging_series(cogging(), axis_with_unknown_friction(), {.orders = {84.0}}).empty());
-  EXPECT_TRUE(cogging_series(cogging(), axis_with_unknown_friction(), {.orders = {31.0, 37.0}})
+  EXPECT_TRUE(series_variants(cogging(), axis_with_unknown_friction(), {.orders = {84.0}}).empty());
+  EXPECT_TRUE(series_variants(cogging(), axis_with_unknown_friction(), {.orders = {31.0, 37.0}})
                   .empty());  // divisor 1
 }
 

@@ -13,7 +13,7 @@ constexpr std::size_t kSamples = 2000;
 // Friction's pattern b and the load's s, a third of which b can imitate: s = s' + 0.5 b'.
 struct Scene {
   Candidate model = axis_with_unknown_friction();
-  std::vector<double> b = sine_pattern(kSamples, 3.0, 0.0, 1e7);
+  std::vector<double> b = sine_pattern(kSamples, 3.0, 0.0, 1e9);
   std::vector<double> s;
   std::unique_ptr<LinearPredictor> predictor;
   ComparedChannels channels;
@@ -42,7 +42,7 @@ struct Scene {
   }
   Screened load() const { return screen(task, {find_effect("constant_load")}).front(); }
 
-  // What is left of s beside b; b's prior is 1e-7 of its data and does not count.
+  // What is left of s beside b; the prior of b is 1e-9 of its information in the data and does not count.
   std::vector<double> projected() const {
     std::vector<double> out = s;
     const double along = dot(s, b) / dot(b, b);
