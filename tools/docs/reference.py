@@ -48,7 +48,7 @@ def main():
     write_copies(source)
     shutil.rmtree(out / "html", ignore_errors=True)
     config = (ROOT / "tools/docs/Doxyfile").read_text(encoding="utf-8") + (
-        f'INPUT = .\nOUTPUT_DIRECTORY = "{out}"\nIMAGE_PATH = "{ROOT}" "{ROOT}/docs"\n')
+        f'INPUT = .\nOUTPUT_DIRECTORY = "{out}"\nIMAGE_PATH = "{ROOT}/docs/img"\n')
     result = subprocess.run(["doxygen", "-"], input=config, text=True, cwd=source, stderr=subprocess.PIPE)
     print(result.stderr.replace(f"{source}/", ""), end="")
     if result.returncode or result.stderr.strip():
