@@ -51,7 +51,7 @@ Fitted fit_from(const RefitSetup& setup, const Candidate& candidate, const std::
 
 // The effect a tenth as strong: near neutral, yet with derivatives by its shapes (at neutral they are zero).
 EffectUse near_neutral(const EffectUse& use) {
-  constexpr double kTenth = 0.1;
+  constexpr double kTenth = 0.1;  // of the strength; a choice, sensitivity not measured
   EffectUse out = use;
   for (std::size_t i = 0; i < out.values.size(); ++i) {
     const EffectParam& row = use.entry->info->params[i];

@@ -36,7 +36,7 @@ struct Library {
 ProjectedColumns signal_of(const SelectionTask& task, const Fitted& last, const LinearBase& base,
                            const std::string& adds_to, UnknownTerm& term) {
   const WhitenedResiduals& fit = (*task.splits)[kTraining];
-  constexpr int kAttempts = 3;
+  constexpr int kAttempts = 3;  // each at a tenth of the size before; by cost
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const EffectUse use = formula_use("residual", adds_to, {term}, {term.size}, last.fit.model.file.linear);
     if (use.entry == nullptr) return {};
