@@ -20,7 +20,8 @@ constexpr double kExplained = 0.75;  // least fraction of the bins' excess varia
 constexpr double kExcess = 0.05;     // least excess over the sensors' variance
 constexpr double kCorrelation =
     0.1;  // largest difference of the autocorrelations at any lag, beside its own error
-constexpr int kLags = 10;  // samples over which an autocorrelation is compared; a choice, sensitivity not measured
+// Samples over which an autocorrelation is compared; a choice, sensitivity not measured.
+constexpr int kLags = 10;
 
 // Sums of squares of one split, by channel and bin: [track, channel, bin].
 struct Energies {
