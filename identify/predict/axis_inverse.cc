@@ -219,6 +219,7 @@ void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& 
                  linear(r.load_torque_Nm));
   } else if (!s.speed_imposed || by_torque || r.current.empty()) {
     const NeededName needed = needed_name(dataset, kind);
+    in.command_is_compared = true;
     s.given = zero_phase(s.filter, at_interval_end(in.command));
     add_filtered(needed.name, needed.unit, AxisOutput::kNeededInput, at_interval_end(in.command));
   }
@@ -237,6 +238,7 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
   in.kind = axis_command_kind(dataset);
   in.time_s = r.time_s;
   in.command = s.given = r.command;
+  in.command_is_compared = true;
   in.bus_voltage_V = r.bus_V;
   in.load_torque_Nm = r.load_torque_Nm;
   s.position = position_of(r);

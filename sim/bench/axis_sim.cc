@@ -116,6 +116,7 @@ class AxisRun {
     const double gear = value_of(sim_.params().gear_ratio);
     const double a = input_.imposed_velocity_rad_s[k] * gear, b = input_.imposed_velocity_rad_s[k + 1] * gear;
     in.speed_is_imposed = true;
+    in.motor_torque_is_needed = input_.command_is_compared;
     in.imposed_start_rad_s = a + (b - a) * from;
     in.imposed_end_rad_s = a + (b - a) * to;
   }

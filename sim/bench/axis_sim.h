@@ -24,8 +24,9 @@ struct AxisInput {
   std::vector<std::uint8_t> enable;            // empty: always on
   std::vector<double> bus_voltage_V;           // measured at the bridge; empty: the model's supply
   std::vector<double> imposed_velocity_rad_s;  // of the output; empty: free
-  std::vector<double> load_torque_Nm;          // on the output, known; empty: none
-  double initial_position_rad = 0.0;           // of the output
+  bool command_is_compared = false;    // inverse dynamics: torque effects see the needed motor torque instead
+  std::vector<double> load_torque_Nm;  // on the output, known; empty: none
+  double initial_position_rad = 0.0;   // of the output
   double initial_velocity_rad_s = 0.0;
   double encoder_counts_per_turn = 0.0;  // of the encoder's shaft; 0: the rig gives angles
   bool encoder_on_output = false;

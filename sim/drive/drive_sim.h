@@ -60,6 +60,10 @@ struct DriveInput {
   // that this takes comes back as mean_outside_torque_Nm.
   bool speed_is_imposed = false;
   double imposed_start_rad_s = 0.0, imposed_end_rad_s = 0.0;
+  // With an imposed speed: torque effects see the motor torque that the motion needs in place of the one that
+  // the setpoint makes (needed_torque.h), for whoever compares the two. Not where rotor and output are two
+  // masses.
+  bool motor_torque_is_needed = false;
 };
 
 template <typename T>
@@ -104,6 +108,8 @@ class DriveSim {
   void bridge(DriveState<T>& state, const DriveInput<T>& input, const Call& call, Step& s) const;
   void release(const DriveState<T>& state, Step& s) const;
   void torque(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
+  T inverse_torque(const DriveState<T>& state, double start_rad_s, double end_rad_s, T tau_outside_Nm,
+                   TorquePort<T> port) const;
   void solve(const DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
   void limit_current(const DriveState<T>& state, Step& s) const;
   void hold_current(const DriveState<T>& state, const T& end_current_A, const T& mean_current_A,
