@@ -1,0 +1,47 @@
+// The whole way from a record to a verdict, where the answer is a mean of torques.
+#include <gtest/gtest.h>
+
+#include "identify/select/diagnosis.h"
+#include "tests/identify/torque_map.h"
+
+namespace omnihil {
+namespace {
+
+std::string reasons(const Diagnosis& d) {
+  std::string out = d.unknown.sentence + "\n";
+  for (const DataFinding& f : d.findings) out += f.sentence + "\n";
+  for (const RankedEffect& r : d.ranking) out += r.effect + ": " + r.why + "\n";
+  return out;
+}
+
+TEST(DiagnoseTest, NamesALoadAndMeasuresIt) {
+  const double load_Nm = 0.004, sigma_Nm = 1e-4;
+  const TorqueMap map({.load_Nm = load_Nm, .sigma_Nm = sigma_Nm});
+  const Diagnosis d = diagnose(map.dataset, map.nominal, {});
+  ASSERT_EQ(d.effects, std::vector<std::string>{"constant_load"}) << reasons(d);
+  EXPECT_EQ(d.verdict, Verdict::kEffect) << reasons(d);
+  // Speeds are symmetric, so the load is the mean torque, less its own prior's pull (1e-6 of it).
+  double mean = 0.0;
+  for (int i = 0; i < TorqueMap::kPoints; ++i)
+    mean += map.without_brake_Nm(kTraining, i) / TorqueMap::kPoints;
+  EXPECT_NEAR(value_at(d.final_fit.model, kLoad).value(), -mean, 1e-3 * load_Nm);
+  // the ladder: as given, base refitted, with the load; what is left is the noise
+  ASSERT_EQ(d.ladder.size(), 3u);
+  EXPECT_EQ(d.ladder[2].added, "constant_load");
+  EXPECT_NEAR(d.final_comparison.error(kValidation, "motor_torque")->rmse / sigma_Nm, 1.0,
+              5.0 / std::sqrt(2.0 * TorqueMap::kPoints));
+  EXPECT_NEAR(d.baseline_comparison.error(kValidation, "motor_torque")->rmse, std::hypot(load_Nm, sigma_Nm),
+              5.0 * sigma_Nm / std::sqrt(TorqueMap::kPoints));
+}
+
+TEST(DiagnoseTest, NamesNothingWhereTheBaseModelIsTheTruth) {
+  const TorqueMap map({});
+  const Diagnosis d = diagnose(map.dataset, map.nominal, {});
+  EXPECT_EQ(d.effects, std::vector<std::string>{}) << reasons(d);
+  EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
+  EXPECT_TRUE(d.complete);
+  EXPECT_EQ(d.ladder.size(), 2u);
+}
+
+}  // namespace
+}  // namespace omnihil
