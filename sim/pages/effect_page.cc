@@ -15,6 +15,22 @@ std::string rigs_of(const EffectInfo& info) {
   return info.rigs == kOnAxis ? "axis" : "robot";
 }
 
+// What a rig must have for it (sim/law/demands.h), and the base parameter beside which it has no place.
+std::string needs_of(const EffectInfo& info) {
+  std::string out;
+  std::uint32_t demands = demands_of(info);
+  if ((demands & kNeedsDuty) != 0) demands &= ~static_cast<std::uint32_t>(kNeedsWinding);  // which has one
+  for (int bit = 0; bit < kDemands; ++bit) {
+    if ((demands >> bit & 1u) == 0) continue;
+    out += (out.empty() ? "" : "; ") + std::string(demand_name(static_cast<DemandBit>(1u << bit)));
+  }
+  out = fmt::format("Needs: {}.", out.empty() ? "nothing in particular" : out);
+  const auto& [path, when] = info.excludes;
+  if (path.empty()) return out;
+  return out + fmt::format(" Left out where the base model's `{}` {}, which does the same.", path,
+                           when == BaseExclusion::kWhereFree ? "has a tolerance" : "is not 0");
+}
+
 std::string claims_of(const EffectInfo& info) {
   std::string out;
   const auto add = [&](std::uint32_t bit, const char* text) {
@@ -95,8 +111,8 @@ DriveParams<double> demonstration_drive() {
 
 std::string effect_page(const EffectEntry& entry) {
   const EffectInfo& info = *entry.info;
-  std::string out = fmt::format("# {}\n\n`{}` acts at: {}. Rigs: {}.\n\n", info.title, info.id,
-                                place_name(info.place), rigs_of(info));
+  std::string out = fmt::format("# {}\n\n`{}` acts on: {}. Rigs: {}.\n\n{}\n\n", info.title, info.id,
+                                place_name(info.place), rigs_of(info), needs_of(info));
   out += fmt::format("```\n{}\n```\n\nSource: {}.\n\nCannot: {}.\n\n## Parameters\n\n{}\n", info.equation,
                      info.source, info.cannot, params_of(info));
   out +=

@@ -40,6 +40,19 @@ TEST(EffectPage, HasAPictureWhoseTwoCurvesDiffer) {
   }
 }
 
+TEST(EffectPage, SaysWhatARigMustHaveForIt) {
+  const auto says = [](const char* id, const char* text) {
+    return effect_page(*find_effect(id)).find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(says("duty_limit", "\n\nNeeds: a drive by duty.\n\n"));
+  EXPECT_TRUE(says("cogging", "\n\nNeeds: nothing in particular.\n\n"));
+  EXPECT_TRUE(says("shaft_compliance", "\n\nNeeds: an inertia on either side of the shaft.\n\n"));
+  for (const EffectEntry* e : all_effects()) {
+    const std::string_view path = e->info->excludes.path;
+    EXPECT_EQ(says(std::string(e->info->id).c_str(), "Left out where the base model's `"), !path.empty());
+  }
+}
+
 TEST(EffectPage, BelongsToAnEffectThatExists) {
   for (const auto& file :
        std::filesystem::directory_iterator(std::string(OMNIHIL_SOURCE_DIR) + "/docs/effects")) {
