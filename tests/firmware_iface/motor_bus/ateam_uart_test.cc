@@ -120,6 +120,40 @@ TEST(AteamUart2025Test, the_teams_own_parameter_packets_come_back_as_they_were_w
   EXPECT_GT(seen, 5);
 }
 
+// The same with numbers of our own: what is not to be written stays, and is told.
+TEST(AteamUart2025Test, parameters_are_written_where_the_mask_says_and_told) {
+  BusRig rig("ateam-uart-2025");
+  BusFrame command = can_frame(2, 52);
+  command.data[0] = 0x20;
+  put_u32(command, 8, 1U << 0 | 1U << 1 | 1U << 8 | 1U << 9);  // time, velocity p, current i_max, clamp
+  put_u32(command, 12, 1'700'000'000);
+  for (std::size_t i = 0; i < 8; ++i) put_f32(command, 16 + 4 * i, 0.5 + static_cast<double>(i));
+  put_u16(command, 48, 4321);
+  rig.send(command);
+  rig.run_ms(1);
+  const BusFrame reply = rig.wire->last(2);
+  ASSERT_EQ(reply.size, 56);
+  EXPECT_EQ(reply.data[0], 0x80);
+  EXPECT_EQ(get_u32(reply, 12), 1'700'000'000U);
+  EXPECT_EQ(get_f32(reply, 16), 0.5F);
+  EXPECT_EQ(get_f32(reply, 20), 8.0F);  // the firmware's own velocity i
+  EXPECT_EQ(get_f32(reply, 44), 7.5F);
+  EXPECT_EQ(get_u16(reply, 48), 4321);
+}
+
+// The fit of its duty: 2 (0.00144873 w -+ 0.0057431) from 4 rad/s on.
+TEST(AteamUart2025Test, open_loop_duty_is_linear_beyond_its_dead_band) {
+  for (const double omega_rad_s : {0.0, 3.9, -3.9, 4.0, 50.0, -50.0, 400.0}) {
+    BusRig rig("ateam-uart-2025");
+    rig.send(motion_2025(0, 2, kOpenLoop, omega_rad_s));
+    rig.run_ms(6);
+    const double sign = omega_rad_s < 0.0 ? -1.0 : 1.0;
+    const double duty = 2.0 * (0.00144873 * std::abs(omega_rad_s) - 0.0057431);
+    const double expected = std::abs(omega_rad_s) < 4.0 ? 0.0 : sign * std::min(1.0, duty);
+    EXPECT_NEAR(get_f32(rig.wire->last(0), 32), expected, 1e-6) << omega_rad_s;
+  }
+}
+
 TEST(AteamUart2025Test, open_loop_duty_is_that_of_the_running_binary) {
   const nlohmann::json all = vectors("ateam-wheel-firmware-io.json");
   if (all.is_null()) GTEST_SKIP() << "OMNIHIL_SHARED is not set, or has no ateam-wheel-firmware-io.json";

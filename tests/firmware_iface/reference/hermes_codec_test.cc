@@ -244,73 +244,93 @@ std::filesystem::path shared_vectors() {
   return shared == nullptr ? std::filesystem::path() : std::filesystem::path(shared) / "vectors";
 }
 
-TEST(HermesCodec, TeamsOwnVectorsAreReadWithTheirValues) {
-  const std::filesystem::path path = shared_vectors() / "ulaval-hermes.json";
-  if (!std::filesystem::exists(path))
-    GTEST_SKIP() << "OMNIHIL_SHARED names no folder with vectors/ulaval-hermes.json";
-  std::ifstream file(path);
-  const nlohmann::json root = nlohmann::json::parse(file);
-  int read = 0, answers = 0;
-  for (const auto& vector : root.at("vectors")) {
-    const auto& in = vector.at("in");
-    const std::string type = vector.at("type");
-    Receiver receiver(in.at("robot").get<std::uint8_t>());
-    const auto messages = receiver.feed(from_hex(vector.at("wire")));
-    if (type.ends_with("RESPONSE")) {
-      EXPECT_EQ(receiver.radio.refused[HERMES_DIRECTION], 1u) << vector;
-      ++answers;
-      continue;
-    }
-    ASSERT_EQ(messages.size(), 1u) << vector;
-    const hermes_message& m = messages[0];
-    const auto same = [&](const char* name, double value) {
-      if (in.contains(name)) {
-        EXPECT_EQ(static_cast<float>(in.at(name).get<double>()), static_cast<float>(value)) << vector;
-      }
-    };
-    same("vx", m.vx_m_s);
-    same("vy", m.vy_m_s);
-    same("vtheta", m.vtheta_rad_s);
-    same("kick_force", m.kick_force);
-    same("dribbler", m.dribbler);
-    same("register", m.register_id);
-    same("value", m.value);
-    if (in.contains("charge")) {
-      EXPECT_EQ(in.at("charge").get<bool>(), m.charge != 0) << vector;
-    }
-    for (int w = 0; in.contains("cmd") && w < 4; ++w) {
-      EXPECT_EQ(in.at("cmd").at(static_cast<std::size_t>(w)).get<float>(), m.duty_ratio[w]) << vector;
-    }
-    ++read;
+// Packets by an encoder that is not ours: {"type", "in", "wire"}.
+std::vector<nlohmann::json> team_rows() {
+  std::ifstream file(shared_vectors() / "ulaval-hermes.json");
+  if (!file) return {};
+  return nlohmann::json::parse(file).at("vectors");
+}
+// Those of the golden packets, whose bytes are a second implementation's.
+std::vector<nlohmann::json> golden_rows() {
+  std::vector<nlohmann::json> rows;
+  std::ifstream file(OMNIHIL_SOURCE_DIR "/tests/protocols/golden/packets.jsonl");
+  for (std::string line; std::getline(file, line);) {
+    const nlohmann::json row = nlohmann::json::parse(line);
+    if (row.at("format") != "ulaval-hermes") continue;
+    rows.push_back({{"type", row.at("packet")}, {"in", row.at("in")}, {"wire", row.at("hex")}});
   }
-  EXPECT_EQ(read, 67);
-  EXPECT_EQ(answers, 26);
+  return rows;
 }
 
-// What the team's own answers look like on the wire: ours must be the same bytes.
-TEST(HermesCodec, AnswersAreTheTeamsOwnBytes) {
-  const std::filesystem::path path = shared_vectors() / "ulaval-hermes.json";
-  if (!std::filesystem::exists(path))
-    GTEST_SKIP() << "OMNIHIL_SHARED names no folder with vectors/ulaval-hermes.json";
-  std::ifstream file(path);
-  const nlohmann::json root = nlohmann::json::parse(file);
-  int compared = 0;
-  for (const auto& vector : root.at("vectors")) {
-    const std::string type = vector.at("type");
-    if (!type.ends_with("RESPONSE")) continue;
-    const auto& in = vector.at("in");
-    Receiver robot(in.at("robot").get<std::uint8_t>());
-    const std::uint32_t value = in.value("decivolts", in.value("value", 0u));
-    const std::uint32_t code = type == "PING_RESPONSE"       ? kPingResponse
-                               : type == "BATTERIE_RESPONSE" ? kBatteryResponse
-                                                             : kNumResponse;
-    hermes_radio_answer(&robot.radio, code, value);
-    Bytes out(64);
-    out.resize(hermes_radio_transmit(&robot.radio, out.data(), out.size()));
-    EXPECT_EQ(out, from_hex(vector.at("wire"))) << vector;
-    ++compared;
+bool is_answer(const nlohmann::json& row) { return row.at("type").get<std::string>().ends_with("RESPONSE"); }
+
+// A command to this robot with its values; a robot's answer is refused.
+void expect_read(const nlohmann::json& row) {
+  const auto& in = row.at("in");
+  Receiver receiver(in.at("robot").get<std::uint8_t>());
+  const auto messages = receiver.feed(from_hex(row.at("wire")));
+  if (is_answer(row)) {
+    EXPECT_EQ(receiver.radio.refused[HERMES_DIRECTION], 1u) << row;
+    return;
   }
-  EXPECT_EQ(compared, 26);
+  ASSERT_EQ(messages.size(), 1u) << row;
+  const hermes_message& m = messages[0];
+  const auto same = [&](const char* name, double value) {
+    if (in.contains(name)) {
+      EXPECT_EQ(static_cast<float>(in.at(name).get<double>()), static_cast<float>(value)) << row;
+    }
+  };
+  same("vx", m.vx_m_s);
+  same("vy", m.vy_m_s);
+  same("vtheta", m.vtheta_rad_s);
+  same("kick_force", m.kick_force);
+  same("dribbler", m.dribbler);
+  same("register", m.register_id);
+  same("value", m.value);
+  if (in.contains("charge")) {
+    EXPECT_EQ(in.at("charge").get<bool>(), m.charge != 0) << row;
+  }
+  for (int w = 0; in.contains("cmd") && w < 4; ++w) {
+    EXPECT_EQ(in.at("cmd").at(static_cast<std::size_t>(w)).get<float>(), m.duty_ratio[w]) << row;
+  }
+}
+
+// The firmware's own answer is the same bytes.
+void expect_answered(const nlohmann::json& row) {
+  const auto& in = row.at("in");
+  const std::string type = row.at("type");
+  Receiver robot(in.at("robot").get<std::uint8_t>());
+  const std::uint32_t value = in.value("decivolts", in.value("value", 0u));
+  const std::uint32_t code = type == "PING_RESPONSE"       ? kPingResponse
+                             : type == "BATTERIE_RESPONSE" ? kBatteryResponse
+                                                           : kNumResponse;
+  hermes_radio_answer(&robot.radio, code, value);
+  Bytes out(64);
+  out.resize(hermes_radio_transmit(&robot.radio, out.data(), out.size()));
+  EXPECT_EQ(out, from_hex(row.at("wire"))) << row;
+}
+
+void expect_read_and_answered(const std::vector<nlohmann::json>& rows, int commands, int answers) {
+  int read = 0, answered = 0;
+  for (const nlohmann::json& row : rows) {
+    expect_read(row);
+    ++read;
+    if (!is_answer(row)) continue;
+    expect_answered(row);
+    ++answered;
+  }
+  EXPECT_EQ(read - answered, commands);
+  EXPECT_EQ(answered, answers);
+}
+
+TEST(HermesCodec, GoldenPacketsAreReadAndAnswersAreTheirBytes) {
+  expect_read_and_answered(golden_rows(), 11, 4);
+}
+
+TEST(HermesCodec, TeamsOwnVectorsAreReadAndAnswersAreTheirBytes) {
+  const std::vector<nlohmann::json> rows = team_rows();
+  if (rows.empty()) GTEST_SKIP() << "OMNIHIL_SHARED names no folder with vectors/ulaval-hermes.json";
+  expect_read_and_answered(rows, 67, 26);
 }
 
 TEST(HermesCodec, RealHostStreamIsReadWithoutARefusal) {

@@ -7,6 +7,7 @@
 #include "sim/law/effect_registry.h"
 #include "sim/law/random.h"
 #include "tests/identify/simulated_bench.h"
+#include "tests/identify/simulated_robot.h"
 
 namespace omnihil {
 namespace {
@@ -262,9 +263,15 @@ TEST_F(SpoiltData, AFlagOfOppositeMeaning) {
   expect("opposite_flag", "the flag has the opposite meaning");
 }
 
-class SpoiltRobot : public testing::Test {
+// A robot's record, once made by our own model and once measured (where that recording is at hand).
+class SpoiltRobot : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
+    if (GetParam() == std::string("simulated")) {
+      dataset = test::robot_record({}, 6.0);  // 375 camera frames
+      nominal = test::robot_candidate();
+      return;
+    }
     const auto data = shared_data();
     if (!data || !std::filesystem::exists(*data / "robot_sample"))
       GTEST_SKIP() << "OMNIHIL_SHARED has no folder robot_sample";
@@ -284,28 +291,28 @@ class SpoiltRobot : public testing::Test {
   Candidate nominal;
 };
 
-TEST_F(SpoiltRobot, OneEncoderThatCountsBackwards) {
+TEST_P(SpoiltRobot, OneEncoderThatCountsBackwards) {
   for (omnihil::Run& run : dataset.runs) {
     for (double& v : run.signals.find("encoder_3")->second) v = -v;
   }
   expect("swapped_sign", "encoder_3");
 }
 
-TEST_F(SpoiltRobot, AGyroUpsideDown) {
+TEST_P(SpoiltRobot, AGyroUpsideDown) {
   for (omnihil::Run& run : dataset.runs) {
     for (double& v : run.signals.find("gyro_z")->second) v = -v;
   }
   expect("swapped_sign", "gyro_z");
 }
 
-TEST_F(SpoiltRobot, CountsPerTurnOfOneEncoderWrong) {
+TEST_P(SpoiltRobot, CountsPerTurnOfOneEncoderWrong) {
   for (Channel& channel : dataset.channels) {
     if (channel.signal == "encoder_2") channel.counts_per_rev /= 4.0;
   }
   expect("wrong_scale", "encoder_2");
 }
 
-TEST_F(SpoiltRobot, ACameraThatJumps) {
+TEST_P(SpoiltRobot, ACameraThatJumps) {
   std::vector<double>& x = dataset.runs[0].signals.find("vision_x")->second;
   int frame = 0;
   for (double& v : x) {
@@ -313,6 +320,14 @@ TEST_F(SpoiltRobot, ACameraThatJumps) {
   }
   expect("glitch", "vision_x");
 }
+
+TEST_P(SpoiltRobot, AsItIsHasNoFault) {
+  const auto findings = check_data(dataset, nominal);
+  EXPECT_EQ(count(findings, Grade::kFault), 0) << text_of(findings);
+}
+
+INSTANTIATE_TEST_SUITE_P(Records, SpoiltRobot, testing::Values("simulated", "recorded"),
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(CheckDataPosition, DegreesInPlaceOfRadiansAreNamed) {
   Bench bench = simulated_bench({.with = {}, .counts_per_turn = 0.0, .model = ""});
