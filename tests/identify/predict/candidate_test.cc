@@ -70,7 +70,7 @@ TEST(Candidate, PriorIsTheTolerance) {
   const Unknown* a = find(added, "dead_time.voltage_V");
   ASSERT_NE(a, nullptr);
   EXPECT_EQ(a->prior_mean, 0.0);
-  EXPECT_GT(a->prior_sigma, 0.0);
+  EXPECT_EQ(a->prior_sigma, find_effect("dead_time")->info->params[0].prior_scale);
 }
 
 // "A bare number means known exactly": friction that was measured with the wheels lifted is none that a fit

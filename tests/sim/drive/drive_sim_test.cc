@@ -61,8 +61,9 @@ TEST(DriveSim, StopsWhereDryFrictionTakesTheLastEnergy) {
   state.omega_rotor_rad_s = w;
   const double j = inertia_at_rotor(p), stop_s = j * w / c;
   DriveInput<double> torque{.kind = CommandKind::kMotorTorque};
-  sim.advance(state, torque, static_cast<int>(0.9 * stop_s / 50e-6));
-  EXPECT_GT(state.omega_rotor_rad_s, 0.0);
+  const int most = static_cast<int>(0.9 * stop_s / 50e-6);
+  sim.advance(state, torque, most);
+  EXPECT_NEAR(state.omega_rotor_rad_s, w - c / j * most * 50e-6, 1e-9);
   sim.advance(state, torque, static_cast<int>(0.2 * stop_s / 50e-6));
   EXPECT_EQ(state.omega_rotor_rad_s, 0.0);
   EXPECT_NEAR(state.theta_rotor_rad, j * w * w / (2.0 * c), 1e-9);
