@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace omnihil {
 namespace {
@@ -32,9 +33,23 @@ std::string findings_text(const Diagnosis& d) {
   return out.empty() ? "" : "Data\n" + out + "\n";
 }
 
+// "constant_load or friction_asymmetry": an effect and those that these data cannot tell from it.
+std::string with_confounded(const Diagnosis& d, const std::string& effect) {
+  for (const ConfoundedSet& set : d.confounded) {
+    const bool of_effects =
+        set.members.front() == effect && std::ranges::none_of(set.members, [](const std::string& member) {
+          return member.find('.') != std::string::npos;  // a base parameter's path
+        });
+    if (of_effects) return fmt::format("{}", fmt::join(set.members, " or "));
+  }
+  return effect;
+}
+
 std::string verdict_text(const Diagnosis& d) {
-  std::string out = fmt::format("Verdict: {}", verdict_name(d.verdict));
-  if (!d.effects.empty()) out += fmt::format(": {}", fmt::join(d.effects, ", "));
+  std::string out = fmt::format("Verdict: {}", outcome_name(d.outcome));
+  std::vector<std::string> effects;
+  for (const std::string& e : d.effects) effects.push_back(with_confounded(d, e));
+  if (!effects.empty()) out += fmt::format(": {}", fmt::join(effects, ", "));
   out += "\n";
   if (!d.complete) out += "  Interrupted: this is what was known by then.\n";
   if (!d.unknown.sentence.empty()) out += "  " + d.unknown.sentence + "\n";
@@ -63,6 +78,24 @@ std::string selection_text(const RankedEffect& r) {
   return fmt::format("{:.0f} %", 100.0 * r.selection_frequency);
 }
 
+// Of each further iteration, what was refitted: why it was taken or not.
+std::string later_rankings(const Diagnosis& d) {
+  std::string out;
+  for (std::size_t n = 0; n < d.ladder.size(); ++n) {
+    const LadderStep& step = d.ladder[n];
+    const bool first = !step.ranking.empty() && !d.ranking.empty() && out.empty() &&
+                       step.added == "base parameters refitted";
+    if (step.ranking.empty() || first) continue;
+    out += fmt::format("After {}\n", step.added);
+    for (const RankedEffect& r : step.ranking) {
+      if (!r.refitted) continue;
+      out += fmt::format("  {:>5}  {:26}  held-out error x {:.3f}  {}\n", selection_text(r), r.effect,
+                         r.holdout_error_ratio, r.why);
+    }
+  }
+  return out;
+}
+
 std::string ranking_text(const Diagnosis& d) {
   if (d.ranking.empty()) return "";
   std::string out =
@@ -72,7 +105,7 @@ std::string ranking_text(const Diagnosis& d) {
     out += fmt::format("  {:>5}  {:26}  held-out error x {:.3f}  {}\n", selection_text(r), r.effect,
                        r.holdout_error_ratio, r.why);
   }
-  return out + "\n";
+  return out + later_rankings(d) + "\n";
 }
 
 std::string where_text(const Diagnosis& d) {

@@ -107,6 +107,7 @@ Json ladder_json(const std::vector<LadderStep>& ladder) {
     Json one = {{"added", step.added}};
     add_errors(step.comparison, one);
     one["parameters"] = parameters_json(step.parameters);
+    one["ranking"] = ranking_json(step.ranking);
     out.push_back(std::move(one));
   }
   return out;
@@ -138,6 +139,7 @@ std::string diagnosis_json(const Diagnosis& d, const DiagnosisJsonOptions& optio
       {"signals", signals_json(d.baseline_comparison)},
       {"baseline", std::move(baseline)},
       {"verdict", verdict_name(d.verdict)},
+      {"outcome", outcome_name(d.outcome)},
       {"effects", d.effects},
       {"ranking", ranking_json(d.ranking)},
       {"indistinguishable", std::move(confounded)},

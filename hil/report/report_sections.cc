@@ -108,26 +108,17 @@ std::string errors_table(const Diagnosis& d) {
   return html + "</tbody></table>\n";
 }
 
-std::string ranking_section(const Diagnosis& d) {
-  if (d.ranking.empty()) return "<p>No effect was ranked.</p>\n";
-  std::string html =
-      "<p>First iteration, best first. Selected: the share of bootstrap draws of the held-out runs in which "
-      "no candidate "
-      "leaves less error; it says how stable the choice among these effects is, not how probable it is that "
-      "one is "
-      "present. Accepted by: gain, a lower held-out error; prior, a base parameter that returns to what the "
-      "model file "
-      "says; noise, the share of the variance above the sensors' noise that the effect explains. Ratios are "
-      "the error "
-      "with the effect over that of the refitted nominal model: below 1 is better. Effects that were "
-      "screened only carry "
-      "no ratio.</p>\n<table class=\"wide\"><caption>Effects</caption>\n"
-      "<thead><tr><th scope=\"col\">effect</th><th scope=\"col\">selected</th><th scope=\"col\">accepted "
-      "by</th><th "
-      "scope=\"col\">fit</th><th scope=\"col\">"
-      "holdout</th><th scope=\"col\">extrapolation</th><th scope=\"col\">parameters (±1 σ)</th><th "
-      "scope=\"col\">confounded with</th><th scope=\"col\">why</th></tr></thead><tbody>\n";
-  for (const RankedEffect& r : d.ranking) {
+constexpr const char* kRankingHead =
+    "<table class=\"wide\"><caption>Effects</caption>\n"
+    "<thead><tr><th scope=\"col\">effect</th><th scope=\"col\">selected</th><th scope=\"col\">accepted "
+    "by</th><th "
+    "scope=\"col\">fit</th><th scope=\"col\">"
+    "holdout</th><th scope=\"col\">extrapolation</th><th scope=\"col\">parameters (±1 σ)</th><th "
+    "scope=\"col\">confounded with</th><th scope=\"col\">why</th></tr></thead><tbody>\n";
+
+std::string ranking_rows(const Diagnosis& d, const std::vector<RankedEffect>& ranking) {
+  std::string html;
+  for (const RankedEffect& r : ranking) {
     std::string parameters, confounded;
     for (const ParameterEstimate& p : r.parameters) {
       parameters += fmt::format("{}<code>{}</code> {} ± {} {}", parameters.empty() ? "" : "<br>",
@@ -150,7 +141,33 @@ std::string ranking_section(const Diagnosis& d) {
         ratio(r.fit_error_ratio), ratio(r.holdout_error_ratio), ratio(r.extrapolation_error_ratio),
         parameters, confounded, escaped(r.why));
   }
-  html += "</tbody></table>\n";
+  return html;
+}
+
+std::string ranking_section(const Diagnosis& d) {
+  if (d.ranking.empty()) return "<p>No effect was ranked.</p>\n";
+  std::string html =
+      "<p>First iteration, best first. Selected: the share of bootstrap draws of the held-out runs in which "
+      "no candidate "
+      "leaves less error; it says how stable the choice among these effects is, not how probable it is that "
+      "one is "
+      "present. Accepted by: gain, a lower held-out error; prior, a base parameter that returns to what the "
+      "model file "
+      "says; noise, the share of the variance above the sensors' noise that the effect explains. Ratios are "
+      "the error "
+      "with the effect over that of the refitted nominal model: below 1 is better. Effects that were "
+      "screened only carry "
+      "no ratio.</p>\n";
+  html += kRankingHead;
+  html += ranking_rows(d, d.ranking) + "</tbody></table>\n";
+  for (const LadderStep& step : d.ladder) {
+    std::vector<RankedEffect> refitted;
+    std::ranges::copy_if(step.ranking, std::back_inserter(refitted),
+                         [](const RankedEffect& r) { return r.refitted; });
+    if (refitted.empty() || step.added == "base parameters refitted") continue;
+    html += fmt::format("<h3>After {}: what was fitted</h3>\n", escaped(step.added)) + kRankingHead +
+            ranking_rows(d, refitted) + "</tbody></table>\n";
+  }
   if (d.confounded.empty()) return html;
   html += "<h3>Confounded effects</h3>\n<ul>\n";
   for (const ConfoundedSet& set : d.confounded) {

@@ -68,7 +68,9 @@ std::vector<LadderStep> ladder_shown(const Diagnosis& d) {
 
 std::string verdict_sentence(const Diagnosis& d) {
   std::string text;
-  if (d.verdict == Verdict::kEffect) {
+  if (d.outcome == Outcome::kNotSearched) {
+    text = d.unknown.sentence.empty() ? "No effect was searched for." : d.unknown.sentence;
+  } else if (d.verdict == Verdict::kEffect) {
     text = fmt::format("The model lacks {}: with {} {}.", joined(d.effects),
                        d.effects.size() > 1 ? "them" : "it",
                        error_change(d.baseline_comparison, d.final_comparison));

@@ -25,13 +25,14 @@ struct ParameterEstimate {
   double sigma = 0.0;                   // posterior, 1-sigma
   double data_sigma = 0.0;              // from the data alone; infinite: not determined by them
   double prior_mean = 0.0;              // of the model file
-  double prior_sigma = 0.0;             // 0: flat
-  double prior_deviation_sigmas = 0.0;  // (value - prior_mean) / prior_sigma
+  double prior_sigma = 0.0;             // tolerance * prior_mean; 0: flat
+  double prior_deviation_sigmas = 0.0;  // of the value, by its prior's form (prior.h)
   bool at_bound = false;
   bool identifiable = true;
   bool unphysical = false;                   // pressed against a bound of 0: negative friction and the like
   std::vector<std::string> correlated_with;  // paths, where not identifiable; strongest first
   std::string sentence;                      // for a user; empty: none
+  PriorForm prior_form = PriorForm::kNormal;
 };
 
 struct FitOptions {

@@ -18,12 +18,11 @@ Eigen::VectorXd scales_of(const FitProblem& problem) {
 }
 
 // Gauss-Newton matrix of data and priors, p x p, unknowns in units of their scale.
-Eigen::MatrixXd curvature(const FitProblem& problem, const FitPoint& p, const Eigen::VectorXd& scale) {
+Eigen::MatrixXd curvature(const FitProblem& problem, const FitPoint& p, const Eigen::VectorXd& scale,
+                          const Eigen::VectorXd& x) {
   Eigen::MatrixXd h = scale.asDiagonal() * p.information * scale.asDiagonal();
-  for (Eigen::Index i = 0; i < scale.size(); ++i) {
-    const double prior = problem.unknowns()[static_cast<std::size_t>(i)].prior_sigma;
-    if (prior > 0.0) h(i, i) += scale[i] * scale[i] / (prior * prior);
-  }
+  for (Eigen::Index i = 0; i < scale.size(); ++i)
+    h(i, i) += std::pow(scale[i] * prior_dz(problem.unknowns()[static_cast<std::size_t>(i)], x[i]), 2);
   return h;
 }
 
@@ -58,7 +57,7 @@ class Condensed : public ceres::CostFunction {
     r[n] = std::sqrt(2.0 * p.cost());
     if (!derivatives) return true;
     Eigen::VectorXd g = scale_.cwiseProduct(p.gradient);
-    Eigen::MatrixXd h = curvature(problem_, p, scale_);
+    Eigen::MatrixXd h = curvature(problem_, p, scale_, x);
     if (held_ >= 0) {
       hold(h, g, held_);
     }
@@ -89,7 +88,7 @@ class Condensed : public ceres::CostFunction {
 Eigen::VectorXd full_step(const FitProblem& problem, const FitPoint& p, const Eigen::VectorXd& x,
                           const Eigen::VectorXd& scale) {
   Eigen::VectorXd g = scale.cwiseProduct(p.gradient);
-  Eigen::MatrixXd h = curvature(problem, p, scale);
+  Eigen::MatrixXd h = curvature(problem, p, scale, x);
   for (Eigen::Index i = 0; i < g.size(); ++i) {
     const Unknown& u = problem.unknowns()[static_cast<std::size_t>(i)];
     if ((x[i] <= u.lower && g[i] > 0.0) || (x[i] >= u.upper && g[i] < 0.0)) hold(h, g, i);

@@ -146,7 +146,7 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
   for (Eigen::Index i = 0; i < n; ++i) {
     const Unknown& u = unknowns[static_cast<std::size_t>(i)];
     scale[i] = u.scale;
-    prior[i] = u.prior_sigma > 0.0 ? 1.0 / (u.prior_sigma * u.prior_sigma) : 0.0;
+    prior[i] = std::pow(prior_dz(u, x[i]), 2);
   }
   const Directions data = directions_of(point.information, scale);
   const Directions both = directions_of(point.information + Eigen::MatrixXd(prior.asDiagonal()), scale);
@@ -163,13 +163,15 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
     p.data_sigma = std::sqrt(data_variance(data, i, u.scale));
     p.prior_mean = u.prior_mean;
     p.prior_sigma = u.prior_sigma;
-    if (u.prior_sigma > 0.0) p.prior_deviation_sigmas = (x[i] - u.prior_mean) / u.prior_sigma;
+    p.prior_form = u.prior_form;
+    p.prior_deviation_sigmas = prior_z(u, x[i]);
     p.at_bound =
         u.trait != ParamTrait::kPeriodic && (at(x[i], u.lower, u.scale) || at(x[i], u.upper, u.scale));
     // a strength that stays at neutral is at a bound too, but not pressed against it
     const bool pressed = point.gradient[i] * (at(x[i], u.lower, u.scale) ? 1.0 : -1.0) > 0.0;
     p.unphysical = p.at_bound && u.lower == 0.0 && at(x[i], 0.0, u.scale) && pressed;
-    const double prior_width = u.prior_sigma > 0.0 ? u.prior_sigma : std::max(std::abs(x[i]), u.scale);
+    const double prior_width =
+        u.prior_sigma > 0.0 ? 1.0 / prior_dz(u, x[i]) : std::max(std::abs(x[i]), u.scale);
     p.identifiable = p.data_sigma < prior_width;
     if (!p.identifiable) p.correlated_with = partners(point.information, scale, i, unknowns);
     p.sentence = sentence_of(u, p, point.gradient[i]);

@@ -200,9 +200,9 @@ FitPoint FitProblem::at(const Eigen::VectorXd& x, bool derivatives) const {
   for (std::size_t u = 0; u < n; ++u) {
     if (unknowns_[u].prior_sigma <= 0.0) continue;
     const auto i = static_cast<Eigen::Index>(u);
-    const double z = (x[i] - unknowns_[u].prior_mean) / unknowns_[u].prior_sigma;
+    const double z = prior_z(unknowns_[u], x[i]);
     out.prior_cost += 0.5 * z * z;
-    out.gradient[i] += z / unknowns_[u].prior_sigma;
+    out.gradient[i] += z * prior_dz(unknowns_[u], x[i]);
   }
   out.finite = out.finite && out.gradient.allFinite() && out.information.allFinite();
   return out;

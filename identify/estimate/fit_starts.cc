@@ -59,8 +59,7 @@ Slope slope_at(const FitProblem& problem, const Eigen::VectorXd& x, Eigen::Index
   Slope s;
   if (!p.finite) return s;
   const Unknown& u = problem.unknowns()[static_cast<std::size_t>(strength)];
-  const double prior = u.prior_sigma > 0.0 ? 1.0 / (u.prior_sigma * u.prior_sigma) : 0.0;
-  const double curvature = p.information(strength, strength) + prior;
+  const double curvature = p.information(strength, strength) + std::pow(prior_dz(u, x[strength]), 2);
   s.gradient = p.gradient[strength];
   if (!(curvature > 0.0)) return s;
   s.step = -s.gradient / curvature;

@@ -107,9 +107,9 @@ LinearBase::LinearBase(const WhitenedResiduals& residuals, const Candidate& mode
   for (Eigen::Index c = 0; c < prior_.size(); ++c) {
     const Unknown& u = unknowns_[static_cast<std::size_t>(c)];
     if (u.prior_sigma > 0.0) {
-      const double sigmas = u.scale / u.prior_sigma;
+      const double sigmas = u.scale * prior_dz(u, u.start);
       prior_[c] = autocorrelation_ * sigmas * sigmas;
-      off[c] = (u.start - u.prior_mean) / u.scale;
+      off[c] = prior_z(u, u.start) / sigmas;
     }
   }
   Eigen::MatrixXd normal = jacobian_.transpose() * jacobian_;

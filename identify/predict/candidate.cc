@@ -104,6 +104,7 @@ std::optional<Unknown> base_unknown(const Parameter& p) {
   u.upper = row.upper;
   u.prior_sigma =
       *p.tolerance * std::abs(value);  // relative tolerance of a zero value: sigma 0, a flat prior
+  u.prior_form = prior_form(*p.tolerance, !row.above_lower && u.lower <= 0.0);
   u.scale = u.prior_sigma > 0.0 ? u.prior_sigma : 1e-3 * std::min(row.upper, 1.0);
   return u;
 }
@@ -152,6 +153,7 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
   if (tolerance > 0.0 && use.values[i] != 0.0) {
     u.prior_mean = use.values[i];
     u.prior_sigma = tolerance * std::abs(use.values[i]);
+    if (use.values[i] > 0.0) u.prior_form = prior_form(tolerance, row.role != ParamRole::kShape);
   }
   double usual = row.typical;
   if (row.start_for != nullptr) {

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "identify/predict/prior.h"
 #include "sim/law/drive_params.h"
 #include "sim/law/effect_set.h"
 #include "sim/model/model_file.h"
@@ -39,8 +40,9 @@ struct Unknown {
   double lower = 0.0;
   double upper = 0.0;
   double prior_mean = 0.0;
-  double prior_sigma = 0.0;  // 0: flat within the bounds
-  double scale = 1.0;        // a step that matters: tolerance * value, or the effect's typical size
+  double prior_sigma = 0.0;  // tolerance * value; 0: flat within the bounds
+  PriorForm prior_form = PriorForm::kNormal;
+  double scale = 1.0;  // a step that matters: tolerance * value, or the effect's typical size
   ParamTrait trait = ParamTrait::kPlain;
 };
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +14,7 @@
 #include "identify/select/noise_effect.h"
 #include "identify/select/plausibility.h"
 #include "identify/select/selection_context.h"
+#include "identify/select/selection_pair.h"
 #include "identify/select/unknown_structure.h"
 #include "identify/select/verdict.h"
 
@@ -40,6 +42,7 @@ class Diagnosing {
         context_(dataset, nominal, {.seed = options.seed, .jobs = options.jobs}) {
     out_.dataset = dataset.name;
     out_.seed = options.seed;
+    out_.outcome = Outcome::kNotSearched;  // until it is
   }
 
   Diagnosis run() {
@@ -91,7 +94,8 @@ class Diagnosing {
   }
 
   // A fault of the data that would be taken for physics.
-  bool misleading() const {
+  bool misleading() const { return !options_.despite_faults && has_fault(); }
+  bool has_fault() const {
     return std::any_of(out_.findings.begin(), out_.findings.end(),
                        [](const DataFinding& f) { return f.grade == DataFinding::Grade::kFault; });
   }
@@ -109,7 +113,11 @@ class Diagnosing {
       if (n == 0 || !iteration.orders.empty())
         order_ = iteration.orders.empty() ? 0.0 : iteration.orders.front();
       out_.ladder.back().ranking = iteration.ranking;
-      if (iteration.chosen < 0) return;
+      if (iteration.chosen < 0) {
+        if (iteration.stopped || !worth_another_iteration() || !take_pair(iteration)) return;
+        from = to;
+        continue;
+      }
       if (parent_not_converged(iteration)) {
         // The refit found better base parameters for the parent itself: rank again from there.
         if (++restarts <= kMostRestarts) {
@@ -168,6 +176,20 @@ class Diagnosing {
     note_confounded(iteration, out_);
   }
 
+  // No single effect is accepted, and structure remains: two that mask each other may be.
+  bool take_pair(const Iteration& singles) {
+    const EffectPair pair = selection_pair(task_, current_, singles);
+    if (!pair.found()) return false;
+    current_ = refit_to_convergence(context_.setup(true, stop()), pair.fitted);
+    for (std::size_t k = 0; k < pair.names.size(); ++k) {
+      out_.effects.push_back(pair.names[k]);
+      aliased_parameter_[pair.names[k]] = pair.aliased_parameters[k];
+    }
+    add_step(fmt::format("{}", fmt::join(pair.names, " and ")), current_,
+             compare(context_.predictor(), current_.fit.model));
+    return true;
+  }
+
   // Backward elimination: an effect that is no longer needed beside later ones is removed.
   void eliminate() {
     for (std::size_t n = 0; out_.effects.size() > 1 && n < out_.effects.size() && !stopped_;) {
@@ -197,8 +219,11 @@ class Diagnosing {
       setup.robust = true;
       const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);
       if (last.finite && energy_ratio(context_.splits()[kTraining], current_.residual[kTraining],
-                                      last.residual[kTraining]) < kRobustLoss)
+                                      last.residual[kTraining]) < kRobustLoss) {
         current_ = last;
+        out_.ladder.back().comparison = compare(context_.predictor(), current_.fit.model);
+        out_.ladder.back().parameters = current_.fit.parameters;
+      }
     }
     ResidualExcess excess = residual_excess();
     if (!misleading() && !stopped_ && structure_in_excess(excess) && take_noise_effect())
@@ -210,15 +235,26 @@ class Diagnosing {
     const bool remains = misleading() || structure_remains(excess, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
-    out_.unknown.sentence = residual_sentence(excess, added);
+    out_.outcome = misleading() ? Outcome::kNotSearched
+                   : !added     ? Outcome::kNothingFound
+                   : remains    ? Outcome::kMoreRemains
+                                : Outcome::kFound;
     if (remains && !misleading() && !stopped_) {
       say("looking for a formula", 0.92);
       out_.unknown = unknown_structure(task_, current_, out_.final_comparison);
-      out_.unknown.sentence = residual_sentence(excess, added);
     }
+    out_.unknown.sentence = misleading() ? fault_sentence() : residual_sentence(excess, added);
     out_.next_experiment = next_experiment(dataset_, out_);
     out_.complete = !stopped_;
     say("done", 1.0);
+  }
+
+  std::string fault_sentence() const {
+    const auto fault = std::find_if(out_.findings.begin(), out_.findings.end(), [](const DataFinding& f) {
+      return f.grade == DataFinding::Grade::kFault;
+    });
+    return fmt::format("No effect was tried, since a fault of the data would be taken for one: {}",
+                       fault->sentence);
   }
 
   ResidualExcess residual_excess() {
@@ -302,6 +338,20 @@ class Diagnosing {
 };
 
 }  // namespace
+
+std::string_view outcome_name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kFound:
+      return "found";
+    case Outcome::kMoreRemains:
+      return "found, but more remains";
+    case Outcome::kNothingFound:
+      return "nothing found";
+    case Outcome::kNotSearched:
+      return "not searched";
+  }
+  return "";
+}
 
 std::string_view verdict_name(Verdict verdict) {
   switch (verdict) {

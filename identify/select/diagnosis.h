@@ -25,6 +25,10 @@ namespace omnihil {
 enum class Verdict : std::uint8_t { kAdequate, kEffect, kUnknown };
 std::string_view verdict_name(Verdict verdict);  // "adequate", "effect", "unknown"
 
+// What a person wants to know: were effects found, and is that all?
+enum class Outcome : std::uint8_t { kFound, kMoreRemains, kNothingFound, kNotSearched };
+std::string_view outcome_name(Outcome outcome);  // "found", "found, but more remains", "nothing found", …
+
 // One step of the ladder: the model after an effect was added (the first: the refitted baseline; the
 // one before it: the nominal model as given).
 struct LadderStep {
@@ -65,6 +69,7 @@ struct Diagnosis {
   Comparison nominal_comparison;
   Comparison baseline_comparison;
   Verdict verdict = Verdict::kAdequate;
+  Outcome outcome = Outcome::kNothingFound;
   std::vector<std::string> effects;   // in the order in which they were added
   std::vector<RankedEffect> ranking;  // first iteration, best first: every effect that applies
   std::vector<LadderStep> ladder;
@@ -82,6 +87,7 @@ struct DiagnoseOptions {
   std::uint64_t seed = 1;
   int jobs = 1;
   int max_effects = 6;
+  bool despite_faults = false;  // search also where the data have a fault that can be taken for physics
   std::function<bool(const Progress&)> progress;  // false: stop with what is known
   std::function<bool()> stop;  // asked within every fit, from several threads; true: the same
 };

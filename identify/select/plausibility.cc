@@ -103,7 +103,7 @@ std::string implausible_estimate(const FitResult& child, const std::string& name
 double prior_chi_square(const FitResult& fit) {
   double sum = 0.0;
   for (const ParameterEstimate& p : fit.parameters) {
-    if (p.prior_sigma > 0.0) sum += std::pow((p.value - p.prior_mean) / p.prior_sigma, 2);
+    sum += std::pow(prior_z(p, p.value), 2);
   }
   return sum;
 }
@@ -124,9 +124,7 @@ PriorDeviation largest_prior_deviation(const FitResult& fit) {
 double prior_deviation(const FitResult& fit, std::string_view path) {
   const auto p = std::find_if(fit.parameters.begin(), fit.parameters.end(),
                               [&](const ParameterEstimate& q) { return q.path == path; });
-  return p == fit.parameters.end() || p->prior_sigma <= 0.0
-             ? 0.0
-             : std::abs(p->value - p->prior_mean) / p->prior_sigma;
+  return p == fit.parameters.end() ? 0.0 : std::abs(prior_z(*p, p->value));
 }
 
 bool is_implausible(const FitResult& fit) {

@@ -109,7 +109,7 @@ Fitted reset_unidentifiable(const RefitSetup& setup, const Fitted& parent, Fitte
     FitResult fit = child.fit;
     fit.model = with_values(fit.model, {&as_fitted.fit.unknowns[i], 1}, {&*was, 1});
     fit.parameters[i].value = *was;
-    if (p.prior_sigma > 0.0) fit.parameters[i].prior_deviation_sigmas = (*was - p.prior_mean) / p.prior_sigma;
+    fit.parameters[i].prior_deviation_sigmas = prior_z(p, *was);
     Fitted reset = fitted(*setup.splits, *setup.unweighted, std::move(fit), setup.jobs);
     const WhitenedResiduals& residuals = (*setup.splits)[kTraining];
     if (reset.finite &&
@@ -135,6 +135,7 @@ std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Cand
     if (from == at_priors.end()) continue;
     u.prior_mean = from->prior_mean;
     u.prior_sigma = from->prior_sigma;
+    u.prior_form = from->prior_form;
     u.scale = from->scale;
     u.lower = from->lower;
     u.upper = from->upper;

@@ -95,6 +95,31 @@ bool accepted_by_prior_only(const Iteration& iteration) {
                       [](const CandidateEffect& c) { return c.acceptance.accepted_by == AcceptedBy::kGain; });
 }
 
+bool nests(const EffectInfo& richer, std::string_view simpler) {
+  return std::find(richer.nests.begin(), richer.nests.end(), simpler) != richer.nests.end();
+}
+
+// Parsimony among nested laws: the first one stays only if it would be accepted as an addition to each of the
+// accepted laws that it becomes at a limit of its shapes (likelihood-ratio tests of nested models are taken
+// the same way: the richer one bears the burden of proof).
+void prefer_nested(const SelectionTask& task, std::vector<CandidateEffect>& candidates) {
+  for (std::size_t c = 1; c < candidates.size();) {
+    const CandidateEffect &first = candidates.front(), &other = candidates[c];
+    const bool simpler = other.acceptance.accepted() && !other.screened.extends && !first.screened.extends &&
+                         nests(*first.screened.entry->info, other.screened.name);
+    constexpr double kScreened = 1e9;  // gain over the null's: the screening has tested that already
+    if (!simpler ||
+        test_acceptance(task.acceptance_context, other.fitted, first.fitted, first.screened.name, kScreened)
+            .accepted()) {
+      ++c;
+      continue;
+    }
+    std::rotate(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(c),
+                candidates.begin() + static_cast<std::ptrdiff_t>(c) + 1);
+    c = 1;  // the one in front now may nest a simpler one still
+  }
+}
+
 }  // namespace
 
 double penalised_gain(const CandidateEffect& c, bool has_holdout) {
@@ -122,6 +147,7 @@ void select_best(const SelectionTask& task, const Fitted& parent, Iteration& ite
                      return penalised_gain(a, has_holdout) > penalised_gain(b, has_holdout);
                    });
   if (iteration.candidates.empty() || !iteration.candidates.front().acceptance.accepted()) return;
+  prefer_nested(task, iteration.candidates);
   const CandidateEffect& best = iteration.candidates.front();
   const double most = gain_of(best, has_holdout), noise = noise_fraction(best, has_holdout);
   const bool prior_only = accepted_by_prior_only(iteration);

@@ -68,6 +68,19 @@ std::vector<const EffectEntry*> not_yet(const SelectionTask& task, const Candida
   return out;
 }
 
+// The laws that the shortlisted ones become at a limit of their shapes: a richer law has to be better than
+// these, so they are fitted beside it.
+void add_nested(const std::vector<Screened>& screened, const std::vector<std::size_t>& order,
+                std::vector<std::size_t>& out) {
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    const auto& nests = screened[out[n]].entry->info->nests;
+    for (const std::size_t i : order) {
+      const bool nested = std::find(nests.begin(), nests.end(), screened[i].name) != nests.end();
+      if (nested && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
+    }
+  }
+}
+
 // Shortlist: largest screened gain overall, largest per regime, quantisation signature found, or aliased with
 // a prior-implausible base parameter.
 std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const Fitted& parent,
@@ -97,6 +110,7 @@ std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const 
   });
   if (in_regime != order.end() && std::find(out.begin(), out.end(), *in_regime) == out.end())
     out.push_back(*in_regime);
+  add_nested(screened, order, out);
   return out;
 }
 

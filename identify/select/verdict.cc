@@ -31,6 +31,25 @@ Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& n
   return out;
 }
 
+std::string unit_of(const Predictor& predictor, const std::string& channel) {
+  for (int run = 0; run < predictor.run_count(); ++run) {
+    for (const ComparedSignal& s : predictor.compared(run)) {
+      if (s.name == channel) return s.unit;
+    }
+  }
+  return "";
+}
+
+// "2.1 rad/s RMS of velocity on held-out runs, 9 times the sensors' noise"
+std::string remainder(const ResidualExcess& excess) {
+  constexpr double kAtNoise = 1.05;  // of its root mean square: the replicates' own scatter is of that order
+  const double ratio = std::sqrt(std::max(0.0, 1.0 + excess.excess));
+  return fmt::format("{:.3g} {} RMS of {} on {} runs, {}", excess.rms, excess.unit, excess.signal,
+                     excess.held_out ? "held-out" : "fit",
+                     ratio < kAtNoise ? "as the sensors' noise alone would leave"
+                                      : fmt::format("{:.3g} times the sensors' noise", ratio));
+}
+
 }  // namespace
 
 ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChannels& channels,
@@ -51,6 +70,9 @@ ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChan
   out.excess = after.maxCoeff(&worst);
   out.excess_before = before[worst];
   out.signal = channels.name[static_cast<std::size_t>(worst)];
+  out.rms = std::sqrt(splits[u].mean_square(now)[worst]);
+  out.unit = unit_of(predictor, out.signal);
+  out.held_out = u == kValidation;
   const double floor = null.floor(splits[u].split())[worst];
   out.spread = floor > 0.0 ? null.spread(splits[u].split())[worst] / floor : 0.0;
   double remaining = 0.0, all = 0.0;
@@ -82,22 +104,21 @@ bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, con
 }
 
 std::string residual_sentence(const ResidualExcess& excess, bool effects_added) {
-  const std::string size = fmt::format(
-      "the error energy of {} is {:.0f} % above what the sensors' noise alone would leave "
-      "(simulated; its replicates scatter by {:.1f} %)",
-      excess.signal, 100.0 * excess.excess, 100.0 * excess.spread);
+  const std::string left = remainder(excess);
   if (structure_remains(excess, effects_added)) {
-    return "Structure remains that no known effect explains: " + size + ".";
+    if (!effects_added) return fmt::format("Structure remains that no known effect explains: {}.", left);
+    return fmt::format(
+        "More remains that no known effect explains: {}; {:.0f} % of what the base model left.", left,
+        100.0 * excess.unexplained);
   }
-  if (effects_added) {
-    // An effect accepted for a prior need not explain any energy.
-    const std::string explained = excess.excess_before < kStructure
-                                      ? ""
-                                      : fmt::format("; {:.0f} % of what the base model left is explained",
-                                                    100.0 * (1.0 - excess.unexplained));
-    return "Nothing more that matters can be learned from these data: " + size + explained + ".";
-  }
-  return "Nothing that matters is missing as far as these data show: " + size + ".";
+  if (!effects_added)
+    return fmt::format("Nothing that matters is missing as far as these data show: {}.", left);
+  // An effect accepted for a prior need not explain any energy.
+  const std::string explained = excess.excess_before < kStructure
+                                    ? ""
+                                    : fmt::format("; {:.0f} % of what the base model left is explained",
+                                                  100.0 * (1.0 - excess.unexplained));
+  return fmt::format("What is left: {}{}.", left, explained);
 }
 
 }  // namespace omnihil

@@ -20,7 +20,10 @@ struct ResidualExcess {
   double excess_before = 0.0;  // the same of the refitted baseline
   double spread = 0.0;         // standard deviation of the null's replicates, over their mean
   double unexplained = 0.0;    // fraction of the baseline's excess that remains, mean over all channels
-  std::string signal;
+  std::string signal{};
+  double rms = 0.0;  // of that signal's residual, in its unit
+  std::string unit{};
+  bool held_out = false;  // on held-out runs; else on the fit runs
 };
 
 // On held-out runs, else on fit runs.

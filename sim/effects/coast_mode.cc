@@ -36,6 +36,8 @@ struct CoastMode {
              const bool known = d.inductance_H > 0.0 && d.resistance_ohm > 0.0;
              return known ? d.inductance_H / d.resistance_ohm : 2e-4;
            },
+       // no inductance at one bound, no ripple at the other: both are bridges that cannot brake
+       .trait = ParamTrait::kExponent,
        .grid = {GridOf::kStart, {0.03, 0.25, 1.0, 4.0}}},
       {.name = "return_ratio",
        .unit = "1",

@@ -41,6 +41,7 @@ struct GreaseDrag {
           "limited shear stress from other laws that bend alike (Eyring's, a power of the speed)",
       .place = Place::kTorque,
       .twins = {"coulomb_friction", "motor.viscous_friction_Nm_s_per_rad", "lugre_friction"},
+      .nests = {"coulomb_friction"},
       .reveals =
           "very slow turning both ways up to top speed: current against speed rises steeply, bends, and "
           "goes on along the line of viscous friction",

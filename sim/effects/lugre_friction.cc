@@ -79,6 +79,7 @@ struct LugreFriction {
           "reversals at once as Prandtl's elements do",
       .place = Place::kTorque,
       .twins = {"stribeck_friction"},
+      .nests = {"coulomb_friction", "stribeck_friction"},
       .reveals =
           "current up and down below breakaway: angle follows like a spring with hysteresis; very slow "
           "turning "

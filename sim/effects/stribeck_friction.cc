@@ -53,6 +53,7 @@ struct StribeckFriction {
           "a lag of the friction behind the speed",
       .place = Place::kTorque,
       .twins = {"coulomb_friction", "cogging", "lugre_friction"},
+      .nests = {"coulomb_friction"},
       .reveals =
           "very slow turning both ways, and starts from rest: current against speed falls from rest to a few "
           "times the speed omega_s; stick-slip under a soft speed controller",

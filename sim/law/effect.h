@@ -92,8 +92,11 @@ struct EffectInfo {
   Place place = Place::kTorque;
   std::string_view target = "";             // of a user's formula: what it adds to, "torque_Nm"
   std::array<std::string_view, 8> twins{};  // ids, or base parameters by path; as many as there are
-  std::string_view reveals;                 // the experiment, and the signal in which it shows
-  std::string_view visible;                 // the smallest size that can be seen, in words
+  // Ids of laws with fewer parameters that this one becomes at a limit of its shapes: it has to be better than
+  // each of them by what any addition has to gain.
+  std::array<std::string_view, 4> nests{};
+  std::string_view reveals;  // the experiment, and the signal in which it shows
+  std::string_view visible;  // the smallest size that can be seen, in words
   // Of the first strength, by the simple estimator that `visible` names; null: `visible` says why not.
   double (*min_visible)(const SensorSet&) = nullptr;
   std::uint32_t claims = kClaimNone;

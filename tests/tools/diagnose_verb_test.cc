@@ -48,7 +48,7 @@ TEST_F(SlowDiagnoseVerb, FromTheVerdictToTheMendedModel) {
   const Ran first =
       verb("diagnose", "--json" + shell(folder_ / "d.json") + "--report" + shell(folder_ / "d.html"));
   ASSERT_EQ(first.exit_code, 0) << first.text;
-  EXPECT_TRUE(first.says("Verdict: effect: cogging")) << first.text;
+  EXPECT_TRUE(first.says("Verdict: found: cogging")) << first.text;
   const nlohmann::json j = nlohmann::json::parse(text_of(folder_ / "d.json"));
   EXPECT_EQ(j["verdict"], "effect");
   EXPECT_GT(fs::file_size(folder_ / "d.html"), 10000u);

@@ -13,7 +13,10 @@ ResidualExcess excess(double now, double before, double spread, double unexplain
           .excess_before = before,
           .spread = spread,
           .unexplained = unexplained,
-          .signal = "velocity"};
+          .signal = "velocity",
+          .rms = 2.0,
+          .unit = "rad/s",
+          .held_out = true};
 }
 
 TEST(Verdict, StructureIsATenthAboveTheNull) {
@@ -34,10 +37,20 @@ TEST(Verdict, WhatIsLeftBesideAnEffectCountsAsAShareOfWhatWasThere) {
 
 TEST(Verdict, TheSentenceSaysSizeSignalAndShare) {
   const std::string remains = residual_sentence(excess(0.25, 0.25, 0.01, 1.0), false);
-  EXPECT_NE(remains.find("velocity is 25 % above"), std::string::npos) << remains;
+  // sqrt(1.25) = 1.118 times the noise
+  EXPECT_NE(remains.find("2 rad/s RMS of velocity on held-out runs, 1.12 times"), std::string::npos)
+      << remains;
   EXPECT_NE(remains.find("no known effect explains"), std::string::npos) << remains;
   const std::string done = residual_sentence(excess(0.02, 4.0, 0.01, 0.03), true);
   EXPECT_NE(done.find("97 % of what the base model left is explained"), std::string::npos) << done;
+  const std::string more = residual_sentence(excess(8.0, 24.0, 0.01, 0.35), true);
+  EXPECT_NE(more.find("More remains"), std::string::npos) << more;
+  EXPECT_NE(more.find("3 times the sensors' noise; 35 % of what the base model left"), std::string::npos)
+      << more;
+  // chance takes the energy below the null's: at the noise, nothing negative
+  const std::string below = residual_sentence(excess(-0.03, 0.5, 0.05, 0.0), true);
+  EXPECT_NE(below.find("as the sensors' noise alone would leave"), std::string::npos) << below;
+  EXPECT_EQ(below.find("-"), below.find("-out")) << below;
   const std::string nothing = residual_sentence(excess(0.02, 0.02, 0.01, 1.0), false);
   EXPECT_NE(nothing.find("Nothing that matters is missing"), std::string::npos) << nothing;
 }
