@@ -26,6 +26,16 @@ struct RobotShafts {
   double omega_rotor_rad_s[kWheels]{};
 };
 
+// What firmware that reports nothing itself reports: the shafts' own speeds at the wheels, the battery.
+inline RobotFeedback feedback_of(const RobotShafts& exact, const RobotSensors& sensors, double gear_ratio) {
+  RobotFeedback feedback{};
+  feedback.now_us = sensors.now_us;
+  feedback.battery_V = sensors.bus_voltage_V;
+  for (std::size_t w = 0; w < kWheels; ++w)
+    feedback.omega_wheel_rad_s[w] = exact.omega_rotor_rad_s[w] / gear_ratio;
+  return feedback;
+}
+
 class Firmware {
  public:
   virtual ~Firmware() = default;

@@ -105,12 +105,7 @@ void AvrFirmware::look(const RobotSensors& sensors) {
 RobotDrive AvrFirmware::tick(const RobotSensors& sensors) {
   look(sensors);
   RobotDrive drive{};
-  feedback_ = {};
-  feedback_.now_us = sensors.now_us;
-  feedback_.battery_V = sensors.bus_voltage_V;
-  for (std::size_t w = 0; w < kWheels; ++w) {
-    feedback_.omega_wheel_rad_s[w] = exact_.omega_rotor_rad_s[w] / config_.gear_ratio;
-  }
+  feedback_ = feedback_of(exact_, sensors, config_.gear_ratio);
   const std::int64_t end_ns = world_.at_ns + control_period_ns();
   for (const auto& board : boards_) board->begin(world_, end_ns);
   for (const auto& board : boards_) {

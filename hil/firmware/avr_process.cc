@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "hil/firmware/child_socket.h"
 #include "hil/firmware/signal_words.h"
 #include "hil/text/program_files.h"
 
@@ -60,14 +61,9 @@ void AvrProcess::start() {
 
 // True once the socket is ready; false when the program took too long, which ends it.
 bool AvrProcess::wait_for(short what) {
-  pollfd poll{socket_, what, 0};
-  for (;;) {
-    const int ready = ::poll(&poll, 1, static_cast<int>(deadline_s_ * 1e3));
-    if (ready > 0) return true;
-    if (ready < 0 && errno == EINTR) continue;
-    note_end(true);
-    return false;
-  }
+  if (socket_ready(socket_, what, deadline_s_)) return true;
+  note_end(true);
+  return false;
 }
 
 void AvrProcess::send(const std::string& line) {

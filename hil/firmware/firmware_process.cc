@@ -13,6 +13,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "hil/firmware/child_socket.h"
 #include "hil/firmware/signal_words.h"
 #include "hil/text/program_files.h"
 
@@ -67,14 +68,9 @@ void FirmwareProcess::start() {
 
 // True once the socket is ready; false when the firmware took too long, which ends it.
 bool FirmwareProcess::wait_for(short what) {
-  pollfd poll{socket_, what, 0};
-  for (;;) {
-    const int ready = ::poll(&poll, 1, static_cast<int>(deadline_s_ * 1e3));
-    if (ready > 0) return true;
-    if (ready < 0 && errno == EINTR) continue;
-    note_end(true);
-    return false;
-  }
+  if (socket_ready(socket_, what, deadline_s_)) return true;
+  note_end(true);
+  return false;
 }
 
 void FirmwareProcess::send(WireRequest request, const void* body, std::size_t bytes) {

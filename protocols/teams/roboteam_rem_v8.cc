@@ -28,6 +28,17 @@ constexpr std::array kTurnRows{
     ranged("cameraYaw", 16, -kPi, kPi, "rad", "heading as the cameras see it"),
 };
 
+constexpr std::array kDribblerRows{
+    flag("dribblerOn", "run the dribbler"),
+    flag("dribblerOption1", "dribbler option 1"),
+    flag("dribblerOption2", "dribbler option 2"),
+    flag("dribblerOption3", "dribbler option 3"),
+    flag("dribblerOption4", "dribbler option 4"),
+    flag("dribblerOption5", "dribbler option 5"),
+    flag("dribblerOption6", "dribbler option 6"),
+    flag("sendStateInfo", "answer with REM_RobotStateInfo as well"),
+};
+
 constexpr auto kCommand =
     in_order(kHeaderRows, kMotionRows, kTurnRows,
              std::array{
@@ -40,14 +51,9 @@ constexpr auto kCommand =
                  flag("doForce", "kick or chip whatever the ball sensor says"),
                  flag("useCameraYaw", "cameraYaw holds a measurement"),
                  flag("useYaw", "turn to yaw; 0: turn at angularVelocity"),
-                 flag("dribblerOn", "run the dribbler"),
-                 flag("dribblerOption1", "dribbler option 1"),
-                 flag("dribblerOption2", "dribbler option 2"),
-                 flag("dribblerOption3", "dribbler option 3"),
-                 flag("dribblerOption4", "dribbler option 4"),
-                 flag("dribblerOption5", "dribbler option 5"),
-                 flag("dribblerOption6", "dribbler option 6"),
-                 flag("sendStateInfo", "answer with REM_RobotStateInfo as well"),
+             },
+             kDribblerRows,
+             std::array{
                  flag("wheelsOff", "leave the wheels without power"),
                  flag("reboot", "restart the robot"),
              });
@@ -76,15 +82,8 @@ constexpr auto kTesting =
                  flag("useCameraYaw", "cameraYaw holds a measurement"),
                  flag("useAbsoluteYaw", "turn to yaw; 0: turn at angularVelocity"),
                  reserved("unused", 5, "not used"),
-                 flag("dribblerOn", "run the dribbler"),
-                 flag("dribblerOption1", "dribbler option 1"),
-                 flag("dribblerOption2", "dribbler option 2"),
-                 flag("dribblerOption3", "dribbler option 3"),
-                 flag("dribblerOption4", "dribbler option 4"),
-                 flag("dribblerOption5", "dribbler option 5"),
-                 flag("dribblerOption6", "dribbler option 6"),
-                 flag("sendStateInfo", "answer with REM_RobotStateInfo as well"),
-             });
+             },
+             kDribblerRows);
 
 constexpr auto kFeedback =
     in_order(kHeaderRows, kMotionRows,

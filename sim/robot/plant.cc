@@ -158,22 +158,30 @@ VisionPose Plant::vision(int robot) const {
   return {seen.x_m, seen.y_m, seen.yaw_rad};
 }
 
+namespace {
+// All that changes as time goes on, in the order in which it is kept: visit(first, count).
+template <typename Impl, typename Visit>
+void each_memory(Impl& p, Visit visit) {
+  visit(&p.now_ns, 1);
+  visit(p.q.data(), p.q.size());
+  visit(p.u.data(), p.u.size());
+  visit(p.memory.data(), p.memory.size());
+  for (std::size_t n = 0; n < p.models.size(); ++n) {
+    if (p.electrics[n]) visit(&p.electric_memory[n], 1);
+    if (!p.effects[n]) continue;
+    visit(&p.effect_memory[n], 1);
+    visit(&p.histories[n].count(), 1);
+    visit(p.histories[n].points().data(), p.histories[n].points().size());
+  }
+}
+}  // namespace
+
 std::vector<std::uint8_t> Plant::save() const {
   const Impl& p = *impl_;
   const std::uint64_t head[3] = {kStateMark, plant_fingerprint(p.models, p.options), p.fault ? 1u : 0u};
   std::vector<std::uint8_t> out;
   append(out, head, 3);
-  append(out, &p.now_ns, 1);
-  append(out, p.q.data(), p.q.size());
-  append(out, p.u.data(), p.u.size());
-  append(out, p.memory.data(), p.memory.size());
-  for (std::size_t n = 0; n < p.models.size(); ++n) {
-    if (p.electrics[n]) append(out, &p.electric_memory[n], 1);
-    if (!p.effects[n]) continue;
-    append(out, &p.effect_memory[n], 1);
-    append(out, &p.histories[n].count(), 1);
-    append(out, p.histories[n].points().data(), p.histories[n].points().size());
-  }
+  each_memory(p, [&](const auto* first, std::size_t count) { append(out, first, count); });
   return out;
 }
 
@@ -183,17 +191,7 @@ bool Plant::restore(std::span<const std::uint8_t> bytes) {
   std::uint64_t head[3];
   take(bytes, head, 3);
   if (head[0] != kStateMark || head[1] != plant_fingerprint(p.models, p.options)) return false;
-  take(bytes, &p.now_ns, 1);
-  take(bytes, p.q.data(), p.q.size());
-  take(bytes, p.u.data(), p.u.size());
-  take(bytes, p.memory.data(), p.memory.size());
-  for (std::size_t n = 0; n < p.models.size(); ++n) {
-    if (p.electrics[n]) take(bytes, &p.electric_memory[n], 1);
-    if (!p.effects[n]) continue;
-    take(bytes, &p.effect_memory[n], 1);
-    take(bytes, &p.histories[n].count(), 1);
-    take(bytes, p.histories[n].points().data(), p.histories[n].points().size());
-  }
+  each_memory(p, [&](auto* first, std::size_t count) { take(bytes, first, count); });
   for (std::size_t n = 0; n < p.models.size(); ++n) p.apply_faults(n, p.memory[n].faults);
   p.fault.reset();
   if (head[2] != 0) p.look_for_fault();

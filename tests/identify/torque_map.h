@@ -5,8 +5,6 @@
 //
 //   TorqueMap map({.load_Nm = 0.004});
 //   map.dataset; map.nominal;         // whose viscous friction is not known exactly, and which has no load
-//
-// The brake is larger than all that is to be found, so that no loss in proportion to the torque explains it.
 #pragma once
 #include "sim/law/random.h"
 #include "tests/identify/linear_predictor.h"
@@ -17,6 +15,7 @@ struct TorqueMapRecipe {
   double friction_Nm_s_per_rad = 1.3e-5;
   double load_Nm = 0.0;
   double sigma_Nm = 1e-4;
+  bool braked = true;
 };
 
 class TorqueMap {
@@ -31,6 +30,7 @@ class TorqueMap {
         {.signal = "motor_torque", .column = "torque", .unit = "N m", .sigma = recipe.sigma_Nm},
         {.signal = "velocity", .column = "speed", .unit = "rad/s", .imposed = true},
         {.signal = "load_torque", .column = "brake", .unit = "N m", .imposed = true}};
+    if (!recipe.braked) dataset.channels.pop_back();
     for (const Split split : {kTraining, kValidation}) dataset.runs.push_back(run(recipe, split));
   }
 
@@ -63,8 +63,9 @@ class TorqueMap {
       const double noise = recipe.sigma_Nm * gaussian(7, split, static_cast<std::uint64_t>(i));
       out.time_s.push_back(kPeriod_s * i);
       out.signals["velocity"].push_back(w);
-      out.signals["load_torque"].push_back(brake_Nm(i));
-      out.signals["motor_torque"].push_back(recipe.friction_Nm_s_per_rad * w - brake_Nm(i) - recipe.load_Nm +
+      const double brake = recipe.braked ? brake_Nm(i) : 0.0;
+      if (recipe.braked) out.signals["load_torque"].push_back(brake_Nm(i));
+      out.signals["motor_torque"].push_back(recipe.friction_Nm_s_per_rad * w - brake - recipe.load_Nm +
                                             noise);
     }
     return out;

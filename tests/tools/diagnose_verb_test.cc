@@ -16,11 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // Twelve seconds at a simulated bench with cogging in it, and the model without.
 class SlowDiagnoseVerb : public CliTest {
  protected:

@@ -232,12 +232,7 @@ AvrBoardSpec Reader::read() {
 
 std::optional<AvrBoardSpec> read_avr_board(std::string_view text, const std::string& file,
                                            std::vector<BoardProblem>& problems) {
-  const std::size_t before = problems.size();
-  const std::optional<toml::table> top = parse_board(text, file, problems);
-  if (!top) return std::nullopt;
-  AvrBoardSpec spec = Reader(*top, file, problems).read();
-  if (problems.size() != before) return std::nullopt;
-  return spec;
+  return read_board_by<Reader>(text, file, problems);
 }
 
 }  // namespace omnihil::mcu

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "firmware_iface/mcu/board/board_problem.h"
@@ -42,5 +43,17 @@ class BoardKeys {
 // The text of a board file as TOML; what is not TOML is a problem with its line.
 std::optional<toml::table> parse_board(std::string_view text, const std::string& file,
                                        std::vector<BoardProblem>& problems);
+
+// What a Reader of (table, file, problems) makes of a board file; nothing where it has a problem.
+template <typename Reader>
+auto read_board_by(std::string_view text, const std::string& file, std::vector<BoardProblem>& problems)
+    -> std::optional<decltype(std::declval<Reader&>().read())> {
+  const std::size_t before = problems.size();
+  const std::optional<toml::table> top = parse_board(text, file, problems);
+  if (!top) return std::nullopt;
+  auto spec = Reader(*top, file, problems).read();
+  if (problems.size() != before) return std::nullopt;
+  return spec;
+}
 
 }  // namespace omnihil::mcu

@@ -154,12 +154,7 @@ RobotDrive McuFirmware::tick(const RobotSensors& sensors) {
   look(sensors);
   speak(world_.at_ns);
   RobotDrive drive{};
-  feedback_ = {};
-  feedback_.now_us = sensors.now_us;
-  feedback_.battery_V = sensors.bus_voltage_V;
-  for (std::size_t w = 0; w < kWheels; ++w) {
-    feedback_.omega_wheel_rad_s[w] = exact_.omega_rotor_rad_s[w] / config_.gear_ratio;
-  }
+  feedback_ = feedback_of(exact_, sensors, config_.gear_ratio);
   if (phases_) {  // the image runs on from PWM period to PWM period
     for (std::size_t w = 0; w < kWheels; ++w) {
       if (wire(static_cast<int>(w)) != nullptr) drive.mode[w] = OMNIHIL_DRIVE_PHASES;

@@ -2,27 +2,20 @@
 
 #include <utility>
 
+#include "firmware_iface/mcu/stm32/register_rows.h"
+
 namespace omnihil::mcu {
 namespace {
 enum : std::uint16_t { kCr1 = 0x00, kCr2 = 0x04, kSr = 0x08, kDr = 0x0C };
-constexpr RegisterInfo kV1[] = {{kCr1, "CR1", 0, 0xFFFF, 0x3080},
-                                {kCr2, "CR2", 0, 0xF7, 0x10},
-                                {kSr, "SR", 2, 0},
-                                {kDr, "DR", 0, 0},
-                                {0x10, "CRCPR", 7, 0xFFFF},
-                                {0x14, "RXCRCR", 0, 0},
-                                {0x18, "TXCRCR", 0, 0},
-                                {0x1C, "I2SCFGR", 0, 0xFFF, 0x400},
-                                {0x20, "I2SPR", 2, 0x3FF}};
-constexpr RegisterInfo kV2[] = {{kCr1, "CR1", 0, 0xFFFF, 0x3080},
-                                {kCr2, "CR2", 0x700, 0x7FFF, 0x6018},
-                                {kSr, "SR", 2, 0},
-                                {kDr, "DR", 0, 0},
-                                {0x10, "CRCPR", 7, 0xFFFF},
-                                {0x14, "RXCRCR", 0, 0},
-                                {0x18, "TXCRCR", 0, 0},
-                                {0x1C, "I2SCFGR", 0, 0xFFF, 0x400},
-                                {0x20, "I2SPR", 2, 0x3FF}};
+constexpr RegisterInfo kFirst[] = {{kCr1, "CR1", 0, 0xFFFF, 0x3080}};
+constexpr RegisterInfo kCr2OfV1[] = {{kCr2, "CR2", 0, 0xF7, 0x10}};
+constexpr RegisterInfo kCr2OfV2[] = {{kCr2, "CR2", 0x700, 0x7FFF, 0x6018}};
+constexpr RegisterInfo kRest[] = {{kSr, "SR", 2, 0},          {kDr, "DR", 0, 0},
+                                  {0x10, "CRCPR", 7, 0xFFFF}, {0x14, "RXCRCR", 0, 0},
+                                  {0x18, "TXCRCR", 0, 0},     {0x1C, "I2SCFGR", 0, 0xFFF, 0x400},
+                                  {0x20, "I2SPR", 2, 0x3FF}};
+constexpr auto kV1 = joined(kFirst, kCr2OfV1, kRest);
+constexpr auto kV2 = joined(kFirst, kCr2OfV2, kRest);
 constexpr std::uint32_t kRxne = 1, kTxe = 2, kOvr = 1u << 6, kBsy = 1u << 7;
 constexpr std::uint32_t kSpe = 1u << 6;  // CR1
 }  // namespace

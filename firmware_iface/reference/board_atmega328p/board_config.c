@@ -8,22 +8,14 @@
 #include <string.h>
 
 #include "firmware_iface/reference/board_atmega328p/board.h"
-
-#define MAGIC 0x494E4D4Ful
-
-typedef struct {
-  uint32_t magic;
-  float wheel_angle_rad[OMNIHIL_WHEELS];
-  float wheel_radius_m, wheel_center_radius_m, gear_ratio, encoder_counts_per_rotor_turn;
-  float bus_voltage_nominal_V, motor_resistance_ohm, motor_torque_constant_Nm_per_A, command_timeout_s;
-} robot_page;
+#include "firmware_iface/reference/robot_page_layout.h"
 
 uint8_t board_wheel(void) { return PINC & 3u; }
 
 int board_config(omnihil_robot_config* config) {
   robot_page page;
   eeprom_read_block(&page, (const void*)0, sizeof page);
-  if (page.magic != MAGIC) return 1;
+  if (page.magic != ROBOT_PAGE_MAGIC) return 1;
   memset(config, 0, sizeof *config);
   for (uint8_t w = 0; w < OMNIHIL_WHEELS; ++w) config->wheel_angle_rad[w] = page.wheel_angle_rad[w];
   config->robot_id = PINC >> 2 & 0xFu;

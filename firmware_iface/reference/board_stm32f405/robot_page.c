@@ -2,18 +2,11 @@
 
 #include <string.h>
 
-enum { MAGIC = 0x494E4D4F }; /* "OMNI" */
-
-typedef struct {
-  uint32_t magic;
-  float wheel_angle_rad[OMNIHIL_WHEELS];
-  float wheel_radius_m, wheel_center_radius_m, gear_ratio, encoder_counts_per_rotor_turn;
-  float bus_voltage_nominal_V, motor_resistance_ohm, motor_torque_constant_Nm_per_A, command_timeout_s;
-} robot_page;
+#include "firmware_iface/reference/robot_page_layout.h"
 
 int robot_page_read(omnihil_robot_config* config) {
   const volatile robot_page* page = (const volatile robot_page*)0x08060000u;
-  if (page->magic != MAGIC) return 1;
+  if (page->magic != ROBOT_PAGE_MAGIC) return 1;
   memset(config, 0, sizeof *config);
   for (int w = 0; w < OMNIHIL_WHEELS; ++w) config->wheel_angle_rad[w] = (double)page->wheel_angle_rad[w];
   config->wheel_radius_m = (double)page->wheel_radius_m;

@@ -65,13 +65,16 @@ TEST(MotorWire, HalvesOfABridgeSubtractAndSwitchedOffOnesCoast) {
 
 const std::vector<ChannelName> kPhases = {{"TIM1", 0, false}, {"TIM1", 1, false}, {"TIM1", 2, false}};
 const std::vector<ChannelName> kLowGates = {{"TIM1", 0, true}, {"TIM1", 1, true}, {"TIM1", 2, true}};
-
-TEST(MotorWire, LegsFollowTheGatesOfBothSwitches) {
-  WireBench b;
+MotorEntry three_half_bridges() {
   MotorEntry entry;
   entry.pwm = kPhases;
   entry.pwm_low = kLowGates;
-  const auto wire = b.wire(entry);
+  return entry;
+}
+
+TEST(MotorWire, LegsFollowTheGatesOfBothSwitches) {
+  WireBench b;
+  const auto wire = b.wire(three_half_bridges());
   b.set("TIM1", 0x34, 250);
   b.set("TIM1", 0x38, 1000);
   b.set("TIM1", 0x20, 0x5 | 0x4 << 4);  // pair; lower switch alone; off
@@ -88,10 +91,7 @@ TEST(MotorWire, LegsFollowTheGatesOfBothSwitches) {
 
 TEST(MotorWire, DeadTimeIsLeftToTheBridge) {
   WireBench b;
-  MotorEntry entry;
-  entry.pwm = kPhases;
-  entry.pwm_low = kLowGates;
-  const auto wire = b.wire(entry);
+  const auto wire = b.wire(three_half_bridges());
   b.set("TIM1", 0x34, 250);
   b.set("TIM1", 0x20, 0x5);
   b.set("TIM1", 0x44, 1u << 15 | 20);  // 20 of 1000 ticks

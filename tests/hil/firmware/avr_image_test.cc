@@ -57,34 +57,16 @@ struct AvrImages : testing::Test {
   }
 };
 
-// 0.25 s with a body velocity every 10 ms.
-struct Drive {
-  std::string hash, failure;
-  RobotTruth truth{};
-  std::vector<std::string> report;
-  std::uint64_t missed = 0;
-};
-Drive drive(const std::string& image, const Session::FirmwareMaker& make = {}) {
+ImageDrive drive(const std::string& image, const Session::FirmwareMaker& make = {}) {
   Session session(one_robot(), make ? make : avr_firmware(image, kBoard, kDeadline_s));
-  Hashed seen;
-  session.set_observer(&seen);
   RobotCommand command{};
   command.mode = OMNIHIL_MODE_BODY_VELOCITY;
   command.omega_body_rad_s = 8.0;
-  std::vector<std::uint8_t> packet, out;
-  for (int step = 0; step < 250; ++step) {
-    packet.clear();
-    if (step % 10 == 0)
-      find_radio_format("ulaval-hermes")->encode_command(command, {.robot_id = kRobot}, packet);
-    session.step(packet, out);
-  }
-  const Firmware& firmware = session.firmware(0);
-  return {seen.hash.hex(), std::string(firmware.failure()), session.plant().truth(0), firmware.report(),
-          firmware.missed_control_periods()};
+  return drive_by_radio(session, command, kRobot, 250);
 }
 
 TEST_F(AvrImages, DriveByRadioFromHexAndElfAlikeAndTwoRunsHaveOneHash) {
-  const Drive hex = drive(kImage), elf = drive(kImages + "omni_reference_avr.elf");
+  const ImageDrive hex = drive(kImage), elf = drive(kImages + "omni_reference_avr.elf");
   for (const double omega : hex.truth.omega_rotor_rad_s) EXPECT_GT(omega, 20.0);
   EXPECT_EQ(hex.failure, "");
   EXPECT_EQ(hex.missed, 0u);
@@ -103,7 +85,7 @@ TEST_F(AvrImages, AnswerThePingOnceAsTheRobotThatTheirSwitchesSay) {
 }
 
 TEST_F(AvrImages, AHangIsEndedByTheWatchdogAndItsLostPeriodsAreCounted) {
-  const Drive hung = drive(kImages + "avr_hangs.hex");
+  const ImageDrive hung = drive(kImages + "avr_hangs.hex");
   EXPECT_EQ(hung.failure, "");
   ASSERT_FALSE(hung.report.empty());
   int resets = 0;
@@ -114,7 +96,7 @@ TEST_F(AvrImages, AHangIsEndedByTheWatchdogAndItsLostPeriodsAreCounted) {
 }
 
 TEST_F(AvrImages, AChipThatStopsIsTheFirmwaresFailureAndItsWheelCoasts) {
-  const Drive stopped = drive(kImages + "avr_runs_away.hex");
+  const ImageDrive stopped = drive(kImages + "avr_runs_away.hex");
   EXPECT_NE(stopped.failure.find("board of wheel 0: stopped at pc 0x"), std::string::npos) << stopped.failure;
 }
 

@@ -11,6 +11,7 @@
 
 #include "hil/recording/replay_hash.h"
 #include "hil/scenario/scenario_suite.h"
+#include "protocols/radio_format.h"
 
 namespace omnihil {
 
@@ -31,6 +32,29 @@ struct Hashed : SessionObserver {
     hash.robot_tick(now_ns, sample);
   }
 };
+
+struct ImageDrive {
+  std::string hash, failure;
+  RobotTruth truth{};
+  std::vector<std::string> report;
+  std::uint64_t missed = 0;
+};
+
+// So many milliseconds with this command every 10 ms, by radio.
+inline ImageDrive drive_by_radio(Session& session, const RobotCommand& command, int robot, int duration_ms) {
+  Hashed seen;
+  session.set_observer(&seen);
+  std::vector<std::uint8_t> packet, out;
+  for (int step = 0; step < duration_ms; ++step) {
+    packet.clear();
+    if (step % 10 == 0)
+      find_radio_format("ulaval-hermes")->encode_command(command, {.robot_id = robot}, packet);
+    session.step(packet, out);
+  }
+  const Firmware& firmware = session.firmware(0);
+  return {seen.hash.hex(), std::string(firmware.failure()), session.plant().truth(0), firmware.report(),
+          firmware.missed_control_periods()};
+}
 
 struct BrokenImage {
   const char* image;

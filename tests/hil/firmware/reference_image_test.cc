@@ -47,32 +47,17 @@ struct ReferenceImage : testing::Test {
   }
 };
 
-// 0.3 s with a body velocity every 10 ms.
-struct Drive {
-  std::string hash;
-  double omega_rotor_rad_s = 0.0;
-  std::vector<std::string> report;
-};
-Drive drive(const std::string& image = kImage) {
+ImageDrive drive(const std::string& image = kImage) {
   Session session(one_robot(), image_firmware(image, kBoard));
-  Hashed seen;
-  session.set_observer(&seen);
   RobotCommand command{};
   command.mode = OMNIHIL_MODE_BODY_VELOCITY;
   command.v_forward_m_s = 0.5;
-  std::vector<std::uint8_t> packet, out;
-  for (int step = 0; step < 300; ++step) {
-    packet.clear();
-    if (step % 10 == 0)
-      find_radio_format("ulaval-hermes")->encode_command(command, {.robot_id = kRobot}, packet);
-    session.step(packet, out);
-  }
-  return {seen.hash.hex(), session.plant().truth(0).omega_rotor_rad_s[0], session.firmware(0).report()};
+  return drive_by_radio(session, command, kRobot, 300);
 }
 
 TEST_F(ReferenceImage, BootsDrivesByRadioAndUsesNothingThatIsNotModelled) {
-  const Drive once = drive();
-  EXPECT_LT(once.omega_rotor_rad_s, -5.0);  // the front left wheel turns backward
+  const ImageDrive once = drive();
+  EXPECT_LT(once.truth.omega_rotor_rad_s[0], -5.0);  // the front left wheel turns backward
   EXPECT_EQ(once.report, std::vector<std::string>{});
 }
 
@@ -91,7 +76,7 @@ TEST_F(ReferenceImage, AnswersOverTheRadioAsTheRobotThatItsSwitchesSay) {
 }
 
 TEST_F(ReferenceImage, WatchdogEndsAHangAfterTwentyMilliseconds) {
-  const Drive hung = drive(OMNIHIL_BUILD_DIR "/images/reference_hangs.elf");
+  const ImageDrive hung = drive(OMNIHIL_BUILD_DIR "/images/reference_hangs.elf");
   ASSERT_EQ(hung.report.size(), 1u);  // 0.2 s and 20 ms, and not a second time within 0.3 s
   EXPECT_NE(hung.report[0].find("reset by"), std::string::npos) << hung.report[0];
   EXPECT_NE(hung.report[0].find("at 0.2"), std::string::npos) << hung.report[0];

@@ -1,8 +1,6 @@
 // The loop allocates nothing once it is warm (the multibody library aside).
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -10,25 +8,7 @@
 #include "hil/loop/session.h"
 #include "hil/recording/session_setup.h"
 #include "protocols/radio_format.h"
-
-namespace {
-// Counts while switched on, in this thread alone.
-thread_local bool counting = false;
-thread_local std::size_t allocations = 0;
-
-void* counted(std::size_t size) {
-  if (counting) ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/count_allocations.h"
 
 namespace omnihil {
 namespace {
@@ -38,7 +18,7 @@ struct Case {
   std::vector<std::pair<std::string, double>> fields;
 };
 
-std::size_t allocations_of_a_second(const Case& c) {
+std::uint64_t allocations_of_a_second(const Case& c) {
   SessionSetup setup;
   setup.model = load_robot_model(c.robot, {OMNIHIL_SOURCE_DIR "/models"}).bundle;
   setup.radio_format = c.radio;
@@ -70,20 +50,17 @@ std::size_t allocations_of_a_second(const Case& c) {
     session.host_closed();
   };
   second();
-  allocations = 0;
-  counting = true;
+  const std::uint64_t before = allocations;
   second();
-  counting = false;
+  const std::uint64_t counted = allocations - before;
   EXPECT_GT(session.link().from_host().good, 300u);
-  return allocations;
+  return counted;
 }
 
 TEST(SessionAllocationTest, TheCounterCounts) {
-  allocations = 0;
-  counting = true;
+  const std::uint64_t before = allocations;
   const std::vector<int> some(100);
-  counting = false;
-  EXPECT_EQ(allocations, some.size() / 100);
+  EXPECT_EQ(allocations - before, some.size() / 100);
 }
 
 TEST(SessionAllocationTest, AWarmLoopAllocatesNothingWithHermes) {

@@ -43,5 +43,13 @@ TEST(DiagnoseTest, NamesNothingWhereTheBaseModelIsTheTruth) {
   EXPECT_EQ(d.ladder.size(), 2u);
 }
 
+// Only ever driving, a loss in proportion to the measured torque would shrink the whole equation with its noise.
+TEST(DiagnoseTest, NamesNoLossThatExplainsTheMeasurementByItself) {
+  const TorqueMap map({.braked = false});
+  const Diagnosis d = diagnose(map.dataset, map.nominal, {});
+  EXPECT_EQ(d.effects, std::vector<std::string>{}) << reasons(d);
+  EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
+}
+
 }  // namespace
 }  // namespace omnihil

@@ -1,21 +1,6 @@
 // Once warm, a link allocates nothing: not for commands, not for answers, not for garbage.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "tests/count_allocations.h"
 #include "tests/protocols/dongles/links_harness.h"
-
-namespace {
-std::atomic<std::uint64_t> allocations{0};
-}  // namespace
-
-__attribute__((noinline)) void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-__attribute__((noinline)) void operator delete(void* memory) noexcept { std::free(memory); }
-__attribute__((noinline)) void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace omnihil {
 namespace {

@@ -2,35 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <stdexcept>
 #include <string>
 
 #include "sim/drive/encoder.h"
 #include "sim/robot/validate.h"
+#include "tests/count_allocations.h"
 #include "tests/sim/effects/robot_bench.h"
-
-namespace {
-std::atomic<long> allocations{0};
-
-void* counted(std::size_t size) {
-  allocations.fetch_add(1, std::memory_order_relaxed);
-  void* memory = std::malloc(size == 0 ? 1 : size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-}  // namespace
-
-// Every allocation of this program is counted.
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace omnihil {
 namespace {
@@ -150,13 +129,13 @@ TEST(Plant, ThePlanarPathAllocatesNothingPerStep) {
 #endif
   Plant plant = three_robots(Physics::kPlanar);
   excite(plant, 0.01);
-  const long before = allocations.load();
+  const std::uint64_t before = allocations;
   excite(plant, 0.2);
   for (int n = 0; n < 3; ++n) {
     (void)plant.sample_sensors(n);
     (void)plant.truth(n);
   }
-  EXPECT_EQ(allocations.load() - before, 0);
+  EXPECT_EQ(allocations - before, 0u);
 }
 
 TEST(Plant, ThePlanarPathWithEffectsAllocatesNothingPerStep) {
@@ -168,14 +147,14 @@ TEST(Plant, ThePlanarPathWithEffectsAllocatesNothingPerStep) {
                                         "actuator_delay", "wheel_slip", "floor_tilt", "sampling_delay",
                                         "encoder_missed_counts", "vision_delay"});
   excite(plant, 0.01);
-  const long before = allocations.load();
+  const std::uint64_t before = allocations;
   for (int ms = 0; ms < 200; ++ms) {
     plant.write(0, excitation_drive(0, ms * 1e-3));
     plant.advance(1'000'000);
     (void)plant.sample_sensors(0);
     (void)plant.vision(0);
   }
-  EXPECT_EQ(allocations.load() - before, 0);
+  EXPECT_EQ(allocations - before, 0u);
 }
 
 TEST(Plant, CountsAreTheTrueRotorAngleAndDirectionTurnsThem) {

@@ -1,5 +1,7 @@
 #include "firmware_iface/mcu/stm32/clock/rcc.h"
 
+#include <algorithm>
+
 namespace omnihil::mcu {
 
 void Rcc::reset() {
@@ -8,9 +10,26 @@ void Rcc::reset() {
   apply();
 }
 
+std::uint32_t Rcc::load(std::uint32_t offset) {
+  const std::uint32_t v = value(offset);
+  std::uint32_t out = v;
+  for (const RccReady& row : map_.ready) {
+    if (row.offset == offset) out |= (v & row.switches) << row.up;
+  }
+  if (offset == map_.cfgr) out |= selected() << 2;
+  if (offset == map_.csr) out |= reset_flags();
+  return out;
+}
+
+void Rcc::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  keep(offset, written, lanes);
+  if (offset == map_.csr && bit(written, map_.rmvf)) flags_cleared_ = true;
+  if (std::find(map_.tree.begin(), map_.tree.end(), offset) != map_.tree.end()) apply();
+}
+
 void Rcc::select(std::uint32_t wanted, bool ready, double hz) {
   constexpr double kSlowest_hz = 1e5;  // of a source that is meant
-  if (wanted == hsi_) {
+  if (wanted == map_.hsi) {
     ready = true, hz = clocks().hsi_hz;  // switched on by the hardware when it is asked for
   }
   if (!ready || hz < kSlowest_hz) {

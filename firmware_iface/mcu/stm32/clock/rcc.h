@@ -18,25 +18,42 @@ namespace omnihil::mcu {
 
 enum class RccFamily { kF0, kF3, kF4, kF7, kG4 };
 
+// Ready bits that follow their switches at once: those of `switches`, `up` places further.
+struct RccReady {
+  std::uint16_t offset = 0;
+  std::uint32_t switches = 0;
+  unsigned up = 1;
+};
+
+// What a family's registers mean, by its reference manual.
+struct RccMap {
+  std::span<const RegisterInfo> registers;
+  std::span<const RccReady> ready;
+  std::span<const std::uint16_t> tree;  // a write to one of them asks for another clock tree
+  std::uint16_t cfgr = 0;               // SW 1:0, SWS 3:2
+  std::uint16_t csr = 0;
+  unsigned rmvf = 0;      // CSR's bit that clears the reset flags
+  std::uint32_t hsi = 0;  // the code of SW for the internal oscillator, the source after a reset
+  double hsi_hz = 0.0;
+};
+
 class Rcc : public RegisterBlock {
  public:
-  // `hsi` is the code that selects the internal oscillator, the source after a reset.
-  Rcc(std::span<const RegisterInfo> registers, ChipContext& context, std::uint32_t hsi, double hsi_hz)
-      : RegisterBlock("RCC", context.system, registers),
-        hsi_(hsi),
-        selected_(hsi),
-        sysclk_hz_(hsi_hz),
+  Rcc(const RccMap& map, ChipContext& context)
+      : RegisterBlock("RCC", context.system, map.registers),
+        map_(map),
+        selected_(map.hsi),
+        sysclk_hz_(map.hsi_hz),
         context_(context) {
-    context.clocks.hsi_hz = hsi_hz;
+    context.clocks.hsi_hz = map.hsi_hz;
   }
   void reset() override;
 
  protected:
+  std::uint32_t load(std::uint32_t offset) override;
+  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
   // The tree that the registers ask for now.
   virtual ClockState tree() = 0;
-  // Bits of the status register that say why the chip was reset: of RM0090's CSR, all families alike.
-  std::uint32_t reset_flags() const;
-  void apply() { context_.clocks.set(tree()); }
   ClockTree& clocks() { return context_.clocks; }
 
   static std::uint32_t ahb_divider(std::uint32_t code);  // HPRE
@@ -49,10 +66,14 @@ class Rcc : public RegisterBlock {
   // CFGR's SWS: the source in use.
   std::uint32_t selected() const { return selected_; }
   double sysclk_hz() const { return sysclk_hz_; }
-  bool flags_cleared_ = false;
 
  private:
-  std::uint32_t hsi_;
+  // Bits of the status register that say why the chip was reset: of RM0090's CSR, all families alike.
+  std::uint32_t reset_flags() const;
+  void apply() { context_.clocks.set(tree()); }
+
+  RccMap map_;
+  bool flags_cleared_ = false;
   std::uint32_t selected_;
   double sysclk_hz_;
   ChipContext& context_;

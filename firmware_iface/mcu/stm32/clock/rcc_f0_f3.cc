@@ -32,36 +32,22 @@ constexpr RegisterInfo kRegisters[] = {
     {kCr2, "CR2", 0x80, 0x000100FD},
 };
 
+constexpr RccReady kReady[] = {{kCr, 0x01010001}, {kCr2, 0x00010001}, {kBdcr, 0x00010001}, {kCsr, 1}};
+constexpr std::uint16_t kTree[] = {kCr, kCfgr, kCfgr2, kCfgr3};
+constexpr RccMap kMap{.registers = kRegisters,
+                      .ready = kReady,
+                      .tree = kTree,
+                      .cfgr = kCfgr,
+                      .csr = kCsr,
+                      .rmvf = 24,
+                      .hsi = 0,
+                      .hsi_hz = 8e6};
+
 class RccF0F3 final : public Rcc {
  public:
-  RccF0F3(bool f3, ChipContext& context) : Rcc(kRegisters, context, 0, 8e6), f3_(f3) {
-    clocks().lsi_hz = 40e3;
-  }
+  RccF0F3(bool f3, ChipContext& context) : Rcc(kMap, context), f3_(f3) { clocks().lsi_hz = 40e3; }
 
  protected:
-  std::uint32_t load(std::uint32_t offset) override {
-    const std::uint32_t v = value(offset);
-    switch (offset) {
-      case kCr:
-        return v | (v & 0x01010001u) << 1;
-      case kCfgr:
-        return v | selected() << 2;
-      case kCr2:
-      case kBdcr:
-        return v | (v & 0x00010001u) << 1;
-      case kCsr:
-        return v | (v & 1u) << 1 | reset_flags();
-      default:
-        return v;
-    }
-  }
-
-  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override {
-    keep(offset, written, lanes);
-    if (offset == kCsr && bit(written, 24)) flags_cleared_ = true;
-    if (offset == kCr || offset == kCfgr || offset == kCfgr2 || offset == kCfgr3) apply();
-  }
-
   double pll_hz() {
     const std::uint32_t cfgr = value(kCfgr);
     // PLL input: HSI / 2, or HSE over PREDIV; output: input times 2 .. 16

@@ -44,33 +44,23 @@ constexpr RegisterInfo kRegisters[] = {
     {0x94, "DCKCFGR3", 0},
 };
 
+// CR: HSI, HSE, PLL, PLLI2S, PLLSAI
+constexpr RccReady kReady[] = {{kCr, 0x15010001}, {kBdcr, 1}, {kCsr, 1}};
+constexpr std::uint16_t kTree[] = {kCr, kPllCfgr, kCfgr, kDckCfgr};
+constexpr RccMap kMap{.registers = kRegisters,
+                      .ready = kReady,
+                      .tree = kTree,
+                      .cfgr = kCfgr,
+                      .csr = kCsr,
+                      .rmvf = 24,
+                      .hsi = 0,
+                      .hsi_hz = 16e6};
+
 class RccF4F7 final : public Rcc {
  public:
-  RccF4F7(ChipContext& context) : Rcc(kRegisters, context, 0, 16e6) {}
+  RccF4F7(ChipContext& context) : Rcc(kMap, context) {}
 
  protected:
-  std::uint32_t load(std::uint32_t offset) override {
-    const std::uint32_t v = value(offset);
-    switch (offset) {
-      case kCr:  // HSI, HSE, PLL, PLLI2S, PLLSAI: each ready bit follows its switch
-        return v | (v & 0x15010001u) << 1;
-      case kCfgr:
-        return v | selected() << 2;
-      case kBdcr:
-        return v | (v & 1u) << 1;
-      case kCsr:
-        return v | (v & 1u) << 1 | reset_flags();
-      default:
-        return v;
-    }
-  }
-
-  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override {
-    keep(offset, written, lanes);
-    if (offset == kCsr && bit(written, 24)) flags_cleared_ = true;
-    if (offset == kCr || offset == kPllCfgr || offset == kCfgr || offset == kDckCfgr) apply();
-  }
-
   double pll_hz() {
     const std::uint32_t v = value(kPllCfgr);
     const double input_hz = bit(v, 22) ? clocks().hse_hz : clocks().hsi_hz;

@@ -38,34 +38,22 @@ constexpr RegisterInfo kRegisters[] = {
     {0x9C, "CCIPR2"},
 };
 
+constexpr RccReady kReady[] = {{kCr, 0x01010000}, {kCr, 0x100, 2}, {kBdcr, 1}, {kCrrcr, 1}, {kCsr, 1}};
+constexpr std::uint16_t kTree[] = {kCr, kPllCfgr, kCfgr};
+constexpr RccMap kMap{.registers = kRegisters,
+                      .ready = kReady,
+                      .tree = kTree,
+                      .cfgr = kCfgr,
+                      .csr = kCsr,
+                      .rmvf = 23,
+                      .hsi = 1,
+                      .hsi_hz = 16e6};
+
 class RccG4 final : public Rcc {
  public:
-  RccG4(ChipContext& context) : Rcc(kRegisters, context, 1, 16e6) {}
+  RccG4(ChipContext& context) : Rcc(kMap, context) {}
 
  protected:
-  std::uint32_t load(std::uint32_t offset) override {
-    const std::uint32_t v = value(offset);
-    switch (offset) {
-      case kCr:
-        return v | (v & 0x01010000u) << 1 | (v & 0x100u) << 2;
-      case kCfgr:
-        return v | selected() << 2;
-      case kBdcr:
-      case kCrrcr:
-        return v | (v & 1u) << 1;
-      case kCsr:
-        return v | (v & 1u) << 1 | reset_flags();
-      default:
-        return v;
-    }
-  }
-
-  void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override {
-    keep(offset, written, lanes);
-    if (offset == kCsr && bit(written, 23)) flags_cleared_ = true;
-    if (offset == kCr || offset == kPllCfgr || offset == kCfgr) apply();
-  }
-
   double pll_hz() {
     const std::uint32_t v = value(kPllCfgr);
     const double input_hz = field(v, 0, 2) == 3 ? clocks().hse_hz : clocks().hsi_hz;

@@ -1,5 +1,6 @@
 #include "firmware_iface/mcu/stm32/timer/timer.h"
 
+#include "firmware_iface/mcu/stm32/register_rows.h"
 #include "firmware_iface/mcu/stm32/timer/timer_registers.h"
 
 namespace omnihil::mcu {
@@ -7,60 +8,50 @@ using namespace timer_registers;
 namespace {
 constexpr Cycles kNoTicks = 0;
 
-constexpr RegisterInfo kCommon[] = {{kCr1, "CR1", 0, 0x0BFF, 0x0800},
-                                    {kCr2, "CR2", 0, 0x00FF7FFD, 0x00F00000},
-                                    {kSmcr, "SMCR", 0, 0x0031FFFF, 0x0000FF08},
-                                    {kDier, "DIER", 0, 0x7FFF},
-                                    {kSr, "SR", 0, 0},
-                                    {kEgr, "EGR", 0, 0},
-                                    {kCcmr1, "CCMR1", 0, 0x0101FFFF, 0x01018080},
-                                    {kCcmr2, "CCMR2", 0, 0x0101FFFF, 0x01018080},
-                                    {kCcer, "CCER", 0, 0x0000FFFF},
-                                    {kCnt, "CNT", 0},
-                                    {kPsc, "PSC", 0, 0xFFFF},
-                                    {kArr, "ARR", 0xFFFFFFFF},
-                                    {kRcr, "RCR", 0, 0xFFFF},
-                                    {0x34, "CCR1"},
-                                    {0x38, "CCR2"},
-                                    {0x3C, "CCR3"},
-                                    {0x40, "CCR4"},
-                                    {kBdtr, "BDTR", 0, 0x0FFFFFFF, 0x0FFF0300},
-                                    {kDcr, "DCR", 0, 0x1F1F},
-                                    {kDmar, "DMAR", 0, 0},
-                                    {0x50, "OR"},
-                                    {0x54, "CCMR3", 0, 0x0101FCFC, 0xFFFFFFFF},
-                                    {0x58, "CCR5"},
-                                    {0x5C, "CCR6"},
-                                    {0x60, "AF1", 1},
-                                    {0x64, "AF2", 1}};
-constexpr RegisterInfo kNew[] = {{kCr1, "CR1", 0, 0x1BFF, 0x1800},
-                                 {kCr2, "CR2", 0, 0x02FF7FFD, 0x02F00000},
-                                 {kSmcr, "SMCR", 0, 0x0331FFFF, 0x0300FF08},
-                                 {kDier, "DIER", 0, 0x00F07FFF, 0x00F00000},
-                                 {kSr, "SR", 0, 0},
-                                 {kEgr, "EGR", 0, 0},
-                                 {kCcmr1, "CCMR1", 0, 0x0101FFFF, 0x01018080},
-                                 {kCcmr2, "CCMR2", 0, 0x0101FFFF, 0x01018080},
-                                 {kCcer, "CCER", 0, 0x0000FFFF},
-                                 {kCnt, "CNT", 0},
-                                 {kPsc, "PSC", 0, 0xFFFF},
-                                 {kArr, "ARR", 0xFFFFFFFF},
-                                 {kRcr, "RCR", 0, 0xFFFF},
-                                 {0x34, "CCR1"},
-                                 {0x38, "CCR2"},
-                                 {0x3C, "CCR3"},
-                                 {0x40, "CCR4"},
-                                 {kBdtr, "BDTR", 0, 0x3FFFFFFF, 0x3FFF0300},
-                                 {0x48, "CCR5"},
-                                 {0x4C, "CCR6"},
-                                 {0x50, "CCMR3", 0, 0x0101FCFC, 0xFFFFFFFF},
-                                 {0x54, "DTR2", 0, 0x300FF, 0x30000},
-                                 {0x58, "ECR", 0, 0xFFFFFFFF, 0xFFFFFFFF},
-                                 {0x5C, "TISEL", 0, 0x0F0F0F0F, 0x0F0F0F0F},
-                                 {0x60, "AF1", 1},
-                                 {0x64, "AF2", 1},
-                                 {kNewDcr, "DCR", 0, 0x1F1F},
-                                 {kNewDmar, "DMAR", 0, 0}};
+// F0 to F7 first, then G4.
+constexpr RegisterInfo kControl[] = {{kCr1, "CR1", 0, 0x0BFF, 0x0800},
+                                     {kCr2, "CR2", 0, 0x00FF7FFD, 0x00F00000},
+                                     {kSmcr, "SMCR", 0, 0x0031FFFF, 0x0000FF08},
+                                     {kDier, "DIER", 0, 0x7FFF}};
+constexpr RegisterInfo kNewControl[] = {{kCr1, "CR1", 0, 0x1BFF, 0x1800},
+                                        {kCr2, "CR2", 0, 0x02FF7FFD, 0x02F00000},
+                                        {kSmcr, "SMCR", 0, 0x0331FFFF, 0x0300FF08},
+                                        {kDier, "DIER", 0, 0x00F07FFF, 0x00F00000}};
+constexpr RegisterInfo kCounting[] = {{kSr, "SR", 0, 0},
+                                      {kEgr, "EGR", 0, 0},
+                                      {kCcmr1, "CCMR1", 0, 0x0101FFFF, 0x01018080},
+                                      {kCcmr2, "CCMR2", 0, 0x0101FFFF, 0x01018080},
+                                      {kCcer, "CCER", 0, 0x0000FFFF},
+                                      {kCnt, "CNT", 0},
+                                      {kPsc, "PSC", 0, 0xFFFF},
+                                      {kArr, "ARR", 0xFFFFFFFF},
+                                      {kRcr, "RCR", 0, 0xFFFF},
+                                      {0x34, "CCR1"},
+                                      {0x38, "CCR2"},
+                                      {0x3C, "CCR3"},
+                                      {0x40, "CCR4"}};
+constexpr RegisterInfo kRest[] = {{kBdtr, "BDTR", 0, 0x0FFFFFFF, 0x0FFF0300},
+                                  {kDcr, "DCR", 0, 0x1F1F},
+                                  {kDmar, "DMAR", 0, 0},
+                                  {0x50, "OR"},
+                                  {0x54, "CCMR3", 0, 0x0101FCFC, 0xFFFFFFFF},
+                                  {0x58, "CCR5"},
+                                  {0x5C, "CCR6"},
+                                  {0x60, "AF1", 1},
+                                  {0x64, "AF2", 1}};
+constexpr RegisterInfo kNewRest[] = {{kBdtr, "BDTR", 0, 0x3FFFFFFF, 0x3FFF0300},
+                                     {0x48, "CCR5"},
+                                     {0x4C, "CCR6"},
+                                     {0x50, "CCMR3", 0, 0x0101FCFC, 0xFFFFFFFF},
+                                     {0x54, "DTR2", 0, 0x300FF, 0x30000},
+                                     {0x58, "ECR", 0, 0xFFFFFFFF, 0xFFFFFFFF},
+                                     {0x5C, "TISEL", 0, 0x0F0F0F0F, 0x0F0F0F0F},
+                                     {0x60, "AF1", 1},
+                                     {0x64, "AF2", 1},
+                                     {kNewDcr, "DCR", 0, 0x1F1F},
+                                     {kNewDmar, "DMAR", 0, 0}};
+constexpr auto kCommon = joined(kControl, kCounting, kRest);
+constexpr auto kNew = joined(kNewControl, kCounting, kNewRest);
 
 std::string timer_name(int number) { return "TIM" + std::to_string(number); }
 int or_update(int irq, const TimerSpec& spec) { return irq < 0 ? spec.irq_update : irq; }

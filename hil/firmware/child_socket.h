@@ -1,0 +1,11 @@
+// The socket to a child process that may hang.
+//
+//   if (!socket_ready(socket, POLLIN, 10.0)) …      // nothing in ten seconds: it is ended
+#pragma once
+
+namespace omnihil {
+
+// True once the socket is ready for `what` (POLLIN, POLLOUT); false when that took longer than the deadline.
+bool socket_ready(int socket, short what, double deadline_s);
+
+}  // namespace omnihil
