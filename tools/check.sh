@@ -13,9 +13,10 @@ check_style() { python3 tools/style_check.py; }
 check_rooms() { python3 tools/rooms.py --check; }
 check_docs() { mkdir -p build && python3 tools/docs/reference.py build/docs; }
 tidy_files() {
-  # without the options that only gcc knows, and without gcc's precompiled headers: a missing include is an error here
-  mkdir -p build/tidy
-  sed -E 's/ (--param=[^ "]+|-fno-crossjumping|-Winvalid-pch|-include [^ "]+cmake_pch\.hxx)//g' build/release/compile_commands.json >build/tidy/compile_commands.json
+  # each file by itself, without precompiled headers (a missing include is an error here) and options that only gcc knows
+  cmake --preset release -B build/tidy/alone -DOMNIHIL_TOGETHER=OFF -DOMNIHIL_PRECOMPILED=OFF >/dev/null || return 1
+  sed -E 's/ (--param=[^ "]+|-fno-crossjumping)//g; s#/build/tidy/alone/generated#/build/release/generated#g' \
+    build/tidy/alone/compile_commands.json >build/tidy/compile_commands.json
   printf '%s\n' "$@" |
     xargs -P "$(nproc)" -n 4 clang-tidy -p build/tidy --quiet --warnings-as-errors='*' 2>/dev/null
 }

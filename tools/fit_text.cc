@@ -9,7 +9,7 @@
 namespace omnihil {
 namespace {
 
-constexpr Split kAllSplits[] = {Split::kTraining, Split::kValidation, Split::kExtrapolation};
+constexpr Split kFitSplits[] = {Split::kTraining, Split::kValidation, Split::kExtrapolation};
 
 std::string uncertain(const ParameterEstimate& p) {
   constexpr double kNinety = 1.645;  // 90 % of a normal
@@ -39,10 +39,10 @@ std::string parameter_table(const FitResult& fit) {
          "tolerances\n";
 }
 
-std::string error_table(const FitReport& r) {
+std::string fit_error_table(const FitReport& r) {
   std::string out = fmt::format("{:<22} {:<14} {:>12} {:>12}  {:<7} {:>9} {:>9}\n", "signal", "runs",
                                 "error before", "after", "unit", "% of std", "noise");
-  for (const Split split : kAllSplits) {
+  for (const Split split : kFitSplits) {
     for (const SignalError& e : r.after.errors) {
       if (e.split != split) continue;
       const SignalError* old = r.before.error(split, e.signal);
@@ -54,13 +54,17 @@ std::string error_table(const FitReport& r) {
   return out;
 }
 
-nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
+nlohmann::json number_or_null(double v) {
+  return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
+}
 
-nlohmann::json errors_json(const Comparison& c, Split split) {
+nlohmann::json fit_errors_json(const Comparison& c, Split split) {
   nlohmann::json out = nlohmann::json::object();
   for (const SignalError& e : c.errors) {
     if (e.split != split) continue;
-    out[e.signal] = {{"rmse", number(e.rmse)}, {"nrmse_percent", number(e.nrmse_percent)}, {"unit", e.unit}};
+    out[e.signal] = {{"rmse", number_or_null(e.rmse)},
+                     {"nrmse_percent", number_or_null(e.nrmse_percent)},
+                     {"unit", e.unit}};
   }
   return out;
 }
@@ -68,7 +72,7 @@ nlohmann::json errors_json(const Comparison& c, Split split) {
 }  // namespace
 
 std::string fit_text(const FitReport& r) {
-  std::string out = fmt::format("{}\n\n{}\n{}", r.dataset, parameter_table(r.fit), error_table(r));
+  std::string out = fmt::format("{}\n\n{}\n{}", r.dataset, parameter_table(r.fit), fit_error_table(r));
   if (!r.fit.findings.empty()) out += "\n";
   for (const std::string& finding : r.fit.findings) out += "! " + finding + "\n";
   if (r.fit.stopped) out += "stopped early: the values are the best so far\n";
@@ -80,24 +84,25 @@ std::string fit_text(const FitReport& r) {
 std::string fit_json(const FitReport& r) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const ParameterEstimate& p : r.fit.parameters) {
-    parameters[p.path] = {{"value", p.value},
-                          {"sigma", number(p.sigma)},
-                          {"unit", p.unit},
-                          {"at_bound", p.at_bound},
-                          {"identifiable", p.identifiable},
-                          {"unphysical", p.unphysical},
-                          {"prior_deviation_sigmas",
-                           p.prior_sigma > 0.0 ? number(p.prior_deviation_sigmas) : nlohmann::json(nullptr)},
-                          {"correlated_with", p.correlated_with},
-                          {"sentence", p.sentence}};
+    parameters[p.path] = {
+        {"value", p.value},
+        {"sigma", number_or_null(p.sigma)},
+        {"unit", p.unit},
+        {"at_bound", p.at_bound},
+        {"identifiable", p.identifiable},
+        {"unphysical", p.unphysical},
+        {"prior_deviation_sigmas",
+         p.prior_sigma > 0.0 ? number_or_null(p.prior_deviation_sigmas) : nlohmann::json(nullptr)},
+        {"correlated_with", p.correlated_with},
+        {"sentence", p.sentence}};
   }
   nlohmann::json out = {{"format", "omnihil-fit/1"},  {"dataset", r.dataset},
                         {"elapsed_s", r.elapsed_s},   {"converged", r.fit.converged},
                         {"parameters", parameters},   {"findings", r.fit.findings},
                         {"before", nlohmann::json{}}, {"after", nlohmann::json{}}};
-  for (const Split split : kAllSplits) {
-    out["before"][std::string(split_name(split))] = errors_json(r.before, split);
-    out["after"][std::string(split_name(split))] = errors_json(r.after, split);
+  for (const Split split : kFitSplits) {
+    out["before"][std::string(split_name(split))] = fit_errors_json(r.before, split);
+    out["after"][std::string(split_name(split))] = fit_errors_json(r.after, split);
   }
   return out.dump(2) + "\n";
 }

@@ -113,13 +113,13 @@ class RunWriter {
   std::size_t rows_coasting_ = 0;
 };
 
-struct Run {
+struct ExportedRun {
   std::string file;
   const char* use;
 };
 
 std::string dataset_text(const RecordingHeader& header, const ModelFile& model,
-                         const std::vector<Run>& runs) {
+                         const std::vector<ExportedRun>& runs) {
   const auto channel = [](const std::string& signal, const std::string& column,
                           const std::string& more = "") {
     return signal + " = { column = \"" + column + "\"" + more + " }\n";
@@ -143,7 +143,7 @@ std::string dataset_text(const RecordingHeader& header, const ModelFile& model,
   for (const char* same : {"gyro_z", "accel_x", "accel_y", "vision_x", "vision_y", "vision_theta"}) {
     text += channel(same, same);
   }
-  for (const Run& run : runs) {
+  for (const ExportedRun& run : runs) {
     text += "\n[[runs]]\nfile = \"" + run.file + "\"\nuse = \"" + run.use +
             "\"\nexcitation = \"recorded host\"\n";
   }
@@ -162,7 +162,7 @@ DatasetExport make_dataset(const Recording& recording, const ModelFile& model,
   const std::vector<int> ids = options.robot ? std::vector<int>{*options.robot} : recording.header.robot_ids;
   RunWriter writer(recording.header, options.camera_Hz);
   DatasetExport made;
-  std::vector<Run> runs;
+  std::vector<ExportedRun> runs;
   std::vector<DatasetFile> tables;
   for (const int id : ids) {
     const Samples samples = samples_of(recording, id);

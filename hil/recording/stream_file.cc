@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMaxProblems = 20;
 constexpr double kLongest_s = 1e9;  // so that nanoseconds fit their integer
 
-std::string joined(const std::vector<std::string>& lines) {
+std::string joined_lines(const std::vector<std::string>& lines) {
   std::string text;
   for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
   return text;
@@ -124,7 +124,7 @@ std::uint64_t HostStream::byte_count() const {
   return sum;
 }
 
-BadStream::BadStream(const std::vector<std::string>& problems) : std::runtime_error(joined(problems)) {}
+BadStream::BadStream(const std::vector<std::string>& problems) : std::runtime_error(joined_lines(problems)) {}
 
 HostStream stream_of(const Recording& recording) {
   HostStream stream;

@@ -26,14 +26,14 @@ constexpr std::size_t kMostMaps = 60, kMostBins = 80;
 constexpr Split kAllSplits[] = {Split::kTraining, Split::kValidation, Split::kExtrapolation};
 
 // Four digits are more than a chart shows.
-Json number(double value) {
+Json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
   return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr);
 }
 
 Json numbers(const std::vector<double>& values) {
   Json list = Json::array();
-  for (const double v : values) list.push_back(number(v));
+  for (const double v : values) list.push_back(rounded(v));
   return list;
 }
 
@@ -80,10 +80,10 @@ Json overlay(const ReportOverlay& o, std::size_t points) {
          {"use", split_name(o.split)},
          {"signal", o.signal},
          {"unit", o.unit},
-         {"noise", number(o.noise_sigma)},
+         {"noise", rounded(o.noise_sigma)},
          {"samples", o.time_s.size()},
          {"points", clock.time_s.size()},
-         {"misfit", number(misfit(o))}};
+         {"misfit", rounded(misfit(o))}};
   if (clock.exact) {
     j["time"] = packed_floats(clock.time_s);
   } else {
@@ -148,8 +148,8 @@ Json maps(const Diagnosis& d, std::size_t& left_out) {
     const RegimeError* after = same_axis(d.final_comparison.regimes, *c);
     Json j{{"signal", c->signal},      {"signal_unit", unit_of[c->signal]},
            {"axis", c->axis},          {"unit", c->unit},
-           {"use", split_name(split)}, {"explained", number(c->explained_fraction)}};
-    j["explained_final"] = after != nullptr ? number(after->explained_fraction) : Json(nullptr);
+           {"use", split_name(split)}, {"explained", rounded(c->explained_fraction)}};
+    j["explained_final"] = after != nullptr ? rounded(after->explained_fraction) : Json(nullptr);
     j["worst"] = worst_bin(*c);
     for (const WorstRegime& w : d.baseline_comparison.worst) {
       if (w.signal == c->signal && w.axis == c->axis) j["sentence"] = w.sentence;
@@ -168,7 +168,7 @@ Json ladder(const std::vector<LadderStep>& steps) {
     if (!std::ranges::any_of(steps, [&](const LadderStep& s) { return has_split(s.comparison, split); }))
       continue;
     Json list = Json::array();
-    for (const LadderStep& s : steps) list.push_back(number(s.comparison.pooled(split)));
+    for (const LadderStep& s : steps) list.push_back(rounded(s.comparison.pooled(split)));
     j["errors"][std::string(split_name(split))] = list;
   }
   return j;
@@ -182,7 +182,7 @@ Json drift(const std::vector<ParameterEstimate>& base, const std::vector<LadderS
     Json values = Json::array();
     for (const LadderStep& s : steps) {
       const auto it = std::ranges::find(s.parameters, p.path, &ParameterEstimate::path);
-      values.push_back(it == s.parameters.end() ? Json(nullptr) : number(it->prior_deviation_sigmas));
+      values.push_back(it == s.parameters.end() ? Json(nullptr) : rounded(it->prior_deviation_sigmas));
     }
     list.push_back({{"path", p.path}, {"sigmas", values}});
   }
@@ -208,7 +208,7 @@ std::string chart_data(const ReportInput& input) {
                             {"order", numbers(s.order)},
                             {"baseline", numbers(s.baseline)},
                             {"final", numbers(s.final_model)},
-                            {"floor", number(s.floor)}});
+                            {"floor", rounded(s.floor)}});
   }
   // "<" would let a name end the element that holds the JSON; invalid UTF-8 is replaced.
   const std::string text = json_text(j);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "sim/drive/imposed_speed.h"
-#include "sim/drive/needed_torque.h"
 #include "sim/drive/shaft_step.h"
 
 namespace omnihil {
@@ -219,30 +218,6 @@ INLINE void DriveSim<T>::release(const DriveState<T>& state, Step& s) const {
   }
 }
 
-// The motor torque with which the imposed motion needs no help from the bench: the argument of the torque
-// effects in inverse dynamics (needed_torque.h). Not inlined, and by value: see impose_speed.
-template <typename T>
-[[gnu::noinline, gnu::cold]] T DriveSim<T>::inverse_torque(const DriveState<T>& state, double start_rad_s,
-                                                           double end_rad_s, T tau_outside_Nm,
-                                                           TorquePort<T> port) const {
-  const T given = port.tau_motor_Nm;
-  return needed_torque(given, [&](const T& tau_motor_Nm) {
-    TorquePort<T> at = port;
-    at.tau_motor_Nm = tau_motor_Nm;
-    auto states = state.effects;  // tried, not taken
-    effects_.torque.apply(effects_.values(), states.data(), at);
-    const RotorLoad<T> load{inertia_kg_m2_,
-                            port.tau_load_Nm + given + at.tau_Nm,
-                            at.viscous_positive_Nm_s_per_rad,
-                            at.viscous_negative_Nm_s_per_rad,
-                            at.friction_positive_Nm,
-                            at.friction_negative_Nm};
-    const ImposedSpeed<T> bench =
-        impose_speed(start_rad_s, end_rad_s, step_s_, inertia_kg_m2_, tau_outside_Nm, load);
-    return T(given + bench.outside_Nm - tau_outside_Nm);
-  });
-}
-
 template <typename T>
 INLINE void DriveSim<T>::torque(DriveState<T>& state, const DriveInput<T>& input, Step& s) const {
   s.tau_outside = input.tau_outside_Nm;
@@ -278,7 +253,7 @@ INLINE void DriveSim<T>::torque(DriveState<T>& state, const DriveInput<T>& input
   port.dt_s = step_s_;
   port.friction_positive_Nm = port.friction_negative_Nm = friction;
   port.viscous_positive_Nm_s_per_rad = port.viscous_negative_Nm_s_per_rad = viscous;
-  if (input.motor_torque_is_needed && s.imposed) [[unlikely]]
+  if (input.motor_torque_is_needed && s.imposed && effects_.reads_motor_torque()) [[unlikely]]
     port.tau_motor_Nm = inverse_torque(state, s.imposed_start, s.imposed_end, s.tau_outside, port);
   effects_.torque.apply(effects_.values(), state.effects.data(), port);
   s.load.torque_Nm += port.tau_Nm;

@@ -42,6 +42,7 @@ struct GearEfficiency {
             return 3.0 * std::sqrt(2.0) * std::sqrt(720.0 / n) * count_rad / (0.1 * 0.1) / 1000.0;
           },
       .claims = kDissipative | kOdd,
+      .numerics = kReadsMotorTorque,
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.0, .to_s = 2.0},
   };

@@ -49,6 +49,7 @@ struct LoadDependentFriction {
             return 3.0 * 0.03 * s.current_sigma_A * std::sqrt(2.0 / s.rate_Hz) / 0.05;
           },
       .claims = kDissipative | kOdd,
+      .numerics = kReadsMotorTorque,
       .params = kParams,
       .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.0, .to_s = 2.0},
   };

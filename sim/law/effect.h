@@ -60,6 +60,8 @@ enum NumericsBit : std::uint32_t {
   kImpacts = 1u << 2,      // parts meet and leave: exact derivatives multiply up from one impact to the next
   kDelays = 1u << 3,       // its strength is a delay of the command
   kHidesDelays = 1u << 4,  // a limit behind a delay: the delay's derivative is zero behind it
+  // Looks at the motor's torque, which inverse dynamics then has to solve for (sim/drive/needed_torque.h).
+  kReadsMotorTorque = 1u << 5,
 };
 
 enum RigsBit : std::uint32_t { kOnAxis = 1u << 0, kOnRobot = 1u << 1, kOnBoth = 3u };

@@ -118,6 +118,9 @@ void EffectSet<T>::add(const EffectEntry& entry, std::span<const T> values) {
   const int in_drive = link(f.command, command) + link(f.supply, supply) + link(f.bridge, bridge) +
                        link(f.winding, winding) + link(f.torque, torque) + link(f.shaft, shaft);
   active_in_drive_ += in_drive;
+  reads_motor_torque_ =
+      reads_motor_torque_ ||
+      (f.torque != nullptr && (is_formula(*entry.info) || (entry.info->numerics & kReadsMotorTorque) != 0));
   active_ += in_drive + link(f.contact, contact) + link(f.body, body) + link(f.sensor, sensor) +
              link(f.timing, timing);
 }
