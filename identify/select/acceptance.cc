@@ -114,7 +114,9 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
   const SplitGain& held = held_out ? gains.holdout : gains.fit;
   const double gain = 1.0 - held.ratio, needed = kLeastGain + kLeastGainInNoise * held.floor;
   if (signal_to_null < kLeastSignalToNull) {
-    return fmt::format("its gain is {:.1f} times that of the simulated null", signal_to_null);
+    return signal_to_null < 0.05  // rounds to 0.0
+               ? "linearised, it gains nothing"
+               : fmt::format("its gain is {:.1f} times that of the simulated null", signal_to_null);
   }
   if (1.0 - gains.fit.ratio < kLeastFitGain) {
     return fmt::format("it lowers the error energy of the fit runs by {} only",
