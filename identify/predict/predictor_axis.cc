@@ -86,13 +86,13 @@ class AxisPredictor final : public Predictor {
   const Run& run(int run) const override { return dataset_->runs[static_cast<std::size_t>(run)]; }
   const std::vector<ComparedSignal>& compared(int run) const override { return setup(run).compared; }
   std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
-    return axis_regimes(setup(n), with_known(candidate, run(n).known), step_for(candidate));
+    return axis_regimes(setup(n), with_known(candidate, run(n).known), step_for(candidate, n));
   }
   bool shows_signature_of(const EffectEntry& effect) const override { return counter_ == &effect; }
   Capabilities capabilities() const override { return axis_capabilities(*dataset_, *nominal_); }
 
   Prediction predict(const Candidate& candidate, int n) const override {
-    return predict_at(candidate, n, step_for(candidate));
+    return predict_at(candidate, n, step_for(candidate, n));
   }
 
   Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
@@ -107,7 +107,7 @@ class AxisPredictor final : public Predictor {
     for (std::size_t first = 0; first < unknowns.size(); first += kJetWidth) {
       const Seeded x = seeded(own, run(n), unknowns, first);
       const auto y =
-          rows > 0 ? axis_outputs<Jet>(s, x.params, EffectSet<Jet>(own.effects, x.values), step_for(own))
+          rows > 0 ? axis_outputs<Jet>(s, x.params, EffectSet<Jet>(own.effects, x.values), step_for(own, n))
                    : std::vector<std::vector<Jet>>(s.outputs.size());
       const Eigen::Index count = std::min<Eigen::Index>(kJetWidth, all - static_cast<Eigen::Index>(first));
       for (std::size_t c = 0; c < y.size(); ++c) {
@@ -172,7 +172,8 @@ class AxisPredictor final : public Predictor {
     if (!(up > down)) return;
     const auto run_at = [&](double value) {
       const Candidate moved = with_values(own, unknowns.subspan(u, 1), std::span(&value, 1));
-      return axis_outputs<double>(setup(n), drive_of(moved), EffectSet<double>(moved.effects), step_for(own));
+      return axis_outputs<double>(setup(n), drive_of(moved), EffectSet<double>(moved.effects),
+                                  step_for(own, n));
     };
     const auto a = run_at(up), b = run_at(down);
     for (std::size_t c = 0; c < a.size(); ++c) {
@@ -184,10 +185,20 @@ class AxisPredictor final : public Predictor {
   }
 
   const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
-  double step_for(const Candidate& c) const {
+  double step_for(const Candidate& c, int n) const {
     constexpr double kFineStep_s = 200e-6;  // measured: DECISIONS 32 and 38
     if (acts(c, kStiff)) return std::min(step_s_, options_.step_s);
-    return acts(c, kFine) ? std::min(step_s_, std::max(options_.step_s, kFineStep_s)) : step_s_;
+    if (acts(c, kFine)) return std::min(step_s_, std::max(options_.step_s, kFineStep_s));
+    return step_s_ * coarser_[static_cast<std::size_t>(n)];
+  }
+
+  // Of a run whose rows are far apart (one per step of a staircase): the motion between them is not seen, and
+  // choose_step() holds these steps to its bound too.
+  static double coarser(const AxisSetup& s) {
+    constexpr double kStepsPerRow = 128.0;  // a choice
+    constexpr double kMost = 8.0;           // a third of a small drive's mechanical time constant of 25 ms
+    if (s.steady || s.input.time_s.size() < 2) return 1.0;
+    return std::clamp(median_period_s(s.input.time_s) / (kStepsPerRow * kLongestStep_s), 1.0, kMost);
   }
 
   Prediction predict_at(const Candidate& candidate, int n, double step_s) const {
@@ -275,6 +286,7 @@ class AxisPredictor final : public Predictor {
 
   void choose_step() {
     step_s_ = options_.step_s;
+    for (const AxisSetup& s : setups_) coarser_.push_back(coarser(s));
     constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
     // Error of the sub-step over the noise: 0.07^2 = 0.5 % of the error energy, a sixth of what an effect has
     // to take to be named (DECISIONS 42).
@@ -295,7 +307,9 @@ class AxisPredictor final : public Predictor {
       int tried = 0;
       for (int n = 0; n < run_count() && tried < 4; ++n) {
         if (run(n).split != Split::kTraining || setup(n).steady || setup(n).input.time_s.size() < 2) continue;
-        worst = std::max(worst, distance(n, predict_at(*nominal_, n, h), predict_at(*nominal_, n, 0.25 * h)));
+        const double of_run = h * coarser_[static_cast<std::size_t>(n)];
+        worst = std::max(
+            worst, distance(n, predict_at(*nominal_, n, of_run), predict_at(*nominal_, n, 0.25 * of_run)));
         ++tried;
       }
       if (tried == 0 || worst > kShareOfNoise) continue;
@@ -438,6 +452,7 @@ class AxisPredictor final : public Predictor {
   PredictOptions options_;
   std::vector<AxisSetup> setups_;
   double step_s_ = 100e-6;
+  std::vector<double> coarser_;           // per run, times step_s_
   const EffectEntry* counter_ = nullptr;  // the effect that made a counted speed; null: none did
 };
 

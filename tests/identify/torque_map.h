@@ -1,7 +1,8 @@
 // The torque that an axis takes at each of many settled speeds, against a brake whose torque is measured. Made up: what
 // is to be found in it is a closed form.
 //
-//   y_i = b w_i - L_i - M + noise     speeds w_i from -w_max to w_max, brake L_i either way, hidden load M
+//   y_i = b w_i + C sgn w_i - L_i - M + noise     speeds w_i from -w_max to w_max, brake L_i either way, hidden
+//                                                 load M and Coulomb friction C
 //
 //   TorqueMap map({.load_Nm = 0.004});
 //   map.dataset; map.nominal;         // whose viscous friction is not known exactly, and which has no load
@@ -16,6 +17,7 @@ struct TorqueMapRecipe {
   double load_Nm = 0.0;
   double sigma_Nm = 1e-4;
   bool braked = true;
+  double coulomb_Nm = 0.0;
 };
 
 class TorqueMap {
@@ -65,7 +67,8 @@ class TorqueMap {
       out.signals["velocity"].push_back(w);
       const double brake = recipe.braked ? brake_Nm(i) : 0.0;
       if (recipe.braked) out.signals["load_torque"].push_back(brake_Nm(i));
-      out.signals["motor_torque"].push_back(recipe.friction_Nm_s_per_rad * w - brake - recipe.load_Nm +
+      out.signals["motor_torque"].push_back(recipe.friction_Nm_s_per_rad * w +
+                                            std::copysign(recipe.coulomb_Nm, w) - brake - recipe.load_Nm +
                                             noise);
     }
     return out;

@@ -1,0 +1,59 @@
+// Which of several laws is the answer where one becomes another, and where one hides another.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "identify/select/selection_context.h"
+#include "identify/select/selection_pair.h"
+#include "tests/identify/torque_map.h"
+
+namespace omnihil {
+namespace {
+
+// Stribeck, grease and bristles become Coulomb friction at a limit of their shapes and leave as little here.
+TEST(NestedLaws, TheSimplestThatExplainsIsTheAnswer) {
+  const TorqueMap map({.coulomb_Nm = 0.003});
+  const Diagnosis d = diagnose(map.dataset, map.nominal, {.progress = {}, .stop = {}});
+  ASSERT_EQ(d.effects, std::vector<std::string>{"coulomb_friction"});
+  EXPECT_EQ(d.outcome, Outcome::kFound);
+  // standard error of a mean of 200 signs: 1e-4 / sqrt(200) = 7e-6
+  EXPECT_NEAR(value_at(d.final_fit.model, "coulomb_friction.torque_Nm").value_or(0.0), 0.003, 3e-5);
+}
+
+// The base fit, one iteration and its refusal: as if each effect alone raised the error of another motion.
+struct Refused {
+  explicit Refused(const TorqueMap& map) : context(map.dataset, map.nominal, {.seed = 1, .jobs = 1}) {
+    EXPECT_TRUE(context.fit_base([] { return false; }));
+    context.simulate();
+    task = context.task(not_applicable);
+    singles = selection_iteration(task, context.base());
+    for (CandidateEffect& c : singles.candidates) c.acceptance.accepted_by = AcceptedBy::kNone;
+    singles.chosen = -1;
+  }
+
+  SelectionContext context;
+  std::vector<std::string> not_applicable;
+  SelectionTask task;
+  Iteration singles;
+};
+
+TEST(EffectPairs, ASecondEffectIsFoundBesideARefusedOne) {
+  const TorqueMap map({.load_Nm = 0.004, .coulomb_Nm = 0.003});
+  const Refused refused(map);
+  const EffectPair pair = selection_pair(refused.task, refused.context.base(), refused.singles);
+  ASSERT_TRUE(pair.found());
+  std::vector<std::string> names = pair.names;
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"constant_load", "coulomb_friction"}));
+  EXPECT_NEAR(value_at(pair.fitted.fit.model, "coulomb_friction.torque_Nm").value_or(0.0), 0.003, 3e-5);
+}
+
+// One effect alone is hidden: nothing is left that a second could take.
+TEST(EffectPairs, NoneIsFoundWhereOneEffectIsAllThereIs) {
+  const TorqueMap map({.coulomb_Nm = 0.003});
+  const Refused refused(map);
+  EXPECT_FALSE(selection_pair(refused.task, refused.context.base(), refused.singles).found());
+}
+
+}  // namespace
+}  // namespace omnihil
