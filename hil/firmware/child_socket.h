@@ -2,6 +2,7 @@
 //
 //   if (!socket_ready(socket, POLLIN, 10.0)) …      // nothing in ten seconds: it is ended
 #pragma once
+#include <poll.h>
 
 namespace omnihil {
 

@@ -91,7 +91,10 @@ void compare_splits(const AcceptanceContext& context, const Fitted& parent, cons
   }
 }
 
-std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
+// What rounds to nothing has no sign.
+std::string percent(double share) {
+  return fmt::format("{:.1f} %", std::abs(share) < 0.0005 ? 0.0 : 100.0 * share);
+}
 
 // Reason to accept an addition with little gain: it restores a base parameter to its prior. Empty: none.
 std::string reason_by_prior(const Fitted& parent, const Fitted& child, const AcceptanceResult& gains,

@@ -42,7 +42,7 @@ std::string moved_out_of_tolerance(const FitResult& parent, const FitResult& chi
 bool suspicious_bound(const ParameterEstimate& p, const EffectParam* row) {
   if (!p.at_bound || row == nullptr) return false;
   if (row->role != ParamRole::kShape) return std::abs(p.value - row->neutral) > 1e-3 * std::abs(row->typical);
-  return row->trait != ParamTrait::kPeriodic && row->trait != ParamTrait::kExponent;
+  return row->trait != ParamTrait::kPeriodic && row->trait != ParamTrait::kForm;
 }
 
 // Joint significance of several strengths: those that are correlated (four ratios that share their scale with

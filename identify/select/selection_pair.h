@@ -2,7 +2,8 @@
 // friction that bends its curve raises the error of every other motion, and the friction alone gains
 // nothing).
 //
-//   const EffectPair pair = selection_pair(task, parent, iteration);   // after an iteration that chose none
+//   const Iteration singles = selection_iteration(task, parent);
+//   const EffectPair pair = selection_pair(task, parent, singles);     // after an iteration that chose none
 //   if (pair.found()) pair.names;                                      // {"coast_mode", "coulomb_friction"}
 //
 // Method: of the refused candidates those that lower the error of the fit runs most are each taken as the

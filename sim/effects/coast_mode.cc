@@ -37,7 +37,7 @@ struct CoastMode {
              return known ? d.inductance_H / d.resistance_ohm : 2e-4;
            },
        // no inductance at one bound, no ripple at the other: both are bridges that cannot brake
-       .trait = ParamTrait::kExponent,
+       .trait = ParamTrait::kForm,
        .grid = {GridOf::kStart, {0.03, 0.25, 1.0, 4.0}}},
       {.name = "return_ratio",
        .unit = "1",
@@ -50,7 +50,7 @@ struct CoastMode {
        .what = "voltage against which the current dies over the bus voltage: 1 where it returns to the bus "
                "through the diodes of an open bridge, about 0 where one diode shorts the winding",
        .how = "oscilloscope at the terminals while the current dies",
-       .trait = ParamTrait::kExponent},
+       .trait = ParamTrait::kForm},
   };
   static constexpr EffectInfo kInfo{
       .id = "coast_mode",

@@ -38,7 +38,7 @@ struct StribeckFriction {
        .prior_scale = 0.5,
        .what = "how sharply it falls; 2: a bell curve",
        .how = "as speed_rad_s: shape of the fall",
-       .trait = ParamTrait::kExponent},
+       .trait = ParamTrait::kForm},
   };
   static constexpr EffectInfo kInfo{
       .id = "stribeck_friction",

@@ -31,9 +31,9 @@ enum class ParamTrait : std::uint8_t {
   kPeriodic,  // an angle that goes round: no bound of it means anything; taken as sine and cosine of a strength
   kOrder,     // periods in a turn: whole by the make of the thing, found in the residual's own order spectrum
   kCount,     // another number that is whole by the make of the thing (pulses in a turn): never fitted
-  kExponent,  // a form of the law: at a bound it is the neighbouring form, not a symptom
+  kForm,      // a form of the law (an exponent): at a bound it is the neighbouring form, not a symptom
   kTime,      // a time, or in proportion to one: below a share of the sampling period it is lost in the clock
-  kDamping,   // friction in proportion to speed: what the gain of a closed speed loop looks like
+  kDamping,  // friction in proportion to speed: what the gain of a closed speed loop looks like
 };
 
 // What the values that a search tries are multiples of.

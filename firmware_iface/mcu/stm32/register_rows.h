@@ -1,6 +1,7 @@
 // A block's table of registers in parts, where generations of a block differ in some of its rows; in the manual's order.
 //
-//   constexpr auto kV2 = joined(kControl, kNewCr2, kData);
+//   static constexpr RegisterInfo kControl[2] = {}, kData[3] = {};
+//   constexpr auto kBlock = joined(kControl, kData);                  // 5 rows
 #pragma once
 #include <array>
 #include <cstddef>
