@@ -114,7 +114,8 @@ class Diagnosing {
         order_ = iteration.orders.empty() ? 0.0 : iteration.orders.front();
       out_.ladder.back().ranking = iteration.ranking;
       if (iteration.chosen < 0) {
-        if (iteration.stopped || !worth_another_iteration() || !take_pair(iteration)) return;
+        const bool search_pairs = options_.pairs && !iteration.stopped && worth_another_iteration();
+        if (!search_pairs || !take_pair(iteration)) return;
         from = to;
         continue;
       }
