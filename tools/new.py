@@ -73,7 +73,8 @@ KINDS = {
                  ("tests/protocols/golden/packets.jsonl", "format_golden.jsonl.in", at_end)],
         "then": ["its page and dissector: ./dev build, then ./dev exec formats @id@ > docs/radio/@id@.md and "
                  "./dev exec formats @id@ --wireshark > docs/radio/@id@.lua",
-                 "test_protocols holds its packets to the bytes of tests/protocols/golden/packets.jsonl"],
+                 "test_protocols holds its packets to the bytes of tests/protocols/golden/packets.jsonl,"
+                 " test_protocols_dongles runs the test of its dongle"],
     },
     "robot": {
         "files": {"robot.toml.in": "models/robots/@name@.toml", "robot_test.cc.in": "tests/sim/model/@name@_robot_test.cc"},
