@@ -1,6 +1,7 @@
 // The socket to a child process that may hang.
 //
-//   if (!socket_ready(socket, POLLIN, 10.0)) …      // nothing in ten seconds: it is ended
+//   const int descriptor = 3;
+//   if (!socket_ready(descriptor, POLLIN, 10.0)) return;  // nothing in ten seconds: it is ended
 #pragma once
 #include <poll.h>
 
