@@ -81,11 +81,8 @@ std::string selection_text(const RankedEffect& r) {
 // Of each further iteration, what was refitted: why it was taken or not.
 std::string later_rankings(const Diagnosis& d) {
   std::string out;
-  for (std::size_t n = 0; n < d.ladder.size(); ++n) {
-    const LadderStep& step = d.ladder[n];
-    const bool first = !step.ranking.empty() && !d.ranking.empty() && out.empty() &&
-                       step.added == "base parameters refitted";
-    if (step.ranking.empty() || first) continue;
+  for (const LadderStep& step : steps_after_first_ranking(d)) {
+    if (step.ranking.empty()) continue;
     out += fmt::format("After {}\n", step.added);
     for (const RankedEffect& r : step.ranking) {
       if (!r.refitted) continue;

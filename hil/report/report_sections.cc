@@ -160,11 +160,11 @@ std::string ranking_section(const Diagnosis& d) {
       "no ratio.</p>\n";
   html += kRankingHead;
   html += ranking_rows(d, d.ranking) + "</tbody></table>\n";
-  for (const LadderStep& step : d.ladder) {
+  for (const LadderStep& step : steps_after_first_ranking(d)) {
     std::vector<RankedEffect> refitted;
     std::ranges::copy_if(step.ranking, std::back_inserter(refitted),
                          [](const RankedEffect& r) { return r.refitted; });
-    if (refitted.empty() || step.added == "base parameters refitted") continue;
+    if (refitted.empty()) continue;
     html += fmt::format("<h3>After {}: what was fitted</h3>\n", escaped(step.added)) + kRankingHead +
             ranking_rows(d, refitted) + "</tbody></table>\n";
   }

@@ -27,10 +27,6 @@ std::string error_change(const Comparison& before, const Comparison& after) {
                      figure(from), figure(to), change_percent(from, to));
 }
 
-bool has_faults(const Diagnosis& d) {
-  return std::ranges::any_of(d.findings, [](const auto& f) { return f.grade == DataFinding::Grade::kFault; });
-}
-
 }  // namespace
 
 std::string figure(double value) {
@@ -84,7 +80,8 @@ std::string verdict_sentence(const Diagnosis& d) {
                           error_change(d.baseline_comparison, d.final_comparison));
     }
   }
-  if (has_faults(d)) text = "The data have faults that can mislead; mend them first. " + text;
+  if (first_fault(d.findings) != nullptr)
+    text = "The data have faults that can mislead; mend them first. " + text;
   if (!d.complete) text = "Interrupted: what follows is true as far as it goes. " + text;
   return text;
 }

@@ -55,4 +55,10 @@ std::vector<DataFinding> check_data(const Dataset& dataset, const Candidate& nom
   return merged(findings);
 }
 
+const DataFinding* first_fault(const std::vector<DataFinding>& findings) {
+  const auto fault = std::find_if(findings.begin(), findings.end(),
+                                  [](const DataFinding& f) { return f.grade == DataFinding::Grade::kFault; });
+  return fault == findings.end() ? nullptr : &*fault;
+}
+
 }  // namespace omnihil

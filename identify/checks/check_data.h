@@ -25,4 +25,7 @@ struct DataFinding {
 // Data quality alone: clock, glitches, signs, scales, saturation, position against the integral of speed.
 std::vector<DataFinding> check_data(const Dataset& dataset, const Candidate& nominal);
 
+// Of the grade kFault; null: none.
+const DataFinding* first_fault(const std::vector<DataFinding>& findings);
+
 }  // namespace omnihil

@@ -22,6 +22,9 @@ enum class PriorForm : std::uint8_t { kNormal, kLogNormal, kLogNormalAbove };
 // half a standard deviation at twice the value (1 / 0.5 = 2 and ln 2 / ln 1.5 = 1.7); a choice.
 inline constexpr double kOrderOfMagnitude = 0.5;
 
+// Of the mean, in place of zero, whose logarithm is none: 30 standard deviations at a tolerance of 100 %.
+inline constexpr double kLeastOfMean = 1e-9;
+
 inline PriorForm prior_form(double tolerance, bool may_be_zero) {
   if (tolerance < kOrderOfMagnitude) return PriorForm::kNormal;
   return may_be_zero ? PriorForm::kLogNormalAbove : PriorForm::kLogNormal;
@@ -33,17 +36,14 @@ inline bool is_logarithmic(PriorForm form, double mean, double x) {
 
 // Prior deviation of x in standard deviations; `sigma` = tolerance * mean > 0.
 inline double prior_z(PriorForm form, double mean, double sigma, double x) {
-  constexpr double kLeast =
-      1e-9;  // of the mean, in place of zero: 30 standard deviations at a tolerance of 1
   if (!is_logarithmic(form, mean, x)) return (x - mean) / sigma;
-  return std::log(std::max(x / mean, kLeast)) / std::log1p(sigma / mean);
+  return std::log(std::max(x / mean, kLeastOfMean)) / std::log1p(sigma / mean);
 }
 
 // Its derivative by x, in 1 / the unit of x.
 inline double prior_dz(PriorForm form, double mean, double sigma, double x) {
-  constexpr double kLeast = 1e-9;
   if (!is_logarithmic(form, mean, x)) return 1.0 / sigma;
-  return 1.0 / (std::max(x, kLeast * mean) * std::log1p(sigma / mean));
+  return 1.0 / (std::max(x, kLeastOfMean * mean) * std::log1p(sigma / mean));
 }
 
 // The same of anything that carries its prior (Unknown, ParameterEstimate); 0 where it has none.

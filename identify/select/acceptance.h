@@ -50,6 +50,9 @@ struct AcceptanceContext {
   double rate_Hz = 0.0;  // of the samples; 0: unknown
 };
 
+// As `signal_to_null`: that gain was tested before, or there is no screening to test it by.
+inline constexpr double kScreenedBefore = 1e9;
+
 // `signal_to_null`: the screening's gain over the largest gain in the simulated null's replicates;
 // `aliased_parameter`: the base parameter that these data cannot separate from the effect (screening.h).
 AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,

@@ -51,7 +51,7 @@ Addition add_effect(const Dataset& dataset, const Candidate& nominal, const Effe
                                       context.base().residual[kTraining]) -
                          1.0);
   const double signal_to_null =
-      start.tried ? start.gain / std::max(null_gain, 1e-300) : (gained > 0.0 ? 1e9 : 0.0);
+      start.tried ? start.gain / std::max(null_gain, 1e-300) : (gained > 0.0 ? kScreenedBefore : 0.0);
   const AcceptanceResult acceptance = test_acceptance(task.acceptance_context, context.base(), with,
                                                       start.name, signal_to_null, start.aliased_parameter());
   out.useful = acceptance.accepted();

@@ -94,11 +94,7 @@ class Diagnosing {
   }
 
   // A fault of the data that would be taken for physics.
-  bool misleading() const { return !options_.despite_faults && has_fault(); }
-  bool has_fault() const {
-    return std::any_of(out_.findings.begin(), out_.findings.end(),
-                       [](const DataFinding& f) { return f.grade == DataFinding::Grade::kFault; });
-  }
+  bool misleading() const { return !options_.despite_faults && first_fault(out_.findings) != nullptr; }
 
   void iterate() {
     double from = kAfterNull;
@@ -198,8 +194,8 @@ class Diagnosing {
       say("is " + name + " still needed", kAfterRounds);
       const Fitted less =
           refit_as_it_is(context_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
-      const AcceptanceResult needed =
-          test_acceptance(task_.acceptance_context, less, current_, name, 1e9, aliased_parameter_[name]);
+      const AcceptanceResult needed = test_acceptance(task_.acceptance_context, less, current_, name,
+                                                      kScreenedBefore, aliased_parameter_[name]);
       if (needed.accepted() || needed.decisive || !less.finite || n + 1 == out_.effects.size()) {
         ++n;
         continue;
@@ -244,18 +240,15 @@ class Diagnosing {
       say("looking for a formula", 0.92);
       out_.unknown = unknown_structure(task_, current_, out_.final_comparison);
     }
-    out_.unknown.sentence = misleading() ? fault_sentence() : residual_sentence(excess, added);
+    out_.unknown.sentence = misleading()
+                                ? fmt::format(
+                                      "No effect was tried, since a fault of the data would be taken for "
+                                      "one: {}",
+                                      first_fault(out_.findings)->sentence)
+                                : residual_sentence(excess, added);
     out_.next_experiment = next_experiment(dataset_, out_);
     out_.complete = !stopped_;
     say("done", 1.0);
-  }
-
-  std::string fault_sentence() const {
-    const auto fault = std::find_if(out_.findings.begin(), out_.findings.end(), [](const DataFinding& f) {
-      return f.grade == DataFinding::Grade::kFault;
-    });
-    return fmt::format("No effect was tried, since a fault of the data would be taken for one: {}",
-                       fault->sentence);
   }
 
   ResidualExcess residual_excess() {
@@ -364,6 +357,13 @@ std::string_view verdict_name(Verdict verdict) {
       return "unknown";
   }
   return "";
+}
+
+std::span<const LadderStep> steps_after_first_ranking(const Diagnosis& diagnosis) {
+  const auto first = std::find_if(diagnosis.ladder.begin(), diagnosis.ladder.end(),
+                                  [](const LadderStep& step) { return !step.ranking.empty(); });
+  return first == diagnosis.ladder.end() ? std::span<const LadderStep>()
+                                         : std::span<const LadderStep>(first + 1, diagnosis.ladder.end());
 }
 
 Diagnosis diagnose(const Dataset& dataset, const Candidate& nominal, const DiagnoseOptions& options) {

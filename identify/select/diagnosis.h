@@ -10,6 +10,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,10 @@ struct Diagnosis {
   bool complete = true;                  // false: interrupted; what is there is true as far as it goes
   std::vector<std::string> not_visible;  // effects that these data could not show, each with why
 };
+
+// The steps of the ladder behind the first one that has a ranking: their rankings are those of the further
+// iterations.
+std::span<const LadderStep> steps_after_first_ranking(const Diagnosis& diagnosis);
 
 struct DiagnoseOptions {
   std::uint64_t seed = 1;

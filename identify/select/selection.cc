@@ -95,10 +95,6 @@ bool accepted_by_prior_only(const Iteration& iteration) {
                       [](const CandidateEffect& c) { return c.acceptance.accepted_by == AcceptedBy::kGain; });
 }
 
-bool nests(const EffectInfo& richer, std::string_view simpler) {
-  return std::find(richer.nests.begin(), richer.nests.end(), simpler) != richer.nests.end();
-}
-
 // Parsimony among nested laws: the first one stays only if it would be accepted as an addition to each of the
 // accepted laws that it becomes at a limit of its shapes (likelihood-ratio tests of nested models are taken
 // the same way: the richer one bears the burden of proof).
@@ -107,10 +103,9 @@ void prefer_nested(const SelectionTask& task, std::vector<CandidateEffect>& cand
     const CandidateEffect &first = candidates.front(), &other = candidates[c];
     const bool simpler = other.acceptance.accepted() && !other.screened.extends && !first.screened.extends &&
                          nests(*first.screened.entry->info, other.screened.name);
-    constexpr double kScreened = 1e9;  // gain over the null's: the screening has tested that already
-    if (!simpler ||
-        test_acceptance(task.acceptance_context, other.fitted, first.fitted, first.screened.name, kScreened)
-            .accepted()) {
+    if (!simpler || test_acceptance(task.acceptance_context, other.fitted, first.fitted, first.screened.name,
+                                    kScreenedBefore)
+                        .accepted()) {
       ++c;
       continue;
     }
@@ -125,6 +120,10 @@ void prefer_nested(const SelectionTask& task, std::vector<CandidateEffect>& cand
 double penalised_gain(const CandidateEffect& c, bool has_holdout) {
   const double gain = gain_of(c, has_holdout);
   return gain - kPenaltyPerParameter * std::max(0, parameter_count(c) - 1) * std::abs(gain);
+}
+
+bool nests(const EffectInfo& richer, std::string_view simpler) {
+  return std::find(richer.nests.begin(), richer.nests.end(), simpler) != richer.nests.end();
 }
 
 bool listed_as_confounded(const EffectInfo& a, const EffectInfo& b) {

@@ -26,6 +26,9 @@ double penalised_gain(const CandidateEffect& c, bool has_holdout);
 // Does either one's page name the other as easily confused?
 bool listed_as_confounded(const EffectInfo& a, const EffectInfo& b);
 
+// Does the richer law become the simpler one (an id) at a limit of its shapes?
+bool nests(const EffectInfo& richer, std::string_view simpler);
+
 // Of the signals of two screened effects, the base parameters projected out of both; 0 to 1.
 double cosine_similarity(const Screened& a, const Screened& b);
 

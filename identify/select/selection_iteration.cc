@@ -73,9 +73,8 @@ std::vector<const EffectEntry*> not_yet(const SelectionTask& task, const Candida
 void add_nested(const std::vector<Screened>& screened, const std::vector<std::size_t>& order,
                 std::vector<std::size_t>& out) {
   for (std::size_t n = 0; n < out.size(); ++n) {
-    const auto& nests = screened[out[n]].entry->info->nests;
     for (const std::size_t i : order) {
-      const bool nested = std::find(nests.begin(), nests.end(), screened[i].name) != nests.end();
+      const bool nested = nests(*screened[out[n]].entry->info, screened[i].name);
       if (nested && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
     }
   }

@@ -10,8 +10,6 @@ constexpr std::size_t kMostFirst = 2;
 // Fall of the fit runs' energy from which a refused effect may be the first of a pair: ten times the smallest
 // gain of interest, since it has to be most of what the pair gains. A choice; sensitivity not measured.
 constexpr double kLeastFirstGain = 0.3;
-// Gain over the null's: the screenings of both iterations have tested that.
-constexpr double kScreened = 1e9;
 
 // Refused candidates by the fall of the fit runs' energy, largest first.
 std::vector<const CandidateEffect*> first_effects(const SelectionTask& task, const Fitted& parent,
@@ -43,7 +41,7 @@ EffectPair selection_pair(const SelectionTask& task, const Fitted& parent, const
     const CandidateEffect& second = further.candidates[static_cast<std::size_t>(further.chosen)];
     if (second.screened.extends) continue;
     const auto passes = [&](const CandidateEffect& c) {
-      return test_acceptance(task.acceptance_context, parent, second.fitted, c.screened.name, kScreened)
+      return test_acceptance(task.acceptance_context, parent, second.fitted, c.screened.name, kScreenedBefore)
           .accepted();
     };
     const double ratio = energy_ratio((*task.splits)[kTraining], parent.residual[kTraining],

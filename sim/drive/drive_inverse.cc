@@ -6,8 +6,7 @@
 namespace omnihil {
 
 // The motor torque with which the imposed motion needs no help from the bench: the argument of the torque
-// effects in inverse dynamics (needed_torque.h). Apart from the sub-step,
-// and by value: see impose_speed.
+// effects in inverse dynamics (needed_torque.h). Not part of the sub-step, and by value: see impose_speed.
 template <typename T>
 T DriveSim<T>::inverse_torque(const DriveState<T>& state, double start_rad_s, double end_rad_s,
                               T tau_outside_Nm, TorquePort<T> port) const {
