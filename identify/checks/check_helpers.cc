@@ -1,4 +1,4 @@
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -6,6 +6,7 @@
 #include "identify/checks/check_list.h"
 #include "identify/record/quantum.h"
 #include "identify/record/statistics.h"
+#include "sim/law/symmetric.h"
 
 namespace omnihil {
 namespace {
@@ -148,10 +149,9 @@ LineFit fit_line(const std::vector<std::vector<double>>& x, const std::vector<do
       a(i, j) = x[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)];
   }
   const Eigen::MatrixXd normal = a.transpose() * a;
-  const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
-  const Eigen::VectorXd c = solver.solve(a.transpose() * b);
+  const Eigen::VectorXd c = ldlt_solve(normal, a.transpose() * b);
   const double left = (b - a * c).squaredNorm(), all = b.squaredNorm();
-  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(m, m));
+  const Eigen::MatrixXd inverse = ldlt_solve_columns(normal, Eigen::MatrixXd::Identity(m, m));
   for (Eigen::Index j = 0; j < m; ++j) {
     out.coefficient.push_back(c(j));
     out.sigma.push_back(std::sqrt(std::max(0.0, inverse(j, j)) * left / static_cast<double>(n - m)));

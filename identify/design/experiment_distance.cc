@@ -1,9 +1,10 @@
 #include "identify/design/experiment_distance.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "sim/law/symmetric.h"
 
 namespace omnihil {
 namespace {
@@ -70,7 +71,7 @@ Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& a, const Eigen::VectorXd& b)
   Eigen::VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd even = scale.asDiagonal() * a * scale.asDiagonal();
   even.diagonal().array() += 1e-12;
-  return scale.asDiagonal() * even.ldlt().solve(Eigen::VectorXd(scale.asDiagonal() * b));
+  return scale.asDiagonal() * ldlt_solve(even, scale.asDiagonal() * b);
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "identify/estimate/fit_starts.h"
+#include "sim/law/symmetric.h"
 
 namespace omnihil {
 namespace {
@@ -63,10 +63,9 @@ class Condensed : public ceres::CostFunction {
     }
     // ridge, so that a direction with neither data nor prior leaves the matrix positive definite
     h.diagonal().array() += 1e-12 * std::max(h.diagonal().maxCoeff(), 1e-300);
-    const Eigen::LLT<Eigen::MatrixXd> llt(h);
-    if (llt.info() != Eigen::Success) return false;
-    const Eigen::MatrixXd upper = llt.matrixU();
-    Eigen::VectorXd head = llt.matrixL().solve(g);
+    const Cholesky factor(h);
+    if (!factor.positive_definite()) return false;
+    Eigen::VectorXd head = factor.forward(g);
     const double rest = 2.0 * p.cost() - head.squaredNorm();
     if (rest < 0.0) head *= std::sqrt(2.0 * p.cost() / head.squaredNorm());  // rounding, at a cost near zero
     r.head(n) = head;
@@ -74,7 +73,7 @@ class Condensed : public ceres::CostFunction {
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> j(jacobians[0], n + 1,
                                                                                          n);
     j.setZero();
-    j.topRows(n) = upper;
+    j.topRows(n) = factor.lower().transpose();
     return true;
   }
 
@@ -94,7 +93,7 @@ Eigen::VectorXd full_step(const FitProblem& problem, const FitPoint& p, const Ei
     if ((x[i] <= u.lower && g[i] > 0.0) || (x[i] >= u.upper && g[i] < 0.0)) hold(h, g, i);
   }
   h.diagonal().array() += 1e-12 * std::max(h.diagonal().maxCoeff(), 1e-300);
-  return h.ldlt().solve(g).cwiseProduct(scale);
+  return ldlt_solve(h, g).cwiseProduct(scale);
 }
 
 class Stopper : public ceres::IterationCallback {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "sim/law/symmetric.h"
 
 namespace omnihil {
 namespace {
@@ -25,8 +25,8 @@ struct Directions {
 
 Directions directions_of(const Eigen::MatrixXd& information, const Eigen::VectorXd& scale) {
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  SymmetricEigen eigen = symmetric_eigen(scaled);
+  return {std::move(eigen.values), std::move(eigen.vectors)};
 }
 
 double data_variance(const Directions& d, Eigen::Index i, double scale) {
@@ -53,7 +53,7 @@ std::vector<std::string> partners(const Eigen::MatrixXd& information, const Eige
   Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   scaled.diagonal().array() += kWeak;
   const Eigen::MatrixXd covariance =
-      scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+      ldlt_solve_columns(scaled, Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
   std::vector<std::pair<double, std::string>> found;
   for (Eigen::Index j = 0; j < scaled.rows(); ++j) {
     const double c = covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));

@@ -69,7 +69,7 @@ std::pair<double, Eigen::VectorXd> bounded_gain(const Eigen::MatrixXd& gram,
     g.diagonal() *= 1.0 + 1e-9;  // ridge, far above rounding: columns may be copies of each other
     Eigen::VectorXd b(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) b[static_cast<Eigen::Index>(i)] = correlation[rows[i]];
-    const Eigen::VectorXd a = g.ldlt().solve(b);
+    const Eigen::VectorXd a = ldlt_solve(g, b);
     bool allowed = a.allFinite();
     for (std::size_t i = 0; i < rows.size() && allowed; ++i) {
       allowed = two_sided[static_cast<std::size_t>(rows[i])] || a[static_cast<Eigen::Index>(i)] >= 0.0;
@@ -115,16 +115,16 @@ LinearBase::LinearBase(const WhitenedResiduals& residuals, const Candidate& mode
   Eigen::MatrixXd normal = jacobian_.transpose() * jacobian_;
   normal.diagonal() += prior_;
   normal.diagonal().array() += 1e-12 * std::max(1.0, normal.diagonal().maxCoeff());
-  normal_.compute(normal);
+  normal_ = Cholesky(normal);
   gradient_ = jacobian_.transpose() * residual_ - prior_.cwiseProduct(off);
-  usable_ = normal_.info() == Eigen::Success;
+  usable_ = normal_.positive_definite();
 }
 
 ProjectedColumns LinearBase::project(Eigen::MatrixXd weighted_columns) const {
   ProjectedColumns out;
   const double energy = weighted_columns.squaredNorm();
   const Eigen::MatrixXd cross = jacobian_.transpose() * weighted_columns;
-  out.coupling = cross.rows() > 0 ? Eigen::MatrixXd(normal_.solve(cross)) : cross;
+  out.coupling = cross.rows() > 0 ? normal_.solve(cross) : cross;
   out.gram = weighted_columns.transpose() * weighted_columns - cross.transpose() * out.coupling;
   out.columns = std::move(weighted_columns);
   if (out.coupling.rows() > 0) out.columns.noalias() -= jacobian_ * out.coupling;

@@ -14,11 +14,11 @@
 // Shapes: n weighted samples (whitened residual over its channel's scale, of no unit), p base unknowns off
 // their bounds, c columns: J n x p, D n x c, r n, L p (diagonal), d p, a c.
 #pragma once
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
 #include "identify/estimate/whitened_residuals.h"
+#include "sim/law/symmetric.h"
 
 namespace omnihil {
 
@@ -71,7 +71,7 @@ class LinearBase {
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd prior_;     // L
   Eigen::VectorXd gradient_;  // g
-  Eigen::LLT<Eigen::MatrixXd> normal_;
+  Cholesky normal_;
   double autocorrelation_ = 1.0;
 };
 

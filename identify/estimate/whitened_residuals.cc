@@ -1,10 +1,10 @@
 #include "identify/estimate/whitened_residuals.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "identify/record/parallel.h"
+#include "sim/law/symmetric.h"
 
 namespace omnihil {
 namespace {
@@ -24,8 +24,8 @@ void remove_slow_trend(Eigen::MatrixXd& columns) {
   Eigen::MatrixXd slow(n, 3);
   const Eigen::ArrayXd x = Eigen::ArrayXd::LinSpaced(n, -1.0, 1.0);
   slow << Eigen::VectorXd::Ones(n), x.matrix(), x.square().matrix();
-  const Eigen::Matrix3d gram = slow.transpose() * slow;
-  const Eigen::MatrixXd share = gram.ldlt().solve(slow.transpose() * columns);
+  const Eigen::MatrixXd gram = slow.transpose() * slow;
+  const Eigen::MatrixXd share = ldlt_solve_columns(gram, slow.transpose() * columns);
   columns -= slow * share;
 }
 

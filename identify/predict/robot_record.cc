@@ -1,6 +1,5 @@
 #include "identify/predict/robot_record.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,6 +7,7 @@
 
 #include "identify/record/bus_voltage.h"
 #include "sim/law/random.h"
+#include "sim/law/symmetric.h"
 
 namespace omnihil {
 namespace {
@@ -173,15 +173,15 @@ void unwrap_by_gyro(RobotRecord& r) {
 
 // v of theta = theta_0 + v t + a t^2 / 2 over the first kStartSpan_s, by least squares; rad/s.
 double speed_at_start(const RobotRecord& r, std::size_t wheel, std::size_t last) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  Eigen::MatrixXd normal = Eigen::Matrix3d::Zero();
+  Eigen::VectorXd right = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k <= last; ++k) {
     const double t = (r.time_s[k] - r.time_s[0]) / kStartSpan_s;
     const Eigen::Vector3d row(1.0, t, t * t);
     normal += row * row.transpose();
     right += row * (r.theta_rotor_rad[k][wheel] - r.theta_rotor_rad[0][wheel]);
   }
-  return Eigen::Vector3d(normal.ldlt().solve(right))(1) / kStartSpan_s;
+  return ldlt_solve(normal, right)(1) / kStartSpan_s;
 }
 
 BodyVelocity<double> start_velocity(const RobotRecord& r, const RollingParams<double>& nominal) {

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "sim/law/effect_registry.h"
+#include "sim/law/symmetric.h"
 #include "sim/model/effect_reader.h"
 
 namespace omnihil {
@@ -64,7 +64,7 @@ bool jointly_significant(const FitResult& child, const std::vector<Eigen::Index>
   // within 5 %.
   constexpr double kPerFurther = 1.9;
   const double asked = kSignificant_sigmas * kSignificant_sigmas + kPerFurther * static_cast<double>(n - 1);
-  return d.dot(covariance.ldlt().solve(d)) > asked;
+  return d.dot(ldlt_solve(covariance, d)) > asked;
 }
 
 // A parameter of the effect that no drive can have, or a strength that is not significant; empty: none.

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "sim/law/effect_set.h"
+#include "sim/law/symmetric.h"
 #include "sim/robot/contact.h"
 #include "sim/robot/electric_model.h"
 #include "sim/robot/planar_law.h"
@@ -112,7 +112,7 @@ void check_together(const RobotModel& m, std::vector<std::string>& out) {
   const Eigen::Matrix<double, kWheels, 3> rim = rim_matrix(g);
   const Eigen::Vector3d scale(1, 1, 1 / g.wheel_center_radius_m);
   const Eigen::Matrix3d spread = scale.asDiagonal() * (rim.transpose() * rim) * scale.asDiagonal();
-  if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()(0) < 1e-6) {
+  if (symmetric_eigen(spread).values(0) < 1e-6) {
     out.push_back("wheel_angle_rad: these wheels cannot drive in every direction (rank of eq. 5 below 3)");
     return;
   }
@@ -205,7 +205,7 @@ double stiffest_contact_rate(const RobotModel& model) {
   Eigen::Matrix4d mobility = rim * body_mass_matrix(model).inverse() * rim.transpose();
   mobility += Eigen::Matrix4d::Identity() * (r * r / spin_inertia_kg_m2(model));
   return damping_N_s_per_m *
-         Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(mobility).eigenvalues()(kWheels - 1);
+         symmetric_eigen(mobility).values(kWheels - 1);
 }
 
 double explicit_limit(Integrator integrator) {
