@@ -7,7 +7,9 @@ namespace omnihil {
 
 Eigen::VectorXd ldlt_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) { return a.ldlt().solve(b); }
 
-Eigen::MatrixXd ldlt_solve_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a.ldlt().solve(b); }
+Eigen::MatrixXd ldlt_solve_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.ldlt().solve(b);
+}
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);

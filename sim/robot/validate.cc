@@ -204,8 +204,7 @@ double stiffest_contact_rate(const RobotModel& model) {
   const double r = model.wheel_radius_m;
   Eigen::Matrix4d mobility = rim * body_mass_matrix(model).inverse() * rim.transpose();
   mobility += Eigen::Matrix4d::Identity() * (r * r / spin_inertia_kg_m2(model));
-  return damping_N_s_per_m *
-         symmetric_eigen(mobility).values(kWheels - 1);
+  return damping_N_s_per_m * symmetric_eigen(mobility).values(kWheels - 1);
 }
 
 double explicit_limit(Integrator integrator) {
