@@ -6,6 +6,7 @@
 
 #include "identify/predict/axis_outputs.h"
 #include "identify/predict/axis_record.h"
+#include "identify/predict/axis_substep.h"
 #include "identify/predict/counted_setups.h"
 #include "sim/law/random.h"
 #include "sim/model/axis_model.h"
@@ -14,7 +15,6 @@ namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLongestStep_s = 1e-3;  // a choice; choose_step() takes it where it is fine enough
 
 bool is_known(const Run& run, const std::string& path) {
   return std::any_of(run.known.begin(), run.known.end(),
@@ -50,13 +50,6 @@ Seeded seeded(const Candidate& c, const Run& run, std::span<const Unknown> unkno
     }
   }
   return out;
-}
-
-// Is there an effect with this numerical property that is not neutral? A neutral one changes no bit.
-bool acts(const Candidate& c, std::uint32_t numerics) {
-  return std::any_of(c.effects.begin(), c.effects.end(), [&](const EffectUse& use) {
-    return (use.entry->info->numerics & numerics) != 0 && !is_neutral(use);
-  });
 }
 
 // A delay whose derivative a limit behind it hides (predictor_axis.h).
@@ -185,21 +178,7 @@ class AxisPredictor final : public Predictor {
   }
 
   const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
-  double step_for(const Candidate& c, int n) const {
-    constexpr double kFineStep_s = 200e-6;  // measured: DECISIONS 32 and 38
-    if (acts(c, kStiff)) return std::min(step_s_, options_.step_s);
-    if (acts(c, kFine)) return std::min(step_s_, std::max(options_.step_s, kFineStep_s));
-    return step_s_ * coarser_[static_cast<std::size_t>(n)];
-  }
-
-  // Of a run whose rows are far apart (one per step of a staircase): the motion between them is not seen, and
-  // choose_step() holds these steps to its bound too.
-  static double coarser(const AxisSetup& s) {
-    constexpr double kStepsPerRow = 128.0;  // a choice
-    constexpr double kMost = 8.0;           // a third of a small drive's mechanical time constant of 25 ms
-    if (s.steady || s.input.time_s.size() < 2) return 1.0;
-    return std::clamp(median_period_s(s.input.time_s) / (kStepsPerRow * kLongestStep_s), 1.0, kMost);
-  }
+  double step_for(const Candidate& c, int n) const { return substep_.of(c, n); }
 
   Prediction predict_at(const Candidate& candidate, int n, double step_s) const {
     const AxisSetup& s = setup(n);
@@ -285,38 +264,15 @@ class AxisPredictor final : public Predictor {
   }
 
   void choose_step() {
-    step_s_ = options_.step_s;
-    for (const AxisSetup& s : setups_) coarser_.push_back(coarser(s));
     constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
-    // Error of the sub-step over the noise: 0.07^2 = 0.5 % of the error energy, a sixth of what an effect has
-    // to take to be named (DECISIONS 42).
-    constexpr double kShareOfNoise = 0.07;  // DECISIONS 42
-    double longest = options_.step_s;
-    std::vector<AxisSetup> whole;
-    for (AxisSetup& s : setups_) {
-      whole.push_back(s);
-      shorten(s, kTrial_s);
-      if (!s.steady && s.input.time_s.size() > 1) {
-        longest = std::max(longest, std::min(kLongestStep_s, s.input.time_s[1] - s.input.time_s[0]));
-      }
-    }
-    for (double next = longest; next > options_.step_s * 1.01;) {
-      const double h = next;
-      next *= 0.5;
-      double worst = 0.0;
-      int tried = 0;
-      for (int n = 0; n < run_count() && tried < 4; ++n) {
-        if (run(n).split != Split::kTraining || setup(n).steady || setup(n).input.time_s.size() < 2) continue;
-        const double of_run = h * coarser_[static_cast<std::size_t>(n)];
-        worst = std::max(
-            worst, distance(n, predict_at(*nominal_, n, of_run), predict_at(*nominal_, n, 0.25 * of_run)));
-        ++tried;
-      }
-      if (tried == 0 || worst > kShareOfNoise) continue;
-      step_s_ = h;
-      break;
-    }
-    setups_ = std::move(whole);
+    const std::vector<AxisSetup> whole = setups_;
+    for (AxisSetup& s : setups_) shorten(s, kTrial_s);
+    substep_ = AxisSubstep(*nominal_, whole, options_.step_s, [&](const Candidate& model, int n, double h) {
+      if (run(n).split != Split::kTraining || setup(n).steady || setup(n).input.time_s.size() < 2)
+        return kMissing;
+      return distance(n, predict_at(model, n, h), predict_at(model, n, 0.25 * h));
+    });
+    setups_ = whole;
   }
 
   static void shorten(AxisSetup& s, double span_s) {
@@ -451,8 +407,7 @@ class AxisPredictor final : public Predictor {
   std::shared_ptr<const Candidate> nominal_;
   PredictOptions options_;
   std::vector<AxisSetup> setups_;
-  double step_s_ = 100e-6;
-  std::vector<double> coarser_;           // per run, times step_s_
+  AxisSubstep substep_;
   const EffectEntry* counter_ = nullptr;  // the effect that made a counted speed; null: none did
 };
 

@@ -135,6 +135,7 @@ class AxisRun {
     if (input_.measured_position_rad.empty() || !std::isfinite(input_.measured_position_rad[k])) return;
     const T shift = input_.measured_position_rad[k] * sim_.params().gear_ratio - state_.theta_rotor_rad;
     state_.theta_rotor_rad += shift;
+    state_.corrected_rad += shift;
     if (state_.has_output) state_.theta_output_rad += shift / sim_.params().gear_ratio;
     travel_ahead_rad_ -= shift;
   }

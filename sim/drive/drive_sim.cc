@@ -235,6 +235,7 @@ INLINE void DriveSim<T>::torque(DriveState<T>& state, const DriveInput<T>& input
   TorquePort<T> port;
   port.omega_rotor_rad_s = s.omega_mid;
   port.theta_rotor_rad = s.theta_mid;
+  port.travel_rad = s.theta_mid - state.corrected_rad;
   port.omega_output_rad_s = s.omega_mid * inverse_gear_;
   port.theta_output_rad = s.theta_mid * inverse_gear_;
   if (two_masses_) {

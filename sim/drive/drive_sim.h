@@ -35,6 +35,7 @@ struct DriveState {
   T current_A = T(0);
   T omega_rotor_rad_s = T(0);
   T theta_rotor_rad = T(0);
+  T corrected_rad = T(0);  // of theta_rotor_rad: by a measured angle, not turned
   // Of their own only where an effect acts on the shaft; they start where the rotor is.
   T theta_output_rad = T(0);
   T omega_output_rad_s = T(0);

@@ -10,7 +10,7 @@ namespace {
 
 struct LugreFriction {
   enum Param { kCoulomb, kStatic, kSpeed, kStiffness, kDamping };
-  enum State { kDeflection, kAngle, kStarted };
+  enum State { kDeflection, kAngle, kStartLevel, kMiddleLevel, kStarted };
   static constexpr EffectParam kParams[] = {
       {.name = "coulomb_torque_Nm",
        .unit = "N m",
@@ -61,8 +61,8 @@ struct LugreFriction {
        .how = "small current step below breakaway: ringing of the angle"},
   };
   static constexpr EffectState kStates[] = {
-      {.name = "deflection", .unit = "rad"},
-      {.name = "angle_before", .unit = "rad"},
+      {.name = "deflection", .unit = "rad"},     {.name = "angle_before", .unit = "rad"},
+      {.name = "level_at_start", .unit = "N m"}, {.name = "level_in_middle", .unit = "N m"},
       {.name = "started", .unit = "1"},
   };
   static constexpr EffectInfo kInfo{
@@ -98,7 +98,6 @@ struct LugreFriction {
 
   template <typename T>
   static void apply(const T* p, T* x, TorquePort<T>& port) {
-    using std::abs;
     using std::exp;
     const T& omega = port.omega_rotor_rad_s;
     // g(omega): level while sliding at this speed
@@ -108,38 +107,75 @@ struct LugreFriction {
       const T power = ratio * ratio;
       if (value_of(power) < 40.0) level += (p[kStatic] - p[kCoulomb]) * exp(-power);
     }
-    // Turned since the middle of the sub-step before. By the angle, so that nothing drifts while it sticks.
+    // The port shows the sub-step's middle; levels at its ends are taken from this middle and the one before. Up to
+    // its start the bristles have followed the rotor's own way (by the angle, so that nothing drifts while it
+    // sticks); over it they are led on at the middle's speed.
+    const double h = port.dt_s;
     const bool started = value_of(x[kStarted]) > 0.0;
-    const T way = started ? T(port.theta_rotor_rad - x[kAngle]) : T(0.5 * port.dt_s * omega);
-    const T before = x[kDeflection];
+    const T start_rad = port.travel_rad - 0.5 * h * omega;
+    const T start_level = started ? T(0.5 * (x[kMiddleLevel] + level)) : level;
+    T end_level = 2.0 * level - start_level;
+    if (value_of(end_level) < value_of(p[kCoulomb])) end_level = p[kCoulomb];
     T& z = x[kDeflection];
-    T bending = T(0);  // dz/dtheta, mean over the way
-    // Less than this share of the bristles' length is differences of nearly equal numbers: its limit instead.
-    constexpr double kShortest = 1e-8, kLeastLevel_Nm = 1e-20;
-    const double length = std::max(value_of(level), kLeastLevel_Nm);
-    if (value_of(p[kStiffness]) * std::abs(value_of(way)) > kShortest * length) {
-      // Exact for a level held over the way: z -> z_s + (z - z_s) exp(-s0 |way| / g), z_s = g sgn(way) / s0
-      const T sliding = sign_of(way) * level / p[kStiffness];
-      z = sliding;
-      if (value_of(level) > 0.0) {
-        const T bent = p[kStiffness] * abs(way) / level;
-        if (value_of(bent) < 700.0) z += (before - sliding) * exp(-bent);
-      }
-      bending = (z - before) / way;
-    } else if (value_of(level) > kLeastLevel_Nm) {
-      bending = 1.0 - p[kStiffness] * z * sign_of(value_of(way) != 0.0 ? way : omega) / level;
-      z += bending * way;
-    }
-    x[kAngle] = port.theta_rotor_rad;
+    if (started) z = bent(p[kStiffness], {x[kStartLevel], start_level}, z, T(start_rad - x[kAngle])).end;
+    x[kAngle] = start_rad;
+    x[kStartLevel] = start_level;
+    x[kMiddleLevel] = level;
     x[kStarted] = T(1);
-    // tau = -(s0 z + s1 dz/dtheta omega); the second part implicitly where it damps
-    port.tau_Nm -= p[kStiffness] * z;
-    const T damping = p[kDamping] * bending;
+    const Bent<T> over = bent(p[kStiffness], {start_level, end_level}, z, T(h * omega));
+    // tau = -(s0 mean z + s1 dz/dtheta omega). The second part implicitly in the speed where it damps; of the
+    // first the change with the speed, h/2 s0 dz/dtheta, so that no stiffness asks for a shorter sub-step.
+    port.tau_Nm -= p[kStiffness] * over.mean;
+    const T spring = 0.5 * h * p[kStiffness] * over.slope;
+    if (value_of(spring) > 0.0) {
+      port.tau_Nm += spring * omega;
+      port.add_viscous(spring);
+    }
+    const T damping = p[kDamping] * over.slope;
     if (value_of(damping) >= 0.0) {
       port.add_viscous(damping);
     } else {
       port.tau_Nm -= damping * omega;
     }
+  }
+
+ private:
+  template <typename T>
+  struct Levels {
+    T from, to;  // while sliding, at the way's start and end, N m
+  };
+
+  template <typename T>
+  struct Bent {
+    T end, mean, slope;  // deflection at the way's end and its mean over the way, rad; mean dz/dtheta
+  };
+
+  // Bristles at deflection z, led along `way` while the level changes in proportion to it, u = 0 … 1:
+  //   dz/du = b (z_s(u) - z),   b = s0 |way| / g,   z_s = sgn(way) g(u) / s0 from z_0 to z_0 + d
+  //   z(1) = z + b (e1 (z_0 - z) + e2 d),   e1 = (1 - exp(-b)) / b,   e2 = (1 - e1) / b
+  template <typename T>
+  static Bent<T> bent(const T& stiffness, const Levels<T>& level, const T& z, const T& way) {
+    using std::exp;
+    constexpr double kLeastLevel_Nm = 1e-20;  // numerical: below it there is no friction
+    const T mean_level = 0.5 * (level.from + level.to);
+    const double sign = value_of(way) < 0.0 ? -1.0 : 1.0;
+    if (value_of(mean_level) < kLeastLevel_Nm) {  // b without bound: they slide from the first
+      if (is_exactly(way, 0.0)) return {z, z, T(0)};
+      return {T(sign * level.to / stiffness), T(sign * mean_level / stiffness), T(0)};
+    }
+    const T per_rad = sign * stiffness / mean_level;  // b / way
+    const T b = per_rad * way;
+    T e1, e2;
+    if (value_of(b) < 1e-3) {  // numerical: below it the series is exact to 1e-13, above it the difference
+      e1 = 1.0 - b * (0.5 - b * (1.0 / 6.0 - b / 24.0));
+      e2 = 0.5 - b * (1.0 / 6.0 - b * (1.0 / 24.0 - b / 120.0));
+    } else {
+      e1 = (value_of(b) < 40.0 ? T(1.0 - exp(-b)) : T(1.0)) / b;
+      e2 = (1.0 - e1) / b;
+    }
+    const T from = sign * level.from / stiffness, change = sign * (level.to - level.from) / stiffness;
+    const T slope = per_rad * (e1 * (from - z) + e2 * change);
+    return {T(z + slope * way), T(from + (z - from) * e1 + change * (0.5 - e2)), slope};
   }
 };
 

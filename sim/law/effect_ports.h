@@ -87,6 +87,8 @@ struct TorquePort {
   // reads
   T omega_rotor_rad_s = T(0);  // mid; exactly 0 while held
   T theta_rotor_rad = T(0);    // mid
+  // mid: the angle less every correction by a measured one (slaved angle), for laws of a way, not of a place
+  T travel_rad = T(0);
   T omega_output_rad_s = T(0);
   T theta_output_rad = T(0);
   T tau_motor_Nm = T(0);  // electromagnetic, mean expected over the sub-step

@@ -295,7 +295,10 @@ void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput& in, Step& s
   for (std::size_t i = 0; i < kWheels; ++i) {
     Wheel& w = s.wheel[i];
     DriveState<T>& state = x.drive[i];
-    if (in.theta_rotor_rad != nullptr) state.theta_rotor_rad = T((*in.theta_rotor_rad)[i]);
+    if (in.theta_rotor_rad != nullptr) {
+      state.corrected_rad += (*in.theta_rotor_rad)[i] - state.theta_rotor_rad;
+      state.theta_rotor_rad = T((*in.theta_rotor_rad)[i]);
+    }
     w.omega_start = state.omega_rotor_rad_s;
     DriveInput<T> drive;
     drive.kind = CommandKind::kDuty;
@@ -424,6 +427,7 @@ void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput& in, Step& s
     state.omega_rotor_rad_s = s.omega_end[i];
     state.omega_change_rad_s = s.omega_end[i] - w.omega_start;
     state.theta_rotor_rad = x.theta_rotor_rad[i];
+    state.corrected_rad = T(0);
     x.force_N[i] = s.force_N[i];
     x.friction_Nm[i] = s.friction_Nm[i];
   }

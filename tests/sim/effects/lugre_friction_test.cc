@@ -104,6 +104,42 @@ TEST(LugreFriction, DoesNotDriftUnderASteadyTorque) {
   EXPECT_GT(out.back().theta_rotor_rad, 0.0);
 }
 
+// An angle that is corrected at every sample to a measured one moves no bristle.
+TEST(LugreFriction, DoesNotSeeAMeasuredAngle) {
+  AxisInput in = excite(Excitation::kSteps, 0.3, 1.0);
+  const auto free = run_axis(small_drive(), bristles(), in);
+  for (const auto& sample : free) {
+    const double error_rad = 0.01 * std::sin(300.0 * sample.time_s);  // ten times the bristles' length
+    in.measured_position_rad.push_back(sample.theta_rotor_rad + error_rad);
+  }
+  const auto slaved = run_axis(small_drive(), bristles(), in);
+  for (std::size_t n = 0; n < free.size(); ++n) {
+    EXPECT_NEAR(slaved[n].omega_rotor_rad_s, free[n].omega_rotor_rad_s, 1e-6);
+  }
+}
+
+// Half the sub-step, about a quarter of the error: also where a step of 1 ms spans the bristles' whole length and
+// the level falls meanwhile.
+TEST(LugreFriction, ConvergesInSecondOrder) {
+  AxisInput in = held(CommandKind::kMotorCurrent, 0.0, 2.0);
+  for (std::size_t n = 0; n < in.time_s.size(); ++n)
+    in.command[n] = 3.0 * kStatic / small_drive().torque_constant_Nm_per_A * std::sin(6.0 * in.time_s[n]);
+  const auto speed_error = [&](double stiffness, double step_s) {
+    const auto law = with({use_of("lugre_friction", {kCoulomb, kStatic, kSpeed, stiffness, kDamping})});
+    const auto exact = run_axis(small_drive(), law, in, {.step_s = 2e-6});
+    const auto coarse = run_axis(small_drive(), law, in, {.step_s = step_s});
+    double square = 0.0;
+    for (std::size_t n = 0; n < exact.size(); ++n)
+      square += std::pow(coarse[n].omega_rotor_rad_s - exact[n].omega_rotor_rad_s, 2);
+    return std::sqrt(square / static_cast<double>(exact.size()));
+  };
+  for (const double stiffness : {0.3, 3.0}) {
+    EXPECT_LT(speed_error(stiffness, 1e-4), 1e-3) << stiffness;  // of 98 rad/s
+    // a quarter of the step: 1 / 16, asked 1 / 8 (first order: 1 / 4)
+    EXPECT_LT(speed_error(stiffness, 5e-5), speed_error(stiffness, 2e-4) / 8.0) << stiffness;
+  }
+}
+
 // Starting far from angle zero makes no difference.
 TEST(LugreFriction, DoesNotDependOnTheAngle) {
   AxisInput in = excite(Excitation::kSteps, 0.3, 1.0);

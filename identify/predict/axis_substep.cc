@@ -1,0 +1,114 @@
+#include "identify/predict/axis_substep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/law/effect_registry.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kLongestStep_s = 1e-3;  // a choice; taken where it is fine enough
+constexpr int kTrialRuns = 4;            // bounds the cost; a choice
+
+// Of a run whose rows are far apart (one per step of a staircase): the motion between them is not seen, and
+// longest_step() holds these steps to its bound too.
+double coarser(const AxisSetup& s) {
+  constexpr double kStepsPerRow = 128.0;  // a choice
+  constexpr double kMost = 8.0;           // a third of a small drive's mechanical time constant of 25 ms
+  if (s.steady || s.input.time_s.size() < 2) return 1.0;
+  return std::clamp(median_period_s(s.input.time_s) / (kStepsPerRow * kLongestStep_s), 1.0, kMost);
+}
+
+std::vector<Candidate> sizes_of(const EffectEntry& entry, const Candidate& nominal) {
+  const DriveParams<double> drive = drive_of(nominal);
+  const EffectUse typical = typical_use(entry, &drive);
+  std::vector<Candidate> out;
+  const auto add_scaled = [&](auto&& is_meant, double by) {
+    EffectUse use = typical;
+    for (std::size_t i = 0; i < use.values.size(); ++i) {
+      const EffectParam& row = entry.info->params[i];
+      if (is_meant(i)) use.values[i] = std::clamp(use.values[i] * by, row.lower, row.upper);
+    }
+    out.push_back(nominal);
+    out.back().effects.push_back(use);
+  };
+  add_scaled([](std::size_t) { return false; }, 1.0);
+  for (const double by : {0.25, 4.0}) {
+    add_scaled([&](std::size_t i) { return entry.info->params[i].role == ParamRole::kStrength; }, by);
+    for (std::size_t shape = 0; shape < typical.values.size(); ++shape) {
+      const EffectParam& row = entry.info->params[shape];
+      if (row.role == ParamRole::kShape && row.trait == ParamTrait::kPlain)
+        add_scaled([&](std::size_t i) { return i == shape; }, by);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+bool acts(const Candidate& c, std::uint32_t numerics) {
+  return std::any_of(c.effects.begin(), c.effects.end(), [&](const EffectUse& use) {
+    return (use.entry->info->numerics & numerics) != 0 && !is_neutral(use);
+  });
+}
+
+AxisSubstep::AxisSubstep(const Candidate& nominal, const std::vector<AxisSetup>& setups, double shortest_s,
+                         const Error& error)
+    : shortest_s_(shortest_s), base_s_(shortest_s) {
+  double longest_s = shortest_s;
+  for (const AxisSetup& s : setups) {
+    coarser_.push_back(coarser(s));
+    const std::vector<double>& t = s.input.time_s;
+    if (!s.steady && t.size() > 1) longest_s = std::max(longest_s, std::min(kLongestStep_s, t[1] - t[0]));
+  }
+  base_s_ = longest_step({nominal}, longest_s, error);
+  for (const EffectEntry* entry : all_effects()) {
+    const bool stiff = (entry->info->numerics & kStiff) != 0 && (entry->info->numerics & kImpacts) == 0;
+    if (stiff) stiff_steps_.emplace_back(entry, longest_step(sizes_of(*entry, nominal), base_s_, error));
+  }
+}
+
+double AxisSubstep::longest_step(const std::vector<Candidate>& models, double longest_s,
+                                 const Error& error) const {
+  constexpr double kShareOfNoise = 0.07;  // DECISIONS 42
+  const auto is_fine = [&](double h) {
+    int tried = 0;
+    for (int n = 0; n < static_cast<int>(coarser_.size()) && tried < kTrialRuns; ++n) {
+      bool ran = false;
+      for (const Candidate& m : models) {
+        const double e = error(m, n, h * coarser_[static_cast<std::size_t>(n)]);
+        if (std::isnan(e)) break;
+        if (e > kShareOfNoise) return false;
+        ran = true;
+      }
+      tried += ran ? 1 : 0;
+    }
+    return tried > 0;
+  };
+  for (double h = longest_s; h > shortest_s_ * 1.01; h *= 0.5) {
+    if (is_fine(h)) return h;
+  }
+  return shortest_s_;
+}
+
+double AxisSubstep::stiff_step(const EffectEntry& entry, int n) const {
+  const auto at = std::find_if(stiff_steps_.begin(), stiff_steps_.end(),
+                               [&](const auto& tried) { return tried.first == &entry; });
+  if (at == stiff_steps_.end()) return std::min(base_s_, shortest_s_);
+  return at->second * coarser_[static_cast<std::size_t>(n)];
+}
+
+double AxisSubstep::of(const Candidate& c, int n) const {
+  constexpr double kFineStep_s = 200e-6;  // measured: DECISIONS 32 and 38
+  double h = base_s_ * coarser_[static_cast<std::size_t>(n)];
+  for (const EffectUse& use : c.effects) {
+    const std::uint32_t numerics = use.entry->info->numerics;
+    if ((numerics & (kStiff | kFine)) == 0 || is_neutral(use)) continue;
+    if ((numerics & kStiff) != 0) h = std::min(h, stiff_step(*use.entry, n));
+    if ((numerics & kFine) != 0) h = std::min({h, base_s_, std::max(shortest_s_, kFineStep_s)});
+  }
+  return h;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,47 @@
+// Electrical sub-step of an axis: as long as its error stays small beside the noise of what is compared.
+//
+//   AxisSubstep substep(nominal, setups, 100e-6, error);
+//   run_axis<double>(params, effects, setups[n].input, {.step_s = substep.of(candidate, n)});
+//
+// Law: of the longest step, its half, its quarter …, the first whose error against a quarter of it stays below 7 %
+// of the noise sigma in the trial runs (0.5 % of the error energy, a sixth of what an effect has to take to be
+// named: DECISIONS 42). The base model is tried at its nominal values; a law that is faster than a millisecond
+// (kStiff) at its typical size, and with all strengths, then each shape, at a quarter and at four times that.
+// Cannot: see an error that only sizes far from these have, or that only comes after the trial's seconds; vary
+// the step within a run. A law with impacts has no order of convergence: it takes the shortest step.
+#pragma once
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "identify/predict/axis_setup.h"
+#include "identify/predict/candidate.h"
+
+namespace omnihil {
+
+// Is there an effect with this numerical property (NumericsBit) that is not neutral? A neutral one changes no bit.
+bool acts(const Candidate& candidate, std::uint32_t numerics);
+
+class AxisSubstep {
+ public:
+  // Of `model` in a run: the rms change of its signals from step h to h / 4, over their noise sigma; NaN: no
+  // trial run.
+  using Error = std::function<double(const Candidate& model, int run, double step_s)>;
+
+  AxisSubstep() = default;
+  AxisSubstep(const Candidate& nominal, const std::vector<AxisSetup>& setups, double shortest_s,
+              const Error& error);
+
+  double of(const Candidate& candidate, int run) const;  // s
+
+ private:
+  double longest_step(const std::vector<Candidate>& models, double longest_s, const Error& error) const;
+  double stiff_step(const EffectEntry& entry, int run) const;
+
+  double shortest_s_ = 100e-6;
+  double base_s_ = 100e-6;
+  std::vector<double> coarser_;                                     // per run, times the step
+  std::vector<std::pair<const EffectEntry*, double>> stiff_steps_;  // s, before coarser_
+};
+
+}  // namespace omnihil
