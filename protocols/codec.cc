@@ -1,5 +1,6 @@
 #include "protocols/codec.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -17,13 +18,6 @@ struct BitPlace {
 constexpr BitPlace place_of(int bit, BitOrder order) {
   const int in_byte = bit % 8;
   return {static_cast<std::size_t>(bit / 8), order == BitOrder::kMsbFirst ? 7 - in_byte : in_byte};
-}
-
-// What a constant, type or length field must hold.
-std::uint64_t required_raw(const Field& field, const Message& message, std::size_t packet_bytes) {
-  if (field.kind == FieldKind::kType) return message.type;
-  if (field.kind == FieldKind::kLength) return packet_bytes;
-  return field.constant;
 }
 
 PacketError contradiction(FieldKind kind) {
@@ -45,11 +39,12 @@ PacketError check_decoded(const Field& field, const Message& message, std::size_
     case FieldKind::kFloat32:
       if (!std::isfinite(value.number)) return PacketError::kNotFinite;
       [[fallthrough]];
-    case FieldKind::kUint:
+    case FieldKind::kInteger:
       if (is_limited(field) && (value.number < field.lo || value.number > field.hi))
         return PacketError::kRange;
       return PacketError::kNone;
     case FieldKind::kRanged32:
+    case FieldKind::kScaled:
     case FieldKind::kReserved:
     case FieldKind::kChecksum:
       return PacketError::kNone;
@@ -57,15 +52,37 @@ PacketError check_decoded(const Field& field, const Message& message, std::size_
   return PacketError::kNone;
 }
 
+// The content that stands for an integer, the plus sign for zero.
+std::uint64_t content_of(const Field& field, std::int64_t integer) {
+  if (field.sign == Sign::kMagnitude && integer < 0) {
+    return static_cast<std::uint64_t>(-integer) | (1ull << (field.bits - 1));
+  }
+  return static_cast<std::uint64_t>(integer) & mask(field.bits);
+}
+
+// Smallest integer, and the first above the largest, that the width and the sign allow.
+struct Ends {
+  double lowest;
+  double end;
+};
+Ends ends_of(const Field& field) {
+  if (field.kind == FieldKind::kReserved || field.sign == Sign::kNone)
+    return {0.0, std::ldexp(1.0, field.bits)};
+  const double half = std::ldexp(1.0, field.bits - 1);
+  return {field.sign == Sign::kMagnitude ? 1.0 - half : -half, half};
+}
+
 PacketError encode_integer(const Field& field, const Value& value, std::uint64_t& raw) {
   if (!std::isfinite(value.number)) return PacketError::kNotFinite;
-  const double end = std::ldexp(1.0, field.bits);
-  if (value.number < 0.0 || value.number != std::floor(value.number)) return PacketError::kRange;
+  const Ends ends = ends_of(field);
+  if (value.number < ends.lowest || value.number != std::floor(value.number)) return PacketError::kRange;
   // A wide field's largest values all round to 2^bits as a double; `raw` then still holds the exact one.
-  if (value.raw != 0 && value.raw <= mask(field.bits) && static_cast<double>(value.raw) == value.number) {
+  if (value.raw != 0 && value.raw <= mask(field.bits) && field_number(field, value.raw) == value.number) {
     raw = value.raw;
-  } else if (value.number < end) {
-    raw = static_cast<std::uint64_t>(value.number);
+  } else if (value.number < ends.end) {
+    raw = field.sign == Sign::kNone || field.kind == FieldKind::kReserved
+              ? static_cast<std::uint64_t>(value.number)
+              : content_of(field, static_cast<std::int64_t>(value.number));
   } else {
     return PacketError::kRange;
   }
@@ -97,6 +114,29 @@ PacketError encode_ranged(const Field& field, const Value& value, std::uint64_t&
   return PacketError::kNone;
 }
 
+PacketError encode_scaled(const Field& field, const Value& value, std::uint64_t& raw) {
+  if (!std::isfinite(value.number)) return PacketError::kNotFinite;
+  if (value.raw <= mask(field.bits) && field_number(field, value.raw) == value.number) {
+    raw = value.raw;  // decoded by this rule: back to the same bits
+    return PacketError::kNone;
+  }
+  // Ends are often multiples of pi, which teams hold as float32.
+  const auto number = static_cast<float>(value.number);
+  const bool below = number < static_cast<float>(field.lo);
+  const bool above = number > static_cast<float>(field.hi);
+  if ((below || above) && !field.scale->clamps) return PacketError::kRange;
+  raw = content_of(field, field.scale->count(field, below ? field.lo : above ? field.hi : value.number));
+  return PacketError::kNone;
+}
+
+// A checksum by its rule: 0 or the right one may be given.
+PacketError fill_in_checksum(const Field& field, BitOrder order, double given,
+                             std::span<std::uint8_t> packet) {
+  const std::uint64_t sum = field.check->of(packet);
+  write_bits(packet, field.bit, field.bits, order, sum);
+  return given == 0.0 || given == static_cast<double>(sum) ? PacketError::kNone : PacketError::kChecksum;
+}
+
 PacketError encode_field(const Field& field, const Message& message, std::size_t packet_bytes,
                          const Value& value, std::uint64_t& raw) {
   switch (field.kind) {
@@ -107,13 +147,15 @@ PacketError encode_field(const Field& field, const Message& message, std::size_t
       if (raw > mask(field.bits)) return PacketError::kTooLong;
       return value.number == 0.0 || value.number == static_cast<double>(raw) ? PacketError::kNone
                                                                              : contradiction(field.kind);
-    case FieldKind::kUint:
+    case FieldKind::kInteger:
     case FieldKind::kReserved:
       return encode_integer(field, value, raw);
     case FieldKind::kFloat32:
       return encode_float(field, value.number, raw);
     case FieldKind::kRanged32:
       return encode_ranged(field, value, raw);
+    case FieldKind::kScaled:
+      return encode_scaled(field, value, raw);
     case FieldKind::kChecksum:
       raw = 0;
       return PacketError::kNone;
@@ -161,10 +203,55 @@ std::uint64_t ranged_raw(const Field& field, float value) {
   return static_cast<std::uint64_t>(counts) & mask(field.bits);
 }
 
+std::int64_t integer_of(const Field& field, std::uint64_t raw) {
+  const bool negative = field.sign != Sign::kNone && (raw >> (field.bits - 1) & 1u) != 0;
+  if (!negative) return static_cast<std::int64_t>(raw);
+  if (field.sign == Sign::kMagnitude) return -static_cast<std::int64_t>(raw & mask(field.bits - 1));
+  return static_cast<std::int64_t>(raw | ~mask(field.bits));
+}
+
+double field_step(const Field& field) {
+  if (field.kind == FieldKind::kRanged32) return static_cast<double>(ranged_scale(field));
+  if (field.kind == FieldKind::kScaled) {
+    return std::abs(field.scale->number(field, 1) - field.scale->number(field, 0));
+  }
+  return field.kind == FieldKind::kInteger ? 1.0 : 0.0;
+}
+
+std::uint64_t required_raw(const Field& field, const Message& message, std::size_t packet_bytes) {
+  if (field.kind == FieldKind::kType) return (message.type >> field.constant) & mask(field.bits);
+  if (field.kind == FieldKind::kLength) return packet_bytes - field.constant;
+  return field.constant;
+}
+
 double field_number(const Field& field, std::uint64_t raw) {
+  if (field.kind == FieldKind::kScaled) return field.scale->number(field, integer_of(field, raw));
+  if (field.kind == FieldKind::kInteger && field.sign != Sign::kNone) {
+    return static_cast<double>(integer_of(field, raw));
+  }
   if (field.kind == FieldKind::kRanged32) return ranged_value(field, raw);
   if (field.kind == FieldKind::kFloat32) return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
   return static_cast<double>(raw);
+}
+
+Value nearest_value(const Field& field, double number) {
+  if (!std::isfinite(number)) number = 0.0;
+  if (field.kind == FieldKind::kRanged32) {
+    // A 32-bit field's upper end wraps in float32, hence raw and number.
+    const double top = std::fmin(field.hi, static_cast<double>(ranged_value(field, mask(field.bits))));
+    if (number >= top) return {.number = ranged_value(field, mask(field.bits)), .raw = mask(field.bits)};
+    return {.number = std::fmax(number, field.lo), .raw = 0};
+  }
+  const bool is_float = field.kind == FieldKind::kFloat32;
+  const bool is_integer = !is_float && field.kind != FieldKind::kScaled;
+  double lo = field.lo;
+  double hi = field.hi;
+  if (!is_limited(field)) {
+    const Ends ends = ends_of(field);
+    lo = is_float ? -std::numeric_limits<float>::max() : ends.lowest;
+    hi = is_float ? std::numeric_limits<float>::max() : ends.end - 1.0;
+  }
+  return {.number = std::clamp(is_integer ? std::floor(number) : number, lo, hi), .raw = 0};
 }
 
 FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> bytes,
@@ -175,7 +262,9 @@ FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> b
     Value& value = out.fields[i];
     value.raw = read_bits(bytes, field.bit, field.bits, message.bit_order);
     value.number = field_number(field, value.raw);
-    const PacketError error = check_decoded(field, message, packet_bytes, value);
+    PacketError error = check_decoded(field, message, packet_bytes, value);
+    const bool summed = field.kind == FieldKind::kChecksum && field.check != nullptr;
+    if (summed && field.check->of(bytes.first(packet_bytes)) != value.raw) error = PacketError::kChecksum;
     if (error != PacketError::kNone) return {error, field.name};
   }
   return {};
@@ -195,6 +284,13 @@ FieldFault encode_fields(const Values& values, std::size_t packet_bytes, std::sp
     const PacketError error = encode_field(field, message, packet_bytes, values.fields[i], raw);
     if (error != PacketError::kNone) return {error, field.name};
     write_bits(bytes, field.bit, field.bits, message.bit_order, raw);
+  }
+  for (std::size_t i = 0; i < message.fields.size(); ++i) {
+    const Field& field = message.fields[i];
+    if (field.kind != FieldKind::kChecksum || field.check == nullptr) continue;
+    const PacketError error =
+        fill_in_checksum(field, message.bit_order, values.fields[i].number, bytes.first(packet_bytes));
+    if (error != PacketError::kNone) return {error, field.name};
   }
   return {};
 }

@@ -14,8 +14,26 @@ namespace omnihil {
 // A plain integer. lo == hi: limited by its width alone.
 constexpr Field number(std::string_view name, int bits, std::string_view unit, std::string_view what,
                        double lo = 0.0, double hi = 0.0) {
-  return {
-      .name = name, .bits = bits, .kind = FieldKind::kUint, .lo = lo, .hi = hi, .unit = unit, .what = what};
+  return {.name = name,
+          .bits = bits,
+          .kind = FieldKind::kInteger,
+          .lo = lo,
+          .hi = hi,
+          .unit = unit,
+          .what = what};
+}
+// The same with a sign: two's complement, or the highest bit alone.
+constexpr Field signed_number(std::string_view name, int bits, std::string_view unit, std::string_view what,
+                              double lo = 0.0, double hi = 0.0) {
+  Field field = number(name, bits, unit, what, lo, hi);
+  field.sign = Sign::kTwosComplement;
+  return field;
+}
+constexpr Field sign_and_magnitude(std::string_view name, int bits, std::string_view unit,
+                                   std::string_view what, double lo = 0.0, double hi = 0.0) {
+  Field field = number(name, bits, unit, what, lo, hi);
+  field.sign = Sign::kMagnitude;
+  return field;
 }
 constexpr Field flag(std::string_view name, std::string_view what) { return number(name, 1, "", what); }
 // A flag that the team's own programs take and give as true or false; their other flags are 0 and 1.
@@ -31,11 +49,27 @@ constexpr Field constant(std::string_view name, int bits, std::uint64_t value, s
 constexpr Field type_code(std::string_view name, int bits, std::string_view what = "packet type") {
   return {.name = name, .bits = bits, .kind = FieldKind::kType, .what = what};
 }
-constexpr Field length(std::string_view name, int bits, std::string_view what) {
-  return {.name = name, .bits = bits, .kind = FieldKind::kLength, .unit = "bytes", .what = what};
+// The bits from `from_bit` on of the packet's type, where its code stands in several fields.
+constexpr Field type_code_bits(std::string_view name, int bits, int from_bit, std::string_view what) {
+  return {.name = name,
+          .bits = bits,
+          .kind = FieldKind::kType,
+          .constant = static_cast<std::uint64_t>(from_bit),
+          .what = what};
 }
-constexpr Field checksum(std::string_view name, int bits, std::string_view what) {
-  return {.name = name, .bits = bits, .kind = FieldKind::kChecksum, .what = what};
+// `not_counted`: bytes of the packet that the length leaves out.
+constexpr Field length(std::string_view name, int bits, std::string_view what,
+                       std::uint64_t not_counted = 0) {
+  return {.name = name,
+          .bits = bits,
+          .kind = FieldKind::kLength,
+          .constant = not_counted,
+          .unit = "bytes",
+          .what = what};
+}
+constexpr Field checksum(std::string_view name, int bits, std::string_view what,
+                         const ChecksumRule* rule = nullptr) {
+  return {.name = name, .bits = bits, .kind = FieldKind::kChecksum, .check = rule, .what = what};
 }
 constexpr Field float32(std::string_view name, std::string_view unit, std::string_view what) {
   return {.name = name, .bits = 32, .kind = FieldKind::kFloat32, .unit = unit, .what = what};
@@ -47,6 +81,19 @@ constexpr Field ranged(std::string_view name, int bits, double lo, double hi, st
           .kind = FieldKind::kRanged32,
           .lo = lo,
           .hi = hi,
+          .unit = unit,
+          .what = what};
+}
+// A number in lo..hi by a team's own rule; `sign` is that of the integer that travels.
+constexpr Field scaled(std::string_view name, int bits, Sign sign, const ScaleRule& rule, double lo,
+                       double hi, std::string_view unit, std::string_view what) {
+  return {.name = name,
+          .bits = bits,
+          .kind = FieldKind::kScaled,
+          .sign = sign,
+          .lo = lo,
+          .hi = hi,
+          .scale = &rule,
           .unit = unit,
           .what = what};
 }

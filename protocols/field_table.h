@@ -17,14 +17,38 @@ namespace omnihil {
 enum class BitOrder : std::uint8_t { kMsbFirst, kLsbFirst };
 
 enum class FieldKind : std::uint8_t {
-  kUint,      // value = raw; lo..hi is the allowed range
+  kInteger,   // value = raw, with a sign by `sign`; lo..hi is the allowed range
   kConst,     // raw must equal `constant`: sync bytes, protocol version
-  kType,      // packet type code; raw must equal the message's `type`
-  kLength,    // raw must equal the whole packet's length in bytes
+  kType,      // packet type code; raw must equal the message's `type`, or its bits from `constant` on
+  kLength,    // raw must equal the whole packet's length in bytes less `constant` (a header not counted)
   kFloat32,   // IEEE-754 single in the byte order of the message; must be finite
   kRanged32,  // value = raw * scale + lo in float32, scale = (hi - lo) / (2^bits - 1): REM's rule
+  kScaled,    // value by `scale` from the integer in the field, which has a sign by `sign`
   kReserved,  // meaning unknown: survives a round trip, never refused
-  kChecksum,  // computed by the format's own rule; the walker leaves it to the codec
+  kChecksum,  // computed by `check`; without one by the format's own rule, and the walker leaves it out
+};
+
+enum class Sign : std::uint8_t {
+  kNone,            // 0 to 2^bits - 1
+  kTwosComplement,  // -2^(bits-1) to 2^(bits-1) - 1
+  kMagnitude,       // the highest bit alone is the sign: +-(2^(bits-1) - 1), and two zeros
+};
+
+struct Field;
+
+// How a team turns a number into the integer of a field and back, in its own arithmetic. Decoding is linear:
+// number = (number at 0) + count * (number at 1 - number at 0), up to rounding.
+struct ScaleRule {
+  std::string_view says;  // for the documentation: "count = trunc(32767 x / hi + 32767) in float32"
+  double (*number)(const Field& field, std::int64_t count) = nullptr;
+  std::int64_t (*count)(const Field& field, double number) = nullptr;  // of a number within lo..hi
+  bool clamps = false;  // the team's encoder sets what lies beyond lo..hi to the end; otherwise it is refused
+};
+
+// A sum or CRC over a packet as it stands in its frame without framing; the field itself may hold anything.
+struct ChecksumRule {
+  std::string_view says;  // for the documentation: "CRC-32 of bytes 4 to the end"
+  std::uint64_t (*of)(std::span<const std::uint8_t> packet) = nullptr;
 };
 
 // What a field tells a dongle, whatever the team calls it.
@@ -38,22 +62,27 @@ enum class FieldRole : std::uint8_t {
 };
 
 struct Field {
-  std::string_view name{};  // the team's own name; "cmd[2]" marks element 2 of an array "cmd"
+  // The team's own name. "cmd[2]" is element 2 of an array "cmd", "motor.speed" a member of a struct "motor".
+  std::string_view name{};
   int bit = 0;
   int bits = 0;
-  FieldKind kind = FieldKind::kUint;
-  double lo = 0.0;  // smallest and largest value, in `unit`; equal: not limited
+  FieldKind kind = FieldKind::kInteger;
+  Sign sign = Sign::kNone;  // kInteger and kScaled
+  double lo = 0.0;          // smallest and largest value, in `unit`; equal: not limited
   double hi = 0.0;
-  std::uint64_t constant = 0;  // kConst only
-  std::string_view unit{};     // "m/s", "rad", "" for a plain number, "bool" for true and false in JSON
-  std::string_view what{};     // one line for the documentation
+  std::uint64_t constant = 0;           // kConst: the content; kType, kLength: see there
+  const ScaleRule* scale = nullptr;     // kScaled
+  const ChecksumRule* check = nullptr;  // kChecksum
+  std::string_view unit{};  // "m/s", "rad", "" for a plain number, "bool" for true and false in JSON
+  std::string_view what{};  // one line for the documentation
   // Part of the frame rather than of the packet's content (HERMES' version, source, checksum): filled in by
   // encode, checked by decode, not listed among the values a user reads and writes.
   bool envelope = false;
   FieldRole role = FieldRole::kNone;
 };
 
-enum class Direction : std::uint8_t { kToRobot, kFromRobot, kBoth, kToDongle, kFromDongle };
+// kInside: between the boards of one robot, never on the radio.
+enum class Direction : std::uint8_t { kToRobot, kFromRobot, kBoth, kToDongle, kFromDongle, kInside };
 
 // What a packet is for, where a dongle or the radio end of a robot treats it in a way of its own.
 enum class MessageRole : std::uint8_t {

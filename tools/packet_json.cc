@@ -1,7 +1,10 @@
 #include "tools/packet_json.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 
 #include "protocols/codec.h"
@@ -14,12 +17,31 @@ using nlohmann::json;
 
 constexpr std::string_view kTextKey = "text";
 
-// "cmd[2]" -> "cmd"; a plain name is its own key.
-std::string_view json_key(const Field& field) { return field.name.substr(0, field.name.find('[')); }
-bool is_element(const Field& field) { return json_key(field).size() != field.name.size(); }
+// The steps into the JSON of a field's name: "wheel[2].speed" -> wheel, [2], speed.
+std::vector<std::string_view> steps_of(std::string_view name) {
+  std::vector<std::string_view> steps;
+  while (!name.empty()) {
+    const std::size_t end = std::min(name.find_first_of(".[", 1), name.size());
+    steps.push_back(name.substr(0, end));
+    name.remove_prefix(end);
+    if (name.starts_with('.')) name.remove_prefix(1);
+  }
+  return steps;
+}
+bool is_element(std::string_view step) { return step.starts_with('['); }
+
+// What stands next to `path` in the name of a field below it: ".speed" of "wheel", "" where it is the field.
+std::optional<std::string_view> below(const Field& field, std::string_view path) {
+  if (path.empty()) return field.name;
+  if (!field.name.starts_with(path)) return std::nullopt;
+  const std::string_view rest = field.name.substr(path.size());
+  if (!rest.empty() && rest[0] != '.' && rest[0] != '[') return std::nullopt;
+  return rest;
+}
 
 bool is_float(const Field& field) {
-  return field.kind == FieldKind::kFloat32 || field.kind == FieldKind::kRanged32;
+  return field.kind == FieldKind::kFloat32 || field.kind == FieldKind::kRanged32 ||
+         field.kind == FieldKind::kScaled;
 }
 
 std::string short_float(float value) {
@@ -76,14 +98,18 @@ struct Reader {
                            " is not allowed; allowed: " + allowed);
   }
 
-  void unknown_key(const std::string& key) {
+  // The names that may stand where `path` ends, without what is below them.
+  void unknown_key(const std::string& path) {
+    const std::size_t parent = path.find_last_of(".[") == std::string::npos ? 0 : path.find_last_of(".[");
     std::vector<std::string_view> names;
     for (const Field& field : message.fields) {
-      if (names.empty() || names.back() != json_key(field)) names.push_back(json_key(field));
+      if (!below(field, std::string_view(path).substr(0, parent))) continue;
+      const std::string_view name = field.name.substr(0, field.name.find_first_of(".[", parent + 1));
+      if (names.empty() || names.back() != name) names.push_back(name);
     }
     if (message.text_tail) names.push_back(kTextKey);
-    const std::string_view near = nearest_spelling(key, names);
-    out.problems.push_back("field " + in_quotes(key) + ": " + std::string(message.name) +
+    const std::string_view near = nearest_spelling(path, names);
+    out.problems.push_back("field " + in_quotes(path) + ": " + std::string(message.name) +
                            " has no such field" +
                            (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
   }
@@ -91,10 +117,12 @@ struct Reader {
   void number(std::size_t index, const json& given) {
     const Field& field = message.fields[index];
     Value& value = out.values.fields[index];
+    is_given[index] = true;
     if (given.is_boolean() && field.bits == 1 && !is_float(field)) {
       value = {.number = given.get<bool>() ? 1.0 : 0.0, .raw = 0};
     } else if (given.is_number()) {
       value = {.number = given.get<double>(), .raw = 0};
+      // Integers above 2^53 do not fit a double.
       if (given.is_number_unsigned() && !is_float(field)) value.raw = given.get<std::uint64_t>();
     } else {
       problem(field.name, given, allowed_text(field, message));
@@ -111,16 +139,18 @@ struct Reader {
     }
   }
 
-  void array(const std::string& key, const json& given) {
-    std::vector<std::size_t> indices;
-    for (std::size_t i = 0; i < message.fields.size(); ++i) {
-      if (json_key(message.fields[i]) == key) indices.push_back(i);
-    }
-    if (!given.is_array() || given.size() != indices.size()) {
-      problem(key, given, "an array of " + std::to_string(indices.size()) + " numbers");
+  // Elements of the array, or members of the struct, that `path` names.
+  void array(const std::string& path, const json& given, std::size_t elements) {
+    if (!given.is_array() || given.size() != elements) {
+      problem(path, given, "an array of " + std::to_string(elements) + " numbers");
       return;
     }
-    for (std::size_t i = 0; i < indices.size(); ++i) number(indices[i], given[i]);
+    for (std::size_t i = 0; i < elements; ++i) field(path + "[" + std::to_string(i) + "]", given[i]);
+  }
+
+  void members(const std::string& path, const json& given) {
+    if (!given.is_object()) return problem(path, given, "an object");
+    for (const auto& [key, value] : given.items()) field(path + "." + key, value);
   }
 
   void text(const json& given) {
@@ -129,21 +159,30 @@ struct Reader {
     }
   }
 
-  void field(const std::string& key, const json& given) {
+  void field(const std::string& path, const json& given) {
+    std::size_t elements = 0;
+    bool is_struct = false;
     for (std::size_t i = 0; i < message.fields.size(); ++i) {
-      if (json_key(message.fields[i]) != key) continue;
-      return is_element(message.fields[i]) ? array(key, given) : number(i, given);
+      const auto rest = below(message.fields[i], path);
+      if (!rest) continue;
+      if (rest->empty()) return number(i, given);
+      is_struct = !is_element(*rest);
+      if (!is_struct) elements = static_cast<std::size_t>(std::stoi(std::string(rest->substr(1)))) + 1;
     }
-    unknown_key(key);
+    if (is_struct) return members(path, given);
+    return elements > 0 ? array(path, given, elements) : unknown_key(path);
   }
+
+  std::array<bool, kMaxFields> is_given{};
 };
 
 // A field left out holds 0: that must be allowed as well.
-void check_left_out(const json& object, const Message& message, PacketFromJson& out) {
+void check_left_out(const std::array<bool, kMaxFields>& is_given, const Message& message,
+                    PacketFromJson& out) {
   for (std::size_t i = 0; i < message.fields.size(); ++i) {
     const Field& field = message.fields[i];
     const std::size_t size = static_cast<std::size_t>(message.size_bytes) + out.text.size();
-    if (object.contains(std::string(json_key(field)))) continue;
+    if (is_given[i]) continue;
     if (field_fault(field, message, size, out.values.fields[i]) == PacketError::kNone) continue;
     out.problems.push_back("field " + in_quotes(field.name) +
                            ": missing; allowed: " + allowed_text(field, message));
@@ -153,8 +192,48 @@ void check_left_out(const json& object, const Message& message, PacketFromJson& 
 std::string value_text(const Field& field, const Value& value) {
   if (field.unit == "bool") return value.raw != 0 ? "true" : "false";
   if (is_float(field)) return short_float(static_cast<float>(value.number));
+  if (field.sign != Sign::kNone) return std::to_string(integer_of(field, value.raw));
   return std::to_string(value.raw);
 }
+
+// JSON text of values that stand in structs and arrays by their names, in the order of the fields.
+class Nested {
+ public:
+  void add(std::string_view name, const std::string& value) {
+    const std::vector<std::string_view> steps = steps_of(name);
+    std::size_t same = 0;
+    while (same < open_.size() && same + 1 < steps.size() && open_[same] == steps[same]) ++same;
+    close_down_to(same);
+    for (std::size_t i = same; i < steps.size(); ++i) {
+      if (!first_) out_ += ",";
+      first_ = false;
+      if (!is_element(steps[i])) out_ += "\"" + std::string(steps[i]) + "\":";
+      if (i + 1 == steps.size()) break;
+      out_ += is_element(steps[i + 1]) ? "[" : "{";
+      ends_ += is_element(steps[i + 1]) ? ']' : '}';
+      open_.push_back(steps[i]);
+      first_ = true;
+    }
+    out_ += value;
+  }
+  std::string text() {
+    close_down_to(0);
+    return "{" + out_ + "}";
+  }
+
+ private:
+  void close_down_to(std::size_t depth) {
+    for (; open_.size() > depth; open_.pop_back(), ends_.pop_back()) {
+      out_ += ends_.back();
+      first_ = false;
+    }
+  }
+
+  std::string out_;
+  std::vector<std::string_view> open_;
+  std::string ends_;
+  bool first_ = true;
+};
 
 }  // namespace
 
@@ -163,23 +242,31 @@ std::string allowed_text(const Field& field, const Message& message) {
   const bool limited = field.lo != field.hi;
   std::string limits = short_number(field.lo) + " to " + short_number(field.hi) + unit;
   switch (field.kind) {
-    case FieldKind::kUint:
+    case FieldKind::kInteger:
     case FieldKind::kReserved:
       if (field.unit == "bool") return "true or false";
+      if (field.sign != Sign::kNone && !limited) {
+        const std::int64_t largest = (std::int64_t{1} << (field.bits - 1)) - 1;
+        const std::int64_t lowest = field.sign == Sign::kMagnitude ? -largest : -largest - 1;
+        return "a whole number, " + std::to_string(lowest) + " to " + std::to_string(largest) + unit;
+      }
       if (limited) return "a whole number, " + limits;
       return "a whole number, 0 to " + std::to_string(field.bits >= 64 ? ~0ull : (1ull << field.bits) - 1) +
              unit;
     case FieldKind::kConst:
       return std::to_string(field.constant);
     case FieldKind::kType:
-      return std::to_string(message.type);
+      return std::to_string(required_raw(field, message, 0));
     case FieldKind::kLength:
-      return message.text_tail ? std::to_string(message.size_bytes) + " + length of the text, at most 255"
-                               : std::to_string(message.size_bytes);
+      return message.text_tail
+                 ? std::to_string(message.size_bytes) + " + length of the text, at most 255"
+                 : std::to_string(static_cast<std::uint64_t>(message.size_bytes) - field.constant);
     case FieldKind::kFloat32:
       return limited ? limits : "any finite float32" + unit;
     case FieldKind::kRanged32:
       return limits;
+    case FieldKind::kScaled:
+      return field.scale->clamps ? "a number, best in " + limits : limits;
     case FieldKind::kChecksum:
       return "the checksum of the packet";
   }
@@ -199,36 +286,21 @@ void packet_from_json(const json& object, const Message& message, PacketFromJson
   for (const auto& [key, value] : object.items()) {
     if (!message.text_tail || key != kTextKey) reader.field(key, value);
   }
-  check_left_out(object, message, out);
+  check_left_out(reader.is_given, message, out);
   out.values.text = out.text;
 }
 
 std::string packet_to_json(const Values& values) {
   const Message& message = *values.message;
-  std::string out = "{\"packet\":\"" + std::string(message.name) + "\",\"fields\":{";
-  std::string_view open_array;
-  bool first = true;
+  Nested fields;
   for (std::size_t i = 0; i < message.fields.size(); ++i) {
     const Field& field = message.fields[i];
-    if (field.envelope) continue;
-    if (!open_array.empty() && json_key(field) != open_array) {
-      out += "]";
-      open_array = {};
-    }
-    if (!first) out += ",";
-    first = false;
-    if (open_array.empty()) out += "\"" + std::string(json_key(field)) + "\":";
-    if (open_array.empty() && is_element(field)) {
-      out += "[";
-      open_array = json_key(field);
-    }
-    out += value_text(field, values.fields[i]);
+    if (!field.envelope) fields.add(field.name, value_text(field, values.fields[i]));
   }
-  if (!open_array.empty()) out += "]";
   if (message.text_tail && !values.text.empty()) {
-    out += std::string(first ? "" : ",") + "\"text\":" + json(utf8_from_latin1(values.text)).dump();
+    fields.add(kTextKey, json(utf8_from_latin1(values.text)).dump());
   }
-  return out + "}}";
+  return "{\"packet\":\"" + std::string(message.name) + "\",\"fields\":" + fields.text() + "}";
 }
 
 }  // namespace omnihil

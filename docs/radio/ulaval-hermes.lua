@@ -1,106 +1,106 @@
 -- Wireshark dissector of RoboCup ULaval HERMES v1. Generated from the packet tables by
 -- `omnihil formats ulaval-hermes --wireshark`; do not edit.
 local PROTOCOL = "ulaval_hermes"
-local TYPE_BYTE = 3
 local proto = Proto(PROTOCOL, "RoboCup ULaval HERMES v1")
 
--- [type] = name, bytes, fields: { name, first bit, bits, kind, unit, scale and lowest value of a ranged one }
+-- name, bytes, types: { first bit, bits, content }, fields: { name, first bit, bits, kind, unit, sign, of a scaled one the unit per count and the value at 0 }
 local packets = {
-  [0x00] = { name = "PING_REQUEST", size = 5, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "source", 8, 8, "number", "" },
-    { "robot", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
+  { name = "PING_REQUEST", size = 5, types = { { 24, 8, 0 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "source", 8, 8, "number", "", "" },
+    { "robot", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
   } },
-  [0x01] = { name = "PING_RESPONSE", size = 5, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "robot", 8, 8, "number", "" },
-    { "destination", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
+  { name = "PING_RESPONSE", size = 5, types = { { 24, 8, 1 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "robot", 8, 8, "number", "", "" },
+    { "destination", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
   } },
-  [0x02] = { name = "SPEED_MOVE", size = 17, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "source", 8, 8, "number", "" },
-    { "robot", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
-    { "vx", 40, 32, "float", "m/s" },
-    { "vy", 72, 32, "float", "m/s" },
-    { "vtheta", 104, 32, "float", "rad/s" },
+  { name = "SPEED_MOVE", size = 17, types = { { 24, 8, 2 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "source", 8, 8, "number", "", "" },
+    { "robot", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
+    { "vx", 40, 32, "float", "m/s", "" },
+    { "vy", 72, 32, "float", "m/s", "" },
+    { "vtheta", 104, 32, "float", "rad/s", "" },
   } },
-  [0x03] = { name = "SET_REGISTER", size = 7, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "source", 8, 8, "number", "" },
-    { "robot", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
-    { "register", 40, 8, "number", "" },
-    { "value", 48, 8, "number", "" },
+  { name = "SET_REGISTER", size = 7, types = { { 24, 8, 3 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "source", 8, 8, "number", "", "" },
+    { "robot", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
+    { "register", 40, 8, "number", "", "" },
+    { "value", 48, 8, "number", "", "" },
   } },
-  [0x04] = { name = "OPEN_LOOP_COMMAND", size = 21, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "source", 8, 8, "number", "" },
-    { "robot", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
-    { "cmd[0]", 40, 32, "float", "" },
-    { "cmd[1]", 72, 32, "float", "" },
-    { "cmd[2]", 104, 32, "float", "" },
-    { "cmd[3]", 136, 32, "float", "" },
+  { name = "OPEN_LOOP_COMMAND", size = 21, types = { { 24, 8, 4 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "source", 8, 8, "number", "", "" },
+    { "robot", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
+    { "cmd[0]", 40, 32, "float", "", "" },
+    { "cmd[1]", 72, 32, "float", "", "" },
+    { "cmd[2]", 104, 32, "float", "", "" },
+    { "cmd[3]", 136, 32, "float", "", "" },
   } },
-  [0x05] = { name = "GET_BATTERIE", size = 5, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "source", 8, 8, "number", "" },
-    { "robot", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
+  { name = "GET_BATTERIE", size = 5, types = { { 24, 8, 5 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "source", 8, 8, "number", "", "" },
+    { "robot", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
   } },
-  [0x06] = { name = "BATTERIE_RESPONSE", size = 6, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "robot", 8, 8, "number", "" },
-    { "destination", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
-    { "decivolts", 40, 8, "number", "0.1 V" },
+  { name = "BATTERIE_RESPONSE", size = 6, types = { { 24, 8, 6 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "robot", 8, 8, "number", "", "" },
+    { "destination", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
+    { "decivolts", 40, 8, "number", "0.1 V", "" },
   } },
-  [0x07] = { name = "GET_NUM_REQUEST", size = 5, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "source", 8, 8, "number", "" },
-    { "robot", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
+  { name = "GET_NUM_REQUEST", size = 5, types = { { 24, 8, 7 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "source", 8, 8, "number", "", "" },
+    { "robot", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
   } },
-  [0x08] = { name = "NUM_REQUEST_RESPONSE", size = 9, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "robot", 8, 8, "number", "" },
-    { "destination", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
-    { "value", 40, 32, "number", "" },
+  { name = "NUM_REQUEST_RESPONSE", size = 9, types = { { 24, 8, 8 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "robot", 8, 8, "number", "", "" },
+    { "destination", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
+    { "value", 40, 32, "number", "", "" },
   } },
-  [0x09] = { name = "SPEED_MOVE_ADVANCE", size = 19, lsb_first = true, fields = {
-    { "version", 0, 8, "number", "" },
-    { "source", 8, 8, "number", "" },
-    { "robot", 16, 8, "number", "" },
-    { "type", 24, 8, "number", "" },
-    { "checksum", 32, 8, "number", "" },
-    { "vx", 40, 32, "float", "m/s" },
-    { "vy", 72, 32, "float", "m/s" },
-    { "vtheta", 104, 32, "float", "rad/s" },
-    { "dribbler", 136, 7, "number", "" },
-    { "charge", 143, 1, "number", "bool" },
-    { "kick_force", 144, 8, "number", "0.1 ms" },
+  { name = "SPEED_MOVE_ADVANCE", size = 19, types = { { 24, 8, 9 } }, lsb_first = true, fields = {
+    { "version", 0, 8, "number", "", "" },
+    { "source", 8, 8, "number", "", "" },
+    { "robot", 16, 8, "number", "", "" },
+    { "type", 24, 8, "number", "", "" },
+    { "checksum", 32, 8, "number", "", "" },
+    { "vx", 40, 32, "float", "m/s", "" },
+    { "vy", 72, 32, "float", "m/s", "" },
+    { "vtheta", 104, 32, "float", "rad/s", "" },
+    { "dribbler", 136, 7, "number", "", "" },
+    { "charge", 143, 1, "number", "bool", "" },
+    { "kick_force", 144, 8, "number", "0.1 ms", "" },
   } },
 }
 
 local protocol_fields = {}
-for _, packet in pairs(packets) do
+for _, packet in ipairs(packets) do
   for _, row in ipairs(packet.fields) do
-    local filter = PROTOCOL .. "." .. packet.name .. "." .. row[1]:gsub("[^%w_]", "_")
+    local filter = PROTOCOL .. "." .. packet.name .. "." .. row[1]:gsub("[^%w_]+", "_")
     local label = row[1] .. (row[5] ~= "" and " (" .. row[5] .. ")" or "")
-    local make = row[4] == "float" and ProtoField.float or row[4] == "ranged" and ProtoField.double
+    local make = row[4] == "float" and ProtoField.float or row[4] == "scaled" and ProtoField.double
+      or row[6] ~= "" and (row[3] > 32 and ProtoField.int64 or ProtoField.int32)
       or row[3] > 32 and ProtoField.uint64 or ProtoField.uint32
     row.field = make(filter, label)
     protocol_fields[#protocol_fields + 1] = row.field
@@ -111,10 +111,10 @@ proto.fields = protocol_fields
 local fault = ProtoExpert.new(PROTOCOL .. ".fault", "Refused packet", expert.group.MALFORMED, expert.severity.ERROR)
 proto.experts = { fault }
 
--- Content of a field: a number, or a UInt64 above 32 bits.
-local function raw_of(range, row, lsb_first)
-  local first, bits = row[2], row[3]
+-- Content of some bits: a number, or a UInt64 above 32 bits.
+local function raw_of(range, first, bits, lsb_first)
   if not lsb_first then return range:bitfield(first, bits) end
+  if first % 8 == 0 and bits % 8 == 0 and bits > 32 then return range(first / 8, bits / 8):le_uint64() end
   local value, weight = 0, 1
   for bit = first, first + bits - 1 do
     local byte = range(math.floor(bit / 8), 1):uint()
@@ -124,21 +124,53 @@ local function raw_of(range, row, lsb_first)
   return value
 end
 
+-- The integer in a field, with its sign.
+local function integer_of(range, row, lsb_first)
+  local first, bits, sign = row[2], row[3], row[6]
+  if sign ~= "" and bits > 32 then
+    local bytes = range(math.floor(first / 8), bits / 8)
+    return lsb_first and bytes:le_int64() or bytes:int64()
+  end
+  local raw = raw_of(range, first, bits, lsb_first)
+  if sign == "" or raw < 2 ^ (bits - 1) then return raw end
+  return sign == "signed" and raw - 2 ^ bits or 2 ^ (bits - 1) - raw
+end
+
 local function add_field(tree, range, row, lsb_first)
   local first, last = math.floor(row[2] / 8), math.floor((row[2] + row[3] - 1) / 8)
   local bytes = range(first, last - first + 1)
   if row[4] == "float" then
     if lsb_first then tree:add_le(row.field, bytes) else tree:add(row.field, bytes) end
-  elseif row[4] == "ranged" then
-    tree:add(row.field, bytes, raw_of(range, row, lsb_first) * row[6] + row[7])
+  elseif row[4] == "scaled" then
+    tree:add(row.field, bytes, integer_of(range, row, lsb_first) * row[7] + row[8])
   else
-    tree:add(row.field, bytes, raw_of(range, row, lsb_first))
+    tree:add(row.field, bytes, integer_of(range, row, lsb_first))
   end
+end
+
+local function has_types_of(packet, range)
+  for _, row in ipairs(packet.types) do
+    if row[1] + row[2] > 8 * range:len() then return false end
+    if raw_of(range, row[1], row[2], packet.lsb_first) ~= row[3] then return false end
+  end
+  return true
+end
+
+-- The packet that begins here: its type fields hold their code; of several, the one of this length.
+local function packet_at(range)
+  local found = nil
+  for _, packet in ipairs(packets) do
+    if has_types_of(packet, range) then
+      if packet.size == range:len() then return packet end
+      if not found and #packet.types > 0 then found = packet end
+    end
+  end
+  return found
 end
 
 -- One packet without framing; answers its length, 0 where no packet starts like this.
 local function add_packet(tree, range, pinfo)
-  local packet = range:len() > TYPE_BYTE and packets[range(TYPE_BYTE, 1):uint()]
+  local packet = packet_at(range)
   if not packet or range:len() < packet.size then
     tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
     return 0

@@ -51,9 +51,7 @@ std::vector<std::string> known_keys(const RadioFormat* format) {
 
 // One count of the field's resolution, in its unit.
 double resolution(const Field& field) {
-  if (field.kind == FieldKind::kRanged32) return static_cast<double>(ranged_scale(field));
-  if (field.kind == FieldKind::kUint && !field.unit.empty()) return 1.0;
-  return 0.0;
+  return field.kind == FieldKind::kInteger && field.unit.empty() ? 0.0 : field_step(field);
 }
 
 }  // namespace
@@ -82,7 +80,8 @@ double Tolerances::of_field(std::string_view message, const Field& field) const 
   if (exact) return 0.0;
   const auto named = settings.find(std::string(message) + "." + std::string(field.name));
   if (named != settings.end()) return named->second;
-  const bool is_number = field.kind == FieldKind::kRanged32 || field.kind == FieldKind::kFloat32;
+  const bool is_number = field.kind == FieldKind::kRanged32 || field.kind == FieldKind::kFloat32 ||
+                         field.kind == FieldKind::kScaled;
   const std::string_view unit = field.unit.empty() && is_number ? "1" : field.unit;
   return resolution(field) + (unit.empty() ? 0.0 : of_column("", unit));
 }

@@ -12,23 +12,10 @@ namespace {
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
 
-// Nearest value that the field can carry. A 32-bit field's upper end wraps in float32, hence raw and number.
-Value saturated(const Field& field, double number) {
-  const std::uint64_t all_ones = field.bits >= 64 ? ~0ull : (1ull << field.bits) - 1;
-  if (!std::isfinite(number)) number = 0.0;
-  if (field.kind == FieldKind::kRanged32) {
-    const double top = std::fmin(field.hi, static_cast<double>(ranged_value(field, all_ones)));
-    if (number >= top) return {.number = ranged_value(field, all_ones), .raw = all_ones};
-    return {.number = std::fmax(number, field.lo), .raw = 0};
-  }
-  const double hi = field.lo == field.hi ? static_cast<double>(all_ones) : field.hi;
-  return {.number = std::fmin(std::fmax(std::floor(number), field.lo), hi), .raw = 0};
-}
-
 void put(Values& out, int index, double number) {
   if (index < 0) return;
   const auto i = static_cast<std::size_t>(index);
-  out.fields[i] = saturated(out.message->fields[i], number);
+  out.fields[i] = nearest_value(out.message->fields[i], number);
 }
 void put(Values& out, std::string_view name, double number) {
   put(out, out.message->field_index(name), number);

@@ -1,6 +1,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "protocols/codec.h"
 #include "protocols/emit/emit.h"
 
 namespace omnihil {
@@ -10,6 +11,14 @@ void define(std::string& out, const std::string& name, std::uint64_t value, cons
   char number[32];
   std::snprintf(number, sizeof number, format_string, static_cast<unsigned long long>(value));
   out += "#define " + name + " " + number + "\n";
+}
+
+void define_scale(std::string& out, const std::string& name, const Field& field) {
+  char lines[256];
+  std::snprintf(lines, sizeof lines, "#define %s_PER_COUNT %.9g\n#define %s_AT_0 %.9g\n", name.c_str(),
+                field.scale->number(field, 1) - field.scale->number(field, 0), name.c_str(),
+                field.scale->number(field, 0));
+  out += lines;
 }
 
 void define_message(std::string& out, const std::string& prefix, const Message& message) {
@@ -23,6 +32,9 @@ void define_message(std::string& out, const std::string& prefix, const Message& 
     define(out, field_name + "_BIT", static_cast<std::uint64_t>(field.bit), "%llu");
     define(out, field_name + "_BITS", static_cast<std::uint64_t>(field.bits), "%llu");
     if (field.kind == FieldKind::kConst) define(out, field_name + "_CONST", field.constant, "0x%02llXu");
+    if (field.sign == Sign::kTwosComplement) define(out, field_name + "_SIGNED", 1, "%llu");
+    if (field.sign == Sign::kMagnitude) define(out, field_name + "_SIGN_BIT", 1, "%llu");
+    if (field.kind == FieldKind::kScaled) define_scale(out, field_name, field);
   }
 }
 

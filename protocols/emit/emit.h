@@ -13,7 +13,9 @@ std::string emit_markdown(const RadioFormat& format);
 
 // Macros alone, for firmware in plain C. With P = the id in capitals, '_' for every other character:
 //   P_MESSAGE_TYPE, P_MESSAGE_BYTES (fields only, without framing),
-//   P_MESSAGE_FIELD_BIT, P_MESSAGE_FIELD_BITS, and P_MESSAGE_FIELD_CONST of a constant field.
+//   P_MESSAGE_FIELD_BIT, P_MESSAGE_FIELD_BITS, and P_MESSAGE_FIELD_CONST of a constant field;
+//   P_MESSAGE_FIELD_SIGNED of two's complement, …_SIGN_BIT of a sign bit and magnitude; of a scaled field
+//   …_PER_COUNT and …_AT_0: number = AT_0 + PER_COUNT * integer.
 // "cmd[2]" becomes CMD_2. Bit 0 is the lowest bit of byte 0 where P_MESSAGE_LSB_FIRST is 1, else the highest.
 std::string emit_c_header(const RadioFormat& format);
 

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cstdio>
 #include <vector>
 
+#include "protocols/codec.h"
 #include "protocols/emit/emit.h"
 
 namespace omnihil {
@@ -33,6 +35,8 @@ std::string_view direction_text(Direction direction) {
       return "host to dongle";
     case Direction::kFromDongle:
       return "dongle to host";
+    case Direction::kInside:
+      return "between boards of the robot";
   }
   return "";
 }
@@ -50,27 +54,57 @@ std::string carrier_text(const Carrier& carrier) {
   return "";
 }
 
+// "-32768 to 32767": what the width allows, or less; the two zeros of a sign bit are worth a word.
+std::string signed_text(const Field& field) {
+  const std::int64_t largest = field.bits == 64 ? INT64_MAX : (std::int64_t{1} << (field.bits - 1)) - 1;
+  const std::string_view form =
+      field.sign == Sign::kMagnitude ? ", sign and magnitude" : ", two's complement";
+  if (field.lo != field.hi) return number_text(field.lo) + " to " + number_text(field.hi) + text(form);
+  if (field.bits > 32) {
+    const std::string power = "2^" + std::to_string(field.bits - 1);
+    return "-" + power + " to " + power + " - 1" + text(form);
+  }
+  const std::int64_t lowest = field.sign == Sign::kMagnitude ? -largest : -largest - 1;
+  return std::to_string(lowest) + " to " + std::to_string(largest) + text(form);
+}
+
+std::string_view sign_text(Sign sign) {
+  if (sign == Sign::kNone) return "unsigned";
+  return sign == Sign::kMagnitude ? "sign and magnitude" : "two's complement";
+}
+
+std::string scaled_text(const Field& field) {
+  return number_text(field.lo) + " to " + number_text(field.hi) + " in steps of " +
+         number_text(field_step(field)) + " from " + number_text(field.scale->number(field, 0)) + " at 0, " +
+         text(sign_text(field.sign)) + "; " + text(field.scale->says) +
+         (field.scale->clamps ? "; what lies beyond is set to the end" : "");
+}
+
 std::string kind_text(const Field& field, const Message& message) {
   switch (field.kind) {
-    case FieldKind::kUint:
+    case FieldKind::kInteger:
     case FieldKind::kReserved:
+      if (field.sign != Sign::kNone) return signed_text(field);
       if (field.lo != field.hi) return number_text(field.lo) + " to " + number_text(field.hi);
       return field.bits > 32 ? "0 to 2^" + std::to_string(field.bits) + " - 1"
                              : "0 to " + std::to_string((1ull << field.bits) - 1);
     case FieldKind::kConst:
       return "always " + hex_text(field.constant);
     case FieldKind::kType:
-      return "always " + hex_text(message.type);
+      return "always " + hex_text(required_raw(field, message, 0));
     case FieldKind::kLength:
-      return message.text_tail ? std::to_string(message.size_bytes) + " + length of the text"
-                               : "always " + std::to_string(message.size_bytes);
+      return message.text_tail
+                 ? std::to_string(message.size_bytes) + " + length of the text"
+                 : "always " + std::to_string(static_cast<std::size_t>(message.size_bytes) - field.constant);
     case FieldKind::kFloat32:
       if (field.lo != field.hi) return "float32, " + number_text(field.lo) + " to " + number_text(field.hi);
       return "float32, finite";
     case FieldKind::kRanged32:
       return number_text(field.lo) + " to " + number_text(field.hi);
+    case FieldKind::kScaled:
+      return scaled_text(field);
     case FieldKind::kChecksum:
-      return "computed";
+      return field.check == nullptr ? "computed" : text(field.check->says);
   }
   return "";
 }
@@ -93,7 +127,7 @@ const Message* head_of(const RadioFormat& format, const Message& message) {
       const Field& a = earlier.fields[i];
       const Field& b = message.fields[i];
       same = a.name == b.name && a.bit == b.bit && a.bits == b.bits && a.kind == b.kind && a.what == b.what &&
-             a.lo == b.lo && a.hi == b.hi;
+             a.lo == b.lo && a.hi == b.hi && a.sign == b.sign && a.scale == b.scale && a.check == b.check;
     }
     if (same) head = &earlier;
   }
@@ -153,6 +187,18 @@ std::string byte_picture(const Message& message, int first_byte) {
   return out + "```\n";
 }
 
+std::string_view order_text(BitOrder order) {
+  return order == BitOrder::kLsbFirst
+             ? "Bit 0 is the lowest bit of byte 0; fields run upward, numbers are little-endian."
+             : "Bit 0 is the highest bit of byte 0; fields run on across bytes, numbers are big-endian.";
+}
+
+bool has_two_orders(const RadioFormat& format) {
+  return std::any_of(format.messages.begin(), format.messages.end(), [&](const Message& each) {
+    return each.bit_order != format.messages.front().bit_order;
+  });
+}
+
 std::string message_section(const RadioFormat& format, const Message& message) {
   const Message* head = head_of(format, message);
   const std::size_t first = head == nullptr ? 0 : head->fields.size();
@@ -160,6 +206,7 @@ std::string message_section(const RadioFormat& format, const Message& message) {
                     hex_text(message.type) + ", " + std::to_string(message.size_bytes) + " bytes" +
                     (message.text_tail ? " and the text" : "") + ", " +
                     text(direction_text(message.direction)) + ".\n";
+  if (has_two_orders(format)) out += text(order_text(message.bit_order)) + "\n";
   if (head != nullptr) {
     out += "\nBytes 0 to " + std::to_string(head->size_bytes - 1) + " as in " + text(head->name) +
            ", with type " + hex_text(message.type) + ".\n";
@@ -179,16 +226,14 @@ std::string message_section(const RadioFormat& format, const Message& message) {
 }  // namespace
 
 std::string emit_markdown(const RadioFormat& format) {
-  const bool lsb_first = format.messages.front().bit_order == BitOrder::kLsbFirst;
   std::string out = "# " + text(format.title) + "\n\n";
   out += "Id `" + text(format.id) + "`. Generated from the packet tables by `omnihil formats " +
          text(format.id) + "`; do not edit.\n\n";
   out += "- Source: " + text(format.source) + ".\n";
   out += "- Carrier: " + carrier_text(format.carrier) + ".\n";
   out += "- Longest frame on the wire: " + std::to_string(format.max_frame_bytes) + " bytes.\n";
-  out += lsb_first
-             ? "- Bit 0 is the lowest bit of byte 0; fields run upward, numbers are little-endian.\n"
-             : "- Bit 0 is the highest bit of byte 0; fields run on across bytes, numbers are big-endian.\n";
+  out += has_two_orders(format) ? "- Packets differ in their bit order; each says which it has.\n"
+                                : "- " + text(order_text(format.messages.front().bit_order)) + "\n";
   out += "- Bits named `padding` and fields called unknown or not used are kept as they are.\n\n";
   out += "## Notes\n\n" + text(format.notes) + "\n## Packets\n\n";
   out += "| packet | type | bytes | direction | what for |\n| --- | --- | --- | --- | --- |\n";

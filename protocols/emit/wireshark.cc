@@ -7,14 +7,16 @@ namespace omnihil {
 namespace {
 
 // The part of the dissector that is the same for every format. Rows of `packets`:
-//   [type] = {name, size, lsb_first, fields = {{name, first bit, bits, kind, unit, scale, lo}, …}}
+//   {name, size, lsb_first, types = {{first bit, bits, content}, …},
+//    fields = {{name, first bit, bits, kind, unit, sign, scale, at 0}, …}}
 constexpr std::string_view kEngine = R"lua(
 local protocol_fields = {}
-for _, packet in pairs(packets) do
+for _, packet in ipairs(packets) do
   for _, row in ipairs(packet.fields) do
-    local filter = PROTOCOL .. "." .. packet.name .. "." .. row[1]:gsub("[^%w_]", "_")
+    local filter = PROTOCOL .. "." .. packet.name .. "." .. row[1]:gsub("[^%w_]+", "_")
     local label = row[1] .. (row[5] ~= "" and " (" .. row[5] .. ")" or "")
-    local make = row[4] == "float" and ProtoField.float or row[4] == "ranged" and ProtoField.double
+    local make = row[4] == "float" and ProtoField.float or row[4] == "scaled" and ProtoField.double
+      or row[6] ~= "" and (row[3] > 32 and ProtoField.int64 or ProtoField.int32)
       or row[3] > 32 and ProtoField.uint64 or ProtoField.uint32
     row.field = make(filter, label)
     protocol_fields[#protocol_fields + 1] = row.field
@@ -25,10 +27,10 @@ proto.fields = protocol_fields
 local fault = ProtoExpert.new(PROTOCOL .. ".fault", "Refused packet", expert.group.MALFORMED, expert.severity.ERROR)
 proto.experts = { fault }
 
--- Content of a field: a number, or a UInt64 above 32 bits.
-local function raw_of(range, row, lsb_first)
-  local first, bits = row[2], row[3]
+-- Content of some bits: a number, or a UInt64 above 32 bits.
+local function raw_of(range, first, bits, lsb_first)
   if not lsb_first then return range:bitfield(first, bits) end
+  if first % 8 == 0 and bits % 8 == 0 and bits > 32 then return range(first / 8, bits / 8):le_uint64() end
   local value, weight = 0, 1
   for bit = first, first + bits - 1 do
     local byte = range(math.floor(bit / 8), 1):uint()
@@ -38,21 +40,53 @@ local function raw_of(range, row, lsb_first)
   return value
 end
 
+-- The integer in a field, with its sign.
+local function integer_of(range, row, lsb_first)
+  local first, bits, sign = row[2], row[3], row[6]
+  if sign ~= "" and bits > 32 then
+    local bytes = range(math.floor(first / 8), bits / 8)
+    return lsb_first and bytes:le_int64() or bytes:int64()
+  end
+  local raw = raw_of(range, first, bits, lsb_first)
+  if sign == "" or raw < 2 ^ (bits - 1) then return raw end
+  return sign == "signed" and raw - 2 ^ bits or 2 ^ (bits - 1) - raw
+end
+
 local function add_field(tree, range, row, lsb_first)
   local first, last = math.floor(row[2] / 8), math.floor((row[2] + row[3] - 1) / 8)
   local bytes = range(first, last - first + 1)
   if row[4] == "float" then
     if lsb_first then tree:add_le(row.field, bytes) else tree:add(row.field, bytes) end
-  elseif row[4] == "ranged" then
-    tree:add(row.field, bytes, raw_of(range, row, lsb_first) * row[6] + row[7])
+  elseif row[4] == "scaled" then
+    tree:add(row.field, bytes, integer_of(range, row, lsb_first) * row[7] + row[8])
   else
-    tree:add(row.field, bytes, raw_of(range, row, lsb_first))
+    tree:add(row.field, bytes, integer_of(range, row, lsb_first))
   end
+end
+
+local function has_types_of(packet, range)
+  for _, row in ipairs(packet.types) do
+    if row[1] + row[2] > 8 * range:len() then return false end
+    if raw_of(range, row[1], row[2], packet.lsb_first) ~= row[3] then return false end
+  end
+  return true
+end
+
+-- The packet that begins here: its type fields hold their code; of several, the one of this length.
+local function packet_at(range)
+  local found = nil
+  for _, packet in ipairs(packets) do
+    if has_types_of(packet, range) then
+      if packet.size == range:len() then return packet end
+      if not found and #packet.types > 0 then found = packet end
+    end
+  end
+  return found
 end
 
 -- One packet without framing; answers its length, 0 where no packet starts like this.
 local function add_packet(tree, range, pinfo)
-  local packet = range:len() > TYPE_BYTE and packets[range(TYPE_BYTE, 1):uint()]
+  local packet = packet_at(range)
   if not packet or range:len() < packet.size then
     tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
     return 0
@@ -132,20 +166,36 @@ DissectorTable.get("wtap_encap"):add(wtap.USER0, proto)
 
 std::string_view kind_text(FieldKind kind) {
   if (kind == FieldKind::kFloat32) return "float";
-  if (kind == FieldKind::kRanged32) return "ranged";
+  if (kind == FieldKind::kRanged32 || kind == FieldKind::kScaled) return "scaled";
   return "number";
+}
+
+std::string_view sign_word(Sign sign) {
+  if (sign == Sign::kNone) return "";
+  return sign == Sign::kMagnitude ? "magnitude" : "signed";
 }
 
 std::string field_row(const Field& field) {
   std::string row = "    { \"" + std::string(field.name) + "\", " + std::to_string(field.bit) + ", " +
                     std::to_string(field.bits) + ", \"" + std::string(kind_text(field.kind)) + "\", \"" +
-                    std::string(field.unit) + "\"";
-  if (field.kind == FieldKind::kRanged32) {
+                    std::string(field.unit) + "\", \"" + std::string(sign_word(field.sign)) + "\"";
+  if (kind_text(field.kind) == "scaled") {
+    const double at_0 = field.kind == FieldKind::kScaled ? field.scale->number(field, 0) : field.lo;
     char scale[64];
-    std::snprintf(scale, sizeof scale, ", %.9g, %.9g", static_cast<double>(ranged_scale(field)), field.lo);
+    std::snprintf(scale, sizeof scale, ", %.9g, %.9g", field_step(field), at_0);
     row += scale;
   }
   return row + " },\n";
+}
+
+std::string type_rows(const Message& message) {
+  std::string rows;
+  for (const Field& field : message.fields) {
+    if (field.kind != FieldKind::kType) continue;
+    rows += (rows.empty() ? "{ " : ", { ") + std::to_string(field.bit) + ", " + std::to_string(field.bits) +
+            ", " + std::to_string(required_raw(field, message, 0)) + " }";
+  }
+  return "{ " + rows + (rows.empty() ? "}" : " }");
 }
 
 int byte_of(const Message& message, FieldKind kind) {
@@ -156,10 +206,8 @@ int byte_of(const Message& message, FieldKind kind) {
 }
 
 std::string packet_entry(const Message& message) {
-  char type[16];
-  std::snprintf(type, sizeof type, "0x%02X", message.type);
-  std::string out = "  [" + std::string(type) + "] = { name = \"" + std::string(message.name) +
-                    "\", size = " + std::to_string(message.size_bytes);
+  std::string out = "  { name = \"" + std::string(message.name) +
+                    "\", size = " + std::to_string(message.size_bytes) + ", types = " + type_rows(message);
   if (message.bit_order == BitOrder::kLsbFirst) out += ", lsb_first = true";
   if (message.text_tail) out += ", text_size_at = " + std::to_string(byte_of(message, FieldKind::kLength));
   out += ", fields = {\n";
@@ -182,11 +230,11 @@ std::string emit_wireshark(const RadioFormat& format) {
       "-- Wireshark dissector of " + std::string(format.title) + ". Generated from the packet tables by\n";
   out += "-- `omnihil formats " + std::string(format.id) + " --wireshark`; do not edit.\n";
   out += "local PROTOCOL = \"" + lua_name(format.id) + "\"\n";
-  out += "local TYPE_BYTE = " + std::to_string(byte_of(format.messages.front(), FieldKind::kType)) + "\n";
   out += "local proto = Proto(PROTOCOL, \"" + std::string(format.title) + "\")\n\n";
   out +=
-      "-- [type] = name, bytes, fields: { name, first bit, bits, kind, unit, scale and lowest value of a "
-      "ranged one }\n";
+      "-- name, bytes, types: { first bit, bits, content }, fields: { name, first bit, bits, kind, unit, "
+      "sign, "
+      "of a scaled one the unit per count and the value at 0 }\n";
   out += "local packets = {\n";
   for (const Message& message : format.messages) out += packet_entry(message);
   out += "}\n";

@@ -56,8 +56,9 @@ inline Values contents_from(const Message& message, std::span<const std::uint8_t
   values.message = &message;
   for (std::size_t i = 0; i < message.fields.size(); ++i) {
     const Field& field = message.fields[i];
-    const bool free = field.kind == FieldKind::kUint || field.kind == FieldKind::kReserved ||
-                      field.kind == FieldKind::kFloat32 || field.kind == FieldKind::kRanged32;
+    const bool free = field.kind == FieldKind::kInteger || field.kind == FieldKind::kReserved ||
+                      field.kind == FieldKind::kFloat32 || field.kind == FieldKind::kRanged32 ||
+                      field.kind == FieldKind::kScaled;
     if (!free) continue;
     const std::uint64_t raw = read_bits(filled, field.bit, field.bits, message.bit_order);
     values.fields[i] = {.number = field_number(field, raw), .raw = raw};

@@ -27,9 +27,10 @@ inline bool is_prescribed(FieldKind kind) {
 inline double share_within_limits(const Field& field) {
   const bool limited = field.lo != field.hi;
   const double all = std::ldexp(1.0, field.bits);
-  if (field.kind == FieldKind::kUint && limited) {
-    const double largest = std::min(field.hi, all - 1.0);
-    return std::max(0.0, std::floor(largest) - std::ceil(std::max(field.lo, 0.0)) + 1.0) / all;
+  if (field.kind == FieldKind::kInteger && limited) {
+    const double above = field.sign == Sign::kNone ? all : all / 2.0;
+    const double largest = std::min(field.hi, above - 1.0);
+    return std::max(0.0, std::floor(largest) - std::ceil(std::max(field.lo, above - all)) + 1.0) / all;
   }
   if (field.kind == FieldKind::kFloat32) {
     if (!limited) return 1.0 - 1.0 / 256.0;  // one exponent of 256 is that of NaN and the infinities

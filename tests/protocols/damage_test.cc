@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "protocols/codec.h"
+#include "protocols/plain_packet.h"
 #include "tests/protocols/packet_util.h"
 
 namespace omnihil {
@@ -72,17 +73,21 @@ Fate fate_of(const GoldenPacket& packet, const Field* owner, const Bytes& flippe
     case FieldKind::kChecksum:
       return Fate::kRefused;
     case FieldKind::kType: {  // the type of a packet as long is that packet
-      const Message* other = message_of_type(packet.format->messages, static_cast<std::uint32_t>(raw));
+      const auto as_long = [&](const Message& other) {
+        return has_type_of(other, flipped) &&
+               (other.text_tail || other.size_bytes == packet.message->size_bytes);
+      };
       const bool may_be =
-          other != nullptr && (other->text_tail || other->size_bytes == packet.message->size_bytes);
+          std::any_of(packet.format->messages.begin(), packet.format->messages.end(), as_long);
       return may_be ? Fate::kEither : Fate::kRefused;
     }
     case FieldKind::kFloat32:
       if (!std::isfinite(number)) return Fate::kRefused;
       [[fallthrough]];
-    case FieldKind::kUint:
+    case FieldKind::kInteger:
       return limited && (number < owner->lo || number > owner->hi) ? Fate::kRefused : Fate::kChangesItsField;
     case FieldKind::kRanged32:
+    case FieldKind::kScaled:
     case FieldKind::kReserved:
       return Fate::kChangesItsField;
   }

@@ -40,22 +40,31 @@ inline void set_from_json(Values& values, const std::string& field, const nlohma
   value.raw = given.is_number_unsigned() ? given.get<std::uint64_t>() : 0;
 }
 
+// `given` is the value of the field `path`, or an array or object of fields below it.
+inline void set_all_from_json(Values& values, const std::string& path, const nlohmann::json& given) {
+  if (given.is_array()) {
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      set_all_from_json(values, path + "[" + std::to_string(i) + "]", given[i]);
+    }
+  } else if (given.is_object()) {
+    for (const auto& [key, value] : given.items()) {
+      set_all_from_json(values, path.empty() ? key : path + "." + key, value);
+    }
+  } else {
+    set_from_json(values, path, given);
+  }
+}
+
 // Values of `message` from the team's own names. `text` must outlive the result.
-inline Values values_from_json(const Message& message, const nlohmann::json& given, std::string& text) {
+inline Values values_from_json(const Message& message, nlohmann::json given, std::string& text) {
   Values values;
   values.message = &message;
-  for (const auto& [key, value] : given.items()) {
-    if (key == "text") {
-      text = value.get<std::string>();
-      values.text = text;
-    } else if (value.is_array()) {
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        set_from_json(values, key + "[" + std::to_string(i) + "]", value[i]);
-      }
-    } else {
-      set_from_json(values, key, value);
-    }
+  if (message.text_tail && given.contains("text")) {
+    text = given.at("text").get<std::string>();
+    values.text = text;
+    given.erase("text");
   }
+  set_all_from_json(values, "", given);
   return values;
 }
 

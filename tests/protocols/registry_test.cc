@@ -52,6 +52,11 @@ TEST(Registry, EveryFormatSaysWhatItIs) {
           EXPECT_LT(field.lo, field.hi) << field.name;
           EXPECT_LE(field.bits, 32) << field.name;
         }
+        EXPECT_EQ(field.kind == FieldKind::kScaled, field.scale != nullptr)
+            << message.name << "." << field.name;
+        EXPECT_TRUE(field.kind != FieldKind::kScaled || field.lo < field.hi) << field.name;
+        EXPECT_TRUE(field.check == nullptr || field.kind == FieldKind::kChecksum) << field.name;
+        EXPECT_TRUE(field.sign == Sign::kNone || field.bits >= 2) << field.name;
       }
     }
   }
@@ -92,11 +97,15 @@ TEST(CHeader, DefinesEveryMacroOnce) {
       const std::string name = line.substr(8, line.find(' ', 8) - 8);
       EXPECT_TRUE(names.insert(name).second) << name;
     }
-    // The guard; type, length and bit order of a packet; place and width of a field, and its constant.
+    // The guard; type, length and bit order of a packet; place and width of a field, its constant, sign, scale.
     std::size_t expected = 1;
     for (const Message& message : format->messages) {
       expected += 3;
-      for (const Field& field : message.fields) expected += field.kind == FieldKind::kConst ? 3 : 2;
+      for (const Field& field : message.fields) {
+        expected += field.kind == FieldKind::kConst ? 3 : 2;
+        if (field.sign != Sign::kNone) expected += 1;
+        if (field.kind == FieldKind::kScaled) expected += 2;
+      }
     }
     EXPECT_EQ(names.size(), expected) << format->id;
   }

@@ -1,0 +1,79 @@
+#include "protocols/plain_packet.h"
+
+#include "protocols/codec.h"
+
+namespace omnihil {
+namespace {
+
+bool is_type_field(const Field& field) { return field.kind == FieldKind::kType; }
+
+// Bytes from the first up to the last type field's end: fewer tell no packet.
+std::size_t bytes_to_type(const Message& message) {
+  int bits = 0;
+  for (const Field& field : message.fields) {
+    if (is_type_field(field)) bits = std::max(bits, field.bit + field.bits);
+  }
+  return static_cast<std::size_t>(bits + 7) / 8;
+}
+
+// The field that tells packets apart, to be named where none fits.
+std::string_view type_name(std::span<const Message> messages) {
+  for (const Field& field : messages.front().fields) {
+    if (is_type_field(field)) return field.name;
+  }
+  return {};
+}
+
+DecodeResult refused(PacketError error, std::string_view field = {}) {
+  DecodeResult result;
+  result.error = error;
+  result.field = field;
+  return result;
+}
+
+}  // namespace
+
+bool has_type_of(const Message& message, std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < bytes_to_type(message)) return false;
+  for (const Field& field : message.fields) {
+    if (!is_type_field(field)) continue;
+    const std::uint64_t raw = read_bits(bytes, field.bit, field.bits, message.bit_order);
+    if (raw != required_raw(field, message, bytes.size())) return false;
+  }
+  return true;
+}
+
+DecodeResult decode_packet(std::span<const Message> messages, std::span<const std::uint8_t> packet) {
+  const Message* found = nullptr;
+  std::size_t type_bytes = 0;
+  for (const Message& message : messages) {
+    type_bytes = std::max(type_bytes, bytes_to_type(message));
+    if (!has_type_of(message, packet)) continue;
+    const bool fits = packet.size() == static_cast<std::size_t>(message.size_bytes);
+    if (found == nullptr || fits) found = &message;
+    if (fits) break;
+  }
+  if (found == nullptr) {
+    return packet.size() < type_bytes ? refused(PacketError::kTooShort)
+                                      : refused(PacketError::kUnknownType, type_name(messages));
+  }
+  const auto size = static_cast<std::size_t>(found->size_bytes);
+  if (packet.size() < size) return refused(PacketError::kTooShort);
+  if (packet.size() > size) return refused(PacketError::kTooLong);
+  DecodeResult result;
+  const FieldFault fault = decode_fields(*found, packet, size, result.values);
+  result.error = fault.error;
+  result.field = fault.field;
+  return result;
+}
+
+RadioFormat::EncodeResult encode_packet(const Values& values, std::vector<std::uint8_t>& out) {
+  const auto size = static_cast<std::size_t>(values.message->size_bytes);
+  const std::size_t before = out.size();
+  out.resize(before + size);
+  const FieldFault fault = encode_fields(values, size, std::span(out).subspan(before, size));
+  if (fault.error != PacketError::kNone) out.resize(before);
+  return {fault.error, fault.field};
+}
+
+}  // namespace omnihil

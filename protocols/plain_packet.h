@@ -1,0 +1,19 @@
+// Packets whose frame is their fields and nothing else: the table alone is the codec.
+//
+//   .decode = [](std::span<const std::uint8_t> frame) { return decode_packet(kMessages, frame); },
+//   .encode = encode_packet,
+//
+// A packet is the message whose type fields all hold their code; of several such, the one of its length. Its
+// length must be the table's.
+#pragma once
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+
+// True when every type field of `message` lies inside `bytes` and holds its code.
+bool has_type_of(const Message& message, std::span<const std::uint8_t> bytes);
+
+DecodeResult decode_packet(std::span<const Message> messages, std::span<const std::uint8_t> packet);
+RadioFormat::EncodeResult encode_packet(const Values& values, std::vector<std::uint8_t>& out);
+
+}  // namespace omnihil
