@@ -213,7 +213,10 @@ std::int64_t integer_of(const Field& field, std::uint64_t raw) {
 double field_step(const Field& field) {
   if (field.kind == FieldKind::kRanged32) return static_cast<double>(ranged_scale(field));
   if (field.kind == FieldKind::kScaled) {
-    return std::abs(field.scale->number(field, 1) - field.scale->number(field, 0));
+    // Over all counts: between two neighbours a team's float32 would show.
+    const auto counts =
+        static_cast<std::int64_t>(mask(field.sign == Sign::kNone ? field.bits : field.bits - 1));
+    return (field.scale->number(field, counts) - field.scale->number(field, 0)) / static_cast<double>(counts);
   }
   return field.kind == FieldKind::kInteger ? 1.0 : 0.0;
 }

@@ -55,6 +55,7 @@ struct ChecksumRule {
 enum class FieldRole : std::uint8_t {
   kNone,
   kRobot,      // the robot meant
+  kRobotBits,  // a bit for each robot meant
   kTeam,       // its team: 0 yellow, 1 blue
   kAllRobots,  // not 0: every robot of the team
   kForDongle,  // not 0: the dongle itself

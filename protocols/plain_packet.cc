@@ -18,8 +18,10 @@ std::size_t bytes_to_type(const Message& message) {
 
 // The field that tells packets apart, to be named where none fits.
 std::string_view type_name(std::span<const Message> messages) {
-  for (const Field& field : messages.front().fields) {
-    if (is_type_field(field)) return field.name;
+  for (const Message& message : messages) {
+    for (const Field& field : message.fields) {
+      if (is_type_field(field)) return field.name;
+    }
   }
   return {};
 }
@@ -50,7 +52,8 @@ DecodeResult decode_packet(std::span<const Message> messages, std::span<const st
     type_bytes = std::max(type_bytes, bytes_to_type(message));
     if (!has_type_of(message, packet)) continue;
     const bool fits = packet.size() == static_cast<std::size_t>(message.size_bytes);
-    if (found == nullptr || fits) found = &message;
+    const bool has_type = bytes_to_type(message) > 0;  // without one the length alone tells it
+    if (fits || (found == nullptr && has_type)) found = &message;
     if (fits) break;
   }
   if (found == nullptr) {

@@ -4,7 +4,7 @@
 //   .encode = encode_packet,
 //
 // A packet is the message whose type fields all hold their code; of several such, the one of its length. Its
-// length must be the table's.
+// length must be the table's. A message without a type field is told by its length alone.
 #pragma once
 #include "protocols/radio_format.h"
 

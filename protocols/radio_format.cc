@@ -9,6 +9,15 @@ const Message* RadioFormat::find(std::string_view message_name) const {
   return nullptr;
 }
 
+bool RadioFormat::names_robots() const {
+  for (const Message& message : messages) {
+    for (const FieldRole role : {FieldRole::kRobot, FieldRole::kRobotBits}) {
+      if (message.field_index(role) >= 0) return true;
+    }
+  }
+  return false;
+}
+
 const RadioFormat* find_radio_format(std::string_view id) {
   for (const RadioFormat* format : radio_formats()) {
     if (format->id == id) return format;

@@ -30,14 +30,22 @@ struct Carrier {
 
 // How one packet stands among others on the wire.
 enum class Framing : std::uint8_t {
-  kNone,     // packets follow each other; the type gives the length
-  kCobsZero  // COBS, then 00
+  kNone,      // packets follow each other; the type gives the length
+  kCobsZero,  // COBS, then 00
+  kList       // frames that list packets: RadioFormat::list
 };
 
 struct DecodeResult {
   PacketError error = PacketError::kNone;
   std::string_view field;  // the field at fault, where there is one
   Values values;           // valid when error is kNone
+};
+
+// Frames that list packets of one length: a beginning, their number in one byte, the packets, an end.
+struct PacketList {
+  std::span<const std::uint8_t> begin;
+  std::uint8_t end = 0;
+  int most = 0;  // packets in a frame
 };
 
 // Whom a host asks for something.
@@ -71,6 +79,8 @@ struct RadioFormat {
     std::string_view field;
   };
   EncodeResult (*encode)(const Values& values, std::vector<std::uint8_t>& out) = nullptr;
+  // Of Framing::kList: decode and encode are then of a frame that lists one packet (packet_list.h has the rest).
+  const PacketList* list = nullptr;
   // Appends the frames with which a host asks for this. False: the format cannot say it, or not so large, and
   // nothing is appended. What is said is the command rounded to the fields' steps.
   bool (*encode_command)(const RobotCommand& command, const CommandTo& to,
@@ -82,6 +92,8 @@ struct RadioFormat {
   std::unique_ptr<RadioLink> make_link(const RadioLinkConfig& config) const { return dongle(*this, config); }
   bool can_drive(std::uint32_t mode) const { return (command_drives & drives(mode)) != 0; }
   const Message* find(std::string_view message_name) const;
+  // False: its packets name no robot; a wire is one robot.
+  bool names_robots() const;
 };
 
 std::span<const RadioFormat* const> radio_formats();        // sorted by id

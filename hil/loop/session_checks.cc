@@ -62,9 +62,14 @@ void id_problems(const SessionConfig& config, std::vector<std::string>& problems
 
 std::vector<std::string> session_problems(const SessionConfig& config) {
   std::vector<std::string> problems;
-  if (find_radio_format(config.radio_format) == nullptr) {
+  const RadioFormat* format = find_radio_format(config.radio_format);
+  if (format != nullptr && !format->names_robots() && config.robot_ids.size() > 1) {
+    problems.push_back(fmt::format("robots: packets of radio {} name no robot: one wire, one robot; start a bench for each",
+                                   config.radio_format));
+  }
+  if (format == nullptr) {
     std::vector<std::string_view> known;
-    for (const RadioFormat* format : radio_formats()) known.push_back(format->id);
+    for (const RadioFormat* each : radio_formats()) known.push_back(each->id);
     const std::string_view nearest = nearest_spelling(config.radio_format, known);
     problems.push_back(fmt::format("radio: unknown format \"{}\"{}; known: {}", config.radio_format,
                                    nearest.empty() ? "" : fmt::format(", did you mean {}?", nearest),

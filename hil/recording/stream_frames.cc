@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "protocols/packet_list.h"
+
 namespace omnihil {
 
 void FrameCutter::push(std::span<const std::uint8_t> bytes) {
@@ -14,7 +16,7 @@ std::size_t FrameCutter::frame_length() const {
   const auto rest = std::span(waiting_).subspan(front_);
   const std::size_t longest = std::min(rest.size(), static_cast<std::size_t>(format_.max_frame_bytes));
   for (std::size_t length = 1; length <= longest; ++length) {
-    if (format_.decode(rest.first(length)).error == PacketError::kNone) return length;
+    if (is_frame(format_, rest.first(length))) return length;
   }
   return 0;
 }

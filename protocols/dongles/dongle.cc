@@ -18,7 +18,8 @@ Address address_of(const Values& values) {
 }
 
 bool never_from_host(const Message& message) {
-  return message.direction == Direction::kFromRobot || message.direction == Direction::kFromDongle;
+  return message.direction == Direction::kFromRobot || message.direction == Direction::kFromDongle ||
+         message.direction == Direction::kInside;
 }
 
 Dongle::Dongle(const RadioFormat& format, const RadioLinkConfig& config, std::size_t host_buffer_bytes)
@@ -37,8 +38,9 @@ void Dongle::host_closed(std::int64_t) { host_out_.clear(); }
 PacketError Dongle::fault_from_robot(std::span<const std::uint8_t> frame) const {
   const DecodeResult result = format_.decode(frame);
   if (result.error != PacketError::kNone) return result.error;
-  return result.values.message->direction == Direction::kToRobot ? PacketError::kDirection
-                                                                 : PacketError::kNone;
+  const Direction direction = result.values.message->direction;
+  return direction == Direction::kToRobot || direction == Direction::kInside ? PacketError::kDirection
+                                                                             : PacketError::kNone;
 }
 
 void Dongle::deliver_frame(RadioSink& sink, int robot, const Message& message,

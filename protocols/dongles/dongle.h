@@ -26,7 +26,7 @@ namespace omnihil {
 
 // Whom a packet is for, by the roles of its fields.
 struct Address {
-  int robot = -1;  // -1: its table names none
+  int robot = -1;  // -1: its table names none; it is for the one robot behind the wire
   std::optional<Team> team;
   bool all_robots = false;
   bool dongle = false;
@@ -51,6 +51,7 @@ class Dongle : public RadioLink {
   // kNone, or the worst that `keep(id)` said of the robots the packet is for.
   template <class Keep>
   PacketError for_addressed(const Address& address, Keep&& keep) const {
+    if (address.robot < 0 && config_.robot_ids.size() == 1) return keep(config_.robot_ids.front());
     if (!address.all_robots) return keep(address.robot);
     PacketError error = config_.robot_ids.empty() ? PacketError::kAddress : PacketError::kNone;
     for (const int id : config_.robot_ids) {

@@ -1,11 +1,13 @@
 #include "protocols/dongles/plain_dongle.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "protocols/dongles/dongle.h"
 #include "protocols/dongles/kept_packet.h"
 #include "protocols/dongles/ring.h"
 #include "protocols/dongles/robot_table.h"
+#include "protocols/packet_list.h"
 
 namespace omnihil {
 namespace {
@@ -15,8 +17,9 @@ constexpr std::size_t kInFlight = 128;      // choice: 16 robots, eight frames e
 
 struct InFlight {
   KeptPacket<255> packet;
-  int robot = 0;
+  int robot = 0;  // -1: nobody, the turn of a list that names none
   std::int64_t arrives_ns = 0;
+  bool ends_list = false;  // the answers to the list go back after this one
 };
 
 struct Robot {
@@ -31,9 +34,12 @@ class PlainLink final : public Dongle {
         stream_(plain.frame_bytes, from_host_),
         robots_(config.robot_ids) {
     answer_.reserve(static_cast<std::size_t>(format.max_frame_bytes));
+    if (format.list != nullptr) listed_answers_.reserve(static_cast<std::size_t>(format.list->most));
   }
 
   void host_bytes(std::span<const std::uint8_t> bytes, std::int64_t now_ns) override {
+    if (plain_.half_frame_ns > 0 && now_ns - last_byte_ns_ > plain_.half_frame_ns) stream_.close();
+    last_byte_ns_ = now_ns;
     stream_.feed(bytes,
                  [&](std::span<const std::uint8_t> frame) { from_host_.count(accept(frame, now_ns)); });
   }
@@ -71,48 +77,131 @@ class PlainLink final : public Dongle {
 
  private:
   PacketError accept(std::span<const std::uint8_t> frame, std::int64_t now_ns);
+  PacketError accept_list(std::span<const std::uint8_t> frame, std::int64_t now_ns);
+  PacketError send_to(int id, std::span<const std::uint8_t> frame, std::int64_t at_ns, bool ends_list);
+  void end_list(std::int64_t at_ns);
   PacketError send_back(int robot, std::span<const std::uint8_t> frame, std::int64_t now_ns);
   void reach_robot(const InFlight& at, RadioSink& sink);
+  void act(const Values& values, const InFlight& at, RadioSink& sink);
 
   PlainDongle plain_;
   SizedStream stream_;
+  std::int64_t last_byte_ns_ = 0;
   RobotTable<Robot, 256> robots_;
   Ring<InFlight, kInFlight> to_robots_;
   Ring<InFlight, kInFlight> answers_;
   std::vector<std::uint8_t> answer_;
+  std::vector<Values> listed_answers_;
+  std::int64_t next_answer_ns_ = 0;
+  std::int64_t list_done_ns_ = 0;  // the next list waits for the one before
 };
 
+PacketError PlainLink::send_to(int id, std::span<const std::uint8_t> frame, std::int64_t at_ns,
+                               bool ends_list) {
+  const bool is_there = robots_.find(id) != nullptr;
+  if (!is_there && !ends_list) return PacketError::kAddress;
+  const bool room = to_robots_.push({.packet = KeptPacket<255>::of(frame),
+                                     .robot = is_there ? id : -1,
+                                     .arrives_ns = at_ns,
+                                     .ends_list = ends_list});
+  if (!room) return PacketError::kOverrun;
+  return is_there ? PacketError::kNone : PacketError::kAddress;
+}
+
 PacketError PlainLink::accept(std::span<const std::uint8_t> frame, std::int64_t now_ns) {
+  if (!plain_.silent_line.empty() && std::equal(frame.begin(), frame.end(), plain_.silent_line.begin(),
+                                                plain_.silent_line.end())) {
+    return PacketError::kNone;
+  }
+  const auto listed = listed_packets(format_, frame);
+  if (format_.list != nullptr && listed) return accept_list(frame, now_ns);
   const DecodeResult result = format_.decode(frame);
   if (result.error != PacketError::kNone) return result.error;
   if (never_from_host(*result.values.message)) return PacketError::kDirection;
+  if (result.values.message->direction == Direction::kToDongle) {
+    Values out;
+    if (plain_.dongle_answer == nullptr || !plain_.dongle_answer(result.values, out)) return PacketError::kNone;
+    answer_.clear();
+    encode(out, answer_);
+    return send_back(-1, answer_, now_ns);
+  }
+  const auto send = [&](int id) { return send_to(id, frame, now_ns + plain_.to_robot_ns, false); };
+  if (plain_.robots != nullptr) {
+    std::array<int, 16> ids{};
+    PacketError error = PacketError::kNone;
+    const std::size_t count = plain_.robots(result.values, ids);
+    for (std::size_t i = 0; i < count; ++i) {
+      const PacketError one = send(ids[i]);
+      if (one != PacketError::kNone) error = one;
+    }
+    return error;
+  }
   const Address address = address_of(result.values);
   if (address.team.value_or(config_.team) != config_.team) return PacketError::kAddress;
-  return for_addressed(address, [&](int id) {
-    if (robots_.find(id) == nullptr) return PacketError::kAddress;
-    const bool room = to_robots_.push(
-        {.packet = KeptPacket<255>::of(frame), .robot = id, .arrives_ns = now_ns + plain_.to_robot_ns});
-    return room ? PacketError::kNone : PacketError::kOverrun;
-  });
+  return for_addressed(address, send);
+}
+
+// Each packet by itself to its robot, one turn after the other.
+PacketError PlainLink::accept_list(std::span<const std::uint8_t> frame, std::int64_t now_ns) {
+  const std::size_t count = *listed_packets(format_, frame);
+  for (std::size_t i = 0; i < count; ++i) {
+    const DecodeResult result = decode_listed(format_, frame, i);
+    if (result.error != PacketError::kNone) return result.error;
+    if (never_from_host(*result.values.message)) return PacketError::kDirection;
+  }
+  std::int64_t at_ns = std::max(now_ns, list_done_ns_) + plain_.to_robot_ns;
+  PacketError error = PacketError::kNone;
+  for (std::size_t i = 0; i < count; ++i, at_ns += plain_.turn_ns) {
+    const Values values = decode_listed(format_, frame, i).values;
+    answer_.clear();
+    encode(values, answer_);
+    const PacketError one = send_to(address_of(values).robot, answer_, at_ns, i + 1 == count);
+    if (one != PacketError::kNone) error = one;
+  }
+  if (count == 0) send_to(-1, {}, at_ns, true);
+  list_done_ns_ = count == 0 ? now_ns : at_ns - plain_.to_robot_ns;
+  return error;
+}
+
+void PlainLink::end_list(std::int64_t at_ns) {
+  answer_.clear();
+  if (encode_list(format_, listed_answers_, answer_).error == PacketError::kNone) {
+    const PacketError error = send_back(-1, answer_, at_ns);
+    if (error != PacketError::kNone) from_robots_.count(error);
+  }
+  listed_answers_.clear();
 }
 
 void PlainLink::reach_robot(const InFlight& at, RadioSink& sink) {
-  const Values values = format_.decode(at.packet.span()).values;
-  if (config_.firmware_decodes) {
-    return deliver_frame(sink, at.robot, *values.message, at.packet.span(), at.arrives_ns);
+  if (at.robot >= 0) {
+    const Values values = format_.decode(at.packet.span()).values;
+    if (config_.firmware_decodes) {
+      deliver_frame(sink, at.robot, *values.message, at.packet.span(), at.arrives_ns);
+    } else {
+      act(values, at, sink);
+    }
   }
+  if (at.ends_list && !config_.firmware_decodes) end_list(at.arrives_ns + plain_.turn_ns);
+}
+
+// What a robot whose firmware takes commands does with a packet.
+void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
   const MessageRole role = values.message->role;
   const bool drives = role == MessageRole::kCommand || role == MessageRole::kSingleCommand;
   if (drives || role == MessageRole::kKill) {
     Delivery delivery;
     delivery.robot_id = at.robot;
     delivery.message = values.message->name;
-    if (drives) delivery.command = plain_.to_command(values);
+    if (drives) delivery.command = plain_.to_command(values, at.robot);
     sink.deliver(delivery, at.arrives_ns);
   }
   const std::optional<RobotFeedback>& feedback = robots_.find(at.robot)->feedback;
   Values out;
   if (plain_.answer == nullptr || !feedback || !plain_.answer(values, at.robot, *feedback, out)) return;
+  if (format_.list != nullptr) {
+    if (listed_answers_.size() < static_cast<std::size_t>(format_.list->most)) listed_answers_.push_back(out);
+    return;
+  }
   answer_.clear();
   encode(out, answer_);
   const PacketError error = send_back(at.robot, answer_, at.arrives_ns);
@@ -120,8 +209,10 @@ void PlainLink::reach_robot(const InFlight& at, RadioSink& sink) {
 }
 
 PacketError PlainLink::send_back(int robot, std::span<const std::uint8_t> frame, std::int64_t now_ns) {
-  const bool room = answers_.push(
-      {.packet = KeptPacket<255>::of(frame), .robot = robot, .arrives_ns = now_ns + plain_.to_host_ns});
+  const std::int64_t at_ns = std::max(now_ns + plain_.to_host_ns, next_answer_ns_);
+  const bool room =
+      answers_.push({.packet = KeptPacket<255>::of(frame), .robot = robot, .arrives_ns = at_ns});
+  if (room) next_answer_ns_ = at_ns + plain_.answer_gap_ns;
   return room ? PacketError::kNone : PacketError::kOverrun;
 }
 

@@ -8,9 +8,10 @@
 //   RadioFormat format{.dongle = [](const RadioFormat& self, const RadioLinkConfig& config) {
 //                        return make_plain_dongle(self, config, kDongle); }, …};
 //
-// A frame goes to the robot that its table's fields of role kRobot, kTeam, kAllRobots name; packets of role
+// A frame goes to the robot that its table's fields of role kRobot, kTeam, kAllRobots name, or to the only robot
+// there is where they name none; packets of role
 // kCommand and kSingleCommand become commands, those of role kKill let the wheels run free.
-// Cannot: frames that share one air packet, polling, retries; two frames on the air do not wait for each
+// Cannot: frames that share one air packet, retries; two frames on the air do not wait for each
 // other. Write a dongle of its own for those (hermes_dongle.cc, rem_dongle.cc).
 #pragma once
 #include "protocols/dongles/sized_stream.h"
@@ -20,9 +21,20 @@ namespace omnihil {
 
 struct PlainDongle {
   FrameBytes frame_bytes = nullptr;  // sized_stream.h; frames have at most 255 bytes
+  std::string_view silent_line{};    // a frame that hosts write before the others: taken, and nothing happens
+  std::int64_t half_frame_ns = 0;    // how long a half frame waits for its rest; 0: for ever
   std::int64_t to_robot_ns = 0;      // last byte from the host until the robot has it
   std::int64_t to_host_ns = 0;       // the robot has a frame until its answer is at the host
-  RobotCommand (*to_command)(const Values& values) = nullptr;
+  // What a packet asks of robot `id`.
+  RobotCommand (*to_command)(const Values& values, int id) = nullptr;
+  // The robots that a packet is for, where roles of fields do not say it: their number, and their ids. Null: roles.
+  std::size_t (*robots)(const Values& values, std::span<int, 16> ids) = nullptr;
+  // A frame that lists packets gives each robot its turn, this long after the one before, and is answered after
+  // the last by one frame that lists the answers.
+  std::int64_t turn_ns = 0;
+  std::int64_t answer_gap_ns = 0;  // answers reach the host at least this far apart
+  // What the dongle itself answers to a packet for it. Null: nothing.
+  bool (*dongle_answer)(const Values& to_dongle, Values& out) = nullptr;
   // Fills `out`, its message included, with what robot `id` answers to a packet. False: nothing. Null: robots
   // never answer.
   bool (*answer)(const Values& to_robot, int id, const RobotFeedback& feedback, Values& out) = nullptr;

@@ -36,7 +36,7 @@ class SizedStream {
     }
   }
 
-  // The host is gone: a half frame is dropped and counted.
+  // The host is gone, or silent for too long: a half frame is dropped and counted.
   void close() {
     if (fill_ > 0) counts_.count(PacketError::kTooShort);
     fill_ = 0;

@@ -158,6 +158,34 @@ function proto.dissector(buffer, pinfo, tree)
 end
 )lua";
 
+constexpr std::string_view kDissectList = R"lua(
+function proto.dissector(buffer, pinfo, tree)
+  pinfo.cols.protocol = PROTOCOL
+  local at = 0
+  while at < buffer:len() do
+    local rest = buffer(at)
+    local head = #LIST_BEGIN + 1
+    local is_list = rest:len() > head
+    for i, byte in ipairs(LIST_BEGIN) do is_list = is_list and rest(i - 1, 1):uint() == byte end
+    local number = is_list and rest(#LIST_BEGIN, 1):uint() or 0
+    -- Packets of a list have one length: that which brings the end to its place.
+    local size = nil
+    for _, packet in ipairs(packets) do
+      local last = head + number * packet.size
+      if is_list and last < rest:len() and rest(last, 1):uint() == LIST_END then
+        if last + 1 == rest:len() or not size then size = packet.size end
+      end
+    end
+    if not size then
+      tree:add(proto, rest):add_proto_expert_info(fault, "framing")
+      return
+    end
+    for i = 0, number - 1 do add_packet(tree, rest(head + i * size, size), pinfo) end
+    at = at + head + number * size + 1
+  end
+end
+)lua";
+
 constexpr std::string_view kRegister = R"lua(
 -- Chosen with "Decode As": a UDP port, or the link type USER 0 of a capture of serial bytes.
 DissectorTable.get("udp.port"):add_for_decode_as(proto)
@@ -215,6 +243,17 @@ std::string packet_entry(const Message& message) {
   return out + "  } },\n";
 }
 
+std::string list_rows(const PacketList& list) {
+  std::string begin;
+  for (const std::uint8_t byte : list.begin) begin += (begin.empty() ? "" : ", ") + std::to_string(byte);
+  return "local LIST_BEGIN, LIST_END = { " + begin + " }, " + std::to_string(list.end) + "\n";
+}
+
+std::string_view dissector_of(Framing framing) {
+  if (framing == Framing::kCobsZero) return kDissectCobs;
+  return framing == Framing::kList ? kDissectList : kDissectRaw;
+}
+
 std::string lua_name(std::string_view id) {
   std::string name(id);
   for (char& c : name) {
@@ -238,8 +277,9 @@ std::string emit_wireshark(const RadioFormat& format) {
   out += "local packets = {\n";
   for (const Message& message : format.messages) out += packet_entry(message);
   out += "}\n";
+  if (format.list != nullptr) out += list_rows(*format.list);
   out += kEngine;
-  out += format.framing == Framing::kCobsZero ? kDissectCobs : kDissectRaw;
+  out += dissector_of(format.framing);
   out += kRegister;
   return out;
 }

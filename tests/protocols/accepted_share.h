@@ -64,7 +64,8 @@ inline double packets_share(const Message& message, std::size_t bytes) {
 // Of all frames of this many bytes. Every packet has one frame (that its bytes come back is tested), so COBS
 // with its one code (packets below 254 bytes) and its delimiter leaves one frame in 256^2.
 inline double frames_share(const RadioFormat& format, std::size_t bytes) {
-  const std::size_t overhead = format.framing == Framing::kCobsZero ? 2 : 0;
+  std::size_t overhead = format.framing == Framing::kCobsZero ? 2 : 0;
+  if (format.list != nullptr) overhead = format.list->begin.size() + 2;  // begin, number, end
   if (bytes < overhead) return 0.0;
   double share = 0.0;
   for (const Message& message : format.messages) share += packets_share(message, bytes - overhead);

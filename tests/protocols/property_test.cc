@@ -74,7 +74,8 @@ TEST(PacketProperty, RandomContentsOfEveryPacketSurviveTheWire) {
       constexpr int kContents = 300;
       for (int i = 0; i < kContents; ++i) {
         Bytes input{static_cast<std::uint8_t>(0x80u | f), static_cast<std::uint8_t>(m)};
-        const Bytes contents = random_bytes(random, 100);
+        const auto size = static_cast<std::size_t>(formats[f]->messages[m].size_bytes);
+        const Bytes contents = random_bytes(random, std::max<std::size_t>(size, 100));
         input.insert(input.end(), contents.begin(), contents.end());
         accepted += check_packet_property(input) ? 1 : 0;
       }

@@ -1,7 +1,9 @@
 // Packets made by the teams' own programs, from the folder of reference data.
 #include <cstdio>
 
-#include "tests/protocols/packet_util.h"
+#include "protocols/codec.h"
+#include "protocols/packet_list.h"
+#include "tests/protocols/team_vectors.h"
 
 namespace omnihil {
 namespace {
@@ -14,7 +16,7 @@ using nlohmann::json;
 
 bool same_float32(double a, double b) { return static_cast<float>(a) == static_cast<float>(b); }
 
-// A decoded field against what the team's decoder says of it.
+// A decoded field, or the fields below an array or object, against what the team's decoder says of it.
 void expect_value(const Values& values, const std::string& name, const json& expected) {
   if (expected.is_array()) {
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -22,12 +24,22 @@ void expect_value(const Values& values, const std::string& name, const json& exp
     }
     return;
   }
+  if (expected.is_object()) {
+    for (const auto& [key, each] : expected.items()) expect_value(values, name + "." + key, each);
+    return;
+  }
   const int index = values.message->field_index(name);
   ASSERT_GE(index, 0) << values.message->name << " has no field " << name;
+  const Field& field = values.message->fields[static_cast<std::size_t>(index)];
   const Value& value = values.fields[static_cast<std::size_t>(index)];
+  const bool is_whole = field.kind != FieldKind::kFloat32 && field.kind != FieldKind::kRanged32 &&
+                        field.kind != FieldKind::kScaled;
   if (expected.is_boolean()) {
     EXPECT_EQ(value.raw != 0, expected.get<bool>()) << name;
-  } else if (expected.is_number_integer()) {
+  } else if (is_whole && field.sign != Sign::kNone) {
+    EXPECT_EQ(integer_of(field, value.raw), expected.get<std::int64_t>())
+        << values.message->name << "." << name;
+  } else if (is_whole && expected.is_number_integer()) {
     EXPECT_EQ(value.raw, expected.get<std::uint64_t>()) << values.message->name << "." << name;
   } else {
     EXPECT_TRUE(same_float32(value.number, expected.get<double>()))
@@ -78,6 +90,43 @@ int check_rem(const std::string& id) {
     }
   }
   return rows;
+}
+
+// A frame with all that it lists.
+void expect_row_both_ways(const RadioFormat& format, const TeamRow& row) {
+  SCOPED_TRACE(std::string(format.id) + " " + row.hex);
+  const Bytes frame = from_hex(row.hex);
+  ASSERT_EQ(listed_packets(format, frame), row.packets.size());
+  std::vector<Values> values, again;
+  std::string text;
+  for (std::size_t i = 0; i < row.packets.size(); ++i) {
+    const Message* message = format.find(row.packets[i].name);
+    ASSERT_NE(message, nullptr) << row.packets[i].name;
+    values.push_back(values_from_json(*message, row.packets[i].given, text));
+    const DecodeResult result = decode_listed(format, frame, i);
+    ASSERT_EQ(result.error, PacketError::kNone) << result.field;
+    EXPECT_EQ(result.values.message, message);
+    for (const auto& [name, value] : row.packets[i].decoded.items()) expect_value(result.values, name, value);
+    again.push_back(result.values);
+  }
+  for (const std::vector<Values>* packets : {&values, &again}) {
+    Bytes out;
+    const auto encoded = encode_list(format, *packets, out);
+    EXPECT_EQ(encoded.error, PacketError::kNone) << encoded.field;
+    EXPECT_EQ(to_hex(out), row.hex);
+  }
+}
+
+TEST(TeamVectors, EveryRowBothWays) {
+  SKIP_WITHOUT_SHARED();
+  for (const TeamFile& file : team_files()) {
+    const RadioFormat* format = find_radio_format(file.format);
+    ASSERT_NE(format, nullptr) << file.format;
+    const std::vector<TeamRow> rows = team_rows(file);
+    for (const TeamRow& row : rows) expect_row_both_ways(*format, row);
+    EXPECT_EQ(rows.size(), file.rows) << file.format;
+    std::printf("%s: %zu packets both ways\n", file.format.c_str(), rows.size());
+  }
 }
 
 TEST(TeamVectors, RemV8BothWays) {

@@ -7,7 +7,7 @@
 
 #include "hil/wire/wire_kind.h"
 #include "protocols/emit/emit.h"
-#include "tests/protocols/packet_util.h"
+#include "tests/protocols/team_vectors.h"
 
 namespace omnihil {
 namespace {
@@ -231,6 +231,54 @@ TEST_F(Verbs, WiresListsEveryKindWithItsParameters) {
     EXPECT_NE(list.out.find(kind->says), std::string::npos) << list.out;
     for (const WireParameter& parameter : kind->parameters)
       EXPECT_NE(list.out.find(parameter.allowed()), std::string::npos) << list.out;
+  }
+}
+
+// What decode prints of a packet against what the team's decoder says.
+void expect_fields(const json& fields, const json& expected, const std::string& name) {
+  if (expected.is_object()) {
+    for (const auto& [key, value] : expected.items()) expect_fields(fields.at(key), value, name + "." + key);
+  } else if (expected.is_array()) {
+    for (std::size_t i = 0; i < expected.size(); ++i) expect_fields(fields.at(i), expected[i], name);
+  } else if (expected.is_boolean() || fields.is_boolean()) {
+    EXPECT_EQ(fields, expected) << name;
+  } else {
+    EXPECT_EQ(fields.get<float>(), expected.get<float>()) << name;
+  }
+}
+
+TEST_F(Verbs, EveryFormatAgreesWithItsTeamsVectors) {
+  if (shared_folder().empty()) GTEST_SKIP() << "OMNIHIL_SHARED does not name the folder of reference data";
+  for (const TeamFile& file : team_files()) {
+    std::map<std::string, std::pair<std::string, std::string>> by_packet;  // lines in, hex out
+    std::string all_hex;
+    const std::vector<TeamRow> rows = team_rows(file);
+    for (const TeamRow& row : rows) {
+      all_hex += row.hex + "\n";
+      const std::string name = row.packets.empty() ? "" : row.packets[0].name;
+      if (name.empty()) continue;
+      json list;
+      for (const TeamPacket& packet : row.packets) list.push_back(packet.given);
+      auto& [given, hex] = by_packet[name];
+      given += (row.packets.size() == 1 ? row.packets[0].given : list).dump() + "\n";
+      hex += row.hex + "\n";
+    }
+    for (const auto& [name, lines] : by_packet) {
+      const Output encoded = run("encode " + file.format + " " + name, lines.first);
+      EXPECT_EQ(encoded.out, lines.second) << file.format << " " << name << "\n" << encoded.err.substr(0, 300);
+    }
+    const auto decoded = lines_of(run("decode " + file.format, all_hex).out);
+    ASSERT_EQ(decoded.size(), rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const json line = json::parse(decoded[i]);
+      for (std::size_t k = 0; k < rows[i].packets.size(); ++k) {
+        const json& packet = rows[i].packets.size() == 1 ? line : line.at("packets").at(k);
+        EXPECT_EQ(packet.value("packet", ""), rows[i].packets[k].name) << decoded[i];
+        if (packet.contains("fields")) {
+          expect_fields(packet.at("fields"), rows[i].packets[k].decoded, file.format + " " + rows[i].hex);
+        }
+      }
+    }
   }
 }
 

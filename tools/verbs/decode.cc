@@ -3,6 +3,7 @@
 #include <iostream>
 #include <string>
 
+#include "protocols/packet_list.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
@@ -17,6 +18,7 @@ constexpr const char* kExample =
     "line each:\n"
     "{\"packet\": NAME, \"fields\": {...}}, or {\"error\": CAUSE, \"field\": NAME} for a frame that is "
     "refused.\n"
+    "A frame that lists several packets is {\"packets\": [...]}.\n"
     "Exit code 2 if a line was no hex. Example:\n"
     "  echo 0301fe03024101010101010480bf0101010100 | omnihil decode ulaval-hermes";
 
@@ -52,6 +54,14 @@ std::string json_of(const DecodeResult& result) {
   return out + "}";
 }
 
+// Of a frame that lists other than one packet.
+std::string json_of_list(const RadioFormat& format, std::span<const std::uint8_t> frame, std::size_t count) {
+  std::string out = "{\"packets\":[";
+  for (std::size_t i = 0; i < count; ++i)
+    out += (i > 0 ? "," : "") + json_of(decode_listed(format, frame, i));
+  return out + "]}";
+}
+
 int run(const std::string& format_id) {
   const RadioFormat* format = format_or_complain(format_id);
   if (format == nullptr) return kExitBadInput;
@@ -61,7 +71,9 @@ int run(const std::string& format_id) {
   for (int line_number = 1; std::getline(std::cin, line); ++line_number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     if (bytes_from_hex(line, frame)) {
-      std::cout << json_of(format->decode(frame)) << std::endl;
+      const std::size_t count = listed_packets(*format, frame).value_or(1);
+      std::cout << (count == 1 ? json_of(format->decode(frame)) : json_of_list(*format, frame, count))
+                << std::endl;
     } else {
       std::cout << "{\"error\":\"not hex\"}" << std::endl;
       std::fprintf(stderr, "omnihil decode: line %d: not hex: %s\n", line_number, line.c_str());

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "protocols/packet_list.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
@@ -18,6 +19,7 @@ constexpr const char* kExample =
     "the\n"
     "whole frame as it stands on the wire. Fields left out are 0; type, version, length and checksum are "
     "filled in.\n"
+    "Of a format whose frames list packets, an array of objects is one frame.\n"
     "A bad line is named on the error output, with what is allowed; the other lines are still printed.\n"
     "Example:\n"
     "  echo '{\"robot\": 3, \"vx\": 1.0}' | omnihil encode ulaval-hermes SPEED_MOVE";
@@ -32,11 +34,18 @@ std::vector<std::string> encode_line(const std::string& line, const RadioFormat&
                                      const Message& message, std::string& hex) {
   const nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
   if (object.is_discarded()) return {"not JSON: " + line};
-  PacketFromJson packet;
-  packet_from_json(object, message, packet);
-  if (!packet.problems.empty()) return packet.problems;
+  // An array is a frame that lists packets.
+  const bool is_list = object.is_array() && format.list != nullptr;
+  const std::size_t count = is_list ? object.size() : 1;
+  std::vector<PacketFromJson> packets(count);
+  std::vector<Values> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    packet_from_json(is_list ? object[i] : object, message, packets[i]);
+    if (!packets[i].problems.empty()) return packets[i].problems;
+    values.push_back(packets[i].values);
+  }
   std::vector<std::uint8_t> frame;
-  const auto [error, field] = format.encode(packet.values, frame);
+  const auto [error, field] = encode_list(format, values, frame);
   if (error != PacketError::kNone) {
     return {"field '" + std::string(field) + "': refused: " + std::string(to_string(error))};
   }

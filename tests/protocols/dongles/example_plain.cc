@@ -93,7 +93,7 @@ RadioFormat::EncodeResult encode(const Values& values, std::vector<std::uint8_t>
 
 constexpr std::string_view kDuties[] = {"duty1", "duty2", "duty3", "duty4"};
 
-RobotCommand to_command(const Values& values) {
+RobotCommand to_command(const Values& values, int) {
   RobotCommand command{};
   if (values.message->type == kMove) {
     command.mode = OMNIHIL_MODE_BODY_VELOCITY;

@@ -127,15 +127,12 @@ struct Bench {
   std::int64_t now_ns = 0;
 };
 
+// Of the shortest frame that the bytes begin with, or of all of them.
 inline std::size_t first_packet_bytes(const RadioFormat& format, std::span<const std::uint8_t> bytes) {
-  if (format.id == "ulaval-hermes") {
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-      if (bytes[i] == 0) return i + 1;
-    }
-    return bytes.size();
+  for (std::size_t size = 1; size < bytes.size(); ++size) {
+    if (format.decode(bytes.first(size)).error == PacketError::kNone) return size;
   }
-  const auto header = static_cast<std::size_t>(format.find("REM_Packet")->size_bytes);
-  return bytes.size() < header ? bytes.size() : bytes[header - 1];
+  return bytes.size();
 }
 
 inline std::vector<DecodeResult> Bench::answers(std::string_view name) const {

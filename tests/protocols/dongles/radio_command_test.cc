@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "protocols/codec.h"
 #include "tests/protocols/dongles/links_harness.h"
 
 namespace omnihil {
@@ -29,12 +30,12 @@ double step_of(const RadioFormat& format, std::string_view name) {
     const int index = message.field_index(name);
     if (message.direction != Direction::kToRobot || index < 0) continue;
     const Field& field = message.fields[static_cast<std::size_t>(index)];
-    step = std::max(step, (field.hi - field.lo) / (std::exp2(field.bits) - 1.0));
+    step = std::max(step, field_step(field));
   }
   return step;
 }
 
-// The same of a format that may have another name for it: the coarsest ranged field of the unit, in packets that
+// The same of a format that may have another name for it: the coarsest ranged or scaled field of the unit, in packets that
 // are commands. A format with neither scales its counts itself: 1 part in 64 then, since the coarsest known to
 // us has 8 bits for both signs.
 double step_of(const RadioFormat& format, std::string_view name, std::string_view unit, double value) {
@@ -46,9 +47,9 @@ double step_of(const RadioFormat& format, std::string_view name, std::string_vie
     for (const Field& field : message.fields) {
       if (field.unit != unit) continue;
       if (field.kind == FieldKind::kFloat32) has_unit = true;
-      if (field.kind != FieldKind::kRanged32) continue;
+      if (field.kind != FieldKind::kRanged32 && field.kind != FieldKind::kScaled) continue;
       has_unit = true;
-      step = std::max(step, (field.hi - field.lo) / (std::exp2(field.bits) - 1.0));
+      step = std::max(step, field_step(field));
     }
   }
   return has_unit ? step : std::abs(value) / 64.0;
@@ -60,12 +61,16 @@ RobotCommand velocity() {
   command.v_forward_m_s = 1.25, command.v_left_m_s = -0.5, command.omega_body_rad_s = 3.0;
   return command;
 }
-// As the format can say it: REM's velocities are in the field frame.
+// As the format can say it: REM's velocities are in the field frame, and ibis has headings in place of a yaw rate.
 RobotCommand velocity_in(const RadioFormat& format) {
   RobotCommand command = velocity();
   Bytes bytes;
-  if (!format.encode_command(command, {.robot_id = kRobot}, bytes))
-    command.flags = OMNIHIL_COMMAND_FIELD_FRAME;
+  if (format.encode_command(command, {.robot_id = kRobot}, bytes)) return command;
+  command.flags = OMNIHIL_COMMAND_FIELD_FRAME;
+  if (format.encode_command(command, {.robot_id = kRobot}, bytes)) return command;
+  command.flags |= OMNIHIL_COMMAND_YAW_TARGET;
+  command.omega_body_rad_s = 0.0;
+  command.yaw_target_rad = 0.7;
   return command;
 }
 
@@ -82,6 +87,7 @@ TEST(RadioCommand, VelocityArrivesWithinTheFieldsSteps) {
     EXPECT_NEAR(got.v_left_m_s, sent.v_left_m_s, off_m_s) << format->id;
     EXPECT_NEAR(got.omega_body_rad_s, sent.omega_body_rad_s,
                 step_of(*format, "angularVelocity", "rad/s", sent.omega_body_rad_s));
+    EXPECT_NEAR(got.yaw_target_rad, sent.yaw_target_rad, 1e-3) << format->id;
   }
 }
 

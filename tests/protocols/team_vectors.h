@@ -1,0 +1,176 @@
+// Packets made by the teams' own programs, from the folder of reference data, as rows of one shape.
+//
+//   for (const TeamRow& row : team_rows("ibis-robot-command-v2")) …
+//
+// Each loader turns a file's own arrangement into rows; the names stay the team's.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "tests/protocols/packet_util.h"
+
+namespace omnihil {
+
+struct TeamPacket {
+  std::string name;
+  nlohmann::json given;    // what was put in, as `encode` takes it
+  nlohmann::json decoded;  // what the team's decoder says, as far as it says it
+};
+
+struct TeamRow {
+  std::vector<TeamPacket> packets;  // one, but in frames that list packets
+  std::string hex;                  // the whole frame
+};
+
+struct TeamFile {
+  std::string format;
+  std::size_t rows;  // that the file must have
+  std::function<std::vector<TeamRow>(const std::function<nlohmann::json(const char*)>& file)> load;
+};
+
+inline std::vector<TeamRow> ibis_rows(const std::function<nlohmann::json(const char*)>& file) {
+  using nlohmann::json;
+  std::vector<TeamRow> rows;
+  const json commands = file("ibis-robot-command-v2.json");
+  for (const char* group : {"crane_vectors", "orion_vectors"}) {
+    for (const json& row : commands.at(group)) {
+      const json& said = row.at("decoded");
+      const json decoded{
+          {"vision_global_pos", {said.at("vision_x"), said.at("vision_y")}},
+          {"vision_global_theta", said.at("vision_theta")},
+          {"target_global_theta", said.at("target_theta")},
+          {"kick_power", said.at("kick_power")},
+          {"dribble_power", said.at("dribble_power")},
+          {"acceleration_limit", said.at("acceleration_limit")},
+          {"linear_velocity_limit", said.at("linear_velocity_limit")},
+          {"angular_velocity_limit", said.at("angular_velocity_limit")},
+          {"latency_time_ms", said.at("latency_time_ms").get<int>()},
+          {"elapsed_time_ms_since_last_vision", said.at("elapsed_time_ms").get<int>()},
+          {"control_mode", said.at("control_mode").get<int>()},
+          {"check_counter", row.at("in").at("check_counter")},
+          {"enable_chip", row.at("in").at("enable_chip")},
+      };
+      rows.push_back({{{row.at("mode"), row.at("in"), decoded}}, row.at("hex")});
+    }
+  }
+  const json feedback = file("ibis-robot-feedback-128.json");
+  for (const json& row : feedback.at("vectors")) {
+    json fields = row.at("decoded");
+    fields.erase("reserved");
+    rows.push_back({{{"FEEDBACK", fields, fields}}, row.at("hex")});
+  }
+  return rows;
+}
+
+inline std::vector<TeamRow> ateam_rows(const std::function<nlohmann::json(const char*)>& file) {
+  using nlohmann::json;
+  std::vector<TeamRow> rows;
+  constexpr const char* kFlags[] = {
+      "power_error",           "tipped_error",          "breakbeam_error",       "breakbeam_ball_detected",
+      "accelerometer_0_error", "accelerometer_1_error", "gyroscope_0_error",     "gyroscope_1_error",
+      "motor_0_general_error", "motor_0_hall_error",    "motor_1_general_error", "motor_1_hall_error",
+      "motor_2_general_error", "motor_2_hall_error",    "motor_3_general_error", "motor_3_hall_error",
+      "motor_4_general_error", "motor_4_hall_error",    "chipper_available",     "kicker_available"};
+  const json all = file("ateam-rnp-stspin-2025.json");
+  for (const auto& [name, group] : all.at("vectors").items()) {
+    for (const json& row : group) {
+      json fields = row;
+      fields.erase("bytes");
+      if (name == "telemetry") {
+        const auto bits = fields.at("flags").get<std::uint32_t>();
+        json flags;
+        for (std::size_t i = 0; i < std::size(kFlags); ++i) flags[kFlags[i]] = bits >> i & 1u;
+        // Four of the bits by their members in the team's struct.
+        EXPECT_EQ(fields.at("bits"), json({bits & 1u, bits >> 3 & 1u, bits >> 8 & 1u, bits >> 19 & 1u}));
+        fields.erase("bits");
+        fields["flags"] = flags;
+      }
+      if (name == "robot_parameter_command") {
+        while (fields.at("values").size() < 25) fields["values"].push_back(0.0);
+      }
+      rows.push_back({{{name, fields, fields}}, row.at("bytes")});
+    }
+  }
+  return rows;
+}
+
+inline std::vector<TeamRow> rhoban_rows(const std::function<nlohmann::json(const char*)>& file) {
+  using nlohmann::json;
+  std::vector<TeamRow> rows;
+  const json all = file("rhoban-master-serial.json");
+  for (const json& row : all.at("frames")) {
+    TeamRow frame{.packets = {}, .hex = row.at("bytes")};
+    for (json fields : row.at("packets")) {
+      const std::string name = fields.at("kind");
+      fields.erase("kind");
+      frame.packets.push_back({name, fields, fields});
+    }
+    rows.push_back(frame);
+  }
+  for (const json& row : all.at("answers")) {
+    TeamRow frame{.packets = {}, .hex = row.at("bytes")};
+    for (json fields : row.at("robots")) {
+      fields["robot"] = fields.at("id");
+      frame.packets.push_back({"status", fields, fields});
+    }
+    rows.push_back(frame);
+  }
+  return rows;
+}
+
+inline std::vector<TeamRow> rocos_rows(const std::function<nlohmann::json(const char*)>& file) {
+  using nlohmann::json;
+  std::vector<TeamRow> rows;
+  const json all = file("rocos-serial-25.json");
+  for (const json& row : all.at("start_packets")) {
+    const json frequency{{"frequency", row.at("frequency")}};
+    rows.push_back({{{"start1", json::object(), json::object()}}, row.at("start1")});
+    rows.push_back({{{"start2", frequency, frequency}}, row.at("start2")});
+  }
+  for (const json& row : all.at("packets")) {
+    unsigned ids = 0;
+    json given{{"robot", json::array()}};
+    json decoded{{"robot", json::array()}};
+    for (const json& robot : row.at("robots")) {
+      ids |= 1u << robot.at("id").get<int>();
+      json wanted = robot;
+      wanted.erase("id");
+      wanted["present"] = 1;
+      // The host's map of kicks, as the file was made: at most 126.
+      wanted["power"] = std::min(robot.at("power").get<double>(), 126.0);
+      given["robot"].push_back(wanted);
+      for (const char* speed : {"vx", "vy", "vr"}) {
+        wanted[speed] = std::trunc(std::clamp(wanted.at(speed).get<double>(), -511.0, 511.0));
+      }
+      wanted["power"] = std::trunc(wanted.at("power").get<double>());
+      const double dribble = std::clamp(wanted.at("dribble").get<double>(), 0.0, 1.0);
+      wanted["dribble"] = std::trunc(3.0 * dribble + 0.4) / 3.0;
+      decoded["robot"].push_back(wanted);
+    }
+    while (given["robot"].size() < 3) {
+      given["robot"].push_back({{"present", 0}});
+      decoded["robot"].push_back({{"present", 0}});
+    }
+    for (json* fields : {&given, &decoded}) {
+      (*fields)["frequency"] = row.at("frequency");
+      (*fields)["robots_15_to_8"] = ids >> 8;
+      (*fields)["robots_7_to_0"] = ids & 0xFFu;
+    }
+    rows.push_back({{{"packets", given, decoded}}, row.at("hex")});
+  }
+  return rows;
+}
+
+inline const std::vector<TeamFile>& team_files() {
+  static const std::vector<TeamFile> files{
+      {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},
+  };
+  return files;
+}
+
+inline std::vector<TeamRow> team_rows(const TeamFile& of) {
+  return of.load([](const char* name) { return read_json(shared_folder() + "/vectors/" + name); });
+}
+
+}  // namespace omnihil
