@@ -165,6 +165,7 @@ inline std::vector<TeamRow> rocos_rows(const std::function<nlohmann::json(const 
 inline const std::vector<TeamFile>& team_files() {
   static const std::vector<TeamFile> files{
       {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},
+      {"ateam-rnp-stspin-2025", 155, ateam_rows},
   };
   return files;
 }
