@@ -166,6 +166,7 @@ inline const std::vector<TeamFile>& team_files() {
   static const std::vector<TeamFile> files{
       {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},
       {"ateam-rnp-stspin-2025", 155, ateam_rows},
+      {"rhoban-master-serial", 20 + 16, rhoban_rows},
   };
   return files;
 }
