@@ -167,6 +167,7 @@ inline const std::vector<TeamFile>& team_files() {
       {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},
       {"ateam-rnp-stspin-2025", 155, ateam_rows},
       {"rhoban-master-serial", 20 + 16, rhoban_rows},
+      {"rocos-serial-25", 8 + 8 + 20, rocos_rows},
   };
   return files;
 }
