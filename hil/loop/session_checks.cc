@@ -64,8 +64,9 @@ std::vector<std::string> session_problems(const SessionConfig& config) {
   std::vector<std::string> problems;
   const RadioFormat* format = find_radio_format(config.radio_format);
   if (format != nullptr && !format->names_robots() && config.robot_ids.size() > 1) {
-    problems.push_back(fmt::format("robots: packets of radio {} name no robot: one wire, one robot; start a bench for each",
-                                   config.radio_format));
+    problems.push_back(
+        fmt::format("robots: packets of radio {} name no robot: one wire, one robot; start a bench for each",
+                    config.radio_format));
   }
   if (format == nullptr) {
     std::vector<std::string_view> known;

@@ -109,8 +109,8 @@ PacketError PlainLink::send_to(int id, std::span<const std::uint8_t> frame, std:
 }
 
 PacketError PlainLink::accept(std::span<const std::uint8_t> frame, std::int64_t now_ns) {
-  if (!plain_.silent_line.empty() && std::equal(frame.begin(), frame.end(), plain_.silent_line.begin(),
-                                                plain_.silent_line.end())) {
+  if (!plain_.silent_line.empty() &&
+      std::equal(frame.begin(), frame.end(), plain_.silent_line.begin(), plain_.silent_line.end())) {
     return PacketError::kNone;
   }
   const auto listed = listed_packets(format_, frame);
@@ -120,7 +120,8 @@ PacketError PlainLink::accept(std::span<const std::uint8_t> frame, std::int64_t 
   if (never_from_host(*result.values.message)) return PacketError::kDirection;
   if (result.values.message->direction == Direction::kToDongle) {
     Values out;
-    if (plain_.dongle_answer == nullptr || !plain_.dongle_answer(result.values, out)) return PacketError::kNone;
+    if (plain_.dongle_answer == nullptr || !plain_.dongle_answer(result.values, out))
+      return PacketError::kNone;
     answer_.clear();
     encode(out, answer_);
     return send_back(-1, answer_, now_ns);

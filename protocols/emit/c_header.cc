@@ -16,8 +16,7 @@ void define(std::string& out, const std::string& name, std::uint64_t value, cons
 void define_scale(std::string& out, const std::string& name, const Field& field) {
   char lines[256];
   std::snprintf(lines, sizeof lines, "#define %s_PER_COUNT %.9g\n#define %s_AT_0 %.9g\n", name.c_str(),
-                field_step(field), name.c_str(),
-                field.scale->number(field, 0));
+                field_step(field), name.c_str(), field.scale->number(field, 0));
   out += lines;
 }
 

@@ -213,7 +213,8 @@ constexpr auto kParameter = in_order(
     });
 
 // On the wire to a motor controller: 2 Mbaud, 8 bits and even parity, a pause between structs, no CRC.
-constexpr std::array kWireHead{type_code("type", 8, "what the struct is"), enveloped(constant("type_padding", 24, 0, "sent as 0")),
+constexpr std::array kWireHead{type_code("type", 8, "what the struct is"),
+                               enveloped(constant("type_padding", 24, 0, "sent as 0")),
                                enveloped(constant("crc", 32, 0, "not computed"))};
 constexpr auto kMotorMotion = in_order(
     kWireHead,

@@ -39,10 +39,10 @@ constexpr auto kMaster = in_order(
         signed_number("t_speed", 16, "mrad/s", "yaw rate; with bit 7 the heading in 1/10000 rad"),
         number("kick_power", 8, "30 us", "time the kicker is on, by the firmware; both headers say 25 us"),
         zeros("rest", 56)});
-constexpr auto kParams =
-    in_order(kHead, std::array{float32("kp", "", "P of the wheels; the robot does not use it"),
-                               float32("ki", "", "I of the wheels; the robot does not use it"),
-                               float32("kd", "", "D of the wheels; the robot does not use it"), zeros("rest", 24)});
+constexpr auto kParams = in_order(
+    kHead, std::array{float32("kp", "", "P of the wheels; the robot does not use it"),
+                      float32("ki", "", "I of the wheels; the robot does not use it"),
+                      float32("kd", "", "D of the wheels; the robot does not use it"), zeros("rest", 24)});
 constexpr auto kMusic = in_order(
     kHead, std::array{number("instrument", 8, "", "bit 0 on, 1 beeper, 2 kicker, 3 chipper, 5 dribbler"),
                       number("note", 16, "Hz", "its pitch"), number("duration", 16, "", "how long it sounds"),
@@ -56,7 +56,8 @@ constexpr auto kStatus = in_order(std::array{
     number("voltage_raw", 8, "0.125 V", "battery, by the firmware; the host's header says 0.1 V"),
     signed_number("xpos", 16, "mm", "odometry, x"),
     signed_number("ypos", 16, "mm", "odometry, y"),
-    signed_number("ang_raw", 16, "mrad", "heading, as the firmware computes it; its comment says 1/10000 rad"),
+    signed_number("ang_raw", 16, "mrad",
+                  "heading, as the firmware computes it; its comment says 1/10000 rad"),
 });
 
 enum Type : std::uint32_t { kDrive = 0, kGains = 1, kSong = 2, kState = 0x100 };
@@ -149,7 +150,8 @@ constexpr PlainDongle kDongle{
       }
       if (front[0] != kBegin[0] || (front.size() > 1 && front[1] != kBegin[1])) return 0;
       if (front.size() < 3) return std::nullopt;
-      return front[2] <= kList.most ? std::optional<std::size_t>(4 + std::size_t{front[2]} * kToRobotBytes) : 0;
+      return front[2] <= kList.most ? std::optional<std::size_t>(4 + std::size_t{front[2]} * kToRobotBytes)
+                                    : 0;
     },
     .silent_line = kHello,
     .to_robot_ns = 500'000,
@@ -162,18 +164,26 @@ constexpr PlainDongle kDongle{
 constinit const RadioFormat kFormat{
     .id = "rhoban-master-serial",
     .title = "Rhoban and NAMeC (AMC) master",
-    .source = "https://github.com/Rhoban/SSL at 57743b2, https://github.com/Rhoban/SSL-Electronics at 283b766",
+    .source =
+        "https://github.com/Rhoban/SSL at 57743b2, https://github.com/Rhoban/SSL-Electronics at 283b766",
     .notes =
-        "- A frame lists packets: AA 55, their number (0 to 8), the packets one after the other, FF. No checksum. "
-        "`encode` makes a frame of one packet of a JSON object, and one of several of a JSON array; `decode` prints "
+        "- A frame lists packets: AA 55, their number (0 to 8), the packets one after the other, FF. No "
+        "checksum. "
+        "`encode` makes a frame of one packet of a JSON object, and one of several of a JSON array; `decode` "
+        "prints "
         "the packets of a list.\n"
-        "- The host opens the port and writes `master` and a line feed three times, which switches the board's "
-        "shell to dongle mode; frames follow. The dongle gives each robot of the list its turn of 2 ms, then answers "
-        "with one frame that lists the robots that answered, perhaps none. The host sends its next frame on that "
+        "- The host opens the port and writes `master` and a line feed three times, which switches the "
+        "board's "
+        "shell to dongle mode; frames follow. The dongle gives each robot of the list its turn of 2 ms, then "
+        "answers "
+        "with one frame that lists the robots that answered, perhaps none. The host sends its next frame on "
+        "that "
         "answer, or after 30 ms without one.\n"
-        "- Of packets as long as a list's the length of the frame tells whether they go to robots (17 bytes) or "
+        "- Of packets as long as a list's the length of the frame tells whether they go to robots (17 bytes) "
+        "or "
         "come from them (11).\n"
-        "- Headers and firmware disagree on units: the battery (0.1 V; the firmware writes V times 8), the heading "
+        "- Headers and firmware disagree on units: the battery (0.1 V; the firmware writes V times 8), the "
+        "heading "
         "(1/10000 rad; mrad), the kicker's time (25 us; 30 us). Here the firmware is followed.\n"
         "- A robot kicks with the ball present and the capacitor above 80 V.\n",
     .carrier = {.kind = Carrier::Kind::kUsbCdc},

@@ -22,9 +22,10 @@ constexpr int kBytes = 25;
 constexpr std::size_t kSlots = 3;
 constexpr double kCountsPerRad_s = 40.0;
 
-constexpr ChecksumRule kCrc{
-    .says = "CRC-8/MAXIM-DOW of bytes 0 to 23",
-    .of = [](std::span<const std::uint8_t> packet) -> std::uint64_t { return crc8_maxim(packet.first(kBytes - 1)); }};
+constexpr ChecksumRule kCrc{.says = "CRC-8/MAXIM-DOW of bytes 0 to 23",
+                            .of = [](std::span<const std::uint8_t> packet) -> std::uint64_t {
+                              return crc8_maxim(packet.first(kBytes - 1));
+                            }};
 
 constexpr ScaleRule kWhole{
     .says = "count = trunc(x)",
@@ -75,8 +76,9 @@ constexpr std::array<SlotNames, kSlots> kNames{{
 
 constexpr auto kDrive = in_order(
     kSync,
-    std::array{with_role(FieldRole::kRobotBits, number("robots_15_to_8", 8, "", "bit 7 robot 15 to bit 0 robot 8")),
-               with_role(FieldRole::kRobotBits, number("robots_7_to_0", 8, "", "bit 7 robot 7 to bit 0 robot 0"))},
+    std::array{
+        with_role(FieldRole::kRobotBits, number("robots_15_to_8", 8, "", "bit 7 robot 15 to bit 0 robot 8")),
+        with_role(FieldRole::kRobotBits, number("robots_7_to_0", 8, "", "bit 7 robot 7 to bit 0 robot 0"))},
     slot(kNames[0]), slot(kNames[1]), slot(kNames[2]),
     std::array{number("frequency", 4, "", "radio channel"),
                enveloped(type_code_bits("kind", 4, 0, "7: a packet to robots")), zeros("rest", 24)});
@@ -94,29 +96,29 @@ constexpr std::array kStartTail{
     enveloped(checksum("crc", 8, "of all before it", &kCrc)),
 };
 constexpr auto kStart1 = in_order(kSync, kStartHead, std::array{zeros("channel", 8)}, kStartTail);
-constexpr auto kStart2 = in_order(kSync, kStartHead,
-                                  std::array{enveloped(constant("channel_high", 4, 1, "1")),
-                                             number("frequency", 4, "", "radio channel")},
-                                  kStartTail);
+constexpr auto kStart2 = in_order(
+    kSync, kStartHead,
+    std::array{enveloped(constant("channel_high", 4, 1, "1")), number("frequency", 4, "", "radio channel")},
+    kStartTail);
 
-constexpr auto kAnswer = in_order(
-    kSync, std::array{
-               enveloped(type_code_bits("answer", 8, 28, "2: from a robot")),
-               number("number", 8, "", "the robot where byte 23 is 0, else the robot + 1"),
-               zeros("flag_7", 1),
-               flag("ball", "it has the ball"),
-               flag("kicked_flat", "it has kicked"),
-               flag("kicked_chip", "it has chipped"),
-               zeros("flags_3_to_0", 4),
-               zeros("rest[0]", 64),
-               zeros("rest[1]", 64),
-               zeros("rest[2]", 8),
-               enveloped(constant("kind_high", 4, 0, "0")),
-               enveloped(type_code_bits("kind", 4, 0, "0: not a packet to robots")),
-               zeros("rest[3]", 8),
-               number("counts_from_1", 8, "", "0: numbers begin at 0; else at 1"),
-               zeros("rest[4]", 8),
-           });
+constexpr auto kAnswer =
+    in_order(kSync, std::array{
+                        enveloped(type_code_bits("answer", 8, 28, "2: from a robot")),
+                        number("number", 8, "", "the robot where byte 23 is 0, else the robot + 1"),
+                        zeros("flag_7", 1),
+                        flag("ball", "it has the ball"),
+                        flag("kicked_flat", "it has kicked"),
+                        flag("kicked_chip", "it has chipped"),
+                        zeros("flags_3_to_0", 4),
+                        zeros("rest[0]", 64),
+                        zeros("rest[1]", 64),
+                        zeros("rest[2]", 8),
+                        enveloped(constant("kind_high", 4, 0, "0")),
+                        enveloped(type_code_bits("kind", 4, 0, "0: not a packet to robots")),
+                        zeros("rest[3]", 8),
+                        number("counts_from_1", 8, "", "0: numbers begin at 0; else at 1"),
+                        zeros("rest[4]", 8),
+                    });
 
 enum Type : std::uint32_t {
   kToRobots = 0x7,
@@ -129,8 +131,8 @@ constexpr Message row(std::string_view name, Type type, Direction direction, std
   return {name, type, kBytes, false, direction, BitOrder::kMsbFirst, fields, what, role};
 }
 constexpr std::array kMessages{
-    row("packets", kToRobots, Direction::kToRobot, kDrive, "Velocity, kick and dribbler of up to three robots.",
-        MessageRole::kCommand),
+    row("packets", kToRobots, Direction::kToRobot, kDrive,
+        "Velocity, kick and dribbler of up to three robots.", MessageRole::kCommand),
     row("start1", kFirst, Direction::kToDongle, kStart1, "Wakes the transmitter."),
     row("start2", kSecond, Direction::kToDongle, kStart2, "Sets its channel."),
     row("answer", kFromRobot, Direction::kFromRobot, kAnswer, "A robot's answer.", MessageRole::kFeedback),
@@ -154,7 +156,8 @@ constexpr double kKickStep_m_s = 6.5 / 127.0;
 RobotCommand to_command(const Values& values, int id) {
   std::array<int, 16> ids{};
   const std::size_t count = robots(values, ids);
-  const auto place = std::find(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), id) - ids.begin();
+  const auto place =
+      std::find(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), id) - ids.begin();
   const SlotNames& names = kNames[std::min(static_cast<std::size_t>(place), kSlots - 1)];
   RobotCommand command{};
   command.mode = OMNIHIL_MODE_BODY_VELOCITY;
@@ -229,13 +232,17 @@ constinit const RadioFormat kFormat{
     .title = "rocos, 25-byte serial packets",
     .source = "https://github.com/Robocup-ssl-China/rocos at b68996a",
     .notes =
-        "- The host writes start1, waits for 25 bytes, writes start2, then one packet for up to three robots, at "
+        "- The host writes start1, waits for 25 bytes, writes start2, then one packet for up to three "
+        "robots, at "
         "least 4 ms after the one before. Only the two start packets have a CRC.\n"
-        "- Which robots: bits in bytes 1 and 2. Their six bytes follow in the order of ascending ids; a host that "
+        "- Which robots: bits in bytes 1 and 2. Their six bytes follow in the order of ascending ids; a host "
+        "that "
         "writes them in another order moves the wrong robots.\n"
-        "- Speeds are sign and magnitude; the host cuts fractions off and holds them to 511. y is to the right and "
+        "- Speeds are sign and magnitude; the host cuts fractions off and holds them to 511. y is to the "
+        "right and "
         "the yaw rate clockwise.\n"
-        "- The host empties its buffer after 25 bytes and does not find back into step: answers come at least 3 ms "
+        "- The host empties its buffer after 25 bytes and does not find back into step: answers come at "
+        "least 3 ms "
         "apart (25 bytes take 2.2 ms). 20h and 10h in the answer (kicked) stay 0 here.\n"
         "- What the transmitter answers to a start packet is not in the sources: here the packet itself.\n"
         "- An older form over UDP (port 1030) with battery and wheel speeds in the answer is not spoken.\n",

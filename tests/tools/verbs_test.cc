@@ -265,7 +265,8 @@ TEST_F(Verbs, EveryFormatAgreesWithItsTeamsVectors) {
     }
     for (const auto& [name, lines] : by_packet) {
       const Output encoded = run("encode " + file.format + " " + name, lines.first);
-      EXPECT_EQ(encoded.out, lines.second) << file.format << " " << name << "\n" << encoded.err.substr(0, 300);
+      EXPECT_EQ(encoded.out, lines.second) << file.format << " " << name << "\n"
+                                           << encoded.err.substr(0, 300);
     }
     const auto decoded = lines_of(run("decode " + file.format, all_hex).out);
     ASSERT_EQ(decoded.size(), rows.size());
