@@ -98,7 +98,7 @@ class RnpLink final : public Dongle {
       return;
     } else if (dialect_.turns_away(values)) {
       leave(at.arrives_ns, sink);
-    } else if (type == dialect_.control) {
+    } else if ((type & 0xFFu) == dialect_.control) {  // higher bits: a mode of it
       control_ = values;
       control_ns_ = at.arrives_ns;
       deliver(sink, dialect_.to_command(values), values.message->name, at.arrives_ns);

@@ -143,6 +143,33 @@ TEST(RnpLink, DamageIsCountedAndTheNextDatagramCounts) {
   EXPECT_EQ(robot.good(), 3u);
 }
 
+TEST(RnpLink, ThePacketsOf2026HaveTheSameSession) {
+  Bench robot("ateam-rnp-2026", {.robot_ids = {7}});
+  robot.boot_robots();
+  robot.robots[7].v_forward_m_s = 0.25;
+  robot.run_to(1500 * kMs);
+  EXPECT_EQ(robot.answers("hello_request").size(), 2u);  // at 0 and 1 s
+  robot.write(robot.encode("hello_response", {}));
+  robot.write(robot.encode("control_local_velocity", {{"command.xd", 1.5}, {"kick_request", 1}}));
+  robot.to_host.clear();
+  robot.run_to(1600 * kMs);
+  ASSERT_EQ(robot.sink.heard.size(), 1u);
+  EXPECT_EQ(robot.sink.heard[0].message, "control_local_velocity");
+  EXPECT_EQ(robot.sink.heard[0].command.v_forward_m_s, 1.5);
+  EXPECT_EQ(robot.sink.heard[0].command.flags, 0u);
+  const auto reports = robot.answers("telemetry");
+  ASSERT_GE(reports.size(), 9u);
+  EXPECT_EQ(reports.back().values.number("body_mode"), 12.0) << "the latest control's";
+  EXPECT_EQ(reports.back().values.number("velocity[0]"), 250.0);
+  robot.write(robot.encode("control_global_position", {{"command.x", 3.0}}));
+  robot.write(robot.encode("control_off", {}));
+  robot.run_to(1620 * kMs);
+  ASSERT_EQ(robot.sink.heard.size(), 3u);
+  EXPECT_EQ(robot.sink.heard[1].command.mode, unsigned{OMNIHIL_MODE_BODY_VELOCITY});
+  EXPECT_EQ(robot.sink.heard[1].command.v_forward_m_s, 0.0) << "nothing here knows where it is";
+  EXPECT_EQ(robot.sink.heard[2].command.mode, unsigned{OMNIHIL_MODE_COAST});
+}
+
 TEST(RnpLink, AFirmwareThatDecodesHasTheSessionToItself) {
   Bench bench(kId, {.robot_ids = {7}, .firmware_decodes = true});
   bench.boot_robots();
