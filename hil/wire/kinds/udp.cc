@@ -1,9 +1,12 @@
-// UDP datagrams to a port, or, with listen=1, to whoever sent the last one that came. Their boundaries mean
+// UDP datagrams to a port; with listen=1 to whoever sent the last one that came; with seek=1 to a port (of a
+// multicast group, say) until somebody answers, then to whoever sends, and to the port again after a second of
+// silence. Their boundaries mean
 // nothing here: what one write() takes is one datagram, what read() gives are the bytes of all that came.
 // Datagrams that the network loses are lost.
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 
 #include "hil/wire/socket.h"
 
@@ -12,9 +15,21 @@ namespace {
 
 constexpr std::size_t kLargest_bytes = 65'507;  // of an IPv4 datagram: 65535 less 20 (IP) and 8 (UDP)
 
+constexpr std::chrono::seconds kSilence{1};
+
 class UdpWire final : public ByteWire {
  public:
   UdpWire(SocketEnd end, bool listens) : end_(std::move(end)), listens_(listens) {}
+
+  // A connected socket no longer takes datagrams of its peer alone.
+  std::error_code seek() {
+    if (::getpeername(end_.socket.get(), sought_.get(), &sought_.size) != 0) return last_error();
+    const sockaddr none{.sa_family = AF_UNSPEC, .sa_data = {}};
+    if (::connect(end_.socket.get(), &none, sizeof none) != 0) return last_error();
+    peer_ = sought_;
+    listens_ = known_ = seeks_ = true;
+    return {};
+  }
 
   std::string_view name() const override { return end_.name; }
   int handle() const override { return end_.socket.get(); }
@@ -30,6 +45,7 @@ class UdpWire final : public ByteWire {
       if (n < 0) return errno == EINTR || nobody_there(errno) ? std::error_code{} : last_error();
       if (listens_) peer_ = sender;
       known_ = true;
+      heard_ = std::chrono::steady_clock::now();
       const auto size = static_cast<std::size_t>(n);
       const std::size_t part = std::min(limit, size - at_);
       const auto from = datagram_.begin() + static_cast<std::ptrdiff_t>(at_);
@@ -47,6 +63,7 @@ class UdpWire final : public ByteWire {
     error.clear();
     if (!peer_present() || bytes.empty()) return 0;
     const std::span<const std::uint8_t> part = bytes.first(std::min(bytes.size(), kLargest_bytes));
+    if (seeks_ && std::chrono::steady_clock::now() - heard_ > kSilence) peer_ = sought_;
     const sockaddr* to = listens_ ? peer_.get() : nullptr;
     const ssize_t n = ::sendto(end_.socket.get(), part.data(), part.size(), 0, to, listens_ ? peer_.size : 0);
     if (n >= 0) return static_cast<std::size_t>(n);
@@ -61,6 +78,9 @@ class UdpWire final : public ByteWire {
   SocketEnd end_;
   bool listens_;
   SocketAddress peer_;
+  bool seeks_ = false;
+  SocketAddress sought_;
+  std::chrono::steady_clock::time_point heard_;
   bool known_ = false;  // a datagram has come
   std::array<std::uint8_t, kLargest_bytes> datagram_;
   std::size_t at_ = 0;  // bytes of the datagram that waits that have been read
@@ -69,8 +89,14 @@ class UdpWire final : public ByteWire {
 std::unique_ptr<ByteWire> open(const WireUrl& url, WireProblem& problem) {
   const bool listens = url.number("listen") == 1;
   SocketEnd end;
-  if (!open_socket_end(url, SOCK_DGRAM, listens, end, problem)) return nullptr;
-  return std::make_unique<UdpWire>(std::move(end), listens);
+  const bool seeks = url.number("seek") == 1;
+  if (!open_socket_end(url, SOCK_DGRAM, listens && !seeks, end, problem)) return nullptr;
+  auto wire = std::make_unique<UdpWire>(std::move(end), listens);
+  if (!seeks) return wire;
+  const std::error_code refused = wire->seek();
+  if (!refused) return wire;
+  problem = {url.text() + ": socket", refused};
+  return nullptr;
 }
 
 }  // namespace
@@ -78,6 +104,10 @@ std::unique_ptr<ByteWire> open(const WireUrl& url, WireProblem& problem) {
 const WireKind& wire_udp() {
   static constexpr WireParameter kParameters[] = {
       {.name = "listen", .says = "answer to whoever sends", .usual = "0", .words = kWireNoYes},
+      {.name = "seek",
+       .says = "send to the address, then answer to whoever sends",
+       .usual = "0",
+       .words = kWireNoYes},
   };
   static constexpr WireKind kKind{.scheme = "udp",
                                   .says = "UDP datagrams; without a host: this computer (127.0.0.1)",

@@ -126,6 +126,15 @@ TEST_P(SocketWireTest, AnAddressThatIsNoneIsNamed) {
 INSTANTIATE_TEST_SUITE_P(Sockets, SocketWireTest, ::testing::Values("tcp", "udp"),
                          [](const auto& each) { return each.param; });
 
+TEST(UdpWireTest, WithSeekItSendsToTheAddressAndThenToWhoeverAnswers) {
+  const auto group = opened("udp:0?listen=1");  // where robots look for hosts
+  const auto robot = opened(std::string(group->name()) + "?seek=1");
+  write_all(*robot, Bytes{1, 2, 3});
+  EXPECT_EQ(read_all(*group, 3), (Bytes{1, 2, 3}));
+  write_all(*group, Bytes{4});
+  EXPECT_EQ(read_all(*robot, 1), Bytes{4});
+}
+
 TEST(TcpWireTest, TheNextClientComesWhenTheOneBeforeHasLeft) {
   const auto bench = opened("tcp:0?listen=1");
   auto first = opened(std::string(bench->name()));
