@@ -162,12 +162,39 @@ inline std::vector<TeamRow> rocos_rows(const std::function<nlohmann::json(const 
   return rows;
 }
 
+inline std::vector<TeamRow> tigers_rows(const std::function<nlohmann::json(const char*)>& file) {
+  using nlohmann::json;
+  std::vector<TeamRow> rows;
+  const json all = file("tigers-base-station.json");
+  for (const char* group : {"match_ctrl", "match_feedback", "broadcast", "host"}) {
+    for (const json& row : all.at(group)) {
+      json fields = row;
+      std::string name = group;
+      if (name == "match_ctrl") name = row.at("skill");
+      if (name == "host") name = row.at("name");
+      for (const char* other : {"udp", "app", "encoded", "air", "skill", "name"}) fields.erase(other);
+      json decoded = fields;
+      if (fields.contains("skill_in") && fields.at("skill_in").empty()) {
+        fields.erase("skill_in");
+        decoded.erase("skill_in");
+      } else if (fields.contains("skill_in")) {
+        for (const auto& [key, step] : std::map<std::string, double>{
+                 {"kickSpeed", 0.02}, {"dribbleSpeed", 0.125}, {"dribbleForce", 0.25}}) {
+          json& value = decoded["skill_in"][key];
+          value = std::round(value.get<double>() / step) * step;
+        }
+      }
+      rows.push_back({{{name, fields, decoded}}, row.at(row.contains("udp") ? "udp" : "app")});
+    }
+  }
+  return rows;
+}
+
 inline const std::vector<TeamFile>& team_files() {
   static const std::vector<TeamFile> files{
-      {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},
-      {"ateam-rnp-stspin-2025", 155, ateam_rows},
-      {"rhoban-master-serial", 20 + 16, rhoban_rows},
-      {"rocos-serial-25", 8 + 8 + 20, rocos_rows},
+      {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},     {"ateam-rnp-stspin-2025", 155, ateam_rows},
+      {"rhoban-master-serial", 20 + 16, rhoban_rows},         {"rocos-serial-25", 8 + 8 + 20, rocos_rows},
+      {"tigers-base-station", 16 + 12 + 10 + 3, tigers_rows},
   };
   return files;
 }
