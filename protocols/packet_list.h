@@ -1,6 +1,7 @@
 // Frames that list packets: AA 55 · number · packets of one length · FF.
 //
-//   for (std::size_t i = 0; i < listed_packets(format, frame); ++i) use(decode_listed(format, frame, i));
+//   const std::size_t count = listed_packets(format, frame).value_or(0);
+//   for (std::size_t i = 0; i < count; ++i) answers.push_back(decode_listed(format, frame, i).values);
 //   encode_list(format, answers, out);
 //
 // In other formats a frame lists its one packet, so that this is all that a reader of any format needs.

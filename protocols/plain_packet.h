@@ -1,7 +1,7 @@
 // Packets whose frame is their fields and nothing else: the table alone is the codec.
 //
-//   .decode = [](std::span<const std::uint8_t> frame) { return decode_packet(kMessages, frame); },
-//   .encode = encode_packet,
+//   const DecodeResult result = decode_packet(messages, packet);
+//   encode_packet(result.values, bytes);                            // appends the same bytes
 //
 // A packet is the message whose type fields all hold their code; of several such, the one of its length. Its
 // length must be the table's. A message without a type field is told by its length alone.

@@ -242,6 +242,20 @@ TEST(SessionTest, NamesEveryProblemOfItsConfigurationAtOnce) {
   }
 }
 
+TEST(SessionTest, RefusesSeveralRobotsWherePacketsNameNone) {
+  const auto problems_with = [](const std::string& radio, const std::vector<int>& ids) -> std::string {
+    try {
+      session_config(setup_of("omni_default", radio, ids));
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_NE(problems_with("ibis-robot-command-v2", {0, 1}).find("one wire, one robot"), std::string::npos);
+  EXPECT_EQ(problems_with("ibis-robot-command-v2", {1}), "");
+  EXPECT_EQ(problems_with("rocos-serial-25", {0, 1}), "") << "bits name its robots";
+}
+
 TEST(SessionTest, RefusesAControlPeriodThatIsNoMultipleOfTheMechanicalStep) {
   SessionConfig config = session_config(setup_of("omni_default", "ulaval-hermes", {0}));
   config.plant.mechanical_step_ns = kMs;
