@@ -64,8 +64,9 @@ AxisSubstep::AxisSubstep(const Candidate& nominal, const std::vector<AxisSetup>&
   }
   base_s_ = longest_step({nominal}, longest_s, error);
   for (const EffectEntry* entry : all_effects()) {
-    const bool stiff = (entry->info->numerics & kStiff) != 0 && (entry->info->numerics & kImpacts) == 0;
-    if (stiff) stiff_steps_.emplace_back(entry, longest_step(sizes_of(*entry, nominal), base_s_, error));
+    const std::uint32_t numerics = entry->info->numerics;
+    if ((numerics & (kStiff | kFine)) != 0 && (numerics & kImpacts) == 0)
+      steps_.emplace_back(entry, longest_step(sizes_of(*entry, nominal), base_s_, error));
   }
 }
 
@@ -92,21 +93,18 @@ double AxisSubstep::longest_step(const std::vector<Candidate>& models, double lo
   return shortest_s_;
 }
 
-double AxisSubstep::stiff_step(const EffectEntry& entry, int n) const {
-  const auto at = std::find_if(stiff_steps_.begin(), stiff_steps_.end(),
-                               [&](const auto& tried) { return tried.first == &entry; });
-  if (at == stiff_steps_.end()) return std::min(base_s_, shortest_s_);
+double AxisSubstep::step_of(const EffectEntry& entry, int n) const {
+  const auto at =
+      std::find_if(steps_.begin(), steps_.end(), [&](const auto& tried) { return tried.first == &entry; });
+  if (at == steps_.end()) return std::min(base_s_, shortest_s_);
   return at->second * coarser_[static_cast<std::size_t>(n)];
 }
 
 double AxisSubstep::of(const Candidate& c, int n) const {
-  constexpr double kFineStep_s = 200e-6;  // measured: DECISIONS 32 and 38
   double h = base_s_ * coarser_[static_cast<std::size_t>(n)];
   for (const EffectUse& use : c.effects) {
-    const std::uint32_t numerics = use.entry->info->numerics;
-    if ((numerics & (kStiff | kFine)) == 0 || is_neutral(use)) continue;
-    if ((numerics & kStiff) != 0) h = std::min(h, stiff_step(*use.entry, n));
-    if ((numerics & kFine) != 0) h = std::min({h, base_s_, std::max(shortest_s_, kFineStep_s)});
+    if ((use.entry->info->numerics & (kStiff | kFine)) == 0 || is_neutral(use)) continue;
+    h = std::min(h, step_of(*use.entry, n));
   }
   return h;
 }

@@ -6,7 +6,7 @@
 // Law: of the longest step, its half, its quarter …, the first whose error against a quarter of it stays below 7 %
 // of the noise sigma in the trial runs (0.5 % of the error energy, a sixth of what an effect has to take to be
 // named: DECISIONS 42). The base model is tried at its nominal values; a law that is faster than a millisecond
-// (kStiff) at its typical size, and with all strengths, then each shape, at a quarter and at four times that.
+// (kStiff) or changes within a sample (kFine) at its typical size, and with all strengths, then each shape, at a quarter and at four times that.
 // Cannot: see an error that only sizes far from these have, or that only comes after the trial's seconds; vary
 // the step within a run. A law with impacts has no order of convergence: it takes the shortest step.
 #pragma once
@@ -36,12 +36,12 @@ class AxisSubstep {
 
  private:
   double longest_step(const std::vector<Candidate>& models, double longest_s, const Error& error) const;
-  double stiff_step(const EffectEntry& entry, int run) const;
+  double step_of(const EffectEntry& entry, int run) const;
 
   double shortest_s_ = 100e-6;
   double base_s_ = 100e-6;
-  std::vector<double> coarser_;                                     // per run, times the step
-  std::vector<std::pair<const EffectEntry*, double>> stiff_steps_;  // s, before coarser_
+  std::vector<double> coarser_;                               // per run, times the step
+  std::vector<std::pair<const EffectEntry*, double>> steps_;  // of laws that ask for it; s, before coarser_
 };
 
 }  // namespace omnihil

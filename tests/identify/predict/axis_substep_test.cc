@@ -66,7 +66,7 @@ TEST(AxisSubstep, OfAStiffLawFollowsFromThatLawsError) {
   EXPECT_DOUBLE_EQ(substep.of(with_typical("lugre_friction"), 0), 0.25e-3);
   EXPECT_DOUBLE_EQ(substep.of(with_effect(nominal(), *bristles), 0), 1e-3) << "neutral";
   EXPECT_DOUBLE_EQ(substep.of(with_typical("backlash"), 0), kShortest_s) << "impacts have no order";
-  EXPECT_DOUBLE_EQ(substep.of(with_typical("cogging"), 0), 0.2e-3);
+  EXPECT_DOUBLE_EQ(substep.of(with_typical("cogging"), 0), 0.25e-3);
   EXPECT_DOUBLE_EQ(substep.of(with_typical("saturation"), 0), 1e-3);
 }
 
