@@ -23,7 +23,8 @@ struct InFlight {
 };
 
 struct Robot {
-  std::optional<RobotFeedback> feedback;  // none: it is still starting, and silent
+  std::optional<RobotFeedback> feedback;   // none: it is still starting, and silent
+  std::uint32_t kick = OMNIHIL_KICK_NONE;  // that the latest command asked for
 };
 
 class PlainLink final : public Dongle {
@@ -194,6 +195,10 @@ void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
     delivery.robot_id = at.robot;
     delivery.message = values.message->name;
     if (drives) delivery.command = plain_.to_command(values, at.robot);
+    std::uint32_t& kick_before = robots_.find(at.robot)->kick;
+    const std::uint32_t kick = delivery.command.kick;
+    if (plain_.kicks_once && kick == kick_before) delivery.command.kick = OMNIHIL_KICK_NONE;
+    kick_before = kick;
     sink.deliver(delivery, at.arrives_ns);
   }
   const std::optional<RobotFeedback>& feedback = robots_.find(at.robot)->feedback;

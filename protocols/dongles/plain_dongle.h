@@ -27,6 +27,7 @@ struct PlainDongle {
   std::int64_t to_host_ns = 0;       // the robot has a frame until its answer is at the host
   // What a packet asks of robot `id`.
   RobotCommand (*to_command)(const Values& values, int id) = nullptr;
+  bool kicks_once = false;  // a kick acts when the packet before asked for none; one that stays does not
   // The robots that a packet is for, where roles of fields do not say it: their number, and their ids. Null: roles.
   std::size_t (*robots)(const Values& values, std::span<int, 16> ids) = nullptr;
   // A frame that lists packets gives each robot its turn, this long after the one before, and is answered after

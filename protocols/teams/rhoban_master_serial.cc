@@ -157,6 +157,7 @@ constexpr PlainDongle kDongle{
     .to_robot_ns = 500'000,
     .to_host_ns = 500'000,
     .to_command = to_command,
+    .kicks_once = true,
     .turn_ns = 2'000'000,
     .answer = answer,
 };
@@ -185,7 +186,8 @@ constinit const RadioFormat kFormat{
         "- Headers and firmware disagree on units: the battery (0.1 V; the firmware writes V times 8), the "
         "heading "
         "(1/10000 rad; mrad), the kicker's time (25 us; 30 us). Here the firmware is followed.\n"
-        "- A robot kicks with the ball present and the capacitor above 80 V.\n",
+        "- A robot kicks when a kick bit comes, not while it stays, with the ball present and the capacitor "
+        "above 80 V.\n",
     .carrier = {.kind = Carrier::Kind::kUsbCdc},
     .framing = Framing::kList,
     .max_frame_bytes = kLongestFrame,

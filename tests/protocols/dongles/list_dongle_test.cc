@@ -92,6 +92,22 @@ TEST(ListDongle, ABadPacketSpoilsItsListAndNotTheNext) {
   EXPECT_NEAR(bench.sink.heard[0].command.v_forward_m_s, 0.003, 1e-12);
 }
 
+TEST(ListDongle, AKickBitActsWhenItComesAndNotWhileItStays) {
+  Bench bench(rhoban(), {.robot_ids = {1}});
+  std::vector<std::uint32_t> kicks;
+  for (const double actions : {1.0, 5.0, 5.0, 1.0, 5.0, 3.0}) {  // on; flat; flat; on; flat; chip
+    Values values = master(1, 0);
+    values.set("actions", actions);
+    values.set("kick_power", 100);
+    bench.write(frame_of({values}));
+    bench.run_to(bench.now_ns + 10 * kMs);
+    kicks.push_back(bench.sink.heard.back().command.kick);
+  }
+  EXPECT_EQ(kicks, (std::vector<std::uint32_t>{OMNIHIL_KICK_NONE, OMNIHIL_KICK_STRAIGHT, OMNIHIL_KICK_NONE,
+                                               OMNIHIL_KICK_NONE, OMNIHIL_KICK_STRAIGHT, OMNIHIL_KICK_CHIP}));
+  EXPECT_NEAR(bench.sink.heard.back().command.kick_pulse_s, 3e-3, 1e-12) << "100 times 30 us";
+}
+
 TEST(PacketList, FaultsOfTheFrameHaveTheirCause) {
   const Bytes good = frame_of({master(1, 1), master(2, 2)});
   const auto fault = [](const Bytes& frame) { return decode_listed(rhoban(), frame, 0).error; };
