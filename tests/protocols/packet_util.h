@@ -75,7 +75,7 @@ struct GoldenPacket {
   Bytes frame;
 };
 
-// Every packet type of every format with values chosen here; the bytes come from a second implementation,
+// Every packet type of every format; the bytes come from the team's own encoder, or from a second implementation,
 // written in another language from the formats' descriptions.
 inline std::vector<GoldenPacket> golden_packets() {
   std::vector<GoldenPacket> packets;
