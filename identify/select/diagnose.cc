@@ -110,8 +110,8 @@ class Diagnosing {
         order_ = iteration.orders.empty() ? 0.0 : iteration.orders.front();
       out_.ladder.back().ranking = iteration.ranking;
       if (iteration.chosen < 0) {
-        const bool search_pairs = options_.pairs && !iteration.stopped && worth_another_iteration();
-        if (!search_pairs || !take_pair(iteration)) return;
+        if (iteration.stopped || !pairs_asked() || !worth_another_iteration() || !take_pair(iteration))
+          return;
         from = to;
         continue;
       }
@@ -127,6 +127,9 @@ class Diagnosing {
       from = to;
     }
   }
+
+  // Where nothing has been found at all, an answer is worth two further iterations.
+  bool pairs_asked() const { return options_.pairs || (out_.effects.empty() && options_.max_effects > 1); }
 
   // Did the parent's fit stop short? Then part of the effect's gain belongs to the base parameters.
   bool parent_not_converged(const Iteration& iteration) {
@@ -246,6 +249,7 @@ class Diagnosing {
                                       "one: {}",
                                       first_fault(out_.findings)->sentence)
                                 : residual_sentence(excess, added);
+    settle_confounded(out_);
     out_.next_experiment = next_experiment(dataset_, out_);
     out_.complete = !stopped_;
     say("done", 1.0);

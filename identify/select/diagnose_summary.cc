@@ -25,6 +25,13 @@ void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& 
   diagnosis.confounded.push_back({.members = std::move(members), .sentence = std::move(sentence)});
 }
 
+std::string confounded_sentence(const std::vector<std::string>& members) {
+  return fmt::format(
+      "These data cannot tell apart: {}. The first is the simplest; any of them explains the recording as "
+      "well.",
+      fmt::join(members, ", "));
+}
+
 }  // namespace
 
 void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
@@ -34,12 +41,7 @@ void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
     std::vector<std::string> members{chosen.screened.name};
     for (const int t : iteration.confounded)
       members.push_back(iteration.candidates[static_cast<std::size_t>(t)].screened.name);
-    add_set(
-        members,
-        fmt::format("These data cannot tell apart: {}. The first is the simplest; any of them explains the "
-                    "recording as well.",
-                    fmt::join(members, ", ")),
-        diagnosis);
+    add_set(members, confounded_sentence(members), diagnosis);
   }
   if (chosen.screened.residual_fraction < kNearlyAliased && !chosen.screened.closest_parameter.empty()) {
     add_set({chosen.screened.name, chosen.screened.closest_parameter},
@@ -48,6 +50,20 @@ void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
                         chosen.screened.closest_parameter),
             diagnosis);
   }
+}
+
+void settle_confounded(Diagnosis& diagnosis) {
+  const auto found = [&](const std::string& name) {
+    return std::find(diagnosis.effects.begin(), diagnosis.effects.end(), name) != diagnosis.effects.end();
+  };
+  std::erase_if(diagnosis.confounded, [&](ConfoundedSet& set) {
+    if (!found(set.members.front())) return true;
+    const auto decided = std::remove_if(set.members.begin() + 1, set.members.end(), found);
+    if (decided == set.members.end()) return false;
+    set.members.erase(decided, set.members.end());
+    set.sentence = confounded_sentence(set.members);
+    return set.members.size() < 2;
+  });
 }
 
 std::vector<Where> where_of(const Comparison& comparison, double order) {

@@ -8,6 +8,10 @@ namespace omnihil {
 // with the base parameter that its signal is aliased with.
 void note_confounded(const Iteration& iteration, Diagnosis& diagnosis);
 
+// At the end: sets of an effect that was removed again go, and from the others the members that are in the answer
+// themselves, since a later iteration decided for both.
+void settle_confounded(Diagnosis& diagnosis);
+
 // The variables that explain most of a comparison's residual, the largest fraction first; `order`: dominant
 // in the residual along the rotor's angle, 0: none.
 std::vector<Where> where_of(const Comparison& comparison, double order);

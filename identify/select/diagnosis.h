@@ -92,7 +92,7 @@ struct DiagnoseOptions {
   std::uint64_t seed = 1;
   int jobs = 1;
   int max_effects = 6;
-  bool pairs = false;           // where no single effect is accepted, search two that mask each other
+  bool pairs = false;           // search two that mask each other also where others have been found
   bool despite_faults = false;  // search also where the data have a fault that can be taken for physics
   std::function<bool(const Progress&)> progress;  // false: stop with what is known
   std::function<bool()> stop;  // asked within every fit, from several threads; true: the same

@@ -102,8 +102,9 @@ void add_verb_diagnose(Verb& program, VerbResult& result) {
       .range(1, 256)
       .capture_default_str();
   verb.add_flag("--quick", a->quick, "the first effect only");
-  verb.add_flag("--pairs", a->options.pairs,
-                "where no single effect is accepted, search two that mask each other: many times as long");
+  verb.add_flag(
+      "--pairs", a->options.pairs,
+      "search two effects that mask each other also where others have been found: two further iterations");
   verb.add_flag("--anyway", a->options.despite_faults,
                 "search for effects although the data have a fault that can be taken for one");
   verb.footer(

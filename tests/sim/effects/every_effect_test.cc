@@ -369,7 +369,8 @@ TEST_P(EveryEffect, DoesNoWorkOverATurnIfItClaimsToBeConservative) {
   for (int n = 0; n < kParts; ++n) {
     TorquePort<double> port;
     port.omega_rotor_rad_s = 1.0;
-    port.theta_rotor_rad = port.theta_output_rad = port.travel_rad = n * 2.0 * 3.14159265358979323846 / kParts;
+    port.theta_rotor_rad = port.theta_output_rad = port.travel_rad =
+        n * 2.0 * 3.14159265358979323846 / kParts;
     function(entry().context, params.data(), nullptr, port);
     work += port.tau_Nm / kParts;
     size += std::abs(port.tau_Nm) / kParts;
