@@ -21,17 +21,19 @@ template <typename T, typename Law>
 T needed_torque(const T& start, const Law& law) {
   constexpr int kMostSteps = 20;       // halves the distance at least in each where |g'| <= 1/2
   constexpr double kRounding = 1e-13;  // relative; of a sum of a few torques
-  double at = value_of(start), next = value_of(law(T(at))), slope = 0.0;
+  double at = value_of(start), slope = 0.0;
+  T last = law(T(at));
+  double next = value_of(last);
   double most = std::abs(at) + std::abs(next);
   for (int k = 0; k < kMostSteps && std::abs(next - at) > kRounding * most; ++k) {
     const double before = at, g_before = next;
     at = before + (g_before - before) / (1.0 - slope);
-    next = value_of(law(T(at)));
+    last = law(T(at));
+    next = value_of(last);
     most = std::max(most, std::abs(at) + std::abs(next));
     if (at != before) slope = (next - g_before) / (at - before);
     if (!(slope < 1.0)) slope = 0.0;  // a kink between, or several solutions: plain iteration
   }
-  const T last = law(T(at));
   return at + (last - at) / (1.0 - slope);
 }
 

@@ -120,7 +120,7 @@ void EffectSet<T>::add(const EffectEntry& entry, std::span<const T> values) {
   active_in_drive_ += in_drive;
   reads_motor_torque_ =
       reads_motor_torque_ ||
-      (f.torque != nullptr && (is_formula(*entry.info) || (entry.info->numerics & kReadsMotorTorque) != 0));
+      (f.torque != nullptr && (entry.info->numerics & kReadsMotorTorque) != 0);
   active_ += in_drive + link(f.contact, contact) + link(f.body, body) + link(f.sensor, sensor) +
              link(f.timing, timing);
 }

@@ -71,7 +71,7 @@ class EffectSet {
   std::span<const T> initial_states() const { return initial_states_; }
   bool none() const { return active_ == 0; }  // no effect acts anywhere
   bool none_in_drive() const { return active_in_drive_ == 0; }
-  bool reads_motor_torque() const { return reads_motor_torque_; }  // kReadsMotorTorque, or a formula
+  bool reads_motor_torque() const { return reads_motor_torque_; }  // kReadsMotorTorque
 
   EffectChain<T, CommandPort<T>> command;
   EffectChain<T, SupplyPort<T>> supply;

@@ -133,6 +133,21 @@ TEST(Expression, ShowsAsItsFormulaOverTheSpeed) {
   }
 }
 
+// Inverse dynamics has to solve for the motor's torque only where the formula looks at it.
+TEST(Expression, SaysWhetherItReadsTheMotorsTorque) {
+  const auto reads = [](const std::string& target, const std::string& formula, bool linear) {
+    const Reading r = read("[effects.expression.x]\nadds_to = \"" + target + "\"\nformula = \"" + formula +
+                               "\"\na = { value = 0.1, lower = -1.0, upper = 1.0 }\n",
+                           linear);
+    for (const ModelProblem& p : r.problems) ADD_FAILURE() << p.text();
+    return EffectSet<double>(r.uses).reads_motor_torque();
+  };
+  EXPECT_TRUE(reads("torque_Nm", "-a*abs(tau_motor_Nm)", false));
+  EXPECT_FALSE(reads("torque_Nm", "-a*omega_rotor_rad_s", false));
+  EXPECT_TRUE(reads("torque_N", "-a*abs(tau_motor_N)", true));
+  EXPECT_FALSE(reads("torque_N", "-a*omega_rotor_m_s", true));
+}
+
 // A parameter of a formula is fitted like any other: the whole response has its derivative.
 TEST(Expression, HasAnExactDerivativeOfTheWholeResponse) {
   const AxisInput in = excite(Excitation::kSteps, 0.6, 1.0);
