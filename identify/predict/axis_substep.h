@@ -1,12 +1,13 @@
 // Electrical sub-step of an axis: as long as its error stays small beside the noise of what is compared.
 //
 //   AxisSubstep substep(nominal, setups, 100e-6, error);
-//   run_axis<double>(params, effects, setups[n].input, {.step_s = substep.of(candidate, n)});
+//   run_axis<double>(params, law, setups[run].input, {.step_s = substep.of(candidate, run)});
 //
 // Law: of the longest step, its half, its quarter …, the first whose error against a quarter of it stays below 7 %
 // of the noise sigma in the trial runs (0.5 % of the error energy, a sixth of what an effect has to take to be
 // named: DECISIONS 42). The base model is tried at its nominal values; a law that is faster than a millisecond
-// (kStiff) or changes within a sample (kFine) at its typical size, and with all strengths, then each shape, at a quarter and at four times that.
+// (kStiff) or changes within a sample (kFine) at its typical size, and with all strengths, then each shape, at a
+// quarter and at four times that.
 // Cannot: see an error that only sizes far from these have, or that only comes after the trial's seconds; vary
 // the step within a run. A law with impacts has no order of convergence: it takes the shortest step.
 #pragma once

@@ -1,8 +1,9 @@
 // Dense symmetric systems: factored in one file, so that those who solve one do not compile the solvers again.
 //
-//   const Eigen::VectorXd x = ldlt_solve(normal, right);        // normal x = right
+//   const Eigen::VectorXd x = ldlt_solve(normal, rhs);          // normal x = rhs
 //   const Cholesky factor(normal);
-//   if (factor.positive_definite()) use(factor.solve(cross));
+//   if (!factor.positive_definite()) return;
+//   const Eigen::MatrixXd y = factor.solve(cross);              // normal y = cross
 //   const SymmetricEigen e = symmetric_eigen(information);      // e.values ascending
 //
 // Law: A = P' L D L' P (LDLT, Golub, Van Loan 2013, 4.4), A = L L' (Cholesky, 4.2), A = V diag(values) V' (8.3).
