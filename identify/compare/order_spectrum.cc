@@ -1,12 +1,12 @@
 #include "identify/compare/order_spectrum.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "identify/record/statistics.h"
 #include "sim/law/drive_params.h"
+#include "sim/law/symmetric.h"
 
 namespace omnihil {
 namespace {
@@ -86,10 +86,10 @@ double energy_of(const WhitenedResiduals& residuals, const Eigen::ArrayXd& s, co
     const auto rn = r.segment(part.first, n);
     Eigen::Matrix2d gram;
     gram << sn.squaredNorm(), sn.dot(cn), sn.dot(cn), cn.squaredNorm();
-    if (gram(0, 0) < 1e-9 || gram(1, 1) < 1e-9 || gram.determinant() < 1e-6 * gram(0, 0) * gram(1, 1))
-      continue;
+    const double separate = gram(0, 0) * gram(1, 1), determinant = separate - gram(0, 1) * gram(1, 0);
+    if (gram(0, 0) < 1e-9 || gram(1, 1) < 1e-9 || determinant < 1e-6 * separate) continue;
     const Eigen::Vector2d b(sn.dot(rn), cn.dot(rn));
-    const Eigen::Vector2d a = gram.ldlt().solve(b);
+    const Eigen::VectorXd a = ldlt_solve(gram, b);
     energy += b.dot(a);
     if (taken != nullptr) taken->segment(part.first, n) = a[0] * sn + a[1] * cn;
   }
