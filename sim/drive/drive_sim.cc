@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/drive/implicit_current.h"
 #include "sim/drive/imposed_speed.h"
 #include "sim/drive/shaft_step.h"
 
@@ -187,7 +188,11 @@ INLINE void DriveSim<T>::bridge(DriveState<T>& state, const DriveInput<T>& input
     port.dt_s = step_s_;
     port.voltage_V = s.voltage;
     port.inverse_current_limit_per_A = s.inverse_limit;
-    effects_.bridge.apply(effects_.values(), state.effects.data(), port);
+    if (effects_.bridge_reads_current() && call.electric && input.enabled) {
+      solve_bridge(state, s, port);
+    } else {
+      effects_.bridge.apply(effects_.values(), state.effects.data(), port);
+    }
     s.voltage = port.voltage_V;
     s.inverse_limit = port.inverse_current_limit_per_A;
   }
@@ -200,6 +205,22 @@ INLINE void DriveSim<T>::bridge(DriveState<T>& state, const DriveInput<T>& input
   }
   if (!input.enabled) [[unlikely]]
     release(state, s);
+}
+
+// A bridge whose voltage depends on the current that it drives: both at the end of the sub-step.
+template <typename T>
+void DriveSim<T>::solve_bridge(DriveState<T>& state, const Step& s, BridgePort<T>& port) const {
+  const T opposing_V = s.emf_offset + s.k_emf * s.omega_mid, asked_V = port.voltage_V;
+  const T inverse_limit_before = port.inverse_current_limit_per_A;
+  implicit_current(state.current_A, [&](const T& current_A) {
+    port.current_A = current_A;
+    port.voltage_V = asked_V;
+    port.inverse_current_limit_per_A = inverse_limit_before;
+    effects_.bridge.apply(effects_.values(), state.effects.data(), port);
+    const T end_A = s.winding.end_current(port.voltage_V - opposing_V, state.current_A);
+    const T& inverse_limit = port.inverse_current_limit_per_A;
+    return value_of(inverse_limit) > 0.0 ? clamped(end_A, T(1.0 / inverse_limit)) : end_A;
+  });
 }
 
 // All switches off: the current dies against the bus, then nothing flows below the bus voltage.

@@ -51,6 +51,7 @@ struct DeadTime {
             return 3.0 * (s.voltage_sigma_V + 0.5 * s.current_sigma_A) / std::sqrt(s.rate_Hz);
           },
       .claims = kDissipative | kOdd,
+      .numerics = kReadsCurrent,
       .params = kParams,
       .plot = {.excitation = "locked", .x = "duty", .y = "motor_current", .from_s = 0.0, .to_s = 16.0},
   };

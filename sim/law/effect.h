@@ -62,6 +62,8 @@ enum NumericsBit : std::uint32_t {
   kHidesDelays = 1u << 4,  // a limit behind a delay: the delay's derivative is zero behind it
   // Looks at the motor's torque, which inverse dynamics then has to solve for (sim/drive/needed_torque.h).
   kReadsMotorTorque = 1u << 5,
+  // A bridge's voltage that depends on the current it drives: solved with the winding (sim/drive/implicit_current.h).
+  kReadsCurrent = 1u << 6,
 };
 
 enum RigsBit : std::uint32_t { kOnAxis = 1u << 0, kOnRobot = 1u << 1, kOnBoth = 3u };

@@ -52,8 +52,8 @@ struct BridgePort {
   CommandKind kind = CommandKind::kDuty;
   T duty_ratio = T(0);
   T bus_voltage_V = T(0);
-  T current_A = T(0);           // at the start of the sub-step
-  T back_emf_V = T(0);          // mid, of the base model
+  T current_A = T(0);   // at the start of the sub-step; at its end for a law that reads it (kReadsCurrent)
+  T back_emf_V = T(0);  // mid, of the base model
   T temperature_rise_K = T(0);  // of the winding; needs = "winding_heating"
   T resistance_ohm = T(0);      // of the winding, as effects left it
   T pwm_frequency_Hz = T(0);    // 0: unknown

@@ -121,6 +121,8 @@ void EffectSet<T>::add(const EffectEntry& entry, std::span<const T> values) {
   reads_motor_torque_ =
       reads_motor_torque_ ||
       (f.torque != nullptr && (entry.info->numerics & kReadsMotorTorque) != 0);
+  bridge_reads_current_ =
+      bridge_reads_current_ || (f.bridge != nullptr && (entry.info->numerics & kReadsCurrent) != 0);
   active_ += in_drive + link(f.contact, contact) + link(f.body, body) + link(f.sensor, sensor) +
              link(f.timing, timing);
 }

@@ -71,7 +71,8 @@ class EffectSet {
   std::span<const T> initial_states() const { return initial_states_; }
   bool none() const { return active_ == 0; }  // no effect acts anywhere
   bool none_in_drive() const { return active_in_drive_ == 0; }
-  bool reads_motor_torque() const { return reads_motor_torque_; }  // kReadsMotorTorque
+  bool reads_motor_torque() const { return reads_motor_torque_; }      // kReadsMotorTorque
+  bool bridge_reads_current() const { return bridge_reads_current_; }  // kReadsCurrent
 
   EffectChain<T, CommandPort<T>> command;
   EffectChain<T, SupplyPort<T>> supply;
@@ -93,6 +94,7 @@ class EffectSet {
   int active_ = 0;
   int active_in_drive_ = 0;
   bool reads_motor_torque_ = false;
+  bool bridge_reads_current_ = false;
 };
 
 }  // namespace omnihil

@@ -196,6 +196,7 @@ std::shared_ptr<const Expression> make_expression(ExpressionText text, std::vect
   describe(*e, c.place);
   if (reads(*e, c, "temperature_rise_K")) e->info.needs = "winding_heating";
   if (reads(*e, c, shown("tau_motor_Nm", e->text.linear))) e->info.numerics |= kReadsMotorTorque;
+  if (c.place == Place::kBridge && reads(*e, c, "current_A")) e->info.numerics |= kReadsCurrent;
   e->entry.info = &e->info;
   e->entry.simulate = functions_at<double>(c.place);
   e->entry.differentiate = functions_at<Jet>(c.place);

@@ -25,6 +25,27 @@ TEST(DeadTime, VanishesAtCurrentsFarBelowItsWidth) {
   EXPECT_NEAR(out.back().motor_current_A, 0.012 / (1.2 + 0.04), 1e-7);
 }
 
+// The law turns over within a width that no sub-step resolves; R i = u - V i / sqrt(i^2 + w^2) all the same, at any
+// inductance, also where |u| < V and nearly nothing flows.
+TEST(DeadTime, SettlesBelowItsVoltageWhateverTheWidth) {
+  DriveParams<double> p = small_drive();
+  p.coulomb_friction_Nm = 10.0;
+  for (const double inductance_H : {0.0, 1e-5, p.inductance_H}) {
+    p.inductance_H = inductance_H;
+    for (const double width_A : {0.001, 0.02, 0.3}) {
+      for (const double duty : {0.01, 0.05, -0.02}) {
+        const auto out =
+            run_axis(p, with({use_of("dead_time", {0.4, width_A})}), held(CommandKind::kDuty, duty, 0.05));
+        const double i = out.back().motor_current_A;
+        EXPECT_NEAR(p.resistance_ohm * i, duty * 12.0 - 0.4 * i / std::hypot(i, width_A), 1e-6)
+            << inductance_H << " H, " << width_A << " A, duty " << duty;
+        // of the current of a sub-step as well as of its mean
+        EXPECT_NEAR(out[out.size() / 2].motor_current_A, i, 1e-6);
+      }
+    }
+  }
+}
+
 TEST(DeadTime, IsTheSameBothWays) {
   const auto effects = with({use_of("dead_time", {0.4, 0.2})});
   const auto forward = run_axis(small_drive(), effects, excite(Excitation::kSteps, 0.7, 2.0));
