@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/law/effect_registry.h"
+#include "sim/law/param_range.h"
 #include "sim/law/symmetric.h"
 #include "sim/model/effect_reader.h"
 
@@ -38,10 +39,14 @@ std::string moved_out_of_tolerance(const FitResult& parent, const FitResult& chi
 
 // A shape estimated at its bound suggests that the law is fitting something else. A strength may stay at its
 // neutral value (one of several; 1e-3 of its typical size is the optimiser's resolution there), a phase is
-// periodic, an exponent is a choice of form.
-bool suspicious_bound(const ParameterEstimate& p, const EffectParam* row) {
+// periodic, an exponent is a choice of form, a smoothing width goes to the sharp law at its lower bound.
+bool suspicious_bound(const ParameterEstimate& p, const EffectParam* row, bool linear) {
   if (!p.at_bound || row == nullptr) return false;
   if (row->role != ParamRole::kShape) return std::abs(p.value - row->neutral) > 1e-3 * std::abs(row->typical);
+  if (row->trait == ParamTrait::kSmoothing) {
+    const ParamRange range = param_range(*row, linear);
+    return p.value > 0.5 * (range.lower + range.upper);
+  }
   return row->trait != ParamTrait::kPeriodic && row->trait != ParamTrait::kForm;
 }
 
@@ -82,7 +87,7 @@ std::string implausible_estimate(const FitResult& child, const std::string& name
       const EffectParam& r = entry->info->params[i];
       if (r.name == key || param_key(r, child.model.file.linear) == key) row = &r;
     }
-    if (suspicious_bound(p, row)) {
+    if (suspicious_bound(p, row, child.model.file.linear)) {
       return fmt::format("{} ends at a bound ({:.4g} {}): a symptom, not a result", p.path, p.value, p.unit);
     }
     if (row == nullptr || row->role == ParamRole::kShape) continue;

@@ -29,6 +29,7 @@ struct DeadTime {
        .prior_scale = 0.3,
        .what = "current at which 71 % of it is there: half the ripple current within a PWM period",
        .how = "as voltage_V: curvature of the line near zero current",
+       .trait = ParamTrait::kSmoothing,
        .grid = {GridOf::kTopCurrent, {0.02, 0.1}}},
   };
   static constexpr EffectInfo kInfo{

@@ -40,5 +40,15 @@ TEST(PeriodicBound, OfAnotherShapeIsASymptom) {
       "wheel_slip.grip ends at a bound (2 rad): a symptom, not a result");
 }
 
+// The width of a dead time goes to zero where the bridge turns over sharply; at its upper bound it is a resistance.
+TEST(SmoothingBound, IsTheSharpLawBelowAndASymptomAbove) {
+  EXPECT_EQ(implausibility({}, at_bound("dead_time.voltage_V", "dead_time.current_width_A", 0.001),
+                           "dead_time", false),
+            "");
+  EXPECT_NE(implausibility({}, at_bound("dead_time.voltage_V", "dead_time.current_width_A", 10.0),
+                           "dead_time", false),
+            "");
+}
+
 }  // namespace
 }  // namespace omnihil::test
