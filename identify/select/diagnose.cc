@@ -10,6 +10,7 @@
 #include "identify/select/diagnose_summary.h"
 #include "identify/select/diagnosis.h"
 #include "identify/select/effect_variants.h"
+#include "identify/select/nested_law.h"
 #include "identify/select/next_experiment.h"
 #include "identify/select/noise_effect.h"
 #include "identify/select/plausibility.h"
@@ -55,6 +56,7 @@ class Diagnosing {
     if (!misleading()) {
       iterate();
       eliminate();
+      simplify();
     }
     conclude();
     return std::move(out_);
@@ -206,6 +208,19 @@ class Diagnosing {
       current_ = less;
       out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(n));
       add_step("removed " + name, current_, compare(context_.predictor(), current_.fit.model));
+    }
+  }
+
+  // Laws whose shapes imitated what later effects explain give way to the laws that they become at a limit.
+  void simplify() {
+    for (std::size_t n = 0; n < out_.effects.size() && !stopped_; ++n) {
+      const std::string name = out_.effects[n];
+      std::optional<NestedLaw> simpler = nested_law(task_, context_.setup(true, stop()), current_, name);
+      if (!simpler) continue;
+      current_ = std::move(simpler->fitted);
+      out_.effects[n] = simpler->name;
+      add_step(fmt::format("{} in place of {}", simpler->name, name), current_,
+               compare(context_.predictor(), current_.fit.model));
     }
   }
 

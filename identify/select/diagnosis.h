@@ -33,7 +33,7 @@ std::string_view outcome_name(Outcome outcome);  // "found", "found, but more re
 // One step of the ladder: the model after an effect was added (the first: the refitted baseline; the
 // one before it: the nominal model as given).
 struct LadderStep {
-  std::string added;  // effect, "nominal", "base parameters refitted", "removed X"
+  std::string added;  // effect, "nominal", "base parameters refitted", "removed X", "X in place of Y"
   Comparison comparison;
   std::vector<ParameterEstimate> parameters;
   std::vector<RankedEffect> ranking;  // the ranking that led to the next step

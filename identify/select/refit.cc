@@ -60,18 +60,6 @@ EffectUse near_neutral(const EffectUse& use) {
   return out;
 }
 
-// At its typical size, for where neither the screening's estimate nor a start near neutral succeeds.
-EffectUse at_typical_size(const EffectUse& use, const Candidate& model) {
-  EffectUse out = use;
-  for (std::size_t i = 0; i < out.values.size(); ++i) {
-    const EffectParam& row = use.entry->info->params[i];
-    if (row.role != ParamRole::kStrength) continue;
-    const ParamRange range = param_range(row, model.file.linear);
-    out.values[i] = std::clamp(row.neutral + visible_size(row, model), range.lower, range.upper);
-  }
-  return out;
-}
-
 // The same model, one effect's strength changed by a factor.
 Candidate with_strength_times(const Candidate& model, const std::string& effect, double factor) {
   Candidate out = model;
@@ -125,6 +113,17 @@ double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& ch
 }
 
 }  // namespace
+
+EffectUse at_typical_size(const EffectUse& use, const Candidate& model) {
+  EffectUse out = use;
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    const EffectParam& row = use.entry->info->params[i];
+    if (row.role != ParamRole::kStrength) continue;
+    const ParamRange range = param_range(row, model.file.linear);
+    out.values[i] = std::clamp(row.neutral + visible_size(row, model), range.lower, range.upper);
+  }
+  return out;
+}
 
 std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Candidate& nominal) {
   std::vector<Unknown> unknowns = unknowns_of(candidate);

@@ -34,6 +34,9 @@ std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Cand
 
 Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effect);
 
+// All strengths at their typical sizes, for where neither the screening's estimate nor a start near neutral succeeds.
+EffectUse at_typical_size(const EffectUse& use, const Candidate& model);
+
 // The same model once more, thoroughly: covariance, flat directions, several starts.
 Fitted refit_as_it_is(const RefitSetup& setup, const Candidate& model, int starts);
 

@@ -1,8 +1,8 @@
 // The torque that an axis takes at each of many settled speeds, against a brake whose torque is measured. Made up: what
 // is to be found in it is a closed form.
 //
-//   y_i = b w_i + C sgn w_i - L_i - M + noise     speeds w_i from -w_max to w_max, brake L_i either way, hidden
-//                                                 load M and Coulomb friction C
+//   y_i = b w_i + C sgn w_i + G (1 - exp(-|w_i| / w_G)) sgn w_i - L_i - M + noise     speeds w_i from -w_max to w_max, brake L_i either way, hidden
+//                                                 load M, Coulomb friction C, grease's drag G
 //
 //   TorqueMap map({.load_Nm = 0.004});
 //   map.dataset; map.nominal;         // whose viscous friction is not known exactly, and which has no load
@@ -18,6 +18,8 @@ struct TorqueMapRecipe {
   double sigma_Nm = 1e-4;
   bool braked = true;
   double coulomb_Nm = 0.0;
+  double grease_Nm = 0.0;
+  double grease_speed_rad_s = 30.0;
 };
 
 class TorqueMap {
@@ -63,13 +65,14 @@ class TorqueMap {
     for (int i = 0; i < kPoints; ++i) {
       const double w = speed_rad_s(i);
       const double noise = recipe.sigma_Nm * gaussian(7, split, static_cast<std::uint64_t>(i));
+      const double grease = recipe.grease_Nm * -std::expm1(-std::abs(w) / recipe.grease_speed_rad_s);
       out.time_s.push_back(kPeriod_s * i);
       out.signals["velocity"].push_back(w);
       const double brake = recipe.braked ? brake_Nm(i) : 0.0;
       if (recipe.braked) out.signals["load_torque"].push_back(brake_Nm(i));
       out.signals["motor_torque"].push_back(recipe.friction_Nm_s_per_rad * w +
-                                            std::copysign(recipe.coulomb_Nm, w) - brake - recipe.load_Nm +
-                                            noise);
+                                            std::copysign(recipe.coulomb_Nm + grease, w) - brake -
+                                            recipe.load_Nm + noise);
     }
     return out;
   }

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 
+#include "identify/select/effect_variants.h"
+#include "identify/select/nested_law.h"
 #include "identify/select/selection_context.h"
 #include "identify/select/selection_pair.h"
+#include "sim/law/effect_registry.h"
 #include "tests/identify/torque_map.h"
 
 namespace omnihil {
@@ -18,6 +21,32 @@ TEST(NestedLaws, TheSimplestThatExplainsIsTheAnswer) {
   EXPECT_EQ(d.outcome, Outcome::kFound);
   // standard error of a mean of 200 signs: 1e-4 / sqrt(200) = 7e-6
   EXPECT_NEAR(value_at(d.final_fit.model, "coulomb_friction.torque_Nm").value_or(0.0), 0.003, 3e-5);
+}
+
+// Grease's drag, fitted to the map, and the law that could stand in its place.
+std::optional<NestedLaw> law_within_grease(const TorqueMap& map) {
+  SelectionContext context(map.dataset, map.nominal, {.seed = 1, .jobs = 1});
+  EXPECT_TRUE(context.fit_base([] { return false; }));
+  context.simulate();
+  std::vector<std::string> not_applicable;
+  const SelectionTask task = context.task(not_applicable);
+  const RefitSetup setup = context.setup(true, [] { return false; });
+  const Candidate& base = context.base().fit.model;
+  const EffectUse grease = at_typical_size(neutral_use(*find_effect("grease_drag")), base);
+  const Fitted current = refit_as_it_is(setup, with_use(base, grease), 1);
+  EXPECT_TRUE(current.finite);
+  return nested_law(task, setup, current, "grease_drag");
+}
+
+TEST(NestedLaws, AShapeThatEarnsNothingGivesWay) {
+  const std::optional<NestedLaw> simpler = law_within_grease(TorqueMap({.coulomb_Nm = 0.003}));
+  ASSERT_TRUE(simpler.has_value());
+  EXPECT_EQ(simpler->name, "coulomb_friction");
+  EXPECT_NEAR(value_at(simpler->fitted.fit.model, "coulomb_friction.torque_Nm").value_or(0.0), 0.003, 3e-5);
+}
+
+TEST(NestedLaws, AShapeThatTheDataShowStays) {
+  EXPECT_FALSE(law_within_grease(TorqueMap({.grease_Nm = 0.003})).has_value());
 }
 
 // The base fit, one iteration and its refusal: as if each effect alone raised the error of another motion.

@@ -1,0 +1,35 @@
+#include "identify/select/nested_law.h"
+
+#include <algorithm>
+
+#include "identify/select/effect_variants.h"
+
+namespace omnihil {
+
+std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
+                                    const std::string& name) {
+  const std::vector<EffectUse>& uses = current.fit.model.effects;
+  const auto uses_id = [&](std::string_view id) {
+    return std::find_if(uses.begin(), uses.end(),
+                        [&](const EffectUse& u) { return u.entry->info->id == id; });
+  };
+  const auto rich = uses_id(name);
+  if (rich == uses.end()) return std::nullopt;
+  for (const std::string_view simpler : rich->entry->info->nests) {
+    const auto entry = std::find_if(task.applicable.begin(), task.applicable.end(),
+                                    [&](const EffectEntry* e) { return e->info->id == simpler; });
+    if (entry == task.applicable.end() || uses_id(simpler) != uses.end()) continue;
+    const Candidate without = without_effect(current.fit.model, name);
+    const Candidate with = with_use(without, at_typical_size(neutral_use(**entry), without));
+    Fitted fitted = refit_to_convergence(setup, refit_as_it_is(setup, with, 1));
+    if (!fitted.finite) continue;
+    const AcceptanceResult earned =
+        test_acceptance(task.acceptance_context, fitted, current, name, kScreenedBefore);
+    // A gain that is decisive but refused for the values of its numbers is no reason for the simpler law either.
+    if (earned.accepted() || earned.decisive) continue;
+    return NestedLaw{.name = std::string(simpler), .fitted = std::move(fitted)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace omnihil
