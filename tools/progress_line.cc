@@ -13,10 +13,11 @@ constexpr double kFirstEstimate = 0.05;  // share of the work before which no ti
 
 }  // namespace
 
-ProgressLine::ProgressLine()
+ProgressLine::ProgressLine(bool as_lines)
     : start_(std::chrono::steady_clock::now()),
       shown_(start_ - kBetween),
-      terminal_(::isatty(STDERR_FILENO) == 1) {}
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      as_lines_(as_lines) {}
 
 ProgressLine::~ProgressLine() { clear(); }
 
@@ -25,6 +26,14 @@ double ProgressLine::elapsed_s() const {
 }
 
 void ProgressLine::show(const std::string& doing, double share) {
+  if (as_lines_) {
+    if (doing == last_) return;
+    last_ = doing;
+    std::fprintf(stderr, "%s\n",
+                 fmt::format("{:7.1f} s  {:3.0f} %  {}", elapsed_s(), 100.0 * share, doing).c_str());
+    std::fflush(stderr);
+    return;
+  }
   const auto now = std::chrono::steady_clock::now();
   if (!terminal_ || now - shown_ < kBetween) return;
   shown_ = now;

@@ -163,6 +163,8 @@ class Diagnosing {
     for (const RankedEffect& r : iteration.ranking) {
       if (r.visibility != Visibility::kVisible) out_.not_visible.push_back(r.effect + ": " + r.why);
     }
+    if (!iteration.stopped && !iteration.ranking.empty())
+      say("first ranking: " + iteration.ranking.front().effect, kAfterNull);
   }
 
   void take(const Iteration& iteration) {

@@ -40,9 +40,13 @@ class SlowDiagnoseVerb : public CliTest {
 };
 
 TEST_F(SlowDiagnoseVerb, FromTheVerdictToTheMendedModel) {
-  const Ran first =
-      verb("diagnose", "--json" + shell(folder_ / "d.json") + "--report" + shell(folder_ / "d.html"));
+  const Ran first = verb("diagnose", "--json" + shell(folder_ / "d.json") + "--report" +
+                                         shell(folder_ / "d.html") + "--progress");
   ASSERT_EQ(first.exit_code, 0) << first.text;
+  const std::size_t ranked = first.text.find(" %  first ranking: cogging\n");
+  ASSERT_NE(ranked, std::string::npos) << first.text;
+  EXPECT_LT(first.text.find(" %  refitting the base parameters\n"), ranked) << first.text;
+  EXPECT_LT(ranked, first.text.find(" %  last fit\n")) << first.text;
   EXPECT_TRUE(first.says("Verdict: found: cogging")) << first.text;
   const nlohmann::json j = nlohmann::json::parse(text_of(folder_ / "d.json"));
   EXPECT_EQ(j["verdict"], "effect");

@@ -30,6 +30,7 @@ struct Arguments {
   std::string write;
   DiagnoseOptions options;
   bool quick = false;
+  bool progress = false;
 
   Arguments() { options.jobs = 2; }
 };
@@ -54,7 +55,7 @@ int run(const Arguments& a) {
   Diagnosis diagnosis;
   double elapsed_s = 0.0;
   {
-    ProgressLine line;
+    ProgressLine line(a.progress);
     DiagnoseOptions options = a.options;
     if (a.quick) options.max_effects = 1;
     options.progress = [&](const Progress& p) {
@@ -107,6 +108,8 @@ void add_verb_diagnose(Verb& program, VerbResult& result) {
       "search two effects that mask each other also where others have been found: two further iterations");
   verb.add_flag("--anyway", a->options.despite_faults,
                 "search for effects although the data have a fault that can be taken for one");
+  verb.add_flag("--progress", a->progress,
+                "what is being done, line by line with its time, on stderr; first ranking: the first answer");
   verb.footer(
       "A verdict is no failure: exit code 0 whatever it is. Ctrl-C says what is known by then and ends with "
       "130;\n"
