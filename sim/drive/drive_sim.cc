@@ -4,9 +4,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "sim/drive/implicit_current.h"
 #include "sim/drive/imposed_speed.h"
 #include "sim/drive/shaft_step.h"
+#include "sim/drive/solve_bridge.h"
 
 namespace omnihil {
 namespace {
@@ -189,7 +189,9 @@ INLINE void DriveSim<T>::bridge(DriveState<T>& state, const DriveInput<T>& input
     port.voltage_V = s.voltage;
     port.inverse_current_limit_per_A = s.inverse_limit;
     if (effects_.bridge_reads_current() && call.electric && input.enabled) {
-      solve_bridge(state, s, port);
+      const T opposing_V = s.emf_offset + s.k_emf * s.omega_mid;
+      const auto law = [&] { effects_.bridge.apply(effects_.values(), state.effects.data(), port); };
+      solve_bridge(s.winding, opposing_V, state.current_A, law, port);
     } else {
       effects_.bridge.apply(effects_.values(), state.effects.data(), port);
     }
@@ -205,22 +207,6 @@ INLINE void DriveSim<T>::bridge(DriveState<T>& state, const DriveInput<T>& input
   }
   if (!input.enabled) [[unlikely]]
     release(state, s);
-}
-
-// A bridge whose voltage depends on the current that it drives: both at the end of the sub-step.
-template <typename T>
-void DriveSim<T>::solve_bridge(DriveState<T>& state, const Step& s, BridgePort<T>& port) const {
-  const T opposing_V = s.emf_offset + s.k_emf * s.omega_mid, asked_V = port.voltage_V;
-  const T inverse_limit_before = port.inverse_current_limit_per_A;
-  implicit_current(state.current_A, [&](const T& current_A) {
-    port.current_A = current_A;
-    port.voltage_V = asked_V;
-    port.inverse_current_limit_per_A = inverse_limit_before;
-    effects_.bridge.apply(effects_.values(), state.effects.data(), port);
-    const T end_A = s.winding.end_current(port.voltage_V - opposing_V, state.current_A);
-    const T& inverse_limit = port.inverse_current_limit_per_A;
-    return value_of(inverse_limit) > 0.0 ? clamped(end_A, T(1.0 / inverse_limit)) : end_A;
-  });
 }
 
 // All switches off: the current dies against the bus, then nothing flows below the bus voltage.

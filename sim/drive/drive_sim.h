@@ -109,7 +109,6 @@ class DriveSim {
   void bridge(DriveState<T>& state, const DriveInput<T>& input, const Call& call, Step& s) const;
   void release(const DriveState<T>& state, Step& s) const;
   void torque(DriveState<T>& state, const DriveInput<T>& input, Step& s) const;
-  void solve_bridge(DriveState<T>& state, const Step& s, BridgePort<T>& port) const;
   T inverse_torque(const DriveState<T>& state, double start_rad_s, double end_rad_s, T tau_outside_Nm,
                    TorquePort<T> port) const;
   void solve(const DriveState<T>& state, const DriveInput<T>& input, Step& s) const;

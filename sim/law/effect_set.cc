@@ -119,8 +119,7 @@ void EffectSet<T>::add(const EffectEntry& entry, std::span<const T> values) {
                        link(f.winding, winding) + link(f.torque, torque) + link(f.shaft, shaft);
   active_in_drive_ += in_drive;
   reads_motor_torque_ =
-      reads_motor_torque_ ||
-      (f.torque != nullptr && (entry.info->numerics & kReadsMotorTorque) != 0);
+      reads_motor_torque_ || (f.torque != nullptr && (entry.info->numerics & kReadsMotorTorque) != 0);
   bridge_reads_current_ =
       bridge_reads_current_ || (f.bridge != nullptr && (entry.info->numerics & kReadsCurrent) != 0);
   active_ += in_drive + link(f.contact, contact) + link(f.body, body) + link(f.sensor, sensor) +

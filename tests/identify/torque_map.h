@@ -1,8 +1,8 @@
 // The torque that an axis takes at each of many settled speeds, against a brake whose torque is measured. Made up: what
 // is to be found in it is a closed form.
 //
-//   y_i = b w_i + C sgn w_i + G (1 - exp(-|w_i| / w_G)) sgn w_i - L_i - M + noise     speeds w_i from -w_max to w_max, brake L_i either way, hidden
-//                                                 load M, Coulomb friction C, grease's drag G
+//   y_i = b w_i + (C + G (1 - exp(-|w_i| / w_G))) sgn w_i - L_i - M + noise
+//   speeds w_i from -w_max to w_max, brake L_i either way; hidden: load M, Coulomb friction C, grease's drag G
 //
 //   TorqueMap map({.load_Nm = 0.004});
 //   map.dataset; map.nominal;         // whose viscous friction is not known exactly, and which has no load
