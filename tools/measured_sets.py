@@ -100,7 +100,8 @@ def beside_best_known(section, name, comparison):
         return ["The README has no reference figures of this set."], {}
     measure, best = measure_of(section), best_known(section, name)
     if not measure or not best:
-        return ["The README's best known figures of this set are of another quantity than those above: not compared."], {}
+        body = section.partition("\n")[2].strip()
+        return ["The README's figures of this set are of another quantity than those above: not compared. They are:", "", body], {}
     lines = [f"Beside the best known model of the README, in its measure ({measure[0]}):", "",
              f"| runs | with the effects, {measure[4]} | best known, {measure[4]} | |", "|---|---|---|---|"]
     misses = {}
@@ -168,7 +169,8 @@ def section(name, facts, readme, results):
     beside, misses = beside_best_known(section_of(readme, name), name, comparison)
     lines += [*beside, "", *unexplained(d)]
     missed = ", ".join(f"{use} by {by:.0f} %" for use, by in misses.items())
-    known = missed and f"missed: {missed}" or ("reached" if beside[-1].startswith("|") else "not compared")
+    reached = any(line.endswith("| reached |") for line in beside)
+    known = f"missed: {missed}" if missed else "reached" if reached else "not compared"
     return lines, f"| [{name}](#{name}) | {d['outcome']} | {effects} | {entry['cpu_s']:.1f} | {known} |"
 
 

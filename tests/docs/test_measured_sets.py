@@ -22,6 +22,7 @@ README = """# Measured
 | `arm` | an arm | MIT | a shelf |
 | `slide` | a slide | MIT | a shop |
 | `never` | never run | MIT | a drawer |
+| `top` | a top | MIT | a fair |
 
 ### drum: position MAE, mrad
 | model | k | fit / holdout | all |
@@ -41,6 +42,9 @@ Free-running simulation; RMSE in rad/s.
 | model | k | fit % | holdout % |
 |---|---|---|---|
 | best known | 7 | **2.0** | **3.0** |
+
+### top
+Rms of the torque: plain 4 mN m; best known 1.
 """
 
 
@@ -110,6 +114,11 @@ class Page(unittest.TestCase):
                       "More remains.", "position against time: 25 %", "cogging, seam", "`cogging.phase` at its bound 1", "no figure"):
             self.assertIn(words, said)
         self.assertNotIn("A note.", said)
+
+    def test_figures_of_another_quantity_are_quoted_and_not_compared(self):
+        self.put("top", diagnosis("motor_torque", "N m"), {"fit": {"motor_torque": {"rmse": 0.5}}})
+        self.assertIn("not compared. They are:\n\nRms of the torque: plain 4 mN m; best known 1.", self.section("top"))
+        self.assertIn("| `cogging` | 4.2 | not compared |", measured_sets.page(README, self.results))
 
     def test_a_set_without_an_answer_is_said_to_have_none(self):
         self.put("arm", None, None, timed_out=True, first_wall_s=None)
