@@ -44,8 +44,10 @@ def names_of(cell):
 
 
 def sets_of(readme):
-    """Set -> what the README's table says of it, by heading."""
+    """Set -> what the README's table says of it, by heading; "the same" is what the row above says."""
     head, rows = next(tables(readme))
+    for above, row in zip(rows, rows[1:]):
+        row[:] = [before if cell == "the same" else cell for before, cell in zip(above, row)]
     return {name: dict(zip(head, row)) for row in rows for name in names_of(row[0])}
 
 

@@ -22,7 +22,7 @@ README = """# Measured
 | `arm` | an arm | MIT | a shelf |
 | `slide` | a slide | MIT | a shop |
 | `never` | never run | MIT | a drawer |
-| `top` | a top | MIT | a fair |
+| `top` | a top | MIT | the same |
 
 ### drum: position MAE, mrad
 | model | k | fit / holdout | all |
@@ -118,6 +118,7 @@ class Page(unittest.TestCase):
     def test_figures_of_another_quantity_are_quoted_and_not_compared(self):
         self.put("top", diagnosis("motor_torque", "N m"), {"fit": {"motor_torque": {"rmse": 0.5}}})
         self.assertIn("not compared. They are:\n\nRms of the torque: plain 4 mN m; best known 1.", self.section("top"))
+        self.assertIn("source: a drawer", self.section("top"))
         self.assertIn("| `cogging` | 4.2 | not compared |", measured_sets.page(README, self.results))
 
     def test_a_set_without_an_answer_is_said_to_have_none(self):
