@@ -87,8 +87,10 @@ double AxisSubstep::longest_step(const std::vector<Candidate>& models, double lo
     }
     return tried > 0;
   };
-  for (double h = longest_s; h > shortest_s_ * 1.01; h *= 0.5) {
+  double h = longest_s;
+  while (h > shortest_s_ * 1.01) {
     if (is_fine(h)) return h;
+    h *= 0.5;
   }
   return shortest_s_;
 }
