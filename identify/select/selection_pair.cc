@@ -25,6 +25,7 @@ std::vector<const CandidateEffect*> first_effects(const SelectionTask& task, con
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   if (by_gain.size() > kMostFirst) by_gain.resize(kMostFirst);
   std::vector<const CandidateEffect*> out;
+  out.reserve(by_gain.size());
   for (const auto& [gain, candidate] : by_gain) out.push_back(candidate);
   return out;
 }
