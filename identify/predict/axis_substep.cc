@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/law/effect_registry.h"
-
 namespace omnihil {
 namespace {
 
@@ -55,30 +53,24 @@ bool acts(const Candidate& c, std::uint32_t numerics) {
 
 AxisSubstep::AxisSubstep(const Candidate& nominal, const std::vector<AxisSetup>& setups, double shortest_s,
                          const Error& error)
-    : shortest_s_(shortest_s), base_s_(shortest_s) {
+    : nominal_(nominal), error_(error), shortest_s_(shortest_s), base_s_(shortest_s) {
   double longest_s = shortest_s;
   for (const AxisSetup& s : setups) {
     coarser_.push_back(coarser(s));
     const std::vector<double>& t = s.input.time_s;
     if (!s.steady && t.size() > 1) longest_s = std::max(longest_s, std::min(kLongestStep_s, t[1] - t[0]));
   }
-  base_s_ = longest_step({nominal}, longest_s, error);
-  for (const EffectEntry* entry : all_effects()) {
-    const std::uint32_t numerics = entry->info->numerics;
-    if ((numerics & (kStiff | kFine)) != 0 && (numerics & kImpacts) == 0)
-      steps_.emplace_back(entry, longest_step(sizes_of(*entry, nominal), base_s_, error));
-  }
+  base_s_ = longest_step({nominal}, longest_s);
 }
 
-double AxisSubstep::longest_step(const std::vector<Candidate>& models, double longest_s,
-                                 const Error& error) const {
+double AxisSubstep::longest_step(const std::vector<Candidate>& models, double longest_s) const {
   constexpr double kShareOfNoise = 0.07;  // DECISIONS 42
   const auto is_fine = [&](double h) {
     int tried = 0;
     for (int n = 0; n < static_cast<int>(coarser_.size()) && tried < kTrialRuns; ++n) {
       bool ran = false;
       for (const Candidate& m : models) {
-        const double e = error(m, n, h * coarser_[static_cast<std::size_t>(n)]);
+        const double e = error_(m, n, h * coarser_[static_cast<std::size_t>(n)]);
         if (std::isnan(e)) break;
         if (e > kShareOfNoise) return false;
         ran = true;
@@ -96,9 +88,11 @@ double AxisSubstep::longest_step(const std::vector<Candidate>& models, double lo
 }
 
 double AxisSubstep::step_of(const EffectEntry& entry, int n) const {
-  const auto at =
-      std::find_if(steps_.begin(), steps_.end(), [&](const auto& tried) { return tried.first == &entry; });
-  if (at == steps_.end()) return std::min(base_s_, shortest_s_);
+  if ((entry.info->numerics & kImpacts) != 0) return std::min(base_s_, shortest_s_);
+  const std::scoped_lock lock(measured_->mutex);
+  auto at = measured_->step_s.find(&entry);
+  if (at == measured_->step_s.end())
+    at = measured_->step_s.emplace(&entry, longest_step(sizes_of(entry, nominal_), base_s_)).first;
   return at->second * coarser_[static_cast<std::size_t>(n)];
 }
 

@@ -7,12 +7,14 @@
 // of the noise sigma in the trial runs (0.5 % of the error energy, a sixth of what an effect has to take to be
 // named: DECISIONS 42). The base model is tried at its nominal values; a law that is faster than a millisecond
 // (kStiff) or changes within a sample (kFine) at its typical size, and with all strengths, then each shape, at a
-// quarter and at four times that.
+// quarter and at four times that, when a model first has it.
 // Cannot: see an error that only sizes far from these have, or that only comes after the trial's seconds; vary
 // the step within a run. A law with impacts has no order of convergence: it takes the shortest step.
 #pragma once
 #include <functional>
-#include <utility>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "identify/predict/axis_setup.h"
@@ -36,13 +38,21 @@ class AxisSubstep {
   double of(const Candidate& candidate, int run) const;  // s
 
  private:
-  double longest_step(const std::vector<Candidate>& models, double longest_s, const Error& error) const;
+  double longest_step(const std::vector<Candidate>& models, double longest_s) const;
   double step_of(const EffectEntry& entry, int run) const;
 
+  // Filled as laws are asked for: most uses of a predictor see a few of them.
+  struct Measured {
+    std::mutex mutex;
+    std::map<const EffectEntry*, double> step_s;  // before coarser_
+  };
+
+  Candidate nominal_;
+  Error error_;
+  std::shared_ptr<Measured> measured_ = std::make_shared<Measured>();
   double shortest_s_ = 100e-6;
   double base_s_ = 100e-6;
-  std::vector<double> coarser_;                               // per run, times the step
-  std::vector<std::pair<const EffectEntry*, double>> steps_;  // of laws that ask for it; s, before coarser_
+  std::vector<double> coarser_;  // per run, times the step
 };
 
 }  // namespace omnihil

@@ -265,14 +265,15 @@ class AxisPredictor final : public Predictor {
 
   void choose_step() {
     constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
-    const std::vector<AxisSetup> whole = setups_;
-    for (AxisSetup& s : setups_) shorten(s, kTrial_s);
-    substep_ = AxisSubstep(*nominal_, whole, options_.step_s, [&](const Candidate& model, int n, double h) {
-      if (run(n).split != Split::kTraining || setup(n).steady || setup(n).input.time_s.size() < 2)
-        return kMissing;
-      return distance(n, predict_at(model, n, h), predict_at(model, n, 0.25 * h));
-    });
-    setups_ = whole;
+    auto trial = std::make_shared<AxisPredictor>(*this);
+    for (AxisSetup& s : trial->setups_) shorten(s, kTrial_s);
+    substep_ =
+        AxisSubstep(*nominal_, setups_, options_.step_s, [trial](const Candidate& model, int n, double h) {
+          const AxisSetup& s = trial->setup(n);
+          if (trial->run(n).split != Split::kTraining || s.steady || s.input.time_s.size() < 2)
+            return kMissing;
+          return trial->distance(n, trial->predict_at(model, n, h), trial->predict_at(model, n, 0.25 * h));
+        });
   }
 
   static void shorten(AxisSetup& s, double span_s) {

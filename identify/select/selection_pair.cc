@@ -7,9 +7,9 @@ namespace {
 
 // First effects that are tried, by cost: an iteration each.
 constexpr std::size_t kMostFirst = 2;
-// Fall of the fit runs' energy from which a refused effect may be the first of a pair: ten times the smallest
-// gain of interest, since it has to be most of what the pair gains. A choice; sensitivity not measured.
-constexpr double kLeastFirstGain = 0.3;
+// Fall of the fit runs' energy from which a refused effect may be the first of a pair: three times the smallest gain of
+// interest, so that it is told from what any law takes of a large residual. A choice; sensitivity not measured.
+constexpr double kLeastFirstGain = 0.1;
 
 // Refused candidates by the fall of the fit runs' energy, largest first.
 std::vector<const CandidateEffect*> first_effects(const SelectionTask& task, const Fitted& parent,
