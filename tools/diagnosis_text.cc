@@ -147,11 +147,14 @@ std::string errors_change_text(const Comparison& before, const Comparison& after
   return out;
 }
 
-std::string parameters_text(const std::vector<ParameterEstimate>& parameters) {
+std::string parameters_text(const std::vector<ParameterEstimate>& parameters,
+                            const std::vector<ParameterEstimate>& of_file) {
   std::string out;
   for (const ParameterEstimate& p : parameters) {
     out += fmt::format("  {:40} {:.5g} +- {:.2g} {}", p.path, p.value, p.sigma, p.unit);
-    if (p.prior_sigma > 0.0 && p.prior_mean != 0.0) {
+    const bool given = std::any_of(of_file.begin(), of_file.end(),
+                                   [&](const ParameterEstimate& f) { return f.path == p.path; });
+    if (given && p.prior_sigma > 0.0 && p.prior_mean != 0.0) {
       out += fmt::format("  ({:+.1f} % of the file's, {:+.1f} sigma)", 100.0 * (p.value / p.prior_mean - 1.0),
                          p.prior_deviation_sigmas);
     }
@@ -162,7 +165,8 @@ std::string parameters_text(const std::vector<ParameterEstimate>& parameters) {
 
 std::string diagnosis_text(const Diagnosis& d) {
   std::string out = findings_text(d) + verdict_text(d) + ladder_text(d) + ranking_text(d) + where_text(d);
-  out += "Parameters of the last model\n" + parameters_text(d.final_fit.parameters) + "\n";
+  out += "Parameters of the last model\n" + parameters_text(d.final_fit.parameters, d.baseline.parameters) +
+         "\n";
   if (!d.unknown.expression_toml.empty()) {
     out += "A formula for the residual, to paste into the model\n" + d.unknown.expression_toml + "\n";
   }

@@ -13,6 +13,8 @@ std::string errors_text(const Comparison& comparison);
 // "velocity rad/s   fit 3.10 -> 0.40 …"
 std::string errors_change_text(const Comparison& before, const Comparison& after);
 // One line per parameter: value, interval, deviation from its prior, what to say of it.
-std::string parameters_text(const std::vector<ParameterEstimate>& parameters);
+// A line each; beside those that are among `of_file` (what the model file gives), how far they are from it.
+std::string parameters_text(const std::vector<ParameterEstimate>& parameters,
+                            const std::vector<ParameterEstimate>& of_file);
 
 }  // namespace omnihil

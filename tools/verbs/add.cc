@@ -65,7 +65,7 @@ int report(const Arguments& a, const Addition& addition, const std::string& name
   std::printf("Base parameters, both refitted\n%s\n", drift_text(addition).c_str());
   std::string own;
   for (const ParameterEstimate& p : addition.fit_after.parameters) {
-    if (p.path.starts_with(name + ".")) own += parameters_text({p});
+    if (p.path.starts_with(name + ".")) own += parameters_text({p}, {});
   }
   std::printf("Its numbers\n%s\n", own.c_str());
   std::printf("%s: %s\n", addition.useful ? "Useful" : "Not useful", addition.why.c_str());
