@@ -21,13 +21,16 @@ constexpr double kSignificant_sigmas = 2.0;
 constexpr double kOutOfTolerance_sigmas = 3.5;
 constexpr double kDeviationRise_sigmas = 0.7;
 
-// A base parameter that the addition moves out of its tolerance; empty: none.
-std::string moved_out_of_tolerance(const FitResult& parent, const FitResult& child) {
+// A base parameter that the addition moves out of its tolerance; empty: none. What its prior rejects without the
+// addition too absorbs something else that is missing (an inductance a delay): beside a decisive gain it says nothing
+// against this addition.
+std::string moved_out_of_tolerance(const FitResult& parent, const FitResult& child, bool decisive) {
   for (const ParameterEstimate& p : child.parameters) {
     if (p.prior_sigma <= 0.0 || std::abs(p.prior_deviation_sigmas) < kOutOfTolerance_sigmas) continue;
     const auto before = std::find_if(parent.parameters.begin(), parent.parameters.end(),
                                      [&](const ParameterEstimate& q) { return q.path == p.path; });
     if (before == parent.parameters.end()) continue;  // of the effect itself
+    if (decisive && std::abs(before->prior_deviation_sigmas) >= kPriorRejected_sigmas) continue;
     if (std::abs(p.prior_deviation_sigmas) >
         std::abs(before->prior_deviation_sigmas) + kDeviationRise_sigmas) {
       return fmt::format("it moves {} out of its tolerance ({:+.1f} sigma, before {:+.1f})", p.path,
@@ -178,7 +181,7 @@ std::string below_time_resolution(const FitResult& child, const std::string& nam
 std::string implausibility(const FitResult& parent, const FitResult& child, const std::string& name,
                            bool decisive) {
   const std::string why = implausible_estimate(child, name, decisive);
-  return why.empty() ? moved_out_of_tolerance(parent, child) : why;
+  return why.empty() ? moved_out_of_tolerance(parent, child, decisive) : why;
 }
 
 }  // namespace omnihil

@@ -248,6 +248,26 @@ TEST(AcceptanceTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
   EXPECT_NE(j.why.find("motor.resistance_ohm"), std::string::npos) << j.why;
 }
 
+// What its prior rejects without the addition too (p < 1 %) absorbs something else: no reason against a decisive gain.
+TEST(AcceptanceTest, ABaseParameterThatWasBentBeforeIsNoReasonAgainstADecisiveGain) {
+  const AcceptanceFixture fixture;
+  const Fitted parent = fixture.leaving(1, 1, 1);
+  const auto accepted = [&](double before_sigmas, double left) {
+    ParameterEstimate inductance;
+    inductance.path = "motor.inductance_H";
+    inductance.prior_sigma = 1e-4;
+    inductance.prior_deviation_sigmas = before_sigmas;
+    Fitted bent = parent, child = fixture.leaving(left, left, left);
+    bent.fit.parameters = {inductance};
+    inductance.prior_deviation_sigmas = 5.9;
+    child.fit.parameters = {inductance};
+    return test_acceptance(fixture.context, bent, child, "x", 100).accepted();
+  };
+  EXPECT_TRUE(accepted(3.1, 0.7));   // 51 % of the energy
+  EXPECT_FALSE(accepted(3.1, 0.9));  // 19 %: not decisive
+  EXPECT_FALSE(accepted(1.9, 0.7));  // not rejected before
+}
+
 TEST(AcceptanceTest, ReadsAParameterAtItsBoundAsASymptom) {
   const AcceptanceFixture fixture;
   Fitted child = fixture.leaving(0.7, 0.7, 0.7);
