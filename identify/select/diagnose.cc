@@ -220,7 +220,7 @@ class Diagnosing {
       std::optional<NestedLaw> simpler = nested_law(task_, context_.setup(true, stop()), current_, name);
       if (!simpler) continue;
       current_ = std::move(simpler->fitted);
-      out_.effects[n] = simpler->name;
+      replace_in_answer(name, simpler->name, out_);
       add_step(fmt::format("{} in place of {}", simpler->name, name), current_,
                compare(context_.predictor(), current_.fit.model));
     }

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "sim/law/effect_registry.h"
+
 namespace omnihil {
 namespace {
 
@@ -50,6 +52,22 @@ void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
                         chosen.screened.closest_parameter),
             diagnosis);
   }
+}
+
+void replace_in_answer(const std::string& richer, const std::string& simpler, Diagnosis& diagnosis) {
+  std::replace(diagnosis.effects.begin(), diagnosis.effects.end(), richer, simpler);
+  std::vector<std::string> members{simpler, richer};
+  std::erase_if(diagnosis.confounded, [&](const ConfoundedSet& set) {
+    if (set.members.front() != richer) return false;
+    for (const std::string& other : set.members) {
+      const bool is_effect = find_effect(other) != nullptr;  // else a base parameter
+      if (is_effect && std::find(members.begin(), members.end(), other) == members.end())
+        members.push_back(other);
+    }
+    return true;
+  });
+  std::string sentence = confounded_sentence(members);
+  add_set(std::move(members), std::move(sentence), diagnosis);
 }
 
 void settle_confounded(Diagnosis& diagnosis) {

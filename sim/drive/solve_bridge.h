@@ -3,7 +3,8 @@
 //   solve_bridge(winding, back_emf_V, current_A, [&] { port.voltage_V -= 0.4 * port.current_A; }, port);
 //
 // Law: i = the winding's end current under port.voltage_V(i) - opposing voltage, within the bridge's current limit.
-// Cannot: know a limit that the voltage alone does not respect (the drive's chopper comes afterwards).
+// Cannot: take a law that keeps a state, being called several times; know a limit that the voltage alone does not
+// respect (the drive's chopper comes afterwards).
 #pragma once
 #include "sim/drive/implicit_current.h"
 #include "sim/drive/winding_step.h"

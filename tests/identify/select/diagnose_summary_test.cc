@@ -45,5 +45,29 @@ TEST(SettleConfounded, OthersStayAsTheyAre) {
   EXPECT_EQ(d.confounded[1].members.size(), 2u);
 }
 
+// The law that gave way explains the record as well: it stays an alternative of the one that took its place.
+TEST(ReplaceInAnswer, KeepsWhatCannotBeToldApart) {
+  Diagnosis d;
+  d.effects = {"coast_mode", "lugre_friction"};
+  d.confounded = {{{"lugre_friction", "stribeck_friction", "coulomb_friction"}, "of three"}};
+  replace_in_answer("lugre_friction", "coulomb_friction", d);
+  settle_confounded(d);
+  EXPECT_EQ(d.effects, (Names{"coast_mode", "coulomb_friction"}));
+  ASSERT_EQ(d.confounded.size(), 1u);
+  EXPECT_EQ(d.confounded[0].members, (Names{"coulomb_friction", "lugre_friction", "stribeck_friction"}));
+  EXPECT_NE(d.confounded[0].sentence.find("coulomb_friction, lugre_friction, stribeck_friction."),
+            std::string::npos);
+}
+
+TEST(ReplaceInAnswer, NamesTheLawThatGaveWay) {
+  Diagnosis d;
+  d.effects = {"grease_drag"};
+  d.confounded = {{{"grease_drag", "motor.viscous_friction_Nm_s_per_rad"}, "2 % is its own"}};
+  replace_in_answer("grease_drag", "coulomb_friction", d);
+  settle_confounded(d);
+  ASSERT_EQ(d.confounded.size(), 1u);  // the base parameter was aliased with the law that is gone
+  EXPECT_EQ(d.confounded[0].members, (Names{"coulomb_friction", "grease_drag"}));
+}
+
 }  // namespace
 }  // namespace omnihil
