@@ -16,7 +16,7 @@ namespace {
 using Grade = DataFinding::Grade;
 
 // A gap is nearer to two periods than to one (derived); a bunched row comes well before its time (tuned).
-constexpr double kLong = 1.5, kShort = 0.6;  // of the median period
+constexpr double kLong = 1.5, kShort = 0.6;  // of the median period; tuned
 constexpr double kLateShare = 0.005;         // of the rows; tuned
 constexpr double kCaughtUp = 0.5;            // of the time lost is regained by the rows after; tuned
 constexpr double kJitterSaid = 0.05;         // of the period, robust 1-sigma; tuned

@@ -22,13 +22,13 @@ using Grade = DataFinding::Grade;
 constexpr double kWindow_s = 0.2;          // some hundred electrical time constants (L/R) of a small motor
 constexpr std::size_t kLeastWindows = 15;  // several per coefficient of the line; a choice
 // |log| of a ratio that should be 1: 32 %, 39 %, 2.2 times. Tuned; what effects bring, the file header says.
-constexpr double kDoubtful = 0.28, kWrong = 0.33;
-constexpr double kWrongAlone = 0.8;  // likewise, where the acceleration does not confirm it
+constexpr double kDoubtful = 0.28, kWrong = 0.33;  // tuned
+constexpr double kWrongAlone = 0.8;  // likewise, where the acceleration does not confirm it; tuned
 constexpr double kTolerances = 4.0;  // prior deviations of the model's parameter: p = 6e-5 of a normal
 // |log|: a factor of three; winding heat and friction bring less.
 constexpr double kWrongCurrent = 1.1;  // tuned
 // Share of the ideal speed. Derived: half is the least wrong scale that there is (one edge counted of two).
-constexpr double kFastEnough = 0.5;
+constexpr double kFastEnough = 0.5;  // derived
 
 struct Windows {
   std::vector<double> u, w, i, side;  // voltage, rotor speed, current, sign of the voltage
@@ -184,7 +184,7 @@ void by_speed_per_volt(const CheckContext& data, std::size_t wheel, const Window
   if (ratio < 1.0 && fastest_ratio(data, wheel, 1.0 / (constant * (1.0 + drag))) > kFastEnough) return;
   // A speed that is too low may come from a load; where viscous drag R b / k^2 is below kLightDrag it may
   // not, unless less than kLoaded of the speed is left. Both tuned.
-  constexpr double kLightDrag = 0.1, kLoaded = 0.25;
+  constexpr double kLightDrag = 0.1, kLoaded = 0.25;  // tuned
   if (ratio < 1.0 && (drag > kLightDrag || ratio > kLoaded)) {
     if (drag <= kLightDrag && ratio < 0.75) {
       const std::string name = speed_name(data, wheel);

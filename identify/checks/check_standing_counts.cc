@@ -14,11 +14,11 @@ namespace omnihil {
 namespace {
 
 // All tuned (check_list.h): stick-slip, backlash and coarse encoders of the sound records bring none.
-constexpr std::size_t kLeastRows = 3, kMostRows = 100;  // of the same count: longer is a stop
+constexpr std::size_t kLeastRows = 3, kMostRows = 100;  // of the same count: longer is a stop; tuned
 constexpr std::size_t kLongHold = 5;  // rows: shorter ones may be a slow drive that sticks for a moment
 constexpr double kLeastCounts = 4.0;  // per row, before and after: a row without a count is then no rounding
-constexpr double kShareOfHighest = 0.1;  // of the highest speed
-constexpr std::size_t kAround = 3;       // rows looked at on either side
+constexpr double kShareOfHighest = 0.1;  // of the highest speed; tuned
+constexpr std::size_t kAround = 3;       // rows looked at on either side; tuned
 
 // Mean of |step| over rows [from, to).
 double mean_step(const std::vector<double>& x, std::size_t from, std::size_t to) {

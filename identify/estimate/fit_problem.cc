@@ -13,7 +13,7 @@ namespace {
 // In units of s_c. Six, far beyond the 1.345 of full robustness: the residual of a wrong model is not
 // Gaussian and must keep its weight in a search, a glitch is farther out. A choice; sensitivity not measured.
 constexpr double kHuber = 6.0;          // a choice
-constexpr double kRobustHuber = 1.345;  // Holland, Welsch 1977
+constexpr double kRobustHuber = 1.345;  // Holland, Welsch 1977; a choice
 
 // Residual of one signal, whitened, zero where it was not measured.
 Eigen::VectorXd residual_of(const ComparedSignal& signal, const std::vector<double>& model) {

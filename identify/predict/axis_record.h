@@ -18,7 +18,7 @@ namespace omnihil {
 // Window of the local mean by which a measured bus voltage is smoothed, in samples: 21 ms at 1 kHz, longer
 // than a PWM or sensor ripple, shorter than the bus sags under a step of the load. A choice; sensitivity not
 // measured.
-inline constexpr std::size_t kBusWindow = 21;
+inline constexpr std::size_t kBusWindow = 21;  // a choice
 
 struct AxisRecord {
   std::size_t first_row = 0;

@@ -20,7 +20,7 @@ enum class PriorForm : std::uint8_t { kNormal, kLogNormal, kLogNormalAbove };
 
 // Tolerance from which a belief is one about the order of magnitude: there normal and log-normal differ by
 // half a standard deviation at twice the value (1 / 0.5 = 2 and ln 2 / ln 1.5 = 1.7); a choice.
-inline constexpr double kOrderOfMagnitude = 0.5;
+inline constexpr double kOrderOfMagnitude = 0.5;  // a choice
 
 // Of the mean, in place of zero, whose logarithm is none: 30 standard deviations at a tolerance of 100 %.
 inline constexpr double kLeastOfMean = 1e-9;

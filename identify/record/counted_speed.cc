@@ -19,7 +19,7 @@ constexpr int kFewestSteps = 3;    // different readings; fewer fit any step
 bool slides(const std::vector<double>& values, double step, double window_samples) {
   constexpr double kLeast = 0.6, kMost = 0.9;  // of the expected changes; between the measured ranges above
   // Changes per sample: "slow" of the law above; tuned on it.
-  constexpr double kSlowest = 0.05, kFastest = 0.6;
+  constexpr double kSlowest = 0.05, kFastest = 0.6;  // tuned
   constexpr double kUneven = 0.5;    // change of speed over a window, of the speed: "even"; tuned
   constexpr double kFewest = 100.0;  // expected changes: their number is then within 10 % (Poisson)
   const std::size_t n = values.size();

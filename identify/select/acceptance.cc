@@ -15,27 +15,27 @@ namespace {
 
 // Smallest gain of interest: this share of the held-out energy above the sensors' noise. Recordings of real
 // drives never come down to the noise: without it every effect would be accepted (DECISIONS 22, 42).
-constexpr double kLeastGain = 0.03;
+constexpr double kLeastGain = 0.03;  // tuned
 // More where the sensors' noise is most of the residual: times the noise's share (DECISIONS 22).
-constexpr double kLeastGainInNoise = 0.05;
+constexpr double kLeastGainInNoise = 0.05;  // tuned
 // The gain over the largest one in the null's replicates (DECISIONS 52; signal_to_null in
 // selection_iteration.cc).
-constexpr double kLeastSignalToNull = 2.0;
+constexpr double kLeastSignalToNull = 2.0;  // tuned
 // Half of kLeastGain: the least gain on the runs that it was fitted to.
-constexpr double kLeastFitGain = 0.5 * kLeastGain;
+constexpr double kLeastFitGain = 0.5 * kLeastGain;  // tuned
 // A gain that proves an effect's strength by itself: ten times kLeastGain.
-constexpr double kDecisiveGain = 0.3;
+constexpr double kDecisiveGain = 0.3;  // tuned
 // Smallest change of one channel's unweighted energy that counts: half of kLeastGain (DECISIONS 22, 51) …
-constexpr double kLeastUnweighted = 0.015;
+constexpr double kLeastUnweighted = 0.015;  // tuned
 // … or of all whitened energy: a coarse encoder's quantisation hides in the former what its counts show in
 // the latter.
-constexpr double kLeastWhitened = 0.1;
+constexpr double kLeastWhitened = 0.1;  // tuned
 // Largest rise of the energy of the extrapolation runs: as large as the smallest gain of interest.
-constexpr double kMostRise = 0.03;
+constexpr double kMostRise = 0.03;  // tuned
 // … unless the remaining held-out energy times the rise is below this: of two effects that compensated each
 // other, the first one added raises the error of the motion in which they did. True effects came to 0.19,
 // false ones rose by 40 to 4000 % and gained less (DECISIONS 47).
-constexpr double kMostRiseTimesRemaining = 0.5;
+constexpr double kMostRiseTimesRemaining = 0.5;  // tuned
 
 // The largest relative fall of one channel's unweighted residual energy.
 double unweighted_gain(const Eigen::VectorXd& parent, const Eigen::VectorXd& child) {

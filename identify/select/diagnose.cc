@@ -23,16 +23,16 @@ namespace omnihil {
 namespace {
 
 // For the progress shown: shares of the work, in order; the iterations take what is between. Guesses.
-constexpr double kAfterBaseline = 0.12;
-constexpr double kAfterNull = 0.16;
-constexpr double kAfterRounds = 0.85;
+constexpr double kAfterBaseline = 0.12;  // a guess
+constexpr double kAfterNull = 0.16;      // a guess
+constexpr double kAfterRounds = 0.85;    // a guess
 // Fall of the energy at which the parent's fit counts as not converged: two thirds of the smallest gain of
 // interest. Restarts for that, by cost. Tuned on the open cases; sensitivity not measured.
-constexpr double kNotConverged = 0.02;
-constexpr int kMostRestarts = 2;
+constexpr double kNotConverged = 0.02;  // tuned
+constexpr int kMostRestarts = 2;        // by cost
 // Energy of the robust last fit over that of least squares above which it is discarded as diverged. Tuned on
 // the open cases; sensitivity not measured.
-constexpr double kRobustLoss = 1.2;
+constexpr double kRobustLoss = 1.2;  // tuned
 
 class Diagnosing {
  public:

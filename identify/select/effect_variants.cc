@@ -57,7 +57,7 @@ std::vector<double> order_grid(const EffectParam& row, double start, const Candi
                                const DataScale& scale) {
   // Orders tried, and how many of the residual's: by cost, a simulation each. Tuned on the open cases;
   // sensitivity not measured.
-  constexpr std::size_t kMost = 6, kOfResidual = 3;
+  constexpr std::size_t kMost = 6, kOfResidual = 3;  // tuned
   std::vector<double> grid{start};
   const auto add = [&](double order) {
     // Below 1.5: once per turn, which has effects of its own (imbalance, eccentricity).

@@ -13,15 +13,15 @@ namespace omnihil {
 namespace {
 
 // Sizes of the test: tuned on the open cases (DECISIONS 34); sensitivity not measured.
-constexpr int kBins = 8;             // of equal numbers of samples, per channel and track
+constexpr int kBins = 8;             // of equal numbers of samples, per channel and track; tuned
 constexpr int kReplicates = 2;       // by cost: a simulation of all runs each
 constexpr int kPasses = 3;           // of the estimate of the strength; by cost
-constexpr double kExplained = 0.75;  // least fraction of the bins' excess variance, held out
-constexpr double kExcess = 0.05;     // least excess over the sensors' variance
+constexpr double kExplained = 0.75;  // least fraction of the bins' excess variance, held out; tuned
+constexpr double kExcess = 0.05;     // least excess over the sensors' variance; tuned
 constexpr double kCorrelation =
     0.1;  // largest difference of the autocorrelations at any lag, beside its own error
 // Samples over which an autocorrelation is compared; a choice, sensitivity not measured.
-constexpr int kLags = 10;
+constexpr int kLags = 10;  // a choice
 
 // Sums of squares of one split, by channel and bin: [track, channel, bin].
 struct Energies {

@@ -18,8 +18,8 @@ constexpr double kSignificant_sigmas = 2.0;
 // Prior deviation from which a base parameter counts as out of its tolerance (two-sided p = 5e-4), and how
 // much farther than without the effect it has to be. Tuned on the open cases (DECISIONS 22); sensitivity not
 // measured.
-constexpr double kOutOfTolerance_sigmas = 3.5;
-constexpr double kDeviationRise_sigmas = 0.7;
+constexpr double kOutOfTolerance_sigmas = 3.5;  // tuned
+constexpr double kDeviationRise_sigmas = 0.7;   // tuned
 
 // A base parameter that the addition moves out of its tolerance; empty: none. What its prior rejects without the
 // addition too absorbs something else that is missing (an inductance a delay): beside a decisive gain it says nothing
@@ -162,7 +162,7 @@ std::string restores_prior(const FitResult& parent, const FitResult& child,
 std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz) {
   // Of the visible size: below, a model's own sub-steps amount to as much. Tuned: every false alarm left was
   // 4 us of delay at 1 kHz (DECISIONS 55); sensitivity not measured.
-  constexpr double kOfVisible = 0.05;
+  constexpr double kOfVisible = 0.05;  // tuned
   const EffectEntry* entry = find_effect(name);
   if (entry == nullptr || entry->info->min_visible == nullptr || rate_Hz <= 0.0) return "";
   const EffectParam& row = entry->info->params[first_strength(*entry->info)];

@@ -26,15 +26,15 @@ PriorDeviation largest_prior_deviation(const FitResult& fit);
 // a missing effect. An addition that brings it back within kRestored (p = 5 %), without raising the residual
 // energy by more than kMostEnergyRise, is accepted as that effect. Sizes tuned on the open cases, DECISIONS
 // 50; sensitivity not measured.
-inline constexpr double kImplausible_sigmas = 4.0;
-inline constexpr double kRestored_sigmas = 2.0;
-inline constexpr double kMostEnergyRise = 0.01;
+inline constexpr double kImplausible_sigmas = 4.0;  // tuned
+inline constexpr double kRestored_sigmas = 2.0;     // tuned
+inline constexpr double kMostEnergyRise = 0.01;     // tuned
 
 // Where data cannot separate an effect from a base parameter (a payload from the mass), the priors decide:
 // the effect is preferred if the base parameter's one-sided prior p-value is below 1 % (the normal
 // distribution's 99 % quantile: derived, DECISIONS 56) and the total prior chi-square falls by at least the
 // square of that.
-inline constexpr double kPriorRejected_sigmas = 2.33;
+inline constexpr double kPriorRejected_sigmas = 2.33;  // derived
 
 // Absolute prior deviation of one parameter; 0: no such parameter, or it has no prior. From its value, since
 // ParameterEstimate::prior_deviation_sigmas is 0 where the data do not determine a parameter.

@@ -13,8 +13,8 @@ namespace {
 
 // Further starts, by cost: screened share of the residual energy from which they are worth a fit each. Tuned
 // on the open cases; sensitivity not measured.
-constexpr double kWorthTypicalStart = 0.2;
-constexpr double kWorthPriorStart = 0.1;
+constexpr double kWorthTypicalStart = 0.2;  // tuned
+constexpr double kWorthPriorStart = 0.1;    // tuned
 // A start has succeeded if it gains this fraction of what the screening predicts (it is linear, and not on
 // all bounds).
 constexpr double kOfPredicted = 0.5;
@@ -87,7 +87,7 @@ Candidate at_priors(const Candidate& model, const Candidate& nominal) {
 Fitted reset_unidentifiable(const RefitSetup& setup, const Fitted& parent, Fitted child) {
   // Largest relative energy after the reset: a fifteenth of the smallest gain of interest. Tuned on the open
   // cases; sensitivity not measured.
-  constexpr double kFree = 1.002;
+  constexpr double kFree = 1.002;  // tuned
   const Fitted as_fitted = child;
   for (std::size_t i = 0; i < as_fitted.fit.parameters.size() && as_fitted.finite; ++i) {
     const ParameterEstimate& p = as_fitted.fit.parameters[i];
@@ -205,8 +205,8 @@ Fitted refit_to_convergence(const RefitSetup& setup, Fitted model) {
   // By cost; and the fall of the energy that is worth a repeat, a sixth of the smallest gain of interest as
   // is the numerical error allowed to a simulation (DECISIONS 42). Tuned on the open cases; sensitivity not
   // measured.
-  constexpr int kMostRepeats = 3;
-  constexpr double kWorthAnother = 0.005;
+  constexpr int kMostRepeats = 3;          // by cost
+  constexpr double kWorthAnother = 0.005;  // tuned
   for (int k = 0; k < kMostRepeats && model.finite && !(setup.stop && setup.stop()); ++k) {
     Fitted further = refit_as_it_is(setup, model.fit.model, 1);
     const double ratio = fit_ratio(setup, model, further);

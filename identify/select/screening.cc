@@ -77,7 +77,7 @@ Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& vari
   constexpr int kResizings = 3;  // by cost: a simulation each
   // Where no size gained: one well below and, after it, one well above. Tuned on the open cases; sensitivity
   // not measured.
-  constexpr double kSmaller = 0.3, kLarger = 8.0;
+  constexpr double kSmaller = 0.3, kLarger = 8.0;  // tuned
   Scored best;
   for (const EffectVariant& v : variants) {
     if (v.columns.empty()) continue;
@@ -109,7 +109,7 @@ class SizeSearch {
     // size where it begins to act (2^(1/32)).
     constexpr int kLargest = 3, kSmallest = -7, kHalvings = 5;
     // Sizes beyond that one. Tuned on the open cases (DECISIONS 33); sensitivity not measured.
-    constexpr double kBeyond[] = {1.08, 1.2, 1.4, 1.7};
+    constexpr double kBeyond[] = {1.08, 1.2, 1.4, 1.7};  // tuned
     for (const EffectVariant& v : variants) {
       double acts = 0.0, idle = 0.0;  // factors of its typical size
       for (int k = kLargest; k >= kSmallest && idle == 0.0; --k) {
@@ -222,7 +222,7 @@ Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
       Scored series = score(task, v);
       // Several orders have to gain this factor more than one. Tuned on the open cases; sensitivity not
       // measured.
-      constexpr double kSeriesGain = 1.05;
+      constexpr double kSeriesGain = 1.05;  // tuned
       if (series.finite && series.fit.gain > kSeriesGain * best.fit.gain) best = std::move(series);
     }
   }
@@ -261,8 +261,8 @@ std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const C
   constexpr std::size_t kLeast = 200;
   // Limits of the regimes: shares of the top speed (98 % quantile, so that no glitch sets it), quantiles of
   // the acceleration. Tuned on the open cases; sensitivity not measured.
-  constexpr double kTopQuantile = 0.98, kSlow = 0.1, kFast = 0.6;
-  constexpr double kSteadyQuantile = 0.5, kTransientQuantile = 0.85;
+  constexpr double kTopQuantile = 0.98, kSlow = 0.1, kFast = 0.6;     // tuned
+  constexpr double kSteadyQuantile = 0.5, kTransientQuantile = 0.85;  // tuned
   const auto add = [&](const char* name, auto&& is_inside) {
     RegimeMask mask{.name = name, .inside = Eigen::VectorXd::Zero(residuals.size())};
     for (Eigen::Index i = 0; i < residuals.size(); ++i) mask.inside[i] = is_inside(i) ? 1.0 : 0.0;

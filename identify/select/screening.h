@@ -65,7 +65,7 @@ struct Screened {
 };
 // Residual fraction below which an effect and a base parameter are aliased. Tuned on the open cases
 // (DECISIONS 56); sensitivity not measured.
-inline constexpr double kAliasedFraction = 0.01;
+inline constexpr double kAliasedFraction = 0.01;  // tuned
 
 std::vector<Screened> screen(const ScreeningTask& task, const std::vector<const EffectEntry*>& effects);
 // Details of effects that the model has.

@@ -10,34 +10,34 @@ namespace {
 // figure of `./dev blind` does was not measured.
 
 // Loss of gain, relative to the best one's, within which two gains are equal: as the smallest gain of interest.
-constexpr double kSameGain = 0.03;
+constexpr double kSameGain = 0.03;  // tuned
 // Loss of gain within which an effect may be meant instead, if listed as confusable or of the same signal
 // (DECISIONS 53).
-constexpr double kConfoundedGain = 0.12;
+constexpr double kConfoundedGain = 0.12;  // tuned
 // Of the gain, per parameter beyond the first: a law of many parameters fits noise.
-constexpr double kPenaltyPerParameter = 0.01;
+constexpr double kPenaltyPerParameter = 0.01;  // tuned
 // Gains are counted from the sensors' noise (DECISIONS 45). Smallest remaining energy that is told from none:
 // a share of what was above the noise, and a share of the noise, since the null's level is itself an
 // estimate.
-constexpr double kLeastRemaining = 0.002;
-constexpr double kNullError = 0.05;
+constexpr double kLeastRemaining = 0.002;  // tuned
+constexpr double kNullError = 0.05;        // tuned
 // Ratio of remaining energies up to which two candidates leave the same, and up to which they may be
 // confounded.
-constexpr double kSameRemaining = 1.15;
-constexpr double kConfoundedRemaining = 1.5;
+constexpr double kSameRemaining = 1.15;       // tuned
+constexpr double kConfoundedRemaining = 1.5;  // tuned
 // The latter for two effects listed as confusable. Loose on purpose: neither form is exact (DECISIONS 45,
 // 53).
-constexpr double kListedRemaining = 20.0;
+constexpr double kListedRemaining = 20.0;  // tuned
 // Cosine of two signals that no refit separates: 4 % of either's energy (1 - 0.98^2) is its own.
-constexpr double kConfoundedCosine = 0.98;
+constexpr double kConfoundedCosine = 0.98;  // tuned
 // Gain below which a draw of the bootstrap counts for none of the candidates.
-constexpr double kLeastDrawGain = 0.01;
+constexpr double kLeastDrawGain = 0.01;  // tuned
 // Gains smaller than the smallest one of interest are compared as if they were this large.
-constexpr double kLeastGainToCompare = 0.03;
+constexpr double kLeastGainToCompare = 0.03;  // tuned
 // Selection frequency from which a candidate may be meant instead of the best (DECISIONS 53).
-constexpr double kUndecidedFrequency = 0.1;
+constexpr double kUndecidedFrequency = 0.1;  // tuned
 // Longest set that is an answer; the hidden-effect test counts no longer one (LARGEST_SET in its score.py).
-constexpr std::size_t kMostConfounded = 3;
+constexpr std::size_t kMostConfounded = 3;  // tuned
 
 int parameter_count(const CandidateEffect& c) {
   int count = 0;

@@ -9,10 +9,10 @@ namespace {
 
 // Replicates of the null, by cost: a simulation of all runs each. Their largest gain is then a 92 % quantile
 // (n / (n + 1)) per effect; a 95 % quantile cannot be resolved. DECISIONS 22; sensitivity not measured.
-constexpr int kReplicates = 12;
+constexpr int kReplicates = 12;  // by cost
 // Iterations of a fit, by cost. Tuned on the open cases; sensitivity not measured.
-constexpr int kThoroughIterations = 30;
-constexpr int kCoarseIterations = 12;
+constexpr int kThoroughIterations = 30;  // by cost
+constexpr int kCoarseIterations = 12;    // by cost
 
 // Of the first run that has samples at a rate.
 double rate_Hz(const Predictor& predictor) {

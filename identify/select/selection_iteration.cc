@@ -15,17 +15,17 @@ namespace omnihil {
 namespace {
 
 // Length of the shortlist, by cost: a refit takes seconds. Tuned on the open cases; sensitivity not measured.
-constexpr std::size_t kMostRefits = 6;
+constexpr std::size_t kMostRefits = 6;  // by cost
 // Screened share of the residual's energy, of all or of one regime's, that is worth a refit: a fifteenth of
 // the smallest gain of interest, since the screening is linear. Tuned on the open cases; sensitivity not
 // measured.
-constexpr double kLeastShare = 0.002;
-constexpr double kLeastRegimeShare = 0.05;
+constexpr double kLeastShare = 0.002;       // tuned
+constexpr double kLeastRegimeShare = 0.05;  // tuned
 // Gain over the null's from which a candidate is refitted: that of the acceptance test (DECISIONS 52).
 constexpr double kLeastSignalToNull = 2.0;
 // An effect whose typical size would gain less than this many times the null's largest gain is not visible:
 // derived, at 1 it cannot be told from chance.
-constexpr double kVisibleSignalToNull = 1.0;
+constexpr double kVisibleSignalToNull = 1.0;  // derived
 
 DataScale scale_of(const SelectionTask& task, const Fitted& parent, const LinearBase& base) {
   DataScale scale;

@@ -6,10 +6,10 @@ namespace omnihil {
 namespace {
 
 // First effects that are tried, by cost: an iteration each.
-constexpr std::size_t kMostFirst = 2;
+constexpr std::size_t kMostFirst = 2;  // by cost
 // Fall of the fit runs' energy from which a refused effect may be the first of a pair: three times the smallest gain of
 // interest, so that it is told from what any law takes of a large residual. A choice; sensitivity not measured.
-constexpr double kLeastFirstGain = 0.1;
+constexpr double kLeastFirstGain = 0.1;  // a choice
 
 // Refused candidates by the fall of the fit runs' energy, largest first.
 std::vector<const CandidateEffect*> first_effects(const SelectionTask& task, const Fitted& parent,

@@ -19,10 +19,10 @@ namespace {
 // Terms of a formula, so that it can be read. Least gain of a term, of the residual's energy and over the
 // null's largest: above the acceptance test's 2, since the best of many terms is taken. Tuned on the open
 // cases; sensitivity not measured. Curves in the report: a screenful.
-constexpr std::size_t kMostTerms = 4;
-constexpr double kLeastGain = 0.02;
-constexpr double kLeastSignalToNull = 3.0;
-constexpr std::size_t kMostCurves = 8;
+constexpr std::size_t kMostTerms = 4;       // tuned
+constexpr double kLeastGain = 0.02;         // tuned
+constexpr double kLeastSignalToNull = 3.0;  // tuned
+constexpr std::size_t kMostCurves = 8;      // tuned
 
 struct Library {
   std::string adds_to;
