@@ -32,6 +32,12 @@ std::string error_table(const CompareReport& r) {
       "noise: 1-sigma floor that no model can pass, as stated or estimated from differences; x noise: error "
       "in those (whitened), 1 is perfect\n";
   for (const SignalError& e : r.comparison.errors) {
+    if (e.averaging_s > 0.0 && e.split == Split::kTraining)
+      out += fmt::format(
+          "{}: means over {:.3g} s, the time in which the sensor of position resolves the motion\n", e.signal,
+          e.averaging_s);
+  }
+  for (const SignalError& e : r.comparison.errors) {
     if (e.repeat_sigma > 0.0 && e.split == Split::kTraining)
       out += fmt::format("{}: the same input given twice brings answers that differ by {:.3g} {} (1-sigma)\n",
                          e.signal, e.repeat_sigma, e.unit);
@@ -122,6 +128,7 @@ Json errors_json(const Comparison& c, Split split) {
                      {"bias", number(e.bias)},
                      {"noise_sigma", number(e.noise_sigma)},
                      {"repeat_sigma", number(e.repeat_sigma)},
+                     {"averaging_s", number(e.averaging_s)},
                      {"in_sigmas", number(e.in_sigmas)}};
   }
   return out;

@@ -52,7 +52,9 @@ void add_errors(const Comparison& comparison, Json& out) {
 Json signals_json(const Comparison& comparison) {
   Json out = Json::object();
   for (const SignalError& e : comparison.errors) {
-    if (!out.contains(e.signal)) out[e.signal] = {{"noise_sigma", number(e.noise_sigma)}, {"unit", e.unit}};
+    if (!out.contains(e.signal))
+      out[e.signal] = {
+          {"noise_sigma", number(e.noise_sigma)}, {"unit", e.unit}, {"averaging_s", number(e.averaging_s)}};
   }
   return out;
 }

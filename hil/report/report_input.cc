@@ -59,8 +59,9 @@ RunPart run_part(const Predictor& predictor, const Diagnosis& d, int run, bool s
   };
   for (std::size_t s = 0; s < compared.size(); ++s) {
     const ComparedSignal& c = compared[s];
-    part.overlays.push_back({predictor.run(run).file, predictor.run(run).split, c.name, c.unit, c.noise_sigma,
-                             c.time_s, c.measured, values_of(before, s), values_of(after, s)});
+    part.overlays.push_back({predictor.run(run).file, predictor.run(run).split, c.name, c.unit,
+                             averaged_sigma(c), c.time_s, averaged(c, c.measured),
+                             averaged(c, values_of(before, s)), averaged(c, values_of(after, s))});
   }
   if (!spectra || !has_model(d.baseline)) return part;
   std::vector<double> last;  // without a gear the output's angle is the rotor's

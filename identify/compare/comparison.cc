@@ -23,19 +23,26 @@ struct Sums {
   bool diverged = false, stated = true;
 };
 
-void add_samples(const ComparedSignal& signal, const std::vector<double>& model, bool finite, Sums& sums) {
+std::vector<double> residual_of(const ComparedSignal& signal, const std::vector<double>& model) {
   std::vector<double> residual(model.size());
+  for (std::size_t i = 0; i < model.size(); ++i) residual[i] = signal.measured[i] - model[i];
+  return residual;
+}
+
+void add_samples(const ComparedSignal& signal, const std::vector<double>& model, bool finite, Sums& sums) {
+  std::vector<double> residual = residual_of(signal, model);
+  const std::vector<double> shown = averaged(signal, residual), measured = averaged(signal, signal.measured);
+  const double noise = averaged_sigma(signal);
   for (std::size_t i = 0; i < model.size(); ++i) {
-    residual[i] = signal.measured[i] - model[i];
-    if (!std::isfinite(residual[i])) continue;
-    const double e = -residual[i];
+    if (!std::isfinite(shown[i])) continue;
+    const double e = -shown[i];
     ++sums.n;
     sums.square += e * e;
     sums.absolute += std::abs(e);
     sums.error += e;
-    sums.measured += signal.measured[i];
-    sums.measured_square += signal.measured[i] * signal.measured[i];
-    sums.noise_square += signal.noise_sigma * signal.noise_sigma;
+    sums.measured += measured[i];
+    sums.measured_square += measured[i] * measured[i];
+    sums.noise_square += noise * noise;
   }
   sums.stated = sums.stated && signal.noise_is_stated;
   sums.diverged = sums.diverged || !finite;
@@ -92,13 +99,13 @@ using SamplesByAxis = std::map<std::string, AxisSamples>;
 
 void add_regimes(const std::vector<RegimeTrack>& tracks, const ComparedSignal& signal,
                  const std::vector<double>& model, SamplesByAxis& out) {
+  const std::vector<double> residual = averaged(signal, residual_of(signal, model));
   for (const RegimeTrack& track : tracks) {
     AxisSamples& at = out[track.name];
     at.unit = track.unit;
     for (std::size_t i = 0; i < model.size() && i < track.value.size(); ++i) {
-      const double residual = signal.measured[i] - model[i];
-      if (!std::isfinite(residual)) continue;
-      at.samples.residual.push_back(residual);
+      if (!std::isfinite(residual[i])) continue;
+      at.samples.residual.push_back(residual[i]);
       at.samples.axis.push_back(track.value[i]);
     }
   }
@@ -189,6 +196,7 @@ Comparison compare(const Predictor& predictor, const Candidate& candidate,
       error.unit = signal->unit;
       error.split = split;
       error.repeat_sigma = repeat;
+      error.averaging_s = signal->averaging_s;
       out.errors.push_back(std::move(error));
       finish_regimes(by_axis, signal->name, split, out);
     }

@@ -31,6 +31,7 @@ struct SignalError {
   double repeat_sigma = 0.0;  // of responses to the same input; 0: no input was given twice
   double in_sigmas = 0.0;     // rms of the whitened residual over its noise: 1 is perfect
   double relative = 0.0;      // norm of the error over norm of the measured signal
+  double averaging_s = 0.0;   // the error is a mean over this time (predictor.h); 0: sample by sample
 };
 
 // Error energy in one range of one axis.

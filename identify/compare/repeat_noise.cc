@@ -63,8 +63,9 @@ std::optional<double> repeat_noise(const Predictor& predictor, std::string_view 
       const ComparedSignal* a = find_signal(predictor.compared(i), signal);
       const ComparedSignal* b = find_signal(predictor.compared(j), signal);
       if (a == nullptr || b == nullptr || !same_input(predictor.run(i), predictor.run(j))) continue;
-      for (std::size_t k = 0; k < std::min(a->measured.size(), b->measured.size()); ++k) {
-        const double d = a->measured[k] - b->measured[k];
+      const std::vector<double> one = averaged(*a, a->measured), other = averaged(*b, b->measured);
+      for (std::size_t k = 0; k < std::min(one.size(), other.size()); ++k) {
+        const double d = one[k] - other[k];
         if (std::isfinite(d)) square += d * d, ++count;
       }
     }

@@ -103,11 +103,18 @@ void WhitenedResiduals::add_run(int run, const ComparedChannels& channels) {
   blocks_ += run_blocks;
 }
 
+void WhitenedResiduals::weigh(const ComparedSignal& signal, Eigen::MatrixXd& columns) const {
+  if (weighing_ == Weighing::kWhitened)
+    whiten(signal, columns);
+  else
+    average(signal, columns);
+}
+
 Eigen::MatrixXd WhitenedResiduals::whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const {
   const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(rows.rows(), rows.cols(), std::nan(""));
   for (const int row : part.rows) all.row(row) = rows.row(row);
-  if (weighing_ == Weighing::kWhitened) whiten(signal, all);
+  weigh(signal, all);
   Eigen::MatrixXd out(part.rows.size(), rows.cols());
   for (std::size_t i = 0; i < part.rows.size(); ++i)
     out.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
@@ -117,12 +124,12 @@ Eigen::MatrixXd WhitenedResiduals::whitened_rows(const Part& part, const Eigen::
 
 void WhitenedResiduals::whiten_part(const Part& part, Eigen::MatrixXd& columns) const {
   const ComparedSignal& signal = predictor_->compared(part.run)[static_cast<std::size_t>(part.signal)];
-  if (signal.whitening_s <= 0.0 || weighing_ == Weighing::kUnweighted) return;
+  if (signal.whitening_s <= 0.0) return;
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(signal.measured.size()),
                                                   columns.cols(), std::nan(""));
   for (std::size_t i = 0; i < part.rows.size(); ++i)
     all.row(part.rows[i]) = columns.row(static_cast<Eigen::Index>(i));
-  whiten(signal, all);
+  weigh(signal, all);
   for (std::size_t i = 0; i < part.rows.size(); ++i)
     columns.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
 }

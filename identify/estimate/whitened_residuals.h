@@ -33,7 +33,7 @@ struct ComparedChannels {
 ComparedChannels compared_channels(const Predictor& predictor);
 
 // Whitened, so that sums of squares are log-likelihoods (they decide), or unweighted: the plain error of the
-// signal, as a plot shows it.
+// signal, as a plot shows it (predictor.h, averaged()).
 enum class Weighing : std::uint8_t { kWhitened, kUnweighted };
 
 class WhitenedResiduals {
@@ -85,6 +85,7 @@ class WhitenedResiduals {
 
  private:
   void add_run(int run, const ComparedChannels& channels);
+  void weigh(const ComparedSignal& signal, Eigen::MatrixXd& columns) const;  // whitens or averages, in place
   // Whitened, size n; `values`: [run of this split][signal][row].
   Eigen::VectorXd gathered(const std::vector<std::vector<std::vector<double>>>& values) const;
   // [part.rows.size() x c]: the part's rows of [rows of the run x c], whitened.

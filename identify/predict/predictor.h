@@ -50,7 +50,10 @@ struct ComparedSignal {
   // The noise of differenced counts or positions is blue: successive errors cancel. See whitened().
   double whitening_s = 0.0;     // time constant of the whitening filter; 0: the noise is white already
   double whitened_sigma = 0.0;  // of whitened(), per sample; noise_sigma where whitening_s is 0
-  std::string left_out;         // how many samples were left out and why; empty: none
+  // Differences of a coarse position: the time over which the sensor resolves the motion, see averaged(); 0:
+  // its own period.
+  double averaging_s = 0.0;
+  std::string left_out;  // how many samples were left out and why; empty: none
 };
 
 // A regime variable at each compared sample, along which errors are sorted into bins: measured, else the
@@ -106,6 +109,16 @@ class Predictor {
 // does not reset the integral.
 void whiten(const ComparedSignal& signal, Eigen::Ref<Eigen::MatrixXd> columns);
 std::vector<double> whitened(const ComparedSignal& signal, std::vector<double> residual);
+
+// The same of differences of a coarse position, as errors are shown: a mean over the last `averaging_s`, so that
+// v_i = (x_i - x_{i-m}) / averaging_s, whose rounding is m times smaller. What lies before the first sample and
+// what is missing counts as no error. Other signals are returned as they are.
+void average(const ComparedSignal& signal, Eigen::Ref<Eigen::MatrixXd> columns);
+std::vector<double> averaged(const ComparedSignal& signal, std::vector<double> residual);
+double averaged_sigma(const ComparedSignal& signal);  // noise of averaged(), per sample, in `unit`
+// Time over which the displacement is this many times the noise of its two ends (rms): a choice, a tenth of what
+// is shown is the sensor's.
+inline constexpr double kResolved_sigmas = 10.0;  // a choice
 
 std::unique_ptr<Predictor> make_predictor(const Dataset& dataset, const Candidate& nominal,
                                           const PredictOptions& options);

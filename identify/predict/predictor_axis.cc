@@ -71,6 +71,7 @@ class AxisPredictor final : public Predictor {
     }
     counter_ = find_counted_speed(setups_, drive_of(*nominal_));
     share_noise();
+    choose_averaging();
     choose_step();
   }
 
@@ -240,6 +241,54 @@ class AxisPredictor final : public Predictor {
         }
       }
     }
+  }
+
+  // The shortest time, by doubling, over which a differenced signal's displacement is kResolved_sigmas times the
+  // noise of its two ends, rms over the fit runs; the same in all runs.
+  void choose_averaging() {
+    std::vector<std::string> names;
+    for (const AxisSetup& s : setups_) {
+      for (const ComparedSignal& c : s.compared) {
+        if (c.whitening_s > 0.0 && std::find(names.begin(), names.end(), c.name) == names.end())
+          names.push_back(c.name);
+      }
+    }
+    for (const std::string& name : names) {
+      const double seconds = resolving_time(name);
+      for (AxisSetup& s : setups_) {
+        for (ComparedSignal& c : s.compared) {
+          if (c.name == name) c.averaging_s = seconds;
+        }
+      }
+    }
+  }
+
+  // 0: the signal's own period.
+  double resolving_time(const std::string& name) const {
+    constexpr double kLongest_s = 0.5;  // a block of the bootstrap (whitened_residuals.cc)
+    double period_s = 0.0;
+    for (const AxisSetup& s : setups_) {
+      const auto& t = s.input.time_s;
+      if (t.size() > 1) period_s = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
+      if (period_s > 0.0) break;
+    }
+    for (double seconds = period_s; seconds > 0.0; seconds *= 2.0) {
+      double square = 0.0, noise = 0.0, count = 0.0;
+      for (std::size_t n = 0; n < setups_.size(); ++n) {
+        if (dataset_->runs[n].split != Split::kTraining) continue;
+        for (ComparedSignal c : setups_[n].compared) {
+          if (c.name != name) continue;
+          c.averaging_s = seconds;
+          for (const double v : averaged(c, c.measured)) {
+            if (std::isfinite(v)) square += v * v, noise += std::pow(averaged_sigma(c), 2), count += 1.0;
+          }
+        }
+      }
+      if (count == 0.0) return 0.0;
+      if (square >= kResolved_sigmas * kResolved_sigmas * noise || 2.0 * seconds > kLongest_s)
+        return seconds > period_s ? seconds : 0.0;
+    }
+    return 0.0;
   }
 
   // Root mean square of (a - b) / noise, the largest of the signals, unweighted and whitened.

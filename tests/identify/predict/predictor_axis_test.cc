@@ -131,6 +131,49 @@ TEST(AxisPredictor, WhiteningLeavesTheRoundingOfPositions) {
   EXPECT_NEAR(speed.whitened_sigma, 2.0 * std::numbers::pi / 4096 / std::sqrt(12.0), 1e-6);
 }
 
+// A mean of differences over four samples is the displacement over four samples; before the first nothing moved.
+TEST(AxisPredictor, TheMeanOfDifferencesIsTheDisplacementOverTheTimeOfAveraging) {
+  ComparedSignal s;
+  for (int k = 0; k < 12; ++k) s.time_s.push_back(0.01 * k);
+  s.noise_sigma = 3.0;
+  std::vector<double> x, v;
+  for (int k = 0; k < 12; ++k) {
+    x.push_back(0.1 * k * k);
+    v.push_back(k > 0 ? (x[x.size() - 1] - x[x.size() - 2]) / 0.01 : kMissing);
+  }
+  EXPECT_EQ(averaged(s, std::vector<double>(v.begin() + 1, v.end())),
+            std::vector<double>(v.begin() + 1, v.end()));
+  s.averaging_s = 0.04;
+  const std::vector<double> mean = averaged(s, v);
+  EXPECT_TRUE(std::isnan(mean[0]));
+  EXPECT_NEAR(mean[2], (x[2] - x[0]) / 0.04, 1e-9);
+  for (std::size_t k = 4; k < 12; ++k) EXPECT_NEAR(mean[k], (x[k] - x[k - 4]) / 0.04, 1e-9);
+  EXPECT_NEAR(averaged_sigma(s), 3.0 / 4.0, 1e-12);
+}
+
+// A potentiometer read with 10 bits steps by 0.06 rad: differenced at 1 kHz that is 25 rad/s of noise.
+TEST(AxisPredictor, ACoarsePositionIsComparedOverATimeInWhichItsSensorResolvesTheMotion) {
+  const Candidate truth = model();
+  Dataset d = bench(truth, 3000, 0.03);
+  constexpr double kStep_rad = 0.06;
+  std::vector<double> position;
+  for (const double counts : d.runs[0].signals["encoder"])
+    position.push_back(kStep_rad * std::floor(2.0 * std::numbers::pi * counts / 4096 / kStep_rad));
+  d.runs[0].signals.erase("encoder");
+  d.runs[0].signals["position"] = position;
+  d.channels[1] = {.signal = "position", .column = "", .unit = "rad"};
+  const auto p = make_predictor(d, truth, {});
+  const ComparedSignal& speed = p->compared(0)[0];
+  const double rounding = kStep_rad / std::sqrt(6.0);  // of a displacement: both ends
+  ASSERT_GT(speed.averaging_s, 1e-3);
+  EXPECT_NEAR(averaged_sigma(speed) * speed.averaging_s, rounding, 0.2 * rounding);
+  const double moved =
+      rms(averaged(speed, speed.measured), std::vector<double>(3000, 0.0)) * speed.averaging_s;
+  EXPECT_GT(moved, kResolved_sigmas * 0.8 * rounding);
+  const Prediction y = p->predict(truth, 0);
+  EXPECT_LT(rms(averaged(speed, speed.measured), averaged(speed, y.values[0])), 1.6 * averaged_sigma(speed));
+}
+
 TEST(AxisPredictor, DerivativesAreThoseOfTheValues) {
   Candidate c = model(
       "[effects.cogging]\namplitude_Nm = { value = 0.002, tolerance = 1 }\n"
