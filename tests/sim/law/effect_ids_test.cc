@@ -56,6 +56,7 @@ constexpr std::string_view kIds[] = {"back_emf_missing",
                                      "motor_mismatch",
                                      "dribbler_drag",
                                      "vision_delay",
+                                     "hall_speed_period",
                                      "expression"};
 
 TEST(EffectIds, EveryIdThatFilesMayNameIsThere) {
