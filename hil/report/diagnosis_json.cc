@@ -72,6 +72,11 @@ Json ranking_json(const std::vector<RankedEffect>& ranking) {
                    {"extrapolation_error_ratio", number(r.extrapolation_error_ratio)},
                    {"score", number(r.score)},
                    {"refitted", r.refitted},
+                   {"signal_to_null", number(r.signal_to_null)},
+                   {"share_of_base", number(r.share_of_base)},
+                   {"delta_bic", number(r.evidence.delta_bic)},
+                   {"delta_elpd", number(r.evidence.delta_elpd)},
+                   {"delta_elpd_se", number(r.evidence.delta_elpd_se)},
                    {"accepted", r.accepted()},
                    {"why", r.why}});
   }

@@ -6,7 +6,7 @@
 //   // "it removes 1.2 % of the held-out error energy; 3.5 % is required"
 //
 // Method: parent and child are compared by the ratio of their whitened residual energies on each split, its
-// interval from a block bootstrap (gain.h) and its level from the simulated null (null_model.h). Eight gates,
+// interval from a block bootstrap (gain.h) and its level from the simulated null (null_model.h). Nine gates,
 // in the order of test_acceptance; the first one that fails is the reason. Beside them one way without
 // gain: AcceptedBy::kPrior (plausibility.h).
 // Limits: the gates' sizes are tuned, not derived from one error rate; each says so at its line.
@@ -39,6 +39,7 @@ struct AcceptanceResult {
   bool decisive = false;  // its gain alone proves the strength: no significance test of that
   std::string why;        // for people
   SplitGain fit, holdout, extrapolation;
+  double share_of_base = 1.0;  // of the base model's energy above the noise: what the addition removes
 
   bool accepted() const { return accepted_by != AcceptedBy::kNone; }
 };
@@ -48,6 +49,8 @@ struct AcceptanceContext {
   const NullModel* null = nullptr;
   std::array<const BlockBootstrap*, kSplits> bootstrap{};
   double rate_Hz = 0.0;  // of the samples; 0: unknown
+  // Whitened residuals of the base model, before any effect was found; null: the parent is that.
+  const Residuals* base = nullptr;
 };
 
 // As `signal_to_null`: that gain was tested before, or there is no screening to test it by.

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "identify/estimate/evidence.h"
 #include "identify/estimate/fit.h"
 
 namespace omnihil {
@@ -51,6 +52,9 @@ struct RankedEffect {
   Visibility visibility = Visibility::kVisible;
   std::string why;                            // for people: why it was accepted or refused
   std::vector<ParameterEstimate> parameters;  // of the effect
+  double signal_to_null = 0.0;                // of the screening: gain over the largest in the simulated null
+  double share_of_base = 0.0;  // refitted: what it removes of the base model's energy above the noise
+  Evidence evidence{};         // refitted: what standard rules of selection say
 
   bool accepted() const { return accepted_by != AcceptedBy::kNone; }
 };

@@ -81,7 +81,8 @@ SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) c
       .splits = &splits_,
       .null = &null_,
       .bootstrap = {&bootstrap_[kTraining], &bootstrap_[kValidation], &bootstrap_[kExtrapolation]},
-      .rate_Hz = rate_Hz(*predictor_)};
+      .rate_Hz = rate_Hz(*predictor_),
+      .base = &base_.residual};
   task.seed = options_.seed;
   task.jobs = options_.jobs;
   for (const EffectEntry* e : all_effects()) {

@@ -21,6 +21,9 @@ constexpr std::size_t kMostRefits = 6;  // by cost
 // measured.
 constexpr double kLeastShare = 0.002;       // tuned
 constexpr double kLeastRegimeShare = 0.05;  // tuned
+// Screened share from which a candidate beyond the shortlist is refitted if no candidate of the shortlist is accepted. A
+// choice: the share that counts as structure (verdict.cc); smaller ones would be many tests for little.
+constexpr double kWorthSecondBatch = 0.1;
 // Gain over the null's from which a candidate is refitted: that of the acceptance test (DECISIONS 52).
 constexpr double kLeastSignalToNull = 2.0;
 // An effect whose typical size would gain less than this many times the null's largest gain is not visible:
@@ -80,23 +83,28 @@ void add_nested(const std::vector<Screened>& screened, const std::vector<std::si
   }
 }
 
+// What the screening takes for more than the null, the largest gain first; a signature found comes before any gain.
+std::vector<std::size_t> above_null(const std::vector<Screened>& screened, const Predictor& predictor) {
+  std::vector<std::size_t> order;
+  const auto has_signature = [&](std::size_t i) { return predictor.shows_signature_of(*screened[i].entry); };
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const Screened& s = screened[i];
+    const bool above = s.gain > kLeastSignalToNull * s.null_gain &&
+                       (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare);
+    if (s.tried && (above || has_signature(i))) order.push_back(i);
+  }
+  const auto rank = [&](std::size_t i) { return std::pair(has_signature(i), screened[i].share); };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
+  return order;
+}
+
 // Shortlist: largest screened gain overall, largest per regime, quantisation signature found, or aliased with
 // a prior-implausible base parameter.
 std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const Fitted& parent,
                                    const Predictor& predictor) {
-  std::vector<std::size_t> order, out;
-  const auto has_signature = [&](std::size_t i) { return predictor.shows_signature_of(*screened[i].entry); };
-  for (std::size_t i = 0; i < screened.size(); ++i) {
-    const Screened& s = screened[i];
-    const bool above_null = s.gain > kLeastSignalToNull * s.null_gain &&
-                            (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare);
-    if (s.tried && (above_null || has_signature(i))) order.push_back(i);
-  }
-  const auto rank = [&](std::size_t i) {
-    return std::pair(has_signature(i), screened[i].share);  // a signature found comes before any gain
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
+  const std::vector<std::size_t> order = above_null(screened, predictor);
+  std::vector<std::size_t> out;
   for (const std::size_t i : order) {
     if (out.size() < kMostRefits - 1) out.push_back(i);
   }
@@ -145,10 +153,21 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
     c.acceptance = test_acceptance(task.acceptance_context, parent, c.fitted, c.screened.name,
                                    signal_to_null(c.screened, iteration.largest_null_gain),
                                    c.screened.aliased_parameter());
+    const int extra =
+        static_cast<int>(c.fitted.fit.unknowns.size()) - static_cast<int>(parent.fit.unknowns.size());
+    c.evidence =
+        evidence_of((*task.splits)[kTraining], {parent.residual[kTraining], c.fitted.residual[kTraining]},
+                    (*task.splits)[kValidation],
+                    {parent.residual[kValidation], c.fitted.residual[kValidation]}, std::max(extra, 1));
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (task.progress && !task.progress("refitting " + c.screened.name, share)) stopped = true;
   });
   iteration.stopped = stopped;
+}
+
+bool was_refitted(const Iteration& iteration, const Screened& s) {
+  return std::any_of(iteration.candidates.begin(), iteration.candidates.end(),
+                     [&](const CandidateEffect& c) { return c.screened.name == s.name; });
 }
 
 // Effects listed as confusable with the best candidate that were not refitted: the screening is linear, and
@@ -162,13 +181,28 @@ std::vector<std::size_t> confounded_with_best(const Iteration& iteration, bool h
   std::vector<std::size_t> out;
   for (std::size_t i = 0; best != nullptr && i < iteration.screened.size(); ++i) {
     const Screened& s = iteration.screened[i];
-    const bool refitted = std::any_of(iteration.candidates.begin(), iteration.candidates.end(),
-                                      [&](const CandidateEffect& c) { return c.screened.name == s.name; });
-    if (s.tried && !s.extends && !refitted &&
+    if (s.tried && !s.extends && !was_refitted(iteration, s) &&
         listed_as_confounded(*best->screened.entry->info, *s.entry->info))
       out.push_back(i);
   }
   return out;
+}
+
+// The next ones beyond the shortlist by their screened share: what could remove a tenth of the error must not be
+// passed over for what was fitted before it and failed.
+std::vector<std::size_t> next_in_order(const Iteration& iteration, const Predictor& predictor) {
+  std::vector<std::size_t> out;
+  for (const std::size_t i : above_null(iteration.screened, predictor)) {
+    const Screened& s = iteration.screened[i];
+    if (out.size() < kMostRefits && s.share >= kWorthSecondBatch && !was_refitted(iteration, s))
+      out.push_back(i);
+  }
+  return out;
+}
+
+bool has_accepted(const Iteration& iteration) {
+  return std::any_of(iteration.candidates.begin(), iteration.candidates.end(),
+                     [](const CandidateEffect& c) { return c.acceptance.accepted(); });
 }
 
 Visibility visibility_of(const Screened& s, double largest_null_gain) {
@@ -198,6 +232,7 @@ RankedEffect ranked(const Screened& s, double largest_null_gain) {
   RankedEffect r;
   r.effect = s.name;
   r.score = s.share;
+  r.signal_to_null = signal_to_null(s, largest_null_gain);
   r.visibility = visibility_of(s, largest_null_gain);
   r.why = reason_of_screening(s, r.visibility);
   return r;
@@ -210,6 +245,8 @@ void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& it
     r.refitted = true;
     r.visibility = Visibility::kVisible;
     r.accepted_by = c.acceptance.accepted_by;
+    r.share_of_base = c.acceptance.share_of_base;
+    r.evidence = c.evidence;
     r.why = c.acceptance.why;
     r.selection_frequency = c.selection_frequency;
     r.parameters = parameters_of(c.fitted.fit, c.screened.name);
@@ -279,6 +316,11 @@ Iteration selection_iteration(const SelectionTask& task, const Fitted& parent) {
   iteration.stopped = task.progress && !task.progress("screening", 0.5);
   if (!iteration.stopped)
     refit_shortlist(task, parent, shortlist(iteration.screened, parent, *task.predictor), iteration);
+  for (bool more = true; more && !iteration.stopped && !has_accepted(iteration);) {
+    const std::vector<std::size_t> next = next_in_order(iteration, *task.predictor);
+    more = !next.empty();
+    if (more) refit_shortlist(task, parent, next, iteration);
+  }
   if (!iteration.stopped)
     refit_shortlist(task, parent, confounded_with_best(iteration, !(*task.splits)[kValidation].empty()),
                     iteration);

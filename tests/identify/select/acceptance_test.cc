@@ -63,6 +63,33 @@ TEST(AcceptanceTest, RefusesATrainingGainWithAHeldOutLoss) {
   EXPECT_NE(j.why.find("raises the held-out"), std::string::npos) << j.why;
 }
 
+// Energies: 100 of the base model's over a noise of 0.01, 1 and 0.64 with what was found: the second removes 0.36 %.
+TEST(AcceptanceTest, RefusesWhatTheFormOfAnEffectFoundMayLeave) {
+  AcceptanceFixture fixture;
+  for (auto& level : fixture.null.mean_square) level = Eigen::MatrixXd::Constant(2, 1, 0.01);
+  const Fitted base = fixture.leaving(10, 10, 10), found = fixture.leaving(1, 1, 1);
+  EXPECT_TRUE(test_acceptance(fixture.context, found, fixture.leaving(0.8, 0.8, 0.8), "x", 100).accepted());
+  fixture.context.base = &base.residual;
+  const AcceptanceResult small =
+      test_acceptance(fixture.context, found, fixture.leaving(0.8, 0.8, 0.8), "x", 100);
+  EXPECT_FALSE(small.accepted());
+  EXPECT_NE(small.why.find("0.36 % of what the base model left"), std::string::npos) << small.why;
+}
+
+// 4 - 2.56 = 1.44 % of the base model's; and 1 - 0.04 = 96 % of what was left.
+TEST(AcceptanceTest, TakesASecondEffectThatIsMoreThanTheFormOfTheFirst) {
+  AcceptanceFixture fixture;
+  for (auto& level : fixture.null.mean_square) level = Eigen::MatrixXd::Constant(2, 1, 0.01);
+  const Fitted base = fixture.leaving(10, 10, 10);
+  fixture.context.base = &base.residual;
+  EXPECT_TRUE(
+      test_acceptance(fixture.context, fixture.leaving(2, 2, 2), fixture.leaving(1.6, 1.6, 1.6), "x", 100)
+          .accepted());
+  EXPECT_TRUE(
+      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), fixture.leaving(0.2, 0.2, 0.2), "x", 100)
+          .accepted());
+}
+
 TEST(AcceptanceTest, RefusesALossOnAnotherKindOfMotion) {
   const AcceptanceFixture fixture;
   const AcceptanceResult j =
