@@ -7,6 +7,8 @@
 #include <cmath>
 #include <ranges>
 
+#include "identify/select/confidence.h"
+
 namespace omnihil {
 namespace {
 
@@ -53,6 +55,7 @@ std::string verdict_text(const Diagnosis& d) {
   out += "\n";
   if (!d.complete) out += "  Interrupted: this is what was known by then.\n";
   if (!d.unknown.sentence.empty()) out += "  " + d.unknown.sentence + "\n";
+  if (const std::string how_sure = confidence_sentence(d); !how_sure.empty()) out += "  " + how_sure + "\n";
   for (const ConfoundedSet& set : d.confounded) out += "  " + set.sentence + "\n";
   return out + "\n";
 }

@@ -72,6 +72,7 @@ Json ranking_json(const std::vector<RankedEffect>& ranking) {
                    {"extrapolation_error_ratio", number(r.extrapolation_error_ratio)},
                    {"score", number(r.score)},
                    {"refitted", r.refitted},
+                   {"plausible", r.plausible},
                    {"signal_to_null", number(r.signal_to_null)},
                    {"share_of_base", number(r.share_of_base)},
                    {"delta_bic", number(r.evidence.delta_bic)},
@@ -80,6 +81,13 @@ Json ranking_json(const std::vector<RankedEffect>& ranking) {
                    {"accepted", r.accepted()},
                    {"why", r.why}});
   }
+  return out;
+}
+
+Json confidence_json(const std::vector<NameConfidence>& confidence) {
+  Json out = Json::array();
+  for (const NameConfidence& c : confidence)
+    out.push_back({{"effect", c.effect}, {"probability", c.probability}});
   return out;
 }
 
@@ -148,6 +156,7 @@ std::string diagnosis_json(const Diagnosis& d, const DiagnosisJsonOptions& optio
       {"verdict", verdict_name(d.verdict)},
       {"outcome", outcome_name(d.outcome)},
       {"effects", d.effects},
+      {"confidence", confidence_json(d.confidence)},
       {"ranking", ranking_json(d.ranking)},
       {"indistinguishable", std::move(confounded)},
       {"where", where_json(d.where)},

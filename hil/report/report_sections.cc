@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "hil/report/report_text.h"
+#include "identify/select/confidence.h"
 
 namespace omnihil {
 namespace {
@@ -55,6 +56,7 @@ std::string verdict_section(const ReportInput& input) {
   if (d.verdict != Verdict::kUnknown && !d.unknown.sentence.empty()) {
     html += fmt::format("<p>{}</p>\n", escaped(d.unknown.sentence));
   }
+  if (!d.confidence.empty()) html += fmt::format("<p>{}</p>\n", escaped(confidence_sentence(d)));
   if (!d.baseline_comparison.worst.empty()) {
     html += fmt::format("<p>Before: {}</p>\n", escaped(d.baseline_comparison.worst.front().sentence));
   }

@@ -210,6 +210,7 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
   const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
   std::string implausible = implausibility(parent.fit, child.fit, name, out.decisive);
   if (implausible.empty()) implausible = below_time_resolution(child.fit, name, context.rate_Hz);
+  out.plausible = implausible.empty();
   out.share_of_base = share_of_base(context, static_cast<std::size_t>(decides), parent, child);
   out.why = reason_against_gain(parent, child, out, decides, signal_to_null, rise);
   if (out.why.empty()) out.why = implausible;

@@ -39,6 +39,7 @@ struct AcceptanceResult {
   bool decisive = false;  // its gain alone proves the strength: no significance test of that
   std::string why;        // for people
   SplitGain fit, holdout, extrapolation;
+  bool plausible = true;       // its numbers and those of the base (plausibility.h)
   double share_of_base = 1.0;  // of the base model's energy above the noise: what the addition removes
 
   bool accepted() const { return accepted_by != AcceptedBy::kNone; }

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 
+#include "identify/select/confidence.h"
 #include "identify/select/diagnose_summary.h"
 #include "identify/select/diagnosis.h"
 #include "identify/select/effect_variants.h"
@@ -267,6 +268,7 @@ class Diagnosing {
                                       first_fault(out_.findings)->sentence)
                                 : residual_sentence(excess, added);
     settle_confounded(out_);
+    out_.confidence = confidences(out_);
     out_.next_experiment = next_experiment(dataset_, out_);
     out_.complete = !stopped_;
     say("done", 1.0);

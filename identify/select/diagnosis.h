@@ -62,6 +62,12 @@ struct UnknownStructure {
   std::string sentence;
 };
 
+// Probability that a name of the answer, or one of those that the data cannot tell from it, is right (confidence.h).
+struct NameConfidence {
+  std::string effect;
+  double probability = 0.0;
+};
+
 struct Diagnosis {
   std::string dataset;
   std::uint64_t seed = 1;
@@ -75,6 +81,7 @@ struct Diagnosis {
   std::vector<RankedEffect> ranking;  // first iteration, best first: every effect that applies
   std::vector<LadderStep> ladder;
   std::vector<ConfoundedSet> confounded;
+  std::vector<NameConfidence> confidence;  // one per effect
   std::vector<Where> where;
   UnknownStructure unknown;
   NextExperiment next_experiment;

@@ -52,6 +52,7 @@ struct RankedEffect {
   Visibility visibility = Visibility::kVisible;
   std::string why;                            // for people: why it was accepted or refused
   std::vector<ParameterEstimate> parameters;  // of the effect
+  bool plausible = true;                      // refitted: its numbers and those of the base (plausibility.h)
   double signal_to_null = 0.0;                // of the screening: gain over the largest in the simulated null
   double share_of_base = 0.0;  // refitted: what it removes of the base model's energy above the noise
   Evidence evidence{};         // refitted: what standard rules of selection say

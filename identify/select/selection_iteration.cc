@@ -245,6 +245,7 @@ void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& it
     r.refitted = true;
     r.visibility = Visibility::kVisible;
     r.accepted_by = c.acceptance.accepted_by;
+    r.plausible = c.acceptance.plausible;
     r.share_of_base = c.acceptance.share_of_base;
     r.evidence = c.evidence;
     r.why = c.acceptance.why;

@@ -3,6 +3,8 @@ import math
 import statistics
 
 LEAST_SHARE = 0.15  # of the residual: from here on an effect has to be named
+# Of the probability that a name is right; the last but one is around 90 %.
+CONFIDENCE_BINS = ((0.0, 0.3), (0.3, 0.6), (0.6, 0.85), (0.85, 0.95), (0.95, 1.01))
 LARGEST_SET = 3  # a longer set of effects that cannot be told apart is no answer
 
 
@@ -127,6 +129,9 @@ def judge(result, answer):
         "answered": bool(d),
     }
     effects = answer["effects"]
+    out["confidence"] = [
+        (c["probability"], any(matches(c["effect"], e, d) for e in effects)) for c in d.get("confidence") or []
+    ]
     if effects:
         first, second = named[:1], named[:2] + ranked[:2]
         out["first"] = any(matches(n, effects[0], d) for n in first)
@@ -140,6 +145,15 @@ def judge(result, answer):
         words = answer["fault"]["words"]
         out["found"] = any(w.lower() in fault_text(result).lower() for w in words)
     return out
+
+
+def expected_calibration_error(pairs):
+    """Mean distance of predicted and observed rate over the bins, weighted by their numbers (Naeini et al., AAAI 2015)."""
+    total, bad = len(pairs), 0.0
+    for low, high in CONFIDENCE_BINS:
+        inside = [(p, right) for p, right in pairs if low <= p < high]
+        bad += abs(sum(p for p, _ in inside) - sum(right for _, right in inside))
+    return bad / total if total else math.nan
 
 
 def wilson(k, n, z=1.96):
@@ -220,5 +234,6 @@ def summary(rows):
         "reduction cases": len(reductions),
         "parameter error median": median([e for r in both for e in r["parameter_errors"]]),
         "base bias median": median([e for r in both for e in r["bias"]]),
+        "calibration error": expected_calibration_error([c for r in rows for c in r["confidence"]]),
         "no answer": rate(rows, lambda r: not r["answered"]),
     }

@@ -1,6 +1,8 @@
 """Prints the scores: the rows that say when the diagnosis is good enough, all other figures, the confusion matrix."""
 import math
 
+import score
+
 # row, figures of score.summary, and what each has to reach: (name, bound, "at least" or "at most")
 DONE_WHEN = (
     (
@@ -18,6 +20,7 @@ DONE_WHEN = (
     ("added parameter: median error", (("parameter error median", 0.10, -1),)),
     ("base parameters: median bias afterwards", (("base bias median", 0.03, -1),)),
     ("robot: named first", (("robot first", 0.85, 1),)),
+    ("names: expected calibration error of their probabilities", (("calibration error", 0.03, -1),)),
 )
 # Below these the reduced run of the tests fails: so few cases say only that the diagnosis has not fallen apart.
 FLOORS = {
@@ -98,6 +101,24 @@ def others(rows):
     return lines
 
 
+def reliability(pairs):
+    """How often names are right, by the probability that was said; pairs: [(said, right)]."""
+    lines = []
+    for low, high in score.CONFIDENCE_BINS:
+        inside = [(p, right) for p, right in pairs if low <= p < high]
+        if not inside:
+            continue
+        hits = sum(right for _, right in inside)
+        left, right = score.wilson(hits, len(inside))
+        said = sum(p for p, _ in inside) / len(inside)
+        lines.append(
+            f"  said {100 * said:5.1f} %  right {100 * hits / len(inside):5.1f} % ({hits} of {len(inside)}; "
+            f"95 %: {100 * left:.1f} to {100 * right:.1f} %)"
+        )
+    lines.append(f"  expected calibration error {100 * score.expected_calibration_error(pairs):.1f} points, {len(pairs)} names")
+    return lines
+
+
 def print_all(rows, figures):
     print("\nNamed first, by what was hidden (! is wrong)")
     print("\n".join(confusion(rows)) or "  none")
@@ -105,6 +126,10 @@ def print_all(rows, figures):
     if missed:
         print("\nOther answers that were not right")
         print("\n".join(missed))
+    said = [c for r in rows for c in r["confidence"]]
+    if said:
+        print("\nNames, by the probability that was said of them")
+        print("\n".join(reliability(said)))
     print("\nFigures")
     for name, figure in figures.items():
         print(f"  {name:26s} {show(figure)}")

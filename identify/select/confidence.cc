@@ -1,0 +1,110 @@
+#include "identify/select/confidence.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ranges>
+
+namespace omnihil {
+namespace {
+
+// Coefficients of the logit, printed by `python3 tests/hidden_plant/calibrate.py`: fitted.
+constexpr double kConstant = 4.628;
+constexpr double kLater = -2.795;
+constexpr double kMoreRemains = -4.173;
+constexpr double kPerDecadeOfShare = 0.936;
+constexpr double kSelectionFrequency = 1.852;
+constexpr double kUndecided = 0.934;
+constexpr double kPerDecadeOverNoise = -10.081;
+// From here on the made records hold too few names to tell (calibrate.py).
+constexpr double kMostOverNoise = 2.0;
+// The calibration saw a few hundred names: it cannot tell surer ones apart.
+constexpr double kSurest = 0.99;
+// Shares below are one and the same: none is accepted for its gain (acceptance.cc).
+constexpr double kLeastShareOfBase = 1e-3;
+
+// The row of the ranking that each name was taken from; a law in place of another has the other's.
+std::map<std::string, const RankedEffect*> rows_taken(const Diagnosis& d) {
+  std::map<std::string, const RankedEffect*> out;
+  for (std::size_t i = 0; i + 1 < d.ladder.size(); ++i) {
+    const std::string added = " and " + d.ladder[i + 1].added + " and ";
+    for (const RankedEffect& r : d.ladder[i].ranking) {
+      if (added.find(" and " + r.effect + " and ") != std::string::npos) out[r.effect] = &r;
+    }
+  }
+  static constexpr std::string_view kReplaces = " in place of ";
+  for (const LadderStep& step : d.ladder) {
+    const std::size_t at = step.added.find(kReplaces);
+    if (at == std::string::npos) continue;
+    const auto old = out.find(step.added.substr(at + kReplaces.size()));
+    if (old != out.end()) out[step.added.substr(0, at)] = old->second;
+  }
+  return out;
+}
+
+// Root mean square over the signals, held-out runs if there are any. A measured bus voltage is an input.
+double error_over_noise(const Comparison& comparison) {
+  const auto pooled = [&](Split split) {
+    double square = 0.0, signals = 0.0;
+    for (const SignalError& e : comparison.errors) {
+      const bool counts = e.split == split && e.signal != "bus_voltage" && e.noise_sigma > 0.0;
+      if (!counts || !std::isfinite(e.rmse)) continue;
+      square += e.rmse * e.rmse / (e.noise_sigma * e.noise_sigma);
+      signals += 1.0;
+    }
+    return signals > 0.0 ? std::sqrt(square / signals) : 0.0;
+  };
+  const double held_out = pooled(Split::kValidation);
+  return held_out > 0.0 ? held_out : pooled(Split::kTraining);
+}
+
+}  // namespace
+
+double probability_right(const NameEvidence& e) {
+  const double share = std::clamp(e.share_of_base, kLeastShareOfBase, 1.0);
+  const double logit = kConstant + kLater * e.later + kMoreRemains * e.more_remains +
+                       kPerDecadeOfShare * std::log10(share) + kSelectionFrequency * e.selection_frequency +
+                       kUndecided * e.undecided +
+                       kPerDecadeOverNoise * std::log10(std::clamp(e.error_over_noise, 1.0, kMostOverNoise));
+  return std::clamp(1.0 / (1.0 + std::exp(-logit)), 1.0 - kSurest, kSurest);
+}
+
+std::vector<NameConfidence> confidences(const Diagnosis& d) {
+  const auto rows = rows_taken(d);
+  const double over_noise = error_over_noise(d.final_comparison);
+  std::vector<NameConfidence> out;
+  for (const std::string& name : d.effects) {
+    NameEvidence e{.later = !out.empty(),
+                   .more_remains = d.outcome == Outcome::kMoreRemains,
+                   .share_of_base = 0.0,
+                   .selection_frequency = 0.0,
+                   .error_over_noise = over_noise};
+    if (const auto row = rows.find(name); row != rows.end()) {
+      e.share_of_base = row->second->share_of_base;
+      e.selection_frequency = row->second->selection_frequency;
+    }
+    const auto noise = std::ranges::find_if(d.ranking, [&](const RankedEffect& r) {
+      return r.effect == name && r.accepted_by == AcceptedBy::kNoise;
+    });
+    if (noise != d.ranking.end()) e.share_of_base = noise->noise_share, e.selection_frequency = 1.0;
+    e.undecided = std::ranges::any_of(d.confounded, [&](const ConfoundedSet& set) {
+      return set.members.size() > 1 && std::ranges::find(set.members, name) != set.members.end();
+    });
+    out.push_back({.effect = name, .probability = probability_right(e)});
+  }
+  return out;
+}
+
+std::string confidence_sentence(const Diagnosis& d) {
+  std::vector<std::string> each;
+  for (const NameConfidence& c : d.confidence)
+    each.push_back(fmt::format("{} in {:.0f} %", c.effect, 100.0 * c.probability));
+  return each.empty() ? ""
+                      : fmt::format("Of made records with such evidence, the name was right: {}.",
+                                    fmt::join(each, ", "));
+}
+
+}  // namespace omnihil

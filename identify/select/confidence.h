@@ -1,0 +1,37 @@
+// How often a name like this one was right: the probability that a named effect, or one of those that the data cannot
+// tell from it, is there.
+//
+//   Diagnosis d;   // finished
+//   for (const NameConfidence& c : confidences(d)) print(c.effect, c.probability);
+//
+// Logistic regression on what the search knew when it took the effect (was it the first; does structure remain that
+// nothing explains; which share of the base model's error it removes; in how many bootstrap draws it won; is it
+// undecided; how far above the sensors' noise the last model stays), fitted on the open cases of the hidden-effect test (tests/hidden_plant/calibrate.py: coefficients,
+// reliability of cases that were not fitted to; docs/diagnosis-statistics.md).
+// Limits: calibrated on made records of one effect, of two, of none and of what is in no catalogue, in the test's
+// proportions. On measured records it is an extrapolation: they always leave more than made ones.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "identify/select/diagnosis.h"
+
+namespace omnihil {
+
+struct NameEvidence {
+  bool later = false;         // not the first name of the answer
+  bool more_remains = false;  // Outcome::kMoreRemains
+  double share_of_base = 1.0;
+  double selection_frequency = 1.0;
+  bool undecided = false;         // a set of several
+  double error_over_noise = 1.0;  // of the last model, held out, pooled over the signals
+};
+double probability_right(const NameEvidence& evidence);
+
+// One per name of the answer, in its order.
+std::vector<NameConfidence> confidences(const Diagnosis& diagnosis);
+
+// For people; empty: no name.
+std::string confidence_sentence(const Diagnosis& diagnosis);
+
+}  // namespace omnihil

@@ -1,0 +1,143 @@
+"""Fits the map from what a diagnosis knows of a name to the probability that the name is right.
+
+    ./dev blind --cases 66 --only single,generic,pair,control,loop,loop-control,outside,faint --keep run/blind
+    python3 tests/hidden_plant/calibrate.py run/blind dev
+
+Prints the coefficients for identify/select/confidence.cc, and the reliability of predictions of cases that a fit has not
+seen (ten folds by case). Logistic regression with a ridge (le Cessie, van Houwelingen, Appl. Statist. 41(1), 1992):
+maximum likelihood has no end where a feature separates the wrong names.
+"""
+import argparse
+import json
+import math
+import pathlib
+import zlib
+
+import score
+import table
+
+RIDGE = 1.0  # prior precision of the slopes of standardised features: one unit of logit each; a choice
+FOLDS = 10
+# From here on the made records hold too few names to tell; measured ones go further.
+MOST_OVER_NOISE = 2.0
+FEATURES = ("one", "later", "more_remains", "log10_share_of_base", "selection_frequency", "undecided", "log10_error_over_noise")
+
+
+def rounds(diagnosis):
+    """{effect: its row of the ranking that it was taken from}"""
+    ladder, out = diagnosis.get("ladder") or [], {}
+    for step, taken in zip(ladder, ladder[1:]):
+        for name in taken["added"].split(" and "):
+            out.update({name: r for r in step.get("ranking") or [] if r["effect"] == name})
+    for step in ladder:
+        if " in place of " in step["added"]:
+            new, old = step["added"].split(" in place of ")
+            out[new] = out.get(old, {})
+    return out
+
+
+def features(diagnosis):
+    """One row per name of the answer: [(name, x)]."""
+    taken, out = rounds(diagnosis), []
+    sigma = {k: v.get("noise_sigma") for k, v in (diagnosis.get("signals") or {}).items()}
+    final = diagnosis.get("final") or {}
+    over_noise = score.pooled(final.get("holdout") or final.get("fit"), sigma)
+    for position, name in enumerate(diagnosis.get("effects") or []):
+        r = taken.get(name, {})
+        by_noise = next(
+            (q["noise_share"] for q in diagnosis["ranking"] if q["effect"] == name and q["accepted_by"] == "noise"), 0.0
+        )
+        share = by_noise or r.get("share_of_base") or 0.0
+        undecided = any(name in s and len(s) > 1 for s in diagnosis.get("indistinguishable") or [])
+        out.append(
+            (
+                name,
+                [
+                    1.0,
+                    float(position > 0),
+                    float(diagnosis["outcome"] == "found, but more remains"),
+                    math.log10(min(max(share, 1e-3), 1.0)),
+                    1.0 if by_noise else r.get("selection_frequency") or 0.0,
+                    float(undecided),
+                    math.log10(min(max(over_noise, 1.0), MOST_OVER_NOISE)) if math.isfinite(over_noise) else 0.0,
+                ],
+            )
+        )
+    return out
+
+
+def probability(x, beta):
+    return 1.0 / (1.0 + math.exp(-sum(a * b for a, b in zip(x, beta))))
+
+
+def solve(a, b):
+    """Gauss-Jordan with pivots."""
+    n = len(b)
+    m = [row[:] + [v] for row, v in zip(a, b)]
+    for i in range(n):
+        p = max(range(i, n), key=lambda r: abs(m[r][i]))
+        m[i], m[p] = m[p], m[i]
+        for r in range(n):
+            if r != i:
+                f = m[r][i] / m[i][i]
+                m[r] = [u - f * v for u, v in zip(m[r], m[i])]
+    return [m[i][n] / m[i][i] for i in range(n)]
+
+
+def fit(rows):
+    """Newton's method on the penalised log-likelihood; rows: [(x, right)]."""
+    k = len(FEATURES)
+    scale = [1.0] + [
+        max(math.sqrt(sum((x[j] - sum(y[j] for y, _ in rows) / len(rows)) ** 2 for x, _ in rows) / len(rows)), 1e-3)
+        for j in range(1, k)
+    ]
+    beta = [0.0] * k
+    for _ in range(50):
+        gradient = [-RIDGE * beta[j] * scale[j] ** 2 if j else 0.0 for j in range(k)]
+        hessian = [[(RIDGE * scale[j] ** 2 if j else 1e-9) * (i == j) for i in range(k)] for j in range(k)]
+        for x, right in rows:
+            p = probability(x, beta)
+            for j in range(k):
+                gradient[j] += (right - p) * x[j]
+                for i in range(k):
+                    hessian[j][i] += p * (1 - p) * x[j] * x[i]
+        step = solve(hessian, gradient)
+        beta = [b + s for b, s in zip(beta, step)]
+        if max(map(abs, step)) < 1e-9:
+            break
+    return beta
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("keep", type=pathlib.Path)
+    parser.add_argument("set")
+    parser.add_argument("--program", help="name of the folder of results; default: the one that holds the most")
+    args = parser.parse_args()
+    folders = sorted((args.keep / "results" / args.set).iterdir(), key=lambda p: len(list(p.iterdir())))
+    folder = args.keep / "results" / args.set / args.program if args.program else folders[-1]
+    cases = {}
+    for path in sorted(folder.glob("*.json")):
+        answer = json.loads((args.keep / "answers" / args.set / path.name).read_text())
+        diagnosis = json.loads(path.read_text()).get("diagnosis")
+        if diagnosis:
+            cases[path.stem] = [
+                (x, any(score.matches(name, e, diagnosis) for e in answer["effects"]))
+                for name, x in features(diagnosis)
+            ]
+    rows = [row for case in cases.values() for row in case]
+    print(f"{len(cases)} cases, {len(rows)} names, {sum(right for _, right in rows)} of them right")
+    predicted = []
+    for fold in range(FOLDS):
+        held = {c for c in cases if zlib.crc32(c.encode()) % FOLDS == fold}
+        beta = fit([row for c, case in cases.items() if c not in held for row in case])
+        predicted += [(probability(x, beta), right) for c in held for x, right in cases[c]]
+    print("Reliability of predictions of cases not fitted to")
+    print("\n".join(table.reliability(predicted)))
+    print("Coefficients of the fit to all")
+    for name, b in zip(FEATURES, fit(rows)):
+        print(f"  {name:20s} {b:8.3f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,83 @@
+#include "identify/select/confidence.h"
+
+#include <gtest/gtest.h>
+
+namespace omnihil {
+namespace {
+
+RankedEffect row(const std::string& effect, double frequency, double share) {
+  RankedEffect r;
+  r.effect = effect;
+  r.selection_frequency = frequency;
+  r.share_of_base = share;
+  return r;
+}
+
+// Two found one after the other, the first replaced by a simpler law afterwards.
+Diagnosis two_names() {
+  Diagnosis d;
+  d.outcome = Outcome::kFound;
+  d.effects = {"coulomb_friction", "duty_limit"};
+  d.ladder.resize(4);
+  d.ladder[0].ranking = {row("lugre_friction", 0.9, 0.8), row("duty_limit", 0.1, 0.3)};
+  d.ladder[1].added = "lugre_friction";
+  d.ladder[1].ranking = {row("duty_limit", 0.7, 0.02)};
+  d.ladder[2].added = "duty_limit";
+  d.ladder[3].added = "coulomb_friction in place of lugre_friction";
+  return d;
+}
+
+TEST(ConfidenceTest, TakesItsEvidenceFromTheRoundThatTookTheName) {
+  const auto c = confidences(two_names());
+  ASSERT_EQ(c.size(), 2u);
+  EXPECT_EQ(c[0].effect, "coulomb_friction");
+  EXPECT_DOUBLE_EQ(c[0].probability, probability_right({.share_of_base = 0.8, .selection_frequency = 0.9}));
+  EXPECT_DOUBLE_EQ(c[1].probability,
+                   probability_right({.later = true, .share_of_base = 0.02, .selection_frequency = 0.7}));
+}
+
+TEST(ConfidenceTest, APairHasTheEvidenceOfBoth) {
+  Diagnosis d = two_names();
+  d.effects = {"lugre_friction", "duty_limit"};
+  d.ladder.resize(2);
+  d.ladder[1].added = "lugre_friction and duty_limit";
+  const auto c = confidences(d);
+  EXPECT_DOUBLE_EQ(c[1].probability,
+                   probability_right({.later = true, .share_of_base = 0.3, .selection_frequency = 0.1}));
+}
+
+TEST(ConfidenceTest, TakesTheHeldOutErrorOfTheLastModelWithoutTheBus) {
+  Diagnosis d = two_names();
+  const auto error = [](const std::string& signal, Split split, double over_noise) {
+    SignalError e;
+    e.signal = signal;
+    e.split = split;
+    e.noise_sigma = 0.02;
+    e.rmse = 0.02 * over_noise;
+    return e;
+  };
+  d.final_comparison.errors = {error("velocity", Split::kTraining, 1.9),
+                               error("velocity", Split::kValidation, 1.3),
+                               error("bus_voltage", Split::kValidation, 40.0)};
+  EXPECT_DOUBLE_EQ(
+      confidences(d)[1].probability,
+      probability_right(
+          {.later = true, .share_of_base = 0.02, .selection_frequency = 0.7, .error_over_noise = 1.3}));
+}
+
+TEST(ConfidenceTest, IsLowerWhereStructureRemainsAndForLaterNames) {
+  const NameEvidence first, later{.later = true}, remains{.more_remains = true};
+  EXPECT_GT(probability_right(first), 0.9);
+  EXPECT_LT(probability_right(later), probability_right(first));
+  EXPECT_LT(probability_right(remains), probability_right(first));
+}
+
+TEST(ConfidenceTest, SaysItInPerCent) {
+  Diagnosis d;
+  EXPECT_EQ(confidence_sentence(d), "");
+  d.confidence = {{.effect = "cogging", .probability = 0.954}};
+  EXPECT_NE(confidence_sentence(d).find("cogging in 95 %"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace omnihil
