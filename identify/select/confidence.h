@@ -6,8 +6,9 @@
 //
 // Logistic regression on what the search knew when it took the effect (was it the first; does structure remain that
 // nothing explains; which share of the base model's error it removes; in how many bootstrap draws it won; is it
-// undecided; how far above the sensors' noise the last model stays), fitted on the open cases of the hidden-effect test (tests/hidden_plant/calibrate.py: coefficients,
-// reliability of cases that were not fitted to; docs/diagnosis-statistics.md).
+// undecided; how far above the sensors' noise the last model stays), fitted on the open cases of the hidden-effect
+// test (tests/hidden_plant/calibrate.py: coefficients, reliability of cases that were not fitted to;
+// docs/diagnosis-statistics.md).
 // Limits: calibrated on made records of one effect, of two, of none and of what is in no catalogue, in the test's
 // proportions. On measured records it is an extrapolation: they always leave more than made ones.
 #pragma once
