@@ -158,7 +158,7 @@ std::string parameters_text(const std::vector<ParameterEstimate>& parameters,
     const bool given = std::any_of(of_file.begin(), of_file.end(),
                                    [&](const ParameterEstimate& f) { return f.path == p.path; });
     if (given && p.prior_sigma > 0.0 && p.prior_mean != 0.0) {
-      out += fmt::format("  ({:+.1f} % of the file's, {:+.1f} sigma)", 100.0 * (p.value / p.prior_mean - 1.0),
+      out += fmt::format("  ({:+.1f} % of the belief, {:+.1f} sigma)", 100.0 * (p.value / p.prior_mean - 1.0),
                          p.prior_deviation_sigmas);
     }
     out += p.sentence.empty() ? "\n" : "  " + p.sentence + "\n";

@@ -12,8 +12,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis);
 std::string errors_text(const Comparison& comparison);
 // "velocity rad/s   fit 3.10 -> 0.40 …"
 std::string errors_change_text(const Comparison& before, const Comparison& after);
-// One line per parameter: value, interval, deviation from its prior, what to say of it.
-// A line each; beside those that are among `of_file` (what the model file gives), how far they are from it.
+// One line per parameter: value, interval, what to say of it; beside those that are among `of_file` (what the
+// model file gives), how far they are from what it believes.
 std::string parameters_text(const std::vector<ParameterEstimate>& parameters,
                             const std::vector<ParameterEstimate>& of_file);
 

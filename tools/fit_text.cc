@@ -34,7 +34,8 @@ std::string parameter_table(const FitResult& fit) {
                        uncertain(p), prior(p), deviation(p), p.sentence.empty() ? "" : "  !");
   }
   return out +
-         "prior: the model file's value and tolerance (for an effect: zero and its typical size); dev.: "
+         "prior: what the model file believes, value and tolerance (for an effect: zero and its typical "
+         "size); dev.: "
          "deviation from it, in "
          "tolerances\n";
 }

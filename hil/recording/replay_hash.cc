@@ -1,35 +1,13 @@
 #include "hil/recording/replay_hash.h"
 
-#include <openssl/evp.h>
-
-#include <array>
 #include <bit>
-#include <stdexcept>
 
-#include "hil/text/recording_text.h"
+#include "hil/text/sha256.h"
 
 namespace omnihil {
-namespace {
-
-struct FreeContext {
-  void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
-};
-using Context = std::unique_ptr<EVP_MD_CTX, FreeContext>;
-
-Context new_context() {
-  Context context(EVP_MD_CTX_new());
-  if (!context) throw std::runtime_error("SHA-256: no memory");
-  return context;
-}
-
-void must(int ok) {
-  if (ok != 1) throw std::runtime_error("SHA-256: the cryptographic library refused");
-}
-
-}  // namespace
 
 struct OutputHash::Impl {
-  Context context = new_context();
+  Sha256 hash;
   std::vector<std::uint8_t> row;  // what one event adds
 
   void number(std::uint64_t value) {
@@ -40,12 +18,10 @@ struct OutputHash::Impl {
     row.push_back(static_cast<std::uint8_t>(tag));
     number(static_cast<std::uint64_t>(now_ns));
   }
-  void end() { must(EVP_DigestUpdate(context.get(), row.data(), row.size())); }
+  void end() { hash.add(row); }
 };
 
-OutputHash::OutputHash() : impl_(std::make_unique<Impl>()) {
-  must(EVP_DigestInit_ex(impl_->context.get(), EVP_sha256(), nullptr));
-}
+OutputHash::OutputHash() : impl_(std::make_unique<Impl>()) {}
 
 OutputHash::~OutputHash() = default;
 
@@ -66,13 +42,6 @@ void OutputHash::robot_tick(std::int64_t now_ns, const RobotSample& sample) {
   impl_->end();
 }
 
-std::string OutputHash::hex() const {
-  const Context copy = new_context();
-  std::array<std::uint8_t, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  must(EVP_MD_CTX_copy_ex(copy.get(), impl_->context.get()));
-  must(EVP_DigestFinal_ex(copy.get(), digest.data(), &size));
-  return to_hex(std::span(digest).first(size));
-}
+std::string OutputHash::hex() const { return impl_->hash.hex(); }
 
 }  // namespace omnihil

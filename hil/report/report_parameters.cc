@@ -48,7 +48,8 @@ std::string parameters_section(const Diagnosis& d) {
       has_model(d.final_fit) ? d.final_fit.parameters : d.baseline.parameters;
   if (last.empty()) return "<p>No number was estimated.</p>\n";
   std::string html =
-      "<p>Intervals are 90 %. The prior is what the model file says: value and tolerance. The prior "
+      "<p>Intervals are 90 %. The prior is what the model file believed before any fit: value and "
+      "tolerance. The prior "
       "deviation is how far "
       "the final value is from it, in tolerances; a missing effect hides as a deviation that goes away once "
       "the effect is "

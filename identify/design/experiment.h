@@ -36,7 +36,7 @@ struct NextExperiment {
 
 struct Rival {
   std::string name;  // effect, or what the model is
-  Candidate model;   // fitted to the given data
+  Candidate model;   // fitted to the given data, its beliefs noted (fit_note.h)
 };
 
 // 0: no limit but the drive's own.

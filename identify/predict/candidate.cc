@@ -95,32 +95,36 @@ std::optional<Unknown> base_unknown(const Parameter& p) {
   if (!number || is_effects_row(row) || !p.tolerance || *p.tolerance <= 0.0) return std::nullopt;
   // Of the value: in place of a bound that is excluded (R > 0).
   constexpr double kLeastShare = 1e-4;  // numerical
-  const double value = p.value();
-  const double lower = row.above_lower ? std::max(row.lower, kLeastShare * value) : row.lower;
+  const double believed = p.believed();
+  const double lower = row.above_lower ? std::max(row.lower, kLeastShare * believed) : row.lower;
   Unknown u{.path = parameter_path(row), .unit = std::string(row.unit)};
   u.trait = base_trait(u.path);
-  u.start = u.prior_mean = value;
-  u.lower = std::min(lower, value);
+  u.start = p.value();
+  u.prior_mean = believed;
+  u.lower = std::min({lower, believed, u.start});
   u.upper = row.upper;
   u.prior_sigma =
-      *p.tolerance * std::abs(value);  // relative tolerance of a zero value: sigma 0, a flat prior
+      *p.tolerance * std::abs(believed);  // relative tolerance of a zero value: sigma 0, a flat prior
   u.prior_form = prior_form(*p.tolerance, !row.above_lower && u.lower <= 0.0);
   u.scale = u.prior_sigma > 0.0 ? u.prior_sigma : 1e-3 * std::min(row.upper, 1.0);
   return u;
 }
 
-// A strength that a file gives without a tolerance is known exactly; not one that the program has found (it
-// has an owner), nor one at neutral, which the file leaves out.
+// A strength that a file gives without a tolerance is known exactly; not one that was fitted, nor one that the
+// program has found (it has an owner), nor one at neutral, which the file leaves out.
 bool is_stated(const EffectUse& use, std::size_t i) {
   const EffectParam& row = use.entry->info->params[i];
   const bool from_file = use.owner == nullptr && i < use.tolerances.size() && !use.tolerances[i];
-  return from_file && row.role != ParamRole::kShape && use.values[i] != row.neutral;
+  return from_file && use.fitted(i) == nullptr && row.role != ParamRole::kShape &&
+         use.values[i] != row.neutral;
 }
 
 // The shapes of an exactly known strength are known exactly too, unless they have a tolerance of their own.
 bool is_known_shape(const EffectUse& use, std::size_t i) {
   const std::span<const EffectParam> rows = use.entry->info->params;
-  if (rows[i].role != ParamRole::kShape || i >= use.tolerances.size() || use.tolerances[i]) return false;
+  if (rows[i].role != ParamRole::kShape || i >= use.tolerances.size() || use.tolerances[i] ||
+      use.fitted(i) != nullptr)
+    return false;
   std::size_t strength = i;
   while (strength > 0 && rows[strength].role == ParamRole::kShape) --strength;
   return is_stated(use, strength);
@@ -148,19 +152,22 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
   u.start = use.values[i];
   u.lower = range.lower;
   u.upper = range.upper;
-  u.prior_mean = row.role == ParamRole::kShape ? use.values[i] : row.neutral;
-  u.prior_sigma = range.prior_scale;
-  if (tolerance > 0.0 && use.values[i] != 0.0) {
-    u.prior_mean = use.values[i];
-    u.prior_sigma = tolerance * std::abs(use.values[i]);
-    if (use.values[i] > 0.0) u.prior_form = prior_form(tolerance, row.role != ParamRole::kShape);
+  const FittedNumber* fit = use.fitted(i);
+  const double believed = fit != nullptr && fit->believed ? *fit->believed : use.values[i];
+  const bool absolute = fit != nullptr && fit->believed && fit->believed_sigma;
+  u.prior_mean = row.role == ParamRole::kShape || absolute ? believed : row.neutral;
+  u.prior_sigma = absolute ? *fit->believed_sigma : range.prior_scale;
+  if (tolerance > 0.0 && believed != 0.0) {
+    u.prior_mean = believed;
+    u.prior_sigma = tolerance * std::abs(believed);
+    if (believed > 0.0) u.prior_form = prior_form(tolerance, row.role != ParamRole::kShape);
   }
   double usual = row.typical;
   if (row.start_for != nullptr) {
     // Where the typical value depends on the drive, the prior's width scales with it (DECISIONS 49).
     const DriveParams<double> drive = drive_of(candidate);
     usual = start_of(row, &drive);
-    if (row.typical != 0.0 && tolerance <= 0.0) u.prior_sigma *= std::abs(usual / row.typical);
+    if (row.typical != 0.0 && tolerance <= 0.0 && !absolute) u.prior_sigma *= std::abs(usual / row.typical);
   }
   const double typical = row.role == ParamRole::kShape ? usual : usual - row.neutral;
   u.scale = std::abs(typical) * size;
@@ -182,6 +189,7 @@ Candidate candidate_of(const ModelFile& robot) {
     EffectUse use = neutral_use(*find_effect(kCoulomb));
     use.values.front() = coulomb->value();
     use.tolerances = {coulomb->tolerance};
+    use.notes = {{.source = coulomb->source, .fitted = coulomb->fitted}};
     candidate.effects.push_back(std::move(use));
   }
   if (robot.robot && robot.robot->effects != nullptr) {
@@ -310,6 +318,21 @@ RobotModel robot_of(const Candidate& candidate) {
   return robot;
 }
 
+void note_fit(Candidate& candidate, std::string_view path, const FittedNumber& fit) {
+  const auto [effect, row] = effect_row(candidate, path);
+  if (effect < 0) {
+    if (Parameter* p = candidate.file.parameters.find(path)) p->fitted = fit;
+    return;
+  }
+  EffectUse& use = candidate.effects[static_cast<std::size_t>(effect)];
+  const auto i = static_cast<std::size_t>(row);
+  use.notes.resize(use.values.size());
+  use.notes[i].fitted = fit;
+  const bool toleranced = i < use.tolerances.size() && use.tolerances[i];
+  const bool of_the_page = use.notes[i].source.empty() && fit.believed_sigma && !toleranced;
+  if (of_the_page) use.notes[i].source = "usual size";
+}
+
 std::string candidate_text(const Candidate& candidate) {
   constexpr double kFound =
       1.0;  // relative 1-sigma of a found parameter: wide, so that it is a start; a choice
@@ -319,7 +342,8 @@ std::string candidate_text(const Candidate& candidate) {
     use.tolerances.resize(use.values.size());
     for (std::size_t i = 0; i < use.values.size(); ++i) {
       const EffectParam& row = use.entry->info->params[i];
-      if (row.role != ParamRole::kShape && use.values[i] != row.neutral) use.tolerances[i] = kFound;
+      const bool found = row.role != ParamRole::kShape && use.values[i] != row.neutral;
+      if (found && use.fitted(i) == nullptr) use.tolerances[i] = kFound;
     }
   }
   return model_text(candidate.file, effects);

@@ -9,8 +9,8 @@
 // likewise. Of an effect that the program has added, unknowns are: every strength; a shape whose range is not
 // empty; a detail that is not neutral. Never: a parameter with a tolerance of 0 in its file, and a shape that
 // is an integer by construction (orders, pulses per turn: flat from 1 on). Priors of effects: effect.h, or
-// the file's tolerance where it gives one; a parameter that a search has found is written with a tolerance of
-// 1. Values are in the unknowns' own units.
+// the file's tolerance where it gives one. The prior of a number that was fitted before is what was believed
+// then (fitted_number.h), and it starts where that fit ended. Values are in the unknowns' own units.
 #pragma once
 #include <optional>
 #include <span>
@@ -80,7 +80,11 @@ DriveParams<double> drive_of(const Candidate& candidate);
 // motor).
 RobotModel robot_of(const Candidate& candidate);
 
-// Text of a model file (omnihil-model/1) with these parameters; tolerances and sources kept.
+// Notes on one number, by path as above, that a fit gave it its value; a path there is not is left out. The
+// belief's tolerance and source stay as they are.
+void note_fit(Candidate& candidate, std::string_view path, const FittedNumber& fit);
+
+// Text of a model file (omnihil-model/1) with these parameters; beliefs and fits kept.
 std::string candidate_text(const Candidate& candidate);
 
 }  // namespace omnihil

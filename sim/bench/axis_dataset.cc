@@ -82,12 +82,10 @@ std::string axis_model_text(const AxisModel& model) {
   if (model.drive.linear) out += "linear = true\n";
   if (!model.file.name.empty()) out += fmt::format("name = {}\n", toml_text(model.file.name));
   const auto number = [&](std::string_view key, double value, const Parameter* given) {
-    if (given == nullptr || (!given->tolerance && given->source.empty()))
-      return fmt::format("{} = {}\n", key, value);
-    std::string text = fmt::format("{} = {{ value = {}", key, value);
-    if (given->tolerance) text += fmt::format(", tolerance = {}", *given->tolerance);
-    if (!given->source.empty()) text += fmt::format(", source = {}", toml_text(given->source));
-    return text + " }\n";
+    if (given == nullptr) return fmt::format("{} = {}\n", key, value);
+    Parameter written = *given;
+    written.values = {value};
+    return parameter_line(key, written);
   };
   const DriveParams<double> otherwise;
   std::string section;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sim/law/effect_entry.h"
+#include "sim/law/fitted_number.h"
 
 namespace omnihil {
 
@@ -24,6 +25,11 @@ struct EffectUse {
   std::vector<std::optional<double>> tolerances;  // relative 1-sigma, as given; empty: none given
   std::string name;                               // of a user's formula; empty: the effect's id
   std::shared_ptr<const void> owner;  // keeps alive what `entry` points into where it was made at run time
+  std::vector<NumberNote> notes{};    // where each value came from, as given; empty: nothing is known of it
+
+  const FittedNumber* fitted(std::size_t i) const {  // null: that value was never fitted
+    return i < notes.size() && notes[i].fitted ? &*notes[i].fitted : nullptr;
+  }
 };
 
 // Where a shape starts, which size of a strength is visible, within its bounds; of a linear axis only where

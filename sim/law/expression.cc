@@ -264,8 +264,8 @@ std::string write_expression(const EffectUse& use) {
     const EffectParam& row = e.rows[i];
     out += fmt::format("{} = {{ value = {}, lower = {}, upper = {}, unit = \"{}\"", row.name, use.values[i],
                        row.lower, row.upper, row.unit);
-    if (i < use.tolerances.size() && use.tolerances[i])
-      out += fmt::format(", tolerance = {}", *use.tolerances[i]);
+    out += annotations_text(i < use.tolerances.size() ? use.tolerances[i] : std::nullopt,
+                            i < use.notes.size() ? use.notes[i] : NumberNote{});
     out += " }\n";
   }
   return out;

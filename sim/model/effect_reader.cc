@@ -8,6 +8,7 @@
 
 #include "sim/law/effect_registry.h"
 #include "sim/model/expression_reader.h"
+#include "sim/model/fitted_reader.h"
 
 namespace omnihil {
 namespace {
@@ -53,6 +54,7 @@ class SectionReader {
   EffectUse read(const EffectEntry& entry, const toml::table& table) {
     EffectUse use = neutral_use(entry, context_.drive);
     use.tolerances.resize(use.values.size());
+    use.notes.resize(use.values.size());
     for (const auto& [key, node] : table) {
       const std::string name(key.str());
       const std::string path = fmt::format("effects.{}.{}", entry.info->id, name);
@@ -63,7 +65,10 @@ class SectionReader {
         continue;
       }
       const auto i = static_cast<std::size_t>(index);
-      read_value(entry.info->params[i], path, node, use.values[i], use.tolerances[i]);
+      NumberBelief belief;
+      read_value(entry.info->params[i], path, node, use.values[i], belief);
+      use.tolerances[i] = belief.tolerance;
+      use.notes[i] = std::move(belief.note);
     }
     return use;
   }
@@ -80,7 +85,7 @@ class SectionReader {
   }
 
   void read_value(const EffectParam& row, const std::string& path, const toml::node& node, double& value,
-                  std::optional<double>& tolerance) {
+                  NumberBelief& belief) {
     const toml::table* table = node.as_table();
     if (table == nullptr) return read_number(row, path, node, value);
     for (const auto& [key, part] : *table) {
@@ -88,21 +93,27 @@ class SectionReader {
         read_number(row, path, part, value);
       } else if (key.str() == "tolerance") {
         const auto number = part.is_number() ? part.value<double>() : std::nullopt;
-        if (number && *number >= 0.0 && *number <= 10.0) {
-          tolerance = number;
+        if (number && *number >= 0.0 && *number <= kLargestTolerance) {
+          belief.tolerance = number;
         } else {
           wrong(part, path + ".tolerance", "is not usable",
                 "allowed: 0 to 10, relative to the value (1-sigma)");
         }
       } else if (key.str() == "source") {
         if (!part.is_string()) wrong(part, path + ".source", "is not a text", "a text is needed");
-      } else {
+        belief.note.source = part.value_or(std::string());
+      } else if (!is_fit_key(key.str())) {
         add(key.source(), fmt::format("{}.{}", path, std::string_view(key.str())), "",
-            "unknown key of a number", "allowed: value, tolerance, source");
+            "unknown key of a number",
+            "allowed: value, tolerance, source; of a fit also sigma, data, date, believed");
       }
     }
     if (table->get("value") == nullptr)
       wrong(node, path, "has no value", "write { value = …, tolerance = … }");
+    const BeliefRule rule{.range = allowed_range(row, context_.linear),
+                          .within = [&](double believed) { return in_range(row, believed, context_.linear); },
+                          .absolute_sigma = true};
+    read_fitted(document_, path, *table, rule, belief, problems_);
   }
 
   void read_number(const EffectParam& row, const std::string& path, const toml::node& node, double& value) {
@@ -189,6 +200,7 @@ std::string add_override(std::string_view text, const EffectContext& context, st
                        allowed_range(row, context.linear));
   if (use == uses.end()) use = uses.insert(uses.end(), neutral_use(*entry, context.drive));
   use->values[static_cast<std::size_t>(index)] = value;
+  if (static_cast<std::size_t>(index) < use->notes.size()) use->notes[static_cast<std::size_t>(index)] = {};
   return "";
 }
 
@@ -207,10 +219,11 @@ std::string write_effects(std::span<const EffectUse> uses, bool linear) {
                               use.entry->info->params[i - 1].role == ParamRole::kDetail &&
                               use.values[i - 1] == use.entry->info->params[i - 1].neutral;
       if (default_detail || lone_shape) continue;
-      const bool known = i >= use.tolerances.size() || !use.tolerances[i];
-      out += known ? fmt::format("{} = {}\n", param_key(row, linear), use.values[i])
-                   : fmt::format("{} = {{ value = {}, tolerance = {} }}\n", param_key(row, linear),
-                                 use.values[i], *use.tolerances[i]);
+      const std::string more = annotations_text(i < use.tolerances.size() ? use.tolerances[i] : std::nullopt,
+                                                i < use.notes.size() ? use.notes[i] : NumberNote{});
+      out += more.empty()
+                 ? fmt::format("{} = {}\n", param_key(row, linear), use.values[i])
+                 : fmt::format("{} = {{ value = {}{} }}\n", param_key(row, linear), use.values[i], more);
     }
   }
   return out;

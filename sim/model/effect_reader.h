@@ -4,8 +4,8 @@
 //   std::vector<EffectUse> uses = read_effects(document, {.drive = &drive}, problems);
 //   std::string fault = add_override("cogging.amplitude_Nm=0.004", {.drive = &drive}, uses);   // what is wrong, or ""
 //
-// [effects.ID] holds numbers, bare or { value, tolerance, source }. Strengths that are not given are neutral,
-// shapes start from the motor at hand where they can. A linear axis has _N, _m in place of _Nm, _rad. All
+// [effects.ID] holds numbers, bare, believed or fitted (fitted_number.h). Strengths that are not given are
+// neutral, shapes start from the motor at hand where they can. A linear axis has _N, _m in place of _Nm, _rad. All
 // problems are reported, each with file, line and column; the effects come in alphabetical order.
 #pragma once
 #include <string>

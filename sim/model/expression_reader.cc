@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "sim/model/fitted_reader.h"
 #include "sim/model/params.h"
 
 namespace omnihil {
@@ -28,7 +29,7 @@ class ExpressionReader {
     const std::size_t before = problems_.size();
     path_ = "effects.expression." + name;
     text_ = {.name = name, .adds_to = {}, .formula = {}, .params = {}, .linear = linear_};
-    tolerances_.clear();
+    beliefs_.clear();
     share_ = nullptr;
     read_text(table, "adds_to", text_.adds_to);
     read_text(table, "formula", text_.formula);
@@ -40,7 +41,11 @@ class ExpressionReader {
     if (expression == nullptr) return std::nullopt;
     check_use(table, *expression);
     EffectUse use = use_of_expression(expression);
-    for (std::size_t i = 0; i < tolerances_.size(); ++i) use.tolerances[i] = tolerances_[i];
+    use.notes.resize(use.values.size());
+    for (std::size_t i = 0; i < beliefs_.size(); ++i) {
+      use.tolerances[i] = beliefs_[i].tolerance;
+      use.notes[i] = std::move(beliefs_[i].note);
+    }
     if (share_ != nullptr) read_share(table, *share_, expression->shared, use);
     if (problems_.size() > before) return std::nullopt;
     return use;
@@ -89,7 +94,7 @@ class ExpressionReader {
   void read_param(const std::string& name, const std::string& path, const toml::table& table) {
     ExpressionParam p;
     p.name = name;
-    std::optional<double> tolerance;
+    NumberBelief belief;
     const bool value = read_number(table, "value", path, p.value);
     const bool lower = read_number(table, "lower", path, p.lower);
     const bool upper = read_number(table, "upper", path, p.upper);
@@ -99,9 +104,11 @@ class ExpressionReader {
       if (part == "unit" && node.is_string()) {
         p.unit = *node.value<std::string>();
       } else if (part == "tolerance" && node.is_number() && *node.value<double>() >= 0.0 &&
-                 *node.value<double>() <= 10.0) {
-        tolerance = node.value<double>();
-      } else if (part != "source" || !node.is_string()) {
+                 *node.value<double>() <= kLargestTolerance) {
+        belief.tolerance = node.value<double>();
+      } else if (part == "source" && node.is_string()) {
+        belief.note.source = *node.value<std::string>();
+      } else if (!is_fit_key(part)) {
         wrong_key(key, full, "is not usable",
                   "allowed: value, lower, upper, unit (text), tolerance (0 to 10), source (text)");
       }
@@ -112,8 +119,13 @@ class ExpressionReader {
       wrong(*table.get("value"), path, "is out of range",
             fmt::format("allowed: {:g} to {:g}", p.lower, p.upper));
     }
+    const BeliefRule rule{
+        .range = fmt::format("{:g} to {:g}", p.lower, p.upper),
+        .within = [&](double believed) { return believed >= p.lower && believed <= p.upper; },
+        .absolute_sigma = true};
+    read_fitted(document_, path, table, rule, belief, problems_);
     text_.params.push_back(p);
-    tolerances_.push_back(tolerance);
+    beliefs_.push_back(std::move(belief));
   }
 
   bool read_number(const toml::table& table, std::string_view key, const std::string& path, double& number) {
@@ -140,6 +152,13 @@ class ExpressionReader {
       wrong(table, path_ + ".share", "is not usable", "allowed: { value = 0 to 1 }");
     } else {
       use.values.back() = *value->value<double>();
+      NumberBelief belief;
+      const BeliefRule rule{.range = "0 to 1",
+                            .within = [](double believed) { return believed >= 0.0 && believed <= 1.0; },
+                            .absolute_sigma = true};
+      read_fitted(document_, path_ + ".share", table, rule, belief, problems_);
+      use.tolerances.back() = belief.tolerance;
+      use.notes.back() = std::move(belief.note);
     }
   }
 
@@ -175,7 +194,7 @@ class ExpressionReader {
   std::vector<ModelProblem>& problems_;
   std::string path_;
   ExpressionText text_;
-  std::vector<std::optional<double>> tolerances_;
+  std::vector<NumberBelief> beliefs_;
   const toml::table* share_ = nullptr;
 };
 

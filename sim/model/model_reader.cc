@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/fitted_reader.h"
+
 namespace omnihil {
 namespace {
 
@@ -163,6 +165,7 @@ void ModelReader::read_value(const ParameterRow& row, const toml::key& key, cons
     if (const toml::node* t = table.get("tolerance")) read_tolerance(row, *t, out);
     if (const toml::node* s = table.get("source"); s != nullptr && s->is_string())
       out.source = s->as_string()->get();
+    if (row.kind == ParameterKind::kNumber) read_fit(row, table, out);
     good = problems_.size() == before;
   }
   if (value != nullptr)
@@ -176,15 +179,18 @@ void ModelReader::read_value(const ParameterRow& row, const toml::key& key, cons
 
 // The keys of { value, tolerance, source }, without their contents.
 void ModelReader::read_annotated(const ParameterRow& row, const toml::table& table) {
-  constexpr std::string_view kKeys[] = {"value", "tolerance", "source"};
+  constexpr std::string_view kKeys[] = {"value", "tolerance", "source", "believed"};
   const std::string path = parameter_path(row);
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
-    if (std::find(std::begin(kKeys), std::end(kKeys), name) == std::end(kKeys)) {
+    if (row.kind == ParameterKind::kNumber && is_fit_key(name)) continue;  // read_fit
+    if (name == "believed" || std::find(std::begin(kKeys), std::end(kKeys), name) == std::end(kKeys)) {
       const std::string near = hint(name, kKeys);
       problems_.push_back(problem_at(document_, key.source(), path + "." + name, "",
                                      "unknown key of a number",
-                                     near.empty() ? "allowed: value, tolerance, source" : near));
+                                     near.empty() ? "allowed: value, tolerance, source; of a fit also "
+                                                    "sigma, data, date, believed"
+                                                  : near));
     } else if (name == "source" && !node.is_string()) {
       wrong(node, path + ".source", fmt::format("is {}", kind_of(node)), "a text is needed");
     }
@@ -192,6 +198,17 @@ void ModelReader::read_annotated(const ParameterRow& row, const toml::table& tab
   if (table.get("value") == nullptr) {
     wrong(table, path, "has no value", fmt::format("write {{ value = …, tolerance = …, source = \"…\" }}"));
   }
+}
+
+void ModelReader::read_fit(const ParameterRow& row, const toml::table& table, Parameter& out) {
+  const BeliefRule rule{.range = allowed_range(row),
+                        .within = [&](double value) { return within_bounds(row, value); },
+                        .absolute_sigma = row.section.starts_with("effects.")};
+  NumberBelief belief{.tolerance = out.tolerance, .note = {.source = out.source, .fitted = {}}};
+  read_fitted(document_, parameter_path(row), table, rule, belief, problems_);
+  out.tolerance = belief.tolerance;
+  out.source = std::move(belief.note.source);
+  out.fitted = std::move(belief.note.fitted);
 }
 
 bool ModelReader::read_number(const ParameterRow& row, const toml::node& node, double& out) {
@@ -270,13 +287,13 @@ bool ModelReader::read_text(const ParameterRow& row, const toml::node& node, Par
 }
 
 void ModelReader::read_tolerance(const ParameterRow& row, const toml::node& node, Parameter& out) {
-  constexpr double kLargest = 10.0;
   const std::string path = parameter_path(row) + ".tolerance";
   const std::string allowed =
-      fmt::format("allowed: 0 to {:g}, relative to the value (1-sigma; 0.1 is 10 %)", kLargest);
+      fmt::format("allowed: 0 to {:g}, relative to the value (1-sigma; 0.1 is 10 %)", kLargestTolerance);
   if (!node.is_number()) return wrong(node, path, fmt::format("is {}", kind_of(node)), allowed);
   const double tolerance = *node.value<double>();
-  if (!(tolerance >= 0.0 && tolerance <= kLargest)) return wrong(node, path, "is out of range", allowed);
+  if (!(tolerance >= 0.0 && tolerance <= kLargestTolerance))
+    return wrong(node, path, "is out of range", allowed);
   out.tolerance = tolerance;
 }
 

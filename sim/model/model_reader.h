@@ -32,6 +32,7 @@ class ModelReader {
   void read_effects(const toml::table& table);
   void read_value(const ParameterRow& row, const toml::key& key, const toml::node& node);
   void read_annotated(const ParameterRow& row, const toml::table& table);
+  void read_fit(const ParameterRow& row, const toml::table& table, Parameter& out);
   bool read_numbers(const ParameterRow& row, const toml::node& node, Parameter& out);
   bool read_number(const ParameterRow& row, const toml::node& node, double& out);
   bool read_text(const ParameterRow& row, const toml::node& node, Parameter& out);

@@ -35,27 +35,12 @@ std::uint32_t rig_bit(const ModelFile& file) {
   return file.linear ? kRigLinearAxis : kRigAxis;
 }
 
-std::string toml_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += std::string("\\") + c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
-}
-
 std::string parameter_line(std::string_view key, const Parameter& parameter) {
-  std::string text = std::string(key) + " = ";
-  if (!parameter.tolerance && parameter.source.empty()) return text + values_text(parameter) + "\n";
-  text += "{ value = " + values_text(parameter);
-  if (parameter.tolerance) text += fmt::format(", tolerance = {}", *parameter.tolerance);
-  if (!parameter.source.empty()) text += ", source = " + toml_text(parameter.source);
-  return text + " }\n";
+  const std::string more =
+      annotations_text(parameter.tolerance, {.source = parameter.source, .fitted = parameter.fitted});
+  const std::string value = values_text(parameter);
+  return more.empty() ? fmt::format("{} = {}\n", key, value)
+                      : fmt::format("{} = {{ value = {}{} }}\n", key, value, more);
 }
 
 std::string model_text(const ModelFile& file, std::span<const EffectUse> effects) {

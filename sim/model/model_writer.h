@@ -1,5 +1,5 @@
-// Writes a model file (format "omnihil-model/1"): the numbers of a table, tolerances and sources kept, and
-// the model's effects, in one text that the reader (model_file.h, axis_model.h) takes back with the same
+// Writes a model file (format "omnihil-model/1"): the numbers of a table, beliefs and fits kept (fitted_number.h),
+// and the model's effects, in one text that the reader (model_file.h, axis_model.h) takes back with the same
 // numbers.
 //
 //   std::string text = model_text(file, effects);
@@ -11,15 +11,13 @@
 #include <string_view>
 
 #include "sim/law/effect_set.h"
+#include "sim/law/toml_text.h"
 #include "sim/model/model_file.h"
 
 namespace omnihil {
 
 // RigBit of a model.
 std::uint32_t rig_bit(const ModelFile& file);
-
-// A TOML basic string with its quotes.
-std::string toml_text(std::string_view text);
 
 // "resistance_ohm = { value = 0.46, tolerance = 0.1 }\n", with as many digits as give the same double back.
 std::string parameter_line(std::string_view key, const Parameter& parameter);

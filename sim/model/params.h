@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/law/fitted_number.h"
 #include "sim/law/spelling.h"
 #include "sim/robot/robot_model.h"
 
@@ -64,13 +65,15 @@ struct Parameter {
   const ParameterRow* row = nullptr;
   std::vector<double> values{};       // one, or one per wheel; empty for text
   std::string text{};                 // kText, kChoice
-  std::optional<double> tolerance{};  // relative 1-sigma; absent: known exactly
-  std::string source{};
+  std::optional<double> tolerance{};  // of the belief: relative 1-sigma; absent: known exactly
+  std::string source{};               // of the belief
+  std::optional<FittedNumber> fitted{};
   Origin origin = Origin::kDefault;
   int line = 0;  // in the file of its origin; 0: not from a file
   int column = 0;
 
   double value() const { return values.empty() ? 0.0 : values.front(); }
+  double believed() const { return fitted && fitted->believed ? *fitted->believed : value(); }
 };
 
 // "motor.resistance_ohm"; the key alone at the top of the file.

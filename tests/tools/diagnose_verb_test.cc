@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "hil/text/sha256.h"
 #include "tests/tools/cli.h"
 
 extern char** environ;
@@ -57,6 +58,39 @@ TEST_F(SlowDiagnoseVerb, FromTheVerdictToTheMendedModel) {
   EXPECT_TRUE(add.says("Useful: ")) << add.text;
   EXPECT_EQ(text_of(folder_ / "model.toml.1"), before);
   EXPECT_EQ(verb("add", "cogging").exit_code, 2);  // the model has it already
+}
+
+// Where a number came from can be read in the file: which data, when, and what was believed before.
+TEST_F(SlowDiagnoseVerb, AFittedNumberSaysFromWhichDataAndKeepsItsBelief) {
+  const std::string mended = shell(folder_ / "mended.toml");
+  ::setenv("SOURCE_DATE_EPOCH", "1795392000", 1);  // 2026-11-23
+  const Ran fit = verb("fit", "--freeze motor.inductance_H --write" + mended);
+  const Ran add = verb("add", "cogging --model" + mended + "--write" + mended);
+  ::unsetenv("SOURCE_DATE_EPOCH");
+  ASSERT_EQ(fit.exit_code, 0) << fit.text;
+  ASSERT_EQ(add.exit_code, 0) << add.text;
+  std::string all = text_of(folder_ / "dataset.toml");
+  for (const char* run : {"steps.csv", "steps_holdout.csv", "prbs.csv", "prbs_holdout.csv"})
+    all += text_of(folder_ / run);
+  Sha256 hash;
+  hash.add(all);
+  const std::string stamp =
+      "source = \"fitted\", data = \"sha256:" + hash.hex().substr(0, 12) + "\", date = \"2026-11-23\"";
+  const std::string text = text_of(folder_ / "mended.toml");
+  const auto line = [&](const std::string& key) {
+    const std::size_t at = text.find("\n" + key + " = ");
+    return at == std::string::npos ? "" : text.substr(at + 1, text.find('\n', at + 1) - at - 1);
+  };
+  for (const char* key : {"resistance_ohm", "inductance_H", "amplitude_Nm", "torque_Nm"})
+    EXPECT_NE(line(key).find(stamp), std::string::npos) << key << text;
+  EXPECT_NE(line("resistance_ohm").find("believed = { value = 0.447, tolerance = "), std::string::npos)
+      << text;
+  EXPECT_NE(line("amplitude_Nm").find("believed = { value = 0, sigma = "), std::string::npos) << text;
+  EXPECT_EQ(line("pole_pairs"), "pole_pairs = 8");
+  EXPECT_EQ(verb("compare", "--model" + mended).exit_code, 0);
+  const Ran explained = run_omnihil("models" + mended);
+  EXPECT_TRUE(explained.says("fitted to sha256:")) << explained.text;
+  EXPECT_TRUE(explained.says("believed 0.447 +-")) << explained.text;
 }
 
 TEST_F(SlowDiagnoseVerb, AddRefusesWhatMakesNoDifferenceAndWritesNothing) {

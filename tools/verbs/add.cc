@@ -14,6 +14,7 @@
 #include "tools/command_line.h"
 #include "tools/diagnosis_text.h"
 #include "tools/exit_codes.h"
+#include "tools/fitted_model.h"
 #include "tools/formula_argument.h"
 #include "tools/guarded.h"
 #include "tools/progress_line.h"
@@ -59,7 +60,7 @@ std::string drift_text(const Addition& addition) {
   return out;
 }
 
-int report(const Arguments& a, const Addition& addition, const std::string& name) {
+int report(const Arguments& a, const Dataset& dataset, const Addition& addition, const std::string& name) {
   std::printf("Errors without -> with %s\n%s\n", name.c_str(),
               errors_change_text(addition.before, addition.after).c_str());
   std::printf("Base parameters, both refitted\n%s\n", drift_text(addition).c_str());
@@ -74,7 +75,7 @@ int report(const Arguments& a, const Addition& addition, const std::string& name
     std::printf("%s was not written; --force writes it all the same\n", a.write.c_str());
     return kExitDiffers;
   }
-  replace_file_keeping_old(a.write, candidate_text(addition.fit_after.model));
+  replace_file_keeping_old(a.write, fitted_model_text(addition.fit_after, a.dataset, dataset));
   std::printf("%s written; what was there before is %s.1\n", a.write.c_str(), a.write.c_str());
   return addition.useful ? kExitOk : kExitDiffers;
 }
@@ -109,7 +110,7 @@ int run(const Arguments& a) {
     std::fprintf(stderr, "omnihil add: %s: %s\n", name.c_str(), addition.why.c_str());
     return kExitBadInput;
   }
-  return report(a, addition, name);
+  return report(a, *reading.dataset, addition, name);
 }
 
 }  // namespace

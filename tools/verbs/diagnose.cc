@@ -14,6 +14,7 @@
 #include "tools/command_line.h"
 #include "tools/diagnosis_text.h"
 #include "tools/exit_codes.h"
+#include "tools/fitted_model.h"
 #include "tools/guarded.h"
 #include "tools/program_commit.h"
 #include "tools/progress_line.h"
@@ -69,7 +70,7 @@ int run(const Arguments& a) {
   const std::string model_text =
       diagnosis.final_fit.model.effects.empty() && diagnosis.final_fit.parameters.empty()
           ? reading.model_text
-          : candidate_text(diagnosis.final_fit.model);
+          : fitted_model_text(diagnosis.final_fit, a.dataset, *reading.dataset);
   if (!a.write.empty() && diagnosis.complete) replace_file_keeping_old(a.write, model_text);
   const std::string json = a.json.empty()
                                ? ""

@@ -12,6 +12,7 @@
 #include "hil/dataset/dataset_reader.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/text/dataset_files.h"
+#include "identify/estimate/fit_note.h"
 #include "identify/select/refit.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/params.h"
@@ -112,7 +113,7 @@ Rival rival_of(const std::string& name, const Candidate& nominal, const Predicto
     if (!best || r.cost < best->cost) best = std::move(r);
     if (name == kBase) break;
   }
-  return {name, best->model};
+  return {name, with_fit_noted(*best, {})};  // the priors stay the nominal model's
 }
 
 void write_plan(const Arguments& a, const ExperimentPlan& plan, const RadioFormat* format,

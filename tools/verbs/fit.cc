@@ -15,6 +15,7 @@
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/fit_text.h"
+#include "tools/fitted_model.h"
 #include "tools/guarded.h"
 #include "tools/verbs/verbs.h"
 
@@ -108,7 +109,8 @@ int run(const Arguments& a) {
   }
   if (report.fit.stopped) return kExitInterrupted;
   if (!report.after.diverged.empty()) return kExitDiverged;
-  if (!a.write.empty()) replace_file_keeping_old(a.write, candidate_text(report.fit.model));
+  if (!a.write.empty())
+    replace_file_keeping_old(a.write, fitted_model_text(report.fit, a.dataset, *reading.dataset));
   return kExitOk;
 }
 
@@ -132,7 +134,7 @@ void add_verb_fit(Verb& program, VerbResult& result) {
       "--robust", a->options.robust,
       "large residuals pull linearly, not squared: a few runs that the model cannot explain count less");
   verb.add_option("--starts", a->options.starts,
-                  "starts; all but the first are drawn from the model file's tolerances")
+                  "starts; all but the first are drawn from the beliefs of the model file")
       .range(1, 100)
       .capture_default_str();
   verb.add_option("--seed", a->options.seed, "of those starts").capture_default_str();
@@ -142,7 +144,9 @@ void add_verb_fit(Verb& program, VerbResult& result) {
   verb.footer(
       "Numbers with a tolerance in the model file move, and those of its effects; bare base numbers are "
       "exact.\n"
-      "Only runs of use \"fit\" are fitted; the table shows the error on the others as well.");
+      "Only runs of use \"fit\" are fitted; the table shows the error on the others as well.\n"
+      "A model that was fitted before starts from its values; its priors are what was believed before the "
+      "first fit.");
   verb.callback([a, &result] { result.exit_code = guarded("fit", [&] { return run(*a); }); });
 }
 

@@ -57,9 +57,22 @@ std::string value_text(const Parameter& p) {
   return out;
 }
 
+std::string fitted_text(const FittedNumber& fit) {
+  return fit.sigma ? fmt::format("+-{:.2g}", *fit.sigma) : "fitted";
+}
+
+// "data sheet"; of a fitted number "fitted to sha256:9f86d081884c on 2026-11-23; believed 0.464 +-10 %, data sheet"
 std::string origin_text(const Parameter& p) {
   if (p.origin == Origin::kDefault) return "default";
   std::string out = p.source;
+  if (p.fitted) {
+    out = "fitted";
+    if (!p.fitted->data.empty()) out += " to " + p.fitted->data;
+    if (!p.fitted->date.empty()) out += " on " + p.fitted->date;
+    if (p.fitted->believed) out += "; believed " + number(*p.fitted->believed);
+    if (p.fitted->believed && p.tolerance) out += fmt::format(" +-{:g} %", 100.0 * *p.tolerance);
+    if (p.fitted->believed && !p.source.empty()) out += ", " + p.source;
+  }
   if (p.origin == Origin::kMotorFile) out += out.empty() ? "motor file" : " (motor file)";
   return out;
 }
@@ -73,6 +86,7 @@ void print_parameters(const ModelFile& model) {
       std::printf("\n[%s]\n", std::string(section).c_str());
     }
     const std::string known = is_text(*p.row) || p.origin == Origin::kDefault ? ""
+                              : p.fitted                                      ? fitted_text(*p.fitted)
                               : p.tolerance ? fmt::format("+-{:g} %", 100.0 * *p.tolerance)
                                             : "exact";
     std::printf("  %-30s %-26s %-8s %s\n", std::string(p.row->key).c_str(), value_text(p).c_str(),

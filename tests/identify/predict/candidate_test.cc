@@ -98,6 +98,64 @@ TEST(Candidate, WhatASearchFoundIsFittedAgainFromItsFile) {
   EXPECT_NE(find(again, "dead_time.current_width_A"), nullptr);
 }
 
+constexpr const char* kFittedAxis =
+    "format = \"omnihil-model/1\"\nrig = \"axis\"\n[motor]\n"
+    "resistance_ohm = { value = 0.55, sigma = 0.003, source = \"fitted\", data = \"sha256:0123456789ab\", "
+    "date = \"2026-11-23\", believed = { value = 0.5, tolerance = 0.1, source = \"sheet \\\"A\\\"\" } }\n"
+    "torque_constant_Nm_per_A = { value = 0.03, tolerance = 0.05, source = \"fitted\" }\n"
+    "rotor_inertia_kg_m2 = 1e-5\n[supply]\nvoltage_V = 24\n[effects.cogging]\n"
+    "amplitude_Nm = { value = 0.001, sigma = 2e-05, source = \"fitted\", data = \"sha256:0123456789ab\", "
+    "date = \"2026-11-23\", believed = { value = 0, sigma = 0.002, source = \"usual size\" } }\n"
+    "phase_rad = { value = 0.7, source = \"fitted\", date = \"2026-11-23\" }\n"
+    "[effects.coulomb_friction]\ntorque_Nm = { value = 0.004, sigma = 1e-4, source = \"fitted\", "
+    "believed = { value = 0.002, tolerance = 0.6, source = \"no-load current\" } }\n"
+    "[effects.expression.drag]\nadds_to = \"torque_Nm\"\n"
+    "formula = \"-a*omega_rotor_rad_s*abs(omega_rotor_rad_s)\"\n"
+    "a = { value = 2e-8, lower = 0, upper = 1e-6, unit = \"N m s2/rad2\", sigma = 1e-9, "
+    "source = \"fitted\", believed = { value = 1e-8, tolerance = 0.3 } }\n";
+
+// A fit's prior is what was believed before any fit, and it starts where the last one ended.
+TEST(Candidate, WhatWasFittedKeepsItsBelief) {
+  const std::vector<Unknown> all = unknowns_of(read(kFittedAxis));
+  struct Belief {
+    const char* path;
+    double start, mean, sigma;
+    PriorForm form;
+  };
+  for (const Belief& b :
+       {Belief{"motor.resistance_ohm", 0.55, 0.5, 0.05, PriorForm::kNormal},
+        Belief{"motor.torque_constant_Nm_per_A", 0.03, 0.03, 0.0015, PriorForm::kNormal},
+        Belief{"cogging.amplitude_Nm", 0.001, 0.0, 0.002, PriorForm::kNormal},
+        Belief{"coulomb_friction.torque_Nm", 0.004, 0.002, 0.0012, PriorForm::kLogNormalAbove},
+        Belief{"expression.drag.a", 2e-8, 1e-8, 3e-9, PriorForm::kNormal}}) {
+    const Unknown* u = find(all, b.path);
+    ASSERT_NE(u, nullptr) << b.path;
+    EXPECT_DOUBLE_EQ(u->start, b.start) << b.path;
+    EXPECT_DOUBLE_EQ(u->prior_mean, b.mean) << b.path;
+    EXPECT_DOUBLE_EQ(u->prior_sigma, b.sigma) << b.path;
+    EXPECT_EQ(u->prior_form, b.form) << b.path;
+  }
+  ASSERT_NE(find(all, "cogging.phase_rad"), nullptr);
+  EXPECT_EQ(find(all, "cogging.phase_rad")->start, 0.7);
+}
+
+TEST(Candidate, WhatWasFittedReadsBackWithItsRecord) {
+  const Candidate c = read(kFittedAxis);
+  const std::string text = candidate_text(c);
+  EXPECT_EQ(candidate_text(read(text)), text);
+  for (
+      const char* line :
+      {"resistance_ohm = { value = 0.55, sigma = 0.003, source = \"fitted\", data = \"sha256:0123456789ab\", "
+       "date = \"2026-11-23\", believed = { value = 0.5, tolerance = 0.1, source = \"sheet \\\"A\\\"\" } }\n",
+       "torque_constant_Nm_per_A = { value = 0.03, tolerance = 0.05, source = \"fitted\" }\n",
+       "believed = { value = 0, sigma = 0.002, source = \"usual size\" } }\n",
+       "phase_rad = { value = 0.7, source = \"fitted\", date = \"2026-11-23\" }\n",
+       "believed = { value = 0.002, tolerance = 0.6, source = \"no-load current\" } }\n",
+       "sigma = 1e-09, source = \"fitted\", believed = { value = 1e-08, tolerance = 0.3 } }\n"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  }
+}
+
 TEST(Candidate, TextReadsBackWithTheSameNumbers) {
   Candidate c = read(kAxis);
   const std::vector<Unknown> unknowns = unknowns_of(c);
@@ -173,12 +231,16 @@ TEST(Candidate, ARobotKeepsItsFrictionAndItsEffects) {
   Candidate c = with_effect(candidate_of(*stored.model), *find_effect("wheel_slip"));
   ASSERT_EQ(set_value(c, "wheel_slip.compliance_m_s", 0.07), "");
   ASSERT_EQ(set_value(c, "coulomb_friction.torque_Nm", 0.0031), "");
+  note_fit(c, "coulomb_friction.torque_Nm", {.sigma = 1e-4, .date = "2026-11-23", .believed = 0.002});
   EXPECT_EQ(robot_of(c).motor.coulomb_friction_Nm, 0.0031);
   for (const std::string& text : {candidate_text(c), dataset_model_text(c.file)}) {
     const ModelReading r = read_model(text, "robot.toml", nullptr);
     for (const ModelProblem& p : r.problems) ADD_FAILURE() << p.text();
     ASSERT_TRUE(r.model && r.model->robot);
     EXPECT_EQ(r.model->robot->motor.coulomb_friction_Nm, 0.0031);
+    if (text != dataset_model_text(c.file)) {  // that one is of the table, which only values reach
+      EXPECT_EQ(find(unknowns_of(candidate_of(*r.model)), "coulomb_friction.torque_Nm")->prior_mean, 0.002);
+    }
     ASSERT_NE(r.model->robot->effects, nullptr);
     EXPECT_EQ(value_at(candidate_of(*r.model), "wheel_slip.compliance_m_s"), 0.07);
   }
