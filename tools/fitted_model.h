@@ -1,6 +1,6 @@
 // The model that a fit gave, as the text of a file that says of each number which data moved it and when.
 //
-//   replace_file_keeping_old("model.toml", fitted_model_text(fit, "bench", *reading.dataset));
+//   replace_file_keeping_old("model.toml", fitted_model_text(fit, "bench", dataset));
 #pragma once
 #include <string>
 
