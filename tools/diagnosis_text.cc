@@ -52,9 +52,16 @@ std::string verdict_text(const Diagnosis& d) {
   std::vector<std::string> effects;
   for (const std::string& e : d.effects) effects.push_back(with_confounded(d, e));
   if (!effects.empty()) out += fmt::format(": {}", fmt::join(effects, ", "));
+  const bool faulty = d.outcome == Outcome::kNotSearched && first_fault(d.findings) != nullptr;
+  if (!d.not_searched.empty()) out += fmt::format(" ({})", d.not_searched);
   out += "\n";
+  if (faulty) out += "  Mend the data, or search all the same with --anyway.\n";
+  if (!d.searched_despite.empty()) {
+    out += fmt::format("  Searched past a fault of the data; what was found may be that fault: {}\n",
+                       d.searched_despite);
+  }
   if (!d.complete) out += "  Interrupted: this is what was known by then.\n";
-  if (!d.unknown.sentence.empty()) out += "  " + d.unknown.sentence + "\n";
+  if (!d.unknown.sentence.empty() && d.not_searched.empty()) out += "  " + d.unknown.sentence + "\n";
   if (const std::string how_sure = confidence_sentence(d); !how_sure.empty()) out += "  " + how_sure + "\n";
   for (const ConfoundedSet& set : d.confounded) out += "  " + set.sentence + "\n";
   return out + "\n";

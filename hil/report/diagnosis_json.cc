@@ -155,6 +155,8 @@ std::string diagnosis_json(const Diagnosis& d, const DiagnosisJsonOptions& optio
       {"baseline", std::move(baseline)},
       {"verdict", verdict_name(d.verdict)},
       {"outcome", outcome_name(d.outcome)},
+      {"not_searched", d.not_searched},
+      {"searched_despite", d.searched_despite},
       {"effects", d.effects},
       {"confidence", confidence_json(d.confidence)},
       {"ranking", ranking_json(d.ranking)},

@@ -65,7 +65,8 @@ std::vector<LadderStep> ladder_shown(const Diagnosis& d) {
 std::string verdict_sentence(const Diagnosis& d) {
   std::string text;
   if (d.outcome == Outcome::kNotSearched) {
-    text = d.unknown.sentence.empty() ? "No effect was searched for." : d.unknown.sentence;
+    text = d.not_searched.empty() ? "No effect was searched for."
+                                  : fmt::format("Not searched: {}", d.not_searched);
   } else if (d.verdict == Verdict::kEffect) {
     text = fmt::format("The model lacks {}: with {} {}.", joined(d.effects),
                        d.effects.size() > 1 ? "them" : "it",
@@ -80,8 +81,12 @@ std::string verdict_sentence(const Diagnosis& d) {
                           error_change(d.baseline_comparison, d.final_comparison));
     }
   }
-  if (first_fault(d.findings) != nullptr)
+  if (!d.searched_despite.empty()) {
+    text = fmt::format("Searched past a fault of the data ({}); what was found may be that fault. {}",
+                       d.searched_despite, text);
+  } else if (first_fault(d.findings) != nullptr) {
     text = "The data have faults that can mislead; mend them first. " + text;
+  }
   if (!d.complete) text = "Interrupted: what follows is true as far as it goes. " + text;
   return text;
 }

@@ -35,6 +35,8 @@ constexpr int kMostRestarts = 2;        // by cost
 // the open cases; sensitivity not measured.
 constexpr double kRobustLoss = 1.2;  // tuned
 
+constexpr const char* kInterrupted = "interrupted before any effect was tried";
+
 class Diagnosing {
  public:
   Diagnosing(const Dataset& dataset, const Candidate& nominal, const DiagnoseOptions& options)
@@ -45,6 +47,7 @@ class Diagnosing {
     out_.dataset = dataset.name;
     out_.seed = options.seed;
     out_.outcome = Outcome::kNotSearched;  // until it is
+    out_.not_searched = kInterrupted;
   }
 
   Diagnosis run() {
@@ -75,6 +78,10 @@ class Diagnosing {
   bool baseline() {
     if (!say("refitting the base parameters", 0.02)) return false;
     const bool usable = context_.fit_base(stop());
+    if (!usable && !stopped_) {
+      out_.not_searched =
+          "the base parameters cannot be fitted: the model does not stay finite, or there are no fit runs";
+    }
     out_.baseline = context_.base().fit;
     out_.baseline_comparison = compare(context_.predictor(), context_.base().fit.model);
     add_step("base parameters refitted", context_.base(), out_.baseline_comparison);
@@ -98,6 +105,22 @@ class Diagnosing {
 
   // A fault of the data that would be taken for physics.
   bool misleading() const { return !options_.despite_faults && first_fault(out_.findings) != nullptr; }
+
+  // Why no effect was tried; "": one was.
+  std::string not_searched() const {
+    if (misleading()) {
+      return fmt::format("a fault of the data would be taken for an effect: {}",
+                         first_fault(out_.findings)->sentence);
+    }
+    const bool tried = !out_.effects.empty() ||
+                       std::any_of(out_.ranking.begin(), out_.ranking.end(), [&](const RankedEffect& r) {
+                         return r.refitted || (!stopped_ && r.visibility != Visibility::kNotTried);
+                       });
+    if (tried) return "";
+    if (stopped_) return kInterrupted;
+    return out_.ranking.empty() ? "none of the known effects can act on this bench"
+                                : "with every effect that was tried the model diverges";
+  }
 
   void iterate() {
     double from = kAfterNull;
@@ -250,23 +273,29 @@ class Diagnosing {
     out_.final_fit = current_.fit;
     out_.final_comparison =
         added ? compare(context_.predictor(), current_.fit.model) : out_.baseline_comparison;
-    const bool remains = misleading() || structure_remains(excess, added);
+    out_.not_searched = not_searched();
+    const bool searched = out_.not_searched.empty();
+    if (const DataFinding* fault = first_fault(out_.findings); fault != nullptr && searched)
+      out_.searched_despite = fault->sentence;
+    const bool remains = !searched || structure_remains(excess, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
-    out_.outcome = misleading() ? Outcome::kNotSearched
-                   : !added     ? Outcome::kNothingFound
-                   : remains    ? Outcome::kMoreRemains
-                                : Outcome::kFound;
-    if (remains && !misleading() && !stopped_) {
+    out_.outcome = !searched ? Outcome::kNotSearched
+                   : !added  ? Outcome::kNothingFound
+                   : remains ? Outcome::kMoreRemains
+                             : Outcome::kFound;
+    if (remains && searched && !stopped_) {
       say("looking for a formula", 0.92);
       out_.unknown = unknown_structure(task_, current_, out_.final_comparison);
     }
-    out_.unknown.sentence = misleading()
-                                ? fmt::format(
-                                      "No effect was tried, since a fault of the data would be taken for "
-                                      "one: {}",
-                                      first_fault(out_.findings)->sentence)
-                                : residual_sentence(excess, added);
+    if (!searched) {
+      out_.unknown.sentence = "No effect was tried: " + out_.not_searched;
+    } else if (stopped_ && remains) {
+      out_.unknown.sentence =
+          "Structure remains, and the search was interrupted: not every effect was tried.";
+    } else {
+      out_.unknown.sentence = residual_sentence(excess, added);
+    }
     settle_confounded(out_);
     out_.confidence = confidences(out_);
     out_.next_experiment = next_experiment(dataset_, out_);

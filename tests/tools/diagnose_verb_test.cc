@@ -60,6 +60,28 @@ TEST_F(SlowDiagnoseVerb, FromTheVerdictToTheMendedModel) {
   EXPECT_EQ(verb("add", "cogging").exit_code, 2);  // the model has it already
 }
 
+TEST_F(SlowDiagnoseVerb, DataWithAFaultAreSearchedOnlyWhenAskedAndBothAreSaid) {
+  std::string toml = text_of(folder_ / "dataset.toml");
+  const std::string current = "motor_current = { ";
+  ASSERT_NE(toml.find(current), std::string::npos) << toml;
+  toml.insert(toml.find(current) + current.size(), "scale = -1.0, ");
+  std::ofstream(folder_ / "dataset.toml") << toml;
+  const Ran refused = verb("diagnose", "--quick --json" + shell(folder_ / "d.json"));
+  EXPECT_EQ(refused.exit_code, 0) << refused.text;
+  EXPECT_TRUE(refused.says("Verdict: not searched (a fault of the data would be taken for an effect: "))
+      << refused.text;
+  EXPECT_TRUE(refused.says("--anyway")) << refused.text;
+  EXPECT_FALSE(refused.says("no known effect")) << refused.text;
+  const nlohmann::json j = nlohmann::json::parse(text_of(folder_ / "d.json"));
+  EXPECT_EQ(j["outcome"], "not searched");
+  EXPECT_FALSE(j["not_searched"].get<std::string>().empty());
+  const Ran anyway = verb("diagnose", "--quick --anyway --report" + shell(folder_ / "d.html"));
+  EXPECT_EQ(anyway.exit_code, 0) << anyway.text;
+  EXPECT_TRUE(anyway.says("Searched past a fault of the data")) << anyway.text;
+  EXPECT_TRUE(anyway.says("First ranking")) << anyway.text;
+  EXPECT_NE(text_of(folder_ / "d.html").find("Searched past a fault of the data"), std::string::npos);
+}
+
 // Where a number came from can be read in the file: which data, when, and what was believed before.
 TEST_F(SlowDiagnoseVerb, AFittedNumberSaysFromWhichDataAndKeepsItsBelief) {
   const std::string mended = shell(folder_ / "mended.toml");
