@@ -77,8 +77,8 @@ struct Diagnosis {
   Comparison baseline_comparison;
   Verdict verdict = Verdict::kUnknown;
   Outcome outcome = Outcome::kNothingFound;
-  std::string not_searched;      // why no effect was tried; empty: one was
-  std::string searched_despite;  // the data's fault that a search passed over; empty: none
+  std::string not_searched;           // why no effect was tried; empty: one was
+  std::string searched_despite;       // the data's fault that a search passed over; empty: none
   std::vector<std::string> effects;   // in the order in which they were added
   std::vector<RankedEffect> ranking;  // first iteration, best first: every effect that applies
   std::vector<LadderStep> ladder;
