@@ -9,6 +9,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace omnihil {
 
@@ -62,5 +63,28 @@ inline constexpr Crc crc32{32, 0x04C11DB7u, 0xFFFFFFFFu, true, 0xFFFFFFFFu};  //
 inline constexpr Crc crc16_xmodem{16, 0x1021u, 0, false, 0};                  // CRC-16/XMODEM
 inline constexpr Crc crc8_maxim{8, 0x31u, 0, true, 0};                        // CRC-8/MAXIM-DOW, 1-Wire
 inline constexpr Crc crc8_autosar{8, 0x2Fu, 0xFFu, false, 0xFFu};             // CRC-8/AUTOSAR
+
+// A sum or CRC by the name that a table in a file gives it.
+struct ChecksumKind {
+  std::string_view name;   // "crc32"
+  std::string_view title;  // "CRC-32/ISO-HDLC (that of zlib)"
+  int bits = 0;
+  std::uint64_t (*of)(std::span<const std::uint8_t> bytes) = nullptr;
+};
+using ChecksumBytes = std::span<const std::uint8_t>;
+inline constexpr ChecksumKind kSum8{"sum8", "sum, modulo 256,", 8,
+                                    [](ChecksumBytes b) -> std::uint64_t { return sum8(b); }};
+inline constexpr ChecksumKind kXor8{"xor8", "exclusive or", 8,
+                                    [](ChecksumBytes b) -> std::uint64_t { return xor8(b); }};
+inline constexpr ChecksumKind kCrc8Maxim{"crc8-maxim", "CRC-8/MAXIM-DOW", 8,
+                                         [](ChecksumBytes b) -> std::uint64_t { return crc8_maxim(b); }};
+inline constexpr ChecksumKind kCrc8Autosar{"crc8-autosar", "CRC-8/AUTOSAR", 8,
+                                           [](ChecksumBytes b) -> std::uint64_t { return crc8_autosar(b); }};
+inline constexpr ChecksumKind kCrc16Xmodem{"crc16-xmodem", "CRC-16/XMODEM", 16,
+                                           [](ChecksumBytes b) -> std::uint64_t { return crc16_xmodem(b); }};
+inline constexpr ChecksumKind kCrc32{"crc32", "CRC-32/ISO-HDLC (that of zlib)", 32,
+                                     [](ChecksumBytes b) -> std::uint64_t { return crc32(b); }};
+inline constexpr const ChecksumKind* kChecksumKinds[] = {&kSum8,        &kXor8,        &kCrc8Maxim,
+                                                         &kCrc8Autosar, &kCrc16Xmodem, &kCrc32};
 
 }  // namespace omnihil

@@ -114,6 +114,17 @@ PacketError encode_ranged(const Field& field, const Value& value, std::uint64_t&
   return PacketError::kNone;
 }
 
+// The number less whole spans, from lo up to below hi: x - (hi - lo) floor((x - lo) / (hi - lo)) in float32.
+float wrapped(const Field& field, double number) {
+  const auto lo = static_cast<float>(field.lo);
+  const float span = static_cast<float>(field.hi) - lo;
+  const auto x = static_cast<float>(number);
+  const float away = x - lo;
+  const float turns = std::floor(away / span);
+  const float taken = span * turns;
+  return x - taken;
+}
+
 PacketError encode_scaled(const Field& field, const Value& value, std::uint64_t& raw) {
   if (!std::isfinite(value.number)) return PacketError::kNotFinite;
   if (value.raw <= mask(field.bits) && field_number(field, value.raw) == value.number) {
@@ -121,11 +132,13 @@ PacketError encode_scaled(const Field& field, const Value& value, std::uint64_t&
     return PacketError::kNone;
   }
   // Ends are often multiples of pi, which teams hold as float32.
-  const auto number = static_cast<float>(value.number);
+  const Beyond beyond = field.scale->beyond;
+  const double given = beyond == Beyond::kWrapped ? double{wrapped(field, value.number)} : value.number;
+  const auto number = static_cast<float>(given);
   const bool below = number < static_cast<float>(field.lo);
   const bool above = number > static_cast<float>(field.hi);
-  if ((below || above) && !field.scale->clamps) return PacketError::kRange;
-  raw = content_of(field, field.scale->count(field, below ? field.lo : above ? field.hi : value.number));
+  if ((below || above) && beyond == Beyond::kRefused) return PacketError::kRange;
+  raw = content_of(field, field.scale->count(field, below ? field.lo : above ? field.hi : given));
   return PacketError::kNone;
 }
 
@@ -161,6 +174,17 @@ PacketError encode_field(const Field& field, const Message& message, std::size_t
       return PacketError::kNone;
   }
   return PacketError::kNone;
+}
+
+// True where the flag on which the field depends is 0.
+bool says_nothing(const Field& field, const Values& values) {
+  return !field.only_if.empty() && values.number_or(field.only_if, 1.0) == 0.0;
+}
+
+// The content of a field that says nothing: 0, but what was decoded goes back as it was.
+std::uint64_t content_of_nothing(const Field& field, const Value& value) {
+  const bool was_decoded = std::isnan(value.number) || field_number(field, value.raw) == value.number;
+  return was_decoded ? value.raw & mask(field.bits) : 0;
 }
 
 }  // namespace
@@ -245,6 +269,8 @@ Value nearest_value(const Field& field, double number) {
     if (number >= top) return {.number = ranged_value(field, mask(field.bits)), .raw = mask(field.bits)};
     return {.number = std::fmax(number, field.lo), .raw = 0};
   }
+  if (field.kind == FieldKind::kScaled && field.scale->beyond == Beyond::kWrapped)
+    return {.number = number, .raw = 0};
   const bool is_float = field.kind == FieldKind::kFloat32;
   const bool is_integer = !is_float && field.kind != FieldKind::kScaled;
   double lo = field.lo;
@@ -265,6 +291,10 @@ FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> b
     Value& value = out.fields[i];
     value.raw = read_bits(bytes, field.bit, field.bits, message.bit_order);
     value.number = field_number(field, value.raw);
+    if (says_nothing(field, out)) {
+      value.number = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     PacketError error = check_decoded(field, message, packet_bytes, value);
     const bool summed = field.kind == FieldKind::kChecksum && field.check != nullptr;
     if (summed && field.check->of(bytes.first(packet_bytes)) != value.raw) error = PacketError::kChecksum;
@@ -276,6 +306,7 @@ FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> b
 PacketError field_fault(const Field& field, const Message& message, std::size_t packet_bytes,
                         const Value& value) {
   std::uint64_t raw = 0;
+  if (!field.only_if.empty() && std::isnan(value.number)) return PacketError::kNone;
   return encode_field(field, message, packet_bytes, value, raw);
 }
 
@@ -284,7 +315,12 @@ FieldFault encode_fields(const Values& values, std::size_t packet_bytes, std::sp
   for (std::size_t i = 0; i < message.fields.size(); ++i) {
     const Field& field = message.fields[i];
     std::uint64_t raw = 0;
-    const PacketError error = encode_field(field, message, packet_bytes, values.fields[i], raw);
+    PacketError error = PacketError::kNone;
+    if (says_nothing(field, values)) {
+      raw = content_of_nothing(field, values.fields[i]);
+    } else {
+      error = encode_field(field, message, packet_bytes, values.fields[i], raw);
+    }
     if (error != PacketError::kNone) return {error, field.name};
     write_bits(bytes, field.bit, field.bits, message.bit_order, raw);
   }

@@ -103,6 +103,12 @@ constexpr Field enveloped(Field field) {
   return field;
 }
 
+// The same row where it says something only while `flag` is not 0; see Field::only_if.
+constexpr Field only_if(std::string_view flag, Field field) {
+  field.only_if = flag;
+  return field;
+}
+
 // The same row with what it tells a dongle; see FieldRole.
 constexpr Field with_role(FieldRole role, Field field) {
   field.role = role;

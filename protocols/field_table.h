@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "protocols/checksum.h"
+
 namespace omnihil {
 
 enum class BitOrder : std::uint8_t { kMsbFirst, kLsbFirst };
@@ -36,19 +38,33 @@ enum class Sign : std::uint8_t {
 
 struct Field;
 
-// How a team turns a number into the integer of a field and back, in its own arithmetic. Decoding is linear:
-// number = (number at 0) + count * (number at 1 - number at 0), up to rounding.
-struct ScaleRule {
-  std::string_view says;  // for the documentation: "count = trunc(32767 x / hi + 32767) in float32"
-  double (*number)(const Field& field, std::int64_t count) = nullptr;
-  std::int64_t (*count)(const Field& field, double number) = nullptr;  // of a number within lo..hi
-  bool clamps = false;  // the team's encoder sets what lies beyond lo..hi to the end; otherwise it is refused
+// What the team's encoder does with a number beyond lo..hi.
+enum class Beyond : std::uint8_t {
+  kRefused,
+  kClamped,  // sets it to the end
+  kWrapped,  // adds or takes away whole spans hi - lo, in float32: angles
 };
 
-// A sum or CRC over a packet as it stands in its frame without framing; the field itself may hold anything.
+// How a team turns a number into the integer of a field and back, in its own arithmetic. Decoding is linear:
+// number = (number at 0) + count * (number at 1 - number at 0), up to rounding. The rules: scale_rules.h.
+struct ScaleRule {
+  std::string_view name{};  // as a table in a file calls it: "nearest"
+  std::string_view says{};  // for the documentation: "count = trunc(32767 x / hi + 32767) in float32"
+  double (*number)(const Field& field, std::int64_t count) = nullptr;
+  std::int64_t (*count)(const Field& field, double number) = nullptr;  // of a number within lo..hi
+  Beyond beyond = Beyond::kRefused;
+};
+
+// A sum or CRC over bytes of a packet as it stands in its frame without framing; not over the field itself.
 struct ChecksumRule {
-  std::string_view says;  // for the documentation: "CRC-32 of bytes 4 to the end"
-  std::uint64_t (*of)(std::span<const std::uint8_t> packet) = nullptr;
+  const ChecksumKind* kind = nullptr;
+  int from = 0;   // the first byte of the sum
+  int until = 0;  // the byte after its last; from 0 down counted from the packet's end
+
+  std::uint64_t of(std::span<const std::uint8_t> packet) const {
+    const int end = until > 0 ? until : static_cast<int>(packet.size()) + until;
+    return kind->of(packet.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(end - from)));
+  }
 };
 
 // What a field tells a dongle, whatever the team calls it.
@@ -80,6 +96,9 @@ struct Field {
   // encode, checked by decode, not listed among the values a user reads and writes.
   bool envelope = false;
   FieldRole role = FieldRole::kNone;
+  // A flag of the same packet, before this field: where it is 0 the field says nothing, is sent as 0 and read as
+  // NaN (null in JSON).
+  std::string_view only_if{};
 };
 
 // kInside: between the boards of one robot, never on the radio.

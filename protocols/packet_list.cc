@@ -30,14 +30,14 @@ std::span<const std::uint8_t> packet_bytes(const PacketList& list, std::span<con
   return frame.subspan(head_bytes(list) + index * bytes, bytes);
 }
 
-DecodeResult refused(PacketError error) {
+DecodeResult without_packet(PacketError error) {
   DecodeResult result;
   result.error = error;
   return result;
 }
 
-RadioFormat::EncodeResult encode_frame(const PacketList& list, std::span<const Values> packets,
-                                       std::vector<std::uint8_t>& out) {
+RadioFormat::EncodeResult encode_packets(const PacketList& list, std::span<const Values> packets,
+                                         std::vector<std::uint8_t>& out) {
   const std::size_t before = out.size();
   if (packets.size() > static_cast<std::size_t>(list.most)) return {PacketError::kTooLong, {}};
   out.insert(out.end(), list.begin.begin(), list.begin.end());
@@ -66,7 +66,7 @@ DecodeResult decode_listed(const RadioFormat& format, std::span<const std::uint8
                            std::size_t index) {
   if (format.list == nullptr) return format.decode(frame);
   const PacketError fault = frame_fault(*format.list, frame);
-  if (fault != PacketError::kNone) return refused(fault);
+  if (fault != PacketError::kNone) return without_packet(fault);
   return decode_packet(format.messages, packet_bytes(*format.list, frame, index));
 }
 
@@ -80,7 +80,7 @@ bool is_frame(const RadioFormat& format, std::span<const std::uint8_t> frame) {
 
 RadioFormat::EncodeResult encode_list(const RadioFormat& format, std::span<const Values> packets,
                                       std::vector<std::uint8_t>& out) {
-  if (format.list != nullptr) return encode_frame(*format.list, packets, out);
+  if (format.list != nullptr) return encode_packets(*format.list, packets, out);
   return packets.size() == 1 ? format.encode(packets[0], out)
                              : RadioFormat::EncodeResult{PacketError::kLength, {}};
 }
@@ -88,14 +88,14 @@ RadioFormat::EncodeResult encode_list(const RadioFormat& format, std::span<const
 DecodeResult decode_list_of_one(const PacketList& list, std::span<const Message> messages,
                                 std::span<const std::uint8_t> frame) {
   const PacketError fault = frame_fault(list, frame);
-  if (fault != PacketError::kNone) return refused(fault);
-  if (frame[list.begin.size()] != 1) return refused(PacketError::kLength);
+  if (fault != PacketError::kNone) return without_packet(fault);
+  if (frame[list.begin.size()] != 1) return without_packet(PacketError::kLength);
   return decode_packet(messages, packet_bytes(list, frame, 0));
 }
 
 RadioFormat::EncodeResult encode_list_of_one(const PacketList& list, const Values& values,
                                              std::vector<std::uint8_t>& out) {
-  return encode_frame(list, std::span(&values, 1), out);
+  return encode_packets(list, std::span(&values, 1), out);
 }
 
 }  // namespace omnihil

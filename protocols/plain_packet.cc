@@ -1,9 +1,16 @@
 #include "protocols/plain_packet.h"
 
+#include <algorithm>
+#include <array>
+
+#include "protocols/cobs.h"
 #include "protocols/codec.h"
+#include "protocols/packet_list.h"
 
 namespace omnihil {
 namespace {
+
+constexpr std::size_t kLongestStuffed = 253;  // packets in COBS: one code, hence two bytes more in the frame
 
 bool is_type_field(const Field& field) { return field.kind == FieldKind::kType; }
 
@@ -77,6 +84,34 @@ RadioFormat::EncodeResult encode_packet(const Values& values, std::vector<std::u
   const FieldFault fault = encode_fields(values, size, std::span(out).subspan(before, size));
   if (fault.error != PacketError::kNone) out.resize(before);
   return {fault.error, fault.field};
+}
+
+DecodeResult decode_frame(const RadioFormat& format, std::span<const std::uint8_t> frame) {
+  if (format.framing == Framing::kNone) return decode_packet(format.messages, frame);
+  if (format.framing == Framing::kList) return decode_list_of_one(*format.list, format.messages, frame);
+  if (frame.empty()) return refused(PacketError::kTooShort);
+  if (frame.back() != 0) return refused(PacketError::kFraming);
+  std::array<std::uint8_t, kLongestStuffed> buffer{};
+  const auto longest = static_cast<std::size_t>(format.max_frame_bytes) - 2;
+  const CobsResult cobs =
+      cobs_decode(frame.first(frame.size() - 1), std::span(buffer).first(std::min(longest, buffer.size())));
+  if (cobs.status == CobsStatus::kBadCode) return refused(PacketError::kFraming);
+  if (cobs.status == CobsStatus::kTooLong) return refused(PacketError::kTooLong);
+  return decode_packet(format.messages, std::span(buffer).first(cobs.size));
+}
+
+RadioFormat::EncodeResult encode_frame(const RadioFormat& format, const Values& values,
+                                       std::vector<std::uint8_t>& out) {
+  if (format.framing == Framing::kNone) return encode_packet(values, out);
+  if (format.framing == Framing::kList) return encode_list_of_one(*format.list, values, out);
+  std::array<std::uint8_t, kLongestStuffed> buffer{};
+  const auto size = static_cast<std::size_t>(values.message->size_bytes);
+  const auto packet = std::span(buffer).first(size);
+  const FieldFault fault = encode_fields(values, size, packet);
+  if (fault.error != PacketError::kNone) return {fault.error, fault.field};
+  cobs_encode(packet, out);
+  out.push_back(0);
+  return {};
 }
 
 }  // namespace omnihil

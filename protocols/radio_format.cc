@@ -1,6 +1,16 @@
 #include "protocols/radio_format.h"
 
+#include "protocols/plain_packet.h"
+
 namespace omnihil {
+
+DecodeResult RadioFormat::decode(std::span<const std::uint8_t> frame) const {
+  return own_decode != nullptr ? own_decode(frame) : decode_frame(*this, frame);
+}
+
+RadioFormat::EncodeResult RadioFormat::encode(const Values& values, std::vector<std::uint8_t>& out) const {
+  return own_encode != nullptr ? own_encode(values, out) : encode_frame(*this, values, out);
+}
 
 const Message* RadioFormat::find(std::string_view message_name) const {
   for (const Message& message : messages) {

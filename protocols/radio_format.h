@@ -71,14 +71,19 @@ struct RadioFormat {
   std::span<const Message> messages;
 
   // One whole frame exactly as it stands on the wire (with framing and delimiter). No state, no allocation.
-  DecodeResult (*decode)(std::span<const std::uint8_t> frame) = nullptr;
+  DecodeResult decode(std::span<const std::uint8_t> frame) const;
   // Appends one wire frame to `out`. Constants, type, length and checksum are filled in from the table
   // where the caller left them; on error nothing is appended and `field` names the culprit.
   struct EncodeResult {
     PacketError error = PacketError::kNone;
     std::string_view field;
   };
-  EncodeResult (*encode)(const Values& values, std::vector<std::uint8_t>& out) = nullptr;
+  EncodeResult encode(const Values& values, std::vector<std::uint8_t>& out) const;
+
+  // The codec where tables and framing alone are not all of it; null: they are (plain_packet.h).
+  DecodeResult (*own_decode)(std::span<const std::uint8_t> frame) = nullptr;
+  EncodeResult (*own_encode)(const Values& values, std::vector<std::uint8_t>& out) = nullptr;
+  std::string_view own_codec{};  // what they do beyond the tables
   // Of Framing::kList: decode and encode are then of a frame that lists one packet (packet_list.h has the rest).
   const PacketList* list = nullptr;
   // Appends the frames with which a host asks for this. False: the format cannot say it, or not so large, and

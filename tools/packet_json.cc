@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -120,6 +122,8 @@ struct Reader {
     is_given[index] = true;
     if (given.is_boolean() && field.bits == 1 && !is_float(field)) {
       value = {.number = given.get<bool>() ? 1.0 : 0.0, .raw = 0};
+    } else if (given.is_null() && !field.only_if.empty()) {
+      value = {.number = std::numeric_limits<double>::quiet_NaN(), .raw = 0};
     } else if (given.is_number()) {
       value = {.number = given.get<double>(), .raw = 0};
       // Integers above 2^53 do not fit a double.
@@ -191,6 +195,7 @@ void check_left_out(const std::array<bool, kMaxFields>& is_given, const Message&
 
 std::string value_text(const Field& field, const Value& value) {
   if (field.unit == "bool") return value.raw != 0 ? "true" : "false";
+  if (std::isnan(value.number)) return "null";
   if (is_float(field)) return short_float(static_cast<float>(value.number));
   if (field.sign != Sign::kNone) return std::to_string(integer_of(field, value.raw));
   return std::to_string(value.raw);
@@ -266,7 +271,7 @@ std::string allowed_text(const Field& field, const Message& message) {
     case FieldKind::kRanged32:
       return limits;
     case FieldKind::kScaled:
-      return field.scale->clamps ? "a number, best in " + limits : limits;
+      return field.scale->beyond == Beyond::kRefused ? limits : "a number, best in " + limits;
     case FieldKind::kChecksum:
       return "the checksum of the packet";
   }

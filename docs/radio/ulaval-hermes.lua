@@ -180,7 +180,11 @@ local function add_packet(tree, range, pinfo)
     size = math.max(size, math.min(range:len(), range(packet.text_size_at, 1):uint()))
   end
   local branch = tree:add(proto, range(0, size), packet.name)
-  for _, row in ipairs(packet.fields) do add_field(branch, range, row, packet.lsb_first) end
+  local contents = {}
+  for _, row in ipairs(packet.fields) do
+    if not row.only_if or contents[row.only_if] ~= 0 then add_field(branch, range, row, packet.lsb_first) end
+    if row[3] <= 32 then contents[row[1]] = raw_of(range, row[2], row[3], packet.lsb_first) end
+  end
   if size > packet.size then
     local text = range(packet.size, size - packet.size)
     branch:add(text, "text: " .. text:string())

@@ -7,6 +7,7 @@
 #include "protocols/dongles/kept_packet.h"
 #include "protocols/dongles/ring.h"
 #include "protocols/dongles/robot_table.h"
+#include "protocols/dongles/table_frames.h"
 #include "protocols/packet_list.h"
 
 namespace omnihil {
@@ -25,6 +26,7 @@ struct InFlight {
 struct Robot {
   std::optional<RobotFeedback> feedback;   // none: it is still starting, and silent
   std::uint32_t kick = OMNIHIL_KICK_NONE;  // that the latest command asked for
+  std::uint32_t kept = 0;                  // by PlainDongle::remember
 };
 
 class PlainLink final : public Dongle {
@@ -32,7 +34,9 @@ class PlainLink final : public Dongle {
   PlainLink(const RadioFormat& format, const RadioLinkConfig& config, const PlainDongle& plain)
       : Dongle(format, config, kHostBuffer),
         plain_(plain),
-        stream_(plain.frame_bytes, from_host_),
+        stream_(plain.frame_bytes != nullptr ? FrameBytes(plain.frame_bytes)
+                                             : frames_by_tables(format, plain.silent_line),
+                from_host_),
         robots_(config.robot_ids) {
     answer_.reserve(static_cast<std::size_t>(format.max_frame_bytes));
     if (format.list != nullptr) listed_answers_.reserve(static_cast<std::size_t>(format.list->most));
@@ -41,8 +45,9 @@ class PlainLink final : public Dongle {
   void host_bytes(std::span<const std::uint8_t> bytes, std::int64_t now_ns) override {
     if (plain_.half_frame_ns > 0 && now_ns - last_byte_ns_ > plain_.half_frame_ns) stream_.close();
     last_byte_ns_ = now_ns;
-    stream_.feed(bytes,
-                 [&](std::span<const std::uint8_t> frame) { from_host_.count(accept(frame, now_ns)); });
+    stream_.feed(bytes, [&](std::span<const std::uint8_t> frame) {
+      if (!is_empty(format_, frame)) from_host_.count(accept(frame, now_ns));
+    });
   }
 
   void poll(std::int64_t now_ns, RadioSink& sink) override {
@@ -112,7 +117,10 @@ PacketError PlainLink::send_to(int id, std::span<const std::uint8_t> frame, std:
 PacketError PlainLink::accept(std::span<const std::uint8_t> frame, std::int64_t now_ns) {
   if (!plain_.silent_line.empty() &&
       std::equal(frame.begin(), frame.end(), plain_.silent_line.begin(), plain_.silent_line.end())) {
-    return PacketError::kNone;
+    if (plain_.line_answer == nullptr || config_.robot_ids.size() != 1) return PacketError::kNone;
+    answer_.clear();
+    plain_.line_answer(config_.robot_ids.front(), answer_);
+    return send_back(-1, answer_, now_ns);
   }
   const auto listed = listed_packets(format_, frame);
   if (format_.list != nullptr && listed) return accept_list(frame, now_ns);
@@ -204,6 +212,7 @@ void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
   const std::optional<RobotFeedback>& feedback = robots_.find(at.robot)->feedback;
   Values out;
   if (plain_.answer == nullptr || !feedback || !plain_.answer(values, at.robot, *feedback, out)) return;
+  if (plain_.remember != nullptr) plain_.remember(values, robots_.find(at.robot)->kept, out);
   if (format_.list != nullptr) {
     if (listed_answers_.size() < static_cast<std::size_t>(format_.list->most)) listed_answers_.push_back(out);
     return;

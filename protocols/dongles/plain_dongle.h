@@ -20,11 +20,14 @@
 namespace omnihil {
 
 struct PlainDongle {
-  FrameBytes frame_bytes = nullptr;  // sized_stream.h; frames have at most 255 bytes
-  std::string_view silent_line{};    // a frame that hosts write before the others: taken, and nothing happens
-  std::int64_t half_frame_ns = 0;    // how long a half frame waits for its rest; 0: for ever
-  std::int64_t to_robot_ns = 0;      // last byte from the host until the robot has it
-  std::int64_t to_host_ns = 0;       // the robot has a frame until its answer is at the host
+  // As in sized_stream.h; frames have at most 255 bytes. Null: by tables and framing (table_frames.h).
+  std::optional<std::size_t> (*frame_bytes)(std::span<const std::uint8_t> front) = nullptr;
+  std::string_view silent_line{};  // a frame that hosts write before the others: taken, and nothing happens
+  // What the only robot writes back to that line. Null: nothing.
+  void (*line_answer)(int id, std::vector<std::uint8_t>& out) = nullptr;
+  std::int64_t half_frame_ns = 0;  // how long a half frame waits for its rest; 0: for ever
+  std::int64_t to_robot_ns = 0;    // last byte from the host until the robot has it
+  std::int64_t to_host_ns = 0;     // the robot has a frame until its answer is at the host
   // What a packet asks of robot `id`.
   RobotCommand (*to_command)(const Values& values, int id) = nullptr;
   bool kicks_once = false;  // a kick acts when the packet before asked for none; one that stays does not
@@ -39,6 +42,8 @@ struct PlainDongle {
   // Fills `out`, its message included, with what robot `id` answers to a packet. False: nothing. Null: robots
   // never answer.
   bool (*answer)(const Values& to_robot, int id, const RobotFeedback& feedback, Values& out) = nullptr;
+  // Puts into each answer what the robot remembers of earlier packets, and remembers this one. `kept` begins as 0.
+  void (*remember)(const Values& to_robot, std::uint32_t& kept, Values& answer) = nullptr;
 };
 
 // `format` outlives the link.

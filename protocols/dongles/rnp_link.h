@@ -13,7 +13,7 @@ namespace omnihil {
 
 // What a version of the packets says in its own fields.
 struct RnpDialect {
-  FrameBytes frame_bytes = nullptr;
+  std::optional<std::size_t> (*frame_bytes)(std::span<const std::uint8_t> front) = nullptr;
   void (*hello)(int id, Team team, Values& out) = nullptr;
   RobotCommand (*to_command)(const Values& control) = nullptr;
   // `control` is the latest one; null: none has come.

@@ -11,18 +11,21 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "protocols/packet_error.h"
 
 namespace omnihil {
 
-using FrameBytes = std::optional<std::size_t> (*)(std::span<const std::uint8_t> front);
+using FrameBytes = std::function<std::optional<std::size_t>(std::span<const std::uint8_t> front)>;
 
 class SizedStream {
  public:
-  SizedStream(FrameBytes frame_bytes, PacketCounts& counts) : frame_bytes_(frame_bytes), counts_(counts) {}
+  SizedStream(FrameBytes frame_bytes, PacketCounts& counts)
+      : frame_bytes_(std::move(frame_bytes)), counts_(counts) {}
 
   template <class OnFrame>
   void feed(std::span<const std::uint8_t> bytes, OnFrame&& on_frame) {

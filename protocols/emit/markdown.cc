@@ -74,10 +74,19 @@ std::string_view sign_text(Sign sign) {
 }
 
 std::string scaled_text(const Field& field) {
+  constexpr std::string_view kBeyond[] = {"", "; what lies beyond is set to the end",
+                                          "; what lies beyond comes round again"};
   return number_text(field.lo) + " to " + number_text(field.hi) + " in steps of " +
          number_text(field_step(field)) + " from " + number_text(field.scale->number(field, 0)) + " at 0, " +
          text(sign_text(field.sign)) + "; " + text(field.scale->says) +
-         (field.scale->clamps ? "; what lies beyond is set to the end" : "");
+         text(kBeyond[static_cast<std::size_t>(field.scale->beyond)]);
+}
+
+// "CRC-32 of bytes 4 to the end"
+std::string checksum_text(const ChecksumRule& rule, const Message& message) {
+  const int end = rule.until > 0 ? rule.until : message.size_bytes + rule.until;
+  return text(rule.kind->title) + " of bytes " + std::to_string(rule.from) + " to " +
+         (rule.until == 0 ? "the end" : std::to_string(end - 1));
 }
 
 std::string kind_text(const Field& field, const Message& message) {
@@ -104,7 +113,7 @@ std::string kind_text(const Field& field, const Message& message) {
     case FieldKind::kScaled:
       return scaled_text(field);
     case FieldKind::kChecksum:
-      return field.check == nullptr ? "computed" : text(field.check->says);
+      return field.check == nullptr ? "computed" : checksum_text(*field.check, message);
   }
   return "";
 }
@@ -127,7 +136,8 @@ const Message* head_of(const RadioFormat& format, const Message& message) {
       const Field& a = earlier.fields[i];
       const Field& b = message.fields[i];
       same = a.name == b.name && a.bit == b.bit && a.bits == b.bits && a.kind == b.kind && a.what == b.what &&
-             a.lo == b.lo && a.hi == b.hi && a.sign == b.sign && a.scale == b.scale && a.check == b.check;
+             a.lo == b.lo && a.hi == b.hi && a.sign == b.sign && a.scale == b.scale && a.check == b.check &&
+             a.only_if == b.only_if;
     }
     if (same) head = &earlier;
   }
@@ -217,8 +227,9 @@ std::string message_section(const RadioFormat& format, const Message& message) {
   if (first == message.fields.size()) return out;
   out += "\n| field | byte.bit+bits | values | unit | meaning |\n| --- | --- | --- | --- | --- |\n";
   for (const Field& field : message.fields.subspan(first)) {
-    out += "| `" + text(field.name) + "` | " + place_text(field) + " | " + kind_text(field, message) + " | " +
-           text(field.unit) + " | " + text(field.what) + " |\n";
+    const std::string only_if = field.only_if.empty() ? "" : "; only if `" + text(field.only_if) + "`";
+    out += "| `" + text(field.name) + "` | " + place_text(field) + " | " + kind_text(field, message) +
+           only_if + " | " + text(field.unit) + " | " + text(field.what) + " |\n";
   }
   return out;
 }

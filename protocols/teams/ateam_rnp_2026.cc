@@ -18,9 +18,7 @@ namespace {
 
 constexpr int kHeaderBytes = 8, kControlBytes = kHeaderBytes + 84;
 
-constexpr ChecksumRule kCrc{
-    .says = "CRC-32/ISO-HDLC (that of zlib) of bytes 4 to the end",
-    .of = [](std::span<const std::uint8_t> packet) -> std::uint64_t { return crc32(packet.subspan(4)); }};
+constexpr ChecksumRule kCrc{.kind = &kCrc32, .from = 4};
 
 constexpr Field zero(std::string_view name, int bits) { return enveloped(reserved(name, bits, "sent as 0")); }
 constexpr Field letters(std::string_view name, int bits) {
@@ -429,8 +427,6 @@ constinit const RadioFormat kFormat{
     .carrier = {.kind = Carrier::Kind::kUdp},
     .max_frame_bytes = kControlBytes,
     .messages = kMessages,
-    .decode = [](std::span<const std::uint8_t> frame) { return decode_packet(kMessages, frame); },
-    .encode = encode_packet,
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_COAST),
     .dongle = [](const RadioFormat& self,

@@ -20,9 +20,7 @@ namespace {
 
 constexpr int kHeaderBytes = 12;
 
-constexpr ChecksumRule kCrc{
-    .says = "CRC-32/ISO-HDLC (that of zlib) of bytes 4 to the end",
-    .of = [](std::span<const std::uint8_t> packet) -> std::uint64_t { return crc32(packet.subspan(4)); }};
+constexpr ChecksumRule kCrc{.kind = &kCrc32, .from = 4};
 
 constexpr Field zero(std::string_view name, int bits) { return enveloped(reserved(name, bits, "sent as 0")); }
 constexpr std::array kAfterCrc{
@@ -471,8 +469,9 @@ constinit const RadioFormat kFormat{
     .carrier = {.kind = Carrier::Kind::kUdp},
     .max_frame_bytes = 308,
     .messages = kMessages,
-    .decode = decode,
-    .encode = encode_packet,
+    .own_decode = decode,
+    .own_encode = encode_packet,
+    .own_codec = "tells the structs of the motor wires from datagrams by the first bytes",
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY),
     .dongle = [](const RadioFormat& self,

@@ -13,33 +13,13 @@
 #include "protocols/dongles/plain_dongle.h"
 #include "protocols/field_rows.h"
 #include "protocols/plain_packet.h"
+#include "protocols/scale_rules.h"
 
 namespace omnihil {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRange = 32.767;
-constexpr float kHalf = 32767.0F;
-
-// All in float32; a field's `hi` is its range.
-constexpr ScaleRule kAroundHalf{
-    .says = "count = trunc(32767 x / range + 32767) in float32",
-    .number = [](const Field& field, std::int64_t count) -> double {
-      const float share = static_cast<float>(count - 32767) / kHalf;
-      return share * static_cast<float>(field.hi);
-    },
-    .count =
-        [](const Field& field, double number) {
-          const float scaled = kHalf * static_cast<float>(number) / static_cast<float>(field.hi);
-          return static_cast<std::int64_t>(scaled + kHalf);
-        },
-};
-constexpr ScaleRule kTwentieths{
-    .says = "count = trunc(20 x) in float32",
-    .number = [](const Field&, std::int64_t count) -> double { return static_cast<float>(count) / 20.0F; },
-    .count = [](const Field&,
-                double number) { return static_cast<std::int64_t>(static_cast<float>(number) * 20.0F); },
-};
 
 constexpr Field word(std::string_view name, std::string_view unit, std::string_view what) {
   return scaled(name, 16, Sign::kNone, kAroundHalf, -kRange, kRange, unit, what);
@@ -313,8 +293,6 @@ constinit const RadioFormat kFormat{
     .carrier = {.kind = Carrier::Kind::kUdp},
     .max_frame_bytes = 128,
     .messages = kMessages,
-    .decode = [](std::span<const std::uint8_t> frame) { return decode_packet(kMessages, frame); },
-    .encode = encode_packet,
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_COAST),
     .dongle = [](const RadioFormat& self,

@@ -14,6 +14,7 @@
 #include "protocols/dongles/plain_dongle.h"
 #include "protocols/field_rows.h"
 #include "protocols/plain_packet.h"
+#include "protocols/scale_rules.h"
 
 namespace omnihil {
 namespace {
@@ -22,22 +23,7 @@ constexpr int kBytes = 25;
 constexpr std::size_t kSlots = 3;
 constexpr double kCountsPerRad_s = 40.0;
 
-constexpr ChecksumRule kCrc{.says = "CRC-8/MAXIM-DOW of bytes 0 to 23",
-                            .of = [](std::span<const std::uint8_t> packet) -> std::uint64_t {
-                              return crc8_maxim(packet.first(kBytes - 1));
-                            }};
-
-constexpr ScaleRule kWhole{
-    .says = "count = trunc(x)",
-    .number = [](const Field&, std::int64_t count) { return static_cast<double>(count); },
-    .count = [](const Field&, double number) { return static_cast<std::int64_t>(number); },
-    .clamps = true};
-// The levels begin at 0.2, 0.533 and 0.867.
-constexpr ScaleRule kLevel{
-    .says = "level = trunc(3 x + 0.4)",
-    .number = [](const Field&, std::int64_t count) { return static_cast<double>(count) / 3.0; },
-    .count = [](const Field&, double number) { return static_cast<std::int64_t>(3.0 * number + 0.4); },
-    .clamps = true};
+constexpr ChecksumRule kCrc{.kind = &kCrc8Maxim, .until = -1};
 
 constexpr Field zeros(std::string_view name, int bits) {
   return enveloped(reserved(name, bits, "sent as 0"));
@@ -55,7 +41,7 @@ constexpr auto slot(const SlotNames& names) {
   return std::array{
       zeros(names.high, 1),
       flag(names.chip, "the kick is a chip"),
-      scaled(names.dribble, 2, Sign::kNone, kLevel, 0.0, 1.0, "", "dribbler, in thirds"),
+      scaled(names.dribble, 2, Sign::kNone, kThirds, 0.0, 1.0, "", "dribbler, in thirds"),
       number(names.present, 4, "", "1 where there is a robot, else 0", 0, 1),
       zeros(names.gap, 2),
       speed(names.vx, "cm/s", "velocity forward"),
@@ -249,8 +235,6 @@ constinit const RadioFormat kFormat{
     .carrier = {.kind = Carrier::Kind::kUart, .baud = 115'200},
     .max_frame_bytes = kBytes,
     .messages = kMessages,
-    .decode = [](std::span<const std::uint8_t> frame) { return decode_packet(kMessages, frame); },
-    .encode = encode_packet,
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY),
     .dongle = [](const RadioFormat& self,

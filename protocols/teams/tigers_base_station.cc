@@ -14,22 +14,11 @@
 #include "protocols/dongles/plain_dongle.h"
 #include "protocols/field_rows.h"
 #include "protocols/plain_packet.h"
+#include "protocols/scale_rules.h"
 
 namespace omnihil {
 namespace {
 
-// Counts to the nearest; a field's `hi` is what its largest count means.
-constexpr double step_of(const Field& field) {
-  return field.hi / static_cast<double>(
-                        (std::int64_t{1} << (field.sign == Sign::kNone ? field.bits : field.bits - 1)) - 1);
-}
-constexpr ScaleRule kNearest{
-    .says = "count to the nearest",
-    .number = [](const Field& field,
-                 std::int64_t count) { return static_cast<double>(count) * step_of(field); },
-    .count = [](const Field& field,
-                double number) { return static_cast<std::int64_t>(std::llround(number / step_of(field))); },
-};
 constexpr Field steps(std::string_view name, int bits, double step, std::string_view unit,
                       std::string_view what) {
   return scaled(name, bits, Sign::kNone, kNearest, 0.0, step * static_cast<double>((1 << bits) - 1), unit,
@@ -301,8 +290,6 @@ constinit const RadioFormat kFormat{
     .carrier = {.kind = Carrier::Kind::kUdp},
     .max_frame_bytes = 32,
     .messages = kMessages,
-    .decode = [](std::span<const std::uint8_t> frame) { return decode_packet(kMessages, frame); },
-    .encode = encode_packet,
     .encode_command = encode_command,
     .command_drives =
         drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_WHEEL_SPEED) | drives(OMNIHIL_MODE_COAST),

@@ -152,8 +152,8 @@ TEST(DamagedPacket, UnframedWithOneFlippedBitIsRefusedOrChangesTheFieldThatOwnsI
   }
 }
 
-// A second, plain HERMES decoder: the packet behind the frame, or nothing.
-std::optional<Bytes> hermes_packet(const Bytes& frame) {
+// A second, plain decoder of COBS: the packet behind the frame, or nothing.
+std::optional<Bytes> unstuffed(const Bytes& frame) {
   if (frame.size() < 2 || frame.back() != 0) return std::nullopt;
   Bytes packet;
   std::size_t next_code = 0;
@@ -172,7 +172,7 @@ std::optional<Bytes> hermes_packet(const Bytes& frame) {
 
 bool hermes_accepts(const Bytes& frame) {
   constexpr std::array<std::size_t, 10> kSizes{5, 5, 17, 7, 21, 5, 6, 5, 9, 19};
-  const std::optional<Bytes> packet = hermes_packet(frame);
+  const std::optional<Bytes> packet = unstuffed(frame);
   if (!packet || packet->size() < 5 || packet->at(0) != 1 || packet->at(3) >= kSizes.size()) return false;
   const std::size_t type = packet->at(3);
   if (packet->size() != kSizes[type]) return false;
@@ -225,6 +225,46 @@ TEST(DamagedPacket, WithSum8OneFlippedBitCanOnlySlipInACobsCode) {
   std::printf("ulaval-hermes: %llu of the flips hit a COBS code, %llu slipped\n",
               static_cast<unsigned long long>(in_codes), static_cast<unsigned long long>(slipped));
   EXPECT_EQ(slipped, 0u);
+}
+
+// ER-Force: an exclusive or sees every change of one byte, but not two equal bytes: a flipped code in a run of zeros
+// (01 01 01 to 03 01 01) puts 01 01 in their place, and that slips. What is accepted is what a second decoder lets
+// through as well; of that, only a packet's kind or its prescribed zeros refuse more.
+TEST(DamagedPacket, WithXor8OneFlippedBitSlipsOnlyInACobsCodeWhereTheSumStays) {
+  for (const char* id : {"erforce-proto2025", "erforce-proto2025-bridge"}) {
+    const RadioFormat& format = *find_radio_format(id);
+    PacketCounts counts;
+    std::uint64_t in_codes = 0, sum_stays = 0, flips = 0;
+    for (const GoldenPacket& packet : golden_packets()) {
+      if (packet.format != &format) continue;
+      const std::vector<bool> codes = codes_of(packet.frame);
+      for (std::size_t byte = 0; byte < packet.frame.size(); ++byte) {
+        for (int bit = 0; bit < 8; ++bit, ++flips) {
+          Bytes frame = packet.frame;
+          frame[byte] = static_cast<std::uint8_t>(frame[byte] ^ (1u << bit));
+          const PacketError error = format.decode(frame).error;
+          counts.count(error);
+          in_codes += codes[byte] ? 1u : 0u;
+          const std::optional<Bytes> bytes = unstuffed(frame);
+          std::uint8_t sum = 0;
+          for (const std::uint8_t each : bytes.value_or(Bytes{1})) sum ^= each;
+          const bool fits =
+              bytes && sum == 0 && bytes->size() + 2 == static_cast<std::size_t>(format.max_frame_bytes);
+          sum_stays += fits ? 1u : 0u;
+          EXPECT_FALSE(fits && !codes[byte]) << to_hex(frame);
+          EXPECT_TRUE(fits || error != PacketError::kNone) << to_hex(frame);
+          EXPECT_TRUE(!fits || error == PacketError::kNone || error == PacketError::kUnknownType ||
+                      error == PacketError::kConstant)
+              << to_hex(frame);
+        }
+      }
+    }
+    EXPECT_EQ(counts.good + counts.refused(), flips) << id;
+    EXPECT_GT(sum_stays, 0u) << "there are runs of zeros";
+    print_counts("one bit flipped", format, counts);
+    std::printf("%s: %llu of the flips hit a COBS code, %llu leave the sum as it is\n", id,
+                static_cast<unsigned long long>(in_codes), static_cast<unsigned long long>(sum_stays));
+  }
 }
 
 }  // namespace

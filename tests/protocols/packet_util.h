@@ -2,8 +2,10 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -35,6 +37,10 @@ inline void set_from_json(Values& values, const std::string& field, const nlohma
   const int index = values.message->field_index(field);
   ASSERT_GE(index, 0) << values.message->name << " has no field " << field;
   Value& value = values.fields[static_cast<std::size_t>(index)];
+  if (given.is_null()) {
+    value = {.number = std::numeric_limits<double>::quiet_NaN(), .raw = 0};
+    return;
+  }
   value.number = given.is_boolean() ? (given.get<bool>() ? 1.0 : 0.0) : given.get<double>();
   // Integers above 2^53 do not fit a double.
   value.raw = given.is_number_unsigned() ? given.get<std::uint64_t>() : 0;
@@ -122,7 +128,11 @@ inline bool survives_round_trip(const RadioFormat& format, const Bytes& frame) {
   EXPECT_EQ(second.values.text, first.values.text);
   for (std::size_t i = 0; i < first.values.message->fields.size(); ++i) {
     EXPECT_EQ(second.values.fields[i].raw, first.values.fields[i].raw);
-    EXPECT_EQ(second.values.fields[i].number, first.values.fields[i].number);
+    const double number = first.values.fields[i].number;  // NaN where its flag says that it says nothing
+    EXPECT_EQ(std::isnan(second.values.fields[i].number), std::isnan(number));
+    if (!std::isnan(number)) {
+      EXPECT_EQ(second.values.fields[i].number, number);
+    }
   }
   return true;
 }

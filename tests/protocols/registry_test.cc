@@ -37,8 +37,9 @@ TEST(Registry, EveryFormatSaysWhatItIs) {
     EXPECT_FALSE(format->title.empty());
     EXPECT_NE(format->source.find("https://"), std::string_view::npos) << format->id;
     EXPECT_FALSE(format->notes.empty());
-    EXPECT_NE(format->decode, nullptr);
-    EXPECT_NE(format->encode, nullptr);
+    // The tables are all of the codec, or it says what else there is.
+    EXPECT_EQ(format->own_decode == nullptr, format->own_codec.empty()) << format->id;
+    EXPECT_EQ(format->own_encode == nullptr, format->own_codec.empty()) << format->id;
     EXPECT_NE(format->encode_command, nullptr);
     EXPECT_NE(format->command_drives, 0u) << format->id;
     EXPECT_NE(format->dongle, nullptr);

@@ -102,10 +102,12 @@ TEST(SignedField, LimitsHoldBothWays) {
 
 // Quarters in two's complement, cut towards zero.
 constexpr ScaleRule kQuarters{
+    .name = "quarters",
     .says = "count = trunc(4 x)",
     .number = [](const Field&, std::int64_t count) { return static_cast<double>(count) / 4.0; },
     .count = [](const Field&, double number) { return static_cast<std::int64_t>(4.0 * number); }};
-constexpr ScaleRule kClampedQuarters{kQuarters.says, kQuarters.number, kQuarters.count, true};
+constexpr ScaleRule kClampedQuarters{kQuarters.name, kQuarters.says, kQuarters.number, kQuarters.count,
+                                     Beyond::kClamped};
 
 TEST(ScaledField, GoesByItsRule) {
   const OneField one(scaled("x", 8, Sign::kTwosComplement, kQuarters, -32.0, 31.75, "m", ""));
@@ -140,9 +142,7 @@ TEST(NearestValue, IsWithinWhatTheFieldCarries) {
 }
 
 // Type 0102h in two fields, the length without the first four bytes, CRC-32 behind them.
-constexpr ChecksumRule kCrcOfTheRest{
-    .says = "CRC-32 of bytes 4 to the end",
-    .of = [](std::span<const std::uint8_t> packet) -> std::uint64_t { return crc32(packet.subspan(4)); }};
+constexpr ChecksumRule kCrcOfTheRest{.kind = &kCrc32, .from = 4};
 constexpr auto kFields =
     in_order(std::array{checksum("crc", 32, "", &kCrcOfTheRest), type_code_bits("group", 8, 8, ""),
                         length("size", 8, "", 4), type_code_bits("kind", 8, 0, ""), number("n", 8, "", "")});

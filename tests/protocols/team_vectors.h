@@ -190,11 +190,101 @@ inline std::vector<TeamRow> tigers_rows(const std::function<nlohmann::json(const
   return rows;
 }
 
+// What the team's own decoder reads wrong; see the page of erforce-proto2025.
+inline nlohmann::json without_phi_jerk(nlohmann::json decoded) {
+  if (decoded.at("trajectory").is_object()) decoded["trajectory"].erase("phi_jerk");
+  return decoded;
+}
+
+// COBS of up to 253 bytes, then 00.
+inline std::string stuffed(const Bytes& bytes) {
+  Bytes frame{0};
+  std::size_t code_at = 0;
+  for (const std::uint8_t byte : bytes) {
+    if (byte != 0) {
+      frame.push_back(byte);
+      continue;
+    }
+    frame[code_at] = static_cast<std::uint8_t>(frame.size() - code_at);
+    code_at = frame.size();
+    frame.push_back(0);
+  }
+  frame[code_at] = static_cast<std::uint8_t>(frame.size() - code_at);
+  frame.push_back(0);
+  return to_hex(frame);
+}
+
+inline std::vector<TeamRow> erforce_rows(const std::function<nlohmann::json(const char*)>& file,
+                                         bool bridged) {
+  using nlohmann::json;
+  std::vector<TeamRow> rows;
+  const json all = file("erforce-proto2025.json");
+  std::map<std::string, json> wire;  // of their serial tools, by payload
+  for (const json& row : all.at(bridged ? "serial_bridge" : "serial_direct").at("frames")) {
+    wire[row.at("packet").get<std::string>().substr(2)] = row;
+  }
+  std::size_t wired = 0;
+  // With the header of their frame, where there is one.
+  const auto add = [&](const std::string& name, json given, json decoded, std::string header,
+                       const std::string& payload) {
+    const auto known = wire.find(payload);
+    if (known != wire.end()) header = known->second.at("packet").get<std::string>().substr(0, 2);
+    const unsigned head = static_cast<unsigned>(std::stoi(header, nullptr, 16));
+    for (json* fields : {&given, &decoded}) {
+      (*fields)["counter"] = head & 63u;
+      (*fields)["acknum"] = head >> 6 & 1u;
+    }
+    Bytes bytes = from_hex((bridged ? "00" : "") + header + payload);
+    std::uint8_t sum = 0;
+    for (const std::uint8_t byte : bytes) sum ^= byte;
+    bytes.push_back(sum);
+    rows.push_back({{{name, given, decoded}}, stuffed(bytes)});
+    if (known == wire.end()) return;
+    EXPECT_EQ(rows.back().hex, known->second.at("wire"));
+    ++wired;
+  };
+  for (const json& row : all.at("commands")) {
+    json given = row.at("in"), decoded = without_phi_jerk(row.at("decoded"));
+    const std::string name = given.at("trajectory_type");
+    for (json* fields : {&given, &decoded}) {
+      fields->erase("trajectory_type");
+      if (fields->at("trajectory").is_null()) fields->erase("trajectory");
+    }
+    add(name, given, decoded, "00", row.at("payload"));
+  }
+  for (const json& row : all.at("responses")) {
+    add("response", row.at("in"), row.at("decoded"), "00", row.at("payload"));
+  }
+  EXPECT_EQ(wired, wire.size());
+  for (const json& row : all.at("datagrams")) {
+    json data = json::array();
+    for (const std::uint8_t byte : from_hex(row.at("data"))) data.push_back(byte);
+    const json fields{{"seqnum", row.at("seqnum")}, {"data", data}};
+    add(row.at("type"), fields, fields, "80", row.at("payload"));
+  }
+  for (const json& row : all.at("headers")) {
+    EXPECT_EQ(row.at("datagram"), false);
+    add("halt", json::object(), json::object(), row.at("hex"), std::string(56, '0'));
+    EXPECT_EQ(rows.back().packets[0].given.at("counter"), row.at("counter"));
+    EXPECT_EQ(rows.back().packets[0].given.at("acknum"), row.at("acknum"));
+  }
+  if (bridged) {
+    rows.push_back({{{"robot_id_request", json::object(), json::object()}},
+                    all.at("serial_bridge").at("robot_id_request")});
+  }
+  return rows;
+}
+
 inline const std::vector<TeamFile>& team_files() {
   static const std::vector<TeamFile> files{
-      {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},     {"ateam-rnp-stspin-2025", 155, ateam_rows},
-      {"rhoban-master-serial", 20 + 16, rhoban_rows},         {"rocos-serial-25", 8 + 8 + 20, rocos_rows},
+      {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},
+      {"ateam-rnp-stspin-2025", 155, ateam_rows},
+      {"rhoban-master-serial", 20 + 16, rhoban_rows},
+      {"rocos-serial-25", 8 + 8 + 20, rocos_rows},
       {"tigers-base-station", 16 + 12 + 10 + 3, tigers_rows},
+      {"erforce-proto2025", 30 + 20 + 5 + 10, [](const auto& file) { return erforce_rows(file, false); }},
+      {"erforce-proto2025-bridge", 30 + 20 + 5 + 10 + 1,
+       [](const auto& file) { return erforce_rows(file, true); }},
   };
   return files;
 }

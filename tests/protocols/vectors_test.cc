@@ -34,7 +34,9 @@ void expect_value(const Values& values, const std::string& name, const json& exp
   const Value& value = values.fields[static_cast<std::size_t>(index)];
   const bool is_whole = field.kind != FieldKind::kFloat32 && field.kind != FieldKind::kRanged32 &&
                         field.kind != FieldKind::kScaled;
-  if (expected.is_boolean()) {
+  if (expected.is_null()) {
+    EXPECT_TRUE(std::isnan(value.number)) << name;
+  } else if (expected.is_boolean()) {
     EXPECT_EQ(value.raw != 0, expected.get<bool>()) << name;
   } else if (is_whole && field.sign != Sign::kNone) {
     EXPECT_EQ(integer_of(field, value.raw), expected.get<std::int64_t>())

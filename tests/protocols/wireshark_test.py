@@ -68,8 +68,8 @@ def spans(dissector):
 
 
 def is_same(shown, value, span):
-    if shown is None:
-        return False
+    if shown is None or value is None:
+        return shown is None and value is None
     if isinstance(value, bool):
         return int(shown, 0) == int(value)
     if isinstance(value, int):

@@ -240,7 +240,7 @@ void expect_fields(const json& fields, const json& expected, const std::string& 
     for (const auto& [key, value] : expected.items()) expect_fields(fields.at(key), value, name + "." + key);
   } else if (expected.is_array()) {
     for (std::size_t i = 0; i < expected.size(); ++i) expect_fields(fields.at(i), expected[i], name);
-  } else if (expected.is_boolean() || fields.is_boolean()) {
+  } else if (expected.is_boolean() || fields.is_boolean() || expected.is_null() || fields.is_null()) {
     EXPECT_EQ(fields, expected) << name;
   } else {
     EXPECT_EQ(fields.get<float>(), expected.get<float>()) << name;
