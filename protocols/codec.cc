@@ -125,7 +125,16 @@ float wrapped(const Field& field, double number) {
   return x - taken;
 }
 
+// The content that says that there is no number.
+std::uint64_t no_number(const Field& field) {
+  return field.sign == Sign::kTwosComplement ? 1ull << (field.bits - 1) : 0;
+}
+
 PacketError encode_scaled(const Field& field, const Value& value, std::uint64_t& raw) {
+  if (field.scale->none_at_lowest && std::isnan(value.number)) {
+    raw = no_number(field);
+    return PacketError::kNone;
+  }
   if (!std::isfinite(value.number)) return PacketError::kNotFinite;
   if (value.raw <= mask(field.bits) && field_number(field, value.raw) == value.number) {
     raw = value.raw;  // decoded by this rule: back to the same bits
@@ -252,7 +261,11 @@ std::uint64_t required_raw(const Field& field, const Message& message, std::size
 }
 
 double field_number(const Field& field, std::uint64_t raw) {
-  if (field.kind == FieldKind::kScaled) return field.scale->number(field, integer_of(field, raw));
+  if (field.kind == FieldKind::kScaled) {
+    if (field.scale->none_at_lowest && raw == no_number(field))
+      return std::numeric_limits<double>::quiet_NaN();
+    return field.scale->number(field, integer_of(field, raw));
+  }
   if (field.kind == FieldKind::kInteger && field.sign != Sign::kNone) {
     return static_cast<double>(integer_of(field, raw));
   }

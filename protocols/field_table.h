@@ -53,6 +53,7 @@ struct ScaleRule {
   double (*number)(const Field& field, std::int64_t count) = nullptr;
   std::int64_t (*count)(const Field& field, double number) = nullptr;  // of a number within lo..hi
   Beyond beyond = Beyond::kRefused;
+  bool none_at_lowest = false;  // the lowest count says that there is no number: NaN, null in JSON
 };
 
 // A sum or CRC over bytes of a packet as it stands in its frame without framing; not over the field itself.

@@ -43,6 +43,27 @@ std::int64_t even_count(const Field& field, double number) {
   return count < counts.lowest ? counts.lowest : count > counts.highest ? counts.highest : count;
 }
 
+// counts per unit: highest / hi
+float per_unit(const Field& field) {
+  return static_cast<float>(static_cast<double>(counts_of(field).highest) / field.hi);
+}
+double truncated_number(const Field& field, std::int64_t count) {
+  const float number = static_cast<float>(count) / per_unit(field);
+  return number;
+}
+// count = trunc(highest / hi * x), not beyond the field; the ends to the nearest
+std::int64_t truncated_count(const Field& field, double number) {
+  const Counts counts = counts_of(field);
+  const auto number32 = static_cast<float>(number);
+  if (number32 == static_cast<float>(field.lo) || number32 == static_cast<float>(field.hi)) {
+    return std::llround(number * static_cast<double>(counts.highest) / field.hi);
+  }
+  const float product = number32 * per_unit(field);
+  const auto count = static_cast<std::int64_t>(product);
+  return count < counts.lowest ? counts.lowest : count > counts.highest ? counts.highest : count;
+}
+
+constexpr std::string_view kTruncatedSays = "count = trunc(highest / hi x) in float32";
 constexpr std::string_view kEvenSays =
     "count = round(lowest + (highest - lowest) (x - lo) / (hi - lo)), and 1e-8 more in the bracket where it "
     "has a "
@@ -110,9 +131,43 @@ const ScaleRule kEvenStepsAround{
     .beyond = Beyond::kWrapped,
 };
 
+const ScaleRule kTruncated{
+    .name = "truncated",
+    .says = kTruncatedSays,
+    .number = truncated_number,
+    .count = truncated_count,
+    .beyond = Beyond::kClamped,
+};
+const ScaleRule kTruncatedOrNone{
+    .name = "truncated-or-none",
+    .says = kTruncatedSays,
+    .number = truncated_number,
+    .count = truncated_count,
+    .beyond = Beyond::kClamped,
+    .none_at_lowest = true,
+};
+const ScaleRule kTruncatedAroundOrNone{
+    .name = "truncated-around-or-none",
+    .says = kTruncatedSays,
+    .number = truncated_number,
+    .count = truncated_count,
+    .beyond = Beyond::kWrapped,
+    .none_at_lowest = true,
+};
+const ScaleRule kHundredths{
+    .name = "hundredths",
+    .says = "count = trunc(100 x) in float32",
+    .number = [](const Field&, std::int64_t count) -> double { return static_cast<float>(count) / 100.0F; },
+    .count = [](const Field&,
+                double number) { return static_cast<std::int64_t>(static_cast<float>(number) * 100.0F); },
+    .beyond = Beyond::kClamped,
+};
+
 std::span<const ScaleRule* const> scale_rules() {
-  static constexpr const ScaleRule* kRules[] = {&kNearest,    &kWhole,     &kThirds,         &kAroundHalf,
-                                                &kTwentieths, &kEvenSteps, &kEvenStepsAround};
+  static constexpr const ScaleRule* kRules[] = {
+      &kNearest,   &kWhole,           &kThirds,    &kAroundHalf,      &kTwentieths,
+      &kEvenSteps, &kEvenStepsAround, &kTruncated, &kTruncatedOrNone, &kTruncatedAroundOrNone,
+      &kHundredths};
   return kRules;
 }
 

@@ -18,6 +18,11 @@ extern const ScaleRule kAroundHalf;       // ibis: 7FFFh is 0
 extern const ScaleRule kTwentieths;       // ibis
 extern const ScaleRule kEvenSteps;        // ER-Force 2025: lo at the lowest count, hi at the highest, clamped
 extern const ScaleRule kEvenStepsAround;  // the same, wrapped: angles
+// ER-Force's transceiver: count = trunc(highest count / hi * x) in float32, clamped; two with 8000h for no number.
+extern const ScaleRule kTruncated;
+extern const ScaleRule kTruncatedOrNone;
+extern const ScaleRule kTruncatedAroundOrNone;  // wrapped: angles
+extern const ScaleRule kHundredths;             // count = trunc(100 x) in float32, clamped
 
 std::span<const ScaleRule* const> scale_rules();
 const ScaleRule* find_scale_rule(std::string_view name);

@@ -46,6 +46,10 @@ bool is_float(const Field& field) {
          field.kind == FieldKind::kScaled;
 }
 
+bool may_be_no_number(const Field& field) {
+  return !field.only_if.empty() || (field.scale != nullptr && field.scale->none_at_lowest);
+}
+
 std::string short_float(float value) {
   char buffer[32];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
@@ -122,7 +126,7 @@ struct Reader {
     is_given[index] = true;
     if (given.is_boolean() && field.bits == 1 && !is_float(field)) {
       value = {.number = given.get<bool>() ? 1.0 : 0.0, .raw = 0};
-    } else if (given.is_null() && !field.only_if.empty()) {
+    } else if (given.is_null() && may_be_no_number(field)) {
       value = {.number = std::numeric_limits<double>::quiet_NaN(), .raw = 0};
     } else if (given.is_number()) {
       value = {.number = given.get<double>(), .raw = 0};
@@ -271,7 +275,8 @@ std::string allowed_text(const Field& field, const Message& message) {
     case FieldKind::kRanged32:
       return limits;
     case FieldKind::kScaled:
-      return field.scale->beyond == Beyond::kRefused ? limits : "a number, best in " + limits;
+      if (field.scale->beyond != Beyond::kRefused) limits = "a number, best in " + limits;
+      return field.scale->none_at_lowest ? limits + ", or null" : limits;
     case FieldKind::kChecksum:
       return "the checksum of the packet";
   }

@@ -136,7 +136,8 @@ local function add_field(tree, range, row, lsb_first)
   if row[4] == "float" then
     if lsb_first then tree:add_le(row.field, bytes) else tree:add(row.field, bytes) end
   elseif row[4] == "scaled" then
-    tree:add(row.field, bytes, integer_of(range, row, lsb_first) * row[7] + row[8])
+    local count = integer_of(range, row, lsb_first)
+    if count ~= row.none then tree:add(row.field, bytes, count * row[7] + row[8]) end
   else
     tree:add(row.field, bytes, integer_of(range, row, lsb_first))
   end

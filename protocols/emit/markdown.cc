@@ -79,7 +79,8 @@ std::string scaled_text(const Field& field) {
   return number_text(field.lo) + " to " + number_text(field.hi) + " in steps of " +
          number_text(field_step(field)) + " from " + number_text(field.scale->number(field, 0)) + " at 0, " +
          text(sign_text(field.sign)) + "; " + text(field.scale->says) +
-         text(kBeyond[static_cast<std::size_t>(field.scale->beyond)]);
+         text(kBeyond[static_cast<std::size_t>(field.scale->beyond)]) +
+         (field.scale->none_at_lowest ? "; the lowest count is no number" : "");
 }
 
 // "CRC-32 of bytes 4 to the end"

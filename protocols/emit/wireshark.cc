@@ -58,7 +58,8 @@ local function add_field(tree, range, row, lsb_first)
   if row[4] == "float" then
     if lsb_first then tree:add_le(row.field, bytes) else tree:add(row.field, bytes) end
   elseif row[4] == "scaled" then
-    tree:add(row.field, bytes, integer_of(range, row, lsb_first) * row[7] + row[8])
+    local count = integer_of(range, row, lsb_first)
+    if count ~= row.none then tree:add(row.field, bytes, count * row[7] + row[8]) end
   else
     tree:add(row.field, bytes, integer_of(range, row, lsb_first))
   end
@@ -217,6 +218,8 @@ std::string field_row(const Field& field) {
     std::snprintf(scale, sizeof scale, ", %.9g, %.9g", field_step(field), at_0);
     row += scale;
   }
+  if (field.kind == FieldKind::kScaled && field.scale->none_at_lowest)
+    row += ", none = " + std::to_string(integer_of(field, 1ull << (field.bits - 1)));
   if (!field.only_if.empty()) row += ", only_if = \"" + std::string(field.only_if) + "\"";
   return row + " },\n";
 }

@@ -49,6 +49,10 @@ TEST(GoldenPackets, DecodeToTheValuesThatTheyWereMadeOf) {
       const std::string name(field.name.substr(0, field.name.find_first_of("[.")));
       if (!packet.given.contains(name)) continue;
       const double wanted = given.fields[i].number;
+      if (std::isnan(wanted)) {
+        EXPECT_TRUE(std::isnan(result.values.fields[i].number)) << field.name;
+        continue;
+      }
       const bool ranged = field.kind == FieldKind::kRanged32 || field.kind == FieldKind::kScaled;
       const double step = ranged ? field_step(field) : 0.0;
       const bool single = ranged || field.kind == FieldKind::kFloat32;

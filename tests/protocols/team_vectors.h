@@ -275,6 +275,99 @@ inline std::vector<TeamRow> erforce_rows(const std::function<nlohmann::json(cons
   return rows;
 }
 
+// What their host makes of a command before its fields: which of its numbers go where, and their differences.
+inline nlohmann::json erforce_usb_given(const nlohmann::json& row, bool pasta) {
+  using nlohmann::json;
+  const json& wanted = row.at("command");
+  const bool chip = wanted.at("kick_style") == "Chip";
+  const float top_m_s = chip ? 5.0F : 10.0F;
+  const auto power =
+      std::trunc(std::clamp(wanted.at("kick_power").get<float>() * 255.0F / top_m_s, 0.0F, 255.0F));
+  json given{{"address_id", row.at("id")},   {"id", row.at("id")},
+             {"expected_response_size", 11}, {"counter", row.at("counter")},
+             {"charge", row.at("charge")},   {"ir_param", std::min(row.at("ir_param").get<int>(), 63)},
+             {"chip", chip ? 1 : 0},         {"shot_power", power}};
+  for (const char* same : {"standby", "force_kick", "eject_sdcard", "dribbler"})
+    given[same] = wanted.at(same);
+  const std::array<const char*, 3> names{pasta ? "v_x" : "v_s", pasta ? "v_y" : "v_f", "omega"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    given[names[i]] = wanted.at("output0").at(names[i]);
+    // The second difference of the yaw rate is to what the first one's count makes of it; of speeds, to the output.
+    constexpr double kStep_rad_s = 0.005;
+    const auto of = [&](const char* output) { return wanted.at(output).at(names[i]).get<double>(); };
+    const double now = of("output0");
+    const double first = of("output1") - now;
+    const double counts = std::clamp(std::trunc(first / kStep_rad_s), -127.0, 127.0);
+    const double next = i < 2 ? of("output1") : now + counts * kStep_rad_s;
+    given["delta1"].push_back(first);
+    given["delta2"].push_back(of("output2") - next);
+  }
+  const char* last = pasta ? "cur_phi" : "cur_omega";
+  for (const char* now : {"cur_v_s", "cur_v_f", last}) given[now] = wanted.value(now, json());
+  return given;
+}
+
+inline std::vector<TeamRow> erforce_usb_rows(const std::function<nlohmann::json(const char*)>& file) {
+  using nlohmann::json;
+  std::vector<TeamRow> rows;
+  const json all = file("erforce-usb-pasta-2014.json");
+  const auto offset = [](const json& row) {
+    return 469 + std::min(row.at("processing_delay_ns").get<int>() / 1000, 2000);
+  };
+  for (const bool pasta : {true, false}) {
+    const std::string name = pasta ? "pasta_command" : "gen2014_command";
+    for (const json& row : all.at(name + "s")) {
+      json given = erforce_usb_given(row, pasta);
+      if (pasta) given["time_offset"] = offset(row);
+      // Their host has no decoder of commands: what is whole must come back.
+      json decoded;
+      for (const auto& [key, value] : given.items()) {
+        if (value.is_number_integer() && key != "omega" && !key.starts_with("v_") && key != "dribbler")
+          decoded[key] = value;
+      }
+      rows.push_back({{{name, given, decoded}}, row.at("usb")});
+    }
+  }
+  for (const json& row : all.at("gen2014_sync")) {
+    const json fields{
+        {"counter", row.at("counter")}, {"time_offset", offset(row)}, {"expected_response_size", 1}};
+    rows.push_back({{{"gen2014_sync", fields, fields}}, row.at("usb")});
+  }
+  for (const json& row : all.at("ping")) {
+    const json fields{{"time", row.at("time")}};
+    rows.push_back({{{"ping", fields, fields}}, row.at("usb")});
+  }
+  constexpr const char* kErrors[] = {
+      "error_motor_1", "error_motor_2",    "error_motor_3", "error_motor_4",     "error_dribbler",
+      "error_kicker",  "error_break_beam", "error_encoder", "error_main_sensor", "temperature"};
+  for (const json& row : all.at("responses")) {
+    const Bytes raw = from_hex(row.at("raw"));
+    const bool errors = row.at("extension_id") == 1;
+    json fields{{"generation", raw[0]}, {"counter", row.at("counter")}, {"id", row.at("id")}};
+    for (const char* flag : {"power_enabled", "error_present", "ball_detected", "cap_charged"}) {
+      // Without power their decoder leaves the rest out: from the bits then.
+      const unsigned bit = flag[0] == 'p' ? 4 : flag[0] == 'e' ? 5 : flag[0] == 'b' ? 6 : 7;
+      fields[flag] = raw[2] >> bit & 1u;
+      EXPECT_EQ(row.value(flag, fields[flag]), fields[flag]);
+    }
+    for (const char* speed : {"v_s", "v_f", "omega"}) {
+      const auto count = row.at(std::string("raw_") + speed).get<float>();
+      fields[speed] = count / 1000.0F;
+      EXPECT_EQ(row.value(speed, count / 1000.0F), count / 1000.0F);
+    }
+    if (errors) {
+      for (std::size_t i = 0; i < std::size(kErrors); ++i)
+        fields[kErrors[i]] = row.at("extended_error").at(i);
+    } else {
+      fields["battery"] = row.at("battery");
+      fields["packet_loss_rx"] = row.at("packet_loss_rx");
+    }
+    rows.push_back({{{errors ? "response_errors" : "response", fields, fields}},
+                    "0b90" + row.at("raw").get<std::string>()});
+  }
+  return rows;
+}
+
 inline const std::vector<TeamFile>& team_files() {
   static const std::vector<TeamFile> files{
       {"ibis-robot-command-v2", 24 + 24 + 15, ibis_rows},
@@ -285,6 +378,7 @@ inline const std::vector<TeamFile>& team_files() {
       {"erforce-proto2025", 30 + 20 + 5 + 10, [](const auto& file) { return erforce_rows(file, false); }},
       {"erforce-proto2025-bridge", 30 + 20 + 5 + 10 + 1,
        [](const auto& file) { return erforce_rows(file, true); }},
+      {"erforce-usb-pasta-2014", 20 + 15 + 3 + 4 + 20, erforce_usb_rows},
   };
   return files;
 }
