@@ -63,6 +63,26 @@ inline std::vector<TeamRow> ibis_rows(const std::function<nlohmann::json(const c
   return rows;
 }
 
+// Made from the CM4's document and the board's routine for the sum, not by running a program of theirs.
+inline std::vector<TeamRow> ibis_uart_rows(const std::function<nlohmann::json(const char*)>& file) {
+  using nlohmann::json;
+  std::vector<TeamRow> rows;
+  const json commands = file("ibis-robot-command-v2.json");
+  for (const json& row : commands.at("uart72").at("vectors")) {
+    const std::string command = row.at("command_hex");
+    for (const TeamRow& known : ibis_rows(file)) {
+      if (known.hex != command) continue;
+      TeamPacket packet = known.packets[0];
+      packet.given.erase("header");
+      packet.given["camera"] = row.at("camera");
+      packet.decoded["camera"] = row.at("camera");
+      rows.push_back({{packet}, row.at("hex")});
+      break;
+    }
+  }
+  return rows;
+}
+
 inline std::vector<TeamRow> ateam_rows(const std::function<nlohmann::json(const char*)>& file) {
   using nlohmann::json;
   std::vector<TeamRow> rows;
@@ -378,6 +398,7 @@ inline const std::vector<TeamFile>& team_files() {
       {"erforce-proto2025", 30 + 20 + 5 + 10, [](const auto& file) { return erforce_rows(file, false); }},
       {"erforce-proto2025-bridge", 30 + 20 + 5 + 10 + 1,
        [](const auto& file) { return erforce_rows(file, true); }},
+      {"ibis-uart72", 12, ibis_uart_rows},
       {"erforce-usb-pasta-2014", 20 + 15 + 3 + 4 + 20, erforce_usb_rows},
   };
   return files;

@@ -1,0 +1,20 @@
+// What ibis' command asks of a robot, what the robot answers, and a host's command as a packet.
+//
+//   RobotCommand command = ibis::to_command(values);
+//   ibis::answer(kMessages, to_robot, feedback, out);
+//   if (!ibis::encode_command(kMessages, command, out)) …   // it cannot be said
+#pragma once
+#include <span>
+#include <vector>
+
+#include "protocols/radio_format.h"
+
+namespace omnihil::ibis {
+
+RobotCommand to_command(const Values& values);
+bool answer(std::span<const Message> messages, const Values& to_robot, const RobotFeedback& feedback,
+            Values& out);
+bool encode_command(std::span<const Message> messages, const RobotCommand& wanted,
+                    std::vector<std::uint8_t>& out);
+
+}  // namespace omnihil::ibis
