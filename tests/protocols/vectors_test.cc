@@ -1,5 +1,6 @@
 // Packets made by the teams' own programs, from the folder of reference data.
 #include <cstdio>
+#include <set>
 
 #include "protocols/codec.h"
 #include "protocols/packet_list.h"
@@ -129,6 +130,40 @@ TEST(TeamVectors, EveryRowBothWays) {
     EXPECT_EQ(rows.size(), file.rows) << file.format;
     std::printf("%s: %zu packets both ways\n", file.format.c_str(), rows.size());
   }
+}
+
+// What the unmodified firmware of a wheel answered while it drove a simulated motor: the structs of its wire.
+TEST(TeamVectors, RepliesOfAteamsWheelFirmwareDecodeAndComeBack) {
+  SKIP_WITHOUT_SHARED();
+  const RadioFormat& format = *find_radio_format("ateam-rnp-stspin-2025");
+  const json file = read_json(shared + "/vectors/ateam-wheel-firmware-io.json");
+  std::set<double> set_points;
+  int motion = 0, params = 0, settled = 0;
+  for (const json& row : file.at("closed_loop").at("frames")) {
+    const Bytes frame = from_hex(row.at(1).get<std::string>());
+    ASSERT_TRUE(survives_round_trip(format, frame)) << row;
+    const Values values = format.decode(frame).values;
+    if (values.message->name == "uart_motor_response_motion") {
+      set_points.insert(values.number("vel_setpoint"));
+      // In the last half second at 100 rad/s the unfiltered speed is the filtered one; as counts it would be 3 times.
+      const double at_s = std::stod(row.at(0).get<std::string>());
+      if (at_s > 0.7 && at_s < 1.2) {
+        const double omega_rad_s = values.number("vel_enc_estimate");
+        EXPECT_NEAR(values.number("encoder_delta"), omega_rad_s, 0.05 * omega_rad_s) << row;
+        ++settled;
+      }
+      ++motion;
+    } else {
+      EXPECT_EQ(values.message->name, "uart_motor_response_params");
+      EXPECT_EQ(values.number("version[1]"), 1.0);
+      EXPECT_EQ(values.number("vel_pid_imax[0]"), 5.5);
+      ++params;
+    }
+  }
+  EXPECT_EQ(set_points, (std::set<double>{-200.0, 0.0, 100.0}));
+  EXPECT_EQ(motion, 394);
+  EXPECT_GT(settled, 50);
+  EXPECT_EQ(params, 1);
 }
 
 TEST(TeamVectors, RemV8BothWays) {

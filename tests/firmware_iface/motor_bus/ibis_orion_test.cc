@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/firmware_iface/motor_bus/bus_harness.h"
 
@@ -94,6 +98,65 @@ TEST(IbisOrionTest, free_wheel_and_emergency_stop_open_the_bridges) {
   rig.send(frame(0x010, "00 00"));
   rig.run_ms(10, [&] { command_all(rig, kFive); });
   EXPECT_NE(rig.firmware->feedback().duty_ratio[1], 0.0);
+}
+
+// What the unmodified firmware took and sent in an emulator.
+nlohmann::json firmware_io() {
+  const char* shared = std::getenv("OMNIHIL_SHARED");
+  if (shared == nullptr) return {};
+  std::ifstream in(std::string(shared) + "/vectors/ibis-f303-firmware-io.json");
+  return in ? nlohmann::json::parse(in) : nlohmann::json{};
+}
+constexpr const char* kNoFile = "OMNIHIL_SHARED is not set, or has no ibis-f303-firmware-io.json";
+bool is_angle(float rad) {
+  const double steps = rad * 65535.0 / kTwoPi;
+  return static_cast<float>(std::round(steps) * kTwoPi / 65535.0) == rad;
+}
+
+TEST(IbisOrionTest, the_main_board_says_set_points_in_the_bytes_that_the_firmware_took) {
+  const nlohmann::json all = firmware_io();
+  if (all.is_null()) GTEST_SKIP() << kNoFile;
+  int frames = 0;
+  for (const auto& row : all.at("rows")) {
+    std::vector<double> omega_rad_s;
+    for (const double rev_s : row.at("cmd_rps")) omega_rad_s.push_back(rev_s * kTwoPi);
+    std::vector<BusFrame> said;
+    find_motor_bus("ibis-orion")->main_board.speak(0, omega_rad_s, said);
+    ASSERT_EQ(said.size(), row.at("can_in").size());
+    for (std::size_t i = 0; i < said.size(); ++i, ++frames) {
+      EXPECT_EQ(said[i].id, row.at("can_in")[i].at("id"));
+      EXPECT_EQ(data_of(said[i]), hex(row.at("can_in")[i].at("data").get<std::string>())) << row;
+    }
+  }
+  EXPECT_EQ(frames, 64);
+}
+
+TEST(IbisOrionTest, its_frames_have_the_ids_and_the_form_of_those_of_the_firmware) {
+  const nlohmann::json all = firmware_io();
+  if (all.is_null()) GTEST_SKIP() << kNoFile;
+  BusRig rig("ibis-orion");
+  rig.run_ms(500, [&] { command_all(rig, kFive); });
+  std::set<std::uint32_t> ours, theirs;
+  const auto expect_form = [](std::uint32_t id, float second) {
+    EXPECT_TRUE(id >= 0x210 || is_angle(second)) << id << " " << second;
+    EXPECT_TRUE(id < 0x210 || id / 16 == 0x22 || second == 0.0F) << id << " " << second;
+  };
+  for (const BusFrame& f : rig.wire->from_motors) {
+    if (f.id % 16 > 1) continue;  // the other board's
+    ASSERT_EQ(f.size, 8);
+    ours.insert(f.id);
+    expect_form(f.id, get_f32(f, 4));
+  }
+  for (const auto& each : all.at("telemetry").at("frames")) {
+    const BusFrame f = frame(each.at("id"), each.at("data").get<std::string>());
+    ASSERT_EQ(f.size, 8);
+    EXPECT_EQ(get_f32(f, 0), each.at("f32")[0].get<float>());
+    theirs.insert(f.id);
+    expect_form(f.id, get_f32(f, 4));
+  }
+  // Battery, temperatures and rev/s per V are the board's; here each motor says them.
+  for (const std::uint32_t id : theirs) EXPECT_TRUE(ours.contains(id)) << id;
+  for (const std::uint32_t id : ours) EXPECT_TRUE(theirs.contains(id) || theirs.contains(id - 1)) << id;
 }
 
 TEST(IbisOrionTest, bad_frames_are_counted_by_cause) {
