@@ -37,6 +37,7 @@ enum class Sign : std::uint8_t {
 };
 
 struct Field;
+struct Meaning;
 
 // What the team's encoder does with a number beyond lo..hi.
 enum class Beyond : std::uint8_t {
@@ -100,6 +101,9 @@ struct Field {
   // A flag of the same packet, before this field: where it is 0 the field says nothing, is sent as 0 and read as
   // NaN (null in JSON).
   std::string_view only_if{};
+  // In formats that come from files: what the number is to a robot, times * number; meaning.h.
+  const Meaning* means = nullptr;
+  double times = 1.0;
 };
 
 // kInside: between the boards of one robot, never on the radio.
@@ -136,6 +140,9 @@ struct Message {
   std::string_view what;
   MessageRole role = MessageRole::kNone;
   std::uint32_t answer_type = 0;  // of the packet that answers this one; 0: none does
+  // In formats that come from files: the drive that a command is for, OMNIHIL_MODE_*, and its frame.
+  int asks = -1;
+  bool in_field_frame = false;
 
   int field_index(std::string_view name) const;  // -1 when there is none
   int field_index(FieldRole wanted) const;

@@ -28,7 +28,21 @@ bool RadioFormat::names_robots() const {
   return false;
 }
 
+namespace {
+std::vector<const RadioFormat*>& formats_in_use() {
+  static std::vector<const RadioFormat*> formats;
+  return formats;
+}
+}  // namespace
+
+void use_radio_format(const RadioFormat& format) {
+  formats_in_use().insert(formats_in_use().begin(), &format);
+}
+
 const RadioFormat* find_radio_format(std::string_view id) {
+  for (const RadioFormat* format : formats_in_use()) {
+    if (format->id == id) return format;
+  }
   for (const RadioFormat* format : radio_formats()) {
     if (format->id == id) return format;
   }

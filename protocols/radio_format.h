@@ -94,7 +94,15 @@ struct RadioFormat {
   // The dongle with the robots' radio ends behind it: a factory of protocols/dongles. The format outlives it.
   std::unique_ptr<RadioLink> (*dongle)(const RadioFormat& self, const RadioLinkConfig& config) = nullptr;
 
-  std::unique_ptr<RadioLink> make_link(const RadioLinkConfig& config) const { return dongle(*this, config); }
+  // A format from a file whose tables are those of a built-in one is that one towards its robots.
+  const RadioFormat* serves_as = nullptr;
+  // Of a format from a file otherwise (dongles/table_dongle.h): time on the air.
+  std::int64_t to_robot_ns = 0;
+  std::int64_t to_host_ns = 0;
+
+  std::unique_ptr<RadioLink> make_link(const RadioLinkConfig& config) const {
+    return serves_as != nullptr ? serves_as->make_link(config) : dongle(*this, config);
+  }
   bool can_drive(std::uint32_t mode) const { return (command_drives & drives(mode)) != 0; }
   const Message* find(std::string_view message_name) const;
   // False: its packets name no robot; a wire is one robot.
@@ -102,6 +110,8 @@ struct RadioFormat {
 };
 
 std::span<const RadioFormat* const> radio_formats();        // sorted by id
-const RadioFormat* find_radio_format(std::string_view id);  // nullptr when unknown
+const RadioFormat* find_radio_format(std::string_view id);  // nullptr when unknown; those in use come first
+// A format from a file, to be found by its id from now on, before a built-in one of that id. It outlives all users.
+void use_radio_format(const RadioFormat& format);
 
 }  // namespace omnihil

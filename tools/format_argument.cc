@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "hil/radio_file/radio_file.h"
 #include "sim/model/params.h"
 
 namespace omnihil {
@@ -24,6 +25,20 @@ const RadioFormat* format_or_complain(const std::string& id) {
   std::vector<std::string_view> names;
   for (const RadioFormat* known : radio_formats()) names.push_back(known->id);
   complain("radio format", id, names);
+  return nullptr;
+}
+
+const RadioFormat* format_file_or_complain(const std::string& path) {
+  const RadioFile file = load_radio_file(path);
+  for (const ModelProblem& problem : file.problems) std::fprintf(stderr, "%s\n", problem.text().c_str());
+  if (file.format != nullptr) use_radio_format(*file.format);
+  return file.format;
+}
+
+const RadioFormat* format_or_complain(const std::string& id, const std::string& file) {
+  if (!file.empty()) return format_file_or_complain(file);
+  if (!id.empty()) return format_or_complain(id);
+  std::fprintf(stderr, "omnihil: FORMAT is required, or --format FILE; see `omnihil formats`\n");
   return nullptr;
 }
 

@@ -8,6 +8,7 @@
 #include "protocols/dongles/ring.h"
 #include "protocols/dongles/robot_table.h"
 #include "protocols/dongles/table_frames.h"
+#include "protocols/meaning.h"
 #include "protocols/packet_list.h"
 
 namespace omnihil {
@@ -89,6 +90,10 @@ class PlainLink final : public Dongle {
   PacketError send_back(int robot, std::span<const std::uint8_t> frame, std::int64_t now_ns);
   void reach_robot(const InFlight& at, RadioSink& sink);
   void act(const Values& values, const InFlight& at, RadioSink& sink);
+  bool answer(const Values& to_robot, int id, const RobotFeedback& feedback, Values& out) const {
+    if (plain_.answer != nullptr) return plain_.answer(to_robot, id, feedback, out);
+    return plain_.to_command == nullptr && answer_by_meaning(format_, to_robot, id, feedback, out);
+  }
 
   PlainDongle plain_;
   SizedStream stream_;
@@ -202,7 +207,10 @@ void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
     Delivery delivery;
     delivery.robot_id = at.robot;
     delivery.message = values.message->name;
-    if (drives) delivery.command = plain_.to_command(values, at.robot);
+    if (drives) {
+      delivery.command =
+          plain_.to_command == nullptr ? command_by_meaning(values) : plain_.to_command(values, at.robot);
+    }
     std::uint32_t& kick_before = robots_.find(at.robot)->kick;
     const std::uint32_t kick = delivery.command.kick;
     if (plain_.kicks_once && kick == kick_before) delivery.command.kick = OMNIHIL_KICK_NONE;
@@ -211,7 +219,7 @@ void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
   }
   const std::optional<RobotFeedback>& feedback = robots_.find(at.robot)->feedback;
   Values out;
-  if (plain_.answer == nullptr || !feedback || !plain_.answer(values, at.robot, *feedback, out)) return;
+  if (!feedback || !answer(values, at.robot, *feedback, out)) return;
   if (plain_.remember != nullptr) plain_.remember(values, robots_.find(at.robot)->kept, out);
   if (format_.list != nullptr) {
     if (listed_answers_.size() < static_cast<std::size_t>(format_.list->most)) listed_answers_.push_back(out);

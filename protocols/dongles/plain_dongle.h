@@ -28,7 +28,7 @@ struct PlainDongle {
   std::int64_t half_frame_ns = 0;  // how long a half frame waits for its rest; 0: for ever
   std::int64_t to_robot_ns = 0;    // last byte from the host until the robot has it
   std::int64_t to_host_ns = 0;     // the robot has a frame until its answer is at the host
-  // What a packet asks of robot `id`.
+  // What a packet asks of robot `id`. Null: by the meaning of its fields (meaning.h), and so the answer.
   RobotCommand (*to_command)(const Values& values, int id) = nullptr;
   bool kicks_once = false;  // a kick acts when the packet before asked for none; one that stays does not
   // The robots that a packet is for, where roles of fields do not say it: their number, and their ids. Null: roles.

@@ -44,9 +44,10 @@ Size of_message(const Message& message, Front front) {
   const auto size = static_cast<std::size_t>(message.size_bytes);
   bool whole = true;
   for (const Field& field : message.fields) {
-    if (field.kind != FieldKind::kType) continue;
+    const bool is_type = field.kind == FieldKind::kType;
+    if (!is_type && field.kind != FieldKind::kConst) continue;
     if (static_cast<std::size_t>(field.bit + field.bits + 7) / 8 > front.size()) {
-      whole = false;
+      whole = whole && !is_type;
     } else if (read_bits(front, field.bit, field.bits, message.bit_order) !=
                required_raw(field, message, size)) {
       return kNoFrame;

@@ -3,7 +3,7 @@
 //   SizedStream stream(frames_by_tables(format, "start-connection\r"), counts);
 //
 // COBS: up to the next 00. Lists: begin and number, packets of the length of those to robots. Without framing: the
-// packet whose type fields hold their code.
+// packet whose type fields and constants hold their content.
 #pragma once
 #include "protocols/dongles/sized_stream.h"
 #include "protocols/radio_format.h"

@@ -1,4 +1,4 @@
-// What is generated from the tables of a format, as text: documentation, a C header, a Wireshark dissector.
+// What is generated from the tables of a format, as text: documentation, a C header, a Wireshark dissector, a file.
 //
 //   std::cout << emit_markdown(*find_radio_format("ulaval-hermes"));
 #pragma once
@@ -21,6 +21,11 @@ std::string emit_c_header(const RadioFormat& format);
 
 // A dissector in Lua: registers the format as a protocol to be chosen with "Decode As" on UDP and USER DLTs.
 std::string emit_wireshark(const RadioFormat& format);
+
+// The tables as a file that `--format` takes (hil/radio_file). Only where no_toml_reason is empty.
+std::string emit_toml(const RadioFormat& format);
+// What tables alone cannot say of this format; empty: they say all of it.
+std::string no_toml_reason(const RadioFormat& format);
 
 // "cmd[2]" -> "CMD_2": capitals and digits, one '_' for every run of other characters, none at the end.
 std::string c_macro_name(std::string_view name);

@@ -250,6 +250,37 @@ TEST_F(RecordingVerbs, ServeRecordsWhatPlayPlaysAndCheckAgrees) {
   EXPECT_TRUE(check.says("bytes identical, samples identical")) << check.text;
 }
 
+// A team's own format from its file, through the device and back: the stick's bytes are those of `encode`.
+TEST_F(RecordingVerbs, ServeWithAFormatFromAFileDrivesAndItsRecordingReplays) {
+  const auto stream = folder_ / "host.txt";
+  const auto made = folder_ / "served.omnirec";
+  const auto device = folder_ / "dongle";
+  const std::string format = "--format" + shell(OMNIHIL_SOURCE_DIR "/examples/radio/our_team.toml");
+  const auto json = folder_ / "line.json";
+  fake::write_text(json, "{\"robot\": 3, \"forward\": 0.5}\n");
+  const Ran hex = run_omnihil("encode " + format + "MOVE <" + shell(json));
+  ASSERT_EQ(hex.exit_code, 0) << hex.text;
+  std::string lines;
+  for (int i = 1; i <= 20; ++i) lines += std::to_string(0.02 * i) + " " + hex.text;
+  fake::write_text(stream, lines);
+  Ran serve;
+  std::thread bench([&] {
+    serve = run_omnihil("serve --quiet --robots 3 --physics planar --duration 2 " + format + "--device" +
+                        shell(device) + "--record" + shell(made));
+  });
+  const Ran play = run_omnihil("play --wait --linger 0.2 --device" + shell(device) + shell(stream));
+  bench.join();
+  EXPECT_EQ(play.exit_code, 0) << play.text;
+  EXPECT_EQ(serve.exit_code, 0) << serve.text;
+  const Ran check = run_omnihil("check " + format + shell(made));
+  EXPECT_EQ(check.exit_code, 0) << check.text;
+  EXPECT_TRUE(check.says("bytes identical, samples identical")) << check.text;
+  EXPECT_EQ(run_omnihil("replay " + format + shell(made)).exit_code, 0);
+  const Ran without = run_omnihil("replay" + shell(made));
+  EXPECT_EQ(without.exit_code, 2) << without.text;
+  EXPECT_TRUE(without.says("our-team")) << without.text;
+}
+
 // A hundred runs of the program have one hash: half of them idle, half with both cores busy. The busy loops
 // end with the runs.
 TEST_F(RecordingVerbs, SlowHundredReplaysHaveOneHashIdleAndBusy) {

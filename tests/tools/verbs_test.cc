@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 #include "hil/wire/wire_kind.h"
@@ -221,6 +222,63 @@ TEST_F(Verbs, FormatsListsAllAndPrintsWhatWasAskedFor) {
     EXPECT_EQ(run("formats " + id + " --c-header", "").out, emit_c_header(*format));
   }
   EXPECT_EQ(run("formats --wireshark", "").exit_code, 2);
+}
+
+// Every format that tables alone can say, from its own file: encode, decode and formats print the very same.
+TEST_F(Verbs, AFormatFromItsFileIsTheFormat) {
+  int formats = 0;
+  for (const RadioFormat* format : radio_formats()) {
+    const std::string id(format->id);
+    const Output file = run("formats " + id + " --toml", "");
+    if (!format->own_codec.empty()) {
+      EXPECT_EQ(file.exit_code, 2) << id;
+      EXPECT_NE(
+          file.err.find(id + ": its codec is more than its tables: it " + std::string(format->own_codec)),
+          std::string::npos)
+          << file.err;
+      continue;
+    }
+    ++formats;
+    const std::string path = (folder_ / (id + ".toml")).string();
+    std::ofstream(path, std::ios::binary) << file.out;
+    const std::string by_file = " --format '" + path + "' ";
+    for (const char* what : {"", "--wireshark", "--c-header", "--toml"}) {
+      EXPECT_EQ(run("formats" + by_file + what, "").out, run("formats " + id + " " + what, "").out)
+          << id << what;
+    }
+    std::string hex = "zz\n00\n";
+    std::map<std::string, std::string> given;
+    for (const GoldenPacket& packet : golden_packets()) {
+      if (packet.format != format) continue;
+      hex += to_hex(packet.frame) + "\n" + to_hex(packet.frame) + "00\n";
+      given[std::string(packet.message->name)] += packet.given.dump() + "\n{\"no such field\": 1}\n[]\n";
+    }
+    const auto expect_same = [&](const std::string& verb, const std::string& word, const std::string& input) {
+      const Output by_id = run(verb + " " + id + word, input), by_table = run(verb + by_file + word, input);
+      EXPECT_EQ(by_table.out, by_id.out) << id;
+      EXPECT_EQ(by_table.err, by_id.err) << id;
+      EXPECT_EQ(by_table.exit_code, by_id.exit_code) << id;
+    };
+    expect_same("decode", "", hex);
+    for (const auto& [packet, lines] : given) expect_same("encode", " " + packet, lines);
+  }
+  EXPECT_EQ(formats, 9);
+}
+
+TEST_F(Verbs, AFaultyFormatFileIsNamedByLineAndNothingIsDone) {
+  const std::string path = (folder_ / "x.toml").string();
+  std::ofstream(path) << "format = \"omnihil-radio/1\"\nid = \"x\"\ntitle = \"X\"\nframing = \"slip\"\n";
+  for (const std::string verb : {"encode", "decode", "formats", "serve"}) {
+    const Output result = run(verb + " --format '" + path + "'" + (verb == "encode" ? " GO" : ""), "");
+    EXPECT_EQ(result.exit_code, 2) << verb;
+    EXPECT_NE(result.err.find("x.toml:4:11: framing = \"slip\": is not allowed here"), std::string::npos)
+        << verb << ": " << result.err;
+    EXPECT_EQ(result.out, "") << verb;
+  }
+  EXPECT_EQ(run("encode", "").exit_code, 2);
+  EXPECT_EQ(run("decode", "").exit_code, 2);
+  EXPECT_EQ(run("encode ulaval-hermes", "").exit_code, 2);
+  EXPECT_EQ(run("serve --radio ulaval-hermes --format '" + path + "'", "").exit_code, 2);
 }
 
 TEST_F(Verbs, WiresListsEveryKindWithItsParameters) {

@@ -14,6 +14,7 @@
 #include "hil/recording/replay_run.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
+#include "tools/format_argument.h"
 #include "tools/guarded.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
@@ -22,6 +23,7 @@ namespace omnihil {
 namespace {
 
 struct CheckWords {
+  std::string format_file;
   std::string recording;
   std::vector<std::string> tolerances;  // KEY=VALUE, a file, or "default"
   std::string physics;
@@ -87,6 +89,8 @@ int verdict(const RecordingComparison& comparison) {
 }
 
 int run_check(const CheckWords& words) {
+  if (!words.format_file.empty() && format_file_or_complain(words.format_file) == nullptr)
+    return kExitBadInput;
   const Recording recording = load_recording(std::filesystem::path(words.recording));
   const RadioFormat* format = find_radio_format(recording.header.radio_format);
   std::string reason;
@@ -107,6 +111,8 @@ void add_verb_check(Verb& program, VerbResult& result) {
   Verb verb =
       program.add_subcommand("check", "replays a recording and compares the answers; the verdict for CI");
   verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
+  verb.add_option("--format", words->format_file,
+                  "radio format of the recording from this file, where it was made with one");
   verb.add_option("--tolerance", words->tolerances,
                   "KEY=VALUE, a file of such lines, or 'default'; may be given several times");
   verb.add_flag("--exact", words->exact, "bytes and samples must be identical in every bit");

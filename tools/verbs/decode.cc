@@ -62,8 +62,13 @@ std::string json_of_list(const RadioFormat& format, std::span<const std::uint8_t
   return out + "]}";
 }
 
-int run(const std::string& format_id) {
-  const RadioFormat* format = format_or_complain(format_id);
+struct Arguments {
+  std::string format;
+  std::string file;
+};
+
+int run(const Arguments& arguments) {
+  const RadioFormat* format = format_or_complain(arguments.format, arguments.file);
   if (format == nullptr) return kExitBadInput;
   int exit_code = kExitOk;
   std::string line;
@@ -86,11 +91,14 @@ int run(const std::string& format_id) {
 }  // namespace
 
 void add_verb_decode(Verb& program, VerbResult& result) {
-  auto format = std::make_shared<std::string>();
+  auto arguments = std::make_shared<Arguments>();
   Verb verb = program.add_subcommand("decode", "radio packets in hex to JSON lines");
-  verb.add_option("FORMAT", *format, "radio format, e.g. ulaval-hermes; see `omnihil formats`").required();
+  const Option format =
+      verb.add_option("FORMAT", arguments->format, "radio format, e.g. ulaval-hermes; see `omnihil formats`");
+  verb.add_option("--format", arguments->file, "the format from this file (docs/radio/own-format.md)")
+      .excludes(format);
   verb.footer(kExample);
-  verb.callback([format, &result] { result.exit_code = run(*format); });
+  verb.callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 
 }  // namespace omnihil

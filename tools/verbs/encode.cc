@@ -27,6 +27,7 @@ constexpr const char* kExample =
 struct Arguments {
   std::string format;
   std::string packet;
+  std::string file;
 };
 
 // One line in, one hex line out; what is wrong with the line otherwise.
@@ -59,9 +60,16 @@ std::vector<std::string> encode_line(const std::string& line, const RadioFormat&
 }
 
 int run(const Arguments& arguments) {
-  const RadioFormat* format = format_or_complain(arguments.format);
+  const RadioFormat* format = format_or_complain(arguments.format, arguments.file);
   if (format == nullptr) return kExitBadInput;
-  const Message* message = message_or_complain(*format, arguments.packet);
+  // With a file the only word is the packet.
+  const bool has_file = !arguments.file.empty();
+  const std::string& packet = has_file ? arguments.format : arguments.packet;
+  if (packet.empty() || (has_file && !arguments.packet.empty())) {
+    std::fprintf(stderr, "omnihil encode: FORMAT PACKET are required, or --format FILE PACKET\n");
+    return kExitBadInput;
+  }
+  const Message* message = message_or_complain(*format, packet);
   if (message == nullptr) return kExitBadInput;
   int exit_code = kExitOk;
   std::string line;
@@ -83,9 +91,10 @@ int run(const Arguments& arguments) {
 void add_verb_encode(Verb& program, VerbResult& result) {
   auto arguments = std::make_shared<Arguments>();
   Verb verb = program.add_subcommand("encode", "JSON lines to radio packets in hex");
-  verb.add_option("FORMAT", arguments->format, "radio format, e.g. ulaval-hermes; see `omnihil formats`")
-      .required();
-  verb.add_option("PACKET", arguments->packet, "the team's name of the packet, e.g. SPEED_MOVE").required();
+  verb.add_option("FORMAT", arguments->format, "radio format, e.g. ulaval-hermes; see `omnihil formats`");
+  verb.add_option("PACKET", arguments->packet, "the team's name of the packet, e.g. SPEED_MOVE");
+  verb.add_option("--format", arguments->file,
+                  "the format from this file (docs/radio/own-format.md); then PACKET alone");
   verb.footer(kExample);
   verb.callback([arguments, &result] { result.exit_code = run(*arguments); });
 }

@@ -13,8 +13,10 @@ namespace {
 
 struct Arguments {
   std::string id;
+  std::string file;
   bool wireshark = false;
   bool c_header = false;
+  bool toml = false;
 };
 
 void print_list() {
@@ -25,18 +27,26 @@ void print_list() {
 }
 
 int run(const Arguments& arguments) {
-  if (arguments.id.empty()) {
-    if (arguments.wireshark || arguments.c_header) {
-      std::fprintf(stderr, "omnihil formats: --wireshark and --c-header need a format ID\n");
+  if (arguments.id.empty() && arguments.file.empty()) {
+    if (arguments.wireshark || arguments.c_header || arguments.toml) {
+      std::fprintf(stderr,
+                   "omnihil formats: --wireshark, --c-header and --toml need a format ID or --format FILE\n");
       return kExitBadInput;
     }
     print_list();
     return kExitOk;
   }
-  const RadioFormat* format = format_or_complain(arguments.id);
+  const RadioFormat* format = format_or_complain(arguments.id, arguments.file);
   if (format == nullptr) return kExitBadInput;
+  const std::string reason = arguments.toml ? no_toml_reason(*format) : "";
+  if (!reason.empty()) {
+    std::fprintf(stderr, "omnihil formats: tables alone cannot say %s: %s\n", arguments.id.c_str(),
+                 reason.c_str());
+    return kExitBadInput;
+  }
   const std::string text = arguments.wireshark  ? emit_wireshark(*format)
                            : arguments.c_header ? emit_c_header(*format)
+                           : arguments.toml     ? emit_toml(*format)
                                                 : emit_markdown(*format);
   std::fputs(text.c_str(), stdout);
   return kExitOk;
@@ -47,11 +57,18 @@ int run(const Arguments& arguments) {
 void add_verb_formats(Verb& program, VerbResult& result) {
   auto arguments = std::make_shared<Arguments>();
   Verb verb = program.add_subcommand("formats", "list the radio formats, or describe one");
-  verb.add_option("ID", arguments->id, "print the documentation of this format (Markdown)");
+  const Option id = verb.add_option("ID", arguments->id, "print the documentation of this format (Markdown)");
+  verb.add_option("--format", arguments->file,
+                  "the same of the format in this file (docs/radio/own-format.md)")
+      .excludes(id);
   const Option wireshark =
       verb.add_flag("--wireshark", arguments->wireshark, "print a Wireshark dissector (Lua)");
-  verb.add_flag("--c-header", arguments->c_header, "print the places of all fields as C macros")
-      .excludes(wireshark);
+  const Option c_header =
+      verb.add_flag("--c-header", arguments->c_header, "print the places of all fields as C macros")
+          .excludes(wireshark);
+  verb.add_flag("--toml", arguments->toml, "print its packet tables as a file that --format takes")
+      .excludes(wireshark)
+      .excludes(c_header);
   verb.callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 

@@ -15,6 +15,7 @@
 #include "hil/recording/replay_run.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
+#include "tools/format_argument.h"
 #include "tools/guarded.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
@@ -23,6 +24,7 @@ namespace omnihil {
 namespace {
 
 struct ReplayWords {
+  std::string format_file;
   std::string recording;
   std::string out;
   std::string physics;
@@ -57,6 +59,8 @@ bool say_bytes(const Recording& recording, const Recording& answer) {
 }
 
 int run_replay(const ReplayWords& words) {
+  if (!words.format_file.empty() && format_file_or_complain(words.format_file) == nullptr)
+    return kExitBadInput;
   const Recording recording = load_recording(std::filesystem::path(words.recording));
   ReplayOptions options{.physics = parse_physics(words.physics), .observer = nullptr};
   const auto writer = open_out(words, recording, options);
@@ -84,6 +88,8 @@ void add_verb_replay(Verb& program, VerbResult& result) {
   Verb verb =
       program.add_subcommand("replay", "runs a recording again; says whether the same bytes come back");
   verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
+  verb.add_option("--format", words->format_file,
+                  "radio format of the recording from this file, where it was made with one");
   verb.add_option("--out", words->out, "write the new run to this file, as a recording");
   verb.add_option("--physics", words->physics, "instead of the recorded one: simbody, planar or simbody-free")
       .one_of({"simbody", "planar", "simbody-free"});

@@ -10,6 +10,7 @@
 #include "hil/firmware/bus_firmware.h"
 #include "hil/loop/effect_overrides.h"
 #include "hil/loop/model_store.h"
+#include "hil/radio_file/radio_file.h"
 #include "hil/recording/recording_header.h"
 #include "hil/recording/session_setup.h"
 #include "hil/text/program_files.h"
@@ -29,6 +30,7 @@ constexpr const char* kDefaultRadio = "ulaval-hermes";
 struct Words {  // as the user gave them
   std::string robot = "omni_default";
   std::string radio;
+  std::string format_file;
   std::string robots = "0-5";
   std::string team = "blue";
   std::string physics = "simbody";
@@ -56,6 +58,13 @@ std::string understand(Words& words) {
   setup.model = stored.bundle;
   if (stored.problems.empty()) add_effects(setup.model, words.with, problems);
   setup.radio_format = words.radio;
+  if (!words.format_file.empty()) {
+    if (!words.radio.empty()) problems.push_back("--radio and --format: a bench has one radio format");
+    const RadioFile file = load_radio_file(words.format_file);
+    for (const ModelProblem& problem : file.problems) problems.push_back(problem.text());
+    if (file.format != nullptr) use_radio_format(*file.format);
+    if (file.format != nullptr) setup.radio_format = file.format->id;
+  }
   if (setup.radio_format.empty() && stored.model) setup.radio_format = stored.model->radio;
   if (setup.radio_format.empty()) setup.radio_format = kDefaultRadio;
   for (const std::string& problem :
@@ -161,6 +170,7 @@ void add_verb_serve(Verb& program, VerbResult& result) {
                   "add an effect to every robot: ID.parameter=value, or ID for its typical size; several "
                   "allowed");
   verb.add_option("--radio", w.radio, "radio format (default: the robot model's own, else ulaval-hermes)");
+  verb.add_option("--format", w.format_file, "radio format from this file (docs/radio/own-format.md)");
   verb.add_option("--device", w.options.device,
                   "name of the serial device to make, or a wire's URL (omnihil wires)")
       .capture_default_str();
