@@ -181,6 +181,7 @@ std::string diagnosis_text(const Diagnosis& d) {
     out += "A formula for the residual, to paste into the model\n" + d.unknown.expression_toml + "\n";
   }
   if (!d.next_experiment.what.empty()) out += "Next: " + d.next_experiment.what + "\n";
+  if (!d.next_experiment.command.empty()) out += "  " + d.next_experiment.command + "\n";
   return out;
 }
 

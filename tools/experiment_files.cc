@@ -52,8 +52,10 @@ std::string planned_stream(const PlannedRun& run, const RadioFormat& format, Com
 std::string plan_text(const ExperimentPlan& plan) {
   if (!plan.run) return plan.problem + "\n";
   std::string text = plan.next.what + "\n";
-  text += fmt::format("Simulated: at most {:.3g} A, {:.4g} at the rotor, {:.3g} from the start.\n",
-                      plan.largest_current_A, plan.largest_speed_rad_s, plan.largest_travel);
+  const bool has_current = plan.largest_current_A > 0.0;  // not of a bench that is asked for a motion
+  text += fmt::format("Simulated: at most {}{:.4g} at the rotor, {:.3g} from the start.\n",
+                      has_current ? fmt::format("{:.3g} A, ", plan.largest_current_A) : "",
+                      plan.largest_speed_rad_s, plan.largest_travel);
   constexpr std::size_t kShown = 8;
   text += "Tried, best first (in one direction, refitted to first order):\n";
   std::size_t shown = 0, refused = 0;

@@ -213,6 +213,7 @@ std::string next_section(const Diagnosis& d) {
   const NextExperiment& next = d.next_experiment;
   if (next.what.empty()) return "<p>None is proposed.</p>\n";
   std::string html = fmt::format("<p class=\"sentence\">{}</p>\n", escaped(next.what));
+  if (!next.command.empty()) html += fmt::format("<p><code>{}</code></p>\n", escaped(next.command));
   if (!next.separates.empty()) html += fmt::format("<p>It separates {}.</p>\n", names(next.separates));
   if (next.expected_sigmas > 0.0) {
     html += fmt::format("<p>Simulated, it sets them {} standard deviations apart.</p>\n",

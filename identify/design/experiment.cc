@@ -147,7 +147,8 @@ void Planner::prepare_menu() {
 }
 
 double Planner::largest_level() const {
-  const bool by_voltage = bench_.inputs.front() != "position_target" && bench_.supply_V > 0.0;
+  const bool by_voltage =
+      !bench_.imposed && bench_.inputs.front() != "position_target" && bench_.supply_V > 0.0;
   const double share = options_.limits.voltage_V > 0.0 && by_voltage
                            ? std::min(1.0, options_.limits.voltage_V / bench_.supply_V)
                            : 1.0;
@@ -164,7 +165,9 @@ PlannedInputs Planner::inputs(const Trial& t) const {
 
 // "" or the first limit that the simulated run would pass.
 std::string Planner::broken_limit(const MotionExtremes& m) const {
-  const ExperimentLimits& l = options_.limits;
+  ExperimentLimits l = options_.limits;
+  if (bench_.imposed && l.travel <= 0.0)
+    l.travel = bench_.most_travel;  // what the bench has room for, as far as is known
   const bool linear = dataset_.linear, robot = dataset_.rig == Rig::kRobot;
   if (!m.finite) return "the simulated run diverges";
   if (l.current_A > 0.0 && m.current_A > l.current_A)
@@ -252,15 +255,20 @@ std::vector<Trial> Planner::screen() {
 void Planner::describe(const Trial& best) {
   const MenuRun& run = menu_[best.entry];
   const bool by_target = bench_.inputs.front() == "position_target";
-  const std::string level = by_target
-                                ? fmt::format("{:.3g} rad", best.level)
-                                : percent(best.level / std::max(bench_.full_input, 1e-12)) + " of full duty";
+  const std::string unit = dataset_.linear ? "m" : "rad";
+  const std::string level =
+      bench_.imposed
+          ? fmt::format("{:.3g} {}/s and {:.3g} {}/s2", best.level, unit, bench_.most_acceleration, unit)
+      : by_target ? fmt::format("{:.3g} rad", best.level)
+                  : percent(best.level / std::max(bench_.full_input, 1e-12)) + " of full duty";
   const double duration_s = time_s_.back();
   plan_.run = PlannedRun{.excitation = run.excitation,
                          .words = fmt::format("{}; up to {}, {:.3g} s", run.words, level, duration_s),
                          .input = dataset_.rig == Rig::kRobot ? "duty" : bench_.inputs.front(),
                          .time_s = time_s_,
-                         .duty = inputs(best).drive};
+                         .duty = bench_.imposed
+                                     ? std::vector<std::vector<double>>{imposed_speed(bench_, inputs(best))}
+                                     : inputs(best).drive};
   NextExperiment& next = plan_.next;
   if (!question_.shrink.empty()) {
     plan_.sigma_after = plan_.sigma_before / best.score;

@@ -30,6 +30,8 @@ namespace omnihil {
 
 struct NextExperiment {
   std::string what;  // one sentence
+  std::string
+      command;  // that plans it on this bench, run by run within its limits; empty: nothing to be planned
   std::vector<std::string> separates;
   double expected_sigmas = 0.0;  // distance of the rivals' predictions in it, simulated; 0: not computed
 };
@@ -65,9 +67,10 @@ struct ExperimentOptions {
 
 // The drive's input over time; of a robot, all four.
 struct PlannedRun {
-  std::string excitation;                 // "creep", …
-  std::string words;                      // "ramps slowly through zero, ±10 % duty, 16 s a period"
-  std::string input = "duty";             // or "motor_voltage", "position_target", as the given data have it
+  std::string excitation;  // "creep", …
+  std::string words;       // "ramps slowly through zero, ±10 % duty, 16 s a period"
+  // Or "motor_voltage", "position_target", as the given data have it; "velocity": of a bench that imposes the motion.
+  std::string input = "duty";
   std::vector<double> time_s;             // n samples
   std::vector<std::vector<double>> duty;  // [drive][sample] in the input's unit; one drive, or one per wheel
 };

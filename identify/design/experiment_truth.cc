@@ -102,6 +102,23 @@ Dataset with_run(const Dataset& like, Run run) {
   return dataset;
 }
 
+// Displacement from speed, and counts of an encoder that turns through it.
+void turn_through(const PlannedBench& bench, const std::vector<double>& speed, double gear_ratio, Run& run) {
+  double at = 0.0;
+  std::vector<double> displacement(run.time_s.size(), 0.0);
+  for (std::size_t k = 1; k < displacement.size(); ++k) {
+    if (std::isfinite(speed[k])) at += speed[k] * (run.time_s[k] - run.time_s[k - 1]);
+    displacement[k] = at;
+  }
+  if (auto position = run.signals.find("position"); position != run.signals.end())
+    position->second = displacement;
+  const Channel* encoder = bench.like.channel("encoder");
+  if (encoder == nullptr || !run.signals.contains("encoder")) return;
+  const double per_rad = encoder->counts_per_rev / kTurn * (encoder->on_output ? 1.0 : gear_ratio);
+  for (std::size_t k = 0; k < displacement.size(); ++k)
+    run.signals["encoder"][k] = std::floor(displacement[k] * per_rad);
+}
+
 // Takes an axis' simulated response as its measurement; positions and counts are the integral of its speed,
 // so that laws of the angle are given an angle.
 void measure_axis(const PlannedBench& bench, const Predictor& simulated, const Candidate& truth, Run& run) {
@@ -115,20 +132,48 @@ void measure_axis(const PlannedBench& bench, const Predictor& simulated, const C
       for (double& v : own->second) v = std::isfinite(v) ? v : 0.0;
     }
     if (compared[s].name != "velocity" && compared[s].name != "encoder_velocity") continue;
-    double at = 0.0;
-    std::vector<double> displacement(run.time_s.size(), 0.0);
-    for (std::size_t k = 1; k < displacement.size(); ++k) {
-      const double v = y.values[s][k];
-      if (std::isfinite(v)) at += v * (run.time_s[k] - run.time_s[k - 1]);
-      displacement[k] = at;
+    turn_through(bench, y.values[s], drive.gear_ratio, run);
+  }
+}
+
+// The run of a bench that imposes the motion; its torque or current is what the models are asked for.
+Run imposed_run(const PlannedBench& bench, const PlannedInputs& inputs) {
+  Run run = blank_run(bench, inputs);
+  const std::vector<double> speed = imposed_speed(bench, inputs);
+  for (const auto& [name, values] : bench.example.signals) {
+    const SignalRow* row = find_signal(bench.like.rig, name);
+    if (row != nullptr && row->role == SignalRole::kDrive) run.signals[name].assign(run.time_s.size(), 0.0);
+  }
+  if (auto own = run.signals.find("velocity"); own != run.signals.end()) own->second = speed;
+  turn_through(bench, speed, drive_of(bench.nominal).gear_ratio, run);
+  return run;
+}
+
+// Largest speed, acceleration and travel of the given motion.
+void fill_motion(const Dataset& given, const Predictor& predictor, const Candidate& nominal,
+                 PlannedBench& bench) {
+  constexpr double kAcceleration =
+      0.99;  // quantile: the largest ones are the sensor's noise, differentiated twice
+  bench.full_input = 0.0;
+  std::vector<double> accelerations;
+  for (int r = 0; r < predictor.run_count(); ++r) {
+    for (const RegimeTrack& track : predictor.regimes(nominal, r)) {
+      const bool speed = track.name == "velocity", acceleration = track.name == "acceleration";
+      for (const double v : track.value) {
+        if (!std::isfinite(v)) continue;
+        if (speed) bench.full_input = std::max(bench.full_input, std::abs(v));
+        if (acceleration) accelerations.push_back(std::abs(v));
+      }
     }
-    if (auto position = run.signals.find("position"); position != run.signals.end())
-      position->second = displacement;
-    const Channel* encoder = bench.like.channel("encoder");
-    if (encoder == nullptr || !run.signals.contains("encoder")) continue;
-    const double per_rad = encoder->counts_per_rev / kTurn * (encoder->on_output ? 1.0 : drive.gear_ratio);
-    for (std::size_t k = 0; k < displacement.size(); ++k)
-      run.signals["encoder"][k] = std::floor(displacement[k] * per_rad);
+  }
+  if (!accelerations.empty())
+    bench.most_acceleration = quantile(std::move(accelerations), kAcceleration, QuantileRank::kLower);
+  for (const Run& run : given.runs) {
+    const std::vector<double>* position = run.signal("position");
+    if (position == nullptr || position->empty()) continue;
+    for (const double x : *position) {
+      if (std::isfinite(x)) bench.most_travel = std::max(bench.most_travel, std::abs(x - position->front()));
+    }
   }
 }
 
@@ -137,18 +182,20 @@ void measure_axis(const PlannedBench& bench, const Predictor& simulated, const C
 PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const Predictor& predictor) {
   PlannedBench bench{.like = given, .example = {}, .nominal = nominal, .inputs = {}, .problem = {}};
   bench.like.runs.clear();
-  if (predictor.method() == Method::kInverse) {
-    bench.problem =
-        "this bench gives torque or current, or turns the shaft itself: the model answers to its motion, and "
-        "a "
-        "motion cannot be asked of it";
-    return bench;
-  }
   for (const Run& run : given.runs) {
     if (run.split == Split::kTraining && !run.steady) {
       bench.example = run;
       break;
     }
+  }
+  if (predictor.method() == Method::kInverse) {
+    bench.imposed = true;
+    bench.inputs = {"velocity"};
+    fill_motion(given, predictor, nominal, bench);
+    fill_noise(predictor, bench.like);
+    if (bench.example.time_s.empty() || bench.full_input <= 0.0 || bench.most_acceleration <= 0.0)
+      bench.problem = "no run of use \"fit\" is a time series in which this bench moves";
+    return bench;
   }
   bench.supply_V = nominal.file.parameters.value_or("supply.voltage_V", 0.0);
   const bool robot = given.rig == Rig::kRobot;
@@ -174,8 +221,19 @@ PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const
   return bench;
 }
 
+std::vector<double> imposed_speed(const PlannedBench& bench, const PlannedInputs& inputs) {
+  std::vector<double> speed(inputs.time_s.size(), 0.0);
+  for (std::size_t k = 1; k < speed.size(); ++k) {
+    const double most = bench.most_acceleration * (inputs.time_s[k] - inputs.time_s[k - 1]);
+    speed[k] = speed[k - 1] + std::clamp(inputs.drive[0][k] - speed[k - 1], -most, most);
+  }
+  return speed;
+}
+
 std::unique_ptr<Predictor> simulated_truth(const PlannedBench& bench, const PlannedInputs& inputs,
                                            const Candidate& truth, std::uint64_t seed) {
+  if (bench.imposed)
+    return make_predictor(with_run(bench.like, imposed_run(bench, inputs)), bench.nominal, {});
   Run run = blank_run(bench, inputs);
   if (bench.like.rig == Rig::kRobot) {
     return make_predictor(with_run(bench.like, run), bench.nominal, {})->simulated(truth, seed);
@@ -204,6 +262,17 @@ MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& 
         const double speed = std::abs(m.encoder_rad[k][i] - m.encoder_rad[k - 1][i]) / dt_s;
         out.rotor_speed_rad_s = std::max(out.rotor_speed_rad_s, speed);
       }
+    }
+    return out;
+  }
+  if (bench.imposed) {
+    const std::vector<double> speed = imposed_speed(bench, inputs);
+    const double gear = bench.like.linear ? 1.0 : drive_of(model).gear_ratio;
+    double at = 0.0;
+    for (std::size_t k = 1; k < speed.size(); ++k) {
+      at += speed[k] * (inputs.time_s[k] - inputs.time_s[k - 1]);
+      out.rotor_speed_rad_s = std::max(out.rotor_speed_rad_s, std::abs(speed[k]) * gear);
+      out.travel = std::max(out.travel, std::abs(at));
     }
     return out;
   }

@@ -28,10 +28,18 @@ struct PlannedBench {
   double full_input = 1.0;          // input at an excitation's value of 1, in the input's unit
   double supply_V = 0.0;
   double camera_period_s = 0.0;  // 0: none
-  std::string problem;           // reason why no run can be planned; empty: none
+  // The bench is asked for a motion and its input is what is predicted: `drive` is the speed of the output, which
+  // follows with no more acceleration than the given data have.
+  bool imposed = false;
+  double most_acceleration = 0.0;  // rad/s2; of a linear axis m/s2
+  double most_travel = 0.0;        // of the given data, from their starts: rad or m
+  std::string problem;             // reason why no run can be planned; empty: none
 };
 
 PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const Predictor& predictor);
+
+// Speed of an imposed motion, n samples: the planned speed within the bench's acceleration.
+std::vector<double> imposed_speed(const PlannedBench& bench, const PlannedInputs& run);
 
 std::unique_ptr<Predictor> simulated_truth(const PlannedBench& bench, const PlannedInputs& run,
                                            const Candidate& truth, std::uint64_t seed);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "sim/law/effect_registry.h"
 
@@ -30,12 +31,33 @@ std::string revealing(const std::vector<std::string>& members) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+bool is_effect(const std::string& member) { return info_of(member) != nullptr; }
+
+// The set that decides a name comes before one that decides a number; among equals the one of the larger effect,
+// as they are listed.
+const ConfoundedSet& most_decisive(const std::vector<ConfoundedSet>& sets) {
+  const auto names = std::find_if(sets.begin(), sets.end(), [](const ConfoundedSet& set) {
+    return std::count_if(set.members.begin(), set.members.end(), is_effect) > 1;
+  });
+  return names != sets.end() ? *names : sets.front();
+}
+
+// The rivals of `omnihil experiment`: effects, and "base" where the other one is a base parameter.
+std::string command_for(const Dataset& dataset, const std::vector<std::string>& members) {
+  std::vector<std::string> rivals;
+  std::copy_if(members.begin(), members.end(), std::back_inserter(rivals), is_effect);
+  if (rivals.empty()) return "";
+  if (rivals.size() == 1) rivals.push_back("base");
+  return fmt::format("omnihil experiment {} --separate {} --out next", dataset.name, fmt::join(rivals, ","));
+}
+
 }  // namespace
 
 NextExperiment next_experiment(const Dataset& dataset, const Diagnosis& diagnosis) {
   NextExperiment next;
   if (!diagnosis.confounded.empty()) {
-    next.separates = diagnosis.confounded.front().members;
+    next.separates = most_decisive(diagnosis.confounded).members;
+    next.command = command_for(dataset, next.separates);
     next.what =
         fmt::format("To separate {}: {}", fmt::join(next.separates, " and "), revealing(next.separates));
     return next;
@@ -56,6 +78,7 @@ NextExperiment next_experiment(const Dataset& dataset, const Diagnosis& diagnosi
     if (info == nullptr || !hidden) continue;
     next.what = fmt::format("To see {}, which these data could not show: {}", r.effect, info->reveals);
     next.separates = {r.effect};
+    next.command = command_for(dataset, next.separates);
     return next;
   }
   if (!dataset.has(Split::kExtrapolation)) {

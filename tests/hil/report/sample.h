@@ -185,7 +185,10 @@ inline Diagnosis sample_diagnosis() {
   d.where = {{"velocity", "rotor_angle", 0.83, 12.0}};
   d.unknown.formula = "a*sin(12*theta_rotor_rad)";
   d.unknown.expression_toml = "[effects.expression.rest]\nformula = \"a < b\"";
-  d.next_experiment = {"Hold three currents at 5 rad/s for 10 s each.", {"cogging", "torque_ripple"}, 7.5};
+  d.next_experiment = {.what = "Hold three currents at 5 rad/s for 10 s each.",
+                       .command = "omnihil experiment bench --separate cogging,torque_ripple --out next",
+                       .separates = {"cogging", "torque_ripple"},
+                       .expected_sigmas = 7.5};
   d.not_visible = {"backlash: the drive never reverses"};
   return d;
 }

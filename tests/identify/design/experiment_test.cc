@@ -2,6 +2,7 @@
 #include "identify/design/experiment.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/bench/excitation.h"
 #include "tests/identify/simulated_robot.h"
@@ -163,6 +164,44 @@ TEST(Experiment, TheSameForAnyNumberOfThreads) {
   const ExperimentPlan b = plan_experiment(one_way_axis(0.2, 0.1, 0.05, base), rivals, {}, many);
   EXPECT_EQ(a.next.what, b.next.what);
   EXPECT_EQ(a.expected_sigmas, b.expected_sigmas);
+}
+
+// A bench that imposes the motion and tells the torque: fast one-way sines, where Stribeck's curve is flat.
+Dataset imposed_axis(const Candidate& truth) {
+  Dataset d;
+  Run run;
+  run.file = "imposed.csv";
+  d.channels = {{.signal = "motor_torque", .column = "tau", .unit = "N m", .sigma = 5e-4},
+                {.signal = "position", .column = "x", .unit = "rad", .sigma = 1e-6}};
+  for (int k = 0; k < 4000; ++k) {
+    const double t = 1e-3 * k;
+    run.time_s.push_back(t);
+    run.signals["position"].push_back(60.0 * t -
+                                      2.0 * std::cos(10.0 * t));  // 40 to 80 rad/s, up to 200 rad/s2
+    run.signals["motor_torque"].push_back(0.0);
+  }
+  d.runs = {run};
+  return measured(d, *make_predictor(d, truth, {})->simulated(truth, 3));
+}
+
+TEST(Experiment, ABenchThatImposesTheMotionIsAskedForOneThatItCanMake) {
+  const Candidate base = axis_candidate(), stribeck = with(base, "stribeck_friction", {3e-3, 3.0, 1.0});
+  const Dataset given = imposed_axis(stribeck);
+  const ExperimentPlan plan =
+      plan_experiment(given, {{"stribeck_friction", stribeck}, {"base", base}}, {}, options(6.0));
+  ASSERT_TRUE(plan.run) << plan.problem;
+  EXPECT_EQ(plan.run->input, "velocity");
+  ASSERT_EQ(plan.run->duty.size(), 1U);
+  const std::vector<double>& speed = plan.run->duty.front();
+  double travel = 0.0;
+  for (std::size_t k = 1; k < speed.size(); ++k) {
+    EXPECT_LE(std::abs(speed[k] - speed[k - 1]), 200.0 * 1e-3 * 1.05);
+    EXPECT_LE(std::abs(speed[k]), 80.0 * 1.05);
+    travel += speed[k] * 1e-3;
+    EXPECT_LE(std::abs(travel), 241.0);  // that of the given motion
+  }
+  EXPECT_GT(plan.expected_sigmas, 5.0) << plan.next.what;
+  EXPECT_GT(plan.expected_sigmas, 2.0 * plan.given_sigmas) << plan.next.what;
 }
 
 // A robot's floor tilts it, or its masses sit off the middle: standing still shows neither.

@@ -1,0 +1,47 @@
+#include "identify/select/next_experiment.h"
+
+#include <gtest/gtest.h>
+
+namespace omnihil {
+namespace {
+
+Dataset bench() {
+  Dataset d;
+  d.name = "run/bench";
+  return d;
+}
+
+TEST(NextExperimentTest, DecidesANameBeforeANumber) {
+  Diagnosis d;
+  d.confounded = {{.members = {"gear_efficiency", "motor.torque_constant_Nm_per_A"}, .sentence = {}},
+                  {.members = {"cogging", "imbalance"}, .sentence = {}}};
+  const NextExperiment next = next_experiment(bench(), d);
+  EXPECT_EQ(next.separates, (std::vector<std::string>{"cogging", "imbalance"}));
+  EXPECT_EQ(next.command, "omnihil experiment run/bench --separate cogging,imbalance --out next");
+}
+
+TEST(NextExperimentTest, HoldsAnEffectAgainstTheBaseWhereABaseParameterImitatesIt) {
+  Diagnosis d;
+  d.confounded = {{.members = {"gear_efficiency", "motor.torque_constant_Nm_per_A"}, .sentence = {}}};
+  EXPECT_EQ(next_experiment(bench(), d).command,
+            "omnihil experiment run/bench --separate gear_efficiency,base --out next");
+}
+
+TEST(NextExperimentTest, PlansTheRunThatShowsWhatTheseDataCouldNot) {
+  Diagnosis d;
+  RankedEffect hidden;
+  hidden.effect = "cogging";
+  hidden.visibility = Visibility::kBelowNoise;
+  d.ranking = {hidden};
+  EXPECT_EQ(next_experiment(bench(), d).command,
+            "omnihil experiment run/bench --separate cogging,base --out next");
+}
+
+TEST(NextExperimentTest, HasNoCommandWhereThereIsNothingToTellApart) {
+  const NextExperiment next = next_experiment(bench(), Diagnosis());
+  EXPECT_FALSE(next.what.empty());
+  EXPECT_EQ(next.command, "");
+}
+
+}  // namespace
+}  // namespace omnihil
