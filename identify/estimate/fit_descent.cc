@@ -1,6 +1,7 @@
 #include "identify/estimate/fit_descent.h"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 
@@ -15,6 +16,15 @@ Eigen::VectorXd scales_of(const FitProblem& problem) {
   for (Eigen::Index i = 0; i < scale.size(); ++i)
     scale[i] = problem.unknowns()[static_cast<std::size_t>(i)].scale;
   return scale;
+}
+
+// Ceres logs a start that cannot be evaluated to stderr, whatever its logging_type; the summary says it as well.
+void silence_log() {
+  static const bool kOnce = [] {
+    FLAGS_minloglevel = google::GLOG_FATAL;
+    return true;
+  }();
+  static_cast<void>(kOnce);
 }
 
 // Gauss-Newton matrix of data and priors, p x p, unknowns in units of their scale.
@@ -134,6 +144,7 @@ Descent descend(const FitProblem& problem, const Eigen::VectorXd& start, int ite
   solver.line_search_interpolation_type = ceres::BISECTION;
   solver.max_num_line_search_step_size_iterations = 4;
   solver.logging_type = ceres::SILENT;
+  silence_log();
   solver.num_threads = 1;
   Stopper stopper(options.stop);
   solver.callbacks.push_back(&stopper);
