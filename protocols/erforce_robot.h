@@ -1,8 +1,8 @@
 // What ER-Force's packets of 2025 ask of a robot, what it answers, and a host's command as a packet.
 //
 //   RobotCommand command = erforce::to_command(values);
-//   erforce::answer(kMessages, to_robot, feedback, out);
-//   if (!erforce::encode_command(format, command, out)) …   // it cannot be said
+//   erforce::answer(kMessages, to_robot, feedback, answered);
+//   if (!erforce::encode_command(format, command, bytes)) return;   // it cannot be said
 #pragma once
 #include <vector>
 

@@ -1,8 +1,8 @@
 // What ibis' command asks of a robot, what the robot answers, and a host's command as a packet.
 //
 //   RobotCommand command = ibis::to_command(values);
-//   ibis::answer(kMessages, to_robot, feedback, out);
-//   if (!ibis::encode_command(kMessages, command, out)) …   // it cannot be said
+//   ibis::answer(kMessages, to_robot, feedback, answered);
+//   if (!ibis::encode_command(kMessages, command, bytes)) return;   // it cannot be said
 #pragma once
 #include <span>
 #include <vector>

@@ -1,8 +1,8 @@
 // The rules by which numbers become the integers of kScaled fields: each team's own arithmetic, by name.
 //
-//   scaled("vx", 12, Sign::kTwosComplement, kEvenSteps, -6.0, 6.0, "m/s", "velocity")
 //   const ScaleRule* rule = find_scale_rule("nearest");   // as a table in a file names it; nullptr when unknown
 //
+// In a table: scaled("vx", 12, Sign::kTwosComplement, kEvenSteps, -6.0, 6.0, "m/s", "velocity").
 // A rule knows its field: limits lo and hi, width, sign. What lies beyond the limits is the rule's `beyond`.
 #pragma once
 #include <span>

@@ -1,6 +1,6 @@
 // The words that stand for the enumerations of a packet table, in files: emit/toml.cc writes them, hil/radio_file reads them.
 //
-//   kKindWords[static_cast<std::size_t>(field.kind)]   // "integer"
+//   const std::string_view word = kKindWords[0];   // "integer", by the number of the enumeration's value
 #pragma once
 #include <string_view>
 

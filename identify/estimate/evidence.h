@@ -1,7 +1,7 @@
 // What standard rules of model selection say of one addition, from the whitened residuals of the model without it
 // (parent) and with it (child):
 //
-//   const Evidence e = evidence_of(training, validation, parent_residual, child_residual, extra_parameters);
+//   const Evidence e = evidence_of(training, fit, validation, held_out, extra_parameters);
 //   e.delta_bic < 0;                        // the Bayesian information criterion prefers the child
 //   e.delta_elpd > 2 * e.delta_elpd_se;     // so does the log density that it predicts for held-out runs
 //

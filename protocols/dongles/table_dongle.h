@@ -1,6 +1,7 @@
 // The dongle of a format that comes from a file: a plain one, what packets ask and answers say by their fields' meaning.
 //
-//   format.dongle = make_table_dongle;
+//   RadioFormat from_file;
+//   from_file.dongle = make_table_dongle;
 //
 // Cannot: several robots in one packet, answers of the dongle itself, retries, hosts that are told from robots by more
 // than the tables. Those need a file under teams/.
