@@ -13,7 +13,6 @@ import argparse
 import json
 import pathlib
 
-
 RULES = {
     "today's": lambda r: r["accepted"],
     "today's, without model discrepancy": lambda r: r["accepted"] or "the form of an effect" in r["why"],
