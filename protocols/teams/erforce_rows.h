@@ -1,5 +1,5 @@
 // ER-Force's packets of 2025, alike behind each of their two serial framings, and what they mean to a robot.
-// Each framing gives what stands in front of a packet, and takes its tables: erforce::Tables<kNoLead>::kMessages.
+// Each framing gives what stands in front of a packet, and takes its tables, kMessages of erforce Tables<kNoLead>.
 //
 // A packet is header and 28 bytes, fields without gaps from the lowest bit up. Neither header nor payload says which
 // way it goes; a robot's answer is what is no command: halt has nothing but zeros behind it, the others their kind.

@@ -1,5 +1,5 @@
 // Rows of ibis' 64-byte command and of its 128-byte feedback, alike on the network and on the robot's serial line.
-// Each carriage gives its first byte and what stands behind, and takes its tables: ibis::Tables<kFirstByte, kBehind>::kMessages.
+// Each carriage gives its first byte and what stands behind, and takes its tables, kMessages of ibis Tables<kFirstByte, kBehind>.
 //
 // Source: ibis-ssl/crane cd015fe, ibis-ssl/G474_Orion_main c7c89ec, ibis-ssl/Orion_CM4 28c3ca0.
 #pragma once
