@@ -69,6 +69,7 @@ template Option Verb::add_option(const std::string&, double&, const std::string&
 template Option Verb::add_option(const std::string&, int&, const std::string&);
 template Option Verb::add_option(const std::string&, std::int64_t&, const std::string&);
 template Option Verb::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option Verb::add_option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
 
 Option Verb::add_flag(const std::string& name, bool& value, const std::string& what) {
   return Option(app_->add_flag(name, value, what));

@@ -49,6 +49,8 @@ ImageKind image_kind(const std::string& file) {
   return arm ? ImageKind::kArm : ImageKind::kNone;
 }
 
+bool is_reference(const FirmwareChoice& choice) { return choice.file.empty() || choice.file == "reference"; }
+
 std::vector<std::string> problems_of(const FirmwareChoice& choice) {
   std::vector<std::string> problems;
   std::string error;
@@ -81,8 +83,16 @@ Session::FirmwareMaker library_maker(const FirmwareChoice& choice, const Session
 
 }  // namespace
 
+std::vector<HashedFile> firmware_files(const FirmwareChoice& choice) {
+  if (is_reference(choice)) return {};
+  if (looks_like_wire(choice.file)) return {{choice.file, ""}};
+  std::vector<HashedFile> files{hash_file(choice.file)};
+  if (!choice.board.empty()) files.push_back(hash_file(choice.board));
+  return files;
+}
+
 Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session) {
-  if (choice.file.empty()) {
+  if (is_reference(choice)) {
     if (!choice.board.empty()) {
       throw_problems({fmt::format("board {}: needs --firmware IMAGE beside it", choice.board)});
     }

@@ -3,7 +3,7 @@
 //   FirmwareChoice choice{.file = "./libmyteam.so"};
 //   Session session(config, open_firmware(choice, config));
 //
-//   (empty)            the reference firmware that the robot's model asks for, in this process
+//   (empty), reference the reference firmware that the robot's model asks for, in this process
 //   a shared object    of this computer: by the C ABI (omnihil_firmware.h), each robot in a process of its own
 //   a wire's URL       serial:/dev/ttyACM0, can:can0, …: a board on the desk (hil/firmware/remote_firmware.h)
 //   a microcontroller image (32-bit ARM executable) with its board file: emulated, one board per robot
@@ -13,17 +13,22 @@
 #include <vector>
 
 #include "hil/loop/session.h"
+#include "hil/text/hashed_file.h"
 
 namespace omnihil {
 
 struct FirmwareChoice {
-  std::string file;          // empty: the reference firmware
-  std::string board;         // board file of a microcontroller image
+  std::string file{};        // empty, "reference": the reference firmware
+  std::string board{};       // board file of a microcontroller image
   double deadline_s = 10.0;  // of wall time: a call that takes longer hangs
   bool virtual_time = true;  // false: the run is paced by wall time, so a board on the desk is not waited for
 };
 
 // Throws std::invalid_argument, all problems in one text; the maker does, too, when a robot is refused.
 Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session);
+
+// The files it comes from; none of the reference firmware; a board on the desk has its wire's name and no hash.
+// Throws std::system_error when one cannot be read.
+std::vector<HashedFile> firmware_files(const FirmwareChoice& choice);
 
 }  // namespace omnihil

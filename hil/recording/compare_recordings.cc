@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "hil/recording/compare_recordings_parts.h"
 #include "hil/text/recording_text.h"
@@ -17,6 +19,15 @@ std::string Difference::text() const {
   out += " (tolerance ";
   append_number(out, tolerance);
   return out + ")";
+}
+
+double SignalSummary::rms() const {
+  return values == 0 ? 0.0 : std::sqrt(sum_of_squares / static_cast<double>(values));
+}
+
+double SignalSummary::over_tolerance() const {
+  if (tolerance > 0.0) return largest / tolerance;
+  return largest > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
 std::uint64_t RecordingComparison::values() const {
@@ -37,14 +48,17 @@ std::size_t DifferenceNotes::signal(const std::string& name, std::string_view un
   return at->second;
 }
 
-void DifferenceNotes::value(std::size_t index, double difference, std::int64_t now_ns, int robot_id) {
+void DifferenceNotes::value(std::size_t index, double difference, std::int64_t now_ns, int robot_id,
+                            std::string_view column) {
   SignalSummary& summary = result_.signals[index];
   ++summary.values;
+  summary.sum_of_squares += difference * difference;
   if (difference > summary.tolerance) ++summary.beyond;
   if (difference > summary.largest) {
     summary.largest = difference;
     summary.largest_ns = now_ns;
     summary.largest_robot = robot_id;
+    summary.largest_column = column;
   }
 }
 

@@ -37,6 +37,12 @@ struct SignalSummary {
   double largest = 0.0;      // difference
   std::int64_t largest_ns = 0;
   int largest_robot = -1;
+  std::string largest_column;  // with its wheel number; empty of a packet's field
+  double sum_of_squares = 0.0;
+
+  double rms() const;
+  double over_tolerance()
+      const;  // largest by tolerance; of a tolerance of zero infinite, or zero where alike
 };
 
 struct RecordingComparison {

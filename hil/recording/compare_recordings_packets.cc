@@ -3,41 +3,11 @@
 #include <map>
 
 #include "hil/recording/compare_recordings_parts.h"
-#include "hil/recording/stream_frames.h"
+#include "hil/recording/recorded_packets.h"
 #include "hil/text/recording_text.h"
 
 namespace omnihil {
 namespace {
-
-struct Packet {
-  std::int64_t now_ns = 0;  // when its last byte left
-  FrameCutter::Frame frame;
-};
-
-std::vector<Packet> packets_of(const Recording& recording, const RadioFormat& format) {
-  std::vector<Packet> packets;
-  FrameCutter cutter(format);
-  const std::vector<TimedBytes> chunks = dongle_bytes_of(recording);
-  auto chunk = chunks.begin();  // the one that holds the last byte of the frame at hand
-  std::uint64_t chunk_end = chunk == chunks.end() ? 0 : chunk->bytes.size();
-  for (const TimedBytes& each : chunks) cutter.push(each.bytes);
-  // What a cut-off recording ends with may be the beginning of a packet: it is left out.
-  if (recording.complete) cutter.finish();
-  while (auto frame = cutter.next()) {
-    const std::uint64_t frame_end = frame->offset + frame->bytes.size();
-    while (chunk_end < frame_end) chunk_end += (++chunk)->bytes.size();
-    packets.push_back({chunk->now_ns, std::move(*frame)});
-  }
-  return packets;
-}
-
-// The robot that a packet came from, by the field names of the formats; -1 when it has none.
-int robot_of(const Values& values) {
-  for (const std::string_view name : {"fromRobotId", "robot", "robot_id"}) {
-    if (values.message->field_index(name) >= 0) return static_cast<int>(values.number(name));
-  }
-  return -1;
-}
 
 class PacketComparer {
  public:
@@ -46,7 +16,7 @@ class PacketComparer {
       : format_(format), tolerances_(tolerances), result_(result), notes_(notes) {}
 
   // False when the streams are out of step from here on.
-  bool compare(const Packet* a, const Packet* b) {
+  bool compare(const RecordedPacket* a, const RecordedPacket* b) {
     if (a == nullptr || b == nullptr) return missing(a, b);
     ++result_.packets;
     result_.bytes += a->frame.bytes.size();
@@ -60,36 +30,38 @@ class PacketComparer {
   }
 
  private:
-  bool missing(const Packet* a, const Packet* b) {
-    const auto text = [&](const Packet* p) { return p == nullptr ? std::string("none") : name_of(*p); };
+  bool missing(const RecordedPacket* a, const RecordedPacket* b) {
+    const auto text = [&](const RecordedPacket* p) {
+      return p == nullptr ? std::string("none") : name_of(*p);
+    };
     notes_.differs({(a != nullptr ? a : b)->now_ns, -1, "packet", text(a), text(b), "", 0.0});
     return false;
   }
-  bool compare_raw(const Packet& a, const Packet& b) {
+  bool compare_raw(const RecordedPacket& a, const RecordedPacket& b) {
     if (a.frame.bytes == b.frame.bytes) return true;
     const FrameCutter::Frame& clear = a.frame.understood ? a.frame : b.frame;
-    const int robot = clear.understood ? robot_of(format_.decode(clear.bytes).values) : -1;
+    const int robot = clear.understood ? packet_robot(format_.decode(clear.bytes).values) : -1;
     notes_.differs({a.now_ns, robot, "packet", name_of(a), name_of(b), "", 0.0});
     return a.frame.bytes.size() == b.frame.bytes.size();
   }
-  bool other_message(const Packet& a, const DecodeResult& left, const DecodeResult& right) {
-    notes_.differs({a.now_ns, robot_of(left.values), "packet", std::string(left.values.message->name),
+  bool other_message(const RecordedPacket& a, const DecodeResult& left, const DecodeResult& right) {
+    notes_.differs({a.now_ns, packet_robot(left.values), "packet", std::string(left.values.message->name),
                     std::string(right.values.message->name), "", 0.0});
     return false;
   }
-  void compare_time(const Packet& a, const Packet& b, const DecodeResult& left) {
+  void compare_time(const RecordedPacket& a, const RecordedPacket& b, const DecodeResult& left) {
     const double tolerance_s = tolerances_.packet_time_s();
     const double difference_s = std::abs(static_cast<double>(a.now_ns - b.now_ns)) * 1e-9;
-    const int robot = robot_of(left.values);
+    const int robot = packet_robot(left.values);
     notes_.value(notes_.signal("packet_time_s", "s", tolerance_s), difference_s, a.now_ns, robot);
     if (difference_s <= tolerance_s) return;
     notes_.differs({std::min(a.now_ns, b.now_ns), robot,
                     "time of packet " + std::string(left.values.message->name), seconds(a.now_ns),
                     seconds(b.now_ns), "s", tolerance_s});
   }
-  void compare_fields(const Packet& a, const DecodeResult& left, const DecodeResult& right) {
+  void compare_fields(const RecordedPacket& a, const DecodeResult& left, const DecodeResult& right) {
     const Message& message = *left.values.message;
-    const int robot = robot_of(left.values);
+    const int robot = packet_robot(left.values);
     if (left.values.text != right.values.text) {
       notes_.differs({a.now_ns, robot, "packet " + std::string(message.name) + " text",
                       in_quotes(left.values.text), in_quotes(right.values.text), "", 0.0});
@@ -128,7 +100,7 @@ class PacketComparer {
     }
     return rules;
   }
-  std::string name_of(const Packet& packet) const {
+  std::string name_of(const RecordedPacket& packet) const {
     const DecodeResult decoded = format_.decode(packet.frame.bytes);
     const std::string hex = to_hex(packet.frame.bytes);
     if (!packet.frame.understood) return "refused (" + std::string(to_string(decoded.error)) + ") " + hex;
@@ -152,8 +124,8 @@ class PacketComparer {
 
 void compare_packets(const Recording& recorded, const Recording& replayed, const RadioFormat& format,
                      const Tolerances& tolerances, RecordingComparison& result, DifferenceNotes& notes) {
-  const std::vector<Packet> a = packets_of(recorded, format);
-  const std::vector<Packet> b = packets_of(replayed, format);
+  const std::vector<RecordedPacket> a = dongle_packets(recorded, format);
+  const std::vector<RecordedPacket> b = dongle_packets(replayed, format);
   PacketComparer comparer(format, tolerances, result, notes);
   const std::size_t count = recorded.complete ? std::max(a.size(), b.size()) : a.size();
   for (std::size_t i = 0; i < count; ++i) {

@@ -12,7 +12,8 @@ class DifferenceNotes {
 
   // The place of a signal in result.signals; made at the first call.
   std::size_t signal(const std::string& name, std::string_view unit, double tolerance);
-  void value(std::size_t signal, double difference, std::int64_t now_ns, int robot_id);
+  void value(std::size_t signal, double difference, std::int64_t now_ns, int robot_id,
+             std::string_view column = {});
   // Keeps the earliest; of two at one time the one that was noted first.
   void differs(Difference difference);
 

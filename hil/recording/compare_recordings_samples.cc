@@ -78,6 +78,7 @@ void compare_samples(const Recording& recorded, const Recording& replayed, const
   const auto b = samples_of(replayed);
   const auto columns = common_columns(recorded.header, replayed.header, tolerances, result, notes);
   result.samples_identical = true;
+  if (a.empty()) return;  // the bytes alone were recorded
   const std::size_t count = recorded.complete ? std::max(a.size(), b.size()) : a.size();
   for (std::size_t i = 0; i < count; ++i) {
     const RecordedChunk* left = i < a.size() ? a[i] : nullptr;
@@ -96,7 +97,7 @@ void compare_samples(const Recording& recorded, const Recording& replayed, const
       const double difference = difference_of(column, x, y);
       const bool same_bits = std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
       result.samples_identical = result.samples_identical && same_bits;
-      notes.value(column.signal, difference, left->now_ns, left->robot_id);
+      notes.value(column.signal, difference, left->now_ns, left->robot_id, column.name);
       if (tolerances.exact ? same_bits : difference <= column.tolerance) continue;
       notes.differs({left->now_ns, left->robot_id, column.name, number_text(x), number_text(y), column.unit,
                      column.tolerance});

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "hil/loop/session.h"
+#include "hil/text/hashed_file.h"
 
 namespace omnihil {
 
@@ -35,7 +36,9 @@ struct RecordingHeader {
   std::string robot_model;       // name as given
   std::string robot_model_text;  // the model file's whole text, so that a replay needs no other file
   std::string radio_format;
-  std::string firmware;
+  std::string firmware;  // what it calls itself
+  std::vector<HashedFile>
+      firmware_files;  // the user's own: library, or image and board; none: this program's
   std::vector<int> robot_ids;
   Team team = Team::kBlue;
   PlantOptions plant;

@@ -98,6 +98,13 @@ class HeaderFields {
       values.push_back({name, text.get<std::string>()});
     }
   }
+  // Absent: none.
+  void hashes(const char* key, std::vector<HashedFile>& values) {
+    if (!json_.contains(key)) return;
+    std::vector<ModelText> texts;
+    models(key, texts);
+    for (ModelText& each : texts) values.push_back({std::move(each.name), std::move(each.text)});
+  }
   void nothing_else() {
     for (const auto& [key, value] : json_.items()) {
       if (!known_.contains(key)) refuse(key.c_str(), value.dump(), "no such key");
@@ -140,6 +147,7 @@ void read_fields(HeaderFields& fields, RecordingHeader& header) {
   fields.models("included_models", header.included_models);
   fields.text("radio", header.radio_format);
   fields.text("firmware", header.firmware);
+  fields.hashes("firmware_files", header.firmware_files);
   fields.ids("robot_ids", header.robot_ids);
   fields.one_of("team", kTeams, header.team);
   fields.one_of("physics", kPhysics, header.plant.physics);
@@ -190,6 +198,7 @@ std::string to_json(const RecordingHeader& header) {
   for (const ModelText& model : header.included_models) json["included_models"][model.name] = model.text;
   json["radio"] = header.radio_format;
   json["firmware"] = header.firmware;
+  for (const HashedFile& file : header.firmware_files) json["firmware_files"][file.name] = file.sha256;
   json["robot_ids"] = header.robot_ids;
   json["team"] = name_of(kTeams, header.team);
   json["physics"] = to_string(header.plant.physics);

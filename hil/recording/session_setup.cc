@@ -74,14 +74,17 @@ SessionConfig session_config(const SessionSetup& setup) {
   return config;
 }
 
+void set_model(RecordingHeader& header, const ModelBundle& model) {
+  header.robot_model = model.name;
+  header.robot_model_text = model.robot_text;
+  header.included_models.clear();
+  if (!model.motor_file.empty()) header.included_models.push_back({model.motor_file, model.motor_text});
+}
+
 RecordingHeader recording_header(const SessionSetup& setup, const std::string& commit) {
   RecordingHeader header;
   header.commit = commit;
-  header.robot_model = setup.model.name;
-  header.robot_model_text = setup.model.robot_text;
-  if (!setup.model.motor_file.empty()) {
-    header.included_models.push_back({setup.model.motor_file, setup.model.motor_text});
-  }
+  set_model(header, setup.model);
   header.radio_format = setup.radio_format;
   header.robot_ids = setup.robot_ids;
   header.team = setup.team;

@@ -34,9 +34,11 @@ struct SessionSetup {
 // Reads the model from its texts; throws std::invalid_argument with every problem, a line each.
 SessionConfig session_config(const SessionSetup& setup);
 
-// `firmware`, `started` and the columns are left to the writer.
+// `firmware`, `firmware_files`, `started` and the columns are left to the caller and the writer.
 RecordingHeader recording_header(const SessionSetup& setup, const std::string& commit);
 SessionSetup session_setup(const RecordingHeader& header);
+// The model of `header` replaced, its name and its texts.
+void set_model(RecordingHeader& header, const ModelBundle& model);
 
 // "0-5", "0,2,7", "0-2,7" -> ascending ids, each once. What is wrong goes to `problems`, a line each.
 std::vector<int> parse_robot_list(std::string_view text, std::vector<std::string>& problems);

@@ -138,6 +138,52 @@ TEST_F(RecordingVerbs, CheckOfACutRunSaysSo) {
   EXPECT_TRUE(ran.says("last line is incomplete")) << ran.text;
 }
 
+TEST_F(RecordingVerbs, CheckOfAFolderGivesEachItsVerdictAndAllReports) {
+  const auto all = folder_ / "recordings";
+  std::filesystem::create_directories(all / "old");
+  fake::write_text(all / "a.omnirec", text_);
+  std::string changed = text_;
+  const std::size_t value = changed.rfind(' ', changed.rfind("\n# {\"end\"")) + 1;
+  changed.replace(value, changed.find('\n', value) - value, "99");  // true_load_N_4
+  fake::write_text(all / "old" / "b.omnirec", changed);
+  fake::write_text(all / "c.omnirec", "no recording\n");
+  fake::write_text(all / "notes.txt", "of no concern\n");
+  const auto junit = folder_ / "junit.xml", json = folder_ / "check.json", html = folder_ / "check.html",
+             summary = folder_ / "summary.md", history = folder_ / "history.jsonl";
+  const std::string reports = "--junit" + shell(junit) + "--json" + shell(json) + "--html" + shell(html) +
+                              "--summary" + shell(summary) + "--history" + shell(history) + "--label c1";
+  const Ran ran = run_omnihil("check " + reports + shell(all));
+  EXPECT_EQ(ran.exit_code, 2) << ran.text;  // the greatest
+  EXPECT_TRUE(ran.says("3 recordings: 1 agree, 1 differ, 1 without a verdict")) << ran.text;
+  EXPECT_TRUE(ran.says("a.omnirec: 0.120 s")) << ran.text;
+  EXPECT_NE(fake::read_text(junit).find("tests=\"3\" failures=\"1\" errors=\"1\""), std::string::npos);
+  EXPECT_NE(fake::read_text(json).find("\"verdict\":\"unusable\""), std::string::npos);
+  EXPECT_NE(fake::read_text(summary).find("**differs**"), std::string::npos);
+  EXPECT_NE(fake::read_text(html).find("true_load_N_4"), std::string::npos);
+  EXPECT_EQ(run_omnihil("check " + reports + shell(all)).exit_code, 2);
+  EXPECT_EQ(std::ranges::count(fake::read_text(history), '\n'), 6);
+  EXPECT_NE(fake::read_text(html).find("run by run"), std::string::npos);
+  const Ran empty =
+      run_omnihil("check" + shell(folder_ / "recordings" / "old" / ".." / "old") + "--junit /nonexistent/x");
+  EXPECT_EQ(empty.exit_code, 3) << empty.text;
+  std::filesystem::create_directories(folder_ / "none");
+  EXPECT_EQ(run_omnihil("check" + shell(folder_ / "none")).exit_code, 2);
+}
+
+TEST_F(RecordingVerbs, CheckAndReplayTakeAnotherModelAndSeed) {
+  const Ran heavier = run_omnihil("check --quiet --with floor_tilt" + recording());
+  EXPECT_EQ(heavier.exit_code, 1) << heavier.text;
+  EXPECT_TRUE(heavier.says("changed    robot ulaval_delta: another text than recorded")) << heavier.text;
+  const Ran seeded = run_omnihil("check --quiet --seed 7" + recording());
+  EXPECT_TRUE(seeded.says("changed    seed 7 instead of 0")) << seeded.text;
+  EXPECT_EQ(run_omnihil("replay --with floor_tilt" + recording()).exit_code, 0);
+  const Ran unknown = run_omnihil("check --robot no_such_robot" + recording());
+  EXPECT_EQ(unknown.exit_code, 2) << unknown.text;
+  const Ran both = run_omnihil("check --versus-with floor_tilt" + recording());
+  EXPECT_EQ(both.exit_code, 0) << both.text;
+  EXPECT_TRUE(both.says("A to B, RMS")) << both.text;
+}
+
 TEST_F(RecordingVerbs, CheckOfNothingIsNoAgreement) {
   text_.resize(text_.find('\n') + 1);
   fake::write_text(path_, text_);

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "hil/recording/compare_recordings.h"
-#include "hil/recording/recording_header.h"
 #include "hil/recording/recording_reader.h"
 #include "hil/recording/recording_writer.h"
 #include "hil/recording/replay_report.h"
@@ -18,20 +17,20 @@
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
 #include "tools/program_commit.h"
+#include "tools/replay_words.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
 namespace {
 
-struct ReplayWords {
-  std::string format_file;
+struct Words {
+  ReplayWords replay;
   std::string recording;
   std::string out;
-  std::string physics;
   bool sha256_only = false;
 };
 
-std::unique_ptr<RecordingWriter> open_out(const ReplayWords& words, const Recording& recording,
+std::unique_ptr<RecordingWriter> open_out(const Words& words, const Recording& recording,
                                           const ReplayOptions& options) {
   if (words.out.empty()) return nullptr;
   std::error_code error;
@@ -58,48 +57,52 @@ bool say_bytes(const Recording& recording, const Recording& answer) {
   return !difference;
 }
 
-int run_replay(const ReplayWords& words) {
-  if (!words.format_file.empty() && format_file_or_complain(words.format_file) == nullptr)
+int run_replay(const Words& words) {
+  if (!words.replay.format_file.empty() && format_file_or_complain(words.replay.format_file) == nullptr)
     return kExitBadInput;
   const Recording recording = load_recording(std::filesystem::path(words.recording));
-  ReplayOptions options{.physics = parse_physics(words.physics), .observer = nullptr};
+  ReplayOptions options = replay_options(words.replay, recording.header);
+  const bool as_recorded = same_session(recording.header, options);
   const auto writer = open_out(words, recording, options);
   options.observer = writer.get();
   const ReplayRun run = run_again(recording, options);
+  if (!run.firmware_failure.empty()) {
+    fmt::print(stderr, "omnihil replay: {}\n", run.firmware_failure);
+    return kExitFirmware;
+  }
   if (writer) {
     writer->finish({.now_ns = run.answer.end_ns, .wall_s = run.wall_s, .counters = {}});
     if (writer->error()) throw std::system_error(writer->error(), words.out);
   }
   if (words.sha256_only) {
     fmt::print("{}\n", run.sha256);
-    return first_byte_difference(recording, run.answer) && !options.physics ? kExitDiffers : kExitOk;
+    return first_byte_difference(recording, run.answer) && as_recorded ? kExitDiffers : kExitOk;
   }
   fmt::print("recording  {}\n", recording_line(recording));
   fmt::print("replayed   {}\n", replay_line(recording, run));
   const bool same = say_bytes(recording, run.answer);
   fmt::print("sha256     {}\n", run.sha256);
-  return same || options.physics ? kExitOk : kExitDiffers;
+  return same || !as_recorded ? kExitOk : kExitDiffers;
 }
 
 }  // namespace
 
 void add_verb_replay(Verb& program, VerbResult& result) {
-  auto words = std::make_shared<ReplayWords>();
+  auto words = std::make_shared<Words>();
   Verb verb =
       program.add_subcommand("replay", "runs a recording again; says whether the same bytes come back");
   verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
-  verb.add_option("--format", words->format_file,
-                  "radio format of the recording from this file, where it was made with one");
+  add_replay_options(verb, words->replay);
   verb.add_option("--out", words->out, "write the new run to this file, as a recording");
-  verb.add_option("--physics", words->physics, "instead of the recorded one: simbody, planar or simbody-free")
-      .one_of({"simbody", "planar", "simbody-free"});
   verb.add_flag("--sha256", words->sha256_only,
                 "print only the SHA-256 of all outputs: bytes with their times, every tick's values");
   verb.footer(
       "The host's bytes are fed at the virtual times at which they came; models are taken from the "
       "recording.\n"
-      "Exit code 1: the dongle's bytes are not those of the recording (not with --physics). Tolerances: see "
-      "check.");
+      "Exit code 1: the dongle's bytes are not those of the recording, where nothing else was put in the "
+      "place of "
+      "what\n"
+      "was recorded. Tolerances: see check.");
   verb.callback(
       [words, &result] { result.exit_code = guarded("replay", [&] { return run_replay(*words); }); });
 }

@@ -119,6 +119,11 @@ int run(Words& words) {
     words.firmware.virtual_time = !words.options.real_time;
     const Session::FirmwareMaker maker = words.motor_bus.bus.empty() ? open_firmware(words.firmware, config)
                                                                      : bus_firmware(words.motor_bus, config);
+    if (words.motor_bus.bus.empty()) {
+      header.firmware_files = firmware_files(words.firmware);
+    } else {
+      header.firmware_files = {{words.motor_bus.bus + " on " + words.motor_bus.port, ""}};
+    }
     const ServeEnd end = serve(config, maker, std::move(header), words.options);
     switch (end) {
       case ServeEnd::kDone:

@@ -74,10 +74,11 @@ inline Bytes host_bytes(const RadioFormat& format, const std::vector<int>& ids, 
   return bytes;
 }
 
-inline Recording record(const SessionSetup& setup, int milliseconds, int sample_every = 5) {
+inline Recording record(const SessionSetup& setup, int milliseconds, int sample_every = 5,
+                        const Session::FirmwareMaker& firmware = make_reference_firmware) {
   RecordingHeader header = recording_header(setup, "abc1234");
   header.sample_every = sample_every;
-  Session session(session_config(setup), make_reference_firmware);
+  Session session(session_config(setup), firmware);
   header.firmware = session.firmware(0).name();
   RecordingMemory memory(header);
   session.set_observer(&memory);
