@@ -163,9 +163,9 @@ TEST_F(RecordingVerbs, CheckOfAFolderGivesEachItsVerdictAndAllReports) {
   EXPECT_EQ(run_omnihil("check " + reports + shell(all)).exit_code, 2);
   EXPECT_EQ(std::ranges::count(fake::read_text(history), '\n'), 6);
   EXPECT_NE(fake::read_text(html).find("run by run"), std::string::npos);
-  const Ran empty =
-      run_omnihil("check" + shell(folder_ / "recordings" / "old" / ".." / "old") + "--junit /nonexistent/x");
-  EXPECT_EQ(empty.exit_code, 3) << empty.text;
+  const Ran nowhere =
+      run_omnihil("check --junit" + shell(all / "a.omnirec" / "junit.xml") + shell(all / "old"));
+  EXPECT_EQ(nowhere.exit_code, 3) << nowhere.text;
   std::filesystem::create_directories(folder_ / "none");
   EXPECT_EQ(run_omnihil("check" + shell(folder_ / "none")).exit_code, 2);
 }
