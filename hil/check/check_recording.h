@@ -35,6 +35,7 @@ struct CheckOutcome {
   RecordingComparison comparison;
   std::optional<DriveDifference> drive;  // where it can be had, with the recorded sensors fed in
   std::vector<std::string> cause;        // whether firmware or robot differs, and in what, a line each
+  std::string explained;                 // of the model, where it was asked for (explain_difference.h)
   std::vector<LineChart> charts;
   double simulated_s = 0.0, wall_s = 0.0;
 

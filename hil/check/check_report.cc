@@ -41,6 +41,7 @@ std::string failure_text(const CheckOutcome& o) {
   if (o.drive) text += "drive: " + o.drive->text() + "\n";
   for (const std::string& change : o.cause) text += "cause: " + change + "\n";
   for (const std::string& change : o.changed) text += "changed: " + change + "\n";
+  text += o.explained;
   const std::vector<SignalSummary> beyond = signals_beyond(o.comparison);
   for (std::size_t i = 0; i < std::min(kNamedSignals, beyond.size()); ++i) {
     text += fmt::format("{}: {:.3g} {} at {:.3f} s, tolerance {:.3g}\n", beyond[i].name, beyond[i].largest,
@@ -87,6 +88,7 @@ std::string check_text(const CheckOutcome& o, bool table) {
                                             : "not identical");
   if (o.drive) text += "drive      " + o.drive->text() + "\n";
   for (const std::string& change : o.cause) text += "cause      " + change + "\n";
+  text += o.explained;
   if (!has_verdict(o)) text += fmt::format("{:<10} {}\n", fault_word(o.fault), o.fault_text);
   if (c.agrees()) return text + (has_verdict(o) ? "agrees\n" : "");
   return text + "differs    first at " + c.first->text() + "\n";
@@ -147,6 +149,7 @@ std::string check_json(std::span<const CheckOutcome> outcomes, const std::string
     if (o.comparison.first) one["first_difference"] = o.comparison.first->text();
     if (o.drive) one["drive_difference"] = o.drive->text();
     if (!o.cause.empty()) one["cause"] = o.cause;
+    if (!o.explained.empty()) one["model"] = o.explained;
     one["signals"] = nlohmann::ordered_json::array();
     for (const SignalSummary& signal : o.comparison.signals) one["signals"].push_back(signal_json(signal));
     all["recordings"].push_back(std::move(one));

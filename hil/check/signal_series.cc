@@ -7,13 +7,13 @@
 namespace omnihil {
 namespace {
 
-double seconds(std::int64_t now_ns) { return static_cast<double>(now_ns) / 1e9; }
+double time_in_s(std::int64_t now_ns) { return static_cast<double>(now_ns) / 1e9; }
 
 SignalSeries of_column(const Recording& recording, std::size_t column, int robot_id) {
   SignalSeries series;
   for (const RecordedChunk& chunk : recording.chunks) {
     if (chunk.kind != RecordedChunk::Kind::kSample || chunk.robot_id != robot_id) continue;
-    series.time_s.push_back(seconds(chunk.now_ns));
+    series.time_s.push_back(time_in_s(chunk.now_ns));
     series.value.push_back(chunk.sample[column]);
   }
   return series;
@@ -27,7 +27,7 @@ SignalSeries of_field(const Recording& recording, const RadioFormat& format, std
     const DecodeResult decoded = format.decode(packet.frame.bytes);
     if (decoded.values.message->name != message || packet_robot(decoded.values) != robot_id) continue;
     if (decoded.values.message->field_index(field) < 0) return {};
-    series.time_s.push_back(seconds(packet.now_ns));
+    series.time_s.push_back(time_in_s(packet.now_ns));
     series.value.push_back(decoded.values.number(field));
   }
   return series;

@@ -14,6 +14,7 @@
 #include "hil/check/check_recording.h"
 #include "hil/check/check_report.h"
 #include "hil/check/compare_versions.h"
+#include "hil/check/explain_difference.h"
 #include "hil/recording/recording_header.h"
 #include "hil/recording/recording_reader.h"
 #include "hil/recording/replay_report.h"
@@ -24,6 +25,7 @@
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
 #include "tools/program_commit.h"
+#include "tools/progress_line.h"
 #include "tools/replay_words.h"
 #include "tools/verbs/verbs.h"
 
@@ -39,6 +41,7 @@ struct CheckWords {
   std::string junit, json, html, summary, history, label;
   bool exact = false;
   bool quiet = false;
+  bool explain = false;
 
   bool has_versus() const {
     return !versus.firmware.file.empty() || !versus.robot.empty() || !versus.with.empty();
@@ -113,7 +116,15 @@ CheckOutcome checked(const CheckWords& words, const std::string& file) {
   }
   options.tolerances = choose_tolerances(words, recording, options.replay, format, options.tolerance_reason);
   options.charts = words.html.empty() ? 0 : kPageCharts;
-  return check_recording(file, recording, *format, options);
+  CheckOutcome outcome = check_recording(file, recording, *format, options);
+  if (words.explain && !outcome.comparison.agrees()) {
+    ProgressLine progress;
+    outcome.explained = explained_text(
+        explain_difference(recording, *format, options.replay, [&](std::size_t done, std::size_t all) {
+          progress.show("trying changes of the model", static_cast<double>(done) / static_cast<double>(all));
+        }));
+  }
+  return outcome;
 }
 
 // Of several recordings one that cannot be used does not keep the others from their verdict.
@@ -267,6 +278,8 @@ void add_verb_check(Verb& program, VerbResult& result) {
   verb.add_option("--tolerance", words->tolerances,
                   "KEY=VALUE, a file of such lines, or 'default'; may be given several times");
   verb.add_flag("--exact", words->exact, "bytes and samples must be identical in every bit");
+  verb.add_flag("--explain", words->explain,
+                "where it differs, search which parameter or effect of the model would explain it");
   verb.add_flag("--quiet", words->quiet, "without the table of signals");
   add_report_options(verb, *words);
   add_versus_options(verb, *words);
