@@ -1,7 +1,7 @@
 // The outcomes of `check` as one HTML file that needs nothing else: verdicts, what was changed, plots of what
 // differs, and the trend over runs where a history is kept. No script, no network; prints well.
 //
-//   write_file("check.html", check_page(outcomes, history, "omnihil check recordings/"));
+//   const std::string html = check_page(outcomes, history, "omnihil 0.1.0");
 //
 // Names of files and everything else from outside is escaped.
 #pragma once

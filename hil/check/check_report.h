@@ -1,7 +1,7 @@
 // What `check` says of its outcomes: text for people, JUnit XML and JSON for CI, Markdown for a step summary.
 //
-//   fmt::print("{}", check_text(outcome, {.table = true}));
-//   write_file("junit.xml", check_junit(outcomes));
+//   std::cout << check_text(outcome, true);
+//   const std::string xml = check_junit(outcomes);
 #pragma once
 #include <span>
 #include <string>

@@ -1,7 +1,7 @@
 // The changes of a robot's model that may explain a difference: each uncertain parameter, each effect of the catalogue
 // that acts on a robot and is not in the model.
 //
-//   for (const ExplainCandidate& c : explain_candidates(model)) run(*c.model(c.to));
+//   for (const ExplainCandidate& c : explain_candidates(model)) try_it(*c.model(c.to));
 #pragma once
 #include <functional>
 #include <optional>
