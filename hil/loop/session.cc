@@ -172,6 +172,10 @@ void Session::set_faults(int robot_index, const RobotFaults& faults) {
   impl_->plant.set_faults(robot_index, faults);
 }
 
+void Session::set_pose(int robot_index, double x_m, double y_m, double yaw_rad) {
+  impl_->plant.set_pose(robot_index, x_m, y_m, yaw_rad);
+}
+
 void Session::host_closed() {
   if (impl_->observer) impl_->observer->host_closed(impl_->now_ns);
   impl_->link->host_closed(impl_->now_ns);

@@ -83,6 +83,8 @@ class Session {
   // Past the radio: a command as the firmware's command() takes it; faults of the robot (robot_faults.h).
   void command(int robot_index, const RobotCommand& command);
   void set_faults(int robot_index, const RobotFaults& faults);
+  // A robot put down somewhere, at rest; its encoders go on from where they are.
+  void set_pose(int robot_index, double x_m, double y_m, double yaw_rad);
   // Gain sets that came over the air and that a robot's firmware refused.
   std::uint64_t gains_refused() const;
 

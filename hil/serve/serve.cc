@@ -10,9 +10,11 @@
 #include <memory>
 
 #include "firmware_iface/firmware_checks.h"
+#include "hil/league/league_sync.h"
 #include "hil/loop/clock.h"
 #include "hil/recording/recording_header.h"
 #include "hil/recording/recording_writer.h"
+#include "hil/recording/replay.h"
 #include "hil/serve/serve_port.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/serve/status_printer.h"
@@ -23,6 +25,7 @@ namespace omnihil {
 namespace {
 
 constexpr std::int64_t kStatusEvery_ns = 50'000'000;  // of wall time
+constexpr int kSyncWait_ms = 100;                     // a signal is seen within it
 constexpr int kFifoPriority = 50;                     // below the kernel's own threads at 99, above all else
 
 void complain(const std::string& what) { std::fprintf(stderr, "omnihil serve: %s\n", what.c_str()); }
@@ -59,6 +62,8 @@ class Bench {
 
  private:
   bool open(RecordingHeader header);
+  bool open_league();
+  bool open_recording(RecordingHeader header);
   void say_ready() const;
   ServeEnd loop();
   bool step();
@@ -72,6 +77,9 @@ class Bench {
   std::unique_ptr<ByteWire> wire_;
   std::unique_ptr<HostPort> port_;
   std::unique_ptr<RecordingWriter> writer_;
+  std::unique_ptr<LeagueHost> league_;
+  std::unique_ptr<ObserverList> observers_;
+  LeagueSync sync_;
   std::unique_ptr<Clock> clock_;
   std::string model_;  // as the user named it
   LinePace pace_;
@@ -99,6 +107,26 @@ bool Bench::open(RecordingHeader header) {
       return false;
     }
   }
+  return open_league() && open_recording(std::move(header));
+}
+
+bool Bench::open_league() {
+  if (!options_.league) return true;
+  std::string error;
+  league_ = LeagueHost::open(*options_.league, session_.config(), error);
+  if (!league_) {
+    complain("league: " + error);
+    return false;
+  }
+  session_.set_observer(league_.get());
+  if (options_.league_sync_port == 0 ||
+      sync_.listen(options_.league->address, options_.league_sync_port, error))
+    return true;
+  complain("league: " + error);
+  return false;
+}
+
+bool Bench::open_recording(RecordingHeader header) {
   if (options_.record.empty()) return true;
   std::error_code error;
   header.firmware = session_.firmware(0).name();
@@ -107,7 +135,12 @@ bool Bench::open(RecordingHeader header) {
     complain("recording " + options_.record + ": " + error.message());
     return false;
   }
-  session_.set_observer(writer_.get());
+  if (league_) {
+    observers_ = std::make_unique<ObserverList>(std::vector<SessionObserver*>{writer_.get(), league_.get()});
+    session_.set_observer(observers_.get());
+  } else {
+    session_.set_observer(writer_.get());
+  }
   return true;
 }
 
@@ -118,6 +151,12 @@ void Bench::say_ready() const {
              config.radio_format, carrier_words(find_radio_format(config.radio_format)->carrier, pace_),
              fmt::join(config.robot_ids, " "), model_, config.team == Team::kBlue ? "blue" : "yellow",
              to_string(config.plant.physics), options_.real_time ? "real time" : "free-running");
+  if (league_) fmt::print("league {}\n", league_->ports());
+  if (options_.league_sync_port > 0)
+    fmt::print("league synchronous protocol: TCP {}:{}; time goes on by its requests alone\n",
+               options_.league->address, sync_.port());
+  if (league_ && writer_)
+    fmt::print("note: what comes by the league's protocols is not in the recording: it does not replay\n");
   std::fflush(stdout);
 }
 
@@ -161,7 +200,9 @@ void Bench::note_failures() {
 bool Bench::step() {
   std::error_code error = port_->receive(session_.now_ns(), host_);
   answer_.clear();
+  if (league_) league_->before_step(session_);
   session_.step(host_, answer_);
+  if (league_) league_->after_step(session_);
   note_failures();
   if (!error) error = port_->send(session_.now_ns(), answer_);
   if (port_->take_host_closed()) session_.host_closed();
@@ -173,9 +214,18 @@ ServeEnd Bench::loop() {
   std::unique_ptr<StatusPrinter> printer;
   if (!options_.quiet) printer = std::make_unique<StatusPrinter>(stdout);
   std::int64_t next_status_ns = start_ns_ + kStatusEvery_ns;
+  const bool in_sync = options_.league_sync_port > 0;
+  bool device_good = true;
   while (!stop_.requested() && (options_.duration_ns == 0 || session_.now_ns() < options_.duration_ns)) {
-    if (!clock_->wait()) continue;
-    if (!step()) return ServeEnd::kIo;
+    if (in_sync) {
+      sync_.serve_one(
+          session_, *league_, [&] { device_good = step() && device_good; }, kSyncWait_ms);
+    } else if (clock_->wait()) {
+      device_good = step();
+    } else {
+      continue;
+    }
+    if (!device_good) return ServeEnd::kIo;
     if (options_.strict && clock_->report().slips > 0) {
       complain("--strict: this computer could not keep up with real time");
       return ServeEnd::kLate;

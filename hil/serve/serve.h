@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "hil/league/league_host.h"
 #include "hil/loop/session.h"
 #include "hil/recording/recording.h"
 
@@ -22,13 +23,15 @@ inline constexpr std::string_view kServeDevice = "pty";  // what a bare path is
 struct ServeOptions {
   std::string device = "./dongle";  // a wire's URL for bytes; a bare path is a pty's name
   bool pacing = true;
-  std::optional<std::int64_t> baud;  // instead of the carrier's; 8N1
-  bool real_time = true;             // false: virtual time as fast as it goes
-  std::int64_t duration_ns = 0;      // simulated; 0: until a signal
-  bool quiet = false;                // the ready line and errors only
-  bool strict = false;               // real time: the first slip ends the run
-  bool fifo = false;                 // SCHED_FIFO, memory locked
-  std::string record;                // file; empty: none
+  std::optional<std::int64_t> baud;     // instead of the carrier's; 8N1
+  bool real_time = true;                // false: virtual time as fast as it goes
+  std::int64_t duration_ns = 0;         // simulated; 0: until a signal
+  bool quiet = false;                   // the ready line and errors only
+  bool strict = false;                  // real time: the first slip ends the run
+  bool fifo = false;                    // SCHED_FIFO, memory locked
+  std::string record;                   // file; empty: none
+  std::optional<LeagueOptions> league;  // the league's ports, beside the device
+  int league_sync_port = 0;             // TCP; time then goes on by the client's requests alone; 0: no
 };
 
 enum class ServeEnd {

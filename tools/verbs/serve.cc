@@ -1,6 +1,7 @@
 // `omnihil serve`: robots behind a virtual radio dongle. Options here, the work in hil/serve/serve.h.
 #include "hil/serve/serve.h"
 
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -19,6 +20,7 @@
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/firmware_options.h"
+#include "tools/league_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -45,6 +47,7 @@ struct Words {  // as the user gave them
   ServeOptions options;
   FirmwareChoice firmware;
   MotorBusChoice motor_bus;
+  LeagueWords league;
 };
 
 void complain(const std::string& lines) { std::fprintf(stderr, "omnihil serve:\n%s\n", lines.c_str()); }
@@ -88,6 +91,14 @@ std::string understand(Words& words) {
   if (!words.motor_bus.bus.empty() && !words.firmware.file.empty()) {
     problems.push_back("--motor-bus and --firmware: a robot has one or the other");
   }
+  words.options.league = league_options(words.league, setup.plant.seed, setup.epoch_ms, problems);
+  // Clients hold a frame's times against their own clock.
+  if (words.options.league && words.options.real_time && setup.epoch_ms == SessionSetup{}.epoch_ms) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    words.options.league->vision.epoch_ms =
+        static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(now).count());
+  }
+  words.options.league_sync_port = words.league.sync_port;
   if (words.no_pacing && words.baud > 0) problems.push_back("--no-pacing and --baud contradict each other");
   if (!words.options.quiet) {
     for (const std::string& note : stored.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
@@ -183,6 +194,7 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   verb.add_option("--team", w.team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
   add_firmware_options(verb, w.firmware);
   add_bus_options(verb, w.motor_bus);
+  add_league_options(verb, w.league);
   verb.add_option("--record", w.options.record, "write a recording to this file");
   verb.add_option("--sample-every", w.sample_every,
                   "of each robot's control ticks, record every Nth (bytes are all recorded)")

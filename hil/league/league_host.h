@@ -1,0 +1,72 @@
+// The league's side of a bench: robot control, simulation control and vision on their ports, step by step.
+//
+//   std::string error;
+//   auto host = LeagueHost::open({.vision = {.rate_Hz = 60}}, session.config(), error);
+//   session.set_observer(host.get());              // or with others: ObserverList
+//   host->before_step(session);                    // what has come in is done
+//   session.step(bytes, answer);
+//   host->after_step(session);                     // what a camera sees goes out
+//
+// Bound to this computer unless told. Limit: what comes in here is not among the host's bytes of a recording.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hil/league/league_robots.h"
+#include "hil/league/udp_port.h"
+#include "hil/league/vision.h"
+#include "hil/loop/session.h"
+
+namespace omnihil {
+
+struct LeagueOptions {
+  std::string address = "127.0.0.1";  // where commands are taken: 0.0.0.0 is everywhere
+  int control_port = 10300;
+  int robot_port = 0;  // 0: 10301 of the blue team, 10302 of the yellow one
+  bool sends_vision = true;
+  std::string vision_group = "224.5.23.2";
+  int vision_port = 10006;
+  std::string vision_interface = "127.0.0.1";
+  VisionOptions vision;
+};
+
+struct LeagueCounts {
+  std::uint64_t commands = 0;  // of a robot, done
+  std::uint64_t teleports = 0;
+  std::uint64_t errors = 0;  // answered
+  std::uint64_t vision_packets = 0, vision_lost = 0;
+};
+
+class LeagueHost : public SessionObserver {
+ public:
+  // Null with `error` when a port cannot be had.
+  static std::unique_ptr<LeagueHost> open(const LeagueOptions& options, const SessionConfig& config,
+                                          std::string& error);
+
+  void robot_tick(std::int64_t now_ns, const RobotSample& sample) override;
+  void before_step(Session& session);
+  void after_step(const Session& session);
+
+  // As if they had come by UDP; the answer goes back to the caller.
+  std::string robot_control(std::string_view bytes, Session& session);
+  std::string simulator_command(std::string_view bytes, Session& session);
+  std::vector<std::string> frames_now(std::int64_t now_ns) { return vision_.frames_now(now_ns, robots_); }
+
+  const LeagueCounts& counts() const { return counts_; }
+  std::string ports() const;  // "control UDP 127.0.0.1:10300, …"
+
+ private:
+  LeagueHost(const LeagueOptions& options, const SessionConfig& config);
+
+  LeagueOptions options_;
+  Team team_;
+  std::vector<RobotModel> models_;
+  std::vector<LeagueRobot> robots_;
+  UdpPort control_, robot_port_, group_;
+  Vision vision_;
+  LeagueCounts counts_;
+  std::string bytes_;
+};
+
+}  // namespace omnihil

@@ -1,0 +1,245 @@
+"""A client of the league that shares no code with the program: python3-protobuf's own classes of the published messages.
+
+Run by league_test.cc: league_client.py PROGRAM PROTO_FOLDER WORK_FOLDER TEST. Prints nothing when all is well.
+"""
+import importlib
+import os
+import socket
+import struct
+import subprocess
+import sys
+import time
+import unittest
+
+
+def messages(proto_folder, work):
+    """The generated modules, from the same .proto files by protoc's Python output."""
+    subprocess.run(["protoc", "--python_out", work, "-I", proto_folder,
+                    "hil/league/messages/ssl_vision.proto", "hil/league/messages/ssl_simulation.proto"],
+                   cwd=proto_folder, check=True)
+    sys.path.insert(0, work)
+    return (importlib.import_module("hil.league.messages.ssl_simulation_pb2"),
+            importlib.import_module("hil.league.messages.ssl_vision_pb2"))
+
+
+def free_port(kind):
+    with socket.socket(socket.AF_INET, kind) as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
+class League(unittest.TestCase):
+    program = proto = work = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.sim, cls.vision = messages(cls.proto, cls.work)
+
+    def serve(self, *more):
+        """The bench on ports of its own; self.robot, self.control, self.group are where it listens and speaks."""
+        self.robot, self.control = free_port(socket.SOCK_DGRAM), free_port(socket.SOCK_DGRAM)
+        self.group = ("224.5.23.2", free_port(socket.SOCK_DGRAM))
+        device = os.path.join(self.work, f"dongle{self.robot}")
+        self.process = subprocess.Popen(
+            [self.program, "serve", "--robot", "ulaval_delta", "--robots", "0,3", "--physics", "planar", "--device", device,
+             "--league-robot-port", str(self.robot), "--league-control-port", str(self.control),
+             "--vision", f"{self.group[0]}:{self.group[1]}", "--quiet", *more],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(self.stop)
+        for line in self.process.stdout:
+            if line.startswith("league simulation control"):
+                break
+        self.udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.udp.settimeout(20)
+        self.addCleanup(self.udp.close)
+
+    def stop(self):
+        self.process.terminate()
+        self.process.communicate(timeout=30)
+
+    def ask(self, port, request, answer):
+        data = request if isinstance(request, bytes) else request.SerializeToString()
+        self.udp.sendto(data, ("127.0.0.1", port))
+        answer.ParseFromString(self.udp.recv(65536))
+        return answer
+
+    def control_robots(self, *commands):
+        request = self.sim.RobotControl()
+        for fill in commands:
+            fill(request.robot_commands.add())
+        return self.ask(self.robot, request, self.sim.RobotControlResponse())
+
+    def join(self):
+        s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        s.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        s.bind(("", self.group[1]))
+        s.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
+                     struct.pack("4s4s", socket.inet_aton(self.group[0]), socket.inet_aton("127.0.0.1")))
+        s.settimeout(20)
+        self.addCleanup(s.close)
+        return s
+
+    def detection(self, group):
+        while True:
+            packet = self.vision.SSL_WrapperPacket.FromString(group.recv(65536))
+            if packet.HasField("detection"):
+                return packet.detection
+
+    def test_robot_drives_and_answers_with_telemetry(self):
+        self.serve("--league")
+        group = self.join()
+
+        def forward(c):
+            c.id = 3
+            c.move_command.local_velocity.forward = 0.8
+            c.move_command.local_velocity.left = 0
+            c.move_command.local_velocity.angular = 0
+        start = next(r for r in self.detection(group).robots_blue if r.robot_id == 3)
+        end = time.monotonic() + 20
+        moved = None
+        while time.monotonic() < end:
+            answer = self.control_robots(forward)
+            self.assertEqual(list(answer.errors), [])
+            self.assertEqual([f.id for f in answer.feedback], [0, 3])
+            moved = next(r for r in self.detection(group).robots_blue if r.robot_id == 3)
+            if moved.x - start.x > 300:
+                break
+        self.assertGreater(moved.x - start.x, 300)  # mm along its own forward, the field's x
+        self.assertLess(abs(moved.y - start.y), 60)
+        telemetry = self.sim.Telemetry()
+        self.assertTrue(answer.feedback[1].custom.Unpack(telemetry))
+        self.assertEqual(answer.feedback[1].custom.type_url, "type.googleapis.com/omnihil.league.Telemetry")
+        self.assertGreater(telemetry.battery_V, 10)
+        self.assertEqual(len(telemetry.motor_current_A), 4)
+        self.assertTrue(any(abs(w) > 5 for w in telemetry.omega_wheel_rad_s))
+
+    def test_every_refused_field_has_its_error(self):
+        self.serve("--league")
+        sim = self.sim
+        unknown = self.control_robots(lambda c: setattr(c, "id", 9))
+        self.assertEqual([(e.code) for e in unknown.errors], ["UNKNOWN_ROBOT"])
+
+        def wrong_unit(c):
+            c.id = 0
+            c.move_command.global_velocity.x = 1500
+            c.move_command.global_velocity.y = 0
+            c.move_command.global_velocity.angular = 0
+        self.assertEqual([e.code for e in self.control_robots(wrong_unit).errors], ["OUT_OF_RANGE"])
+        unreadable = self.ask(self.robot, b"\xff\xff\xff", sim.RobotControlResponse())
+        self.assertEqual([e.code for e in unreadable.errors], ["UNREADABLE"])
+        # Every field of simulation control and configuration, one at a time.
+        fields = {
+            "TeleportBall": lambda c: setattr(c.control.teleport_ball, "x", 1),
+            "simulation_speed": lambda c: setattr(c.control, "simulation_speed", 2),
+            "geometry": lambda c: c.config.geometry.field.MergeFrom(self.vision.SSL_GeometryFieldSize(
+                field_length=1, field_width=1, goal_width=1, goal_depth=1, boundary_width=1)),
+            "robot_specs": lambda c: c.config.robot_specs.add().id.CopyFrom(sim.RobotId(id=0, team=sim.BLUE)),
+            "realism_config": lambda c: c.config.realism_config.SetInParent(),
+            "vision_port": lambda c: setattr(c.config, "vision_port", 1),
+        }
+        for name, fill in fields.items():
+            command = sim.SimulatorCommand()
+            fill(command)
+            answer = self.ask(self.control, command, sim.SimulatorResponse())
+            self.assertEqual([e.code for e in answer.errors], ["UNSUPPORTED_FIELD"], name)
+            self.assertIn({"TeleportBall": "teleport_ball"}.get(name, name), answer.errors[0].message)
+        for name, value in (("v_x", 1.0), ("v_angular", 1.0), ("by_force", True), ("present", False)):
+            command = sim.SimulatorCommand()
+            robot = command.control.teleport_robot.add()
+            robot.id.id, robot.id.team = 0, sim.BLUE
+            setattr(robot, name, value)
+            answer = self.ask(self.control, command, sim.SimulatorResponse())
+            self.assertEqual([e.code for e in answer.errors], ["UNSUPPORTED_FIELD"], name)
+        command = sim.SimulatorCommand()
+        robot = command.control.teleport_robot.add()
+        robot.id.id, robot.id.team = 0, sim.YELLOW
+        answer = self.ask(self.control, command, sim.SimulatorResponse())
+        self.assertEqual([e.code for e in answer.errors], ["UNKNOWN_ROBOT"])
+
+    def test_teleport_and_vision(self):
+        self.serve("--league", "--cameras", "4")
+        group = self.join()
+        command = self.sim.SimulatorCommand()
+        robot = command.control.teleport_robot.add()
+        robot.id.id, robot.id.team = 3, self.sim.BLUE
+        robot.x, robot.y, robot.orientation = 2.0, -1.5, 1.25
+        answer = self.ask(self.control, command, self.sim.SimulatorResponse())
+        self.assertEqual(list(answer.errors), [])
+        cameras, found, geometry = set(), {}, None
+        end = time.monotonic() + 20
+        while time.monotonic() < end and (len(cameras) < 4 or not found or geometry is None):
+            packet = self.vision.SSL_WrapperPacket.FromString(group.recv(65536))
+            if packet.HasField("geometry"):
+                geometry = packet.geometry
+            if packet.HasField("detection"):
+                cameras.add(packet.detection.camera_id)
+                for r in packet.detection.robots_blue:
+                    if r.robot_id == 3 and abs(r.x - 2000) < 1:
+                        found[packet.detection.camera_id] = r
+                self.assertEqual(len(packet.detection.balls), 0)
+        self.assertEqual(cameras, {0, 1, 2, 3})
+        self.assertEqual(len(found), 1)  # one quarter of the field
+        seen = next(iter(found.values()))
+        self.assertAlmostEqual(seen.y, -1500, delta=1)
+        self.assertAlmostEqual(seen.orientation, 1.25, delta=0.01)
+        self.assertEqual((geometry.field.field_length, geometry.field.field_width), (9000, 6000))
+        self.assertEqual(len(geometry.calib), 4)
+        self.assertGreaterEqual(len(geometry.field.field_lines), 12)
+
+    def sync(self, connection, request):
+        data = request.SerializeToString()
+        length, head = len(data), b""
+        while True:
+            head += bytes([length & 127 | (128 if length > 127 else 0)])
+            length >>= 7
+            if not length:
+                break
+        connection.sendall(head + data)
+        size, shift = 0, 0
+        while True:
+            b = connection.recv(1)[0]
+            size |= (b & 127) << shift
+            shift += 7
+            if not b & 128:
+                break
+        data = b""
+        while len(data) < size:
+            data += connection.recv(size - len(data))
+        return self.sim.SimulationSyncResponse.FromString(data)
+
+    def run_in_steps(self, steps, step_s):
+        port = free_port(socket.SOCK_STREAM)
+        self.serve("--league-sync", str(port), "--clock", "free")
+        connection = socket.create_connection(("127.0.0.1", port), timeout=20)
+        self.addCleanup(connection.close)
+        states = []
+        for n in range(steps):
+            request = self.sim.SimulationSyncRequest(sim_step=step_s)
+            c = request.robot_control.robot_commands.add()
+            c.id = 0
+            c.move_command.global_velocity.x = 0.5
+            c.move_command.global_velocity.y = 0.3
+            c.move_command.global_velocity.angular = 0.2
+            answer = self.sync(connection, request)
+            self.assertEqual(list(answer.robot_control_response.errors), [])
+            states.append(answer.detection[0].SerializeToString())
+        odd = self.sync(connection, self.sim.SimulationSyncRequest(sim_step=0.0105))
+        self.assertEqual([e.code for e in odd.robot_control_response.errors], ["OUT_OF_RANGE"])
+        self.assertEqual(odd.detection[0].t_capture, answer.detection[0].t_capture)  # nothing moved
+        return states, answer
+
+    def test_steps_are_exact_and_repeat(self):
+        first, last = self.run_in_steps(50, 0.016)
+        frame = last.detection[0]
+        self.assertAlmostEqual(frame.t_capture - 1_700_000_000, 50 * 0.016, places=6)
+        robot = next(r for r in frame.robots_blue if r.robot_id == 0)
+        self.assertGreater(robot.x, 150)
+        self.assertGreater(robot.y, 80)
+        again, _ = self.run_in_steps(50, 0.016)
+        self.assertEqual(first, again)
+
+
+if __name__ == "__main__":
+    League.program, League.proto, League.work = sys.argv[1:4]
+    os.makedirs(League.work, exist_ok=True)
+    unittest.main(argv=[sys.argv[0], "League." + sys.argv[4]])

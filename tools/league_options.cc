@@ -1,0 +1,98 @@
+#include "tools/league_options.h"
+
+#include <charconv>
+
+namespace omnihil {
+namespace {
+
+// "224.5.23.2:10006"
+bool split_address(const std::string& text, std::string& host, int& port) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return false;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data() + colon + 1, end, port);
+  host = text.substr(0, colon);
+  return error == std::errc{} && at == end && port > 0 && port < 65'536;
+}
+
+}  // namespace
+
+void add_league_options(Verb& verb, LeagueWords& w) {
+  verb.add_flag(
+      "--league", w.on,
+      "the league's ports as well: robot control (UDP 10301 blue, 10302 yellow), simulation control (10300), "
+      "vision (docs/league.md)");
+  verb.add_option("--league-address", w.options.address, "where commands are taken: 0.0.0.0 is everywhere")
+      .capture_default_str();
+  verb.add_option("--league-control-port", w.options.control_port, "UDP port of simulation control")
+      .range(1, 65'535)
+      .capture_default_str();
+  verb.add_option("--league-robot-port", w.options.robot_port,
+                  "UDP port of robot control instead of 10301 or 10302")
+      .range(1, 65'535);
+  verb.add_option("--league-sync", w.sync_port,
+                  "TCP port of the synchronous protocol: time goes on by a client's requests alone")
+      .range(1, 65'535);
+  verb.add_option("--vision", w.vision, "multicast GROUP:PORT instead of 224.5.23.2:10006, or off");
+  verb.add_option("--vision-interface", w.options.vision_interface,
+                  "address of the network interface that it leaves by")
+      .capture_default_str();
+  verb.add_option("--vision-rate", w.options.vision.rate_Hz, "frames per second of each camera")
+      .range(0.1, 1000.0)
+      .capture_default_str();
+  verb.add_option("--cameras", w.options.vision.cameras, "cameras side by side over the field: 1, 2 or 4")
+      .range(1, 4)
+      .capture_default_str();
+  verb.add_option("--field", w.field, "field that vision tells of")
+      .one_of({"division-a", "division-b", "seed-paper"})
+      .capture_default_str();
+  verb.add_option("--vision-delay", w.delay_least_ms, "ms from a frame's capture to its sending, at least")
+      .range(0.0, 1000.0)
+      .capture_default_str();
+  verb.add_option("--vision-delay-most", w.delay_most_ms, "ms, at most: uniform between the two")
+      .range(0.0, 1000.0)
+      .capture_default_str();
+  verb.add_option("--vision-noise", w.position_sigma_mm, "standard deviation of a position in mm")
+      .range(0.0, 1000.0)
+      .capture_default_str();
+  verb.add_option("--vision-yaw-noise", w.options.vision.yaw_sigma_rad,
+                  "standard deviation of an orientation in rad")
+      .range(0.0, 3.0)
+      .capture_default_str();
+  verb.add_option("--camera-clocks", w.clock_sigma_ms, "standard deviation of the cameras' clocks in ms")
+      .range(0.0, 1e6)
+      .capture_default_str();
+  verb.add_option("--camera-askew", w.askew_mm, "standard deviation of each camera's offset in mm")
+      .range(0.0, 1000.0)
+      .capture_default_str();
+}
+
+std::optional<LeagueOptions> league_options(const LeagueWords& words, std::uint64_t seed,
+                                            std::uint64_t epoch_ms, std::vector<std::string>& problems) {
+  if (!words.on && words.sync_port == 0) return std::nullopt;
+  LeagueOptions options = words.options;
+  VisionOptions& vision = options.vision;
+  if (words.vision == "off") {
+    options.sends_vision = false;
+  } else if (!words.vision.empty() &&
+             !split_address(words.vision, options.vision_group, options.vision_port)) {
+    problems.push_back("--vision: found \"" + words.vision +
+                       "\", allowed: GROUP:PORT such as 224.5.23.2:10006, or off");
+  }
+  if (vision.cameras == 3) problems.push_back("--cameras: found 3, allowed: 1, 2, 4");
+  if (words.delay_most_ms > 0.0 && words.delay_most_ms < words.delay_least_ms)
+    problems.push_back("--vision-delay-most: less than --vision-delay");
+  vision.field = words.field == "division-a"   ? kFieldDivisionA
+                 : words.field == "seed-paper" ? kFieldSeedPaper
+                                               : kFieldDivisionB;
+  vision.delay_least_s = words.delay_least_ms / 1e3;
+  vision.delay_most_s = words.delay_most_ms / 1e3;
+  vision.position_sigma_m = words.position_sigma_mm / 1e3;
+  vision.clock_sigma_s = words.clock_sigma_ms / 1e3;
+  vision.askew_sigma_m = words.askew_mm / 1e3;
+  vision.seed = seed;
+  vision.epoch_ms = epoch_ms;
+  return options;
+}
+
+}  // namespace omnihil
