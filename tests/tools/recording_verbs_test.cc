@@ -184,6 +184,29 @@ TEST_F(RecordingVerbs, CheckAndReplayTakeAnotherModelAndSeed) {
   EXPECT_TRUE(both.says("A to B, RMS")) << both.text;
 }
 
+TEST_F(RecordingVerbs, DumpPrintsPacketsOfBothWaysAndOnlyThoseAskedFor) {
+  const Ran all = run_omnihil("dump" + recording());
+  EXPECT_EQ(all.exit_code, 0) << all.text;
+  EXPECT_TRUE(all.says("> {\"packet\":\"SPEED_MOVE_ADVANCE\"")) << all.text;
+  EXPECT_TRUE(all.says("< {\"packet\":\"BATTERIE_RESPONSE\"")) << all.text;
+  EXPECT_TRUE(all.says("refused (")) << all.text;  // the host sent damage too
+  const Ran one = run_omnihil("dump --robot 3 --packet BATTERIE_RESPONSE --from 0.02 --hex" + recording());
+  EXPECT_FALSE(one.says("\"robot\":0")) << one.text;
+  EXPECT_FALSE(one.says("SPEED_MOVE_ADVANCE")) << one.text;
+  EXPECT_TRUE(one.says("\"robot\":3")) << one.text;
+  EXPECT_EQ(run_omnihil("dump --packet NO_SUCH" + recording()).exit_code, 2);
+}
+
+TEST_F(RecordingVerbs, ConvertMakesCapturesOnce) {
+  for (const std::string kind : {"pcap", "mcap"}) {
+    const auto out = folder_ / ("run." + kind);
+    const Ran ran = run_omnihil("convert --to " + kind + " --out" + shell(out) + recording());
+    EXPECT_EQ(ran.exit_code, 0) << ran.text;
+    EXPECT_GT(std::filesystem::file_size(out), 1000U);
+    EXPECT_EQ(run_omnihil("convert --to " + kind + " --out" + shell(out) + recording()).exit_code, 2);
+  }
+}
+
 TEST_F(RecordingVerbs, CheckOfNothingIsNoAgreement) {
   text_.resize(text_.find('\n') + 1);
   fake::write_text(path_, text_);

@@ -8,20 +8,24 @@
 #include <string>
 
 #include "hil/dataset/dataset_export.h"
+#include "hil/recording/mcap_export.h"
+#include "hil/recording/pcap_export.h"
 #include "hil/recording/recording_reader.h"
 #include "hil/recording/session_setup.h"
 #include "hil/recording/stream_file.h"
 #include "hil/text/dataset_files.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
+#include "tools/format_argument.h"
 #include "tools/guarded.h"
+#include "tools/packet_json.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
 namespace {
 
 struct ConvertWords {
-  std::string recording;
+  std::string recording, format_file;
   std::string to = "dataset";
   std::string out;
   int robot = -1;
@@ -61,6 +65,15 @@ int run_convert(const ConvertWords& words) {
   } else if (words.to == "csv") {
     write_new_file(words.out, wide_csv(recording, chosen_robot(words, recording.header)));
     fmt::print("{}: written\n", words.out);
+  } else if (words.to == "pcap" || words.to == "mcap") {
+    if (!words.format_file.empty() && format_file_or_complain(words.format_file) == nullptr)
+      return kExitBadInput;
+    const RadioFormat* format = format_or_complain(recording.header.radio_format);
+    if (format == nullptr) return kExitBadInput;
+    const std::string bytes =
+        words.to == "pcap" ? pcap_of(recording, *format) : mcap_of(recording, *format, packet_to_json);
+    write_new_file(words.out, bytes);
+    fmt::print("{}: {} bytes\n", words.out, bytes.size());
   } else {
     const HostStream stream = stream_of(recording);
     if (stream.chunks.empty()) throw std::invalid_argument("the recording has no bytes of a host");
@@ -75,15 +88,19 @@ int run_convert(const ConvertWords& words) {
 
 void add_verb_convert(Verb& program, VerbResult& result) {
   auto words = std::make_shared<ConvertWords>();
-  Verb verb =
-      program.add_subcommand("convert", "a recording as a dataset, as one CSV, or as a stream to play");
+  Verb verb = program.add_subcommand(
+      "convert", "a recording as a dataset, CSV, stream to play, capture for Wireshark, or MCAP");
   verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
   verb.add_option("--to", words->to,
-                  "dataset: a folder with dataset.toml, model.toml and one CSV per run; csv; stream")
-      .one_of({"dataset", "csv", "stream"})
+                  "dataset: a folder with dataset.toml, model.toml and one CSV per run; csv; stream; pcap "
+                  "(Wireshark); "
+                  "mcap (Foxglove, PlotJuggler)")
+      .one_of({"dataset", "csv", "stream", "pcap", "mcap"})
       .required();
   verb.add_option("--out", words->out, "folder (dataset) or file to make; what is there is never overwritten")
       .required();
+  verb.add_option("--format", words->format_file,
+                  "radio format of the recording from this file, where it was made with one");
   verb.add_option("--robot", words->robot, "one robot only (default: all)").range(0, 255);
   verb.add_option("--camera-hz", words->camera_Hz, "rate of the vision columns of a dataset")
       .range(0.1, 10000.0)

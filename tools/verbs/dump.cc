@@ -1,0 +1,87 @@
+// omnihil dump RECORDING: every packet in words, a line each.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "hil/recording/recorded_packets.h"
+#include "hil/recording/recording_reader.h"
+#include "hil/recording/replay_report.h"
+#include "hil/text/recording_text.h"
+#include "tools/command_line.h"
+#include "tools/exit_codes.h"
+#include "tools/format_argument.h"
+#include "tools/guarded.h"
+#include "tools/packet_json.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+struct DumpWords {
+  std::string recording, format_file, message;
+  int robot = -1;
+  double from_s = 0.0, to_s = 1e12;
+  bool hex = false;
+};
+
+std::string line_of(const PassedPacket& passed, const RadioFormat& format, bool hex) {
+  const auto& bytes = passed.packet.frame.bytes;
+  const DecodeResult decoded = format.decode(bytes);
+  std::string text = fmt::format("{:12.6f} {} ", static_cast<double>(passed.packet.now_ns) / 1e9,
+                                 passed.from_host ? '>' : '<');
+  if (passed.packet.frame.understood) {
+    text += packet_to_json(decoded.values);
+  } else {
+    text += fmt::format("refused ({})", to_string(decoded.error));
+  }
+  if (hex || !passed.packet.frame.understood) text += "  " + to_hex(bytes);
+  return text;
+}
+
+int run_dump(const DumpWords& words) {
+  if (!words.format_file.empty() && format_file_or_complain(words.format_file) == nullptr)
+    return kExitBadInput;
+  const Recording recording = load_recording(std::filesystem::path(words.recording));
+  const RadioFormat* format = format_or_complain(recording.header.radio_format);
+  if (format == nullptr) return kExitBadInput;
+  if (!words.message.empty() && message_or_complain(*format, words.message) == nullptr) return kExitBadInput;
+  fmt::print("# {}\n", recording_line(recording));
+  for (const PassedPacket& passed : all_packets(recording, *format)) {
+    const double at_s = static_cast<double>(passed.packet.now_ns) / 1e9;
+    if (at_s < words.from_s || at_s > words.to_s) continue;
+    const bool asks = words.robot >= 0 || !words.message.empty();
+    if (asks) {
+      if (!passed.packet.frame.understood) continue;
+      const DecodeResult decoded = format->decode(passed.packet.frame.bytes);
+      if (words.robot >= 0 && packet_robot(decoded.values) != words.robot) continue;
+      if (!words.message.empty() && decoded.values.message->name != words.message) continue;
+    }
+    fmt::print("{}\n", line_of(passed, *format, words.hex));
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_verb_dump(Verb& program, VerbResult& result) {
+  auto words = std::make_shared<DumpWords>();
+  Verb verb = program.add_subcommand("dump", "the packets of a recording in words, a line each");
+  verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
+  verb.add_option("--format", words->format_file,
+                  "radio format of the recording from this file, where it was made with one");
+  verb.add_option("--robot", words->robot, "packets of this robot only").range(0, 255);
+  verb.add_option("--packet", words->message, "packets of this name only");
+  verb.add_option("--from", words->from_s, "from this time on, in s").not_negative();
+  verb.add_option("--to", words->to_s, "up to this time, in s").not_negative();
+  verb.add_flag("--hex", words->hex, "with their bytes");
+  verb.footer(
+      "TIME_S > what the host wrote, < what the dongle gave it, at the time of the last byte; bytes that are "
+      "no packet "
+      "say why.");
+  verb.callback([words, &result] { result.exit_code = guarded("dump", [&] { return run_dump(*words); }); });
+}
+
+}  // namespace omnihil
