@@ -99,7 +99,7 @@ std::string sample_json(const RecordingHeader& header, const std::vector<double>
 }
 
 std::vector<TimedMessage> messages_of(const Recording& recording, const RadioFormat& format,
-                                 const PacketToJson& to_json, Channels& channels) {
+                                      const PacketToJson& to_json, Channels& channels) {
   const RecordingHeader& header = recording.header;
   const auto unix_ns = [&](std::int64_t now_ns) {
     return header.epoch_ms * 1'000'000 + static_cast<std::uint64_t>(now_ns);
