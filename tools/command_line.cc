@@ -1,6 +1,7 @@
 #include "tools/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <utility>
 
 namespace omnihil {
