@@ -76,7 +76,8 @@ Finding look_at_can(const std::string& root) {
             "sudo ip link add dev vcan0 type vcan && sudo ip link set up vcan0"};
   }
   return {"SocketCAN", FindingState::kMissing,
-          "not in this kernel; slcan:, fdcanusb: and tcp: work without it", "sudo modprobe -a can can_raw vcan"};
+          "not in this kernel; slcan:, fdcanusb: and tcp: work without it",
+          "sudo modprobe -a can can_raw vcan"};
 }
 
 }  // namespace omnihil
