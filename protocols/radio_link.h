@@ -18,6 +18,7 @@
 
 #include "firmware_iface/robot_io.h"
 #include "protocols/packet_error.h"
+#include "protocols/radio_air.h"
 
 namespace omnihil {
 
@@ -30,6 +31,7 @@ struct RadioLinkConfig {
   // False: the link decodes commands and writes telemetry from RobotFeedback itself.
   bool firmware_decodes = false;
   std::uint64_t epoch_ms = 0;   // Unix time at virtual time 0, for formats that stamp their packets
+  RadioAir* air = nullptr;      // what is lost on the way; not owned; null: nothing
   double wheel_radius_m = 0.0;  // for formats that carry rim speeds instead of wheel speeds
 };
 

@@ -42,10 +42,22 @@ struct Session::Impl : RadioSink {
     link_config.firmware_decodes = firmware[0]->radio_format() == config.radio_format;
     link_config.epoch_ms = config.epoch_ms;
     link_config.wheel_radius_m = config.robots[0].wheel_radius_m;
+    if (config.air.any()) {
+      air = std::make_unique<AirLoss>(config.air, config.plant.seed,
+                                      [this](int id) { return position_of(id); });
+      link_config.air = air.get();
+    }
     link = find_radio_format(config.radio_format)->make_link(link_config);
     next_tick_ns.assign(firmware.size(), 0);
     samples.resize(firmware.size());
     answer.reserve(4096);
+  }
+
+  std::pair<double, double> position_of(int id) const {
+    const auto at = std::lower_bound(config.robot_ids.begin(), config.robot_ids.end(), id);
+    if (at == config.robot_ids.end()) return {0.0, 0.0};
+    const RobotTruth truth = plant.truth(static_cast<int>(at - config.robot_ids.begin()));
+    return {truth.x_m, truth.y_m};
   }
 
   static Plant make_plant(const SessionConfig& config) {
@@ -125,6 +137,7 @@ struct Session::Impl : RadioSink {
   Plant plant;
   std::vector<std::unique_ptr<Firmware>> firmware;
   std::vector<MotorPort> motor_ports;
+  std::unique_ptr<AirLoss> air;  // before the link, which asks it
   std::unique_ptr<RadioLink> link;
   SessionObserver* observer = nullptr;
   std::int64_t now_ns = 0;
@@ -146,6 +159,7 @@ const RadioLink& Session::link() const { return *impl_->link; }
 const Firmware& Session::firmware(int robot_index) const {
   return *impl_->firmware[static_cast<std::size_t>(robot_index)];
 }
+AirCounts Session::air() const { return impl_->air ? impl_->air->counts() : AirCounts{}; }
 void Session::set_observer(SessionObserver* observer) { impl_->observer = observer; }
 std::uint64_t Session::gains_refused() const { return impl_->gains_refused; }
 

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "firmware_iface/ports.h"
+#include "hil/loop/air_loss.h"
 #include "protocols/radio_link.h"
 #include "sim/robot/plant.h"
 
@@ -40,6 +41,7 @@ struct SessionConfig {
   PlantOptions plant;
   std::int64_t step_ns = 1'000'000;            // one loop step
   std::uint64_t epoch_ms = 1'700'000'000'000;  // Unix time at virtual time 0
+  AirOptions air;                              // what the radio loses; drawn from plant.seed
 };
 
 // One robot at one control tick, for recordings, status lines and checks.
@@ -73,6 +75,7 @@ class Session {
   const SessionConfig& config() const;
   const Plant& plant() const;
   const RadioLink& link() const;
+  AirCounts air() const;  // packets that the air took; none without one
   const Firmware& firmware(int robot_index) const;
   void set_observer(SessionObserver* observer);  // not owned; may be null
 

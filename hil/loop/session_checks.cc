@@ -61,7 +61,7 @@ void id_problems(const SessionConfig& config, std::vector<std::string>& problems
 }  // namespace
 
 std::vector<std::string> session_problems(const SessionConfig& config) {
-  std::vector<std::string> problems;
+  std::vector<std::string> problems = air_problems(config.air);
   const RadioFormat* format = find_radio_format(config.radio_format);
   if (format != nullptr && !format->names_robots() && config.robot_ids.size() > 1) {
     problems.push_back(

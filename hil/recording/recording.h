@@ -45,6 +45,7 @@ struct RecordingHeader {
   std::int64_t step_ns = 0;
   std::uint64_t epoch_ms = 0;
   std::uint64_t seed = 0;
+  AirOptions air;                          // what the radio lost; drawn from the seed
   std::string started;                     // ISO 8601 wall time, informative only
   std::vector<ModelText> included_models;  // further files that the model names: its motor
   int sample_every = 10;                   // of a robot's control ticks, every Nth is written

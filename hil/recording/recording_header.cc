@@ -24,6 +24,18 @@ constexpr std::array<Name<Integrator>, 2> kIntegrators{
     {{Integrator::kSemiImplicitEuler, "euler"}, {Integrator::kRungeKutta4, "rk4"}}};
 constexpr std::array<Name<Team>, 2> kTeams{{{Team::kYellow, "yellow"}, {Team::kBlue, "blue"}}};
 
+struct AirKey {
+  std::string_view name;
+  double AirOptions::*place;
+};
+constexpr std::array<AirKey, 7> kAir{{{"share", &AirOptions::share},
+                                      {"x_m", &AirOptions::x_m},
+                                      {"y_m", &AirOptions::y_m},
+                                      {"burst_good_packets", &AirOptions::burst_good_packets},
+                                      {"burst_bad_packets", &AirOptions::burst_bad_packets},
+                                      {"burst_share", &AirOptions::burst_share},
+                                      {"others_load", &AirOptions::others_load}}};
+
 template <class Table, class Enum>
 std::string_view name_of(const Table& table, Enum value) {
   for (const auto& row : table) {
@@ -105,6 +117,20 @@ class HeaderFields {
     models(key, texts);
     for (ModelText& each : texts) values.push_back({std::move(each.name), std::move(each.text)});
   }
+  // Absent: nothing is lost. Within it every key may be absent, which is 0.
+  void air(const char* key, AirOptions& options) {
+    if (!json_.contains(key)) return;
+    const Json* found = find(key, "an object of numbers", &Json::is_object);
+    if (found == nullptr) return;
+    for (const auto& [name, value] : found->items()) {
+      const auto row = std::ranges::find(kAir, name, &AirKey::name);
+      if (row == kAir.end() || !value.is_number())
+        return refuse(key, found->dump(), "an object of the air's numbers");
+      options.*(row->place) = value.get<double>();
+    }
+    options.by_distance = found->contains("x_m");
+    for (const std::string& problem : air_problems(options)) refuse(key, found->dump(), problem);
+  }
   void nothing_else() {
     for (const auto& [key, value] : json_.items()) {
       if (!known_.contains(key)) refuse(key.c_str(), value.dump(), "no such key");
@@ -157,6 +183,7 @@ void read_fields(HeaderFields& fields, RecordingHeader& header) {
   fields.positive("step_ns", header.step_ns);
   fields.natural("epoch_ms", header.epoch_ms);
   fields.natural("seed", header.seed);
+  fields.air("air", header.air);
   fields.natural("sample_every", sample_every);
   if (sample_every < 1 || sample_every > 1'000'000) {
     fields.refuse("sample_every", std::to_string(sample_every), "1 to 1000000");
@@ -208,6 +235,15 @@ std::string to_json(const RecordingHeader& header) {
   json["step_ns"] = static_cast<std::uint64_t>(header.step_ns);
   json["epoch_ms"] = header.epoch_ms;
   json["seed"] = header.seed;
+  if (header.air.any()) {
+    Json air = Json::object();
+    for (const AirKey& key : kAir) {
+      const bool of_place = key.place == &AirOptions::x_m || key.place == &AirOptions::y_m;
+      const bool told = of_place ? header.air.by_distance : header.air.*(key.place) != 0.0;
+      if (told) air[std::string(key.name)] = header.air.*(key.place);
+    }
+    json["air"] = std::move(air);
+  }
   json["sample_every"] = header.sample_every;
   json["columns"] = header.columns;
   json["units"] = header.units;

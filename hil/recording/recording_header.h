@@ -3,8 +3,9 @@
 //   {"format":"omnihil-recording/1","commit":"1a2b3c4","robot":"ulaval","robot_text":"…","radio":"ulaval-hermes",
 //    "robot_ids":[0,1],"team":"blue","physics":"simbody","integrator":"rk4","seed":1,"columns":["true_x_m",…],…}
 //
-// Every key is required and no other is allowed, so that a header cannot be half understood. The one exception is
-// firmware_files, {"NAME":"SHA-256"}: what a user's own firmware came from; absent, this program's own ran.
+// Every key is required and no other is allowed, so that a header cannot be half understood. Exceptions:
+// firmware_files, {"NAME":"SHA-256"}, what a user's own firmware came from; absent, this program's own ran; and air,
+// {"share":0.02,…}, what the radio lost; absent, nothing.
 #pragma once
 #include <optional>
 #include <string>

@@ -69,6 +69,7 @@ SessionConfig session_config(const SessionSetup& setup) {
   config.plant = setup.plant;
   config.step_ns = setup.step_ns;
   config.epoch_ms = setup.epoch_ms;
+  config.air = setup.air;
   for (std::string& problem : session_problems(config)) problems.push_back(std::move(problem));
   throw_problems(problems);
   return config;
@@ -91,6 +92,7 @@ RecordingHeader recording_header(const SessionSetup& setup, const std::string& c
   header.plant = setup.plant;
   header.step_ns = setup.step_ns;
   header.epoch_ms = setup.epoch_ms;
+  header.air = setup.air;
   header.seed = setup.plant.seed;
   return header;
 }
@@ -111,6 +113,7 @@ SessionSetup session_setup(const RecordingHeader& header) {
   setup.plant.seed = header.seed;
   setup.step_ns = header.step_ns;
   setup.epoch_ms = header.epoch_ms;
+  setup.air = header.air;
   return setup;
 }
 

@@ -29,6 +29,7 @@ struct SessionSetup {
   PlantOptions plant;
   std::int64_t step_ns = 1'000'000;
   std::uint64_t epoch_ms = 1'700'000'000'000;
+  AirOptions air;
 };
 
 // Reads the model from its texts; throws std::invalid_argument with every problem, a line each.

@@ -169,6 +169,7 @@ ServeStatus Bench::status() const {
   s.from_host = session_.link().from_host();
   s.from_robots = session_.link().from_robots();
   s.gains_refused = session_.gains_refused();
+  s.air = session_.air();
   for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
     const auto* host = dynamic_cast<const CheckedFirmware*>(&session_.firmware(static_cast<int>(i)));
     if (host != nullptr) s.firmware_faults += host->faults().total();

@@ -101,6 +101,10 @@ std::string final_report(const ServeStatus& s) {
                                  seconds(s.now_ns), s.steps, seconds(s.wall_ns));
   text += packet_line("from the host", s.from_host);
   text += packet_line("from the robots", s.from_robots);
+  if (s.air.to_robot + s.air.to_host > 0) {
+    text += fmt::format("  lost on the air  {} of {} to robots, {} of {} from them\n", s.air.to_robot,
+                        s.air.sent_to_robot, s.air.to_host, s.air.sent_to_host);
+  }
   if (s.gains_refused > 0) {
     text += fmt::format("  gains            {} sets refused by the firmware\n", s.gains_refused);
   }

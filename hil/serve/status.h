@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware_iface/robot_io.h"
+#include "hil/loop/air_loss.h"
 #include "hil/loop/clock.h"
 #include "hil/serve/serve_port.h"
 #include "protocols/packet_error.h"
@@ -21,6 +22,7 @@ struct ServeStatus {
   bool host_present = false;
   PacketCounts from_host;
   PacketCounts from_robots;
+  AirCounts air;                      // what the radio lost
   std::uint64_t gains_refused = 0;    // sets that came over the air
   std::uint64_t firmware_faults = 0;  // requests of the firmware that no hardware could take
   HostPortCounts port;

@@ -61,6 +61,8 @@ class Dongle : public RadioLink {
     return error;
   }
 
+  // Whether the air takes this packet; asked once for each.
+  bool lost(int robot, AirWay way) const { return config_.air != nullptr && config_.air->lost(robot, way); }
   // A frame that a robot's firmware sent: what is wrong with it by itself.
   PacketError fault_from_robot(std::span<const std::uint8_t> frame) const;
   // Frame as it is, for a firmware that decodes by itself.

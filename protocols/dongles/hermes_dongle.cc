@@ -162,7 +162,7 @@ void HermesDongle::transmit(std::int64_t start_ns) {
 
 void HermesDongle::reach_robot(RadioSink& sink) {
   const Frame& frame = queue_.front();
-  if (!frame.reaches_robot) return;
+  if (!frame.reaches_robot || lost(frame.robot, AirWay::kToRobot)) return;
   if (config_.firmware_decodes) {
     return deliver_frame(sink, frame.robot, *frame.message, frame.packet.span(), reached_ns_);
   }
@@ -175,7 +175,7 @@ void HermesDongle::reach_robot(RadioSink& sink) {
     delivery.command = *command;
     sink.deliver(delivery, reached_ns_);
   }
-  if (frame.tries > 0 && robot.feedback && !answered_) {
+  if (frame.tries > 0 && robot.feedback && !answered_ && !lost(frame.robot, AirWay::kToHost)) {
     answered_ = true;
     answer_.clear();
     answer_ns_ = std::max(end_ns_, reached_ns_ + hermes::kRobotTurnaround_ns) + hermes::kFrame_ns;
@@ -216,6 +216,7 @@ PacketError HermesDongle::take_answer(int robot_id, std::span<const std::uint8_t
   const bool first_on_its_way = phase_ == Phase::kOnAir && tries_left_ == queue_.front().tries;
   if (first_on_its_way) return PacketError::kOverrun;
   if (queue_.front().robot != robot_id) return PacketError::kAddress;
+  if (lost(robot_id, AirWay::kToHost)) return PacketError::kNone;
   answered_ = true;
   answer_.assign(frame.begin(), frame.end());
   const bool on_air = phase_ != Phase::kAwait;

@@ -188,7 +188,7 @@ void PlainLink::end_list(std::int64_t at_ns) {
 }
 
 void PlainLink::reach_robot(const InFlight& at, RadioSink& sink) {
-  if (at.robot >= 0) {
+  if (at.robot >= 0 && !lost(at.robot, AirWay::kToRobot)) {
     const Values values = format_.decode(at.packet.span()).values;
     if (config_.firmware_decodes) {
       deliver_frame(sink, at.robot, *values.message, at.packet.span(), at.arrives_ns);
@@ -222,6 +222,7 @@ void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
   if (!feedback || !answer(values, at.robot, *feedback, out)) return;
   if (plain_.remember != nullptr) plain_.remember(values, robots_.find(at.robot)->kept, out);
   if (format_.list != nullptr) {
+    if (lost(at.robot, AirWay::kToHost)) return;
     if (listed_answers_.size() < static_cast<std::size_t>(format_.list->most)) listed_answers_.push_back(out);
     return;
   }
@@ -232,6 +233,7 @@ void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
 }
 
 PacketError PlainLink::send_back(int robot, std::span<const std::uint8_t> frame, std::int64_t now_ns) {
+  if (robot >= 0 && lost(robot, AirWay::kToHost)) return PacketError::kNone;
   const std::int64_t at_ns = std::max(now_ns + plain_.to_host_ns, next_answer_ns_);
   const bool room =
       answers_.push({.packet = KeptPacket<255>::of(frame), .robot = robot, .arrives_ns = at_ns});

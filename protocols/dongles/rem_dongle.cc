@@ -2,7 +2,7 @@
 //
 //   host -> RemStream -> latest command and queue per robot -> 960 Hz slots -> robot -> answer -> host
 //
-// Cannot: lose packets on the air, or show what a channel busy with another team does.
+// Cannot: show what a channel busy with another team does, but for what the air loses (radio_air.h).
 #include "protocols/dongles/rem_dongle.h"
 
 #include <algorithm>
@@ -73,6 +73,7 @@ class RemDongle final : public Dongle {
   void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t) override {
     PacketError error = fault_from_robot(frame);
     if (error == PacketError::kNone && robots_.find(robot_id) == nullptr) error = PacketError::kAddress;
+    if (error == PacketError::kNone && lost(robot_id, AirWay::kToHost)) return;
     from_robots_.count(error == PacketError::kNone ? to_host(frame) : error);
   }
 
@@ -205,6 +206,7 @@ void RemDongle::send_slot(int id, std::int64_t slot_ns) {
 }
 
 void RemDongle::deliver(const AirPacket& air, RadioSink& sink) {
+  if (lost(air.robot, AirWay::kToRobot)) return;
   rem::RadioEnd& radio = robots_.find(air.robot)->radio;
   for (std::span<const std::uint8_t> rest = air.span(); !rest.empty();) {
     const auto bytes = rest.first(stream_.packet_bytes(rest));
@@ -215,7 +217,7 @@ void RemDongle::deliver(const AirPacket& air, RadioSink& sink) {
       sink.deliver(*delivery, air.arrives_ns);
     }
   }
-  if (config_.firmware_decodes || !radio.has_state()) return;
+  if (config_.firmware_decodes || !radio.has_state() || lost(air.robot, AirWay::kToHost)) return;
   if (!answers_.push({.robot = air.robot, .asked_ns = air.arrives_ns}))
     from_robots_.count(PacketError::kOverrun);
 }

@@ -46,6 +46,7 @@ class RnpLink final : public Dongle {
   void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t) override {
     PacketError error = fault_from_robot(frame);
     if (error == PacketError::kNone && robot_id != id()) error = PacketError::kAddress;
+    if (error == PacketError::kNone && lost(id(), AirWay::kToHost)) return;
     from_robots_.count(error == PacketError::kNone ? to_host(frame) : error);
   }
 
@@ -56,12 +57,12 @@ class RnpLink final : public Dongle {
     if (connected_ && now_ns >= next_telemetry_ns_) {
       Values out;
       dialect_.telemetry(feedback, control_ ? &*control_ : nullptr, sequence_++, out);
-      from_robots_.count(to_host(out));
+      if (!lost(id(), AirWay::kToHost)) from_robots_.count(to_host(out));
       next_telemetry_ns_ = now_ns + kTelemetryPeriod_ns;
     } else if (!connected_ && now_ns >= next_hello_ns_) {
       Values out;
       dialect_.hello(id(), config_.team, out);
-      from_robots_.count(to_host(out));
+      if (!lost(id(), AirWay::kToHost)) from_robots_.count(to_host(out));
       next_hello_ns_ = now_ns + kHelloPeriod_ns;
     }
   }
@@ -85,6 +86,7 @@ class RnpLink final : public Dongle {
   }
 
   void receive(const InFlight& at, RadioSink& sink) {
+    if (lost(id(), AirWay::kToRobot)) return;
     const Values values = format_.decode(at.packet.span()).values;
     if (config_.firmware_decodes) {
       return deliver_frame(sink, id(), *values.message, at.packet.span(), at.arrives_ns);

@@ -24,9 +24,9 @@
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
+#include "tools/options/replay_words.h"
 #include "tools/program_commit.h"
 #include "tools/progress_line.h"
-#include "tools/replay_words.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {

@@ -13,8 +13,8 @@
 #include "hil/text/program_files.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
-#include "tools/firmware_options.h"
 #include "tools/guarded.h"
+#include "tools/options/firmware_options.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {

@@ -19,8 +19,9 @@
 #include "protocols/radio_format.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
-#include "tools/firmware_options.h"
-#include "tools/league_options.h"
+#include "tools/options/air_options.h"
+#include "tools/options/firmware_options.h"
+#include "tools/options/league_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -48,6 +49,7 @@ struct Words {  // as the user gave them
   FirmwareChoice firmware;
   MotorBusChoice motor_bus;
   LeagueWords league;
+  AirWords air;
 };
 
 void complain(const std::string& lines) { std::fprintf(stderr, "omnihil serve:\n%s\n", lines.c_str()); }
@@ -91,6 +93,7 @@ std::string understand(Words& words) {
   if (!words.motor_bus.bus.empty() && !words.firmware.file.empty()) {
     problems.push_back("--motor-bus and --firmware: a robot has one or the other");
   }
+  understand_air(words.air, setup.air, problems);
   words.options.league = league_options(words.league, setup.plant.seed, setup.epoch_ms, problems);
   // Clients hold a frame's times against their own clock.
   if (words.options.league && words.options.real_time && setup.epoch_ms == SessionSetup{}.epoch_ms) {
@@ -195,6 +198,7 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   add_firmware_options(verb, w.firmware);
   add_bus_options(verb, w.motor_bus);
   add_league_options(verb, w.league);
+  add_air_options(verb, w.air);
   verb.add_option("--record", w.options.record, "write a recording to this file");
   verb.add_option("--sample-every", w.sample_every,
                   "of each robot's control ticks, record every Nth (bytes are all recorded)")

@@ -1,4 +1,4 @@
-#include "tools/firmware_options.h"
+#include "tools/options/firmware_options.h"
 
 namespace omnihil {
 

@@ -1,4 +1,4 @@
-#include "tools/league_options.h"
+#include "tools/options/league_options.h"
 
 #include <charconv>
 

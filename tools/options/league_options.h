@@ -1,7 +1,7 @@
 // The options with which `serve` opens the league's ports.
 //
 //   add_league_options(verb, words);
-//   options.league = league_options(words, seed, epoch_ms, problems);     // nothing when --league was not given
+//   const auto league = league_options(words, seed, epoch_ms, problems);     // nothing when --league was not given
 #pragma once
 #include <optional>
 #include <string>

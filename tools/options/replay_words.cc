@@ -1,11 +1,11 @@
-#include "tools/replay_words.h"
+#include "tools/options/replay_words.h"
 
 #include "hil/loop/effect_overrides.h"
 #include "hil/loop/session_checks.h"
 #include "hil/recording/recording_header.h"
 #include "hil/recording/session_setup.h"
 #include "hil/text/program_files.h"
-#include "tools/firmware_options.h"
+#include "tools/options/firmware_options.h"
 
 namespace omnihil {
 

@@ -1,0 +1,76 @@
+#include "hil/loop/air_loss.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/law/random.h"
+
+namespace omnihil {
+namespace {
+
+constexpr std::uint64_t kStream = stream_of("air_loss");
+constexpr std::uint64_t kNormalStream = stream_of("air_loss_distance");
+
+void between(double value, double low, double high, const char* what, std::vector<std::string>& problems) {
+  if (value >= low && value <= high) return;
+  problems.push_back(fmt::format("{}: found {}, allowed: {} to {}", what, value, low, high));
+}
+
+}  // namespace
+
+std::vector<std::string> air_problems(const AirOptions& o) {
+  std::vector<std::string> problems;
+  between(o.share, 0.0, 1.0, "air: share", problems);
+  between(o.burst_share, 0.0, 1.0, "air: share lost in bursts", problems);
+  between(o.others_load, 0.0, 10.0, "air: load of others", problems);
+  between(o.x_m, -100.0, 100.0, "air: transmitter's x in m", problems);
+  between(o.y_m, -100.0, 100.0, "air: transmitter's y in m", problems);
+  if (o.burst_bad_packets != 0.0 || o.burst_good_packets != 0.0) {
+    between(o.burst_good_packets, 1.0, 1e9, "air: mean packets between bursts", problems);
+    between(o.burst_bad_packets, 1.0, 1e9, "air: mean packets of a burst", problems);
+  }
+  return problems;
+}
+
+// m = 1 + (2/pi) atan(0.4 (d - 5)), eq. (2), in percent
+double distance_loss_mean(double distance_m) {
+  return (1.0 + 2.0 / std::numbers::pi * std::atan(0.4 * (distance_m - 5.0))) / 100.0;
+}
+
+// sigma = 0.03 log(1 + d/5), eq. (3), in percent
+double distance_loss_sigma(double distance_m) { return 0.03 * std::log(1.0 + distance_m / 5.0) / 100.0; }
+
+AirLoss::AirLoss(const AirOptions& options, std::uint64_t seed,
+                 std::function<std::pair<double, double>(int)> position)
+    : options_(options), seed_(seed), position_(std::move(position)) {}
+
+double AirLoss::draw() { return uniform(seed_, kStream, drawn_++); }
+
+bool AirLoss::lost_in_burst(int robot_id, AirWay way) {
+  bool& bad = bad_[{robot_id, way}];
+  // Geometric lengths: leaving a state of mean length n has probability 1/n per packet.
+  const double leave = 1.0 / (bad ? options_.burst_bad_packets : options_.burst_good_packets);
+  if (draw() < leave) bad = !bad;
+  return bad && draw() < options_.burst_share;
+}
+
+bool AirLoss::lost(int robot_id, AirWay way) {
+  bool gone = false;
+  if (options_.share > 0.0) gone = draw() < options_.share || gone;
+  if (options_.by_distance) {
+    const auto [x_m, y_m] = position_(robot_id);
+    const double d_m = std::hypot(x_m - options_.x_m, y_m - options_.y_m);
+    const double share =
+        distance_loss_mean(d_m) + distance_loss_sigma(d_m) * gaussian(seed_, kNormalStream, drawn_);
+    gone = draw() < share || gone;
+  }
+  if (options_.burst_bad_packets > 0.0) gone = lost_in_burst(robot_id, way) || gone;
+  if (options_.others_load > 0.0) gone = draw() < 1.0 - std::exp(-2.0 * options_.others_load) || gone;
+  (way == AirWay::kToRobot ? counts_.sent_to_robot : counts_.sent_to_host) += 1;
+  if (gone) (way == AirWay::kToRobot ? counts_.to_robot : counts_.to_host) += 1;
+  return gone;
+}
+
+}  // namespace omnihil
