@@ -7,7 +7,7 @@
 //   session.step(bytes, answer);
 //   host->after_step(session);                     // what a camera sees goes out
 //
-// Bound to this computer unless told. Limit: what comes in here is not among the host's bytes of a recording.
+// Bound to this computer unless told. Commands and teleports go through the session, so a recording has them.
 #pragma once
 #include <memory>
 #include <string>

@@ -179,6 +179,9 @@ void Session::step(std::span<const std::uint8_t> host, std::vector<std::uint8_t>
 }
 
 void Session::command(int robot_index, const RobotCommand& command) {
+  if (impl_->observer)
+    impl_->observer->command(impl_->now_ns, impl_->config.robot_ids[static_cast<std::size_t>(robot_index)],
+                             command);
   impl_->firmware[static_cast<std::size_t>(robot_index)]->command(command, impl_->now_ns);
 }
 
@@ -187,7 +190,11 @@ void Session::set_faults(int robot_index, const RobotFaults& faults) {
 }
 
 void Session::set_pose(int robot_index, double x_m, double y_m, double yaw_rad) {
-  impl_->plant.set_pose(robot_index, x_m, y_m, yaw_rad);
+  Impl& s = *impl_;
+  if (s.observer)
+    s.observer->placed(s.now_ns, s.config.robot_ids[static_cast<std::size_t>(robot_index)], x_m, y_m,
+                       yaw_rad);
+  s.plant.set_pose(robot_index, x_m, y_m, yaw_rad);
 }
 
 void Session::host_closed() {

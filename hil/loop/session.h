@@ -62,6 +62,9 @@ class SessionObserver {
   virtual void delivery(std::int64_t, const Delivery&) {}                    // reached a robot
   virtual void robot_tick(std::int64_t, const RobotSample&) {}               // after a control tick
   virtual void host_closed(std::int64_t) {}
+  // Past the radio: a command to a robot's firmware; a robot put down at x, y (m) and yaw (rad).
+  virtual void command(std::int64_t, int /*robot_id*/, const RobotCommand&) {}
+  virtual void placed(std::int64_t, int /*robot_id*/, double, double, double) {}
 };
 
 class Session {

@@ -4,6 +4,8 @@
 //   > TIME_NS HEX            bytes the host wrote, as fed to the loop at that virtual time
 //   < TIME_NS HEX            bytes the dongle gave the host
 //   ! TIME_NS closed         the host closed its port
+//   c TIME_NS ID v1 v2 …     a command to a robot's firmware past the radio (command_values.h has the order)
+//   p TIME_NS ID x y yaw     a robot was put down there: m, m, rad
 //   s TIME_NS ID v1 v2 …     one robot at one control tick; column names and units are in the header
 //   # {"end":…}              counters, wall time; absent when the run was cut off
 //
@@ -54,11 +56,18 @@ struct RecordingHeader {
 };
 
 struct RecordedChunk {
-  enum class Kind : std::uint8_t { kHostBytes, kDongleBytes, kHostClosed, kSample } kind = Kind::kHostBytes;
+  enum class Kind : std::uint8_t {
+    kHostBytes,
+    kDongleBytes,
+    kHostClosed,
+    kSample,
+    kCommand,
+    kPlaced
+  } kind = Kind::kHostBytes;
   std::int64_t now_ns = 0;
   std::vector<std::uint8_t> bytes;  // kHostBytes, kDongleBytes
-  int robot_id = 0;                 // kSample
-  std::vector<double> sample;       // kSample, in the order of header.columns
+  int robot_id = 0;                 // kSample, kCommand, kPlaced
+  std::vector<double> sample;       // kSample, in the order of header.columns; kCommand; kPlaced: x, y, yaw
 };
 
 // What the writer of a complete run counted.

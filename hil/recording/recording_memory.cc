@@ -1,5 +1,7 @@
 #include "hil/recording/recording_memory.h"
 
+#include "hil/recording/command_values.h"
+
 namespace omnihil {
 
 RecordingHeader with_sample_columns(RecordingHeader header) {
@@ -33,6 +35,18 @@ void RecordingMemory::dongle_bytes(std::int64_t now_ns, std::span<const std::uin
 }
 
 void RecordingMemory::host_closed(std::int64_t now_ns) { add(RecordedChunk::Kind::kHostClosed, now_ns); }
+
+void RecordingMemory::command(std::int64_t now_ns, int robot_id, const RobotCommand& command) {
+  RecordedChunk& chunk = add(RecordedChunk::Kind::kCommand, now_ns);
+  chunk.robot_id = robot_id;
+  chunk.sample = command_values(command);
+}
+
+void RecordingMemory::placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) {
+  RecordedChunk& chunk = add(RecordedChunk::Kind::kPlaced, now_ns);
+  chunk.robot_id = robot_id;
+  chunk.sample = {x_m, y_m, yaw_rad};
+}
 
 void RecordingMemory::robot_tick(std::int64_t now_ns, const RobotSample& sample) {
   if (!decimation_.keep(sample.robot_id)) return;

@@ -20,6 +20,8 @@ class RecordingMemory : public SessionObserver {
   void dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
   void robot_tick(std::int64_t now_ns, const RobotSample& sample) override;
   void host_closed(std::int64_t now_ns) override;
+  void command(std::int64_t now_ns, int robot_id, const RobotCommand& command) override;
+  void placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) override;
 
   Recording take(std::int64_t end_ns);  // complete; this object is empty afterwards
 

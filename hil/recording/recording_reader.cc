@@ -7,12 +7,15 @@
 #include <optional>
 #include <system_error>
 
+#include "hil/recording/command_values.h"
 #include "hil/recording/recording_header.h"
 #include "hil/text/json_text.h"
 #include "hil/text/recording_text.h"
 
 namespace omnihil {
 namespace {
+
+constexpr std::size_t kPlacedValues = 3;  // x, y, yaw
 
 std::string joined(const std::vector<std::string>& lines) {
   std::string text;
@@ -98,10 +101,14 @@ bool RecordingReader::parse_line(RecordedChunk& chunk) {
   }
   if (tag == "!") return parse_closed(rest, chunk);
   if (tag == "s") return parse_sample(rest, chunk);
+  if (tag == "c" || tag == "p") {
+    chunk.kind = tag == "c" ? RecordedChunk::Kind::kCommand : RecordedChunk::Kind::kPlaced;
+    return parse_input(rest, tag == "c" ? kCommandValues : kPlacedValues, chunk);
+  }
   if (tag == "#") {
     parse_end(rest);
   } else {
-    problem("line tag: found " + in_quotes(tag) + ", allowed: '>', '<', '!', 's', '#'");
+    problem("line tag: found " + in_quotes(tag) + ", allowed: '>', '<', '!', 's', 'c', 'p', '#'");
   }
   return false;
 }
@@ -128,9 +135,8 @@ bool RecordingReader::parse_closed(std::string_view rest, RecordedChunk& chunk) 
   return true;
 }
 
-bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) {
+bool RecordingReader::parse_robot(std::string_view& rest, RecordedChunk& chunk) {
   if (!parse_time(rest, chunk)) return false;
-  chunk.kind = RecordedChunk::Kind::kSample;
   chunk.bytes.clear();
   chunk.sample.clear();
   const std::string_view id_text = next_word(rest);
@@ -141,6 +147,30 @@ bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) 
     return false;
   }
   chunk.robot_id = static_cast<int>(id);
+  return true;
+}
+
+bool RecordingReader::parse_input(std::string_view rest, std::size_t count, RecordedChunk& chunk) {
+  if (!parse_robot(rest, chunk)) return false;
+  while (!rest.empty() && chunk.sample.size() < count) {
+    const std::string_view text = next_word(rest);
+    double value = 0.0;
+    if (!parse_number(text, value)) {
+      problem("value " + std::to_string(chunk.sample.size() + 1) + ": found " + in_quotes(text) +
+              ", allowed: a finite number");
+      return false;
+    }
+    chunk.sample.push_back(value);
+  }
+  if (rest.empty() && chunk.sample.size() == count) return true;
+  problem("values: found " + std::string(rest.empty() ? "fewer" : "more") +
+          ", allowed: " + std::to_string(count));
+  return false;
+}
+
+bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) {
+  chunk.kind = RecordedChunk::Kind::kSample;
+  if (!parse_robot(rest, chunk)) return false;
   const std::size_t found =
       rest.empty() ? 0 : 1 + static_cast<std::size_t>(std::count(rest.begin(), rest.end(), ' '));
   if (found != header_.columns.size()) {

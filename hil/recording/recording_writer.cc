@@ -7,6 +7,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "hil/recording/command_values.h"
 #include "hil/recording/recording_header.h"
 #include "hil/recording/recording_memory.h"
 #include "hil/text/json_text.h"
@@ -86,6 +87,29 @@ void RecordingWriter::host_closed(std::int64_t now_ns) {
   buffer_ += "! ";
   append_integer(buffer_, now_ns);
   buffer_ += " closed";
+  end_line(now_ns);
+}
+
+void RecordingWriter::command(std::int64_t now_ns, int robot_id, const RobotCommand& command) {
+  input('c', now_ns, robot_id, command_values(command));
+}
+
+void RecordingWriter::placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) {
+  const double place[] = {x_m, y_m, yaw_rad};
+  input('p', now_ns, robot_id, place);
+}
+
+void RecordingWriter::input(char tag, std::int64_t now_ns, int robot_id, std::span<const double> values) {
+  if (error_) return;
+  buffer_ += tag;
+  buffer_ += ' ';
+  append_integer(buffer_, now_ns);
+  buffer_ += ' ';
+  append_integer(buffer_, robot_id);
+  for (const double value : values) {
+    buffer_ += ' ';
+    append_number(buffer_, value);
+  }
   end_line(now_ns);
 }
 

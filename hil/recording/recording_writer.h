@@ -37,6 +37,8 @@ class RecordingWriter : public SessionObserver {
   void dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
   void robot_tick(std::int64_t now_ns, const RobotSample& sample) override;
   void host_closed(std::int64_t now_ns) override;
+  void command(std::int64_t now_ns, int robot_id, const RobotCommand& command) override;
+  void placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) override;
 
   // Writes what is buffered.
   void flush();
@@ -48,6 +50,7 @@ class RecordingWriter : public SessionObserver {
 
  private:
   RecordingWriter(int fd, std::filesystem::path path, RecordingHeader header, Report report);
+  void input(char tag, std::int64_t now_ns, int robot_id, std::span<const double> values);
   void chunk(char tag, std::int64_t now_ns, std::span<const std::uint8_t> bytes);
   void end_line(std::int64_t now_ns);
   void fail(int error_number);

@@ -1,5 +1,8 @@
 #include "hil/recording/replay.h"
 
+#include <algorithm>
+
+#include "hil/recording/command_values.h"
 #include "hil/recording/recording_reader.h"
 
 namespace omnihil {
@@ -20,6 +23,34 @@ void ObserverList::host_closed(std::int64_t now_ns) {
   for (SessionObserver* observer : observers_) observer->host_closed(now_ns);
 }
 
+void ObserverList::command(std::int64_t now_ns, int robot_id, const RobotCommand& command) {
+  for (SessionObserver* observer : observers_) observer->command(now_ns, robot_id, command);
+}
+void ObserverList::placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) {
+  for (SessionObserver* observer : observers_) observer->placed(now_ns, robot_id, x_m, y_m, yaw_rad);
+}
+
+namespace {
+
+bool is_input(const RecordedChunk& chunk) {
+  using Kind = RecordedChunk::Kind;
+  return chunk.kind == Kind::kHostBytes || chunk.kind == Kind::kHostClosed || chunk.kind == Kind::kCommand ||
+         chunk.kind == Kind::kPlaced;
+}
+
+// What went past the radio; the header's ids were checked when it was read.
+void give(const RecordedChunk& chunk, Session& session) {
+  const std::vector<int>& ids = session.config().robot_ids;
+  const auto at = std::ranges::find(ids, chunk.robot_id);
+  if (at == ids.end()) return;
+  const int index = static_cast<int>(at - ids.begin());
+  if (chunk.kind == RecordedChunk::Kind::kCommand) session.command(index, command_of(chunk.sample));
+  if (chunk.kind == RecordedChunk::Kind::kPlaced)
+    session.set_pose(index, chunk.sample[0], chunk.sample[1], chunk.sample[2]);
+}
+
+}  // namespace
+
 std::vector<std::string> replay_problems(const Recording& recording) {
   using Kind = RecordedChunk::Kind;
   constexpr std::size_t kMost = RecordingReader::kMaxProblems;
@@ -27,15 +58,14 @@ std::vector<std::string> replay_problems(const Recording& recording) {
   const std::int64_t step_ns = recording.header.step_ns;
   std::int64_t last_bytes_ns = -1;
   for (const RecordedChunk& chunk : recording.chunks) {
-    const bool is_input = chunk.kind == Kind::kHostBytes || chunk.kind == Kind::kHostClosed;
-    if (!is_input || problems.size() == kMost) continue;
+    if (!is_input(chunk) || problems.size() == kMost) continue;
     if (chunk.now_ns % step_ns != 0) {
       problems.push_back("host input at " + std::to_string(chunk.now_ns) +
                          " ns: allowed: multiples of the loop step, " + std::to_string(step_ns) + " ns");
     }
     if (chunk.kind == Kind::kHostBytes) {
       last_bytes_ns = chunk.now_ns;
-    } else if (chunk.now_ns == last_bytes_ns) {
+    } else if (chunk.kind == Kind::kHostClosed && chunk.now_ns == last_bytes_ns) {
       problems.push_back("close at " + std::to_string(chunk.now_ns) +
                          " ns after host bytes at the same time: allowed: before them, or later");
     }
@@ -60,6 +90,7 @@ void replay(const Recording& recording, Session& session, SessionObserver* obser
     for (; next != recording.chunks.end() && next->now_ns <= session.now_ns(); ++next) {
       if (next->kind == Kind::kHostBytes) host.insert(host.end(), next->bytes.begin(), next->bytes.end());
       if (next->kind == Kind::kHostClosed) session.host_closed();
+      give(*next, session);
     }
     session.step(host, out);
   }

@@ -25,6 +25,8 @@ class ObserverList : public SessionObserver {
   void delivery(std::int64_t now_ns, const Delivery& delivery) override;
   void robot_tick(std::int64_t now_ns, const RobotSample& sample) override;
   void host_closed(std::int64_t now_ns) override;
+  void command(std::int64_t now_ns, int robot_id, const RobotCommand& command) override;
+  void placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) override;
 
  private:
   std::vector<SessionObserver*> observers_;  // not owned

@@ -155,8 +155,6 @@ void Bench::say_ready() const {
   if (options_.league_sync_port > 0)
     fmt::print("league synchronous protocol: TCP {}:{}; time goes on by its requests alone\n",
                options_.league->address, sync_.port());
-  if (league_ && writer_)
-    fmt::print("note: what comes by the league's protocols is not in the recording: it does not replay\n");
   std::fflush(stdout);
 }
 

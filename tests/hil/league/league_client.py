@@ -54,6 +54,8 @@ class League(unittest.TestCase):
         self.addCleanup(self.udp.close)
 
     def stop(self):
+        if self.process.poll() is not None:
+            return
         self.process.terminate()
         self.process.communicate(timeout=30)
 
@@ -185,6 +187,30 @@ class League(unittest.TestCase):
         self.assertEqual((geometry.field.field_length, geometry.field.field_width), (9000, 6000))
         self.assertEqual(len(geometry.calib), 4)
         self.assertGreaterEqual(len(geometry.field.field_lines), 12)
+
+    def test_recording_of_the_league_replays(self):
+        record = os.path.join(self.work, "league.omnirec")
+        self.serve("--league", "--record", record, "--sample-every", "1")
+        command = self.sim.SimulatorCommand()
+        robot = command.control.teleport_robot.add()
+        robot.id.id, robot.id.team, robot.x, robot.y, robot.orientation = 0, self.sim.BLUE, 1.0, -2.0, 0.5
+        self.ask(self.control, command, self.sim.SimulatorResponse())
+
+        def turn(c):
+            c.id = 0
+            c.move_command.global_velocity.x, c.move_command.global_velocity.y = 0.4, 0.2
+            c.move_command.global_velocity.angular = 1.0
+            c.kick_speed, c.dribbler_speed = 3, 700
+        for _ in range(20):
+            self.assertEqual(list(self.control_robots(turn).errors), [])
+            time.sleep(0.02)
+        self.stop()
+        with open(record) as file:
+            tags = [line.split()[0] for line in file]
+        self.assertEqual(tags.count("p"), 1)
+        self.assertEqual(tags.count("c"), 20)
+        checked = subprocess.run([self.program, "check", "--exact", "--quiet", record], capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 
     def sync(self, connection, request):
         data = request.SerializeToString()

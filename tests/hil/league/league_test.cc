@@ -202,7 +202,8 @@ TEST_P(LeagueClient, IsServed) {
 INSTANTIATE_TEST_SUITE_P(PythonProtobuf, LeagueClient,
                          testing::Values("test_robot_drives_and_answers_with_telemetry",
                                          "test_every_refused_field_has_its_error", "test_teleport_and_vision",
-                                         "test_steps_are_exact_and_repeat"),
+                                         "test_steps_are_exact_and_repeat",
+                                         "test_recording_of_the_league_replays"),
                          [](const auto& param) { return std::string(param.param); });
 
 }  // namespace
