@@ -73,7 +73,7 @@ std::vector<std::size_t> drawn(const std::vector<double>& y) {
     const auto begin = y.begin() + static_cast<std::ptrdiff_t>(from);
     const auto end = y.begin() + static_cast<std::ptrdiff_t>(std::min(y.size(), from + stride));
     const auto [least, greatest] = std::minmax_element(begin, end);
-    const auto [first, second] = std::minmax(least - y.begin(), greatest - y.begin());
+    const auto [first, second] = std::minmax({least - y.begin(), greatest - y.begin()});
     places.push_back(static_cast<std::size_t>(first));
     if (second != first) places.push_back(static_cast<std::size_t>(second));
   }
