@@ -151,6 +151,17 @@ TEST_F(CheckOfAFirmware, AnotherRobotIsNotTheFirmwaresDoing) {
   EXPECT_NE(all_of(outcome.changed).find("another text than recorded"), std::string::npos);
 }
 
+// The reference firmware is configured by the model: with another motor it computes other duties, which is no change of
+// its code.
+TEST_F(CheckOfAFirmware, ToldOfAnotherRobotIsSaidSo) {
+  ReplayOptions options = with_firmware(kReference);
+  options.model = real::setup(real::kRem).model;
+  const CheckOutcome outcome = check(*recording_, options);
+  EXPECT_FALSE(outcome.passed());
+  EXPECT_NE(all_of(outcome.cause).find("told of another robot"), std::string::npos) << all_of(outcome.cause);
+  EXPECT_EQ(all_of(outcome.cause).find("gain"), std::string::npos) << all_of(outcome.cause);
+}
+
 TEST_F(CheckOfAFirmware, ThatCrashesHasNoVerdict) {
   const CheckOutcome outcome = check(*recording_, with_firmware(planted("abort")));
   EXPECT_EQ(outcome.fault, CheckFault::kFirmware);
