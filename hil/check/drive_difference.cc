@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "hil/recording/recorded_samples.h"
+
 namespace omnihil {
 namespace {
 
@@ -17,27 +19,15 @@ constexpr double kLeastReversed = 0.5;    // a choice: of the recorded duty
 
 using Places = std::vector<std::size_t>;
 
-std::size_t place_of(const std::vector<std::string>& columns, std::string_view name) {
-  return static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin());
-}
-
 // Places of NAME_1 … NAME_4; empty where a column is missing.
 Places wheel_places(const RecordingHeader& header, std::string_view name) {
   Places places;
   for (int wheel = 1; wheel <= static_cast<int>(kWheels); ++wheel) {
-    const std::size_t place = place_of(header.columns, fmt::format("{}_{}", name, wheel));
+    const std::size_t place = column_place(header, fmt::format("{}_{}", name, wheel));
     if (place == header.columns.size()) return {};
     places.push_back(place);
   }
   return places;
-}
-
-std::vector<const RecordedChunk*> samples_of(const Recording& recording) {
-  std::vector<const RecordedChunk*> samples;
-  for (const RecordedChunk& chunk : recording.chunks) {
-    if (chunk.kind == RecordedChunk::Kind::kSample) samples.push_back(&chunk);
-  }
-  return samples;
 }
 
 // When the host wrote, up to `now_ns`.

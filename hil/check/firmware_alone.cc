@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hil/loop/reference_firmware.h"
+#include "hil/recording/recorded_samples.h"
 
 namespace omnihil {
 namespace {
@@ -22,9 +23,9 @@ struct SensorColumns {
   static std::optional<SensorColumns> of(const RecordingHeader& header) {
     bool complete = true;
     const auto place = [&](const std::string& name) {
-      const auto at = std::ranges::find(header.columns, name);
-      complete = complete && at != header.columns.end();
-      return static_cast<std::size_t>(at - header.columns.begin());
+      const std::size_t at = column_place(header, name);
+      complete = complete && at < header.columns.size();
+      return at;
     };
     SensorColumns c;
     for (std::size_t w = 0; w < kWheels; ++w) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "firmware_iface/omnihil_firmware.h"
+#include "hil/recording/recorded_samples.h"
 #include "sim/robot/plant.h"
 
 namespace omnihil {
@@ -49,9 +50,7 @@ struct Row {
 struct Places {
   std::size_t duty, mode, bus, target, omega, counts;
   Places(const RecordingHeader& header, int wheel) {
-    const auto place = [&](const std::string& name) {
-      return static_cast<std::size_t>(std::ranges::find(header.columns, name) - header.columns.begin());
-    };
+    const auto place = [&](const std::string& name) { return column_place(header, name); };
     const std::string number = "_" + std::to_string(wheel + 1);
     duty = place("duty_ratio" + number);
     mode = place("drive_mode" + number);
@@ -64,14 +63,6 @@ struct Places {
     return std::max({duty, mode, bus, target, omega, counts}) < header.columns.size();
   }
 };
-
-std::vector<const RecordedChunk*> samples_of(const Recording& recording, int robot_id) {
-  std::vector<const RecordedChunk*> ticks;
-  for (const RecordedChunk& chunk : recording.chunks) {
-    if (chunk.kind == RecordedChunk::Kind::kSample && chunk.robot_id == robot_id) ticks.push_back(&chunk);
-  }
-  return ticks;
-}
 
 bool driven(const RecordedChunk& tick, const Places& at) {
   return tick.sample[at.mode] == double{OMNIHIL_DRIVE_DUTY} && std::abs(tick.sample[at.duty]) < kDutyLimit;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "hil/recording/compare_recordings_parts.h"
+#include "hil/recording/recorded_samples.h"
 #include "hil/text/recording_text.h"
 
 namespace omnihil {
@@ -18,14 +19,6 @@ struct Column {
   bool is_angle = false;
   std::size_t signal = 0;
 };
-
-std::vector<const RecordedChunk*> samples_of(const Recording& recording) {
-  std::vector<const RecordedChunk*> samples;
-  for (const RecordedChunk& chunk : recording.chunks) {
-    if (chunk.kind == RecordedChunk::Kind::kSample) samples.push_back(&chunk);
-  }
-  return samples;
-}
 
 bool is_angle(const std::string& name) {
   const auto& columns = sample_columns();
