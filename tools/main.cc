@@ -1,16 +1,20 @@
 // The one program: `omnihil VERB …`.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "tools/command_line.h"
 #include "tools/command_tree.h"
 #include "tools/exit_codes.h"
 #include "tools/manual.h"
 #include "tools/misspelt.h"
+#include "tools/options/bench_expansion.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -43,8 +47,15 @@ int main(int argc, char** argv) {
   omnihil::Verb program(&app);
   for (omnihil::VerbAdder* add : omnihil::all_verbs()) add(program, result);
   add_manual(app, result);
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (const std::string wrong = omnihil::expand_bench(arguments, app); !wrong.empty()) {
+    std::fprintf(stderr, "omnihil %s:\n%s\n", arguments.front().c_str(), wrong.c_str());
+    return omnihil::kExitBadInput;
+  }
   try {
-    app.parse(argc, argv);
+    std::ranges::reverse(arguments);  // as this parser takes them
+    app.name(argv[0]);
+    app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {
     const std::string misspelt =
         error.get_exit_code() == 0 ? "" : omnihil::misspelt_words(omnihil::command_tree(app));

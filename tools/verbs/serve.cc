@@ -32,6 +32,7 @@ constexpr const char* kDefaultRadio = "ulaval-hermes";
 
 struct Words {  // as the user gave them
   std::string robot = "omni_default";
+  std::string bench;  // expanded before the command line is read (bench_expansion.h)
   std::string radio;
   std::string format_file;
   std::string robots = "0-5";
@@ -184,6 +185,8 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   Verb verb = program.add_subcommand(
       "serve", "robots behind a virtual radio dongle that an AI host opens as a serial port");
   Words& w = *words;
+  verb.add_option("--bench", w.bench,
+                  "a file that says what these options say (docs/serve.md); what is given here wins");
   verb.add_option("--robot", w.robot, "robot model: a name or a .toml file").capture_default_str();
   verb.add_option("--with", w.with,
                   "add an effect to every robot: ID.parameter=value, or ID for its typical size; several "

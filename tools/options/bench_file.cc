@@ -1,0 +1,133 @@
+#include "tools/options/bench_file.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <sstream>
+
+#include "hil/text/toml_keys.h"
+
+namespace omnihil {
+namespace {
+
+// The names of these are files, or may be.
+constexpr std::array<std::string_view, 6> kFiles{"robot", "firmware", "board", "format", "record", "bench"};
+
+std::string dashed(std::string_view key) {
+  std::string name(key);
+  std::ranges::replace(name, '_', '-');
+  return name;
+}
+
+class Reader {
+ public:
+  Reader(const ModelDocument& document, std::string folder, std::span<const BenchOption> options,
+         const std::set<std::string>& given, BenchArguments& out)
+      : keys_(document, out.problems),
+        folder_(std::move(folder)),
+        options_(options),
+        given_(given),
+        out_(out) {}
+
+  void read(const toml::table& top) {
+    for (const auto& [key, node] : top) {
+      if (key.str() == "format") continue;
+      if (const toml::table* table = node.as_table()) {
+        if (const BenchOption* flag = find(dashed(key.str())); flag != nullptr && flag->is_flag)
+          add_flag(flag->name);
+        for (const auto& [inner, value] : *table)
+          take(inner, std::string(key.str()), dashed(key.str()) + "-" + dashed(inner.str()), value);
+        continue;
+      }
+      // The key "format" says what file this is; the radio format's file is "radio_file".
+      take(key, "", key.str() == "radio_file" ? "format" : dashed(key.str()), node);
+    }
+  }
+
+ private:
+  const BenchOption* find(const std::string& name) const {
+    const auto at = std::ranges::find(options_, name, &BenchOption::name);
+    return at == options_.end() || name == "bench" ? nullptr : &*at;
+  }
+
+  void add_flag(const std::string& name) {
+    if (!given_.contains(name)) out_.arguments.push_back("--" + name);
+  }
+
+  void take(const toml::key& key, const std::string& path, const std::string& name, const toml::node& node) {
+    const BenchOption* option = find(name);
+    if (option == nullptr) {
+      std::vector<std::string_view> names;
+      for (const BenchOption& each : options_) names.push_back(each.name);
+      keys_.wrong_key(key, path, "\"" + std::string(key.str()) + "\" is no option of serve",
+                      spelling_hint(name, names));
+      return;
+    }
+    if (option->is_flag) {
+      if (!node.is_boolean())
+        return keys_.wrong(node, key_path(path, key.str()), "is a flag", "true or false");
+      if (node.as_boolean()->get()) add_flag(name);
+      return;
+    }
+    if (given_.contains(name)) return;
+    if (const toml::array* list = node.as_array()) {
+      for (const toml::node& item : *list) add_value(key, path, name, item);
+    } else {
+      add_value(key, path, name, node);
+    }
+  }
+
+  void add_value(const toml::key& key, const std::string& path, const std::string& name,
+                 const toml::node& node) {
+    std::ostringstream text;
+    if (const auto* word = node.as_string()) {
+      text << beside(name, word->get());
+    } else if (const auto* whole = node.as_integer()) {
+      text << whole->get();
+    } else if (const auto* number = node.as_floating_point()) {
+      text.precision(17);
+      text << number->get();
+    } else {
+      return keys_.wrong(node, key_path(path, key.str()), "has no value for an option",
+                         "a text, a number or a list of them");
+    }
+    out_.arguments.push_back("--" + name + "=" + text.str());
+  }
+
+  std::string beside(const std::string& name, const std::string& value) const {
+    if (folder_.empty() || std::ranges::find(kFiles, name) == kFiles.end()) return value;
+    const std::filesystem::path here = std::filesystem::path(folder_) / value;
+    std::error_code error;
+    return std::filesystem::exists(here, error) ? here.string() : value;
+  }
+
+  TomlKeys keys_;
+  std::string folder_;
+  std::span<const BenchOption> options_;
+  const std::set<std::string>& given_;
+  BenchArguments& out_;
+};
+
+}  // namespace
+
+BenchArguments bench_arguments(const std::string& text, const std::string& file, const std::string& folder,
+                               std::span<const BenchOption> options, const std::set<std::string>& given) {
+  BenchArguments out;
+  const auto document = parse_document(text, file, out.problems);
+  if (!document) return out;
+  TomlKeys keys(*document, out.problems);
+  const std::string_view formats[] = {kBenchFormat};
+  if (!document->table.contains("format")) {
+    keys.missing(document->table, "", "format", kBenchFormat);
+  } else {
+    keys.word(document->table, "", "format", formats, {});
+  }
+  Reader(*document, folder, options, given, out).read(document->table);
+  std::ranges::stable_sort(out.problems, {}, &ModelProblem::line);
+  if (!out.problems.empty()) out.arguments.clear();
+  return out;
+}
+
+}  // namespace omnihil
