@@ -220,7 +220,8 @@ TEST_F(RecordingVerbs, BrokenRecordingEndsWithTwoAndItsPlace) {
   for (const std::string& verb : reading_verbs()) {
     const Ran ran = run_omnihil(verb + recording());
     EXPECT_EQ(ran.exit_code, 2) << ran.text;
-    EXPECT_TRUE(ran.says("run.omnirec:2: line tag: found '}', allowed: '>', '<', '!', 's', '#'")) << ran.text;
+    EXPECT_TRUE(ran.says("run.omnirec:2: line tag: found '}', allowed: '>', '<', '!', 's', 'c', 'p', '#'"))
+        << ran.text;
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
