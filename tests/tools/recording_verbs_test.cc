@@ -207,6 +207,38 @@ TEST_F(RecordingVerbs, ConvertMakesCapturesOnce) {
   }
 }
 
+// A log of both ways, in Unix time: the model that was recorded agrees with it, another one does not.
+TEST_F(RecordingVerbs, ImportMakesARecordingOfALog) {
+  const Recording recorded = real::record(real::setup(real::kRem), 600);
+  std::string log = "# heard on the field\n";
+  for (const RecordedChunk& chunk : recorded.chunks) {
+    if (chunk.bytes.empty()) continue;
+    const bool host = chunk.kind == RecordedChunk::Kind::kHostBytes;
+    const auto hex = to_hex(chunk.bytes);
+    std::string time = std::to_string(1'700'000'000'000'000'000 + chunk.now_ns);
+    log += time.insert(time.size() - 9, ".") + (host ? " > " : " < ") + hex + "\n";
+  }
+  fake::write_text(folder_ / "field.txt", log);
+  const auto out = folder_ / "field.omnirec";
+  const std::string import =
+      "import" + shell(folder_ / "field.txt") + "--robot roboteam_2024 --robots 0,3 --out" + shell(out);
+  const Ran ran = run_omnihil(import);
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+  EXPECT_EQ(run_omnihil(import).exit_code, 2);  // never overwritten
+  const Ran same = run_omnihil("check --quiet --physics planar" + shell(out));
+  EXPECT_TRUE(same.says("samples not recorded")) << same.text;
+  EXPECT_TRUE(same.says("compared ")) << same.text;
+  const Ran dumped = run_omnihil("dump" + shell(out));
+  EXPECT_TRUE(dumped.says("REM_RobotFeedback")) << dumped.text;
+  fake::write_text(folder_ / "bad.txt", "1.0 > 0f\n0.5 < 00\n2 = 11\n3 > 0\nx > 11\n");
+  const Ran bad = run_omnihil("import" + shell(folder_ / "bad.txt") + "--robot roboteam_2024 --out" +
+                              shell(folder_ / "b.omnirec"));
+  EXPECT_EQ(bad.exit_code, 2);
+  for (const char* place : {"bad.txt:2: time", "bad.txt:3: line", "bad.txt:4: bytes", "bad.txt:5: time"})
+    EXPECT_TRUE(bad.says(place)) << bad.text;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "b.omnirec"));
+}
+
 TEST_F(RecordingVerbs, CheckOfNothingIsNoAgreement) {
   text_.resize(text_.find('\n') + 1);
   fake::write_text(path_, text_);

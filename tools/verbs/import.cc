@@ -1,0 +1,107 @@
+// omnihil import LOG: what a real robot's radio was heard to say, as a recording that `check` takes.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hil/loop/effect_overrides.h"
+#include "hil/loop/session_checks.h"
+#include "hil/recording/log_import.h"
+#include "hil/recording/recording_writer.h"
+#include "hil/recording/session_setup.h"
+#include "hil/text/program_files.h"
+#include "hil/text/text_file.h"
+#include "tools/command_line.h"
+#include "tools/exit_codes.h"
+#include "tools/format_argument.h"
+#include "tools/guarded.h"
+#include "tools/program_commit.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+struct ImportWords {
+  std::string log, robot = "omni_default", radio, format_file, robots = "0-5", team = "blue", out;
+};
+
+SessionSetup setup_of(const ImportWords& words) {
+  SessionSetup setup;
+  std::vector<std::string> problems;
+  const StoredModel stored = load_robot_model(words.robot, {data_folder("models")});
+  for (const ModelProblem& problem : stored.problems) problems.push_back(problem.text());
+  throw_problems(problems);
+  setup.model = stored.bundle;
+  setup.radio_format = !words.radio.empty() ? words.radio : stored.model->radio;
+  setup.robot_ids = parse_robot_list(words.robots, problems);
+  setup.team = words.team == "blue" ? Team::kBlue : Team::kYellow;
+  throw_problems(problems);
+  return setup;
+}
+
+int run_import(ImportWords words) {
+  if (!words.format_file.empty()) {
+    const RadioFormat* format = format_file_or_complain(words.format_file);
+    if (format == nullptr) return kExitBadInput;
+    words.radio = format->id;
+  }
+  const SessionSetup setup = setup_of(words);
+  session_config(setup);  // says what is wrong with it
+  std::string error_text;
+  const std::string text = read_text_file(words.log, error_text);
+  if (!error_text.empty())
+    throw std::system_error(std::make_error_code(std::errc::io_error), words.log + ": " + error_text);
+  const LogImport log = parse_radio_log(text, words.log, setup.step_ns);
+  if (std::filesystem::exists(words.out)) throw FileExists(words.out + ": is there already");
+  RecordingHeader header = recording_header(setup, "imported");
+  header.firmware = "as on the robot";
+  // Packets that carry a time carry the log's.
+  constexpr double kUnixFrom_s = 1e9;  // September 2001: what is less counts from the start of something
+  if (log.first_s >= kUnixFrom_s) header.epoch_ms = static_cast<std::uint64_t>(log.first_s * 1e3);
+  std::error_code error;
+  const auto writer = RecordingWriter::open(words.out, std::move(header), error);
+  if (!writer) throw std::system_error(error, words.out);
+  std::size_t host = 0, back = 0;
+  for (const RecordedChunk& chunk : log.chunks) {
+    if (chunk.kind == RecordedChunk::Kind::kHostBytes) {
+      writer->host_bytes(chunk.now_ns, chunk.bytes);
+      ++host;
+    } else {
+      writer->dongle_bytes(chunk.now_ns, chunk.bytes);
+      ++back;
+    }
+  }
+  writer->finish({.now_ns = log.end_ns, .wall_s = 0.0, .counters = {}});
+  if (writer->error()) throw std::system_error(writer->error(), words.out);
+  fmt::print(
+      "{}: {:.3f} s from {:.3f} s on, {} writes of the host, {} of the robots; host put off by {:.3f} ms "
+      "at most\n",
+      words.out, static_cast<double>(log.end_ns) / 1e9, log.first_s, host, back,
+      static_cast<double>(log.most_moved_ns) / 1e6);
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_verb_import(Verb& program, VerbResult& result) {
+  auto words = std::make_shared<ImportWords>();
+  Verb verb = program.add_subcommand("import", "what a real robot's radio said, as a recording to check");
+  verb.add_option("LOG", words->log, "text, a line each: TIME_S > HEX (host) or TIME_S < HEX (robots)")
+      .required();
+  verb.add_option("--robot", words->robot, "robot model: a name or a .toml file").capture_default_str();
+  verb.add_option("--radio", words->radio, "radio format (default: the robot model's own)");
+  verb.add_option("--format", words->format_file, "radio format from this file");
+  verb.add_option("--robots", words->robots, "robot ids that were on the field: 0-5 or 0,2,7")
+      .capture_default_str();
+  verb.add_option("--team", words->team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
+  verb.add_option("--out", words->out, "recording to make; what is there is never overwritten").required();
+  verb.footer(
+      "`check RECORDING --explain` then has the model answer the same commands and says what of it differs.\n"
+      "Times may begin anywhere (Unix time). Exit codes: 2 a line that cannot be used, all named; 3 a file.");
+  verb.callback(
+      [words, &result] { result.exit_code = guarded("import", [&] { return run_import(*words); }); });
+}
+
+}  // namespace omnihil
