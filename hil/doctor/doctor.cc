@@ -8,18 +8,31 @@
 #include "hil/text/json_text.h"
 
 namespace omnihil {
+namespace {
+
+constexpr const char* kGroupOfSerialPorts = "dialout";  // Debian; udev gives ttyACM* and ttyUSB* to it
+
+}  // namespace
 
 std::vector<Finding> examine(const DoctorOptions& options) {
+  const std::vector<std::string> programs =
+      options.program_path.empty() ? folders_of_programs() : options.program_path;
+  const std::vector<std::string> plugins =
+      options.plugin_folders.empty() ? wireshark_plugin_folders() : options.plugin_folders;
   return {look_at_ptys(),
-          look_at_serial_ports(options.root),
+          look_at_serial_ports(options.root, is_in_group(kGroupOfSerialPorts)),
           look_at_can(options.root),
           look_at_cores(options.root),
+          look_at_clock(options.root),
           look_at_wake_up(options.sleeps),
           look_at_scheduling(),
           look_at_memory_lock(),
           look_at_open_files(),
           look_at_league_ports(options.league_ports),
-          look_at_multicast(options.vision_group, options.vision_port)};
+          look_at_vision_port(options.vision_port),
+          look_at_multicast(options.vision_group, options.vision_port),
+          look_at_multicast_network(options.vision_group, options.vision_port, multicast_interfaces()),
+          look_at_wireshark(programs, plugins)};
 }
 
 const char* state_word(FindingState state) {

@@ -14,7 +14,10 @@
 namespace omnihil {
 namespace {
 
-constexpr double kLate_us = 1000.0;          // a loop step of serve: later than that and a step slips
+constexpr double kLate_us = 1000.0;  // a loop step of serve: later than that and a step slips
+constexpr std::int64_t kCoarse_ns =
+    100'000;  // a tenth of a loop step; without high resolution timers it is 1 to 10 ms
+constexpr int kReadings = 1000;
 constexpr unsigned long kRobotsFiles = 256;  // 16 robots with a child process, wires and a recording
 
 std::string limit_text(rlim_t limit) {
@@ -29,6 +32,27 @@ Finding look_at_cores(const std::string& root) {
   for (std::string line; std::getline(in, line);) cores += line.starts_with("processor") ? 1 : 0;
   if (cores == 0) return {"cores", FindingState::kLimited, "not to be seen in /proc/cpuinfo", ""};
   return {"cores", FindingState::kOk, fmt::format("{}", cores), ""};
+}
+
+Finding look_at_clock(const std::string& root) {
+  timespec step{};
+  ::clock_getres(CLOCK_MONOTONIC, &step);
+  std::int64_t smallest_ns = 1'000'000'000;  // between two readings that differ: what a reading costs
+  std::int64_t last_ns = monotonic_now_ns();
+  for (int i = 0; i < kReadings; ++i) {
+    const std::int64_t now_ns = monotonic_now_ns();
+    if (now_ns != last_ns) smallest_ns = std::min(smallest_ns, now_ns - last_ns);
+    last_ns = now_ns;
+  }
+  std::string source = "unknown";
+  std::ifstream(root + "/sys/devices/system/clocksource/clocksource0/current_clocksource") >> source;
+  const std::int64_t resolution_ns = step.tv_sec * 1'000'000'000 + step.tv_nsec;
+  const std::string detail = fmt::format("resolution {} ns, two readings {} ns apart, source {}",
+                                         resolution_ns, smallest_ns, source);
+  if (resolution_ns > kCoarse_ns)
+    return {"clock", FindingState::kLimited, detail,
+            "a kernel with high resolution timers (CONFIG_HIGH_RES_TIMERS)"};
+  return {"clock", FindingState::kOk, detail, ""};
 }
 
 Finding look_at_wake_up(int sleeps) {
