@@ -9,7 +9,8 @@
  * Units are SI and stand in every name. Frames: body x forward, y left, z up, drawn in
  * docs/frames-and-wheels.md. Wheel i sits at wheel_angle_rad[i] from x towards y; its positive direction
  * is the body's counter-clockwise tangent. All-zero bytes are the neutral value of every struct.
- * No pointers in the data structs; the layout is frozen per OMNIHIL_FIRMWARE_ABI (static_assert in tests).
+ * No pointers in the data structs; the layout is frozen per OMNIHIL_FIRMWARE_ABI (static_assert in tests), but that
+ * what the bench hands over may grow at its end.
  *
  * Three-phase robots: the bench also calls motor_tick() once per PWM period of the bridges, inside the time
  * between two tick()s. Members behind feedback() of omnihil_firmware_api were added later: a table whose
@@ -104,8 +105,9 @@ typedef struct omnihil_sensors {
   double gyro_z_rad_s;
   double accel_x_m_s2; /* body frame, gravity removed */
   double accel_y_m_s2;
-  uint32_t ball_seen;
+  uint32_t ball_seen; /* the break beam is cut */
   uint32_t reserved;
+  double capacitor_V; /* of the kicker; appended: firmware built before does not look so far */
 } omnihil_sensors;
 
 /* What the firmware asks of the four bridges. */

@@ -186,7 +186,8 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const std::array<WheelDr
   std::array<PeriodSample, kWheels> samples;
   for (int n = 0; n < periods_; ++n) {
     const std::int64_t begin_ns = now_ns + whole_ns(n * period_s);
-    double bus_charge_C = 0.0;
+    double bus_charge_C = memory.other_current_A * period_s;
+    memory.book.bus_J += bus_charge_C * memory.at_bridges_V();
     for (std::size_t i = 0; i < kWheels; ++i) {
       const PeriodFlow f = advance_wheel(memory, i, inputs[i], begin_ns, integrals[i]);
       samples[i] = f.sample;

@@ -40,6 +40,7 @@ struct ElectricMemory {
   EnergyBook book{};
   double supply_ratio = 1.0;  // robot_faults.h
   std::array<bool, kWheels> encoder_stuck{};
+  double other_current_A = 0.0;  // on the bus beside the wheels: dribbler, the kicker's charger
 
   double at_bridges_V() const { return supply_ratio * supply.bus_voltage_V; }
 };

@@ -10,7 +10,7 @@
 namespace omnihil {
 namespace {
 
-constexpr std::uint64_t kStateMark = 0x32544e414c504853;  // layout of save(), version 2
+constexpr std::uint64_t kStateMark = 0x33544e414c504853;  // layout of save(), version 3
 
 void keep_stuck_counts(RobotMemory& mem, RobotSensors& s) {
   for (std::size_t i = 0; i < kWheels; ++i) {
@@ -71,7 +71,7 @@ ElectricTruth Plant::electric_truth(int robot) const {
   return impl_->electrics[n] ? impl_->electrics[n]->truth(impl_->electric_memory[n]) : ElectricTruth{};
 }
 
-void Plant::advance(std::int64_t duration_ns) {
+void Plant::advance(std::int64_t duration_ns, StepListener* listener) {
   Impl& p = *impl_;
   if (duration_ns < 0 || duration_ns % p.options.mechanical_step_ns != 0) {
     throw std::logic_error("Plant::advance: " + std::to_string(duration_ns) +
@@ -82,10 +82,37 @@ void Plant::advance(std::int64_t duration_ns) {
   if (p.fault) return;
   std::visit(
       [&](auto& back) {
-        for (std::int64_t n = duration_ns / p.step_ns; n > 0; --n) p.step(back);
+        for (std::int64_t n = duration_ns / p.step_ns; n > 0; --n) {
+          p.step(back);
+          if (listener != nullptr) listener->after_step(*this, p.step_s);
+        }
       },
       p.mechanics);
   p.look_for_fault();
+}
+
+PlanarState Plant::planar_state(int robot) const {
+  const auto n = static_cast<std::size_t>(robot);
+  const BodyMotion m =
+      std::visit([&](const auto& back) { return back.motion(impl_->q, impl_->u, n); }, impl_->mechanics);
+  const double* v = impl_->field_velocity(impl_->u, n);
+  return {m.x_m, m.y_m, m.yaw_rad, v[0], v[1], m.velocity.omega_body_rad_s};
+}
+
+void Plant::add_velocity(int robot, double v_x_m_s, double v_y_m_s, double omega_rad_s) {
+  impl_->add_velocity(static_cast<std::size_t>(robot), v_x_m_s, v_y_m_s, omega_rad_s);
+}
+
+void Plant::shift(int robot, double x_m, double y_m) {
+  Impl& p = *impl_;
+  double* at = &p.q[static_cast<std::size_t>(robot) * p.layout.q_per_robot + (p.free() ? 4 : 1)];
+  at[0] += x_m;
+  at[1] += y_m;
+  p.state_known = false;
+}
+
+void Plant::set_other_current(int robot, double current_A) {
+  impl_->electric_memory[static_cast<std::size_t>(robot)].other_current_A = current_A;
 }
 
 RobotSensors Plant::sample_sensors(int robot) {

@@ -18,7 +18,8 @@
 // motor current = mean since that robot's last sample_sensors(), which begins a new mean and remembers the
 // encoder counts it gave (it is therefore a call in the sequence above, and not const). A robot whose wheels
 // are all held by friction and that slides slower than 1 pm/s stops exactly (planar joint).
-// Cannot represent: contact between robots, walls and ball; sensor noise, bias and filtering; a sagging bus
+// Contacts with robots, walls and the ball are the world's (sim/field/world.h), which steps this plant.
+// Cannot represent: sensor noise, bias and filtering; a sagging bus
 // without [battery] in the model or the effect battery_sag.
 #pragma once
 #include <array>
@@ -80,6 +81,20 @@ struct PlantFault {
   int index = 0;            // within the signal: wheel, or place in the pose
 };
 
+// A robot's body as contacts see it: geometric centre, field frame.
+struct PlanarState {
+  double x_m = 0, y_m = 0, yaw_rad = 0;
+  double v_x_m_s = 0, v_y_m_s = 0, omega_rad_s = 0;
+};
+
+class Plant;
+// Called after each mechanical step, within advance().
+class StepListener {
+ public:
+  virtual ~StepListener() = default;
+  virtual void after_step(Plant& plant, double step_s) = 0;
+};
+
 class Plant {
  public:
   // Robots in a row, 0.3 m apart along y, at rest; throws std::invalid_argument listing every problem of
@@ -104,7 +119,14 @@ class Plant {
   // In force until set again; part of the state. A wheel that gets blocked stands at once.
   void set_faults(int robot, const RobotFaults& faults);
   const RobotFaults& faults(int robot) const;
-  void advance(std::int64_t duration_ns);  // asserts: a multiple of the mechanical step
+  // Duration: a multiple of the mechanical step (std::logic_error).
+  void advance(std::int64_t duration_ns, StepListener* listener = nullptr);
+  // What contacts do between two mechanical steps: speeds change at once, wheels keep theirs; places are mended.
+  PlanarState planar_state(int robot) const;
+  void add_velocity(int robot, double v_x_m_s, double v_y_m_s, double omega_rad_s);
+  void shift(int robot, double x_m, double y_m);
+  // What else draws on the robot's bus beside its wheels, until set again; matters where the model has a battery.
+  void set_other_current(int robot, double current_A);
   // What the sensors show now. Changes state: ends the motor currents' averaging interval and begins the next.
   RobotSensors sample_sensors(int robot);
   RobotTruth truth(int robot) const;

@@ -112,6 +112,20 @@ struct Plant::Impl {
     state_known = false;
   }
 
+  // An impulse that changes body speeds so; the accelerometer sees it as its mean over the step.
+  void add_velocity(std::size_t n, double v_x_m_s, double v_y_m_s, double omega_rad_s) {
+    double* v = &u[n * layout.u_per_robot + layout.wheel_u - (free() ? 3 : 2)];
+    v[0] += v_x_m_s;
+    v[1] += v_y_m_s;
+    u[n * layout.u_per_robot + (free() ? 2 : 0)] += omega_rad_s;
+    const double yaw_rad =
+        std::visit([&](const auto& back) { return back.motion(q, u, n).yaw_rad; }, mechanics);
+    const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+    memory[n].accel_x_m_s2 += (c * v_x_m_s + s * v_y_m_s) / step_s;
+    memory[n].accel_y_m_s2 += (-s * v_x_m_s + c * v_y_m_s) / step_s;
+    state_known = false;
+  }
+
   // v += a h, omega += alpha h of the force alone (planar_law.h).
   void disturb(std::size_t n, double yaw_rad) {
     const RobotFaults& f = memory[n].faults;

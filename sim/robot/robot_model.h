@@ -16,6 +16,7 @@ namespace omnihil {
 
 struct EffectUse;      // sim/law/effect_set.h
 struct ElectricModel;  // sim/robot/electric_model.h
+struct BallHandling;   // sim/robot/ball_handling.h
 
 // What the robot's own firmware makes of its motors: a duty, or the legs of three phases.
 enum class MotorLoop : std::uint8_t { kDuty, kFoc, kSixStep };
@@ -42,6 +43,8 @@ struct RobotModel {
   double bus_voltage_V = 0.0;
   // Three-phase drive, battery, heat; null: the DC-equivalent motor on a constant bus.
   std::shared_ptr<const ElectricModel> electric;
+  // Hull, kicker, dribbler, break beam; null: the defaults.
+  std::shared_ptr<const BallHandling> handling;
   MotorLoop motor_loop = MotorLoop::kDuty;
   double control_timeout_s = 0.0;  // the team's own command timeout; 0: the firmware's default
   // On top of the base model above (Coulomb friction is part of that); null: none.

@@ -25,11 +25,12 @@ static_assert(offsetof(omnihil_command, yaw_target_rad) == 104);
 static_assert(offsetof(omnihil_command, v_kick_m_s) == 136);
 static_assert(offsetof(omnihil_command, dribbler_ratio) == 152);
 // sensors: time, 4 counts, 4 currents, 4 doubles, 2 x u32
-static_assert(sizeof(omnihil_sensors) == 8 + 8 * 4 + 8 * 4 + 8 * 4 + 8);
+static_assert(sizeof(omnihil_sensors) == 8 + 8 * 4 + 8 * 4 + 8 * 4 + 8 + 8);
 static_assert(offsetof(omnihil_sensors, encoder_counts) == 8);
 static_assert(offsetof(omnihil_sensors, motor_current_A) == 40);
 static_assert(offsetof(omnihil_sensors, bus_voltage_V) == 72);
 static_assert(offsetof(omnihil_sensors, ball_seen) == 104);
+static_assert(offsetof(omnihil_sensors, capacitor_V) == 112);  // appended: what came before stays
 // drive: 4 x u32, 4 doubles, dribbler, 2 x u32, pulse
 static_assert(sizeof(omnihil_drive) == 16 + 32 + 8 + 8 + 8);
 static_assert(offsetof(omnihil_drive, duty_ratio) == 16);
