@@ -1,5 +1,5 @@
 /* Every field of the feedback, from what this firmware measures and computes. Where the board has no sensor
- * the field is 0: capacitor_V, omega_dribbler_rad_s, DRIBBLER_SEES_BALL, KICKER_FAULT; where the firmware has
+ * the field is 0: omega_dribbler_rad_s, DRIBBLER_SEES_BALL, KICKER_FAULT; where the firmware has
  * no such loop too: body_integral. body_target is the command in the body frame, body_output what the
  * reference allows of it now (fourth: what the yaw hold asks for, rad/s), body_derivative the estimate's
  * slope. */
@@ -35,6 +35,7 @@ void reference_feedback(const reference_state* state, omnihil_feedback* feedback
   feedback->flags = flags_of(state);
   feedback->command_age_ms = command_watchdog_age_ms(&state->watchdog, state->now_us);
   feedback->battery_V = (double)state->battery_V;
+  feedback->capacitor_V = (double)state->capacitor_V;
   feedback->v_forward_m_s = (double)state->body_estimate[BODY_X];
   feedback->v_left_m_s = (double)state->body_estimate[BODY_Y];
   feedback->omega_body_rad_s = (double)state->body_estimate[BODY_OMEGA];

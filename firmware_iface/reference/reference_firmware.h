@@ -66,6 +66,7 @@ typedef struct reference_state {
   float body_estimate[BODY_AXES];
   float body_slope[BODY_AXES];
   uint32_t ball_seen;
+  float capacitor_V; /* 0: the board measures none */
   yaw_estimate yaw;
   motion_reference motion;
   wheel_encoder encoder[OMNIHIL_WHEELS];

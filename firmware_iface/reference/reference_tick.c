@@ -26,6 +26,7 @@ static void read_sensors(reference_state* state, const omnihil_sensors* sensors,
   if (state->ticks == 0) state->battery_V = state->bus_V;
   state->battery_V += dt_s / (kBatteryFilter_s + dt_s) * (state->bus_V - state->battery_V);
   state->ball_seen = sensors->ball_seen != 0u;
+  take(&state->capacitor_V, sensors->capacitor_V);
   yaw_turn(&state->yaw, state->gyro_rad_s, dt_s);
 
   float omega_wheel_rad_s[OMNIHIL_WHEELS];

@@ -9,23 +9,41 @@
 namespace omnihil {
 namespace {
 
+Team other_team(Team team) { return team == Team::kBlue ? Team::kYellow : Team::kBlue; }
+
 constexpr int kMostPerStep = 64;  // datagrams of one port: a client that floods does not stop the loop
 
 }  // namespace
 
 LeagueHost::LeagueHost(const LeagueOptions& options, const SessionConfig& config)
-    : options_(options), team_(config.team), models_(config.robots), vision_(options.vision, config.team) {
-  for (std::size_t i = 0; i < models_.size(); ++i) robots_.push_back({config.robot_ids[i], &models_[i], {}});
+    : options_(options), team_(config.team), models_(config.robots), vision_(options.vision) {
+  const std::size_t ours = models_.size();
+  models_.insert(models_.end(), config.opponents.robots.begin(), config.opponents.robots.end());
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    const bool other = i >= ours;
+    robots_.push_back({other ? config.opponents.robot_ids[i - ours] : config.robot_ids[i],
+                       &models_[i],
+                       {},
+                       other ? other_team(team_) : team_,
+                       true});
+  }
 }
 
 std::unique_ptr<LeagueHost> LeagueHost::open(const LeagueOptions& options, const SessionConfig& config,
                                              std::string& error) {
   std::unique_ptr<LeagueHost> host(new LeagueHost(options, config));
-  const int robot_port = options.robot_port > 0       ? options.robot_port
-                         : config.team == Team::kBlue ? 10301
-                                                      : 10302;
+  const auto port_of = [](int asked, Team team) {
+    if (asked > 0) return asked;
+    return team == Team::kBlue ? 10301 : 10302;
+  };
+  const int robot_port = port_of(options.robot_port, config.team);
   host->control_ = UdpPort::listen(options.address, options.control_port, error);
   if (host->control_.is_open()) host->robot_port_ = UdpPort::listen(options.address, robot_port, error);
+  if (host->robot_port_.is_open() && !config.opponents.robots.empty()) {
+    host->opponents_port_ =
+        UdpPort::listen(options.address, port_of(options.opponents_port, other_team(config.team)), error);
+    if (!host->opponents_port_.is_open()) return nullptr;
+  }
   if (host->robot_port_.is_open() && options.sends_vision) {
     host->group_ =
         UdpPort::multicast(options.vision_group, options.vision_port, options.vision_interface, error);
@@ -37,6 +55,7 @@ std::unique_ptr<LeagueHost> LeagueHost::open(const LeagueOptions& options, const
 std::string LeagueHost::ports() const {
   std::string text = fmt::format("simulation control UDP {}:{}, robot control {}:{}", options_.address,
                                  control_.port(), options_.address, robot_port_.port());
+  if (opponents_port_.is_open()) text += fmt::format(" and {} of the opponents", opponents_port_.port());
   if (group_.is_open()) {
     text += fmt::format(", vision {}:{} by {} at {:g} Hz", options_.vision_group, options_.vision_port,
                         options_.vision_interface, options_.vision.rate_Hz);
@@ -45,29 +64,57 @@ std::string LeagueHost::ports() const {
 }
 
 void LeagueHost::robot_tick(std::int64_t, const RobotSample& sample) {
-  const auto robot = std::ranges::find(robots_, sample.robot_id, &LeagueRobot::id);
+  const bool other = sample.robot_id >= kOpponentKey;
+  const int id = other ? sample.robot_id - kOpponentKey : sample.robot_id;
+  const auto robot = std::ranges::find_if(
+      robots_, [&](const LeagueRobot& r) { return r.id == id && (r.team == team_) != other; });
   if (robot != robots_.end()) robot->sample = sample;
 }
 
-std::string LeagueHost::robot_control(std::string_view bytes, Session& session) {
-  const LeagueCommands read = read_robot_control(bytes, robots_);
+std::string LeagueHost::robot_control(std::string_view bytes, Team team, Session& session) {
+  const LeagueCommands read = read_robot_control(bytes, robots_, team);
   for (const LeagueRobotCommand& c : read.commands)
     session.command(static_cast<int>(c.robot_index), c.command);
   counts_.commands += read.commands.size();
   counts_.errors += read.errors.size();
-  return robot_control_response(robots_, read.errors);
+  return robot_control_response(robots_, team, read.errors);
 }
 
 std::string LeagueHost::simulator_command(std::string_view bytes, Session& session) {
-  const LeagueControl read = read_simulator_command(bytes, team_, robots_);
+  const LeagueControl read = read_simulator_command(bytes, robots_);
   for (const LeagueTeleport& t : read.teleports) {
-    const RobotTruth now = session.plant().truth(static_cast<int>(t.robot_index));
-    session.set_pose(static_cast<int>(t.robot_index), t.x_m.value_or(now.x_m), t.y_m.value_or(now.y_m),
-                     t.yaw_rad.value_or(now.yaw_rad));
+    const int index = static_cast<int>(t.robot_index);
+    if (t.present) {
+      robots_[t.robot_index].present = *t.present;
+      session.set_present(index, *t.present);
+    }
+    const PlanarState now = session.plant().planar_state(index);
+    if (t.x_m || t.y_m || t.yaw_rad)
+      session.set_pose(index, t.x_m.value_or(now.x_m), t.y_m.value_or(now.y_m),
+                       t.yaw_rad.value_or(now.yaw_rad));
+    if (t.v_x_m_s || t.v_y_m_s || t.omega_rad_s)
+      session.set_velocity(index, t.v_x_m_s.value_or(0.0), t.v_y_m_s.value_or(0.0),
+                           t.omega_rad_s.value_or(0.0));
   }
-  counts_.teleports += read.teleports.size();
+  if (read.ball) put_ball(*read.ball, session);
+  counts_.teleports += read.teleports.size() + (read.ball ? 1 : 0);
   counts_.errors += read.errors.size();
   return simulator_response(read.errors);
+}
+
+// What is not given stays as it is; a ball that was not there comes to the middle of the field.
+void LeagueHost::put_ball(const LeagueBall& wanted, Session& session) {
+  const BallState* const now = session.world().ball();
+  const double radius_m = session.world().options().ball.radius_m;
+  const Vector3 position = now ? now->position : Vector3(0, 0, radius_m);
+  const Vector3 velocity = now ? now->velocity : Vector3(0, 0, 0);
+  const Vector3 next(wanted.x_m.value_or(position.x()), wanted.y_m.value_or(position.y()),
+                     std::max(radius_m, wanted.z_m.value_or(position.z())));
+  const Vector3 speed(wanted.v_x_m_s.value_or(velocity.x()), wanted.v_y_m_s.value_or(velocity.y()),
+                      wanted.v_z_m_s.value_or(velocity.z()));
+  // w = z x v / r
+  const Vector3 rolling = Vector3(-speed.y(), speed.x(), 0.0) / radius_m;
+  session.put_ball(next, speed, wanted.rolls ? rolling : Vector3(0, 0, 0));
 }
 
 void LeagueHost::before_step(Session& session) {
@@ -75,12 +122,15 @@ void LeagueHost::before_step(Session& session) {
   for (int i = 0; i < kMostPerStep && control_.receive(bytes_, from); ++i)
     control_.send(simulator_command(bytes_, session), from);
   for (int i = 0; i < kMostPerStep && robot_port_.receive(bytes_, from); ++i)
-    robot_port_.send(robot_control(bytes_, session), from);
+    robot_port_.send(robot_control(bytes_, team_, session), from);
+  if (!opponents_port_.is_open()) return;
+  for (int i = 0; i < kMostPerStep && opponents_port_.receive(bytes_, from); ++i)
+    opponents_port_.send(robot_control(bytes_, other_team(team_), session), from);
 }
 
 void LeagueHost::after_step(const Session& session) {
   if (!group_.is_open()) return;
-  vision_.capture(session.now_ns(), robots_);
+  vision_.capture(session.now_ns(), robots_, session.world().ball());
   while (const auto packet = vision_.due(session.now_ns())) {
     group_.send(*packet);
     ++counts_.vision_packets;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "hil/league/league_robots.h"
+#include "hil/league/league_simulator.h"
 #include "hil/league/udp_port.h"
 #include "hil/league/vision.h"
 #include "hil/loop/session.h"
@@ -23,7 +24,8 @@ namespace omnihil {
 struct LeagueOptions {
   std::string address = "127.0.0.1";  // where commands are taken: 0.0.0.0 is everywhere
   int control_port = 10300;
-  int robot_port = 0;  // 0: 10301 of the blue team, 10302 of the yellow one
+  int robot_port = 0;      // of the first team; 0: 10301 of the blue team, 10302 of the yellow one
+  int opponents_port = 0;  // of the other team, where there is one; 0: likewise
   bool sends_vision = true;
   std::string vision_group = "224.5.23.2";
   int vision_port = 10006;
@@ -32,9 +34,9 @@ struct LeagueOptions {
 };
 
 struct LeagueCounts {
-  std::uint64_t commands = 0;  // of a robot, done
-  std::uint64_t teleports = 0;
-  std::uint64_t errors = 0;  // answered
+  std::uint64_t commands = 0;   // of a robot, done
+  std::uint64_t teleports = 0;  // of robots and ball
+  std::uint64_t errors = 0;     // answered
   std::uint64_t vision_packets = 0, vision_lost = 0;
 };
 
@@ -49,21 +51,25 @@ class LeagueHost : public SessionObserver {
   void after_step(const Session& session);
 
   // As if they had come by UDP; the answer goes back to the caller.
-  std::string robot_control(std::string_view bytes, Session& session);
+  std::string robot_control(std::string_view bytes, Team team, Session& session);
+  Team team() const { return team_; }
   std::string simulator_command(std::string_view bytes, Session& session);
-  std::vector<std::string> frames_now(std::int64_t now_ns) { return vision_.frames_now(now_ns, robots_); }
+  std::vector<std::string> frames_now(const Session& session) {
+    return vision_.frames_now(session.now_ns(), robots_, session.world().ball());
+  }
 
   const LeagueCounts& counts() const { return counts_; }
   std::string ports() const;  // "control UDP 127.0.0.1:10300, …"
 
  private:
   LeagueHost(const LeagueOptions& options, const SessionConfig& config);
+  void put_ball(const LeagueBall& wanted, Session& session);
 
   LeagueOptions options_;
   Team team_;
   std::vector<RobotModel> models_;
   std::vector<LeagueRobot> robots_;
-  UdpPort control_, robot_port_, group_;
+  UdpPort control_, robot_port_, opponents_port_, group_;
   Vision vision_;
   LeagueCounts counts_;
   std::string bytes_;

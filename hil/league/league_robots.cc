@@ -119,14 +119,18 @@ bool take_kick(const league::RobotCommand& in, const std::string& place, RobotCo
 
 }  // namespace
 
-LeagueCommands read_robot_control(std::string_view bytes, std::span<const LeagueRobot> robots) {
+std::span<const LeagueRobot>::iterator find_robot(std::span<const LeagueRobot> robots, Team team, int id) {
+  return std::ranges::find_if(robots, [&](const LeagueRobot& r) { return r.team == team && r.id == id; });
+}
+
+LeagueCommands read_robot_control(std::string_view bytes, std::span<const LeagueRobot> robots, Team team) {
   LeagueCommands out;
   league::RobotControl control;
   if (!read_message(bytes, control, out.errors)) return out;
   refuse_unsupported(control, {"robot_commands"}, "", out.errors);
   for (const league::RobotCommand& in : control.robot_commands()) {
-    const auto robot = std::ranges::find(robots, static_cast<int>(in.id()), &LeagueRobot::id);
-    if (robot == robots.end()) {
+    const auto robot = find_robot(robots, team, static_cast<int>(in.id()));
+    if (robot == robots.end() || !robot->present) {
       out.errors.push_back({"UNKNOWN_ROBOT", fmt::format("robot {}: not on the field", in.id())});
       continue;
     }
@@ -150,7 +154,8 @@ LeagueCommands read_robot_control(std::string_view bytes, std::span<const League
   return out;
 }
 
-std::string robot_control_response(std::span<const LeagueRobot> robots, std::span<const LeagueError> errors) {
+std::string robot_control_response(std::span<const LeagueRobot> robots, Team team,
+                                   std::span<const LeagueError> errors) {
   league::RobotControlResponse response;
   for (const LeagueError& error : errors) {
     league::SimulatorError& out = *response.add_errors();
@@ -158,6 +163,7 @@ std::string robot_control_response(std::span<const LeagueRobot> robots, std::spa
     out.set_message(error.message);
   }
   for (const LeagueRobot& robot : robots) {
+    if (robot.team != team || !robot.present) continue;
     league::RobotFeedback& feedback = *response.add_feedback();
     feedback.set_id(static_cast<std::uint32_t>(robot.id));
     feedback.set_dribbler_ball_contact(robot.sample.sensors.ball_seen != 0);
@@ -168,7 +174,7 @@ std::string robot_control_response(std::span<const LeagueRobot> robots, std::spa
       telemetry.add_omega_wheel_rad_s(robot.sample.feedback.omega_wheel_rad_s[w]);
       telemetry.add_encoder_counts(robot.sample.sensors.encoder_counts[w]);
     }
-    telemetry.set_capacitor_v(robot.sample.feedback.capacitor_V);
+    telemetry.set_capacitor_v(robot.sample.sensors.capacitor_V);
     telemetry.set_gyro_z_rad_s(robot.sample.sensors.gyro_z_rad_s);
     telemetry.set_ball_seen(robot.sample.sensors.ball_seen != 0);
     feedback.mutable_custom()->PackFrom(telemetry);

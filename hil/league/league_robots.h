@@ -1,9 +1,9 @@
 // The league's robot control, in both directions: RobotControl to the commands of our robots, their state to
 // RobotControlResponse.
 //
-//   LeagueCommands read = read_robot_control(datagram, team);
+//   LeagueCommands read = read_robot_control(datagram, robots, team);
 //   for (const LeagueRobotCommand& c : read.commands) session.command(c.robot_index, c.command);
-//   std::string answer = robot_control_response(team, read.errors);
+//   std::string answer = robot_control_response(robots, team, read.errors);
 //
 // A robot's command goes past the radio to its firmware, as a match simulator would take it. What cannot be done is
 // answered with an error of its own; a field that is not in the table of what is done is one of those. Velocities in
@@ -34,7 +34,11 @@ struct LeagueRobot {
   int id = 0;
   const RobotModel* model = nullptr;  // not owned
   RobotSample sample{};               // the last control tick
+  Team team = Team::kBlue;
+  bool present = true;
 };
+
+std::span<const LeagueRobot>::iterator find_robot(std::span<const LeagueRobot> robots, Team team, int id);
 
 struct LeagueRobotCommand {
   std::size_t robot_index = 0;
@@ -46,9 +50,11 @@ struct LeagueCommands {
   std::vector<LeagueError> errors;
 };
 
-LeagueCommands read_robot_control(std::string_view bytes, std::span<const LeagueRobot> robots);
+// `robots` of both teams; those of `team` are commanded and tell of themselves.
+LeagueCommands read_robot_control(std::string_view bytes, std::span<const LeagueRobot> robots, Team team);
 
-// Feedback of all robots, with Telemetry of ours as `custom`.
-std::string robot_control_response(std::span<const LeagueRobot> robots, std::span<const LeagueError> errors);
+// Feedback of the team's robots, with Telemetry of ours as `custom`.
+std::string robot_control_response(std::span<const LeagueRobot> robots, Team team,
+                                   std::span<const LeagueError> errors);
 
 }  // namespace omnihil

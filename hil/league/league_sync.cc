@@ -151,7 +151,7 @@ bool LeagueSync::serve_one(Session& session, LeagueHost& host, const std::functi
         host.simulator_command(request.simulator_command().SerializeAsString(), session));
   std::string refused;  // of the robots' commands; the feedback is that of after the step
   if (request.has_robot_control())
-    refused = host.robot_control(request.robot_control().SerializeAsString(), session);
+    refused = host.robot_control(request.robot_control().SerializeAsString(), host.team(), session);
   const double step_s = static_cast<double>(session.config().step_ns) / 1e9;
   const double steps = static_cast<double>(request.sim_step()) / step_s, whole = std::round(steps);
   const bool can = std::isfinite(steps) && whole >= 0.0 &&
@@ -160,7 +160,7 @@ bool LeagueSync::serve_one(Session& session, LeagueHost& host, const std::functi
   if (can) {
     for (double n = 0.0; n < whole; n += 1.0) step();
   }
-  robots.ParseFromString(host.robot_control("", session));
+  robots.ParseFromString(host.robot_control("", host.team(), session));
   if (!refused.empty()) {
     league::RobotControlResponse of_commands;
     of_commands.ParseFromString(refused);
@@ -172,8 +172,7 @@ bool LeagueSync::serve_one(Session& session, LeagueHost& host, const std::functi
               fmt::format("sim_step: found {} s, allowed: multiples of {} s up to {} s", request.sim_step(),
                           step_s, kLongest_s));
   }
-  for (const std::string& frame : host.frames_now(session.now_ns()))
-    response.add_detection()->ParseFromString(frame);
+  for (const std::string& frame : host.frames_now(session)) response.add_detection()->ParseFromString(frame);
   answer(response.SerializeAsString());
   return true;
 }

@@ -9,7 +9,20 @@ namespace omnihil {
 namespace {
 
 constexpr double kCameraHeight_mm = 4000.0;  // usual in the league's halls
+constexpr double kCameraHeight_m = kCameraHeight_mm / 1000.0;
 constexpr float kLine_mm = 10.0f;
+constexpr double kBallRadius_m = 0.0215, kRobotRadius_m = 0.09, kRobotHeight_m = 0.15;
+
+// Whether the line from the ball to the camera (above middle) goes through the robot: where the line is below the robot's
+// top, it is near the ball.
+bool stands_before(const VisionPose& robot, const Vector3& ball, double middle_x_m, double middle_y_m) {
+  if (ball.z() >= kRobotHeight_m) return false;
+  const double share = (kRobotHeight_m - ball.z()) / (kCameraHeight_m - ball.z());
+  const double dx = share * (middle_x_m - ball.x()), dy = share * (middle_y_m - ball.y());
+  const double x = robot.x_m - ball.x(), y = robot.y_m - ball.y(), length2 = dx * dx + dy * dy;
+  const double t = length2 > 0.0 ? std::clamp((x * dx + y * dy) / length2, 0.0, 1.0) : 0.0;
+  return std::hypot(x - t * dx, y - t * dy) < kRobotRadius_m;
+}
 
 void line(league::SSL_GeometryFieldSize& field, const char* name, league::SSL_FieldShapeType type, double x1,
           double y1, double x2, double y2) {
@@ -61,8 +74,7 @@ void lines(league::SSL_GeometryFieldSize& field, const FieldSize& size) {
 
 }  // namespace
 
-Vision::Vision(const VisionOptions& options, Team team)
-    : options_(options), team_(team), random_(options.seed) {
+Vision::Vision(const VisionOptions& options) : options_(options), random_(options.seed) {
   std::normal_distribution<double> normal;
   const int columns = options.cameras == 1 ? 1 : 2, rows = options.cameras == 4 ? 2 : 1;
   const double border_m = options.field.boundary_mm / 1000.0 + 1.0;  // beyond it nobody looks
@@ -95,7 +107,7 @@ double Vision::seconds(std::int64_t now_ns) const {
 }
 
 std::string Vision::frame_of(std::size_t index, std::int64_t now_ns, double delay_s,
-                             std::span<const LeagueRobot> robots) {
+                             std::span<const LeagueRobot> robots, const BallState* ball) {
   std::normal_distribution<double> normal;
   Camera& camera = cameras_[index];
   league::SSL_DetectionFrame frame;
@@ -103,15 +115,18 @@ std::string Vision::frame_of(std::size_t index, std::int64_t now_ns, double dela
   frame.set_t_capture(seconds(now_ns) + camera.clock_s);
   frame.set_t_sent(seconds(now_ns) + delay_s + camera.clock_s);
   frame.set_camera_id(static_cast<std::uint32_t>(index));
+  const auto sees = [&](double x_m, double y_m) {
+    return x_m >= camera.x_from_m && x_m <= camera.x_to_m && y_m >= camera.y_from_m && y_m <= camera.y_to_m;
+  };
   for (const LeagueRobot& robot : robots) {
     const VisionPose& pose = robot.sample.vision;
-    if (pose.x_m < camera.x_from_m || pose.x_m > camera.x_to_m || pose.y_m < camera.y_from_m ||
-        pose.y_m > camera.y_to_m)
-      continue;
-    const double x_mm = 1e3 * (pose.x_m + camera.askew_x_m + options_.position_sigma_m * normal(random_));
-    const double y_mm = 1e3 * (pose.y_m + camera.askew_y_m + options_.position_sigma_m * normal(random_));
+    if (!robot.present || !sees(pose.x_m, pose.y_m)) continue;
+    const double x_mm =
+        digit(1e3 * (pose.x_m + camera.askew_x_m + options_.position_sigma_m * normal(random_)));
+    const double y_mm =
+        digit(1e3 * (pose.y_m + camera.askew_y_m + options_.position_sigma_m * normal(random_)));
     league::SSL_DetectionRobot& out =
-        team_ == Team::kBlue ? *frame.add_robots_blue() : *frame.add_robots_yellow();
+        robot.team == Team::kBlue ? *frame.add_robots_blue() : *frame.add_robots_yellow();
     out.set_confidence(1.0f);
     out.set_robot_id(static_cast<std::uint32_t>(robot.id));
     out.set_x(static_cast<float>(x_mm));
@@ -122,7 +137,44 @@ std::string Vision::frame_of(std::size_t index, std::int64_t now_ns, double dela
     out.set_pixel_y(static_cast<float>(y_mm));
     out.set_height(150.0f);
   }
+  const auto add_ball = [&](double x_mm, double y_mm) {
+    league::SSL_DetectionBall& out = *frame.add_balls();
+    out.set_confidence(1.0f);
+    out.set_x(static_cast<float>(x_mm));
+    out.set_y(static_cast<float>(y_mm));
+    out.set_pixel_x(static_cast<float>(x_mm));
+    out.set_pixel_y(static_cast<float>(y_mm));
+  };
+  if (ball != nullptr) {
+    const double middle_x_m = 0.5 * (camera.x_from_m + camera.x_to_m),
+                 middle_y_m = 0.5 * (camera.y_from_m + camera.y_to_m);
+    const Vector3& p = ball->position;
+    // The line from the camera through the ball meets the height at which balls lie.
+    const double height_m = std::min(p.z() - kBallRadius_m, 0.9 * kCameraHeight_m);
+    const double stretch = kCameraHeight_m / (kCameraHeight_m - std::max(0.0, height_m));
+    const double x_m = middle_x_m + stretch * (p.x() - middle_x_m),
+                 y_m = middle_y_m + stretch * (p.y() - middle_y_m);
+    const bool hidden =
+        options_.occlusion && std::ranges::any_of(robots, [&](const LeagueRobot& robot) {
+          return robot.present && stands_before(robot.sample.vision, p, middle_x_m, middle_y_m);
+        });
+    if (!hidden && sees(x_m, y_m))
+      add_ball(digit(1e3 * (x_m + camera.askew_x_m + options_.position_sigma_m * normal(random_))),
+               digit(1e3 * (y_m + camera.askew_y_m + options_.position_sigma_m * normal(random_))));
+  }
+  if (options_.false_ball_rate_Hz > 0.0) {
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    if (share(random_) < options_.false_ball_rate_Hz / options_.rate_Hz) {
+      const double x_m = camera.x_from_m + share(random_) * (camera.x_to_m - camera.x_from_m);
+      const double y_m = camera.y_from_m + share(random_) * (camera.y_to_m - camera.y_from_m);
+      add_ball(digit(1e3 * x_m), digit(1e3 * y_m));
+    }
+  }
   return frame.SerializeAsString();
+}
+
+double Vision::digit(double value_mm) const {
+  return options_.digit_mm > 0.0 ? options_.digit_mm * std::round(value_mm / options_.digit_mm) : value_mm;
 }
 
 std::string Vision::geometry() const {
@@ -163,7 +215,7 @@ std::string Vision::geometry() const {
   return packet.SerializeAsString();
 }
 
-void Vision::capture(std::int64_t now_ns, std::span<const LeagueRobot> robots) {
+void Vision::capture(std::int64_t now_ns, std::span<const LeagueRobot> robots, const BallState* ball) {
   if (now_ns >= next_geometry_ns_) {
     pending_.push_back({now_ns, geometry()});
     next_geometry_ns_ = now_ns + static_cast<std::int64_t>(options_.geometry_every_s * 1e9);
@@ -176,7 +228,7 @@ void Vision::capture(std::int64_t now_ns, std::span<const LeagueRobot> robots) {
       const double delay_s =
           options_.delay_most_s > options_.delay_least_s ? delay(random_) : options_.delay_least_s;
       league::SSL_WrapperPacket packet;
-      packet.mutable_detection()->ParseFromString(frame_of(i, now_ns, delay_s, robots));
+      packet.mutable_detection()->ParseFromString(frame_of(i, now_ns, delay_s, robots, ball));
       const Pending pending{now_ns + static_cast<std::int64_t>(delay_s * 1e9), packet.SerializeAsString()};
       const auto after = std::ranges::upper_bound(pending_, pending.at_ns, {}, &Pending::at_ns);
       pending_.insert(after, pending);
@@ -192,9 +244,10 @@ std::optional<std::string> Vision::due(std::int64_t now_ns) {
   return bytes;
 }
 
-std::vector<std::string> Vision::frames_now(std::int64_t now_ns, std::span<const LeagueRobot> robots) {
+std::vector<std::string> Vision::frames_now(std::int64_t now_ns, std::span<const LeagueRobot> robots,
+                                            const BallState* ball) {
   std::vector<std::string> frames;
-  for (std::size_t i = 0; i < cameras_.size(); ++i) frames.push_back(frame_of(i, now_ns, 0.0, robots));
+  for (std::size_t i = 0; i < cameras_.size(); ++i) frames.push_back(frame_of(i, now_ns, 0.0, robots, ball));
   return frames;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "hil/loop/session_checks.h"
@@ -12,6 +14,7 @@
 namespace omnihil {
 namespace {
 constexpr double kRowSpacing_m = 0.5;
+constexpr double kOpponentRow_m = 2.0;
 constexpr std::size_t kMaxFrameBytes = 512;  // of a frame that a firmware writes; radio packets are shorter
 constexpr int kMaxFramesPerTick = 16;  // so that a firmware that never stops sending cannot stop the loop
 
@@ -21,55 +24,107 @@ struct MotorPort : MotorControl {
   MotorDrive motor_tick(const MotorSensors& sensors) override { return firmware.motor_tick(sensors); }
   Firmware& firmware;
 };
+std::vector<RobotModel> all_robots(const SessionConfig& config) {
+  std::vector<RobotModel> robots = config.robots;
+  robots.insert(robots.end(), config.opponents.robots.begin(), config.opponents.robots.end());
+  return robots;
+}
+
+WorldOptions world_options(const FieldSetup& field) {
+  WorldOptions options;
+  options.contacts = options.handling = field.contacts;
+  options.field = field.size;
+  return options;
+}
 }  // namespace
 
-struct Session::Impl : RadioSink {
+struct Session::Impl {
+  // A team's dongle, and its robots among all.
+  struct TeamPort : RadioSink {
+    TeamPort(Impl& session, std::size_t first_robot, const std::vector<int>& ids)
+        : impl(session), first(first_robot), robot_ids(ids) {}
+    std::optional<std::size_t> index_of(int id) const {
+      const auto at = std::lower_bound(robot_ids.begin(), robot_ids.end(), id);
+      if (at == robot_ids.end() || *at != id) return std::nullopt;
+      return first + static_cast<std::size_t>(at - robot_ids.begin());
+    }
+    void deliver(const Delivery& delivery, std::int64_t at_ns) override {
+      impl.deliver(*this, delivery, at_ns);
+    }
+    Impl& impl;
+    std::size_t first;
+    const std::vector<int>& robot_ids;
+    std::unique_ptr<AirLoss> air;  // before the link, which asks it
+    std::unique_ptr<RadioLink> link;
+  };
+
   Impl(SessionConfig configuration, const FirmwareMaker& make_firmware)
-      : config(std::move(configuration)), plant(make_plant(config)) {
-    for (std::size_t i = 0; i < config.robots.size(); ++i) {
-      firmware.push_back(make_firmware(robot_config(config.robots[i], config.robot_ids[i])));
-      plant.set_pose(static_cast<int>(i), 0.0, kRowSpacing_m * static_cast<double>(i), 0.0);
+      : config(std::move(configuration)),
+        models(all_robots(config)),
+        world(make_world(config, models)),
+        own(*this, 0, config.robot_ids),
+        opponents(*this, config.robots.size(), config.opponents.robot_ids) {
+    const std::size_t ours = config.robots.size();
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const bool other = i >= ours;
+      const int id = other ? config.opponents.robot_ids[i - ours] : config.robot_ids[i];
+      keys.push_back(other ? kOpponentKey + id : id);
+      firmware.push_back(make_firmware(robot_config(models[i], id)));
+      const double y_m = kRowSpacing_m * static_cast<double>(other ? i - ours : i);
+      world.put_robot(static_cast<int>(i), other ? kOpponentRow_m : 0.0, y_m, other ? std::numbers::pi : 0.0);
     }
     throw_problems(firmware_problems(config, firmware));
     motor_ports.reserve(firmware.size());  // the plant keeps their addresses
     for (std::size_t i = 0; i < firmware.size(); ++i) {
       motor_ports.emplace_back(*firmware[i]);
-      if (firmware[i]->drives_phases()) plant.set_motor_control(static_cast<int>(i), &motor_ports[i]);
+      if (firmware[i]->drives_phases()) world.plant().set_motor_control(static_cast<int>(i), &motor_ports[i]);
     }
-    RadioLinkConfig link_config;
-    link_config.robot_ids = config.robot_ids;
-    link_config.team = config.team;
-    link_config.firmware_decodes = firmware[0]->radio_format() == config.radio_format;
-    link_config.epoch_ms = config.epoch_ms;
-    link_config.wheel_radius_m = config.robots[0].wheel_radius_m;
-    if (config.air.any()) {
-      air = std::make_unique<AirLoss>(config.air, config.plant.seed,
-                                      [this](int id) { return position_of(id); });
-      link_config.air = air.get();
+    open_link(own, config.radio_format, config.team);
+    if (!config.opponents.radio_format.empty())
+      open_link(opponents, config.opponents.radio_format,
+                config.team == Team::kBlue ? Team::kYellow : Team::kBlue);
+    if (config.field.ball_m) {
+      const auto [x_m, y_m] = *config.field.ball_m;
+      world.put_ball(x_m, y_m, 0.0, {0, 0, 0});
     }
-    link = find_radio_format(config.radio_format)->make_link(link_config);
     next_tick_ns.assign(firmware.size(), 0);
     samples.resize(firmware.size());
     answer.reserve(4096);
   }
 
-  std::pair<double, double> position_of(int id) const {
-    const auto at = std::lower_bound(config.robot_ids.begin(), config.robot_ids.end(), id);
-    if (at == config.robot_ids.end()) return {0.0, 0.0};
-    const RobotTruth truth = plant.truth(static_cast<int>(at - config.robot_ids.begin()));
-    return {truth.x_m, truth.y_m};
+  void open_link(TeamPort& port, const std::string& format, Team team) {
+    RadioLinkConfig link_config;
+    link_config.robot_ids = port.robot_ids;
+    link_config.team = team;
+    link_config.firmware_decodes = firmware[port.first]->radio_format() == format;
+    link_config.epoch_ms = config.epoch_ms;
+    link_config.wheel_radius_m = models[port.first].wheel_radius_m;
+    if (config.air.any()) {
+      // Each team draws from a seed of its own.
+      port.air = std::make_unique<AirLoss>(config.air, config.plant.seed + (&port == &opponents ? 1 : 0),
+                                           [this, &port](int id) { return position_of(port, id); });
+      link_config.air = port.air.get();
+    }
+    port.link = find_radio_format(format)->make_link(link_config);
   }
 
-  static Plant make_plant(const SessionConfig& config) {
+  std::pair<double, double> position_of(const TeamPort& port, int id) const {
+    const auto index = port.index_of(id);
+    if (!index) return {0.0, 0.0};
+    const PlanarState state = world.plant().planar_state(static_cast<int>(*index));
+    return {state.x_m, state.y_m};
+  }
+
+  static World make_world(const SessionConfig& config, const std::vector<RobotModel>& models) {
     throw_problems(session_problems(config));
-    return Plant(config.robots, config.plant);
+    return World(models, config.plant, world_options(config.field));
   }
 
-  void deliver(const Delivery& delivery, std::int64_t at_ns) override {
-    if (observer) observer->delivery(at_ns, delivery);
-    const auto id = std::lower_bound(config.robot_ids.begin(), config.robot_ids.end(), delivery.robot_id);
-    if (id == config.robot_ids.end() || *id != delivery.robot_id) return;
-    Firmware& robot = *firmware[static_cast<std::size_t>(id - config.robot_ids.begin())];
+  void deliver(const TeamPort& port, const Delivery& delivery, std::int64_t at_ns) {
+    const auto index = port.index_of(delivery.robot_id);
+    if (observer && &port == &own) observer->delivery(at_ns, delivery);
+    if (!index) return;
+    Firmware& robot = *firmware[*index];
     switch (delivery.kind) {
       case Delivery::Kind::kCommand:
         robot.command(delivery.command, at_ns);
@@ -85,27 +140,29 @@ struct Session::Impl : RadioSink {
 
   // One control tick of robot i at the plant's time.
   void tick(std::size_t i) {
-    const int id = config.robot_ids[i];
+    TeamPort& port = i < opponents.first ? own : opponents;
+    const int id = port.robot_ids[i - port.first];
     Firmware& robot = *firmware[i];
     RobotSample& sample = samples[i];
-    sample.robot_id = id;
-    sample.sensors = plant.sample_sensors(static_cast<int>(i));
-    sample.truth = plant.truth(static_cast<int>(i));
+    sample.robot_id = keys[i];
+    sample.sensors = world.sample_sensors(static_cast<int>(i));
+    sample.truth = world.plant().truth(static_cast<int>(i));
     RobotShafts shafts;
     std::copy_n(sample.truth.theta_rotor_rad.begin(), kWheels, shafts.theta_rotor_rad);
     std::copy_n(sample.truth.omega_rotor_rad_s.begin(), kWheels, shafts.omega_rotor_rad_s);
     robot.shafts(shafts);
     sample.drive = robot.tick(sample.sensors);
     sample.feedback = robot.feedback();
-    sample.vision = plant.vision(static_cast<int>(i));
-    if (const std::string broken = first_non_finite(sample); !broken.empty()) give_up(now_ns, id, broken);
-    plant.write(static_cast<int>(i), sample.drive);
+    sample.vision = world.plant().vision(static_cast<int>(i));
+    if (const std::string broken = first_non_finite(sample); !broken.empty())
+      give_up(now_ns, keys[i], broken);
+    world.write(static_cast<int>(i), sample.drive);
     for (int frames = 0; frames < kMaxFramesPerTick; ++frames) {
       const std::size_t n = robot.radio_transmit(frame);
       if (n == 0) break;
-      link->robot_frame(id, std::span(frame).first(std::min(n, frame.size())), now_ns);
+      if (port.link) port.link->robot_frame(id, std::span(frame).first(std::min(n, frame.size())), now_ns);
     }
-    link->robot_feedback(id, sample.feedback, robot.gains(), now_ns);
+    if (port.link) port.link->robot_feedback(id, sample.feedback, robot.gains(), now_ns);
     if (observer) observer->robot_tick(now_ns, sample);
   }
 
@@ -124,9 +181,10 @@ struct Session::Impl : RadioSink {
         }
         until_ns = std::min(until_ns, next_tick_ns[i]);
       }
-      plant.advance(until_ns - now_ns);
-      if (const auto& fault = plant.fault()) {
-        give_up(fault->now_ns, config.robot_ids[static_cast<std::size_t>(fault->robot)],
+      world.advance(until_ns - now_ns);
+      if (observer && config.field.contacts) observer->world(until_ns, world);
+      if (const auto& fault = world.plant().fault()) {
+        give_up(fault->now_ns, keys[static_cast<std::size_t>(fault->robot)],
                 fmt::format("{}[{}]", fault->signal, fault->index));
       }
       now_ns = until_ns;
@@ -134,11 +192,12 @@ struct Session::Impl : RadioSink {
   }
 
   SessionConfig config;
-  Plant plant;
+  std::vector<RobotModel> models;  // of both teams
+  World world;
+  std::vector<int> keys;
   std::vector<std::unique_ptr<Firmware>> firmware;
   std::vector<MotorPort> motor_ports;
-  std::unique_ptr<AirLoss> air;  // before the link, which asks it
-  std::unique_ptr<RadioLink> link;
+  TeamPort own, opponents;
   SessionObserver* observer = nullptr;
   std::int64_t now_ns = 0;
   std::vector<std::int64_t> next_tick_ns;
@@ -154,52 +213,95 @@ Session::~Session() = default;
 
 std::int64_t Session::now_ns() const { return impl_->now_ns; }
 const SessionConfig& Session::config() const { return impl_->config; }
-const Plant& Session::plant() const { return impl_->plant; }
-const RadioLink& Session::link() const { return *impl_->link; }
+const Plant& Session::plant() const { return impl_->world.plant(); }
+const World& Session::world() const { return impl_->world; }
+int Session::robot_count() const { return static_cast<int>(impl_->models.size()); }
+int Session::robot_key(int robot_index) const { return impl_->keys[static_cast<std::size_t>(robot_index)]; }
+const RobotModel& Session::model(int robot_index) const {
+  return impl_->models[static_cast<std::size_t>(robot_index)];
+}
+const RadioLink& Session::link() const { return *impl_->own.link; }
+const RadioLink* Session::opponents_link() const { return impl_->opponents.link.get(); }
 const Firmware& Session::firmware(int robot_index) const {
   return *impl_->firmware[static_cast<std::size_t>(robot_index)];
 }
-AirCounts Session::air() const { return impl_->air ? impl_->air->counts() : AirCounts{}; }
+AirCounts Session::air() const { return impl_->own.air ? impl_->own.air->counts() : AirCounts{}; }
 void Session::set_observer(SessionObserver* observer) { impl_->observer = observer; }
 std::uint64_t Session::gains_refused() const { return impl_->gains_refused; }
 
 void Session::step(std::span<const std::uint8_t> host, std::vector<std::uint8_t>& out) {
+  std::vector<std::uint8_t> nothing;
+  step(host, out, {}, nothing);
+}
+
+void Session::step(std::span<const std::uint8_t> host, std::vector<std::uint8_t>& out,
+                   std::span<const std::uint8_t> opponents_host, std::vector<std::uint8_t>& opponents_out) {
   Impl& s = *impl_;
+  RadioLink* const other = s.opponents.link.get();
   if (!host.empty()) {
     if (s.observer) s.observer->host_bytes(s.now_ns, host);
-    s.link->host_bytes(host, s.now_ns);
+    s.own.link->host_bytes(host, s.now_ns);
   }
-  s.link->poll(s.now_ns, s);
+  if (other != nullptr && !opponents_host.empty()) {
+    if (s.observer) s.observer->opponents_bytes(s.now_ns, opponents_host);
+    other->host_bytes(opponents_host, s.now_ns);
+  }
+  s.own.link->poll(s.now_ns, s.own);
+  if (other != nullptr) other->poll(s.now_ns, s.opponents);
   s.run_until(s.now_ns + s.config.step_ns);
   s.answer.clear();
-  s.link->take_host_bytes(s.now_ns, s.answer);
-  if (s.answer.empty()) return;
-  if (s.observer) s.observer->dongle_bytes(s.now_ns, s.answer);
+  s.own.link->take_host_bytes(s.now_ns, s.answer);
+  if (!s.answer.empty() && s.observer) s.observer->dongle_bytes(s.now_ns, s.answer);
   out.insert(out.end(), s.answer.begin(), s.answer.end());
+  if (other != nullptr) other->take_host_bytes(s.now_ns, opponents_out);
 }
 
 void Session::command(int robot_index, const RobotCommand& command) {
-  if (impl_->observer)
-    impl_->observer->command(impl_->now_ns, impl_->config.robot_ids[static_cast<std::size_t>(robot_index)],
-                             command);
+  if (impl_->observer) impl_->observer->command(impl_->now_ns, robot_key(robot_index), command);
   impl_->firmware[static_cast<std::size_t>(robot_index)]->command(command, impl_->now_ns);
 }
 
 void Session::set_faults(int robot_index, const RobotFaults& faults) {
-  impl_->plant.set_faults(robot_index, faults);
+  impl_->world.plant().set_faults(robot_index, faults);
 }
 
 void Session::set_pose(int robot_index, double x_m, double y_m, double yaw_rad) {
   Impl& s = *impl_;
-  if (s.observer)
-    s.observer->placed(s.now_ns, s.config.robot_ids[static_cast<std::size_t>(robot_index)], x_m, y_m,
-                       yaw_rad);
-  s.plant.set_pose(robot_index, x_m, y_m, yaw_rad);
+  if (s.observer) s.observer->placed(s.now_ns, robot_key(robot_index), x_m, y_m, yaw_rad);
+  s.world.put_robot(robot_index, x_m, y_m, yaw_rad);
+}
+
+void Session::set_velocity(int robot_index, double v_x_m_s, double v_y_m_s, double omega_rad_s) {
+  Impl& s = *impl_;
+  const double speeds[] = {v_x_m_s, v_y_m_s, omega_rad_s};
+  if (s.observer) s.observer->field_input(s.now_ns, FieldInput::kPushed, robot_key(robot_index), speeds);
+  s.world.set_velocity(robot_index, v_x_m_s, v_y_m_s, omega_rad_s);
+}
+
+void Session::set_present(int robot_index, bool present) {
+  Impl& s = *impl_;
+  if (s.world.present(robot_index) == present) return;
+  const double value[] = {present ? 1.0 : 0.0};
+  if (s.observer) s.observer->field_input(s.now_ns, FieldInput::kPresent, robot_key(robot_index), value);
+  s.world.set_present(robot_index, present);
+}
+
+void Session::put_ball(const Vector3& position, const Vector3& velocity, const Vector3& spin) {
+  Impl& s = *impl_;
+  const double values[] = {position.x(), position.y(), position.z(), velocity.x(), velocity.y(),
+                           velocity.z(), spin.x(),     spin.y(),     spin.z()};
+  if (s.observer) s.observer->field_input(s.now_ns, FieldInput::kBall, 0, values);
+  s.world.put_ball(position.x(), position.y(), position.z(), velocity, spin);
+}
+
+void Session::take_ball_away() {
+  if (impl_->observer) impl_->observer->field_input(impl_->now_ns, FieldInput::kBall, 0, {});
+  impl_->world.take_ball_away();
 }
 
 void Session::host_closed() {
   if (impl_->observer) impl_->observer->host_closed(impl_->now_ns);
-  impl_->link->host_closed(impl_->now_ns);
+  impl_->own.link->host_closed(impl_->now_ns);
 }
 
 }  // namespace omnihil

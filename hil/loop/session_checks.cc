@@ -40,43 +40,46 @@ class FiniteScan {
   std::string found_;
 };
 
-void id_problems(const SessionConfig& config, std::vector<std::string>& problems) {
-  if (config.robot_ids.empty()) problems.push_back("robots: none; a session needs at least one");
-  if (config.robots.size() != config.robot_ids.size()) {
-    problems.push_back(fmt::format("robots: {} models for {} robot ids; there must be one for each",
-                                   config.robots.size(), config.robot_ids.size()));
+void id_problems(const char* who, std::size_t models, const std::vector<int>& ids,
+                 std::vector<std::string>& problems) {
+  if (models != ids.size()) {
+    problems.push_back(
+        fmt::format("{}: {} models for {} robot ids; there must be one for each", who, models, ids.size()));
   }
-  for (std::size_t i = 0; i < config.robot_ids.size(); ++i) {
-    const int id = config.robot_ids[i];
-    if (id < 0 || id > kMaxRobotId) {
-      problems.push_back(fmt::format("robots: id {}: allowed are 0 to {}", id, kMaxRobotId));
-    }
-    if (i > 0 && id <= config.robot_ids[i - 1]) {
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (ids[i] < 0 || ids[i] > kMaxRobotId)
+      problems.push_back(fmt::format("{}: id {}: allowed are 0 to {}", who, ids[i], kMaxRobotId));
+    if (i > 0 && ids[i] <= ids[i - 1])
       problems.push_back(
-          fmt::format("robots: id {} after {}: ids must ascend, each once", id, config.robot_ids[i - 1]));
-    }
+          fmt::format("{}: id {} after {}: ids must ascend, each once", who, ids[i], ids[i - 1]));
   }
+}
+
+void radio_problems(const std::string& radio, std::size_t robots, std::vector<std::string>& problems) {
+  const RadioFormat* format = find_radio_format(radio);
+  if (format != nullptr && !format->names_robots() && robots > 1) {
+    problems.push_back(fmt::format(
+        "robots: packets of radio {} name no robot: one wire, one robot; start a bench for each", radio));
+  }
+  if (format != nullptr) return;
+  std::vector<std::string_view> known;
+  for (const RadioFormat* each : radio_formats()) known.push_back(each->id);
+  const std::string_view nearest = nearest_spelling(radio, known);
+  problems.push_back(fmt::format("radio: unknown format \"{}\"{}; known: {}", radio,
+                                 nearest.empty() ? "" : fmt::format(", did you mean {}?", nearest),
+                                 fmt::join(known, ", ")));
 }
 
 }  // namespace
 
 std::vector<std::string> session_problems(const SessionConfig& config) {
   std::vector<std::string> problems = air_problems(config.air);
-  const RadioFormat* format = find_radio_format(config.radio_format);
-  if (format != nullptr && !format->names_robots() && config.robot_ids.size() > 1) {
-    problems.push_back(
-        fmt::format("robots: packets of radio {} name no robot: one wire, one robot; start a bench for each",
-                    config.radio_format));
-  }
-  if (format == nullptr) {
-    std::vector<std::string_view> known;
-    for (const RadioFormat* each : radio_formats()) known.push_back(each->id);
-    const std::string_view nearest = nearest_spelling(config.radio_format, known);
-    problems.push_back(fmt::format("radio: unknown format \"{}\"{}; known: {}", config.radio_format,
-                                   nearest.empty() ? "" : fmt::format(", did you mean {}?", nearest),
-                                   fmt::join(known, ", ")));
-  }
-  id_problems(config, problems);
+  radio_problems(config.radio_format, config.robot_ids.size(), problems);
+  if (!config.opponents.radio_format.empty())
+    radio_problems(config.opponents.radio_format, config.opponents.robot_ids.size(), problems);
+  if (config.robot_ids.empty()) problems.push_back("robots: none; a session needs at least one");
+  id_problems("robots", config.robots.size(), config.robot_ids, problems);
+  id_problems("opponents", config.opponents.robots.size(), config.opponents.robot_ids, problems);
   const std::int64_t mechanical_ns = config.plant.mechanical_step_ns;
   if (mechanical_ns <= 0) {
     problems.push_back(fmt::format("mechanical step: {} ns; must be more than 0", mechanical_ns));
@@ -90,8 +93,12 @@ std::vector<std::string> session_problems(const SessionConfig& config) {
 std::vector<std::string> firmware_problems(const SessionConfig& config,
                                            std::span<const std::unique_ptr<Firmware>> firmware) {
   std::vector<std::string> problems;
+  const std::size_t ours = config.robots.size();
   for (std::size_t i = 0; i < firmware.size(); ++i) {
-    const int id = config.robot_ids[i];
+    const bool other = i >= ours;
+    const int id = other ? config.opponents.robot_ids[i - ours] : config.robot_ids[i];
+    const RobotModel& model = other ? config.opponents.robots[i - ours] : config.robots[i];
+    const std::size_t first = other ? ours : 0;  // of its team
     if (firmware[i] == nullptr) {
       problems.push_back(fmt::format("robot {}: the firmware could not be made", id));
       continue;
@@ -103,17 +110,18 @@ std::vector<std::string> firmware_problems(const SessionConfig& config,
                       "mechanical step, {} ns",
                       id, period_ns, firmware[i]->name(), config.plant.mechanical_step_ns));
     }
-    if (firmware[i]->drives_phases() && !electrics_of(config.robots[i]).three_phase()) {
+    if (firmware[i]->drives_phases() && !electrics_of(model).three_phase()) {
       problems.push_back(fmt::format(
           "robot {}: firmware \"{}\" sets the legs of three phases; the model's drive.kind must be \"dq\" or "
           "\"switched\"",
           id, firmware[i]->name()));
     }
-    if (firmware[0] != nullptr && firmware[i]->radio_format() != firmware[0]->radio_format()) {
+    if (firmware[first] != nullptr && firmware[i]->radio_format() != firmware[first]->radio_format()) {
       problems.push_back(fmt::format(
           "robot {}: its firmware decodes radio \"{}\", that of robot {} \"{}\"; behind one dongle "
           "they must agree",
-          id, firmware[i]->radio_format(), config.robot_ids[0], firmware[0]->radio_format()));
+          id, firmware[i]->radio_format(), other ? config.opponents.robot_ids[0] : config.robot_ids[0],
+          firmware[first]->radio_format()));
     }
   }
   return problems;

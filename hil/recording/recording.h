@@ -6,6 +6,11 @@
 //   ! TIME_NS closed         the host closed its port
 //   c TIME_NS ID v1 v2 …     a command to a robot's firmware past the radio (command_values.h has the order)
 //   p TIME_NS ID x y yaw     a robot was put down there: m, m, rad
+//   v TIME_NS ID vx vy w     a robot was given these speeds: m/s, m/s, rad/s, field frame
+//   a TIME_NS ID 0|1         a robot went away, or came back
+//   b TIME_NS x y z vx vy vz wx wy wz    the ball was put there: m, m/s, rad/s; without numbers: it was taken away
+//   } TIME_NS HEX            bytes that the opponents' host wrote
+//   w TIME_NS x y z vx vy vz    where the ball was, every 10 ms: for pictures
 //   s TIME_NS ID v1 v2 …     one robot at one control tick; column names and units are in the header
 //   # {"end":…}              counters, wall time; absent when the run was cut off
 //
@@ -47,13 +52,19 @@ struct RecordingHeader {
   std::int64_t step_ns = 0;
   std::uint64_t epoch_ms = 0;
   std::uint64_t seed = 0;
-  AirOptions air;                          // what the radio lost; drawn from the seed
-  std::string started;                     // ISO 8601 wall time, informative only
+  AirOptions air;                 // what the radio lost; drawn from the seed
+  FieldSetup field;               // what was on the floor; absent: robots alone, as runs were before
+  std::vector<int> opponent_ids;  // the other team's, of the same model and firmware; none: there was none
+  std::string opponents_radio;    // of their dongle; empty: none
+  std::string started;            // ISO 8601 wall time, informative only
   std::vector<ModelText> included_models;  // further files that the model names: its motor
   int sample_every = 10;                   // of a robot's control ticks, every Nth is written
   std::vector<std::string> columns;        // of the `s` lines; the writer fills in sample_columns()
   std::vector<std::string> units;
 };
+
+// Of both teams: what stands as ID in its lines.
+std::vector<int> robot_keys(const RecordingHeader& header);
 
 struct RecordedChunk {
   enum class Kind : std::uint8_t {
@@ -62,12 +73,17 @@ struct RecordedChunk {
     kHostClosed,
     kSample,
     kCommand,
-    kPlaced
+    kPlaced,
+    kPushed,
+    kPresent,
+    kBallPlaced,
+    kOpponentsBytes,
+    kBallSeen
   } kind = Kind::kHostBytes;
   std::int64_t now_ns = 0;
   std::vector<std::uint8_t> bytes;  // kHostBytes, kDongleBytes
-  int robot_id = 0;                 // kSample, kCommand, kPlaced
-  std::vector<double> sample;       // kSample, in the order of header.columns; kCommand; kPlaced: x, y, yaw
+  int robot_id = 0;            // kSample, kCommand, kPlaced, kPushed, kPresent; opponents: kOpponentKey + id
+  std::vector<double> sample;  // the line's numbers; kSample: in the order of header.columns
 };
 
 // What the writer of a complete run counted.

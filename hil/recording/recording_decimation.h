@@ -11,6 +11,8 @@
 
 namespace omnihil {
 
+inline constexpr std::int64_t kBallEvery_ns = 10'000'000;  // of `w` lines: a camera's rate and a half
+
 class SampleDecimation {
  public:
   SampleDecimation(std::vector<int> robot_ids, int every)

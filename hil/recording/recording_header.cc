@@ -131,6 +131,34 @@ class HeaderFields {
     options.by_distance = found->contains("x_m");
     for (const std::string& problem : air_problems(options)) refuse(key, found->dump(), problem);
   }
+  // Absent: robots alone on an endless floor, which do not touch.
+  void field(const char* key, FieldSetup& setup) {
+    if (!json_.contains(key)) return;
+    const Json* found = find(key, "an object", &Json::is_object);
+    if (found == nullptr) return;
+    setup.contacts = true;
+    for (const auto& [name, value] : found->items()) {
+      if (name == "size" && value.is_string()) {
+        setup.size = find_field(value.get<std::string>());
+        if (setup.size == nullptr) refuse(key, value.dump(), "a field such as division-b");
+      } else if (name == "ball" && value.is_array() && value.size() == 2 && value[0].is_number() &&
+                 value[1].is_number()) {
+        setup.ball_m = {value[0].get<double>(), value[1].get<double>()};
+      } else {
+        return refuse(key, found->dump(), "{\"size\": NAME, \"ball\": [x, y]}, each or neither");
+      }
+    }
+  }
+  // Absent: none.
+  void opponents(const char* key, RecordingHeader& header) {
+    if (!json_.contains(key)) return;
+    const Json* found = find(key, "an object", &Json::is_object);
+    if (found == nullptr) return;
+    HeaderFields fields(*found, problems_);
+    fields.ids("robot_ids", header.opponent_ids);
+    if (found->contains("radio")) fields.text("radio", header.opponents_radio);
+    fields.nothing_else();
+  }
   void nothing_else() {
     for (const auto& [key, value] : json_.items()) {
       if (!known_.contains(key)) refuse(key.c_str(), value.dump(), "no such key");
@@ -184,6 +212,8 @@ void read_fields(HeaderFields& fields, RecordingHeader& header) {
   fields.natural("epoch_ms", header.epoch_ms);
   fields.natural("seed", header.seed);
   fields.air("air", header.air);
+  fields.field("field", header.field);
+  fields.opponents("opponents", header);
   fields.natural("sample_every", sample_every);
   if (sample_every < 1 || sample_every > 1'000'000) {
     fields.refuse("sample_every", std::to_string(sample_every), "1 to 1000000");
@@ -212,6 +242,12 @@ std::optional<Physics> parse_physics(std::string_view name) {
     if (row.name == name) return row.value;
   }
   return std::nullopt;
+}
+
+std::vector<int> robot_keys(const RecordingHeader& header) {
+  std::vector<int> keys = header.robot_ids;
+  for (const int id : header.opponent_ids) keys.push_back(kOpponentKey + id);
+  return keys;
 }
 
 std::string to_json(const RecordingHeader& header) {
@@ -243,6 +279,16 @@ std::string to_json(const RecordingHeader& header) {
       if (told) air[std::string(key.name)] = header.air.*(key.place);
     }
     json["air"] = std::move(air);
+  }
+  if (header.field.contacts) {
+    Json field = Json::object();
+    if (header.field.size != nullptr) field["size"] = header.field.size->name;
+    if (header.field.ball_m) field["ball"] = *header.field.ball_m;
+    json["field"] = std::move(field);
+  }
+  if (!header.opponent_ids.empty()) {
+    json["opponents"]["robot_ids"] = header.opponent_ids;
+    if (!header.opponents_radio.empty()) json["opponents"]["radio"] = header.opponents_radio;
   }
   json["sample_every"] = header.sample_every;
   json["columns"] = header.columns;

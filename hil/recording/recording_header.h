@@ -5,7 +5,8 @@
 //
 // Every key is required and no other is allowed, so that a header cannot be half understood. Exceptions:
 // firmware_files, {"NAME":"SHA-256"}, what a user's own firmware came from; absent, this program's own ran; and air,
-// {"share":0.02,…}, what the radio lost; absent, nothing.
+// {"share":0.02,…}, what the radio lost; absent, nothing; field, {"size":"division-b","ball":[0,0]}, that robots touch each
+// other, and what else is on the floor; opponents, {"robot_ids":[0,1],"radio":"…"}, the other team.
 #pragma once
 #include <optional>
 #include <string>

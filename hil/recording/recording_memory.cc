@@ -15,7 +15,7 @@ RecordingHeader with_sample_columns(RecordingHeader header) {
 }
 
 RecordingMemory::RecordingMemory(RecordingHeader header)
-    : decimation_(header.robot_ids, header.sample_every) {
+    : decimation_(robot_keys(header), header.sample_every) {
   recording_.header = with_sample_columns(std::move(header));
 }
 
@@ -46,6 +46,30 @@ void RecordingMemory::placed(std::int64_t now_ns, int robot_id, double x_m, doub
   RecordedChunk& chunk = add(RecordedChunk::Kind::kPlaced, now_ns);
   chunk.robot_id = robot_id;
   chunk.sample = {x_m, y_m, yaw_rad};
+}
+
+void RecordingMemory::field_input(std::int64_t now_ns, FieldInput kind, int robot_id,
+                                  std::span<const double> values) {
+  using Kind = RecordedChunk::Kind;
+  RecordedChunk& chunk = add(kind == FieldInput::kBall     ? Kind::kBallPlaced
+                             : kind == FieldInput::kPushed ? Kind::kPushed
+                                                           : Kind::kPresent,
+                             now_ns);
+  chunk.robot_id = robot_id;
+  chunk.sample.assign(values.begin(), values.end());
+}
+
+void RecordingMemory::opponents_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) {
+  if (!bytes.empty())
+    add(RecordedChunk::Kind::kOpponentsBytes, now_ns).bytes.assign(bytes.begin(), bytes.end());
+}
+
+void RecordingMemory::world(std::int64_t now_ns, const World& world) {
+  const BallState* const ball = world.ball();
+  if (ball == nullptr || now_ns < next_ball_ns_) return;
+  next_ball_ns_ = now_ns + kBallEvery_ns;
+  const Vector3 &p = ball->position, &v = ball->velocity;
+  add(RecordedChunk::Kind::kBallSeen, now_ns).sample = {p.x(), p.y(), p.z(), v.x(), v.y(), v.z()};
 }
 
 void RecordingMemory::robot_tick(std::int64_t now_ns, const RobotSample& sample) {

@@ -22,6 +22,10 @@ class RecordingMemory : public SessionObserver {
   void host_closed(std::int64_t now_ns) override;
   void command(std::int64_t now_ns, int robot_id, const RobotCommand& command) override;
   void placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) override;
+  void field_input(std::int64_t now_ns, FieldInput kind, int robot_id,
+                   std::span<const double> values) override;
+  void opponents_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
+  void world(std::int64_t now_ns, const World& world) override;
 
   Recording take(std::int64_t end_ns);  // complete; this object is empty afterwards
 
@@ -29,6 +33,7 @@ class RecordingMemory : public SessionObserver {
   RecordedChunk& add(RecordedChunk::Kind kind, std::int64_t now_ns);
 
   SampleDecimation decimation_;
+  std::int64_t next_ball_ns_ = 0;
   Recording recording_;
 };
 

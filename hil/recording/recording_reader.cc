@@ -15,7 +15,22 @@
 namespace omnihil {
 namespace {
 
-constexpr std::size_t kPlacedValues = 3;  // x, y, yaw
+// Lines of numbers: how many, and whether a robot's id stands before them.
+struct InputLine {
+  std::string_view tag;
+  RecordedChunk::Kind kind;
+  std::size_t values;
+  bool of_robot;
+  bool may_be_empty;
+};
+constexpr InputLine kInputLines[] = {
+    {"c", RecordedChunk::Kind::kCommand, kCommandValues, true, false},
+    {"p", RecordedChunk::Kind::kPlaced, 3, true, false},
+    {"v", RecordedChunk::Kind::kPushed, 3, true, false},
+    {"a", RecordedChunk::Kind::kPresent, 1, true, false},
+    {"b", RecordedChunk::Kind::kBallPlaced, 9, false, true},
+    {"w", RecordedChunk::Kind::kBallSeen, 6, false, false},
+};
 
 std::string joined(const std::vector<std::string>& lines) {
   std::string text;
@@ -95,20 +110,25 @@ bool RecordingReader::read_line() {
 bool RecordingReader::parse_line(RecordedChunk& chunk) {
   std::string_view rest = line_;
   const std::string_view tag = next_word(rest);
-  if (tag == ">" || tag == "<") {
-    chunk.kind = tag == ">" ? RecordedChunk::Kind::kHostBytes : RecordedChunk::Kind::kDongleBytes;
+  if (tag == ">" || tag == "<" || tag == "}") {
+    chunk.kind = tag == ">"   ? RecordedChunk::Kind::kHostBytes
+                 : tag == "<" ? RecordedChunk::Kind::kDongleBytes
+                              : RecordedChunk::Kind::kOpponentsBytes;
     return parse_bytes(rest, chunk);
   }
   if (tag == "!") return parse_closed(rest, chunk);
   if (tag == "s") return parse_sample(rest, chunk);
-  if (tag == "c" || tag == "p") {
-    chunk.kind = tag == "c" ? RecordedChunk::Kind::kCommand : RecordedChunk::Kind::kPlaced;
-    return parse_input(rest, tag == "c" ? kCommandValues : kPlacedValues, chunk);
+  for (const InputLine& line : kInputLines) {
+    if (tag != line.tag) continue;
+    chunk.kind = line.kind;
+    if (line.of_robot ? !parse_robot(rest, chunk) : !parse_time_alone(rest, chunk)) return false;
+    return parse_numbers(rest, line.values, line.may_be_empty, chunk);
   }
   if (tag == "#") {
     parse_end(rest);
   } else {
-    problem("line tag: found " + in_quotes(tag) + ", allowed: '>', '<', '!', 's', 'c', 'p', '#'");
+    problem("line tag: found " + in_quotes(tag) +
+            ", allowed: '>', '<', '}', '!', 's', 'c', 'p', 'v', 'a', 'b', 'w', '#'");
   }
   return false;
 }
@@ -141,7 +161,7 @@ bool RecordingReader::parse_robot(std::string_view& rest, RecordedChunk& chunk) 
   chunk.sample.clear();
   const std::string_view id_text = next_word(rest);
   std::int64_t id = -1;
-  const std::vector<int>& ids = header_.robot_ids;
+  const std::vector<int> ids = robot_keys(header_);
   if (!parse_integer(id_text, id) || std::find(ids.begin(), ids.end(), id) == ids.end()) {
     problem("robot id: found " + in_quotes(id_text) + ", allowed: " + listed(ids));
     return false;
@@ -150,8 +170,8 @@ bool RecordingReader::parse_robot(std::string_view& rest, RecordedChunk& chunk) 
   return true;
 }
 
-bool RecordingReader::parse_input(std::string_view rest, std::size_t count, RecordedChunk& chunk) {
-  if (!parse_robot(rest, chunk)) return false;
+bool RecordingReader::parse_numbers(std::string_view rest, std::size_t count, bool may_be_empty,
+                                    RecordedChunk& chunk) {
   while (!rest.empty() && chunk.sample.size() < count) {
     const std::string_view text = next_word(rest);
     double value = 0.0;
@@ -162,10 +182,18 @@ bool RecordingReader::parse_input(std::string_view rest, std::size_t count, Reco
     }
     chunk.sample.push_back(value);
   }
+  if (rest.empty() && chunk.sample.empty() && may_be_empty) return true;
   if (rest.empty() && chunk.sample.size() == count) return true;
   problem("values: found " + std::string(rest.empty() ? "fewer" : "more") +
           ", allowed: " + std::to_string(count));
   return false;
+}
+
+bool RecordingReader::parse_time_alone(std::string_view& rest, RecordedChunk& chunk) {
+  chunk.bytes.clear();
+  chunk.sample.clear();
+  chunk.robot_id = 0;
+  return parse_time(rest, chunk);
 }
 
 bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) {

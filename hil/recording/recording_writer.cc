@@ -63,7 +63,7 @@ RecordingWriter::RecordingWriter(int fd, std::filesystem::path path, RecordingHe
     : fd_(fd),
       path_(std::move(path)),
       report_(std::move(report)),
-      decimation_(header.robot_ids, header.sample_every) {
+      decimation_(robot_keys(header), header.sample_every) {
   header.sample_every = decimation_.every();
   buffer_.reserve(2 * kBuffer_bytes);
   buffer_ += "# " + to_json(header) + "\n";
@@ -99,13 +99,35 @@ void RecordingWriter::placed(std::int64_t now_ns, int robot_id, double x_m, doub
   input('p', now_ns, robot_id, place);
 }
 
+void RecordingWriter::field_input(std::int64_t now_ns, FieldInput kind, int robot_id,
+                                  std::span<const double> values) {
+  const bool ball = kind == FieldInput::kBall;
+  const char tag = ball ? 'b' : kind == FieldInput::kPushed ? 'v' : 'a';
+  input(tag, now_ns, ball ? -1 : robot_id, values);
+}
+
+void RecordingWriter::opponents_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) {
+  if (!bytes.empty()) chunk('}', now_ns, bytes);
+}
+
+void RecordingWriter::world(std::int64_t now_ns, const World& world) {
+  const BallState* const ball = world.ball();
+  if (ball == nullptr || now_ns < next_ball_ns_) return;
+  next_ball_ns_ = now_ns + kBallEvery_ns;
+  const Vector3 &p = ball->position, &v = ball->velocity;
+  const double values[] = {p.x(), p.y(), p.z(), v.x(), v.y(), v.z()};
+  input('w', now_ns, -1, values);
+}
+
 void RecordingWriter::input(char tag, std::int64_t now_ns, int robot_id, std::span<const double> values) {
   if (error_) return;
   buffer_ += tag;
   buffer_ += ' ';
   append_integer(buffer_, now_ns);
-  buffer_ += ' ';
-  append_integer(buffer_, robot_id);
+  if (robot_id >= 0) {
+    buffer_ += ' ';
+    append_integer(buffer_, robot_id);
+  }
   for (const double value : values) {
     buffer_ += ' ';
     append_number(buffer_, value);

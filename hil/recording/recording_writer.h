@@ -39,6 +39,10 @@ class RecordingWriter : public SessionObserver {
   void host_closed(std::int64_t now_ns) override;
   void command(std::int64_t now_ns, int robot_id, const RobotCommand& command) override;
   void placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) override;
+  void field_input(std::int64_t now_ns, FieldInput kind, int robot_id,
+                   std::span<const double> values) override;
+  void opponents_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
+  void world(std::int64_t now_ns, const World& world) override;
 
   // Writes what is buffered.
   void flush();
@@ -50,6 +54,7 @@ class RecordingWriter : public SessionObserver {
 
  private:
   RecordingWriter(int fd, std::filesystem::path path, RecordingHeader header, Report report);
+  // robot_id below 0: none on the line.
   void input(char tag, std::int64_t now_ns, int robot_id, std::span<const double> values);
   void chunk(char tag, std::int64_t now_ns, std::span<const std::uint8_t> bytes);
   void end_line(std::int64_t now_ns);
@@ -61,6 +66,7 @@ class RecordingWriter : public SessionObserver {
   std::string buffer_;
   SampleDecimation decimation_;
   std::int64_t flushed_ns_ = 0;
+  std::int64_t next_ball_ns_ = 0;
   std::uint64_t bytes_written_ = 0;
   std::error_code error_;
 };

@@ -30,23 +30,42 @@ void ObserverList::placed(std::int64_t now_ns, int robot_id, double x_m, double 
   for (SessionObserver* observer : observers_) observer->placed(now_ns, robot_id, x_m, y_m, yaw_rad);
 }
 
+void ObserverList::field_input(std::int64_t now_ns, FieldInput kind, int robot_id,
+                               std::span<const double> values) {
+  for (SessionObserver* observer : observers_) observer->field_input(now_ns, kind, robot_id, values);
+}
+void ObserverList::opponents_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) {
+  for (SessionObserver* observer : observers_) observer->opponents_bytes(now_ns, bytes);
+}
+void ObserverList::world(std::int64_t now_ns, const World& world) {
+  for (SessionObserver* observer : observers_) observer->world(now_ns, world);
+}
+
 namespace {
 
 bool is_input(const RecordedChunk& chunk) {
   using Kind = RecordedChunk::Kind;
-  return chunk.kind == Kind::kHostBytes || chunk.kind == Kind::kHostClosed || chunk.kind == Kind::kCommand ||
-         chunk.kind == Kind::kPlaced;
+  return chunk.kind != Kind::kSample && chunk.kind != Kind::kDongleBytes && chunk.kind != Kind::kBallSeen;
 }
 
-// What went past the radio; the header's ids were checked when it was read.
+// What went past the radio; the ids were checked when it was read.
 void give(const RecordedChunk& chunk, Session& session) {
-  const std::vector<int>& ids = session.config().robot_ids;
-  const auto at = std::ranges::find(ids, chunk.robot_id);
-  if (at == ids.end()) return;
-  const int index = static_cast<int>(at - ids.begin());
-  if (chunk.kind == RecordedChunk::Kind::kCommand) session.command(index, command_of(chunk.sample));
-  if (chunk.kind == RecordedChunk::Kind::kPlaced)
-    session.set_pose(index, chunk.sample[0], chunk.sample[1], chunk.sample[2]);
+  using Kind = RecordedChunk::Kind;
+  const std::vector<double>& v = chunk.sample;
+  if (chunk.kind == Kind::kBallPlaced) {
+    if (v.empty())
+      session.take_ball_away();
+    else
+      session.put_ball({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]});
+    return;
+  }
+  for (int index = 0; index < session.robot_count(); ++index) {
+    if (session.robot_key(index) != chunk.robot_id) continue;
+    if (chunk.kind == Kind::kCommand) session.command(index, command_of(v));
+    if (chunk.kind == Kind::kPlaced) session.set_pose(index, v[0], v[1], v[2]);
+    if (chunk.kind == Kind::kPushed) session.set_velocity(index, v[0], v[1], v[2]);
+    if (chunk.kind == Kind::kPresent) session.set_present(index, v[0] != 0.0);
+  }
 }
 
 }  // namespace
@@ -79,20 +98,24 @@ void replay(const Recording& recording, Session& session, SessionObserver* obser
     throw BadRecording(std::move(problems));
   }
   session.set_observer(observer);
-  std::vector<std::uint8_t> host;
-  std::vector<std::uint8_t> out;
+  std::vector<std::uint8_t> host, opponents_host;
+  std::vector<std::uint8_t> out, opponents_out;
   auto next = recording.chunks.begin();
   // A run that was cut off may end inside a step: that step is run whole.
   const std::int64_t end_ns = recording.end_ns + (recording.complete ? 0 : 1);
   while (session.now_ns() < end_ns) {
     host.clear();
+    opponents_host.clear();
     out.clear();
+    opponents_out.clear();
     for (; next != recording.chunks.end() && next->now_ns <= session.now_ns(); ++next) {
       if (next->kind == Kind::kHostBytes) host.insert(host.end(), next->bytes.begin(), next->bytes.end());
+      if (next->kind == Kind::kOpponentsBytes)
+        opponents_host.insert(opponents_host.end(), next->bytes.begin(), next->bytes.end());
       if (next->kind == Kind::kHostClosed) session.host_closed();
       give(*next, session);
     }
-    session.step(host, out);
+    session.step(host, out, opponents_host, opponents_out);
   }
   session.set_observer(nullptr);
 }

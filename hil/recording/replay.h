@@ -27,6 +27,10 @@ class ObserverList : public SessionObserver {
   void host_closed(std::int64_t now_ns) override;
   void command(std::int64_t now_ns, int robot_id, const RobotCommand& command) override;
   void placed(std::int64_t now_ns, int robot_id, double x_m, double y_m, double yaw_rad) override;
+  void field_input(std::int64_t now_ns, FieldInput kind, int robot_id,
+                   std::span<const double> values) override;
+  void opponents_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
+  void world(std::int64_t now_ns, const World& world) override;
 
  private:
   std::vector<SessionObserver*> observers_;  // not owned

@@ -16,10 +16,9 @@ namespace {
 
 // "robot 3: crashed (SIGSEGV) …" of the first robot whose firmware answers no more.
 std::string failure_of(const Session& session) {
-  const std::vector<int>& ids = session.config().robot_ids;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const std::string_view failure = session.firmware(static_cast<int>(i)).failure();
-    if (!failure.empty()) return fmt::format("robot {}: firmware {}", ids[i], failure);
+  for (int i = 0; i < session.robot_count(); ++i) {
+    const std::string_view failure = session.firmware(i).failure();
+    if (!failure.empty()) return fmt::format("robot {}: firmware {}", session.robot_key(i), failure);
   }
   return {};
 }

@@ -60,8 +60,10 @@ SessionConfig session_config(const SessionSetup& setup) {
   }
   if (reading.model && reading.model->robot) {
     config.robots.assign(setup.robot_ids.size(), *reading.model->robot);
+    config.opponents.robots.assign(setup.opponent_ids.size(), *reading.model->robot);
   } else {
     config.robots.resize(setup.robot_ids.size());
+    config.opponents.robots.resize(setup.opponent_ids.size());
   }
   config.radio_format = setup.radio_format;
   config.robot_ids = setup.robot_ids;
@@ -70,6 +72,9 @@ SessionConfig session_config(const SessionSetup& setup) {
   config.step_ns = setup.step_ns;
   config.epoch_ms = setup.epoch_ms;
   config.air = setup.air;
+  config.field = setup.field;
+  config.opponents.robot_ids = setup.opponent_ids;
+  config.opponents.radio_format = setup.opponents_radio;
   for (std::string& problem : session_problems(config)) problems.push_back(std::move(problem));
   throw_problems(problems);
   return config;
@@ -93,6 +98,9 @@ RecordingHeader recording_header(const SessionSetup& setup, const std::string& c
   header.step_ns = setup.step_ns;
   header.epoch_ms = setup.epoch_ms;
   header.air = setup.air;
+  header.field = setup.field;
+  header.opponent_ids = setup.opponent_ids;
+  header.opponents_radio = setup.opponents_radio;
   header.seed = setup.plant.seed;
   return header;
 }
@@ -114,6 +122,9 @@ SessionSetup session_setup(const RecordingHeader& header) {
   setup.step_ns = header.step_ns;
   setup.epoch_ms = header.epoch_ms;
   setup.air = header.air;
+  setup.field = header.field;
+  setup.opponent_ids = header.opponent_ids;
+  setup.opponents_radio = header.opponents_radio;
   return setup;
 }
 

@@ -30,6 +30,9 @@ struct SessionSetup {
   std::int64_t step_ns = 1'000'000;
   std::uint64_t epoch_ms = 1'700'000'000'000;
   AirOptions air;
+  FieldSetup field;
+  std::vector<int> opponent_ids;  // of the same model; none: no other team
+  std::string opponents_radio;    // of their dongle; empty: none
 };
 
 // Reads the model from its texts; throws std::invalid_argument with every problem, a line each.

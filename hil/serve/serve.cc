@@ -62,6 +62,7 @@ class Bench {
 
  private:
   bool open(RecordingHeader header);
+  bool open_opponents();
   bool open_league();
   bool open_recording(RecordingHeader header);
   void say_ready() const;
@@ -76,6 +77,8 @@ class Bench {
   StopSignals stop_;
   std::unique_ptr<ByteWire> wire_;
   std::unique_ptr<HostPort> port_;
+  std::unique_ptr<ByteWire> opponents_wire_;  // null: the other team has no dongle
+  std::unique_ptr<HostPort> opponents_port_;
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<LeagueHost> league_;
   std::unique_ptr<ObserverList> observers_;
@@ -87,6 +90,7 @@ class Bench {
   std::vector<bool> failed_;  // per robot: its firmware answers no more, and that was said
   std::vector<std::uint8_t> host_;
   std::vector<std::uint8_t> answer_;
+  std::vector<std::uint8_t> opponents_host_, opponents_answer_;
 };
 
 bool Bench::open(RecordingHeader header) {
@@ -107,7 +111,21 @@ bool Bench::open(RecordingHeader header) {
       return false;
     }
   }
-  return open_league() && open_recording(std::move(header));
+  return open_opponents() && open_league() && open_recording(std::move(header));
+}
+
+bool Bench::open_opponents() {
+  if (options_.opponents_device.empty()) return true;
+  WireQuery usual{{"listen", "1"}};
+  if (pace_.baud > 0) usual.emplace_back("baud", std::to_string(pace_.baud));
+  WireProblem problem;
+  opponents_wire_ = open_byte_wire(read_wire_url(options_.opponents_device, kServeDevice), usual, problem);
+  if (!opponents_wire_) {
+    complain(problem.text());
+    return false;
+  }
+  opponents_port_ = std::make_unique<HostPort>(*opponents_wire_, pace_, HostPortOptions{});
+  return true;
 }
 
 bool Bench::open_league() {
@@ -151,6 +169,9 @@ void Bench::say_ready() const {
              config.radio_format, carrier_words(find_radio_format(config.radio_format)->carrier, pace_),
              fmt::join(config.robot_ids, " "), model_, config.team == Team::kBlue ? "blue" : "yellow",
              to_string(config.plant.physics), options_.real_time ? "real time" : "free-running");
+  if (!config.opponents.robot_ids.empty())
+    fmt::print("opponents {}{}\n", fmt::join(config.opponents.robot_ids, " "),
+               opponents_wire_ ? " at device " + std::string(opponents_wire_->name()) : "");
   if (league_) fmt::print("league {}\n", league_->ports());
   if (options_.league_sync_port > 0)
     fmt::print("league synchronous protocol: TCP {}:{}; time goes on by its requests alone\n",
@@ -168,7 +189,7 @@ ServeStatus Bench::status() const {
   s.from_robots = session_.link().from_robots();
   s.gains_refused = session_.gains_refused();
   s.air = session_.air();
-  for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(session_.robot_count()); ++i) {
     const auto* host = dynamic_cast<const CheckedFirmware*>(&session_.firmware(static_cast<int>(i)));
     if (host != nullptr) s.firmware_faults += host->faults().total();
   }
@@ -185,13 +206,13 @@ ServeStatus Bench::status() const {
 
 // A firmware that is no more takes its own robot out, not the bench.
 void Bench::note_failures() {
-  failed_.resize(session_.config().robot_ids.size());
+  failed_.resize(static_cast<std::size_t>(session_.robot_count()));
   for (std::size_t i = 0; i < failed_.size(); ++i) {
     const std::string_view failure = session_.firmware(static_cast<int>(i)).failure();
     if (failed_[i] || failure.empty()) continue;
     failed_[i] = true;
     complain(fmt::format("robot {}: firmware {}; its wheels coast from here on",
-                         session_.config().robot_ids[i], failure));
+                         session_.robot_key(static_cast<int>(i)), failure));
   }
 }
 
@@ -199,8 +220,12 @@ void Bench::note_failures() {
 bool Bench::step() {
   std::error_code error = port_->receive(session_.now_ns(), host_);
   answer_.clear();
+  opponents_host_.clear();
+  opponents_answer_.clear();
+  if (!error && opponents_port_) error = opponents_port_->receive(session_.now_ns(), opponents_host_);
   if (league_) league_->before_step(session_);
-  session_.step(host_, answer_);
+  session_.step(host_, answer_, opponents_host_, opponents_answer_);
+  if (!error && opponents_port_) error = opponents_port_->send(session_.now_ns(), opponents_answer_);
   if (league_) league_->after_step(session_);
   note_failures();
   if (!error) error = port_->send(session_.now_ns(), answer_);
@@ -281,9 +306,9 @@ ServeEnd Bench::run(RecordingHeader header) {
   if (end == ServeEnd::kDone && writer_ && writer_->error()) end = ServeEnd::kIo;
   if (!options_.quiet) {
     fmt::print("{}", final_report(status()));
-    for (std::size_t i = 0; i < session_.config().robot_ids.size(); ++i) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(session_.robot_count()); ++i) {
       for (const std::string& line : session_.firmware(static_cast<int>(i)).report()) {
-        fmt::print("  robot {:<11}{}\n", session_.config().robot_ids[i], line);
+        fmt::print("  robot {:<11}{}\n", session_.robot_key(static_cast<int>(i)), line);
       }
     }
     if (writer_ && !writer_->error()) {

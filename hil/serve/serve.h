@@ -22,6 +22,7 @@ inline constexpr std::string_view kServeDevice = "pty";  // what a bare path is
 
 struct ServeOptions {
   std::string device = "./dongle";  // a wire's URL for bytes; a bare path is a pty's name
+  std::string opponents_device;     // of the other team's dongle, likewise; empty: none
   bool pacing = true;
   std::optional<std::int64_t> baud;     // instead of the carrier's; 8N1
   bool real_time = true;                // false: virtual time as fast as it goes

@@ -22,11 +22,12 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "sim/contact/gravity.h"
+
 namespace omnihil {
 
 using Vector3 = Eigen::Vector3d;
 
-inline constexpr double kGravity_m_s2 = 9.81;
 inline constexpr double kLeastBounce_m = 1e-4;  // a tenth of a millimetre: less than the pile's height
 
 struct BallParams {

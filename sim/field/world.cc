@@ -39,9 +39,11 @@ void World::Impl::report(WorldEventKind kind, int robot, int other, double x_m, 
 void World::Impl::after_step(Plant&, double step_s) {
   ++steps;
   const std::size_t count = parts.size();
+  if (!options.contacts && !options.handling && !has_ball) return;
   if (has_ball || count > 1 || options.field != nullptr)
     for (std::size_t n = 0; n < count; ++n) states[n] = plant.planar_state(static_cast<int>(n));
-  for (std::size_t n = 0; n < count; ++n) handle_ball(n, step_s);
+  if (options.handling)
+    for (std::size_t n = 0; n < count; ++n) handle_ball(n, step_s);
   if (has_ball) advance_ball(options.ball, options.carpet, ball, step_s);
   if (has_ball || count > 1 || options.field != nullptr) touch_all(step_s);
   if (!has_ball || options.field == nullptr) return;
@@ -95,7 +97,7 @@ void World::write(int robot, const RobotDrive& drive) {
   const auto n = static_cast<std::size_t>(robot);
   impl_->drives[n] = drive;
   impl_->plant.write(robot, drive);
-  impl_->begin_kick(n, drive);
+  if (impl_->options.handling) impl_->begin_kick(n, drive);
 }
 
 void World::advance(std::int64_t duration_ns) {

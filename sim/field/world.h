@@ -1,7 +1,7 @@
 // The field with everything on it: robots of both teams (a plant of motors and wheels), the ball, boards and goals, and
 // what happens where they touch.
 //
-//   World world(robots, {.physics = Physics::kPlanar}, {.field = &kFieldDivisionB, .walls = true});
+//   World world(robots, {.physics = Physics::kPlanar}, {.field = &kFieldDivisionB});
 //   world.put_ball(1.0, 0.0, 0.0215, {2.0, 0.0, 0.0});
 //   world.write(0, drive);                          // duties, dribbler, kick, charge
 //   world.advance(1'000'000);
@@ -30,7 +30,8 @@ namespace omnihil {
 
 struct WorldOptions {
   const FieldSize* field = nullptr;  // null: an open floor
-  bool contacts = true;              // robots with robots; the ball's contacts are always there
+  bool contacts = true;              // robots with robots and walls; the ball's contacts are always there
+  bool handling = true;              // kickers, dribblers, break beams
   BallParams ball{};
   Carpet carpet{};
   double wall_restitution = 0.5, wall_friction = 0.3;  // guess, +-30 %

@@ -15,11 +15,10 @@
 #pragma once
 #include <Eigen/LU>
 
+#include "sim/contact/gravity.h"
 #include "sim/robot/geometry.h"
 
 namespace omnihil {
-
-inline constexpr double kGravity_m_s2 = 9.80665;  // standard gravity, by definition
 
 template <typename T>
 struct WheelLoadLaw {

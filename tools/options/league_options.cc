@@ -30,6 +30,9 @@ void add_league_options(Verb& verb, LeagueWords& w) {
   verb.add_option("--league-robot-port", w.options.robot_port,
                   "UDP port of robot control instead of 10301 or 10302")
       .range(1, 65'535);
+  verb.add_option("--league-opponents-port", w.options.opponents_port,
+                  "UDP port of the other team's robot control, likewise")
+      .range(1, 65'535);
   verb.add_option("--league-sync", w.sync_port,
                   "TCP port of the synchronous protocol: time goes on by a client's requests alone")
       .range(1, 65'535);
@@ -42,9 +45,6 @@ void add_league_options(Verb& verb, LeagueWords& w) {
       .capture_default_str();
   verb.add_option("--cameras", w.options.vision.cameras, "cameras side by side over the field: 1, 2 or 4")
       .range(1, 4)
-      .capture_default_str();
-  verb.add_option("--field", w.field, "field that vision tells of")
-      .one_of({"division-a", "division-b", "seed-paper"})
       .capture_default_str();
   verb.add_option("--vision-delay", w.delay_least_ms, "ms from a frame's capture to its sending, at least")
       .range(0.0, 1000.0)
@@ -59,6 +59,13 @@ void add_league_options(Verb& verb, LeagueWords& w) {
                   "standard deviation of an orientation in rad")
       .range(0.0, 3.0)
       .capture_default_str();
+  verb.add_option("--vision-pixel", w.options.vision.digit_mm,
+                  "mm of the floor in a pixel: positions are rounded to it")
+      .range(0.0, 100.0);
+  verb.add_flag("--occlusion", w.options.vision.occlusion, "a ball behind a robot is not seen by a camera");
+  verb.add_option("--false-balls", w.options.vision.false_ball_rate_Hz,
+                  "balls that are none, per second and camera")
+      .range(0.0, 1000.0);
   verb.add_option("--camera-clocks", w.clock_sigma_ms, "standard deviation of the cameras' clocks in ms")
       .range(0.0, 1e6)
       .capture_default_str();
@@ -82,9 +89,6 @@ std::optional<LeagueOptions> league_options(const LeagueWords& words, std::uint6
   if (vision.cameras == 3) problems.push_back("--cameras: found 3, allowed: 1, 2, 4");
   if (words.delay_most_ms > 0.0 && words.delay_most_ms < words.delay_least_ms)
     problems.push_back("--vision-delay-most: less than --vision-delay");
-  vision.field = words.field == "division-a"   ? kFieldDivisionA
-                 : words.field == "seed-paper" ? kFieldSeedPaper
-                                               : kFieldDivisionB;
   vision.delay_least_s = words.delay_least_ms / 1e3;
   vision.delay_most_s = words.delay_most_ms / 1e3;
   vision.position_sigma_m = words.position_sigma_mm / 1e3;

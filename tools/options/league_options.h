@@ -15,7 +15,6 @@ namespace omnihil {
 struct LeagueWords {
   bool on = false;
   LeagueOptions options;
-  std::string field = "division-b";
   std::string vision;  // GROUP:PORT, or "off"
   double delay_least_ms = 0.0, delay_most_ms = 0.0;
   double position_sigma_mm = 0.0, clock_sigma_ms = 0.0, askew_mm = 0.0;

@@ -20,6 +20,7 @@
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/options/air_options.h"
+#include "tools/options/field_options.h"
 #include "tools/options/firmware_options.h"
 #include "tools/options/league_options.h"
 #include "tools/program_commit.h"
@@ -51,6 +52,7 @@ struct Words {  // as the user gave them
   MotorBusChoice motor_bus;
   LeagueWords league;
   AirWords air;
+  FieldWords field;
 };
 
 void complain(const std::string& lines) { std::fprintf(stderr, "omnihil serve:\n%s\n", lines.c_str()); }
@@ -95,6 +97,15 @@ std::string understand(Words& words) {
     problems.push_back("--motor-bus and --firmware: a robot has one or the other");
   }
   understand_air(words.air, setup.air, problems);
+  understand_field(words.field, setup, problems);
+  if (!words.options.opponents_device.empty()) {
+    if (setup.opponent_ids.empty()) problems.push_back("--opponents-device: needs --opponents");
+    setup.opponents_radio = setup.radio_format;
+    for (const std::string& problem :
+         wire_problems(read_wire_url(words.options.opponents_device, kServeDevice), WireForm::kBytes))
+      problems.push_back("--opponents-device: " + problem);
+  }
+  if (setup.field.size != nullptr) words.league.options.vision.field = *setup.field.size;
   words.options.league = league_options(words.league, setup.plant.seed, setup.epoch_ms, problems);
   // Clients hold a frame's times against their own clock.
   if (words.options.league && words.options.real_time && setup.epoch_ms == SessionSetup{}.epoch_ms) {
@@ -200,6 +211,10 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   verb.add_option("--team", w.team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
   add_firmware_options(verb, w.firmware);
   add_bus_options(verb, w.motor_bus);
+  add_field_options(verb, w.field);
+  verb.add_option(
+      "--opponents-device", w.options.opponents_device,
+      "the other team's own dongle, as --device (default: none, their commands come by the league's ports)");
   add_league_options(verb, w.league);
   add_air_options(verb, w.air);
   verb.add_option("--record", w.options.record, "write a recording to this file");

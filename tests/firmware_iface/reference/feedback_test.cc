@@ -29,12 +29,14 @@ TEST(Feedback, SensorsPassThroughInTheirUnits) {
   sensors.gyro_z_rad_s = 0.75;
   sensors.ball_seen = 1;
   sensors.bus_voltage_V = 22.5;
+  sensors.capacitor_V = 180.0;
   bench.firmware->tick(sensors);
   const RobotFeedback feedback = bench.firmware->feedback();
   EXPECT_EQ(feedback.accel_x_m_s2, 1.25);
   EXPECT_EQ(feedback.accel_y_m_s2, -2.5);
   EXPECT_EQ(feedback.body_derivative[3], 0.75);
   EXPECT_EQ(feedback.battery_V, 22.5);
+  EXPECT_EQ(feedback.capacitor_V, 180.0);
   EXPECT_TRUE(has(feedback, OMNIHIL_FEEDBACK_BALL_SEEN));
   EXPECT_TRUE(has(feedback, OMNIHIL_FEEDBACK_IMU_READY));
   EXPECT_TRUE(has(feedback, OMNIHIL_FEEDBACK_BALL_SENSOR_OK));

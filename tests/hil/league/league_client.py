@@ -131,7 +131,8 @@ class League(unittest.TestCase):
         self.assertEqual([e.code for e in unreadable.errors], ["UNREADABLE"])
         # Every field of simulation control and configuration, one at a time.
         fields = {
-            "TeleportBall": lambda c: setattr(c.control.teleport_ball, "x", 1),
+            "teleport_safely": lambda c: setattr(c.control.teleport_ball, "teleport_safely", True),
+            "by_force": lambda c: setattr(c.control.teleport_ball, "by_force", True),
             "simulation_speed": lambda c: setattr(c.control, "simulation_speed", 2),
             "geometry": lambda c: c.config.geometry.field.MergeFrom(self.vision.SSL_GeometryFieldSize(
                 field_length=1, field_width=1, goal_width=1, goal_depth=1, boundary_width=1)),
@@ -144,14 +145,12 @@ class League(unittest.TestCase):
             fill(command)
             answer = self.ask(self.control, command, sim.SimulatorResponse())
             self.assertEqual([e.code for e in answer.errors], ["UNSUPPORTED_FIELD"], name)
-            self.assertIn({"TeleportBall": "teleport_ball"}.get(name, name), answer.errors[0].message)
-        for name, value in (("v_x", 1.0), ("v_angular", 1.0), ("by_force", True), ("present", False)):
-            command = sim.SimulatorCommand()
-            robot = command.control.teleport_robot.add()
-            robot.id.id, robot.id.team = 0, sim.BLUE
-            setattr(robot, name, value)
-            answer = self.ask(self.control, command, sim.SimulatorResponse())
-            self.assertEqual([e.code for e in answer.errors], ["UNSUPPORTED_FIELD"], name)
+            self.assertIn(name, answer.errors[0].message)
+        command = sim.SimulatorCommand()
+        robot = command.control.teleport_robot.add()
+        robot.id.id, robot.id.team, robot.by_force = 0, sim.BLUE, True
+        answer = self.ask(self.control, command, sim.SimulatorResponse())
+        self.assertEqual([e.code for e in answer.errors], ["UNSUPPORTED_FIELD"])
         command = sim.SimulatorCommand()
         robot = command.control.teleport_robot.add()
         robot.id.id, robot.id.team = 0, sim.YELLOW
@@ -209,6 +208,82 @@ class League(unittest.TestCase):
             tags = [line.split()[0] for line in file]
         self.assertEqual(tags.count("p"), 1)
         self.assertEqual(tags.count("c"), 20)
+        checked = subprocess.run([self.program, "check", "--exact", "--quiet", record], capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+    def command_of(self, *fills):
+        command = self.sim.SimulatorCommand()
+        for fill in fills:
+            fill(command.control)
+        answer = self.ask(self.control, command, self.sim.SimulatorResponse())
+        self.assertEqual(list(answer.errors), [])
+
+    def test_two_teams_and_a_ball(self):
+        record = os.path.join(self.work, "match.omnirec")
+        yellow = free_port(socket.SOCK_DGRAM)
+        self.serve("--league", "--field", "division-b", "--opponents", "0-1", "--league-opponents-port", str(yellow),
+                   "--ball", "0.5,0.25", "--record", record, "--sample-every", "1")
+        group = self.join()
+        frame = self.detection(group)
+        self.assertEqual(sorted(r.robot_id for r in frame.robots_blue), [0, 3])
+        self.assertEqual(sorted(r.robot_id for r in frame.robots_yellow), [0, 1])
+        self.assertEqual([(b.x, b.y) for b in frame.balls], [(500.0, 250.0)])
+
+        def ball(c):
+            c.teleport_ball.x, c.teleport_ball.y, c.teleport_ball.vx = 3.5, 0.0, 3.0
+            c.teleport_ball.roll = True
+
+        def gone(c):
+            robot = c.teleport_robot.add()
+            robot.id.id, robot.id.team, robot.present = 1, self.sim.YELLOW, False
+
+        def placed(c):
+            robot = c.teleport_robot.add()
+            robot.id.id, robot.id.team = 0, self.sim.YELLOW
+            robot.x, robot.y, robot.orientation, robot.v_x = -2.0, 1.0, 0.0, 1.0
+        self.command_of(gone, placed)
+        self.command_of(ball)
+        seen, end = [], time.monotonic() + 20
+        while time.monotonic() < end and (not seen or seen[-1] < 4550):
+            frame = self.detection(group)
+            seen += [b.x for b in frame.balls]
+        self.assertGreater(seen[-1], 4550)  # in the goal
+        self.assertEqual([r.robot_id for r in frame.robots_yellow], [0])
+        self.assertEqual(sorted(seen[-5:]), seen[-5:])
+
+        # A yellow robot goes to the ball that lies before it, and kicks it.
+        def ahead(c):
+            c.teleport_ball.x, c.teleport_ball.y, c.teleport_ball.vx = -1.0, 1.0, 0.0
+
+        def stand(c):
+            robot = c.teleport_robot.add()
+            robot.id.id, robot.id.team = 0, self.sim.YELLOW
+            robot.x, robot.y, robot.orientation = -1.6, 1.0, 0.0
+        self.command_of(stand, ahead)
+        fastest, last, end = 0.0, None, time.monotonic() + 20
+        while time.monotonic() < end and fastest < 3.0:
+            request = self.sim.RobotControl()
+            c = request.robot_commands.add()
+            c.id, c.kick_speed, c.dribbler_speed = 0, 5, 5000
+            c.move_command.local_velocity.forward = 0.6
+            c.move_command.local_velocity.left = c.move_command.local_velocity.angular = 0
+            answer = self.ask(yellow, request, self.sim.RobotControlResponse())
+            self.assertEqual(list(answer.errors), [])
+            self.assertEqual([f.id for f in answer.feedback], [0])
+            frame = self.detection(group)
+            if last and frame.balls:
+                fastest = max(fastest, (frame.balls[0].x - last[1]) / 1000 / (frame.t_capture - last[0]))
+            if frame.balls:
+                last = (frame.t_capture, frame.balls[0].x)
+        self.assertGreater(fastest, 3.0)  # m/s
+        telemetry = self.sim.Telemetry()
+        answer.feedback[0].custom.Unpack(telemetry)
+        self.assertGreater(telemetry.capacitor_V, 1)
+        self.stop()
+        with open(record) as file:
+            tags = [line.split()[0] for line in file]
+        self.assertEqual((tags.count("a"), tags.count("v"), tags.count("b")), (1, 1, 2))
+        self.assertGreater(tags.count("w"), 50)
         checked = subprocess.run([self.program, "check", "--exact", "--quiet", record], capture_output=True, text=True)
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 

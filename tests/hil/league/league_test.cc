@@ -39,7 +39,7 @@ TEST(LeagueRobots, FieldVelocityIsTurnedByTheTrueYaw) {
   v.set_x(1.0f);
   v.set_y(0.0f);
   v.set_angular(0.5f);
-  const LeagueCommands read = read_robot_control(control.SerializeAsString(), robots());
+  const LeagueCommands read = read_robot_control(control.SerializeAsString(), robots(), Team::kBlue);
   ASSERT_EQ(read.commands.size(), 1U);
   EXPECT_TRUE(read.errors.empty());
   const RobotCommand& c = read.commands[0].command;
@@ -58,7 +58,7 @@ TEST(LeagueRobots, WheelsGoByTheirQuarter) {
   wheels.set_back_right(0.2f);
   wheels.set_back_left(0.3f);
   wheels.set_front_left(0.4f);
-  const LeagueCommands read = read_robot_control(control.SerializeAsString(), robots());
+  const LeagueCommands read = read_robot_control(control.SerializeAsString(), robots(), Team::kBlue);
   ASSERT_EQ(read.commands.size(), 1U) << (read.errors.empty() ? "" : read.errors[0].message);
   for (std::size_t w = 0; w < kWheels; ++w) {
     const double forward = std::cos(model().wheel_angle_rad[w]), left = std::sin(model().wheel_angle_rad[w]);
@@ -72,13 +72,13 @@ TEST(LeagueRobots, KickAndDribblerReachTheFirmware) {
   control.mutable_robot_commands(0)->set_kick_speed(5.0f);
   control.mutable_robot_commands(0)->set_kick_angle(45.0f);
   control.mutable_robot_commands(0)->set_dribbler_speed(5000.0f);
-  const LeagueCommands read = read_robot_control(control.SerializeAsString(), robots());
+  const LeagueCommands read = read_robot_control(control.SerializeAsString(), robots(), Team::kBlue);
   ASSERT_EQ(read.commands.size(), 1U);
   EXPECT_EQ(read.commands[0].command.kick, std::uint32_t{OMNIHIL_KICK_CHIP});
   EXPECT_NEAR(read.commands[0].command.v_kick_m_s, 5.0, 1e-6);
   EXPECT_NEAR(read.commands[0].command.dribbler_ratio, 0.5, 1e-6);
   control.mutable_robot_commands(0)->set_kick_angle(120.0f);
-  EXPECT_EQ(read_robot_control(control.SerializeAsString(), robots()).errors.at(0).code, "OUT_OF_RANGE");
+  EXPECT_EQ(read_robot_control(control.SerializeAsString(), robots(), Team::kBlue).errors.at(0).code, "OUT_OF_RANGE");
 }
 
 TEST(LeagueRobots, NoBytesFromOutsideAreActedOnUnread) {
@@ -93,12 +93,12 @@ TEST(LeagueRobots, NoBytesFromOutsideAreActedOnUnread) {
     const std::size_t at = random() % damaged.size();
     damaged[at] = static_cast<char>(damaged[at] ^ (1u << random() % 8));
     if (n % 3 == 0) damaged.resize(random() % damaged.size());
-    for (const LeagueRobotCommand& c : read_robot_control(damaged, robots()).commands) {
+    for (const LeagueRobotCommand& c : read_robot_control(damaged, robots(), Team::kBlue).commands) {
       EXPECT_LT(c.robot_index, 2U);
       EXPECT_LE(std::abs(c.command.v_forward_m_s), 20.0 * std::sqrt(2.0));
       EXPECT_TRUE(std::isfinite(c.command.v_left_m_s) && std::isfinite(c.command.dribbler_ratio));
     }
-    read_simulator_command(damaged, Team::kBlue, robots());
+    read_simulator_command(damaged, robots());
   }
 }
 
@@ -123,11 +123,13 @@ TEST(LeagueSync, LengthsGoThereAndBackAndDamageIsSeen) {
 }
 
 std::vector<league::SSL_DetectionFrame> film(Vision& vision, double seconds,
-                                             std::vector<std::int64_t>& sent_ns) {
+                                             std::vector<std::int64_t>& sent_ns,
+                                             const BallState* ball = nullptr, Team team = Team::kBlue) {
   std::vector<league::SSL_DetectionFrame> frames;
-  const std::vector<LeagueRobot> all = robots();
+  std::vector<LeagueRobot> all = robots();
+  for (LeagueRobot& robot : all) robot.team = team;
   for (std::int64_t now_ns = 0; now_ns < static_cast<std::int64_t>(seconds * 1e9); now_ns += 1'000'000) {
-    vision.capture(now_ns, all);
+    vision.capture(now_ns, all, ball);
     while (const auto packet = vision.due(now_ns)) {
       league::SSL_WrapperPacket read;
       EXPECT_TRUE(read.ParseFromString(*packet));
@@ -140,9 +142,9 @@ std::vector<league::SSL_DetectionFrame> film(Vision& vision, double seconds,
 }
 
 TEST(Vision, SixtyFramesASecondWithinTheDelayAsked) {
-  Vision vision({.delay_least_s = 0.006, .delay_most_s = 0.024, .seed = 1}, Team::kYellow);
+  Vision vision({.delay_least_s = 0.006, .delay_most_s = 0.024, .seed = 1});
   std::vector<std::int64_t> sent_ns;
-  const auto frames = film(vision, 10.0, sent_ns);
+  const auto frames = film(vision, 10.0, sent_ns, nullptr, Team::kYellow);
   EXPECT_NEAR(static_cast<double>(frames.size()), 600.0, 3.0);
   double least = 1.0, most = 0.0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -162,7 +164,7 @@ TEST(Vision, SixtyFramesASecondWithinTheDelayAsked) {
 TEST(Vision, NoiseHasItsDeviationAndSeedsRepeat) {
   const VisionOptions noisy{.position_sigma_m = 0.003, .seed = 5};
   std::vector<std::int64_t> sent;
-  Vision a(noisy, Team::kBlue), b(noisy, Team::kBlue);
+  Vision a(noisy), b(noisy);
   const auto first = film(a, 20.0, sent), second = film(b, 20.0, sent);
   double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -177,7 +179,7 @@ TEST(Vision, NoiseHasItsDeviationAndSeedsRepeat) {
 }
 
 TEST(Vision, ExactWithoutOptions) {
-  Vision vision({}, Team::kBlue);
+  Vision vision({});
   std::vector<std::int64_t> sent;
   for (const auto& frame : film(vision, 1.0, sent)) {
     EXPECT_EQ(frame.robots_blue(1).x(), 1500.0f);
@@ -185,6 +187,84 @@ TEST(Vision, ExactWithoutOptions) {
     EXPECT_NEAR(frame.robots_blue(1).orientation(), 0.7, 1e-6);
     EXPECT_EQ(frame.t_sent(), frame.t_capture());
   }
+}
+
+BallState ball_at(double x_m, double y_m, double z_m) {
+  BallState ball;
+  ball.position = {x_m, y_m, z_m};
+  return ball;
+}
+
+TEST(Vision, ALyingBallIsWhereItIsAndAFlyingOneWhereItsPictureMeetsTheFloor) {
+  std::vector<std::int64_t> sent;
+  Vision vision({});  // one camera, 4 m above the middle
+  const BallState lying = ball_at(1.0, -0.5, 0.0215);
+  for (const auto& frame : film(vision, 0.1, sent, &lying)) {
+    ASSERT_EQ(frame.balls_size(), 1);
+    EXPECT_EQ(frame.balls(0).x(), 1000.0f);
+    EXPECT_EQ(frame.balls(0).y(), -500.0f);
+  }
+  const BallState flying = ball_at(1.0, -0.5, 1.0215);
+  Vision again({});
+  for (const auto& frame : film(again, 0.1, sent, &flying)) {
+    EXPECT_NEAR(frame.balls(0).x(), 1000.0 * 4.0 / 3.0, 0.01);
+    EXPECT_NEAR(frame.balls(0).y(), -500.0 * 4.0 / 3.0, 0.01);
+  }
+}
+
+TEST(Vision, ABallBehindARobotIsHiddenWhenAsked) {
+  // Robot 3 stands at (1.5, -0.5); the camera looks from above the middle.
+  const double away = (1.5 + 0.11) / 1.5;
+  const BallState behind = ball_at(1.5 * away, -0.5 * away, 0.0215);
+  const BallState before = ball_at(1.5 - 0.11, -0.5, 0.0215);
+  std::vector<std::int64_t> sent;
+  for (const bool asked : {false, true}) {
+    Vision vision({.occlusion = asked});
+    for (const auto& frame : film(vision, 0.1, sent, &behind)) EXPECT_EQ(frame.balls_size(), asked ? 0 : 1);
+    Vision other({.occlusion = asked});
+    for (const auto& frame : film(other, 0.1, sent, &before)) EXPECT_EQ(frame.balls_size(), 1);
+  }
+}
+
+TEST(Vision, FalseBallsComeAtTheirRateAndPixelsRound) {
+  std::vector<std::int64_t> sent;
+  Vision vision({.digit_mm = 7.0, .false_ball_rate_Hz = 6.0, .seed = 3});
+  int balls = 0;
+  for (const auto& frame : film(vision, 100.0, sent)) {
+    balls += frame.balls_size();
+    for (const auto& ball : frame.balls()) EXPECT_EQ(std::remainder(ball.x(), 7.0), 0.0);
+    EXPECT_EQ(frame.robots_blue(1).x(), 1498.0f);  // 214 pixels
+  }
+  EXPECT_NEAR(balls, 600.0, 4.0 * std::sqrt(600.0));  // Poisson
+}
+
+TEST(LeagueSimulator, PutsTheBallAndGivesSpeeds) {
+  league::SimulatorCommand command;
+  league::TeleportBall& ball = *command.mutable_control()->mutable_teleport_ball();
+  ball.set_x(1.0f);
+  ball.set_vx(-2.0f);
+  ball.set_roll(true);
+  league::TeleportRobot& robot = *command.mutable_control()->add_teleport_robot();
+  robot.mutable_id()->set_id(3);
+  robot.mutable_id()->set_team(league::BLUE);
+  robot.set_v_x(1.5f);
+  robot.set_present(false);
+  LeagueControl read = read_simulator_command(command.SerializeAsString(), robots());
+  EXPECT_TRUE(read.errors.empty());
+  ASSERT_TRUE(read.ball.has_value());
+  EXPECT_EQ(read.ball->x_m, 1.0);
+  EXPECT_FALSE(read.ball->y_m.has_value());
+  EXPECT_EQ(read.ball->v_x_m_s, -2.0);
+  EXPECT_TRUE(read.ball->rolls);
+  ASSERT_EQ(read.teleports.size(), 1u);
+  EXPECT_EQ(read.teleports[0].v_x_m_s, 1.5);
+  EXPECT_EQ(read.teleports[0].present, false);
+  ball.set_by_force(true);
+  robot.mutable_id()->set_team(league::YELLOW);
+  read = read_simulator_command(command.SerializeAsString(), robots());
+  EXPECT_FALSE(read.ball.has_value());
+  EXPECT_TRUE(read.teleports.empty());
+  EXPECT_EQ(read.errors.size(), 2u);
 }
 
 class LeagueClient : public testing::TestWithParam<const char*> {};
@@ -203,7 +283,7 @@ INSTANTIATE_TEST_SUITE_P(PythonProtobuf, LeagueClient,
                          testing::Values("test_robot_drives_and_answers_with_telemetry",
                                          "test_every_refused_field_has_its_error", "test_teleport_and_vision",
                                          "test_steps_are_exact_and_repeat",
-                                         "test_recording_of_the_league_replays"),
+                                         "test_recording_of_the_league_replays", "test_two_teams_and_a_ball"),
                          [](const auto& param) { return std::string(param.param); });
 
 }  // namespace

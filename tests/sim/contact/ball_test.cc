@@ -9,7 +9,7 @@
 namespace omnihil {
 namespace {
 
-constexpr double kG = 9.81;
+constexpr double kG = 9.80665;
 
 BallParams without_air() {
   BallParams p;

@@ -93,8 +93,8 @@ TEST(ChipKick, TrainingFindsAnUnseenLaw) {
 
 TEST(ChipKick, DistanceAndApexAreTheParabolas) {
   const ChipKick kick{4.0 * std::sqrt(2.0), 0.25 * M_PI};
-  EXPECT_NEAR(chip_distance_m(kick, 0.0), 2.0 * 16.0 / 9.81, 1e-9);
-  EXPECT_NEAR(chip_apex_m(kick), 16.0 / (2.0 * 9.81), 1e-9);
+  EXPECT_NEAR(chip_distance_m(kick, 0.0), 2.0 * 16.0 / 9.80665, 1e-9);
+  EXPECT_NEAR(chip_apex_m(kick), 16.0 / (2.0 * 9.80665), 1e-9);
   EXPECT_EQ(chip_distance_m(kick, 0.0, 2.0), 0.0);
 }
 
