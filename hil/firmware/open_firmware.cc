@@ -70,11 +70,15 @@ std::vector<std::string> problems_of(const FirmwareChoice& choice) {
 
 Session::FirmwareMaker library_maker(const FirmwareChoice& choice, const SessionConfig& session) {
   std::map<std::uint32_t, std::optional<MotorConfig>> motors;
-  for (std::size_t i = 0; i < std::min(session.robots.size(), session.robot_ids.size()); ++i) {
-    const RobotModel& model = session.robots[i];
-    auto& of_robot = motors[static_cast<std::uint32_t>(session.robot_ids[i])];
-    if (electrics_of(model).three_phase()) of_robot = motor_config(model);
-  }
+  // Opponents with an id of ours are of its model (session_setup.h).
+  const auto note = [&motors](const std::vector<RobotModel>& models, const std::vector<int>& ids) {
+    for (std::size_t i = 0; i < std::min(models.size(), ids.size()); ++i) {
+      const auto [of_robot, is_new] = motors.try_emplace(static_cast<std::uint32_t>(ids[i]));
+      if (is_new && electrics_of(models[i]).three_phase()) of_robot->second = motor_config(models[i]);
+    }
+  };
+  note(session.robots, session.robot_ids);
+  note(session.opponents.robots, session.opponents.robot_ids);
   const GuardedLibrary library{choice.file, choice.deadline_s};
   return [library, motors = std::move(motors)](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     return std::make_unique<GuardedFirmware>(library, config, motors.at(config.robot_id));
