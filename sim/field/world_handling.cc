@@ -96,8 +96,11 @@ void World::Impl::handle_ball(std::size_t n, double step_s) {
         uniform(plant.options().seed, stream_of("break_beam") + n, static_cast<std::uint64_t>(steps)));
     return;
   }
-  const Vector3 at = in_body(n, ball.position);
-  const bool cut = beam_cut(part.beam, part.outline, at, options.ball.radius_m);
+  const double far_m = part.outline.radius_m + part.beam.forward_m + 2.0 * options.ball.radius_m;
+  const double dx = ball.position.x() - states[n].x_m, dy = ball.position.y() - states[n].y_m;
+  const bool near = dx * dx + dy * dy < far_m * far_m;
+  const bool cut =
+      near && beam_cut(part.beam, part.outline, in_body(n, ball.position), options.ball.radius_m);
   h.ball_seen = beam_seen(
       part.beam, h.beam, cut, now_s(), step_s,
       part.beam.false_rate_Hz > 0.0

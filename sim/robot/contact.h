@@ -149,7 +149,7 @@ WheelContacts<T> contact_forces(const ContactLaw<T>& law, const WheelMotion<T>& 
 // Wheels in the air: nothing acts on them; the sums are those of the others.
 inline void lift_wheels(const ContactLaw<double>& law, const std::array<bool, kWheels>& lifted,
                         WheelContacts<double>& c) {
-  if (lifted == std::array<bool, kWheels>{}) return;
+  if (!(lifted[0] || lifted[1] || lifted[2] || lifted[3])) return;
   c.force_x_N = c.force_y_N = c.moment_z_Nm = 0.0;
   for (std::size_t i = 0; i < kWheels; ++i) {
     double& f = c.force_longitudinal_N[i];

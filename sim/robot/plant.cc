@@ -92,10 +92,14 @@ void Plant::advance(std::int64_t duration_ns, StepListener* listener) {
 }
 
 PlanarState Plant::planar_state(int robot) const {
+  const Impl& p = *impl_;
   const auto n = static_cast<std::size_t>(robot);
-  const BodyMotion m =
-      std::visit([&](const auto& back) { return back.motion(impl_->q, impl_->u, n); }, impl_->mechanics);
-  const double* v = impl_->field_velocity(impl_->u, n);
+  const double* v = p.field_velocity(p.u, n);
+  if (!p.free()) {
+    const double* at = &p.q[n * p.layout.q_per_robot];  // yaw, x, y
+    return {at[1], at[2], at[0], v[0], v[1], p.u[n * p.layout.u_per_robot]};
+  }
+  const BodyMotion m = std::visit([&](const auto& back) { return back.motion(p.q, p.u, n); }, p.mechanics);
   return {m.x_m, m.y_m, m.yaw_rad, v[0], v[1], m.velocity.omega_body_rad_s};
 }
 
