@@ -40,6 +40,9 @@ enum class StepKind : std::uint8_t {
   kWindingHot,
   kWheelLifted,
   kWheelBlocked,
+  kBall,
+  kRobotAt,
+  kOpponentAt,
 };
 
 using WheelSet = std::array<bool, kWheels>;
@@ -54,6 +57,9 @@ struct ScenarioStep {
   double force_forward_N = 0.0, force_left_N = 0.0, moment_Nm = 0.0;
   double supply_ratio = 1.0;
   double rise_K = 0.0;
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0, yaw_rad = 0.0;  // kBall, kRobotAt, kOpponentAt
+  double v_x_m_s = 0.0, v_y_m_s = 0.0, v_z_m_s = 0.0;     // kBall
+  int opponent = 0;
 };
 
 enum class CheckKind : std::uint8_t {
@@ -90,9 +96,12 @@ enum class CommandPath : std::uint8_t {
 
 struct Scenario {
   std::string file, title, what;
-  std::string level = "wheel";  // "wheel": means something for a firmware of one wheel, too; "robot"
+  std::string level =
+      "wheel";  // "wheel": means something for a firmware of one wheel, too; "robot"; "field": with a ball
   std::string robot = "omni_default";
   bool stand = false;
+  std::string field;  // name of a field with boards and goals; empty: an open floor
+  int opponents = 0;  // robots of the other team, without commands
   CommandPath path = CommandPath::kAny;
   double duration_s = 0.0;
   double command_every_s = 0.01;

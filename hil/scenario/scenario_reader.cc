@@ -8,12 +8,15 @@
 #include "hil/scenario/scenario_rows.h"
 #include "hil/scenario/scenario_signals.h"
 #include "hil/text/toml_keys.h"
+#include "sim/field/field_size.h"
 
 namespace omnihil {
 namespace {
 
 constexpr double kLongest_s = 600.0;
 constexpr double kFastest_m_s = 20.0, kFastest_rad_s = 1000.0, kHottest_K = 300.0, kForce = 1000.0;
+constexpr double kFarthest_m = 20.0, kFastestBall_m_s = 30.0, kTurn_rad = 10.0;
+constexpr int kMostOpponents = 11;
 
 std::vector<std::string_view> words_of(std::string_view text) {
   std::vector<std::string_view> words;
@@ -53,8 +56,8 @@ class Reader {
   void head() {
     const toml::table& t = document_.table;
     static constexpr std::string_view kKeys[] = {
-        "format",           "title", "what", "level", "robot", "stand", "commands", "duration_s",
-        "command_every_ms", "step",  "check"};
+        "format",           "title", "what",  "level", "robot",    "stand", "commands", "duration_s",
+        "command_every_ms", "step",  "check", "field", "opponents"};
     keys_.only(t, "", kKeys);
     static constexpr std::string_view kFormat[] = {"omnihil-scenario/1"};
     need(t, "", "format", "\"omnihil-scenario/1\"");
@@ -64,11 +67,17 @@ class Reader {
     out_.title = keys_.text(t, "", "title").value_or("");
     out_.what = keys_.text(t, "", "what").value_or("");
     out_.robot = keys_.text(t, "", "robot").value_or(out_.robot);
-    static constexpr std::string_view kLevels[] = {"wheel", "robot"};
+    static constexpr std::string_view kLevels[] = {"wheel", "robot", "field"};
     out_.level = kLevels[keys_.word(t, "", "level", kLevels, 0).value_or(0)];
     static constexpr std::string_view kPaths[] = {"any", "radio", "hal"};
     out_.path = static_cast<CommandPath>(keys_.word(t, "", "commands", kPaths, 0).value_or(0));
     out_.stand = flag(t, "", "stand");
+    std::vector<std::string_view> fields;
+    for (const FieldSize& size : field_sizes()) fields.push_back(size.name);
+    if (t.get("field") != nullptr) {
+      if (const auto n = keys_.word(t, "", "field", fields, std::nullopt)) out_.field = fields[*n];
+    }
+    out_.opponents = count(t, "", "opponents", kMostOpponents);
     need(t, "", "duration_s", "above 0, up to 600 s");
     out_.duration_s = time(t, "", "duration_s", true, kLongest_s).value_or(0.0);
     out_.command_every_s =
@@ -101,6 +110,17 @@ class Reader {
     if (const auto value = node->value_exact<bool>()) return *value;
     keys_.wrong(*node, key_path(path, key), fmt::format("is {}", kind_of(*node)), "allowed: true, false");
     return false;
+  }
+
+  // A whole number from 0 to `most`; 0 where none is given.
+  int count(const toml::table& t, const std::string& path, std::string_view key, int most) {
+    const toml::node* node = t.get(key);
+    if (node == nullptr) return 0;
+    const auto value = node->value_exact<std::int64_t>();
+    if (value && *value >= 0 && *value <= most) return static_cast<int>(*value);
+    keys_.wrong(*node, key_path(path, key), "is not allowed here",
+                fmt::format("allowed: a whole number, 0 to {}", most));
+    return 0;
   }
 
   void whole_ms(const toml::table& t, const std::string& path, std::string_view key, double time_s) {
@@ -206,9 +226,47 @@ class Reader {
         s.rise_K = keys_.number(t, path, "rise_K", -100.0, kHottest_K, false, "allowed: -100 to 300 K")
                        .value_or(0.0);
         break;
+      case StepKind::kBall:
+        s.z_m = keys_.number(t, path, "z_m", 0.0, kFarthest_m, false, "allowed: 0 to 20").value_or(0.0);
+        s.v_x_m_s = within(t, path, "v_x_m_s", kFastestBall_m_s);
+        s.v_y_m_s = within(t, path, "v_y_m_s", kFastestBall_m_s);
+        s.v_z_m_s = within(t, path, "v_z_m_s", kFastestBall_m_s);
+        place(t, path, s);
+        break;
+      case StepKind::kOpponentAt:
+        s.opponent = count(t, path, "opponent", out_.opponents - 1);
+        if (out_.opponents == 0)
+          keys_.wrong(*t.get("do"), key_path(path, "do"), "there is no opponent",
+                      "needed: opponents = 1 or more at the head");
+        place(t, path, s);
+        break;
+      case StepKind::kRobotAt:
+        place(t, path, s);
+        break;
       default:
         break;
     }
+  }
+
+  void place(const toml::table& t, const std::string& path, ScenarioStep& s) {
+    s.x_m = within(t, path, "x_m", kFarthest_m);
+    s.y_m = within(t, path, "y_m", kFarthest_m);
+    s.yaw_rad = within(t, path, "yaw_rad", kTurn_rad);
+  }
+
+  void handling(const toml::table& t, const std::string& path, RobotCommand& c) {
+    const bool kicks = t.get("kick_m_s") != nullptr, chips = t.get("chip_m_s") != nullptr;
+    if (kicks && chips)
+      keys_.wrong(*t.get("chip_m_s"), key_path(path, "chip_m_s"), "stands beside kick_m_s", "allowed: one");
+    const char* const key = kicks ? "kick_m_s" : "chip_m_s";
+    if (kicks || chips) {
+      c.kick = kicks ? OMNIHIL_KICK_STRAIGHT : OMNIHIL_KICK_CHIP;
+      c.kick_when = OMNIHIL_KICK_ON_BALL;
+      c.v_kick_m_s = keys_.number(t, path, key, 0.0, 15.0, true, "allowed: above 0 to 15").value_or(0.0);
+    }
+    c.dribbler_ratio =
+        keys_.number(t, path, "dribbler_ratio", 0.0, 1.0, false, "allowed: 0 to 1").value_or(0.0);
+    if (flag(t, path, "charge") || kicks || chips) c.flags |= OMNIHIL_COMMAND_CHARGE;
   }
 
   void command(const toml::table& t, const std::string& path, RobotCommand& c) {
@@ -235,6 +293,7 @@ class Reader {
       ++families;
       c.mode = OMNIHIL_MODE_COAST;
     }
+    handling(t, path, c);
     if (families == 1) return;
     keys_.wrong(
         *t.get("do"), key_path(path, "do"),

@@ -7,9 +7,12 @@ namespace {
 
 constexpr StepRow kSteps[] = {
     {StepKind::kCommand, "command", false, false,
-     "v_forward_m_s v_left_m_s omega_body_rad_s omega_wheel_rad_s duty_ratio coast",
+     "v_forward_m_s v_left_m_s omega_body_rad_s omega_wheel_rad_s duty_ratio coast kick_m_s chip_m_s "
+     "dribbler_ratio charge",
      "what the host asks for, sent again every command_every_ms until the next command: a body velocity, or "
-     "wheel speeds, or duties (one number for all wheels or four), or coast = true",
+     "wheel speeds, or duties (one number for all wheels or four), or coast = true; with it kick_m_s or "
+     "chip_m_s "
+     "(once the ball is there), dribbler_ratio, charge = true",
      "at_s = 0.1, do = \"command\", v_forward_m_s = 1.0"},
     {StepKind::kDisturb, "disturb", true, false, "force_forward_N force_left_N moment_Nm",
      "a force on the body at its middle, body frame; a moment about the vertical",
@@ -31,6 +34,14 @@ constexpr StepRow kSteps[] = {
      "at_s = 1.0, for_s = 0.3, do = \"wheel_lifted\", wheels = [3]"},
     {StepKind::kWheelBlocked, "wheel_blocked", true, true, "", "the wheel stands, whatever turns it",
      "at_s = 0.5, for_s = 1.0, do = \"wheel_blocked\", wheels = [0]"},
+    {StepKind::kBall, "ball", false, false, "x_m y_m z_m v_x_m_s v_y_m_s v_z_m_s",
+     "the ball is put there, in the field's frame, with this velocity; z_m above the carpet",
+     "at_s = 0.0, do = \"ball\", x_m = 0.5, v_x_m_s = -2.0"},
+    {StepKind::kRobotAt, "robot_at", false, false, "x_m y_m yaw_rad", "the robot is put there, at rest",
+     "at_s = 0.0, do = \"robot_at\", x_m = 3.5, yaw_rad = 0.0"},
+    {StepKind::kOpponentAt, "opponent_at", false, false, "opponent x_m y_m yaw_rad",
+     "a robot of the other team is put there, at rest; needs opponents = 1 or more",
+     "at_s = 0.0, do = \"opponent_at\", opponent = 0, x_m = 1.0"},
 };
 
 constexpr CheckRow kChecks[] = {

@@ -54,8 +54,22 @@ class Bench : public SessionObserver {
     return std::move(run_);
   }
 
+  void world(std::int64_t, const World& world) override {
+    for (const WorldEvent& event : world.events()) {
+      sample_.goals += event.kind == WorldEventKind::kGoal;
+      sample_.kicks += event.kind == WorldEventKind::kKick;
+      sample_.ball_touches += event.kind == WorldEventKind::kBallTouch;
+      sample_.robot_touches += event.kind == WorldEventKind::kRobotsTouch;
+    }
+  }
+
   void robot_tick(std::int64_t at_ns, const RobotSample& robot) override {
+    if (robot.robot_id != robot_id_) return;  // of an opponent
     sample_.robot = robot;
+    if (const BallState* const ball = session_.world().ball()) {
+      sample_.ball_m = ball->position;
+      sample_.ball_m_s = ball->velocity;
+    }
     // a control period that ran leaves its instant in the feedback; 0: this firmware does not tell
     if (robot.feedback.now_us != 0 && robot.feedback.now_us != robot.sensors.now_us) ++stale_periods_;
     sample_.missed_periods =
@@ -80,13 +94,39 @@ class Bench : public SessionObserver {
     if (scenario_.stand) faults.lifted.fill(true);
     silent_ = false;
     for (const ScenarioStep& step : scenario_.steps) {
-      if (step.kind == StepKind::kCommand) {
-        if (ns(step.at_s) == now_ns) take_command(step.command);
+      if (at_an_instant(step.kind)) {
+        if (ns(step.at_s) == now_ns) begin(step);
       } else if (ns(step.at_s) <= now_ns && now_ns < ns(step.until_s)) {
         apply(step, faults);
       }
     }
     if (faults != session_.plant().faults(0)) session_.set_faults(0, faults);
+  }
+
+  static bool at_an_instant(StepKind kind) {
+    return kind == StepKind::kCommand || kind == StepKind::kBall || kind == StepKind::kRobotAt ||
+           kind == StepKind::kOpponentAt;
+  }
+
+  void begin(const ScenarioStep& step) {
+    const double radius_m = session_.world().options().ball.radius_m;
+    switch (step.kind) {
+      case StepKind::kCommand:
+        take_command(step.command);
+        break;
+      case StepKind::kBall:
+        session_.put_ball({step.x_m, step.y_m, radius_m + step.z_m},
+                          {step.v_x_m_s, step.v_y_m_s, step.v_z_m_s});
+        break;
+      case StepKind::kRobotAt:
+        session_.set_pose(0, step.x_m, step.y_m, step.yaw_rad);
+        break;
+      case StepKind::kOpponentAt:
+        session_.set_pose(1 + step.opponent, step.x_m, step.y_m, step.yaw_rad);
+        break;
+      default:
+        break;
+    }
   }
 
   void apply(const ScenarioStep& step, RobotFaults& faults) {
@@ -122,7 +162,7 @@ class Bench : public SessionObserver {
       case StepKind::kWheelBlocked:
         join(faults.blocked);
         break;
-      case StepKind::kCommand:
+      default:
         break;
     }
   }

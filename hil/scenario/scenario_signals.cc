@@ -1,6 +1,7 @@
 #include "hil/scenario/scenario_signals.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace omnihil {
 namespace {
@@ -40,6 +41,25 @@ constexpr ScenarioSignal kSignals[] = {
      [](S s, W) { return s.missed_periods; }},
     {"refused_requests_count", "count", "", false, "", "bridge requests that no bridge can take, so far",
      [](S s, W) { return s.refused_requests; }},
+    {"x_m", "m", "m", false, "", "true position in the field", [](S s, W) { return s.robot.truth.x_m; }},
+    {"y_m", "m", "m", false, "", "the same, to the left", [](S s, W) { return s.robot.truth.y_m; }},
+    {"capacitor_V", "V", "V", false, "", "of the kicker", [](S s, W) { return s.robot.sensors.capacitor_V; }},
+    {"ball_seen_count", "count", "", false, "", "1 while the break beam says so",
+     [](S s, W) { return static_cast<double>(s.robot.sensors.ball_seen); }},
+    {"ball_x_m", "m", "m", false, "", "true place of the ball", [](S s, W) { return s.ball_m.x(); }},
+    {"ball_y_m", "m", "m", false, "", "the same, to the left", [](S s, W) { return s.ball_m.y(); }},
+    {"ball_z_m", "m", "m", false, "", "its middle above the carpet", [](S s, W) { return s.ball_m.z(); }},
+    {"ball_speed_m_s", "m_s", "m/s", false, "", "its true speed", [](S s, W) { return s.ball_m_s.norm(); }},
+    {"ball_distance_m", "m", "m", false, "", "from the robot's middle to the ball's, seen from above",
+     [](S s, W) { return std::hypot(s.ball_m.x() - s.robot.truth.x_m, s.ball_m.y() - s.robot.truth.y_m); }},
+    {"goals_count", "count", "", false, "", "times that the ball went into a goal, so far",
+     [](S s, W) { return s.goals; }},
+    {"kicks_count", "count", "", false, "", "kicks that met the ball, so far",
+     [](S s, W) { return s.kicks; }},
+    {"ball_touches_count", "count", "", false, "", "times that the ball met a robot's hull, so far",
+     [](S s, W) { return s.ball_touches; }},
+    {"robot_touches_count", "count", "", false, "", "times that two robots met, so far",
+     [](S s, W) { return s.robot_touches; }},
 };
 
 }  // namespace

@@ -64,6 +64,9 @@ SessionConfig config_of(const Scenario& scenario, const SuiteOptions& options) {
   if (setup.radio_format.empty() && stored.model) setup.radio_format = stored.model->radio;
   if (setup.radio_format.empty()) setup.radio_format = kDefaultRadio;
   setup.robot_ids = {kRobotId};
+  setup.field.contacts = scenario.level == "field" || !scenario.field.empty() || scenario.opponents > 0;
+  if (!scenario.field.empty()) setup.field.size = find_field(scenario.field);
+  for (int id = 0; id < scenario.opponents; ++id) setup.opponent_ids.push_back(id);
   setup.plant.physics = options.physics;
   setup.plant.seed = options.seed;
   return session_config(setup);

@@ -5,6 +5,9 @@
 #include <limits>
 
 namespace omnihil {
+namespace {
+constexpr double kLook_m = 1e-5;  // a hundredth of a millimetre
+}
 
 DribblerStep drive_bar(const DribblerModel& d, double omega_rad_s, double duty_ratio, double bus_voltage_V,
                        double step_s) {
@@ -34,12 +37,21 @@ DribblerStep drive_bar(const DribblerModel& d, double omega_rad_s, double duty_r
   return step;
 }
 
-double held_acceleration_m_s2(const DribblerModel& d, double r_m, double mu_f) {
-  const double s = (d.bar_z_m - r_m) / (d.bar_radius_m + r_m), c = std::sqrt(std::max(0.0, 1.0 - s * s));
-  const double left = 1.0 - mu_f * (c + s / d.friction);
-  if (left <= 0.0) return std::numeric_limits<double>::infinity();
-  const double f_per_m = mu_f * kGravity_m_s2 / left;
-  return std::max(0.0, f_per_m * (1.0 + s) - f_per_m * c / d.friction);
+double held_acceleration_m_s2(const DribblerModel& d, double front_m, double r_m, double mass_kg, double mu_f) {
+  const double above_m = d.bar_z_m - r_m, apart_m = d.bar_radius_m + r_m;
+  double most_m_s2 = 0.0;
+  // From where they just touch to where the ball stands against the front.
+  for (double x_m = d.bar_x_m + std::sqrt(std::max(0.0, apart_m * apart_m - above_m * above_m));
+       x_m > front_m + r_m; x_m -= kLook_m) {
+    const double distance_m = std::hypot(x_m - d.bar_x_m, above_m);
+    const double s = above_m / distance_m, c = (x_m - d.bar_x_m) / distance_m;
+    const double n_N = d.mount_stiffness_N_per_m * (apart_m - distance_m);
+    if (mu_f * c >= 1.0) return std::numeric_limits<double>::infinity();
+    const double f_N = mu_f * (mass_kg * kGravity_m_s2 + n_N * s) / (1.0 - mu_f * c);
+    if (f_N > d.friction * n_N) continue;  // the bar cannot keep it spinning
+    most_m_s2 = std::max(most_m_s2, (f_N * (1.0 + s) - n_N * c) / mass_kg);
+  }
+  return most_m_s2;
 }
 
 }  // namespace omnihil

@@ -49,9 +49,9 @@ struct ChipNetwork {
 extern const ChipNetwork kDefaultChip;
 
 struct DribblerModel {
-  double bar_x_m = 0.0732, bar_z_m = 0.0386, bar_radius_m = 0.007, half_width_m = 0.035;
+  double bar_x_m = 0.0797, bar_z_m = 0.0386, bar_radius_m = 0.007, half_width_m = 0.035;
   double friction = 0.8;  // of its material on the ball: guess, +-30 % (silicone)
-  double mount_stiffness_N_per_m = 800.0, mount_damping_N_s_per_m = 4.0;  // guess, +-50 %
+  double mount_stiffness_N_per_m = 300.0, mount_damping_N_s_per_m = 6.0;  // guess, +-50 %: 0.8 of critical
   double inertia_kg_m2 = 4.8e-6;                                          // bar and rotor, at the bar
   double gear_ratio = 1.67;                                               // rotor turns per turn of the bar
   double resistance_ohm = 1.2, torque_constant_Nm_per_A = 0.0133;
@@ -60,7 +60,7 @@ struct DribblerModel {
 };
 
 struct BreakBeam {
-  double forward_m = 0.012;  // before the front
+  double forward_m = 0.020;  // before the front
   double height_m = 0.0215;
   double reaction_s = 0.5e-3;
   double false_rate_Hz = 0.0;  // false triggers: how often, and how long each
@@ -69,7 +69,7 @@ struct BreakBeam {
 
 struct BallHandling {
   RobotOutline outline;
-  double kick_reach_m = 0.008;  // from the front: how far the plunger takes the ball
+  double kick_reach_m = 0.015;  // from the front: how far the plunger takes the ball
   double kick_half_width_m = 0.035;
   double restitution = 0.35, friction = 0.3;  // of the hull: guess, +-30 %
   KickLaw kick;

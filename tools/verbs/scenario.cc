@@ -97,7 +97,7 @@ void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result
   add_firmware_options(sub, a->suite.firmware);
   sub.add_option("--level", a->level,
                  "wheel: what a firmware of one wheel can do, too; robot; without it: all")
-      .one_of({"wheel", "robot"});
+      .one_of({"wheel", "robot", "field"});
   sub.add_option("--robot", a->suite.robot, "robot model instead of the scenarios' own, by name or path");
   sub.add_option("--with", a->suite.with, "add an effect: ID.parameter=value, or ID; several allowed");
   sub.add_option("--radio", a->suite.radio, "radio format instead of the robot model's");
@@ -131,7 +131,7 @@ void add_verb_scenario(Verb& program, VerbResult& result) {
   Verb sub =
       verb.add_subcommand("list", "what can stand in a scenario; or the scenarios in files and folders");
   sub.add_option("PATH", b->paths, "scenario files, or folders of them");
-  sub.add_option("--level", b->level, "wheel or robot").one_of({"wheel", "robot"});
+  sub.add_option("--level", b->level, "wheel, robot or field").one_of({"wheel", "robot", "field"});
   sub.callback([b, &result] { result.exit_code = guarded("scenario", [&] { return list(*b); }); });
 }
 
