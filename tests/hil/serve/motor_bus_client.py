@@ -1,14 +1,11 @@
 """Main boards' own clients at the motor controllers of `omnihil serve --motor-bus`: python-can (slcan), and the
 serial lines of UART buses. Run by script_test.cc."""
-import glob
 import os
 import pty
 import select
-import shutil
 import subprocess
 import struct
 import sys
-import tempfile
 import time
 import tty
 
@@ -99,101 +96,6 @@ def drive_an_odrive(bus, bench):
 def odrive_reaches_the_commanded_speed_and_stops_when_the_watchdog_expires():
     with served("odrive", "slcan:{folder}/can", "--bus-watchdog", "200") as bench:
         drive_an_odrive(open_slcan(bench), bench)
-
-
-def odrive_on_vcan0():
-    """Within the other kernel: see under_a_kernel_with_can()."""
-    with served("odrive", "can:vcan0", "--bus-watchdog", "200") as bench:
-        drive_an_odrive(can.interface.Bus("vcan0", interface="socketcan"), bench)
-
-
-def moteus_on_vcan0():
-    """Likewise, CAN FD: position mode, position as it is, velocity 3 Hz; asks for mode and velocity."""
-    with served("moteus", "can:vcan0") as bench:
-        bus = can.interface.Bus("vcan0", interface="socketcan", fd=True)
-        command = bytes.fromhex("01000a" "0e200000c07f00004040" "1100" "1d02")
-        command += b"\x50" * (20 - len(command))
-        settled = 0
-        end_s = time.monotonic() + DEADLINE_S
-        while settled < 20 and time.monotonic() < end_s:
-            for device in range(1, 5):
-                bus.send(can.Message(arbitration_id=0x8000 | device, data=command, is_extended_id=True, is_fd=True,
-                                     bitrate_switch=True))
-                answer = bus.recv(timeout=DEADLINE_S)
-                assert answer is not None and answer.arbitration_id == device << 8 and answer.is_fd, answer
-                assert bytes(answer.data[:2]) == bytes([0x21, 0x00]), answer
-            if answer.data[2] == 11:  # late, on a busy computer: it has timed out and wants to be stopped
-                for device in range(1, 5):
-                    bus.send(can.Message(arbitration_id=device, data=bytes.fromhex("010000"), is_fd=True))
-            speed = struct.unpack("<f", bytes(answer.data[5:9]))[0]
-            settled = settled + 1 if abs(speed - 3.0) < 0.06 else 0
-        assert settled == 20, "3 Hz was not reached"
-        bus.shutdown()
-        report = bench.stop()
-    assert report.code == 0 and ", 0 refused" in report.text, report.text
-
-
-def board_on_vcan0():
-    """Likewise: a board with the shim on CAN drives the plant through a scenario."""
-    program = os.environ["OMNIHIL_PROGRAM"]
-    build = os.path.dirname(os.path.dirname(program))
-    source = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../.."))
-    board = subprocess.Popen([os.path.join(build, "tests/hil/firmware/board/emulated_board"), "--can", "vcan0"])
-    run = subprocess.run([program, "scenario", "run", os.path.join(source, "examples/scenarios/wheel/speed_step.toml"),
-                          "--firmware", "can:vcan0"], capture_output=True, text=True, check=False)
-    board.kill()
-    board.wait()
-    assert run.returncode == 0 and "emulated board" in run.stdout, run.stdout + run.stderr
-
-
-INIT = """#!/bin/sh
-mount -t proc proc /proc; mount -t sysfs sys /sys; mount -t tmpfs dev /dev || exit 1
-mknod /dev/null c 1 3; mknod /dev/zero c 1 5; mknod /dev/urandom c 1 9
-mkdir -p /dev/pts /dev/shm; mount -t devpts -o ptmxmode=666 devpts /dev/pts; mount -t tmpfs tmpfs /dev/shm
-ln -s pts/ptmx /dev/ptmx
-modules=/usr/lib/uml/modules/$(uname -r)/kernel
-insmod $modules/net/can/can.ko; insmod $modules/net/can/can-raw.ko; insmod $modules/drivers/net/can/dev/can-dev.ko
-insmod $modules/drivers/net/can/vcan.ko
-ip link add dev vcan0 type vcan; ip link set vcan0 mtu 72 up; ip link set lo up
-for name in {names}; do
-  env OMNIHIL_PROGRAM='{program}' PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 '{script}' $name > '{folder}/'$name.out 2>&1
-  echo $? > '{folder}/'$name.code
-done
-echo 1 > /proc/sys/kernel/sysrq; echo o > /proc/sysrq-trigger; sleep 60
-"""
-
-
-def under_a_kernel_with_can(*names):
-    """SocketCAN where this kernel has none: the tests named run in a user-mode Linux on this file system."""
-    modules = glob.glob("/usr/lib/uml/modules/*/kernel/drivers/net/can/vcan.ko")
-    if can is None or not shutil.which("linux.uml") or not modules:
-        raise Skip("python3-can, user-mode-linux or its vcan module is not installed")
-    if os.geteuid() != 0:
-        raise Skip("the file system of the user-mode kernel wants root")
-    folder = tempfile.mkdtemp(prefix="omnihil-uml-")
-    try:
-        init = os.path.join(folder, "init")
-        with open(init, "w", encoding="utf-8") as out:
-            out.write(INIT.format(names=" ".join(names), program=os.environ["OMNIHIL_PROGRAM"],
-                                  script=os.path.abspath(__file__), folder=folder))
-        os.chmod(init, 0o755)
-        kernel = subprocess.run(["linux.uml", "mem=512M", "root=/dev/root", "rootfstype=hostfs", "rootflags=/", "rw",
-                                 f"init={init}", "con=null", "con0=fd:0,fd:1", "quiet", f"uml_dir={folder}"],
-                                stdin=subprocess.DEVNULL, capture_output=True, timeout=4 * DEADLINE_S, check=False)
-        begun = any(os.path.exists(os.path.join(folder, name + ".out")) for name in names)
-        if not begun and b"ptrace set fp regs failed" in kernel.stdout:
-            raise Skip("this host's ptrace refuses the registers of user-mode Linux: it panics before its first program")
-        for name in names:
-            assert os.path.exists(os.path.join(folder, name + ".code")), kernel.stdout.decode(errors="replace")
-            with open(os.path.join(folder, name + ".code"), encoding="utf-8") as code, \
-                    open(os.path.join(folder, name + ".out"), encoding="utf-8") as out:
-                assert code.read().strip() == "0", out.read()
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def odrive_moteus_and_a_board_run_over_socketcan():
-    under_a_kernel_with_can("odrive_on_vcan0", "moteus_on_vcan0", "board_on_vcan0")
 
 
 def drive_four_uarts(write, read):

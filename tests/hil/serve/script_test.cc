@@ -65,6 +65,5 @@ SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py",
             odrive_reaches_the_commanded_speed_and_stops_when_the_watchdog_expires)
 SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py", ateam_main_board_drives_four_uarts)
 SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py", ateam_main_board_at_four_serial_ports)
-SCRIPT_TEST(SlowMotorBusClientTest, "motor_bus_client.py", odrive_moteus_and_a_board_run_over_socketcan)
 
 }  // namespace
