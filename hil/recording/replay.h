@@ -20,6 +20,7 @@ namespace omnihil {
 class ObserverList : public SessionObserver {
  public:
   explicit ObserverList(std::vector<SessionObserver*> observers) : observers_(std::move(observers)) {}
+  void add(SessionObserver* observer) { observers_.push_back(observer); }
   void host_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
   void dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
   void delivery(std::int64_t now_ns, const Delivery& delivery) override;

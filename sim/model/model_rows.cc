@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/law/effect_registry.h"
+#include "sim/robot/ball_handling.h"
 #include "sim/robot/electric_model.h"
 
 namespace omnihil {
@@ -45,6 +46,24 @@ void part(RobotModel& m, std::span<const double> v) {
   });
 }
 template <auto Part, auto Member>
+void handling(RobotModel& m, std::span<const double> v) {
+  auto next = std::make_shared<BallHandling>(handling_of(m));
+  (*next.*Part).*Member = v.front();
+  m.handling = std::move(next);
+}
+template <auto Member>
+void handling(RobotModel& m, std::span<const double> v) {
+  auto next = std::make_shared<BallHandling>(handling_of(m));
+  *next.*Member = v.front();
+  m.handling = std::move(next);
+}
+template <std::size_t Power>
+void kick_coefficient(RobotModel& m, std::span<const double> v) {
+  auto next = std::make_shared<BallHandling>(handling_of(m));
+  next->kick.c[Power] = v.front();
+  m.handling = std::move(next);
+}
+template <auto Part, auto Member>
 void degrees(RobotModel& m, std::span<const double> v) {
   set_electrics(m, [&](ElectricModel& e) { (e.*Part).*Member = v.front() * std::numbers::pi / 180.0; });
 }
@@ -80,6 +99,8 @@ constexpr std::string_view kShuntPlaces[] = {"phase", "low_side", "bus"};
 constexpr std::string_view kMotorLoops[] = {"duty", "foc", "six_step"};
 
 constexpr std::uint32_t R = kRigRobot, A = kRigAxis, L = kRigLinearAxis, M = kRigMotor;
+using H = BallHandling;
+constexpr BallHandling kHandling{};  // the defaults
 constexpr std::nullopt_t kNone = std::nullopt;
 constexpr auto kLong = &RobotModel::tyre_longitudinal;
 constexpr auto kLat = &RobotModel::tyre_lateral;
@@ -304,6 +325,89 @@ constexpr ParameterRow kRows[] = {
      "roller drag at speed", "push the robot at speed, spring balance",
      tyre<kLat, &TyreCurve::asymptote_value>},
 
+    {"hull", "radius_m", kNumber, "m", kHandling.outline.radius_m, 0.01, 0.5, false, R, 0,
+     "circle about the geometric centre", "drawing; the league allows 0.09",
+     handling<&H::outline, &RobotOutline::radius_m>},
+    {"hull", "front_m", kNumber, "m", kHandling.outline.front_m, 0.005, 0.5, false, R, 0,
+     "from the geometric centre to the flat front", "drawing", handling<&H::outline, &RobotOutline::front_m>},
+    {"hull", "height_m", kNumber, "m", kHandling.outline.height_m, 0.01, 1, false, R, 0, "",
+     "drawing; the league allows 0.15", handling<&H::outline, &RobotOutline::height_m>},
+    {"hull", "restitution", kNumber, "1", kHandling.restitution, 0, 1, false, R, 0, "of a ball that meets it",
+     "film of a ball that rolls against it: speed after over before", handling<&H::restitution>},
+    {"hull", "friction", kNumber, "1", kHandling.friction, 0, 5, false, R, 0, "with the ball", "tilted plate",
+     handling<&H::friction>},
+    {"kicker", "pulse_unit_s", kNumber, "s", kHandling.kick.pulse_unit_s, 0, 1, true, R, 0,
+     "k = pulse over this", "the firmware's scale", handling<&H::kick, &KickLaw::pulse_unit_s>},
+    {"kicker", "c0_m_s", kNumber, "m/s", kHandling.kick.c[0], -100, 100, false, R, 0,
+     "speed of the ball = c0 + c1 k + c2 k^2 + c3 k^3, capacitor full", "omnihil field kick TABLE.csv",
+     kick_coefficient<0>},
+    {"kicker", "c1_m_s", kNumber, "m/s", kHandling.kick.c[1], -100, 100, false, R, 0, "", "",
+     kick_coefficient<1>},
+    {"kicker", "c2_m_s", kNumber, "m/s", kHandling.kick.c[2], -100, 100, false, R, 0, "", "",
+     kick_coefficient<2>},
+    {"kicker", "c3_m_s", kNumber, "m/s", kHandling.kick.c[3], -100, 100, false, R, 0, "", "",
+     kick_coefficient<3>},
+    {"kicker", "k_least", kNumber, "1", kHandling.kick.k_least, 0, 1e6, false, R, 0, "no kick below", "",
+     handling<&H::kick, &KickLaw::k_least>},
+    {"kicker", "k_most", kNumber, "1", kHandling.kick.k_most, 0, 1e6, true, R, 0,
+     "a longer pulse kicks as this one", "", handling<&H::kick, &KickLaw::k_most>},
+    {"kicker", "reach_m", kNumber, "m", kHandling.kick_reach_m, 0, 0.1, true, R, 0,
+     "from the front: how far the plunger takes the ball", "drawing", handling<&H::kick_reach_m>},
+    {"kicker", "half_width_m", kNumber, "m", kHandling.kick_half_width_m, 0, 0.1, true, R, 0,
+     "of the plunger", "drawing", handling<&H::kick_half_width_m>},
+    {"kicker", "capacitance_F", kNumber, "F", kHandling.capacitor.capacitance_F, 0, 1, true, R, 0, "",
+     "its print", handling<&H::capacitor, &KickCapacitor::capacitance_F>},
+    {"kicker", "full_V", kNumber, "V", kHandling.capacitor.full_V, 0, 1000, true, R, 0, "where charging ends",
+     "the charger's setting", handling<&H::capacitor, &KickCapacitor::full_V>},
+    {"kicker", "charge_power_W", kNumber, "W", kHandling.capacitor.charge_power_W, 0, 1e4, true, R, 0,
+     "out of the bus while it charges", "bus current while it charges",
+     handling<&H::capacitor, &KickCapacitor::charge_power_W>},
+    {"kicker", "charge_efficiency", kNumber, "1", kHandling.capacitor.charge_efficiency, 0, 1, true, R, 0, "",
+     "energy in the capacitor over energy out of the bus",
+     handling<&H::capacitor, &KickCapacitor::charge_efficiency>},
+    {"kicker", "kick_efficiency", kNumber, "1", kHandling.capacitor.kick_efficiency, 0, 1, true, R, 0,
+     "energy in the ball over energy out of the capacitor", "voltage before and after a kick",
+     handling<&H::capacitor, &KickCapacitor::kick_efficiency>},
+    {"dribbler", "bar_x_m", kNumber, "m", kHandling.dribbler.bar_x_m, 0, 0.5, true, R, 0,
+     "axle of the bar, from the geometric centre", "drawing",
+     handling<&H::dribbler, &DribblerModel::bar_x_m>},
+    {"dribbler", "bar_z_m", kNumber, "m", kHandling.dribbler.bar_z_m, 0, 0.2, true, R, 0,
+     "the same, above the floor", "drawing", handling<&H::dribbler, &DribblerModel::bar_z_m>},
+    {"dribbler", "bar_radius_m", kNumber, "m", kHandling.dribbler.bar_radius_m, 0, 0.05, true, R, 0, "",
+     "drawing", handling<&H::dribbler, &DribblerModel::bar_radius_m>},
+    {"dribbler", "half_width_m", kNumber, "m", kHandling.dribbler.half_width_m, 0, 0.1, true, R, 0,
+     "of the bar", "drawing", handling<&H::dribbler, &DribblerModel::half_width_m>},
+    {"dribbler", "friction", kNumber, "1", kHandling.dribbler.friction, 0, 5, false, R, 0,
+     "of its material on the ball", "tilted plate of it", handling<&H::dribbler, &DribblerModel::friction>},
+    {"dribbler", "mount_stiffness_N_per_m", kNumber, "N/m", kHandling.dribbler.mount_stiffness_N_per_m, 0,
+     1e6, true, R, 0, "of the bar's mount, along the push", "spring balance",
+     handling<&H::dribbler, &DribblerModel::mount_stiffness_N_per_m>},
+    {"dribbler", "mount_damping_N_s_per_m", kNumber, "N s/m", kHandling.dribbler.mount_damping_N_s_per_m, 0,
+     1e4, false, R, 0, "of the same", "film of a ball that comes in",
+     handling<&H::dribbler, &DribblerModel::mount_damping_N_s_per_m>},
+    {"dribbler", "inertia_kg_m2", kNumber, "kg m2", kHandling.dribbler.inertia_kg_m2, 0, 1, true, R, 0,
+     "bar and rotor, at the bar", "run-up time", handling<&H::dribbler, &DribblerModel::inertia_kg_m2>},
+    {"dribbler", "gear_ratio", kNumber, "1", kHandling.dribbler.gear_ratio, 0, 1000, true, R, 0,
+     "rotor turns per turn of the bar", "count teeth", handling<&H::dribbler, &DribblerModel::gear_ratio>},
+    {"dribbler", "resistance_ohm", kNumber, "ohm", kHandling.dribbler.resistance_ohm, 0, 1000, true, R, 0,
+     "of its motor", "data sheet", handling<&H::dribbler, &DribblerModel::resistance_ohm>},
+    {"dribbler", "torque_constant_Nm_per_A", kNumber, "N m/A", kHandling.dribbler.torque_constant_Nm_per_A, 0,
+     100, true, R, 0, "of its motor", "data sheet",
+     handling<&H::dribbler, &DribblerModel::torque_constant_Nm_per_A>},
+    {"dribbler", "friction_Nm", kNumber, "N m", kHandling.dribbler.friction_Nm, 0, 10, false, R, 0,
+     "bearings and belt, at the bar", "no-load current", handling<&H::dribbler, &DribblerModel::friction_Nm>},
+    {"dribbler", "current_limit_A", kNumber, "A", kHandling.dribbler.current_limit_A, 0, 1000, true, R, 0,
+     "of its bridge", "the bridge's setting", handling<&H::dribbler, &DribblerModel::current_limit_A>},
+    {"break_beam", "forward_m", kNumber, "m", kHandling.beam.forward_m, -0.1, 0.2, false, R, 0,
+     "ray before the front", "drawing", handling<&H::beam, &BreakBeam::forward_m>},
+    {"break_beam", "height_m", kNumber, "m", kHandling.beam.height_m, 0, 0.2, false, R, 0, "above the floor",
+     "drawing", handling<&H::beam, &BreakBeam::height_m>},
+    {"break_beam", "reaction_s", kNumber, "s", kHandling.beam.reaction_s, 0, 1, false, R, 0,
+     "from a change to its telling", "oscilloscope", handling<&H::beam, &BreakBeam::reaction_s>},
+    {"break_beam", "false_rate_Hz", kNumber, "Hz", kHandling.beam.false_rate_Hz, 0, 1e4, false, R, 0,
+     "false triggers per second", "count without a ball", handling<&H::beam, &BreakBeam::false_rate_Hz>},
+    {"break_beam", "false_time_s", kNumber, "s", kHandling.beam.false_time_s, 0, 10, true, R, 0,
+     "length of one", "oscilloscope", handling<&H::beam, &BreakBeam::false_time_s>},
     {"firmware", "command_timeout_s", kNumber, "s", 0.0, 0, 3600, false, R, 0,
      "the robot stops this long after the last command; 0: the firmware's own", "the firmware's setting",
      robot<&RobotModel::control_timeout_s>},

@@ -72,7 +72,11 @@ const ChipNetwork kDefaultChip{.w1 = {{
                                .out_most = {6, 0.785398163}};
 
 const BallHandling& handling_of(const RobotModel& model) {
-  static const BallHandling kDefault{};
+  static const BallHandling kDefault = [] {
+    BallHandling h;
+    h.chip = kDefaultChip;
+    return h;
+  }();
   return model.handling ? *model.handling : kDefault;
 }
 

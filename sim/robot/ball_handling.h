@@ -74,7 +74,7 @@ struct BallHandling {
   double restitution = 0.35, friction = 0.3;  // of the hull: guess, +-30 %
   KickLaw kick;
   KickCapacitor capacitor;
-  ChipNetwork chip = kDefaultChip;
+  ChipNetwork chip{};  // handling_of() gives kDefaultChip where a model says nothing
   DribblerModel dribbler;
   BreakBeam beam;
 };

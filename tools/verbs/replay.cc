@@ -7,11 +7,14 @@
 #include <memory>
 #include <string>
 
+#include "hil/field_view/field_picture.h"
 #include "hil/recording/compare_recordings.h"
 #include "hil/recording/recording_reader.h"
 #include "hil/recording/recording_writer.h"
 #include "hil/recording/replay_report.h"
 #include "hil/recording/replay_run.h"
+#include "hil/recording/session_setup.h"
+#include "hil/text/dataset_files.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
@@ -27,6 +30,7 @@ struct Words {
   ReplayWords replay;
   std::string recording;
   std::string out;
+  std::string picture;
   bool sha256_only = false;
 };
 
@@ -64,7 +68,14 @@ int run_replay(const Words& words) {
   ReplayOptions options = replay_options(words.replay, recording.header);
   const bool as_recorded = same_session(recording.header, options);
   const auto writer = open_out(words, recording, options);
-  options.observer = writer.get();
+  std::unique_ptr<FieldTrace> trace;
+  if (!words.picture.empty())
+    trace =
+        std::make_unique<FieldTrace>(session_config(session_setup(replay_header(recording.header, options))));
+  ObserverList observers({});
+  if (writer) observers.add(writer.get());
+  if (trace) observers.add(trace.get());
+  options.observer = &observers;
   const ReplayRun run = run_again(recording, options);
   if (!run.firmware_failure.empty()) {
     fmt::print(stderr, "omnihil replay: {}\n", run.firmware_failure);
@@ -73,6 +84,10 @@ int run_replay(const Words& words) {
   if (writer) {
     writer->finish({.now_ns = run.answer.end_ns, .wall_s = run.wall_s, .counters = {}});
     if (writer->error()) throw std::system_error(writer->error(), words.out);
+  }
+  if (trace) {
+    const std::string name = std::filesystem::path(words.recording).filename().string();
+    write_new_file(words.picture, field_picture(*trace, {.title = name}));
   }
   if (words.sha256_only) {
     fmt::print("{}\n", run.sha256);
@@ -94,6 +109,7 @@ void add_verb_replay(Verb& program, VerbResult& result) {
   verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
   add_replay_options(verb, words->replay);
   verb.add_option("--out", words->out, "write the new run to this file, as a recording");
+  verb.add_option("--picture", words->picture, "write the field from above to this file, as SVG");
   verb.add_flag("--sha256", words->sha256_only,
                 "print only the SHA-256 of all outputs: bytes with their times, every tick's values");
   verb.footer(

@@ -25,16 +25,22 @@ std::string broken(const std::string& name) {
   return std::string(OMNIHIL_BUILD_DIR) + "/tests/firmware/lib" + name + ".so";
 }
 
-std::vector<ScenarioOutcome> run_suite(const std::string& path, const SuiteOptions& o) {
+using Levels = std::set<std::string>;
+const Levels kAll{"wheel", "robot", "field"};
+const Levels kNoBall{"wheel", "robot"};
+
+std::vector<ScenarioOutcome> run_suite(const std::string& path, const SuiteOptions& o,
+                                       const Levels& levels = kAll) {
   const SuiteReading suite = read_suite({path}, "");
   EXPECT_TRUE(suite.problems.empty());
   std::vector<ScenarioOutcome> outcomes;
-  for (const Scenario& s : suite.scenarios) outcomes.push_back(run_one(s, o));
+  for (const Scenario& s : suite.scenarios)
+    if (levels.contains(s.level)) outcomes.push_back(run_one(s, o));
   return outcomes;
 }
 
-void expect_all_pass(const SuiteOptions& o) {
-  for (const ScenarioOutcome& outcome : run_suite(kSuite, o)) {
+void expect_all_pass(const SuiteOptions& o, const Levels& levels = kAll) {
+  for (const ScenarioOutcome& outcome : run_suite(kSuite, o, levels)) {
     for (const CheckResult& r : outcome.results) {
       EXPECT_TRUE(r.passed) << outcome.scenario.file << ": " << failure_line(r);
     }
