@@ -12,8 +12,9 @@
 namespace omnihil {
 namespace {
 
-constexpr double kMargin_m = 0.35;  // around what is shown
-constexpr double kAir_m = 0.03;     // a ball's middle above that is in the air
+constexpr double kMargin_m = 0.35;     // around what is shown
+constexpr double kAir_m = 0.03;        // a ball's middle above that is in the air
+constexpr double kFastest_m_s = 20.0;  // beyond any kick: the ball was put somewhere
 constexpr double kTitle_px = 26.0;
 constexpr const char* kBlue = "#1f6feb";
 constexpr const char* kYellow = "#d4a800";
@@ -104,11 +105,21 @@ void draw_robot(Out out, const View& v, const RobotOutline& o, const FieldPoint&
                  x2, y2, style);
 }
 
+bool put_elsewhere(const FieldPoint& a, const FieldPoint& b) {
+  return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m) > kFastest_m_s * (b.time_s - a.time_s) + 1e-3;
+}
+
 void draw_ball(Out out, const View& v, const std::vector<FieldPoint>& ball) {
   for (std::size_t from = 0; from + 1 < ball.size();) {
+    if (put_elsewhere(ball[from], ball[from + 1])) {
+      ++from;
+      continue;
+    }
     const bool flies = ball[from + 1].yaw_rad > kAir_m;
     std::size_t to = from + 1;
-    while (to + 1 < ball.size() && (ball[to + 1].yaw_rad > kAir_m) == flies) ++to;
+    while (to + 1 < ball.size() && (ball[to + 1].yaw_rad > kAir_m) == flies &&
+           !put_elsewhere(ball[to], ball[to + 1]))
+      ++to;
     draw_way(
         out, v, ball, from, to + 1,
         fmt::format("stroke=\"{}\" stroke-width=\"2\"{}", kBall, flies ? " stroke-dasharray=\"2 4\"" : ""));

@@ -35,13 +35,13 @@ class League(unittest.TestCase):
     def setUpClass(cls):
         cls.sim, cls.vision = messages(cls.proto, cls.work)
 
-    def serve(self, *more):
+    def serve(self, *more, robots="0,3"):
         """The bench on ports of its own; self.robot, self.control, self.group are where it listens and speaks."""
         self.robot, self.control = free_port(socket.SOCK_DGRAM), free_port(socket.SOCK_DGRAM)
         self.group = ("224.5.23.2", free_port(socket.SOCK_DGRAM))
         device = os.path.join(self.work, f"dongle{self.robot}")
         self.process = subprocess.Popen(
-            [self.program, "serve", "--robot", "ulaval_delta", "--robots", "0,3", "--physics", "planar", "--device", device,
+            [self.program, "serve", "--robot", "ulaval_delta", "--robots", robots, "--physics", "planar", "--device", device,
              "--league-robot-port", str(self.robot), "--league-control-port", str(self.control),
              "--vision", f"{self.group[0]}:{self.group[1]}", "--quiet", *more],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -328,6 +328,99 @@ class League(unittest.TestCase):
         self.assertEqual([e.code for e in odd.robot_control_response.errors], ["OUT_OF_RANGE"])
         self.assertEqual(odd.detection[0].t_capture, answer.detection[0].t_capture)  # nothing moved
         return states, answer
+
+    def test_match_of_two_scripted_teams(self):
+        """Six against six, a minute (OMNIHIL_MATCH_SECONDS: longer): whoever is nearest goes behind the ball and kicks at the other goal, the rest
+        keep places of their own. No error, no number that is not finite, nobody stuck, goals on both sides are put back."""
+        import math
+        seconds, step = float(os.environ.get("OMNIHIL_MATCH_SECONDS", "60")), 0.016
+        port, yellow = free_port(socket.SOCK_STREAM), free_port(socket.SOCK_DGRAM)
+        record = os.path.join(self.work, "match.omnirec")
+        self.serve("--league-sync", str(port), "--clock", "free", "--opponents", "0-5",
+                   "--league-opponents-port", str(yellow), "--field", "division-b", "--ball", "0,0.3",
+                   "--record", record, "--sample-every", "100", robots="0-5")
+        connection = socket.create_connection(("127.0.0.1", port), timeout=60)
+        self.addCleanup(connection.close)
+        self.udp.setblocking(False)
+        sim, ball, robots, goals, kicks, outs, last_speed = self.sim, None, {}, 0, 0, 0, 0.0
+        moved = {}
+        places = [(-1.0, 0.0), (-1.5, 1.2), (-1.5, -1.2), (-2.8, 0.7), (-2.8, -0.7), (-4.2, 0.0)]
+
+        def steer(control, team):
+            side = 1 if team == "blue" else -1
+            own = {i: pose for (t, i), pose in robots.items() if t == team}
+            if not own or ball is None:
+                return
+            nearest = min(own, key=lambda i: math.hypot(own[i][0] - ball[0], own[i][1] - ball[1]))
+            for i, (x, y, yaw) in own.items():
+                c = control.robot_commands.add()
+                c.id = i
+                wx, wy = places[i][0] * side, places[i][1] * side
+                look = 0.0 if side > 0 else math.pi
+                if i == nearest:
+                    look = math.atan2(0.0 - ball[1], 4.5 * side - ball[0])
+                    bx, by = ball[0] - 0.3 * math.cos(look), ball[1] - 0.3 * math.sin(look)
+                    behind = math.hypot(bx - x, by - y) < 0.12
+                    ahead = abs((ball[0] - x) * math.sin(look) - (ball[1] - y) * math.cos(look)) < 0.04
+                    wx, wy = ball if behind or (ahead and math.hypot(ball[0] - x, ball[1] - y) < 0.35) else (bx, by)
+                    c.kick_speed, c.dribbler_speed = 4.0, 5000.0
+                dx, dy = wx - x, wy - y
+                size = max(1e-6, math.hypot(dx, dy))
+                v = min(1.5, 2.5 * size)
+                turn = math.remainder(look - yaw, 2 * math.pi)
+                c.move_command.global_velocity.x = v * dx / size
+                c.move_command.global_velocity.y = v * dy / size
+                c.move_command.global_velocity.angular = max(-4.0, min(4.0, 4.0 * turn))
+                key = (team, i)
+                if key not in moved or math.hypot(moved[key][0] - x, moved[key][1] - y) > 0.05 or size < 0.25:
+                    moved[key] = (x, y, now)
+                self.assertLess(now - moved[key][2], 20.0, f"{key} is stuck at {x:.2f}, {y:.2f}")
+
+        now, n = 0.0, 0
+        while now < seconds:
+            request = sim.SimulationSyncRequest(sim_step=step)
+            steer(request.robot_control, "blue")
+            other = sim.RobotControl()
+            steer(other, "yellow")
+            if other.robot_commands:
+                self.udp.sendto(other.SerializeToString(), ("127.0.0.1", yellow))
+            out = ball and (abs(ball[0]) > 4.45 or abs(ball[1]) > 2.95)
+            if out:
+                goals += abs(ball[1]) < 0.5
+                t = request.simulator_command.control.teleport_ball
+                outs += 1  # each half in turn
+                t.x, t.y, t.vx, t.vy, t.vz = 1.8 * (-1) ** outs, 0.3, 0.0, 0.0, 0.0
+                t.z = 0.0
+            answer = self.sync(connection, request)
+            self.assertEqual(list(answer.robot_control_response.errors), [])
+            try:
+                while True:
+                    said = sim.RobotControlResponse.FromString(self.udp.recv(65536))
+                    self.assertEqual(list(said.errors), [])
+            except BlockingIOError:
+                pass
+            for frame in answer.detection:
+                for team, seen in (("blue", frame.robots_blue), ("yellow", frame.robots_yellow)):
+                    for r in seen:
+                        self.assertTrue(math.isfinite(r.x + r.y + r.orientation))
+                        self.assertLess(max(abs(r.x) / 4900, abs(r.y) / 3400), 1.0)
+                        robots[(team, r.robot_id)] = (r.x / 1000, r.y / 1000, r.orientation)
+                for b in frame.balls:
+                    self.assertTrue(math.isfinite(b.x + b.y))
+                    speed = 0.0 if ball is None or out else math.hypot(b.x / 1000 - ball[0], b.y / 1000 - ball[1]) / step
+                    kicks += speed > last_speed + 1.0
+                    last_speed, ball = speed, (b.x / 1000, b.y / 1000)
+            n += 1
+            now = n * step
+        self.assertEqual(len(robots), 12)
+        self.assertGreater(kicks, seconds / 20)
+        if seconds >= 300:
+            self.assertGreater(goals, 0)
+        print(f"{kicks} kicks, {goals} goals in {now:.0f} s", file=sys.stderr)
+        connection.close()
+        self.stop()
+        checked = subprocess.run([self.program, "check", "--exact", "--quiet", record], capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 
     def test_steps_are_exact_and_repeat(self):
         first, last = self.run_in_steps(50, 0.016)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "hil/recording/compare_recordings.h"
@@ -50,6 +51,44 @@ INSTANTIATE_TEST_SUITE_P(Formats, ReplayOf,
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+// Two teams with a dongle each: what the opponents' host writes drives them alone, and is in the recording.
+TEST(Replay, OpponentsHaveTheirOwnDongleAndTheirBytesReplay) {
+  SessionSetup setup = real::setup(real::kHermes);
+  setup.opponent_ids = {0, 1};
+  setup.opponents_radio = setup.radio_format;
+  setup.field.contacts = true;
+  setup.field.ball_m = {0.4, 0.2};
+  RecordingHeader header = recording_header(setup, "abc1234");
+  header.sample_every = 5;
+  Session session(session_config(setup), make_reference_firmware);
+  header.firmware = session.firmware(0).name();
+  RecordingMemory memory(header);
+  session.set_observer(&memory);
+  const RadioFormat& format = *find_radio_format(setup.radio_format);
+  real::Bytes out, opponents_out;
+  for (int n = 0; n < 300; ++n) {
+    const real::Bytes bytes = n % 20 == 0 ? real::host_bytes(format, {1}, n) : real::Bytes{};
+    session.step({}, out, bytes, opponents_out);
+  }
+  EXPECT_EQ(session.robot_count(), 4);
+  EXPECT_EQ(session.robot_key(3), kOpponentKey + 1);
+  const auto speed = [&](int robot) {
+    const PlanarState s = session.plant().planar_state(robot);
+    return std::hypot(s.v_x_m_s, s.v_y_m_s);
+  };
+  EXPECT_GT(speed(3), 0.1);
+  for (const int robot : {0, 1, 2}) EXPECT_EQ(speed(robot), 0.0);
+  EXPECT_FALSE(opponents_out.empty());
+  EXPECT_TRUE(out.empty());
+  const Recording recorded = memory.take(session.now_ns());
+  EXPECT_GT(count_of(recorded, RecordedChunk::Kind::kOpponentsBytes), 5U);
+  EXPECT_GT(count_of(recorded, RecordedChunk::Kind::kBallSeen), 20U);
+  const ReplayRun again = run_again(recorded, {});
+  ASSERT_EQ(again.answer.chunks.size(), recorded.chunks.size());
+  for (std::size_t i = 0; i < recorded.chunks.size(); ++i)
+    EXPECT_EQ(again.answer.chunks[i].sample, recorded.chunks[i].sample) << i;
+}
 
 TEST(Replay, HostBytesReachTheLoopAtTheirTime) {
   Recording recorded = real::record(real::setup(real::kHermes), 60);
