@@ -15,6 +15,7 @@ namespace {
 constexpr double kMargin_m = 0.35;     // around what is shown
 constexpr double kAir_m = 0.03;        // a ball's middle above that is in the air
 constexpr double kFastest_m_s = 20.0;  // beyond any kick: the ball was put somewhere
+constexpr double kNearest_px = 1.5;    // of two points of a way: less is not seen
 constexpr double kTitle_px = 26.0;
 constexpr const char* kBlue = "#1f6feb";
 constexpr const char* kYellow = "#d4a800";
@@ -85,8 +86,15 @@ void draw_way(Out out, const View& v, const std::vector<FieldPoint>& points, std
               const std::string& style) {
   if (to - from < 2) return;
   fmt::format_to(out, "<polyline fill=\"none\" {} points=\"", style);
-  for (std::size_t i = from; i < to; ++i)
-    fmt::format_to(out, "{:.1f},{:.1f} ", v.x(points[i].x_m), v.y(points[i].y_m));
+  double drawn_x = 0.0, drawn_y = 0.0;
+  for (std::size_t i = from; i < to; ++i) {
+    const double x = v.x(points[i].x_m), y = v.y(points[i].y_m);
+    const bool end = i == from || i + 1 == to;
+    if (!end && std::hypot(x - drawn_x, y - drawn_y) < kNearest_px) continue;
+    fmt::format_to(out, "{:.1f},{:.1f} ", x, y);
+    drawn_x = x;
+    drawn_y = y;
+  }
   fmt::format_to(out, "\"/>\n");
 }
 
