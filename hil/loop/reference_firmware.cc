@@ -8,7 +8,8 @@
 
 namespace omnihil {
 
-MotorConfig motor_config(const RobotModel& model) {
+MotorConfig motor_config(const RobotModel& driven) {
+  const RobotModel& model = driven.told ? *driven.told : driven;
   const ElectricModel& electric = electrics_of(model);
   const PhaseMotor<double> motor = phase_motor(model);
   MotorConfig config{};

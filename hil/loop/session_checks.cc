@@ -143,7 +143,8 @@ void throw_problems(const std::vector<std::string>& problems) {
   if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "\n")));
 }
 
-RobotConfig robot_config(const RobotModel& model, int robot_id) {
+RobotConfig robot_config(const RobotModel& driven, int robot_id) {
+  const RobotModel& model = driven.told ? *driven.told : driven;
   RobotConfig config{};
   config.robot_id = static_cast<std::uint32_t>(robot_id);
   for (std::size_t i = 0; i < kWheels; ++i) config.wheel_angle_rad[i] = model.wheel_angle_rad[i];

@@ -56,6 +56,7 @@ struct RecordingHeader {
   FieldSetup field;               // what was on the floor; absent: robots alone, as runs were before
   std::vector<int> opponent_ids;  // the other team's, of the same model and firmware; none: there was none
   std::string opponents_radio;    // of their dongle; empty: none
+  double spread = 0.0;            // of each robot's numbers, in tolerances of the model
   std::string started;            // ISO 8601 wall time, informative only
   std::vector<ModelText> included_models;  // further files that the model names: its motor
   int sample_every = 10;                   // of a robot's control ticks, every Nth is written

@@ -45,6 +45,8 @@ std::string_view name_of(const Table& table, Enum value) {
 }
 
 // Takes the keys of the header one by one and keeps what is wrong with them.
+constexpr double kMostSpread = 10.0;
+
 class HeaderFields {
  public:
   HeaderFields(const Json& json, std::vector<std::string>& problems) : json_(json), problems_(problems) {}
@@ -149,6 +151,14 @@ class HeaderFields {
       }
     }
   }
+  // Absent: every robot is the model itself.
+  void spread(const char* key, double& value) {
+    if (!json_.contains(key)) return;
+    const Json* found = find(key, "a number", &Json::is_number);
+    if (found == nullptr) return;
+    value = found->get<double>();
+    if (!(value >= 0.0 && value <= kMostSpread)) refuse(key, found->dump(), "0 to 10");
+  }
   // Absent: none.
   void opponents(const char* key, RecordingHeader& header) {
     if (!json_.contains(key)) return;
@@ -214,6 +224,7 @@ void read_fields(HeaderFields& fields, RecordingHeader& header) {
   fields.air("air", header.air);
   fields.field("field", header.field);
   fields.opponents("opponents", header);
+  fields.spread("spread", header.spread);
   fields.natural("sample_every", sample_every);
   if (sample_every < 1 || sample_every > 1'000'000) {
     fields.refuse("sample_every", std::to_string(sample_every), "1 to 1000000");
@@ -290,6 +301,7 @@ std::string to_json(const RecordingHeader& header) {
     json["opponents"]["robot_ids"] = header.opponent_ids;
     if (!header.opponents_radio.empty()) json["opponents"]["radio"] = header.opponents_radio;
   }
+  if (header.spread > 0.0) json["spread"] = header.spread;
   json["sample_every"] = header.sample_every;
   json["columns"] = header.columns;
   json["units"] = header.units;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "hil/loop/session_checks.h"
+#include "sim/model/model_spread.h"
 
 namespace omnihil {
 namespace {
@@ -65,6 +66,15 @@ SessionConfig session_config(const SessionSetup& setup) {
     config.robots.resize(setup.robot_ids.size());
     config.opponents.robots.resize(setup.opponent_ids.size());
   }
+  if (setup.spread > 0.0 && reading.model && reading.model->robot) {
+    const auto draw = [&](std::vector<RobotModel>& robots, const std::vector<int>& ids, int first_key) {
+      for (std::size_t i = 0; i < robots.size(); ++i)
+        robots[i] =
+            spread_robot(*reading.model, setup.spread, setup.plant.seed, first_key + ids[i], setup.plant);
+    };
+    draw(config.robots, setup.robot_ids, 0);
+    draw(config.opponents.robots, setup.opponent_ids, kOpponentKey);
+  }
   config.radio_format = setup.radio_format;
   config.robot_ids = setup.robot_ids;
   config.team = setup.team;
@@ -101,6 +111,7 @@ RecordingHeader recording_header(const SessionSetup& setup, const std::string& c
   header.field = setup.field;
   header.opponent_ids = setup.opponent_ids;
   header.opponents_radio = setup.opponents_radio;
+  header.spread = setup.spread;
   header.seed = setup.plant.seed;
   return header;
 }
@@ -125,6 +136,7 @@ SessionSetup session_setup(const RecordingHeader& header) {
   setup.field = header.field;
   setup.opponent_ids = header.opponent_ids;
   setup.opponents_radio = header.opponents_radio;
+  setup.spread = header.spread;
   return setup;
 }
 

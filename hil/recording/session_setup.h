@@ -33,6 +33,7 @@ struct SessionSetup {
   FieldSetup field;
   std::vector<int> opponent_ids;  // of the same model; none: no other team
   std::string opponents_radio;    // of their dongle; empty: none
+  double spread = 0.0;            // of each robot's numbers, in tolerances of the model (model_spread.h)
 };
 
 // Reads the model from its texts; throws std::invalid_argument with every problem, a line each.

@@ -46,6 +46,8 @@ struct RobotModel {
   // Hull, kicker, dribbler, break beam; null: the defaults.
   std::shared_ptr<const BallHandling> handling;
   MotorLoop motor_loop = MotorLoop::kDuty;
+  // What firmware is told it drives, where that is another robot; null: this one.
+  std::shared_ptr<const RobotModel> told;
   double control_timeout_s = 0.0;  // the team's own command timeout; 0: the firmware's default
   // On top of the base model above (Coulomb friction is part of that); null: none.
   std::shared_ptr<const std::vector<EffectUse>> effects;

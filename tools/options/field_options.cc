@@ -14,10 +14,15 @@ void add_field_options(Verb& verb, FieldWords& w) {
       "--ball", w.ball,
       "X,Y in m where a ball lies at the start (default: none until the league's control puts one)");
   verb.add_option("--opponents", w.opponents, "ids of the other team's robots, of the same model: 0-5");
+  verb.add_option(
+          "--spread", w.spread,
+          "each robot's numbers drawn about the model's, in its tolerances: 1 as they are said; from --seed")
+      .range(0.0, 10.0);
   verb.add_flag("--ghosts", w.ghosts, "robots pass through each other and have no kicker, dribbler and beam");
 }
 
 void understand_field(const FieldWords& words, SessionSetup& setup, std::vector<std::string>& problems) {
+  setup.spread = words.spread;
   setup.field.contacts = !words.ghosts;
   if (!words.size.empty()) setup.field.size = find_field(words.size);
   if (!words.opponents.empty()) setup.opponent_ids = parse_robot_list(words.opponents, problems);

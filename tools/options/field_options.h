@@ -14,6 +14,7 @@ namespace omnihil {
 struct FieldWords {
   std::string size, ball, opponents;
   bool ghosts = false;
+  double spread = 0.0;
 };
 
 void add_field_options(Verb& verb, FieldWords& words);
