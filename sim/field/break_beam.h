@@ -1,8 +1,8 @@
 // Break beam: a ray across the mouth, from sender to receiver, that the ball cuts.
 //
-//   bool cut = beam_cut(beam, outline, ball_x_m, ball_y_m, ball_z_m, 0.0215);      // body frame
+//   bool cut = beam_cut(beam, outline, ball_in_body, 0.0215);
 //   BeamMemory memory;
-//   bool seen = beam_seen(beam, memory, cut, now_s, RandomKey{…});                 // after its reaction time
+//   bool seen = beam_seen(beam, memory, cut, now_s, 0.0005, draw);                 // after its reaction time
 //
 // Geometry: the ray runs along body y at x = front + forward_m, z = height_m, as long as the flat front; it is cut when
 // the ball's middle is nearer than its radius. The receiver answers reaction_s after a change that lasted that long.

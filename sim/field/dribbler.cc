@@ -37,7 +37,8 @@ DribblerStep drive_bar(const DribblerModel& d, double omega_rad_s, double duty_r
   return step;
 }
 
-double held_acceleration_m_s2(const DribblerModel& d, double front_m, double r_m, double mass_kg, double mu_f) {
+double held_acceleration_m_s2(const DribblerModel& d, double front_m, double r_m, double mass_kg,
+                              double mu_f) {
   const double above_m = d.bar_z_m - r_m, apart_m = d.bar_radius_m + r_m;
   double most_m_s2 = 0.0;
   // From where they just touch to where the ball stands against the front.

@@ -1,6 +1,6 @@
 // Dribbler: a bar with its motor above the ball's rear, on a spring-damper mount, that spins the ball towards the robot.
 //
-//   DribblerStep step = drive_bar(dribbler, omega_bar_rad_s, 0.8 * 22.2, 0.0005);     // motor alone, one step
+//   DribblerStep step = drive_bar(dribbler, omega_bar_rad_s, 0.8, 22.2, 0.0005);  // motor alone, one step
 //   double a = held_acceleration_m_s2(dribbler, 0.0725, 0.0215, 0.046, 0.35);                      // braking that the ball stands
 //
 // Motor, at the bar (gear g, winding eq. 7):  J dw/dt = g k (u - k g w) / R - tau_f sign(w) - friction of the ball

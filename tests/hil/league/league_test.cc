@@ -78,7 +78,8 @@ TEST(LeagueRobots, KickAndDribblerReachTheFirmware) {
   EXPECT_NEAR(read.commands[0].command.v_kick_m_s, 5.0, 1e-6);
   EXPECT_NEAR(read.commands[0].command.dribbler_ratio, 0.5, 1e-6);
   control.mutable_robot_commands(0)->set_kick_angle(120.0f);
-  EXPECT_EQ(read_robot_control(control.SerializeAsString(), robots(), Team::kBlue).errors.at(0).code, "OUT_OF_RANGE");
+  EXPECT_EQ(read_robot_control(control.SerializeAsString(), robots(), Team::kBlue).errors.at(0).code,
+            "OUT_OF_RANGE");
 }
 
 TEST(LeagueRobots, NoBytesFromOutsideAreActedOnUnread) {
