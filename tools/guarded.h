@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "hil/capture/captured.h"
 #include "hil/recording/recording_reader.h"
 #include "hil/recording/stream_file.h"
 #include "hil/text/dataset_files.h"
@@ -25,6 +26,8 @@ int guarded(const char* verb, Work&& work) {
   } catch (const BadRecording& error) {
     return say(error, kExitBadInput);
   } catch (const BadStream& error) {
+    return say(error, kExitBadInput);
+  } catch (const BadCapture& error) {
     return say(error, kExitBadInput);
   } catch (const FileExists& error) {
     return say(error, kExitBadInput);

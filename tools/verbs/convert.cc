@@ -1,4 +1,4 @@
-// `omnihil convert`: a recording as a dataset for fits, as one CSV, or as a stream to play.
+// `omnihil convert`: a recording, or a capture of another tool, in another form.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,8 @@
 #include <string>
 
 #include "hil/dataset/dataset_export.h"
+#include "hil/game_log/vision_csv.h"
+#include "hil/recording/capture_import.h"
 #include "hil/recording/mcap_export.h"
 #include "hil/recording/pcap_export.h"
 #include "hil/recording/recording_reader.h"
@@ -15,6 +17,7 @@
 #include "hil/recording/stream_file.h"
 #include "hil/text/dataset_files.h"
 #include "tools/command_line.h"
+#include "tools/convert_capture.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
@@ -25,7 +28,8 @@ namespace omnihil {
 namespace {
 
 struct ConvertWords {
-  std::string recording, format_file;
+  std::string recording, format_file, radio;
+  CaptureWords capture;
   std::string to = "dataset";
   std::string out;
   int robot = -1;
@@ -58,18 +62,48 @@ void to_dataset(const ConvertWords& words, const Recording& recording) {
   for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
 }
 
+int run_convert_capture(const ConvertWords& words) {
+  const RadioFormat* format = nullptr;
+  if (!words.radio.empty() || !words.format_file.empty()) {
+    format = format_or_complain(words.radio, words.format_file);
+    if (format == nullptr) return kExitBadInput;
+  }
+  convert_capture(words.recording, words.to, words.out, words.capture, format);
+  return kExitOk;
+}
+
+int run_convert_game(const ConvertWords& words) {
+  if (words.to != "csv")
+    throw std::invalid_argument("--to: found " + words.to + ", allowed for a game log: csv");
+  GameLogReader log(words.recording);
+  const VisionCsv csv = vision_csv(log);
+  write_new_file(words.out, csv.text);
+  print_notes(log.notes());
+  fmt::print("{}: {} frames of vision, {} robots, {} balls; {} other records\n", words.out, csv.frames,
+             csv.robots, csv.balls, csv.other_records);
+  return kExitOk;
+}
+
 int run_convert(const ConvertWords& words) {
+  if (is_game_log(words.recording)) return run_convert_game(words);
+  if (is_capture_file(words.recording)) return run_convert_capture(words);
   const Recording recording = load_recording(std::filesystem::path(words.recording));
   if (words.to == "dataset") {
     to_dataset(words, recording);
   } else if (words.to == "csv") {
     write_new_file(words.out, wide_csv(recording, chosen_robot(words, recording.header)));
     fmt::print("{}: written\n", words.out);
-  } else if (words.to == "pcap" || words.to == "mcap") {
+  } else if (words.to == "candump" || words.to == "asc") {
+    write_pieces(pieces_of(recording), words.to, words.out);
+  } else if (words.to == "pcap" || words.to == "pcapng" || words.to == "mcap") {
     if (!words.format_file.empty() && format_file_or_complain(words.format_file) == nullptr)
       return kExitBadInput;
     const RadioFormat* format = format_or_complain(recording.header.radio_format);
     if (format == nullptr) return kExitBadInput;
+    if (words.to == "pcapng") {
+      write_pieces(packets_of(recording, *format), words.to, words.out);
+      return kExitOk;
+    }
     const std::string bytes =
         words.to == "pcap" ? pcap_of(recording, *format) : mcap_of(recording, *format, packet_to_json);
     write_new_file(words.out, bytes);
@@ -89,18 +123,28 @@ int run_convert(const ConvertWords& words) {
 void add_verb_convert(Verb& program, VerbResult& result) {
   auto words = std::make_shared<ConvertWords>();
   Verb verb = program.add_subcommand(
-      "convert", "a recording as a dataset, CSV, stream to play, capture for Wireshark, or MCAP");
-  verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
-  verb.add_option("--to", words->to,
-                  "dataset: a folder with dataset.toml, model.toml and one CSV per run; csv; stream; pcap "
-                  "(Wireshark); "
-                  "mcap (Foxglove, PlotJuggler)")
-      .one_of({"dataset", "csv", "stream", "pcap", "mcap"})
+      "convert",
+      "a recording or a capture as a dataset, CSV, stream to play, capture for other tools, or MCAP");
+  verb.add_option("FILE", words->recording,
+                  "recording that serve --record wrote; candump, asc, pcap, pcapng, CSV of time and hex; a "
+                  "league's game log "
+                  "(.log, .log.gz)")
+      .required();
+  verb.add_option(
+          "--to", words->to,
+          "dataset: a folder with dataset.toml, model.toml and one CSV per run; csv; stream; pcapng, pcap "
+          "(Wireshark; pcap without ways); mcap (Foxglove, PlotJuggler); candump, asc (CAN tools). Of a "
+          "capture: "
+          "csv, stream, pcapng, candump, asc")
+      .one_of({"dataset", "csv", "stream", "pcap", "pcapng", "mcap", "candump", "asc"})
       .required();
   verb.add_option("--out", words->out, "folder (dataset) or file to make; what is there is never overwritten")
       .required();
   verb.add_option("--format", words->format_file,
                   "radio format of the recording from this file, where it was made with one");
+  verb.add_option("--radio", words->radio,
+                  "radio format of a capture that does not say which way its bytes went");
+  add_capture_options(verb, words->capture);
   verb.add_option("--robot", words->robot, "one robot only (default: all)").range(0, 255);
   verb.add_option("--camera-hz", words->camera_Hz, "rate of the vision columns of a dataset")
       .range(0.1, 10000.0)

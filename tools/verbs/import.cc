@@ -8,6 +8,7 @@
 
 #include "hil/loop/effect_overrides.h"
 #include "hil/loop/session_checks.h"
+#include "hil/recording/capture_import.h"
 #include "hil/recording/log_import.h"
 #include "hil/recording/recording_writer.h"
 #include "hil/recording/session_setup.h"
@@ -17,6 +18,7 @@
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
+#include "tools/options/capture_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -25,6 +27,7 @@ namespace {
 
 struct ImportWords {
   std::string log, robot = "omni_default", radio, format_file, robots = "0-5", team = "blue", out;
+  CaptureWords capture;
 };
 
 SessionSetup setup_of(const ImportWords& words) {
@@ -41,6 +44,39 @@ SessionSetup setup_of(const ImportWords& words) {
   return setup;
 }
 
+struct ImportedLog {
+  LogImport log;
+  std::uint64_t epoch_ms = 0;  // 0: its times are none of Unix
+  std::vector<std::string> notes;
+};
+
+ImportedLog capture_log(const ImportWords& words, const SessionSetup& setup) {
+  const CaptureFilter filter = capture_filter(words.capture);
+  const RadioFormat* format = find_radio_format(setup.radio_format);  // session_config() has found it
+  CaptureImport capture =
+      import_capture(load_capture(words.log, filter), filter, *format, words.log, setup.step_ns);
+  ImportedLog out;
+  out.notes = std::move(capture.notes);
+  out.log.chunks = std::move(capture.chunks);
+  out.log.end_ns = (out.log.chunks.back().now_ns / setup.step_ns + 2) * setup.step_ns;
+  out.log.most_moved_ns = put_off_to_steps(out.log.chunks, setup.step_ns);
+  out.log.first_s = static_cast<double>(capture.start_ns) / 1e9;
+  if (capture.unix_time) out.epoch_ms = static_cast<std::uint64_t>(capture.start_ns / 1'000'000);
+  return out;
+}
+
+ImportedLog text_log(const ImportWords& words, const SessionSetup& setup) {
+  std::string error_text;
+  const std::string text = read_text_file(words.log, error_text);
+  if (!error_text.empty())
+    throw std::system_error(std::make_error_code(std::errc::io_error), words.log + ": " + error_text);
+  ImportedLog out;
+  out.log = parse_radio_log(text, words.log, setup.step_ns);
+  constexpr double kUnixFrom_s = 1e9;  // September 2001: what is less counts from the start of something
+  if (out.log.first_s >= kUnixFrom_s) out.epoch_ms = static_cast<std::uint64_t>(out.log.first_s * 1e3);
+  return out;
+}
+
 int run_import(ImportWords words) {
   if (!words.format_file.empty()) {
     const RadioFormat* format = format_file_or_complain(words.format_file);
@@ -49,17 +85,13 @@ int run_import(ImportWords words) {
   }
   const SessionSetup setup = setup_of(words);
   session_config(setup);  // says what is wrong with it
-  std::string error_text;
-  const std::string text = read_text_file(words.log, error_text);
-  if (!error_text.empty())
-    throw std::system_error(std::make_error_code(std::errc::io_error), words.log + ": " + error_text);
-  const LogImport log = parse_radio_log(text, words.log, setup.step_ns);
+  const auto [log, epoch_ms, notes] =
+      is_capture_file(words.log) ? capture_log(words, setup) : text_log(words, setup);
   if (std::filesystem::exists(words.out)) throw FileExists(words.out + ": is there already");
   RecordingHeader header = recording_header(setup, "imported");
   header.firmware = "as on the robot";
   // Packets that carry a time carry the log's.
-  constexpr double kUnixFrom_s = 1e9;  // September 2001: what is less counts from the start of something
-  if (log.first_s >= kUnixFrom_s) header.epoch_ms = static_cast<std::uint64_t>(log.first_s * 1e3);
+  if (epoch_ms != 0) header.epoch_ms = epoch_ms;
   std::error_code error;
   const auto writer = RecordingWriter::open(words.out, std::move(header), error);
   if (!writer) throw std::system_error(error, words.out);
@@ -75,6 +107,7 @@ int run_import(ImportWords words) {
   }
   writer->finish({.now_ns = log.end_ns, .wall_s = 0.0, .counters = {}});
   if (writer->error()) throw std::system_error(writer->error(), words.out);
+  print_notes(notes);
   fmt::print(
       "{}: {:.3f} s from {:.3f} s on, {} writes of the host, {} of the robots; host put off by {:.3f} ms "
       "at most\n",
@@ -88,7 +121,10 @@ int run_import(ImportWords words) {
 void add_verb_import(Verb& program, VerbResult& result) {
   auto words = std::make_shared<ImportWords>();
   Verb verb = program.add_subcommand("import", "what a real robot's radio said, as a recording to check");
-  verb.add_option("LOG", words->log, "text, a line each: TIME_S > HEX (host) or TIME_S < HEX (robots)")
+  verb.add_option(
+          "LOG", words->log,
+          "candump, asc, pcap, pcapng, CSV of time and hex, or text, a line each: TIME_S > HEX (host) "
+          "or TIME_S < HEX (robots)")
       .required();
   verb.add_option("--robot", words->robot, "robot model: a name or a .toml file").capture_default_str();
   verb.add_option("--radio", words->radio, "radio format (default: the robot model's own)");
@@ -97,9 +133,12 @@ void add_verb_import(Verb& program, VerbResult& result) {
       .capture_default_str();
   verb.add_option("--team", words->team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
   verb.add_option("--out", words->out, "recording to make; what is there is never overwritten").required();
+  add_capture_options(verb, words->capture);
   verb.footer(
       "`check RECORDING --explain` then has the model answer the same commands and says what of it differs.\n"
-      "Times may begin anywhere (Unix time). Exit codes: 2 a line that cannot be used, all named; 3 a file.");
+      "Times may begin anywhere (Unix time). What of a capture was left out or taken for granted is said in "
+      "notes.\n"
+      "Exit codes: 2 a line that cannot be used, all named; 3 a file.");
   verb.callback(
       [words, &result] { result.exit_code = guarded("import", [&] { return run_import(*words); }); });
 }
