@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Format, style, rooms, API reference, static checks, sanitizers, a minute of fuzzing. Called by `./dev check [STEP…]`.
+# Format, style, rooms, API reference, static checks, sanitizers, ten seconds of fuzzing per target. Called by `./dev check [STEP…]`.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 steps=("$@")
@@ -47,9 +47,8 @@ check_sanitizers() {
     (cd build/asan-ubsan && ctest --output-on-failure -j "$(nproc)" -LE 'slow|allocations')
 }
 check_fuzz() {
-  cmake --preset fuzz >/dev/null && ninja -C build/fuzz fuzz_packets &&
-    mkdir -p build/fuzz/found &&
-    build/fuzz/tests/fuzz_packets -max_total_time="${OMNIHIL_FUZZ_S:-60}" -print_final_stats=1 build/fuzz/found tests/fuzz/corpus
+  # seconds for each target of tests/fuzz/targets
+  cmake --preset fuzz >/dev/null && ninja -C build/fuzz fuzz_targets && tools/fuzz.sh build/fuzz "${OMNIHIL_FUZZ_S:-10}"
 }
 
 for step in "${steps[@]}"; do

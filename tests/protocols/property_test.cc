@@ -91,7 +91,8 @@ TEST(PacketProperty, HoldsOverTheFuzzersCorpus) {
   const auto formats = radio_formats();
   int inputs = 0;
   int accepted = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(OMNIHIL_SOURCE_DIR "/tests/fuzz/corpus")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(OMNIHIL_SOURCE_DIR "/tests/fuzz/corpus/packets")) {
     std::ifstream file(entry.path(), std::ios::binary);
     Bytes input{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     ASSERT_FALSE(input.empty()) << entry.path();
