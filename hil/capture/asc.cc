@@ -40,10 +40,11 @@ class AscReader {
     if (!parse_decimal_time(words[0], unit(), stamp_ns) || words.size() < 2)
       return notes_.count("no line of an ASC log: left out", number);
     take_stamp(stamp_ns);
-    if (now_ns_ > kMostTime_ns) return notes_.count("a time after the year 2096: left out", number);
+    const std::int64_t at_ns = now_ns_ + start_ns_.value_or(0);
+    if (at_ns > kMostTime_ns) return notes_.count("a time after the year 2096: left out", number);
     Captured frame;
     frame.carrier = CaptureCarrier::kCan;
-    frame.at_ns = now_ns_ + start_ns_.value_or(0);
+    frame.at_ns = at_ns;
     const char* left_out = words[1] == "CANFD" ? take_fd(words, frame) : take_classic(words, frame);
     if (left_out != nullptr) return notes_.count(left_out, number);
     if (capture_.pieces.empty() || channel_.empty())
@@ -81,7 +82,7 @@ class AscReader {
     // Times of a later trigger block go on from those before, or begin again at its own date.
     if (block_ns_ && stamp_ns < now_ns_ && !relative_) start_ns_ = block_ns_;
     block_ns_.reset();
-    now_ns_ = relative_ ? std::min(now_ns_, kMostTime_ns) + stamp_ns : stamp_ns;
+    now_ns_ = std::min(relative_ ? now_ns_ + stamp_ns : stamp_ns, kMostTime_ns);
     any_stamp_ = true;
   }
 

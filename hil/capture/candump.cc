@@ -77,6 +77,7 @@ bool take_console_frame(std::span<const std::string_view> words, Line& line) {
   std::uint32_t count = 0;
   if (!parse_number_of_base(size, 10, count)) return false;
   line.frame.fd = size.size() == 2;  // "[02]": CAN FD in candump's print
+  line.frame.bitrate_switch = line.frame.bitrate_switch && line.frame.fd;
   auto byte = bracket + 1;
   if (byte != words.end() && *byte == "remote") {
     line.left_out = "remote frame: left out";

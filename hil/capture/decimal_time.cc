@@ -89,6 +89,7 @@ bool parse_decimal_time(std::string_view text, std::int64_t unit_ns, std::int64_
   std::int64_t whole = 0;
   std::size_t at = 0;
   for (; at < text.size() && is_digit(text[at]); ++at) {
+    if (whole > kMostTime_ns / unit_ns / 10) return false;
     whole = whole * 10 + (text[at] - '0');
     if (whole > kMostTime_ns / unit_ns) return false;
   }
@@ -102,7 +103,7 @@ bool parse_decimal_time(std::string_view text, std::int64_t unit_ns, std::int64_
   }
   if (digits == 0 || at != text.size()) return false;
   ns = whole * unit_ns + part;
-  return true;
+  return ns <= kMostTime_ns;
 }
 
 std::string decimal_time(std::int64_t ns, int decimals) {
@@ -118,13 +119,13 @@ bool parse_date_line(std::string_view text, std::int64_t& unix_ns) {
   const std::chrono::year_month_day day{std::chrono::year(date.year),
                                         std::chrono::month(static_cast<unsigned>(date.month)),
                                         std::chrono::day(static_cast<unsigned>(date.day))};
-  if (date.year < 1970 || date.year > 2090 || date.of_day_ns < 0 || !day.ok()) return false;
+  if (date.year < 1970 || date.year > 2096 || date.of_day_ns < 0 || !day.ok()) return false;
   const std::int64_t hour = 3600 * kSecond_ns;
   if (date.half != 0 && date.of_day_ns >= 13 * hour) date.half = 0;  // 24 hours all the same
   if (date.half == 1 && date.of_day_ns >= 12 * hour) date.of_day_ns -= 12 * hour;
   if (date.half == 2 && date.of_day_ns < 12 * hour) date.of_day_ns += 12 * hour;
   unix_ns = std::chrono::sys_days(day).time_since_epoch().count() * 24 * hour + date.of_day_ns;
-  return true;
+  return unix_ns <= kMostTime_ns;
 }
 
 std::string date_line(std::int64_t unix_ns) {

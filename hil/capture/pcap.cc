@@ -169,16 +169,19 @@ Capture read_pcap(const std::string& bytes, const std::string& name) {
     Captured piece;
     if (number <= ways.size()) piece.way = ways[number - 1];
     const char* left_out = "a packet that was cut when it was captured: left out";
-    if (header->ts.tv_sec < 0 || header->ts.tv_sec >= kMostTime_ns / kSecond_ns)
-      left_out = "a time before 1970 or after 2096: left out";
+    // tv_usec: nanoseconds, as asked for; a second or more of them where the file is damaged
+    const auto seconds = header->ts.tv_sec, fraction_ns = header->ts.tv_usec;
+    if (seconds < 0 || seconds > kMostTime_ns / kSecond_ns || fraction_ns < 0 || fraction_ns >= kSecond_ns ||
+        seconds * kSecond_ns + fraction_ns > kMostTime_ns)
+      left_out = "a time before 1970, after 2096, or that is none: left out";
     else if (header->caplen >= header->len)
       left_out = take_packet(link, Bytes(data, header->caplen), piece);
     if (left_out != nullptr) {
       notes.count(left_out, number);
-    } else if (piece.bytes.empty()) {
+    } else if (piece.bytes.empty() && piece.carrier != CaptureCarrier::kCan) {
       notes.count("a packet without payload: left out", number);
     } else {
-      piece.at_ns = header->ts.tv_sec * kSecond_ns + header->ts.tv_usec;  // nanoseconds, as asked for
+      piece.at_ns = seconds * kSecond_ns + fraction_ns;
       capture.pieces.push_back(std::move(piece));
     }
   }

@@ -27,6 +27,8 @@ TEST(DecimalTime, RefusesWhatIsNoTimeOrTooLarge) {
   for (const char* text : {"", ".", ".5", "-1", "+1", "1e3", "1.2.3", "1 ", " 1", "0x1", "nan", "inf",
                            "4000000001", "99999999999999999999999999"})
     EXPECT_FALSE(parse_decimal_time(text, kSecond_ns, ns)) << text;
+  EXPECT_FALSE(parse_decimal_time("40000000000000000000", 1, ns));  // one digit more than 64 bits hold
+  EXPECT_FALSE(parse_decimal_time("4000000000000000001", 1, ns));
   EXPECT_TRUE(parse_decimal_time("3999999999.999999999", kSecond_ns, ns));
 }
 
@@ -75,9 +77,10 @@ TEST(DateLine, OfEveryMonthIsReadAgain) {
 
 TEST(DateLine, RefusesWhatIsNoDate) {
   std::int64_t ns = 0;
-  for (const char* text : {"", "Wed", "Wed Nov 17 2021", "2021-13-17 15:01:42", "2021-02-30 15:01:42",
-                           "Nov 17 25:01:42 2021", "Nov 17 15:61:42 2021", "Nov 17 15:01 2021",
-                           "Nov 17 15:01:42 1969", "Nov 17 15:01:42 9999", "17.11 15:01:42", "1-2- 15:01:42"})
+  for (const char* text :
+       {"", "Wed", "Wed Nov 17 2021", "2021-13-17 15:01:42", "2021-02-30 15:01:42", "Nov 17 25:01:42 2021",
+        "Nov 17 15:61:42 2021", "Nov 17 15:01 2021", "Nov 17 15:01:42 1969", "Nov 17 15:01:42 9999",
+        "Nov 17 15:01:42 2096", "17.11 15:01:42", "1-2- 15:01:42"})
     EXPECT_FALSE(parse_date_line(text, ns)) << text;
 }
 

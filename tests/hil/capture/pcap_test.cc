@@ -101,22 +101,37 @@ TEST(Pcap, WhatIsNoDataIsLeftOutAndSaidWithItsPacket) {
                           {socketcan(1, "x"), socketcan(0x20000080, "12345678"), socketcan(0x40000001, ""),
                            std::string("\0\0\0\1\5\0\0\0x", 9), "short", socketcan(2, "")}),
                 "bus.pcap");
-  EXPECT_EQ(can.pieces.size(), 1U);
+  ASSERT_EQ(can.pieces.size(), 2U);
+  EXPECT_TRUE(can.pieces[1].bytes.empty());  // a frame says something without data, too
   for (const char* note : {"bus.pcap:packet 2: error frame", "bus.pcap:packet 3: remote frame",
-                           "bus.pcap:packet 4: a CAN frame that is cut: left out (and 1 more of it)",
-                           "bus.pcap:packet 6: a packet without payload"})
+                           "bus.pcap:packet 4: a CAN frame that is cut: left out (and 1 more of it)"})
     EXPECT_TRUE(notes_say(can, note)) << note;
   const std::string tcp = ethernet(ipv4("0123456789abcdefghij", 6)), arp = ethernet("x", 0x0806);
   const std::string fragment = ethernet(ipv4(udp(1, 2, "x"), 17, 0x2000));
   std::string short_udp = udp(1, 2, "xyz");
   short_udp.pop_back();
-  const Capture lan = read_pcap(
-      pcap_file(false, true, kEthernet, {tcp, arp, fragment, ethernet(ipv4(short_udp))}), "lan.pcap");
+  const Capture lan =
+      read_pcap(pcap_file(false, true, kEthernet,
+                          {tcp, arp, fragment, ethernet(ipv4(short_udp)), ethernet(ipv4(udp(1, 2, "")))}),
+                "lan.pcap");
   EXPECT_TRUE(lan.pieces.empty());
   for (const char* note :
        {"lan.pcap:packet 1: a packet that is neither UDP nor CAN: left out (and 1 more of it)",
-        "lan.pcap:packet 3: a fragment of a UDP packet", "lan.pcap:packet 4: a UDP packet that is cut"})
+        "lan.pcap:packet 3: a fragment of a UDP packet", "lan.pcap:packet 4: a UDP packet that is cut",
+        "lan.pcap:packet 5: a packet without payload"})
     EXPECT_TRUE(notes_say(lan, note)) << note;
+}
+
+// A damaged fraction of a second is no time, and none below 0.
+TEST(Pcap, TimesThatAreNoneAreLeftOut) {
+  for (const bool nanoseconds : {false, true}) {
+    std::string file = pcap_file(false, nanoseconds, kUser0, {"one", "two"});
+    file.replace(24 + 4, 4, "\xff\xff\xff\xff");
+    const Capture capture = read_pcap(file, "x");
+    ASSERT_EQ(capture.pieces.size(), 1U);
+    EXPECT_EQ(capture.pieces[0].at_ns, kStart_ns + kMillisecond_ns);
+    EXPECT_TRUE(notes_say(capture, "x:packet 1: a time before 1970, after 2096, or that is none: left out"));
+  }
 }
 
 TEST(Pcap, UnknownLinkTypesAreRefusedByName) {
