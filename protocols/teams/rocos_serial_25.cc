@@ -119,9 +119,10 @@ constexpr Message row(std::string_view name, Type type, Direction direction, std
 constexpr std::array kMessages{
     row("packets", kToRobots, Direction::kToRobot, kDrive,
         "Velocity, kick and dribbler of up to three robots.", MessageRole::kCommand),
+    // Before the starts: an answer whose bytes 2 to 4 happen to be a step's is one all the same.
+    row("answer", kFromRobot, Direction::kFromRobot, kAnswer, "A robot's answer.", MessageRole::kFeedback),
     row("start1", kFirst, Direction::kToDongle, kStart1, "Wakes the transmitter."),
     row("start2", kSecond, Direction::kToDongle, kStart2, "Sets its channel."),
-    row("answer", kFromRobot, Direction::kFromRobot, kAnswer, "A robot's answer.", MessageRole::kFeedback),
 };
 static_assert(all_tiled(kMessages));
 
