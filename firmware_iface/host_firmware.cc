@@ -106,6 +106,10 @@ std::unique_ptr<HostFirmware> make_reference_firmware(const RobotConfig& config)
   return std::make_unique<HostFirmware>(omnihil_reference_firmware(), config);
 }
 
+std::unique_ptr<HostFirmware> make_emotional_firmware(const RobotConfig& config) {
+  return std::make_unique<HostFirmware>(omnihil_emotional_firmware(), config);
+}
+
 std::unique_ptr<HostFirmware> make_foc_firmware(const RobotConfig& config, const MotorConfig& motors) {
   return std::make_unique<HostFirmware>(omnihil_foc_firmware(), config, motors);
 }

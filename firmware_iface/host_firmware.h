@@ -65,6 +65,7 @@ class HostFirmware final : public CheckedFirmware {
 // The reference firmware of firmware_iface/reference: duties; or, by field-oriented control or six-step
 // commutation, the legs of three-phase bridges. Throw std::invalid_argument as above.
 std::unique_ptr<HostFirmware> make_reference_firmware(const RobotConfig& config);
+std::unique_ptr<HostFirmware> make_emotional_firmware(const RobotConfig& config);  // wheels by BELBIC
 std::unique_ptr<HostFirmware> make_foc_firmware(const RobotConfig& config, const MotorConfig& motors);
 std::unique_ptr<HostFirmware> make_six_step_firmware(const RobotConfig& config, const MotorConfig& motors);
 

@@ -219,8 +219,15 @@ typedef struct omnihil_firmware_api {
   void (*motor_tick)(void* state, const omnihil_motor_sensors* sensors, omnihil_motor_drive* drive);
 } omnihil_firmware_api;
 
+/* Seen from outside the library even where everything else is hidden (-fvisibility=hidden). */
+#if defined(__GNUC__) && defined(__ELF__)
+#define OMNIHIL_EXPORT __attribute__((visibility("default")))
+#else
+#define OMNIHIL_EXPORT
+#endif
+
 /* The one symbol a firmware library exports. Returns NULL when it cannot serve that ABI version. */
-const omnihil_firmware_api* omnihil_firmware_get(uint32_t abi_version);
+OMNIHIL_EXPORT const omnihil_firmware_api* omnihil_firmware_get(uint32_t abi_version);
 
 #ifdef __cplusplus
 }

@@ -99,6 +99,7 @@ static uint32_t decivolts(float battery_V) {
 }
 
 void hermes_robot_act(reference_state* state, const hermes_message* message, uint64_t now_us) {
+  if (message->type != ULAVAL_HERMES_GET_NUM_REQUEST_TYPE) ++state->hermes.packets;
   switch (message->type) {
     case ULAVAL_HERMES_SPEED_MOVE_TYPE:
     case ULAVAL_HERMES_SPEED_MOVE_ADVANCE_TYPE:
@@ -117,7 +118,7 @@ void hermes_robot_act(reference_state* state, const hermes_message* message, uin
       hermes_radio_answer(&state->radio, ULAVAL_HERMES_BATTERIE_RESPONSE_TYPE, decivolts(state->battery_V));
       break;
     case ULAVAL_HERMES_GET_NUM_REQUEST_TYPE:
-      hermes_radio_answer(&state->radio, ULAVAL_HERMES_NUM_REQUEST_RESPONSE_TYPE, state->radio.accepted);
+      hermes_radio_answer(&state->radio, ULAVAL_HERMES_NUM_REQUEST_RESPONSE_TYPE, state->hermes.packets);
       break;
     default:
       break;

@@ -7,6 +7,7 @@
  *                 2 charge           for 60 s
  *                 3 dribbler         0 off, 1, 2, 3: duty 0.1, 0.2, 0.35
  *   PING_REQUEST, GET_BATTERIE, GET_NUM_REQUEST   an answer: none, decivolts, packets received so far
+ *                                                 (questions for that number not counted)
  *
  * Each loop has its own last packet and its own age: after switching, an old packet does not move the robot.
  * Differences, on purpose: a wrong checksum is refused (theirs logs it and acts); the charge bit does not
@@ -29,6 +30,7 @@ typedef struct hermes_robot {
   omnihil_command command[HERMES_LOOPS]; /* last packet of each kind */
   uint64_t received_us[HERMES_LOOPS];
   uint32_t received[HERMES_LOOPS];
+  uint32_t packets;           /* so far; GET_NUM_REQUEST is not counted, as theirs does not */
   uint32_t registers_unknown; /* SET_REGISTER of a register or loop state that does not exist */
 } hermes_robot;
 

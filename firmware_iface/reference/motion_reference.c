@@ -8,7 +8,7 @@ static const float kGrip =
 static const float kQuarterGravity_m_s2 = 9.81f / 4.0f;
 static const float kYawAccelLimit_rad_s2 = 60.0f;
 /* Beyond any robot; brings numbers like 3e38 down before they are multiplied. Keeps the direction. */
-static const float kSpeedOfNoRobot_m_s = 100.0f;
+static const float kSpeedOfNoRobot_m_s = 100.0f, kYawRateOfNoRobot_rad_s = 1000.0f;
 
 static float step_share(float gap, float step) { return gap > step ? step / gap : 1.0f; }
 
@@ -61,8 +61,9 @@ void motion_start(motion_reference* motion, const wheel_geometry* geometry,
 void motion_toward_body(motion_reference* motion, const wheel_geometry* geometry,
                         const float target[BODY_AXES], float dt_s) {
   float before[BODY_AXES] = {motion->body[BODY_X], motion->body[BODY_Y], motion->body[BODY_OMEGA]};
-  float largest = fmaxf(fmaxf(fabsf(target[BODY_X]), fabsf(target[BODY_Y])), fabsf(target[BODY_OMEGA]));
-  float scale = largest > kSpeedOfNoRobot_m_s ? kSpeedOfNoRobot_m_s / largest : 1.0f;
+  float excess = fmaxf(fmaxf(fabsf(target[BODY_X]), fabsf(target[BODY_Y])) / kSpeedOfNoRobot_m_s,
+                       fabsf(target[BODY_OMEGA]) / kYawRateOfNoRobot_rad_s);
+  float scale = excess > 1.0f ? 1.0f / excess : 1.0f;
   float goal[BODY_AXES] = {target[BODY_X] * scale, target[BODY_Y] * scale, target[BODY_OMEGA] * scale};
 
   float wheels[OMNIHIL_WHEELS];

@@ -40,6 +40,7 @@ static int init(void* block, const omnihil_robot_config* config) {
   hermes_radio_init(&state->radio, config->robot_id);
   hermes_robot_init(&state->hermes);
   state->bus_V = (float)config->bus_voltage_nominal_V;
+  for (int w = 0; w < OMNIHIL_WHEELS; ++w) belbic_reset(&state->emotion[w]);
   state->gains.p[LOOP_YAW] = kYawGain_per_s;
   state->gains.p[LOOP_WHEELS] = (double)state->tuning.gains.p_V_s_per_rad;
   state->gains.i[LOOP_WHEELS] = (double)state->tuning.gains.i_V_per_rad;
@@ -88,7 +89,9 @@ static void tick(void* block, const omnihil_sensors* sensors, omnihil_drive* dri
   reference_state* state = block;
   if (state->command.flags & OMNIHIL_COMMAND_REBOOT) {
     omnihil_robot_config config = state->config;
+    uint32_t emotional = state->emotional;
     init(state, &config);
+    state->emotional = emotional;
   }
   reference_tick(state, sensors, drive);
 }
@@ -112,7 +115,31 @@ static const omnihil_firmware_api kApi = {
     .feedback = feedback,
 };
 
+static int emotional_init(void* block, const omnihil_robot_config* config) {
+  int refusal = init(block, config);
+  if (refusal == REFERENCE_CONFIG_OK) ((reference_state*)block)->emotional = 1;
+  return refusal;
+}
+
+static const omnihil_firmware_api kEmotional = {
+    .abi_version = OMNIHIL_FIRMWARE_ABI,
+    .struct_bytes = sizeof(omnihil_firmware_api),
+    .name = "omnihil reference emotional controller",
+    .radio_format = "ulaval-hermes",
+    .control_period_us = REFERENCE_PERIOD_US,
+    .state_bytes = sizeof(reference_state),
+    .init = emotional_init,
+    .command = command,
+    .radio_receive = radio_receive,
+    .radio_transmit = radio_transmit,
+    .set_gains = set_gains,
+    .get_gains = get_gains,
+    .tick = tick,
+    .feedback = feedback,
+};
+
 const omnihil_firmware_api* omnihil_reference_firmware(void) { return &kApi; }
+const omnihil_firmware_api* omnihil_emotional_firmware(void) { return &kEmotional; }
 
 const omnihil_firmware_api* omnihil_firmware_get(uint32_t abi_version) {
   return abi_version == OMNIHIL_FIRMWARE_ABI ? &kApi : NULL;

@@ -14,6 +14,7 @@
 #ifndef OMNIHIL_REFERENCE_FIRMWARE_H
 #define OMNIHIL_REFERENCE_FIRMWARE_H
 #include "firmware_iface/omnihil_firmware.h"
+#include "firmware_iface/reference/belbic.h"
 #include "firmware_iface/reference/command_watchdog.h"
 #include "firmware_iface/reference/hermes_robot.h"
 #include "firmware_iface/reference/kicker.h"
@@ -71,11 +72,15 @@ typedef struct reference_state {
   motion_reference motion;
   wheel_encoder encoder[OMNIHIL_WHEELS];
   wheel_loop loop[OMNIHIL_WHEELS];
+  uint32_t emotional; /* wheels by belbic.h instead */
+  belbic_loop emotion[OMNIHIL_WHEELS];
   kicker kick;
   omnihil_drive drive; /* as last given */
 } reference_state;
 
 const omnihil_firmware_api* omnihil_reference_firmware(void);
+/* The same with belbic.h in the wheels. */
+const omnihil_firmware_api* omnihil_emotional_firmware(void);
 
 /* A double as a float, limited to +-1e30: far beyond any robot, and products of it stay finite. */
 float narrowed(double value);

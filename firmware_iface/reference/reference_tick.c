@@ -106,6 +106,7 @@ static void close_loops(reference_state* state, float dt_s) {
     const wheel_encoder* encoder = &state->encoder[w];
     if (wheel_encoder_faulty(encoder)) {
       wheel_loop_reset(&state->loop[w]);
+      belbic_reset(&state->emotion[w]);
       continue; /* stays in coast */
     }
     /* tau = r F / gear + J_free d(omega_rotor)/dt */
@@ -119,7 +120,10 @@ static void close_loops(reference_state* state, float dt_s) {
                                     .dt_s = dt_s};
     state->drive.mode[w] = OMNIHIL_DRIVE_DUTY;
     state->drive.duty_ratio[w] =
-        (double)wheel_loop_update(&state->loop[w], &tuning->gains, &tuning->motor, &input);
+        (double)(state->emotional
+                     ? belbic_update(&state->emotion[w], &kBelbicRates, &tuning->gains, &tuning->motor,
+                                     &input)
+                     : wheel_loop_update(&state->loop[w], &tuning->gains, &tuning->motor, &input));
   }
 }
 
@@ -128,7 +132,10 @@ static void let_go(reference_state* state) {
   motion_start(&state->motion, &state->geometry, still);
   memset(state->body_target, 0, sizeof state->body_target);
   state->yaw_output_rad_s = 0.0f;
-  for (int w = 0; w < OMNIHIL_WHEELS; ++w) wheel_loop_reset(&state->loop[w]);
+  for (int w = 0; w < OMNIHIL_WHEELS; ++w) {
+    wheel_loop_reset(&state->loop[w]);
+    state->emotion[w].integral_rad = 0.0f; /* what was learned stays */
+  }
   state->following = 0;
 }
 

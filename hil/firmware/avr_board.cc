@@ -123,7 +123,7 @@ void AvrBoard::take(const std::string& line, bool& done) {
   if (verb == "sent") {
     sent_.push_back(unhex(rest));
   } else if (verb == "note") {
-    notes_.push_back(fmt::format("board of wheel {}: {}", wheel(), rest));
+    notes_.push_back(rest);
   } else if (verb == "stopped" || verb == "error") {
     fail(rest);
     done = verb == "error";

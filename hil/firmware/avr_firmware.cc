@@ -9,6 +9,7 @@
 
 #include "hil/firmware/avr_board.h"
 #include "hil/firmware/image_files.h"
+#include "hil/text/merged_lines.h"
 
 namespace omnihil {
 namespace {
@@ -58,9 +59,9 @@ class AvrFirmware final : public Firmware {
   }
   std::string_view failure() const override { return failure_; }
   std::vector<std::string> report() const override {
-    std::vector<std::string> lines;
-    for (const auto& board : boards_) lines.insert(lines.end(), board->notes().begin(), board->notes().end());
-    return lines;
+    std::vector<LinesOf> boards;
+    for (const auto& board : boards_) boards.push_back({board->wheel(), board->notes()});
+    return merge_lines("board of wheel", "boards of wheels", boards);
   }
 
  private:
@@ -123,7 +124,7 @@ RobotDrive AvrFirmware::tick(const RobotSensors& sensors) {
 }  // namespace
 
 Session::FirmwareMaker avr_firmware(const std::string& image_file, const std::string& board_file,
-                                    double deadline_s) {
+                                    double deadline_s, std::string_view served) {
   auto image = std::make_shared<Image>();
   read_image_files(
       image_file, board_file,
@@ -131,7 +132,8 @@ Session::FirmwareMaker avr_firmware(const std::string& image_file, const std::st
         mcu::read_avr_image(bytes, image->bytes, problems);
       },
       [&](const std::string& text, std::vector<mcu::BoardProblem>& problems) {
-        if (auto board = mcu::read_avr_board(text, board_file, problems)) image->board = std::move(*board);
+        if (auto board = mcu::read_avr_board(text, board_file, problems, served_radio(served)))
+          image->board = std::move(*board);
       });
   return [image, deadline_s](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     try {

@@ -11,14 +11,16 @@
 // period, an absolute jump of the count (lines carry edges), motor ticks, commands that do not come by radio.
 #pragma once
 #include <string>
+#include <string_view>
 
 #include "hil/loop/session.h"
 
 namespace omnihil {
 
+// `served`: the radio format that the session serves, which the board's must be; empty: any that there is.
 // Reads and checks both files; throws std::invalid_argument with every problem, a line each. The maker does
 // if omnihil-avr is not there or refuses.
 Session::FirmwareMaker avr_firmware(const std::string& image_file, const std::string& board_file,
-                                    double deadline_s);
+                                    double deadline_s, std::string_view served = {});
 
 }  // namespace omnihil

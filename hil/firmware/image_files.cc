@@ -5,6 +5,10 @@
 
 namespace omnihil {
 
+mcu::ServedRadio served_radio(std::string_view format) {
+  return {.known = radio_format_ids(), .served = std::string(format)};
+}
+
 void read_image_files(const std::string& image_file, const std::string& board_file, const ReadImage& image,
                       const ReadBoard& board) {
   std::vector<std::string> problems;

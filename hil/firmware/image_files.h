@@ -8,11 +8,15 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "firmware_iface/mcu/board/board_problem.h"
 
 namespace omnihil {
+
+// The formats that there are, and the one that a session serves (empty: any).
+mcu::ServedRadio served_radio(std::string_view format);
 
 using ReadImage =
     std::function<void(std::span<const std::uint8_t> bytes, std::vector<std::string>& problems)>;

@@ -5,6 +5,7 @@
 
 #include "firmware_iface/mcu/board/mcu_firmware.h"
 #include "hil/firmware/image_files.h"
+#include "hil/text/merged_lines.h"
 
 namespace omnihil {
 namespace {
@@ -36,26 +37,27 @@ class ImageFirmware final : public Firmware {
   std::uint64_t missed_control_periods() const override { return mcu_.missed_control_periods(); }
   std::string_view failure() const override {
     for (int b = 0; b < mcu_.boards(); ++b) {
-      if (mcu_.board(b).machine().stopped()) return "the emulated core has locked up";
+      if (!failure_.empty()) break;
+      failure_ = board_failure(mcu_.board(b), image_->elf);
     }
-    return {};
+    return failure_;
   }
   std::vector<std::string> report() const override {
-    std::vector<std::string> lines;
-    for (int b = 0; b < mcu_.boards(); ++b) {
-      const std::string whose = mcu_.boards() > 1 ? "board " + std::to_string(b) + ": " : "";
-      for (const std::string& line : board_report(mcu_.board(b), image_->elf)) lines.push_back(whose + line);
-    }
-    return lines;
+    if (mcu_.boards() == 1) return board_report(mcu_.board(0), image_->elf);
+    std::vector<LinesOf> boards;
+    for (int b = 0; b < mcu_.boards(); ++b) boards.push_back({b, board_report(mcu_.board(b), image_->elf)});
+    return merge_lines("board", "boards", boards);
   }
 
  private:
   std::shared_ptr<const Image> image_;
   mcu::McuFirmware mcu_;
+  mutable std::string failure_;  // once it has failed
 };
 }  // namespace
 
-Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file) {
+Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file,
+                                      std::string_view served) {
   auto image = std::make_shared<Image>();
   read_image_files(
       image_file, board_file,
@@ -63,7 +65,8 @@ Session::FirmwareMaker image_firmware(const std::string& image_file, const std::
         mcu::read_elf(bytes, image->elf, problems);
       },
       [&](const std::string& text, std::vector<mcu::BoardProblem>& problems) {
-        if (auto board = mcu::read_board(text, board_file, problems)) image->board = std::move(*board);
+        if (auto board = mcu::read_board(text, board_file, problems, served_radio(served)))
+          image->board = std::move(*board);
       });
   return [image](const RobotConfig& config) -> std::unique_ptr<Firmware> {
     return std::make_unique<ImageFirmware>(image, config);

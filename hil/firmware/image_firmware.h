@@ -6,11 +6,14 @@
 // both files, a line each; the maker does if the image does not fit the chip's memory.
 #pragma once
 #include <string>
+#include <string_view>
 
 #include "hil/loop/session.h"
 
 namespace omnihil {
 
-Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file);
+// `served`: the radio format that the session serves, which the board's must be; empty: any that there is.
+Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file,
+                                      std::string_view served = {});
 
 }  // namespace omnihil

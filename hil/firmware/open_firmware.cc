@@ -21,6 +21,27 @@
 namespace omnihil {
 namespace {
 
+// Of the ELF header's e_machine (elf.h): those that a firmware file by mistake is for.
+std::string machine_text(unsigned machine) {
+  struct Row {
+    unsigned number;
+    const char* name;
+  };
+  constexpr Row kRows[] = {{EM_386, "x86"},       {EM_MIPS, "MIPS"},       {EM_PPC, "PowerPC"},
+                           {EM_ARM, "ARM"},       {EM_X86_64, "x86-64"},   {EM_AVR, "AVR"},
+                           {EM_XTENSA, "Xtensa"}, {EM_AARCH64, "AArch64"}, {EM_RISCV, "RISC-V"}};
+  for (const Row& row : kRows) {
+    if (row.number == machine) return fmt::format("{} (machine {})", row.name, machine);
+  }
+  return fmt::format("machine {}", machine);
+}
+
+std::string type_text(unsigned type) {
+  constexpr const char* kNames[] = {"no type", "an object file that is not linked", "an executable",
+                                    "a shared object", "a core dump"};
+  return type < std::size(kNames) ? kNames[type] : fmt::format("type {}", type);
+}
+
 // What kind of file it is by its first bytes (System V ABI, ELF header); empty: a shared object.
 std::string why_no_library(const std::string& text) {
   Elf32_Ehdr head{};  // type and machine are at the same place in both classes
@@ -29,8 +50,21 @@ std::string why_no_library(const std::string& text) {
   }
   std::memcpy(&head, text.data(), sizeof head);
   if (head.e_type == ET_DYN) return {};
-  return fmt::format("is an ELF file of type {} for machine {}; needed: a shared object of this computer",
-                     head.e_type, head.e_machine);
+  return fmt::format("is an ELF file for {}, {}; needed: a shared object of this computer",
+                     machine_text(head.e_machine), type_text(head.e_type));
+}
+
+// Beside a board file it has to be an image.
+std::string why_no_image(const std::string& text) {
+  Elf32_Ehdr head{};
+  std::string what = "is neither an ELF file nor Intel HEX";
+  if (text.size() >= sizeof head && std::memcmp(text.data(), ELFMAG, SELFMAG) == 0) {
+    std::memcpy(&head, text.data(), sizeof head);
+    what = fmt::format("is an ELF file for {}, {}", machine_text(head.e_machine), type_text(head.e_type));
+  }
+  return what +
+         "; needed with --board: a 32-bit ARM executable (machine 40), an AVR executable (machine 83) or "
+         "Intel HEX for an AVR";
 }
 
 // An image for a microcontroller: a 32-bit ARM executable, an AVR one, or Intel HEX.
@@ -55,12 +89,8 @@ std::vector<std::string> problems_of(const FirmwareChoice& choice) {
   std::vector<std::string> problems;
   std::string error;
   const std::string text = read_text_file(choice.file, error);
-  if (error.empty()) error = why_no_library(text);
+  if (error.empty()) error = choice.board.empty() ? why_no_library(text) : why_no_image(text);
   if (!error.empty()) problems.push_back(fmt::format("firmware {}: {}", choice.file, error));
-  if (!choice.board.empty()) {
-    problems.push_back(
-        fmt::format("board {}: belongs to a microcontroller image; a shared object has none", choice.board));
-  }
   if (!(choice.deadline_s > 0.0 && choice.deadline_s <= 3600.0)) {
     problems.push_back(
         fmt::format("firmware deadline: {} s; allowed: above 0, up to 3600 s", choice.deadline_s));
@@ -70,7 +100,7 @@ std::vector<std::string> problems_of(const FirmwareChoice& choice) {
 
 Session::FirmwareMaker library_maker(const FirmwareChoice& choice, const SessionConfig& session) {
   std::map<std::uint32_t, std::optional<MotorConfig>> motors;
-  // Opponents with an id of ours are of its model (session_setup.h).
+  // Opponents with an id of ours: as that robot. Where they differ: opponents_alone().
   const auto note = [&motors](const std::vector<RobotModel>& models, const std::vector<int>& ids) {
     for (std::size_t i = 0; i < std::min(models.size(), ids.size()); ++i) {
       const auto [of_robot, is_new] = motors.try_emplace(static_cast<std::uint32_t>(ids[i]));
@@ -114,8 +144,9 @@ Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const Session
       throw_problems(
           {fmt::format("firmware {}: a microcontroller image; needs --board FILE beside it", choice.file)});
     }
-    return kind == ImageKind::kArm ? image_firmware(choice.file, choice.board)
-                                   : avr_firmware(choice.file, choice.board, choice.deadline_s);
+    return kind == ImageKind::kArm
+               ? image_firmware(choice.file, choice.board, session.radio_format)
+               : avr_firmware(choice.file, choice.board, choice.deadline_s, session.radio_format);
   }
   throw_problems(problems_of(choice));
   return library_maker(choice, session);

@@ -43,6 +43,8 @@ enum class StepKind : std::uint8_t {
   kBall,
   kRobotAt,
   kOpponentAt,
+  kMark,
+  kRewind,
 };
 
 using WheelSet = std::array<bool, kWheels>;
@@ -57,6 +59,8 @@ struct ScenarioStep {
   double force_forward_N = 0.0, force_left_N = 0.0, moment_Nm = 0.0;
   double supply_ratio = 1.0;
   double rise_K = 0.0;
+  // kCommand: omega_wheel_rad_s holds parts of the top speed, at which the back-EMF meets the largest duty.
+  bool of_top_speed = false;
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, yaw_rad = 0.0;  // kBall, kRobotAt, kOpponentAt
   double v_x_m_s = 0.0, v_y_m_s = 0.0, v_z_m_s = 0.0;     // kBall
   int opponent = 0;
@@ -73,6 +77,7 @@ enum class CheckKind : std::uint8_t {
   kCurrentLimit,
   kDutyLimit,
   kControlPeriods,
+  kWheelOrder,
   kSignal,
 };
 

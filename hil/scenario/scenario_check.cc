@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hil/scenario/scenario_rows.h"
+#include "hil/scenario/wheel_order.h"
 
 namespace omnihil {
 namespace {
@@ -99,7 +101,7 @@ class Checker {
     for (const ScenarioCheck& c : scenario_.checks) {
       for (std::size_t w = 0; w < kWheels; ++w) {
         if (c.wheels[w]) one(c, w);
-        if (c.kind == CheckKind::kControlPeriods) break;
+        if (!row_of(c.kind).of_wheels) break;
       }
     }
     return std::move(results_);
@@ -148,6 +150,7 @@ class Checker {
     }
     if (c.kind == CheckKind::kSignal) return bounds(c, window, r);
     if (c.kind == CheckKind::kCommandedSign) return sign(window, r);
+    if (c.kind == CheckKind::kWheelOrder) return order(c, r);
     const Found found = measure(c, window, w);
     r.measured = found.value;
     r.at_s = found.at_s;
@@ -212,6 +215,23 @@ class Checker {
     r.at_s = w.t.back();
     r.passed = mean * wanted > 0.0;
     r.note = fmt::format("commanded {:.4g} rad/s", wanted);
+    results_.push_back(r);
+  }
+
+  // By size: a wheel that turns the wrong way is commanded_sign's.
+  void order(const ScenarioCheck& c, CheckResult& r) {
+    std::array<double, kWheels> speed{}, wanted{};
+    for (std::size_t w = 0; w < kWheels; ++w) {
+      const Window window = window_of(run_.trace, "omega_wheel_rad_s", w, c.from_s, c.to_s);
+      speed[w] = std::abs(mean_from(window, kHalf, window.y));
+      wanted[w] = std::abs(mean_from(window, kHalf, window.target));
+      r.at_s = window.t.back();
+    }
+    const WheelOrder found = wheel_order(speed, wanted);
+    r.measured = found.out_of_place;
+    r.allowed = 0.0;
+    r.note = found.verdict;
+    r.passed = found.verdict.empty();
     results_.push_back(r);
   }
 

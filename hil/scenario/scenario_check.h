@@ -8,6 +8,8 @@
 //   settling_time   first t after which |y - r| <= band |r - y_0| to the end, less from_s
 //   steady_error    |mean(y - r)| / |r| over the last fifth (of |r - y_0| where r is 0)
 //   wind_up         max (y - r) sgn(r) / |r| from the release on, at least 0
+//   wheel_order     the order p of the wheels that has the least sum of (|mean y_w| - |mean r_p(w)|)^2 over the last
+//                   half is their own, and no wheel is further off than half the smallest difference of two |r|
 // Sampled at the firmware's control periods: what lies between two is not seen.
 #pragma once
 #include <string>

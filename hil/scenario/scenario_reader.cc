@@ -210,6 +210,7 @@ class Reader {
     switch (s.kind) {
       case StepKind::kCommand:
         command(t, path, s.command);
+        s.of_top_speed = t.get("omega_wheel_top_ratio") != nullptr;
         break;
       case StepKind::kDisturb:
         s.force_forward_N = within(t, path, "force_forward_N", kForce);
@@ -284,6 +285,11 @@ class Reader {
       c.mode = OMNIHIL_MODE_WHEEL_SPEED;
       per_wheel(t, path, "omega_wheel_rad_s", kFastest_rad_s, c.omega_wheel_rad_s);
     }
+    if (has("omega_wheel_top_ratio")) {
+      ++families;
+      c.mode = OMNIHIL_MODE_WHEEL_SPEED;
+      per_wheel(t, path, "omega_wheel_top_ratio", 1.0, c.omega_wheel_rad_s);
+    }
     if (has("duty_ratio")) {
       ++families;
       c.mode = OMNIHIL_MODE_WHEEL_DUTY;
@@ -299,7 +305,7 @@ class Reader {
         *t.get("do"), key_path(path, "do"),
         families == 0 ? "says not what is commanded" : "commands two things at once",
         "needed: a body velocity (v_forward_m_s, v_left_m_s, omega_body_rad_s), or omega_wheel_rad_s, "
-        "or duty_ratio, or coast = true");
+        "or omega_wheel_top_ratio, or duty_ratio, or coast = true");
   }
 
   void check(const toml::table& t, const std::string& path) {
@@ -321,7 +327,8 @@ class Reader {
     std::string suffix(row.suffix);
     if (row.follows_step || c.kind == CheckKind::kSignal) read_signal(t, path, row, c, suffix);
     const std::string most = "at_most_" + suffix, least = "at_least_" + suffix;
-    if (c.kind != CheckKind::kCommandedSign) limits(t, path, c, most, least, known);
+    if (c.kind != CheckKind::kCommandedSign && c.kind != CheckKind::kWheelOrder)
+      limits(t, path, c, most, least, known);
     c.band_ratio =
         keys_.number(t, path, "band_ratio", 0.0, 1.0, true, "allowed: above 0 to 1").value_or(0.05);
     c.standstill_rad_s =
@@ -381,14 +388,15 @@ class Reader {
   void settle(ScenarioCheck& c, std::size_t n) {
     const CheckRow& row = row_of(c.kind);
     const ScenarioStep* cause = nullptr;
-    if (row.follows_step) cause = find_step(StepKind::kCommand, std::max(0.0, c.from_s));
+    const bool follows = row.follows_step || c.kind == CheckKind::kWheelOrder;
+    if (follows) cause = find_step(StepKind::kCommand, std::max(0.0, c.from_s));
     if (c.kind == CheckKind::kStopsAfterSilence) cause = find_step(StepKind::kRadioSilence, c.from_s);
     if (c.kind == CheckKind::kWindUp) cause = find_step(StepKind::kWheelBlocked, c.from_s);
-    if (row.follows_step && cause == nullptr && c.from_s < 0.0) {
+    if (follows && cause == nullptr && c.from_s < 0.0) {
       return wrong_check(n, fmt::format("\"{}\" has no command to follow", row.word),
                          "needed: a command step");
     }
-    if (cause == nullptr && !row.follows_step && needs_cause(c.kind)) {
+    if (cause == nullptr && !follows && needs_cause(c.kind)) {
       return wrong_check(n, fmt::format("\"{}\" has no cause", row.word),
                          c.kind == CheckKind::kWindUp ? "needed: a step wheel_blocked with for_s"
                                                       : "needed: a step radio_silence");
@@ -400,9 +408,9 @@ class Reader {
       c.from_s = cause->at_s;
       if (c.to_s < 0.0) c.to_s = cause->until_s;
     } else if (c.from_s < 0.0) {
-      c.from_s = row.follows_step ? cause->at_s : 0.0;
+      c.from_s = follows ? cause->at_s : 0.0;
     }
-    if (c.to_s < 0.0) c.to_s = row.follows_step ? next_step_s(c.from_s) : out_.duration_s;
+    if (c.to_s < 0.0) c.to_s = follows ? next_step_s(c.from_s) : out_.duration_s;
     if (c.to_s <= c.from_s) {
       wrong_check(n, fmt::format("its window {:g} to {:g} s is empty", c.from_s, c.to_s),
                   "needed: from_s before to_s, within the run");

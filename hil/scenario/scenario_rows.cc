@@ -7,10 +7,12 @@ namespace {
 
 constexpr StepRow kSteps[] = {
     {StepKind::kCommand, "command", false, false,
-     "v_forward_m_s v_left_m_s omega_body_rad_s omega_wheel_rad_s duty_ratio coast kick_m_s chip_m_s "
+     "v_forward_m_s v_left_m_s omega_body_rad_s omega_wheel_rad_s omega_wheel_top_ratio duty_ratio coast "
+     "kick_m_s chip_m_s "
      "dribbler_ratio charge",
      "what the host asks for, sent again every command_every_ms until the next command: a body velocity, or "
-     "wheel speeds, or duties (one number for all wheels or four), or coast = true; with it kick_m_s or "
+     "wheel speeds (in rad/s, or as parts of the top speed, at which the back-EMF meets the largest duty of "
+     "the supply), or duties (one number for all wheels or four), or coast = true; with it kick_m_s or "
      "chip_m_s "
      "(once the ball is there), dribbler_ratio, charge = true",
      "at_s = 0.1, do = \"command\", v_forward_m_s = 1.0"},
@@ -42,6 +44,11 @@ constexpr StepRow kSteps[] = {
     {StepKind::kOpponentAt, "opponent_at", false, false, "opponent x_m y_m yaw_rad",
      "a robot of the other team is put there, at rest; needs opponents = 1 or more",
      "at_s = 0.0, do = \"opponent_at\", opponent = 0, x_m = 1.0"},
+    {StepKind::kMark, "mark", false, false, "",
+     "robots, motors, batteries and ball are kept as they are, for rewind", "at_s = 0.5, do = \"mark\""},
+    {StepKind::kRewind, "rewind", false, false, "",
+     "all of it goes back to the last mark, or to the start; firmware, radio and encoder counts go on",
+     "at_s = 1.5, do = \"rewind\""},
 };
 
 constexpr CheckRow kChecks[] = {
@@ -65,6 +72,10 @@ constexpr CheckRow kChecks[] = {
      "largest duty asked for; requests that no bridge can take fail it, too"},
     {CheckKind::kControlPeriods, "control_periods", "count", "", false, false, "",
      "control periods that were due and did not run"},
+    {CheckKind::kWheelOrder, "wheel_order", "", "", false, false, "",
+     "each wheel turns at its own commanded speed and not at another's (sizes of the means over the window's "
+     "last "
+     "half); needs four speeds of different size"},
     {CheckKind::kSignal, "signal", "", "", true, false, "signal magnitude",
      "a signal within at_least_… and at_most_… throughout the window; magnitude = true: its size"},
 };

@@ -37,6 +37,7 @@ class Bench : public SessionObserver {
 
   ScenarioRun run() {
     run_.firmware = session_.firmware(0).name();
+    marked_ = session_.world().save();
     const std::int64_t end_ns = ns(scenario_.duration_s);
     try {
       while (session_.now_ns() < end_ns && run_.failure.empty()) {
@@ -60,6 +61,7 @@ class Bench : public SessionObserver {
       sample_.kicks += event.kind == WorldEventKind::kKick;
       sample_.ball_touches += event.kind == WorldEventKind::kBallTouch;
       sample_.robot_touches += event.kind == WorldEventKind::kRobotsTouch;
+      sample_.tips += event.kind == WorldEventKind::kTip;
     }
   }
 
@@ -105,14 +107,14 @@ class Bench : public SessionObserver {
 
   static bool at_an_instant(StepKind kind) {
     return kind == StepKind::kCommand || kind == StepKind::kBall || kind == StepKind::kRobotAt ||
-           kind == StepKind::kOpponentAt;
+           kind == StepKind::kOpponentAt || kind == StepKind::kMark || kind == StepKind::kRewind;
   }
 
   void begin(const ScenarioStep& step) {
     const double radius_m = session_.world().options().ball.radius_m;
     switch (step.kind) {
       case StepKind::kCommand:
-        take_command(step.command);
+        take_command(step.of_top_speed ? at_top_ratios(step.command) : step.command);
         break;
       case StepKind::kBall:
         session_.put_ball({step.x_m, step.y_m, radius_m + step.z_m},
@@ -123,6 +125,12 @@ class Bench : public SessionObserver {
         break;
       case StepKind::kOpponentAt:
         session_.set_pose(1 + step.opponent, step.x_m, step.y_m, step.yaw_rad);
+        break;
+      case StepKind::kMark:
+        marked_ = session_.world().save();
+        break;
+      case StepKind::kRewind:
+        session_.set_world(marked_);
         break;
       default:
         break;
@@ -167,6 +175,17 @@ class Bench : public SessionObserver {
     }
   }
 
+  // At which the back-EMF meets the supply.
+  double idle_wheel_rad_s() const {
+    return model_.bus_voltage_V / model_.motor.torque_constant_Nm_per_A / model_.gear_ratio;
+  }
+
+  RobotCommand at_top_ratios(RobotCommand command) const {
+    for (double& omega : command.omega_wheel_rad_s)
+      omega *= idle_wheel_rad_s() * model_.motor.duty_limit_ratio;
+    return command;
+  }
+
   // What the command means for body and wheels, eq. (5). A duty: the speed at which it meets the back-EMF.
   void take_command(const RobotCommand& command) {
     command_ = command;
@@ -178,8 +197,7 @@ class Bench : public SessionObserver {
       wheels = wheel_speeds(geometry_, sample_.wanted_body);
       return;
     }
-    const double idle_rad_s =
-        model_.bus_voltage_V / model_.motor.torque_constant_Nm_per_A / model_.gear_ratio;
+    const double idle_rad_s = idle_wheel_rad_s();
     for (std::size_t w = 0; w < kWheels; ++w) {
       wheels[w] = command.mode == OMNIHIL_MODE_WHEEL_SPEED  ? command.omega_wheel_rad_s[w]
                   : command.mode == OMNIHIL_MODE_WHEEL_DUTY ? command.duty_ratio[w] * idle_rad_s
@@ -238,6 +256,7 @@ class Bench : public SessionObserver {
   std::uint64_t stale_periods_ = 0;
   std::vector<std::uint8_t> packet_, answer_;
   ScenarioRun run_;
+  std::vector<std::uint8_t> marked_;  // the world at the last mark
 };
 
 }  // namespace

@@ -60,6 +60,8 @@ constexpr ScenarioSignal kSignals[] = {
      [](S s, W) { return s.ball_touches; }},
     {"robot_touches_count", "count", "", false, "", "times that two robots met, so far",
      [](S s, W) { return s.robot_touches; }},
+    {"tips_count", "count", "", false, "", "times that a robot fell over, so far (physics simbody-free)",
+     [](S s, W) { return s.tips; }},
 };
 
 }  // namespace

@@ -1,10 +1,14 @@
 // The binary boundary is frozen: sizes and places of every struct of ABI version 1 on a 64-bit host.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -96,6 +100,35 @@ TEST(FirmwareAbi, LibraryServesItsAbiVersionAndNoOther) {
   ASSERT_NE(api, nullptr);
   EXPECT_EQ(api->struct_bytes, sizeof(omnihil_firmware_api));
   EXPECT_STREQ(api->radio_format, "ulaval-hermes");
+}
+
+// As docs/firmware.md advises: everything else hidden, the entry is not.
+TEST(FirmwareAbi, ALibraryWithHiddenVisibilityExportsItsEntry) {
+  const std::string folder = testing::TempDir(), include = " -I" OMNIHIL_SOURCE_DIR " ";
+  for (const auto& [compiler, suffix, linkage] :
+       {std::array<std::string, 3>{"cc -std=c11", "c", ""},
+        std::array<std::string, 3>{"c++ -std=c++20", "cc", "extern \"C\" "}}) {
+    const std::string source = folder + "/hidden." + suffix,
+                      made = folder + "/libhidden_" + suffix + std::to_string(::getpid()) + ".so";
+    std::ofstream(source) << "#include \"firmware_iface/omnihil_firmware.h\"\n"
+                          << linkage << "int helper(void);\n"
+                          << linkage << "int helper(void) { return 1; }\n"
+                          << linkage
+                          << "const omnihil_firmware_api* omnihil_firmware_get(uint32_t version) {\n"
+                          << "  return version == 99u ? 0 : (const omnihil_firmware_api*)0;\n}\n";
+    ASSERT_EQ(
+        std::system(
+            (compiler + " -shared -fPIC -fvisibility=hidden" + include + source + " -o " + made).c_str()),
+        0);
+    EXPECT_NE(output_of("nm --dynamic --defined-only " + made).find(" T omnihil_firmware_get"),
+              std::string::npos);
+    EXPECT_EQ(output_of("nm --dynamic --defined-only " + made).find("helper"), std::string::npos);
+    std::unique_ptr<void, int (*)(void*)> library(dlopen(made.c_str(), RTLD_NOW | RTLD_LOCAL), dlclose);
+    ASSERT_NE(library, nullptr) << dlerror();
+    EXPECT_NE(dlsym(library.get(), "omnihil_firmware_get"), nullptr) << suffix;
+    std::remove(made.c_str());
+    std::remove(source.c_str());
+  }
 }
 
 // The header stands alone, as the language standards have it, in both languages.

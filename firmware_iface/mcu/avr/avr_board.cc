@@ -23,8 +23,9 @@ std::string names_of(const Entries& entries) {
 
 class Reader {
  public:
-  Reader(const toml::table& top, const std::string& file, std::vector<BoardProblem>& problems)
-      : top_(top), keys_(file, problems) {}
+  Reader(const toml::table& top, const std::string& file, std::vector<BoardProblem>& problems,
+         const ServedRadio& radio)
+      : top_(top), keys_(file, problems), radio_(radio) {}
   AvrBoardSpec read();
 
  private:
@@ -43,6 +44,7 @@ class Reader {
 
   const Table& top_;
   BoardKeys keys_;
+  const ServedRadio& radio_;
   AvrBoardSpec spec_;
   std::set<int> wheels_;
 };
@@ -202,9 +204,7 @@ void Reader::read_radio() {
   const Table* t = node->as_table();
   if (t == nullptr) return keys_.wrong(top_, "", "radio", "not a table", "[radio]");
   keys_.only(*t, "radio", {"format", "via"});
-  spec_.radio_format = keys_.text(*t, "radio", "format").value_or("");
-  if (spec_.radio_format.empty())
-    keys_.missing(*t, "radio", "format", "a radio format, see `omnihil formats`");
+  spec_.radio_format = keys_.radio_format(*t, radio_);
   const std::string via = keys_.text(*t, "radio", "via").value_or("");
   const std::string serials(spec_.chip->serials);
   if (via.size() == 6 && via.starts_with("USART") && serials.find(via[5]) != std::string::npos) {
@@ -231,8 +231,8 @@ AvrBoardSpec Reader::read() {
 }  // namespace
 
 std::optional<AvrBoardSpec> read_avr_board(std::string_view text, const std::string& file,
-                                           std::vector<BoardProblem>& problems) {
-  return read_board_by<Reader>(text, file, problems);
+                                           std::vector<BoardProblem>& problems, const ServedRadio& radio) {
+  return read_board_by<Reader>(text, file, problems, radio);
 }
 
 }  // namespace omnihil::mcu

@@ -51,6 +51,7 @@ struct AvrBoardSpec {
 };
 
 std::optional<AvrBoardSpec> read_avr_board(std::string_view text, const std::string& file,
-                                           std::vector<BoardProblem>& problems);
+                                           std::vector<BoardProblem>& problems,
+                                           const ServedRadio& radio = {});
 
 }  // namespace omnihil::mcu

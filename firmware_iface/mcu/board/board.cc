@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
 #include "firmware_iface/mcu/stm32/spi.h"
 #include "firmware_iface/mcu/stm32/usart.h"
@@ -16,6 +17,7 @@ constexpr std::uint32_t kWiresBase = 0x5FFF0000;  // no chip has anything here; 
 MachineConfig configuration(const BoardSpec& spec) {
   MachineConfig config = machine_config(*spec.chip);
   config.cpi_scale = spec.cpi_scale;
+  if (spec.boot_address) config.boot_address = *spec.boot_address;
   return config;
 }
 
@@ -25,12 +27,15 @@ double clamp_ratio(double ratio) { return std::clamp(ratio, -1.0, 1.0); }
 McuBoard::McuBoard(const BoardSpec& spec, const ElfImage& image)
     : spec_(spec), machine_(configuration(spec)), chip_(*spec.chip, machine_) {
   chip_.context().clocks.hse_hz = spec.crystal_Hz;
+  if (spec.boot_address) chip_.flash()->set_boot_address(*spec.boot_address);
   attach(chip_, machine_);
   wire_motors();
   for (const DeviceEntry& entry : spec_.devices) wire_device(entry);
   wire_analog();
-  for (const PinEntry& entry : spec_.pins) chip_.port(entry.pin.port)->drive(entry.pin.pin, entry.level);
+  for (const PinEntry& entry : spec_.pins)
+    chip_.port(entry.pin.port)->drive(entry.pin.pin, entry.break_beam ? !entry.level : entry.level);
   wire_radio();
+  wire_commands();
   std::vector<std::string> problems;
   if (!machine_.load(image, problems)) {
     std::string all;
@@ -133,6 +138,13 @@ void McuBoard::wire_analog() {
       return entry.offset_V + entry.volts_per_unit * value;
     });
   }
+}
+
+// The main board is at the other end; what it is answered is dropped.
+void McuBoard::wire_commands() {
+  const std::string& via = spec_.wheel_commands.via;
+  if (auto* serial = chip_.find<Usart>(via)) serial->on_transmit([](std::uint8_t, Cycles) {});
+  if (auto* can = chip_.find<CanPort>(via)) can->on_transmit([](const CanFrame&, Cycles) {});
 }
 
 void McuBoard::wire_radio() {

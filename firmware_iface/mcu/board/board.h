@@ -56,6 +56,7 @@ class McuBoard {
   void wire_device(const DeviceEntry& entry);
   void wire_analog();
   void wire_radio();
+  void wire_commands();
   DeviceWorld device_world(const DeviceEntry& entry);
 
   BoardSpec spec_;

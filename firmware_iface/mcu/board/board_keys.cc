@@ -1,6 +1,7 @@
 #include "firmware_iface/mcu/board/board_keys.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +64,27 @@ std::optional<std::string> BoardKeys::text(const toml::table& table, const std::
   if (const auto value = node->value_exact<std::string>()) return *value;
   wrong(table, path, key, "not a text", "a text");
   return std::nullopt;
+}
+
+std::string BoardKeys::radio_format(const toml::table& radio, const ServedRadio& served) {
+  const std::string format = text(radio, "radio", "format").value_or("");
+  if (format.empty()) {
+    missing(radio, "radio", "format", "a radio format, see `omnihil formats`");
+    return format;
+  }
+  const auto is_known = [&served](const std::string& id) {
+    return served.known.empty() || id == served.served ||
+           std::find(served.known.begin(), served.known.end(), id) != served.known.end();
+  };
+  if (!is_known(format)) {
+    wrong(radio, "radio", "format", "unknown", fmt::format("{}", fmt::join(served.known, ", ")));
+  } else if (!served.served.empty() && format != served.served) {
+    wrong(radio, "radio", "format",
+          fmt::format("the bench serves \"{}\", no packet would reach the image (--radio {} serves this one)",
+                      served.served, format),
+          served.served);
+  }
+  return format;
 }
 
 std::optional<double> BoardKeys::number(const toml::table& table, const std::string& path,

@@ -82,9 +82,26 @@ bool BoardNames::has_spi(const std::string& name) const { return chip_->find<Spi
 bool BoardNames::has_i2c(const std::string& name) const { return chip_->find<I2c>(name) != nullptr; }
 bool BoardNames::has_serial(const std::string& name) const { return chip_->find<Usart>(name) != nullptr; }
 bool BoardNames::has_can(const std::string& name) const { return chip_->find<CanPort>(name) != nullptr; }
-std::string BoardNames::timers() const { return join(chip_->names<Timer>()); }
+std::string BoardNames::timers(unsigned channels) const {
+  std::vector<std::string> names = chip_->names<Timer>();
+  std::erase_if(names, [&](const std::string& name) { return !has_timer(name, channels); });
+  return join(names);
+}
+std::string BoardNames::timers_with_complements() const {
+  std::vector<std::string> names = chip_->names<Timer>();
+  std::erase_if(names, [&](const std::string& name) { return !has_channel({name, 0, true}); });
+  return join(names);
+}
 std::string BoardNames::adcs() const { return join(chip_->names<Adc>()); }
 std::string BoardNames::serials() const { return join(chip_->names<Usart>()); }
-std::string BoardNames::buses() const { return join(chip_->names<Spi>()) + ", " + join(chip_->names<I2c>()); }
+std::string BoardNames::spis() const { return join(chip_->names<Spi>()); }
+std::string BoardNames::i2cs() const { return join(chip_->names<I2c>()); }
+std::string BoardNames::cans() const {
+  std::vector<std::string> names;
+  for (const Chip::Mapped& block : chip_->blocks()) {
+    if (dynamic_cast<CanPort*>(block.peripheral) != nullptr) names.push_back(block.peripheral->name());
+  }
+  return join(names);
+}
 
 }  // namespace omnihil::mcu

@@ -29,8 +29,12 @@ class BoardNames {
   bool has_i2c(const std::string& name) const;
   bool has_serial(const std::string& name) const;
   bool has_can(const std::string& name) const;
-  std::string timers() const;  // "TIM1, TIM2, …"
-  std::string buses() const;
+  // Lists of what is allowed: "TIM1, TIM2, …", those with at least so many channels.
+  std::string timers(unsigned channels = 0) const;
+  std::string timers_with_complements() const;
+  std::string spis() const;
+  std::string i2cs() const;
+  std::string cans() const;
   std::string adcs() const;
   std::string serials() const;
 

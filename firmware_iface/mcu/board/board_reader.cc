@@ -16,12 +16,14 @@ constexpr const char* kFormat = "omnihil-board/1";
 
 class Reader {
  public:
-  Reader(const toml::table& top, const std::string& file, std::vector<BoardProblem>& problems)
-      : top_(top), keys_(file, problems) {}
+  Reader(const toml::table& top, const std::string& file, std::vector<BoardProblem>& problems,
+         const ServedRadio& radio)
+      : top_(top), keys_(file, problems), radio_(radio) {}
   BoardSpec read();
 
  private:
   void read_top();
+  void read_boot_address();
   void read_motor(const toml::table& t, const std::string& path);
   std::vector<ChannelName> channels(const toml::table& t, const std::string& path, std::string_view key);
   void read_pin(const toml::table& t, const std::string& path);
@@ -39,6 +41,7 @@ class Reader {
 
   const toml::table& top_;
   BoardKeys keys_;
+  const ServedRadio& radio_;
   BoardSpec spec_;
   std::unique_ptr<BoardNames> names_;
   std::set<std::string> claimed_;
@@ -65,9 +68,9 @@ std::optional<PinName> Reader::pin(const toml::table& t, const std::string& path
 
 void Reader::read_top() {
   keys_.only(top_, "",
-             {"format", "name", "source", "chip", "crystal_Hz", "cpi_scale", "coupling_us", "adc_reference_V",
-              "control_timer", "boards_per_robot", "wheel_commands", "radio", "motor", "device", "analog",
-              "pin", "flash"});
+             {"format", "name", "source", "chip", "boot_address", "crystal_Hz", "cpi_scale", "coupling_us",
+              "adc_reference_V", "control_timer", "boards_per_robot", "wheel_commands", "radio", "motor",
+              "device", "analog", "pin", "flash"});
   if (const auto format = keys_.text(top_, "", "format"); !format || *format != kFormat) {
     keys_.wrong(top_, "", "format", format ? "unknown" : "missing", kFormat);
   }
@@ -80,11 +83,13 @@ void Reader::read_top() {
   }
   if (const auto chip = keys_.text(top_, "", "chip")) {
     spec_.chip = find_chip(*chip);
+    spec_.chip_name = chip_name(*chip);
     if (spec_.chip == nullptr) keys_.wrong(top_, "", "chip", "unknown", chips);
   } else if (!top_.contains("chip")) {
     keys_.missing(top_, "", "chip", chips);
   }
   if (spec_.chip != nullptr) names_ = std::make_unique<BoardNames>(*spec_.chip);
+  read_boot_address();
   spec_.crystal_Hz = keys_.number(top_, "", "crystal_Hz", 1e6, 50e6).value_or(spec_.crystal_Hz);
   spec_.cpi_scale = keys_.number(top_, "", "cpi_scale", 0.25, 10.0).value_or(spec_.cpi_scale);
   spec_.coupling_ns =
@@ -96,15 +101,41 @@ void Reader::read_top() {
   }
 }
 
+// BOOT_ADD0 of F7: 16 bits, in units of 16 KiB.
+void Reader::read_boot_address() {
+  const auto address = keys_.whole(top_, "", "boot_address", 0, 0x3FFFC000);
+  if (!address || spec_.chip == nullptr) return;
+  const auto at = static_cast<std::uint32_t>(*address);
+  if (spec_.chip->boot_address == 0) {
+    return keys_.wrong(top_, "", "boot_address", fmt::format("{} has no boot address", spec_.chip_name),
+                       "no such key");
+  }
+  bool in_flash = false;
+  for (const MemorySpec& memory : spec_.chip->memories) {
+    if (!memory.flash) continue;
+    in_flash = at - memory.base < memory.bytes || at - spec_.chip->boot_address < memory.bytes;
+  }
+  if (at % 16384 != 0) {
+    keys_.wrong(top_, "", "boot_address", fmt::format("0x{:08x} is no multiple of 16 KiB", at),
+                "as BOOT_ADD0 has it: 16384 times a number");
+  } else if (!in_flash) {
+    keys_.wrong(top_, "", "boot_address", fmt::format("0x{:08x} is not in flash", at),
+                fmt::format("flash, at 0x08000000 or at 0x{:08x}", spec_.chip->boot_address));
+  }
+  spec_.boot_address = at;
+}
+
 std::vector<ChannelName> Reader::channels(const toml::table& t, const std::string& path,
                                           std::string_view key) {
   std::vector<ChannelName> found;
   for (const std::string& word : keys_.texts(t, path, key)) {
     const auto channel = parse_channel(word);
     if (!channel || (names_ && !names_->has_channel(*channel))) {
-      keys_.wrong(
-          t, path, key, fmt::format("no channel \"{}\"", word),
-          "channels such as TIM1.2, TIM1.2N of " + (names_ ? names_->timers() : std::string("the chip")));
+      keys_.wrong(t, path, key, fmt::format("no channel \"{}\"", word),
+                  !names_ ? "channels of the chip, such as TIM1.2, TIM1.2N"
+                  : word.ends_with('N')
+                      ? "complementary outputs such as TIM1.2N of " + names_->timers_with_complements()
+                      : "channels such as TIM1.2 of " + names_->timers(1));
       continue;
     }
     claim(t, path, key, word);
@@ -149,7 +180,7 @@ void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEn
   motor.encoder_timer = keys_.text(t, path, "encoder").value_or("");
   if (!motor.encoder_timer.empty()) {
     if (names_ && !names_->has_timer(motor.encoder_timer, 2)) {
-      keys_.wrong(t, path, "encoder", "no timer with two inputs", names_->timers());
+      keys_.wrong(t, path, "encoder", "no timer with two inputs", names_->timers(2));
     } else {
       claim(t, path, "encoder", motor.encoder_timer + " inputs");
     }
@@ -158,7 +189,7 @@ void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEn
   motor.hall_timer = keys_.text(t, path, "hall").value_or("");
   if (!motor.hall_timer.empty()) {
     if (names_ && !names_->has_timer(motor.hall_timer, 3)) {
-      keys_.wrong(t, path, "hall", "no timer with three inputs", names_->timers());
+      keys_.wrong(t, path, "hall", "no timer with three inputs", names_->timers(3));
     } else {
       claim(t, path, "hall", motor.hall_timer + " inputs");
     }
@@ -204,7 +235,8 @@ void Reader::read_device_wires(const toml::table& t, const std::string& path, De
   device.bus = keys_.text(t, path, "bus").value_or("");
   const bool known = names_ && (spi ? names_->has_spi(device.bus) : names_->has_i2c(device.bus));
   if (names_ && !known) {
-    keys_.wrong(t, path, "bus", spi ? "not an SPI of the chip" : "not an I2C of the chip", names_->buses());
+    keys_.wrong(t, path, "bus", spi ? "not an SPI of the chip" : "not an I2C of the chip",
+                spi ? names_->spis() : names_->i2cs());
   }
   device.select = pin(t, path, "select");
   if (spi && !t.contains("select")) keys_.missing(t, path, "select", "the pin that selects the chip");
@@ -307,9 +339,7 @@ void Reader::read_radio() {
   const toml::table* t = node->as_table();
   if (t == nullptr) return keys_.wrong(top_, "", "radio", "not a table", "[radio]");
   keys_.only(*t, "radio", {"format", "via"});
-  spec_.radio_format = keys_.text(*t, "radio", "format").value_or("");
-  if (spec_.radio_format.empty())
-    keys_.missing(*t, "radio", "format", "a radio format, see `omnihil formats`");
+  spec_.radio_format = keys_.radio_format(*t, radio_);
   spec_.radio_via = keys_.text(*t, "radio", "via").value_or("");
   bool found = names_ && names_->has_serial(spec_.radio_via);
   for (const DeviceEntry& device : spec_.devices) {
@@ -360,26 +390,38 @@ void Reader::read_wheel_commands() {
   const bool can = commands.bus->carrier != BusCarrier::kUart;
   if (can ? !names_->has_can(commands.via) : !names_->has_serial(commands.via)) {
     keys_.wrong(*t, "wheel_commands", "via", can ? "not a CAN of the chip" : "not a serial port of the chip",
-                can ? "CAN1, … as the chip has them" : names_->serials());
+                can ? names_->cans() : names_->serials());
   }
 }
 
 // An input that never changes: a level, or a bit of the robot's number.
 void Reader::read_pin(const toml::table& t, const std::string& path) {
-  keys_.only(t, path, {"pin", "level", "robot_id_bit"});
+  keys_.only(t, path, {"pin", "level", "robot_id_bit", "break_beam"});
   const auto p = pin(t, path, "pin");
   if (!t.contains("pin")) keys_.missing(t, path, "pin", "a pin, such as PC13");
-  const bool has_level = t.contains("level"), has_bit = t.contains("robot_id_bit");
-  if (!has_level && !has_bit) keys_.missing(t, path, "level", "true, false, or instead a robot_id_bit");
+  const bool has_level = t.contains("level"), has_bit = t.contains("robot_id_bit"),
+             has_beam = t.contains("break_beam");
+  if (!has_level && !has_bit && !has_beam)
+    keys_.missing(t, path, "level", "true, false, or instead a robot_id_bit or a break_beam");
   if (has_level && has_bit) keys_.wrong(t, path, "robot_id_bit", "beside a level", "one of the two");
+  if (has_beam && (has_level || has_bit))
+    keys_.wrong(t, path, "break_beam", "beside a level or robot_id_bit", "one of the three");
   const auto level = keys_.flag(t, path, "level");
   const auto id_bit = keys_.whole(t, path, "robot_id_bit", 0, 7);
-  if (p) spec_.pins.push_back({*p, level.value_or(false), static_cast<int>(id_bit.value_or(-1))});
+  const auto beam = keys_.text(t, path, "break_beam");
+  if (beam && *beam != "high" && *beam != "low")
+    keys_.wrong(t, path, "break_beam", "is neither",
+                "\"high\" or \"low\": the level while the ball is in the beam");
+  if (p)
+    spec_.pins.push_back({*p, beam ? *beam == "high" : level.value_or(false),
+                          static_cast<int>(id_bit.value_or(-1)), beam.has_value()});
 }
 
 BoardSpec Reader::read() {
   read_top();
   for (const auto& [t, path] : keys_.tables(top_, "motor")) read_motor(*t, path);
+  if (spec_.motors.empty())
+    keys_.missing(top_, "", "motor", "[[motor]], one per wheel that the board drives");
   for (const auto& [t, path] : keys_.tables(top_, "device")) read_device(*t, path);
   for (const auto& [t, path] : keys_.tables(top_, "analog")) read_analog(*t, path);
   for (const auto& [t, path] : keys_.tables(top_, "flash")) read_flash(*t, path);
@@ -393,8 +435,8 @@ BoardSpec Reader::read() {
 }  // namespace
 
 std::optional<BoardSpec> read_board(std::string_view text, const std::string& file,
-                                    std::vector<BoardProblem>& problems) {
-  return read_board_by<Reader>(text, file, problems);
+                                    std::vector<BoardProblem>& problems, const ServedRadio& radio) {
+  return read_board_by<Reader>(text, file, problems, radio);
 }
 
 }  // namespace omnihil::mcu

@@ -77,7 +77,8 @@ struct AnalogEntry {
 struct PinEntry {
   PinName pin;
   bool level = false;
-  int robot_id_bit = -1;  // not negative: this bit of the robot's number instead
+  int robot_id_bit = -1;    // not negative: this bit of the robot's number instead
+  bool break_beam = false;  // the break beam's receiver instead: at `level` while the ball is in the beam
 };
 
 struct FlashEntry {
@@ -96,9 +97,11 @@ struct WheelCommands {
 struct BoardSpec {
   std::string name;
   const ChipSpec* chip = nullptr;
+  std::string chip_name;  // as the file has it: the chip's or that of one that is the same here
   double crystal_Hz = 8e6;
   double cpi_scale = 1.0;
-  std::int64_t coupling_ns = 500'000;  // the plant and the board meet this often
+  std::optional<std::uint32_t> boot_address = {};  // BOOT_ADD0 of chips that have it; else as delivered
+  std::int64_t coupling_ns = 500'000;              // the plant and the board meet this often
   double adc_reference_V = 3.3;
   std::string control_timer;  // whose update starts a control period; empty: not said
   std::string radio_format;   // empty: none
@@ -113,6 +116,6 @@ struct BoardSpec {
 };
 
 std::optional<BoardSpec> read_board(std::string_view text, const std::string& file,
-                                    std::vector<BoardProblem>& problems);
+                                    std::vector<BoardProblem>& problems, const ServedRadio& radio = {});
 
 }  // namespace omnihil::mcu

@@ -34,7 +34,10 @@ CanFrame can_frame_of(const BusFrame& f) {
 }  // namespace
 
 McuFirmware::McuFirmware(const BoardSpec& spec, const ElfImage& image, const RobotConfig& config)
-    : name_(fmt::format("image on {} ({})", spec.name, spec.chip->name)), config_(config), spec_(spec) {
+    : name_(fmt::format("image on {} ({})", spec.name,
+                        spec.chip_name.empty() ? std::string(spec.chip->name) : spec.chip_name)),
+      config_(config),
+      spec_(spec) {
   if (spec.boards_per_robot > 1) wheels_per_board_ = static_cast<int>(spec.motors.size());
   for (int b = 0; b < spec.boards_per_robot; ++b) {
     boards_.push_back(std::make_unique<McuBoard>(numbered(spec, b), image));
@@ -143,6 +146,11 @@ void McuFirmware::look(const RobotSensors& sensors) {
     const double per_count_rad = kTwoPi / config_.encoder_counts_per_rotor_turn;
     if (off > 1 || off < -1) world_.theta_rotor_rad[w] += static_cast<double>(off) * per_count_rad;
   }
+  for (const PinEntry& entry : spec_.pins) {
+    if (!entry.break_beam) continue;
+    const bool level = (sensors.ball_seen != 0) == entry.level;
+    for (const auto& board : boards_) board->chip().port(entry.pin.port)->drive(entry.pin.pin, level);
+  }
   world_.bus_voltage_V = sensors.bus_voltage_V;
   world_.gyro_z_rad_s = sensors.gyro_z_rad_s;
   world_.accel_x_m_s2 = sensors.accel_x_m_s2;
@@ -199,6 +207,23 @@ std::uint64_t McuFirmware::missed_control_periods() const {
   return missed;
 }
 
+std::string board_failure(const McuBoard& board, const ElfImage& image) {
+  // A fault once may be a scenario's doing and be got over; twice in a row with nothing else between is a loop. A
+  // handler that has held the core for this long has not kept up with any radio (teams time out after 0.1 to 0.5 s).
+  constexpr int kResets = 2;
+  constexpr std::int64_t kHeld_ns = 250'000'000;
+  const Machine& machine = board.machine();
+  if (machine.stopped()) return "the emulated core has locked up";
+  const Cycles since = machine.in_fault_handler_since();
+  const bool held = since != kNever && board.now_ns() - machine.to_ns(since) > kHeld_ns;
+  if (!held && machine.resets_after_faults() < kResets) return {};
+  const MachineReport report = machine.report();
+  const FaultRecord& last = report.faults.back();
+  const std::string fault = last.text(image.function_at(last.pc));
+  return held ? fmt::format("stays in its fault handler: {}", fault)
+              : fmt::format("faults and is reset, twice in a row: {}", fault);
+}
+
 std::vector<std::string> board_report(const McuBoard& board, const ElfImage& image) {
   const MachineReport report = board.machine().report();
   std::vector<std::string> lines;
@@ -207,10 +232,19 @@ std::vector<std::string> board_report(const McuBoard& board, const ElfImage& ima
     return function.empty() ? fmt::format("0x{:08x}", pc) : fmt::format("0x{:08x} {}", pc, function);
   };
   if (report.locked_up) lines.push_back(fmt::format("locked up at {}", where(report.lock_up_pc)));
-  for (const FaultRecord& fault : report.faults) lines.push_back("fault: " + fault.text());
+  const auto seconds = [&board](Cycles at) { return static_cast<double>(board.machine().to_ns(at)) * 1e-9; };
+  for (const FaultRecord& fault : report.faults) {
+    const std::string text = "fault: " + fault.text(image.function_at(fault.pc));
+    lines.push_back(fault.count == 1 ? fmt::format("{}, at {:.6f} s", text, seconds(fault.at))
+                                     : fmt::format("{}, {} times, first at {:.6f} s", text, fault.count,
+                                                   seconds(fault.at)));
+  }
   for (std::size_t i = 1; i < report.resets.size(); ++i) {
-    const double at_s = static_cast<double>(board.machine().to_ns(report.resets[i].at)) * 1e-9;
-    lines.push_back(fmt::format("reset by {} at {:.6f} s", report.resets[i].cause, at_s));
+    const ResetRecord& reset = report.resets[i];
+    lines.push_back(reset.count == 1
+                        ? fmt::format("reset by {} at {:.6f} s", reset.cause, seconds(reset.at))
+                        : fmt::format("reset by {} {} times, first at {:.6f} s, last at {:.6f} s",
+                                      reset.cause, reset.count, seconds(reset.at), seconds(reset.last)));
   }
   if (report.null_access_count > 0) {
     lines.push_back(fmt::format("{} accesses through null pointers, first at {}", report.null_access_count,
@@ -219,6 +253,14 @@ std::vector<std::string> board_report(const McuBoard& board, const ElfImage& ima
   for (const Unmodelled& u : report.unmodelled) {
     lines.push_back(fmt::format("not modelled: {}: {} ({} times, first at {})", u.peripheral, u.what, u.count,
                                 where(u.pc)));
+  }
+  for (const Chip::Mapped& block : board.chip().blocks()) {
+    const auto* end = dynamic_cast<const BusEnd*>(block.peripheral);
+    for (const BusLoss& loss : end != nullptr ? end->ledger().losses() : std::vector<BusLoss>{}) {
+      lines.push_back(fmt::format("{}: {} {}{} {}, the first at {:.6f} s", block.peripheral->name(),
+                                  loss.count, loss.unit, loss.count == 1 ? "" : "s", loss.what,
+                                  seconds(loss.first)));
+    }
   }
   return lines;
 }

@@ -75,6 +75,10 @@ class McuFirmware final : public Firmware {
   std::uint64_t commands_ignored_ = 0;
 };
 
+// Why the image is no use any more: it has locked up, only faults and is reset, or stays in the handler of a
+// fault; empty: it is of use.
+std::string board_failure(const McuBoard& board, const ElfImage& image);
+
 // What the run of an image has shown: unmodelled registers, null pointers, faults, stack, load. For people,
 // line by line; empty when there is nothing to say.
 std::vector<std::string> board_report(const McuBoard& board, const ElfImage& image);

@@ -33,6 +33,7 @@ void Memory::alias(const std::string& name, std::uint32_t base) {
     region->base = base;
     region->size = static_cast<std::uint32_t>(block->bytes.size());
     region->block = block.get();
+    region->is_alias = true;
     regions_.push_back(std::move(region));
     return;
   }
@@ -82,7 +83,7 @@ void Memory::map_at_zero(std::uint32_t base) {
   const MemoryRegion* target = find(base);
   if (!target || target->base == 0) return;
   for (const auto& region : regions_) {
-    if (region->base != 0) continue;
+    if (region->base != 0 || !region->is_alias) continue;
     region->block = target->block;
     region->size = target->size;
     region->ops.clear();

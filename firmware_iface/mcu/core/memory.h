@@ -60,6 +60,7 @@ static_assert(kUndecoded == 0);
 struct MemoryRegion {
   std::uint32_t base = 0, size = 0;
   MemoryBlock* block = nullptr;
+  bool is_alias = false;
   OpTable ops;  // empty until code runs from here; two more at the end that lead out
 
   std::uint8_t* data() const { return block->bytes.data(); }

@@ -83,6 +83,17 @@ bool Machine::read_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_
   return read_unknown(address, bytes, value);
 }
 
+bool Machine::report_unknown(std::uint32_t address, const char* done) {
+  const auto [name, base] =
+      config_.block_name ? config_.block_name(address) : std::pair(std::string_view{}, 0u);
+  if (name.empty() && !may_be_peripheral(address)) return false;
+  const std::uint32_t word = address & ~3u;
+  report_unmodelled(name.empty() ? "bus" : name,
+                    name.empty() ? fmt::format("0x{:08x} {}", word, done)
+                                 : fmt::format("0x{:08x} (offset 0x{:02x}) {}", word, word - base, done));
+  return true;
+}
+
 bool Machine::read_unknown(std::uint32_t address, unsigned bytes, std::uint32_t& value) {
   if (is_private(address)) {
     if (!cpu_.reg.privileged()) return false;
@@ -92,8 +103,7 @@ bool Machine::read_unknown(std::uint32_t address, unsigned bytes, std::uint32_t&
         part(system ? read_system(word_address - kSystemControl) : read_debug(word_address), address, bytes);
     return true;
   }
-  if (!may_be_peripheral(address)) return false;
-  report_unmodelled("bus", fmt::format("0x{:08x} read", address & ~3u));
+  if (!report_unknown(address, "read")) return false;
   const auto stored = unknown_.find(address & ~3u);
   value = stored == unknown_.end() ? 0 : part(stored->second, address, bytes);
   return true;
@@ -142,8 +152,7 @@ bool Machine::write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t
     }
     return true;
   }
-  if (!may_be_peripheral(address)) return false;
-  report_unmodelled("bus", fmt::format("0x{:08x} written", address & ~3u));
+  if (!report_unknown(address, "written")) return false;
   std::uint32_t& word = unknown_[address & ~3u];
   const unsigned shift = 8 * (address & 3);
   const std::uint32_t mask = (bytes == 4 ? ~0u : (1u << (8 * bytes)) - 1) << shift;

@@ -68,6 +68,7 @@ void read_segments(const Bytes& file, ElfImage& image, std::vector<std::string>&
     const std::uint64_t at = table + i * entry_bytes;
     if (file.u32(at) != kLoad) continue;
     const std::uint32_t offset = file.u32(at + 4), address = file.u32(at + 12), bytes = file.u32(at + 16);
+    if (file.u32(at + 20) != 0) image.occupied.push_back({file.u32(at + 8), file.u32(at + 20)});
     if (bytes == 0) continue;
     if (!file.holds(offset, bytes)) {
       problems.push_back(

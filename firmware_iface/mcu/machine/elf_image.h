@@ -23,9 +23,14 @@ struct ElfSegment {
   std::vector<std::uint8_t> bytes;
 };
 
+struct ElfRange {  // of addresses that a segment occupies while the program runs
+  std::uint32_t begin, bytes;
+};
+
 struct ElfImage {
   std::uint32_t entry = 0;
   std::vector<ElfSegment> segments;
+  std::vector<ElfRange> occupied = {};
   std::map<std::string, std::uint32_t, std::less<>> symbols;
   std::map<std::uint32_t, std::string> functions;  // by address, bit 0 clear
 

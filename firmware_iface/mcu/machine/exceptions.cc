@@ -196,14 +196,26 @@ void Machine::raise(const Fault& fault) {
     e = kHardFault;
   }
   if (!configurable) e = kHardFault;
-  if (report_.faults.size() < MachineReport::kMost) {
-    report_.faults.push_back({e, fault.status, fault.address, cpu_.reg.r[15], now()});
-  }
+  note_fault(e, fault);
   if (e == kHardFault && priority <= -1) {
     lock_up();
     return;
   }
   pend(e);
+}
+
+void Machine::note_fault(int exception, const Fault& fault) {
+  faulted_at_ = now();
+  const std::uint32_t pc = cpu_.reg.r[15];
+  for (FaultRecord& seen : report_.faults) {
+    if (seen.exception != exception || seen.pc != pc || seen.status != fault.status ||
+        seen.address != fault.address)
+      continue;
+    ++seen.count;
+    return;
+  }
+  if (report_.faults.size() < MachineReport::kMost)
+    report_.faults.push_back({exception, fault.status, fault.address, pc, now()});
 }
 
 void Machine::lock_up() {

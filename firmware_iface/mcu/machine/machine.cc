@@ -9,6 +9,7 @@ namespace omnihil::mcu {
 namespace {
 
 constexpr int kEventsAtOneInstant = 100'000;
+constexpr std::uint32_t kNullPointers = 4096;  // Cpu tells of accesses below this address
 
 Memory make_memory(const MachineConfig& config) {
   Memory memory;
@@ -62,17 +63,21 @@ bool Machine::load(const ElfImage& image, std::vector<std::string>& problems) {
   }
   if (problems.size() != before) return false;
   for (const ElfSegment& segment : image.segments) memory_.write(segment.address, segment.bytes);
+  occupied_low_.clear();
+  for (const ElfRange& range : image.occupied) {
+    if (range.begin < kNullPointers) occupied_low_.push_back(range);
+  }
   std::uint32_t sp = 0, start = 0;
-  read_word(config_.flash_base, sp);
-  read_word(config_.flash_base + 4, start);
+  read_word(config_.boot_address, sp);
+  read_word(config_.boot_address + 4, start);
   if (!memory_.find(sp - 4) || sp % 4 != 0) {
     problems.push_back(fmt::format("vector table at 0x{:08x}: initial stack pointer 0x{:08x} is not in RAM",
-                                   config_.flash_base, sp));
+                                   config_.boot_address, sp));
   }
   if (!memory_.find(start) || !(start & 1)) {
     problems.push_back(
         fmt::format("vector table at 0x{:08x}: reset vector 0x{:08x} is no Thumb code in memory",
-                    config_.flash_base + 4, start));
+                    config_.boot_address + 4, start));
   }
   return problems.size() == before;
 }
@@ -83,6 +88,7 @@ void Machine::power_on() {
   unmodelled_index_.clear();
   clock_ = CoreClock(static_cast<std::uint64_t>(std::llround(config_.reset_hz)));
   report_ = MachineReport{};
+  faulted_at_ = kNever;
   frames_.clear();
   cpu_.statistics = CpuStatistics{};
   now_ = 0;
@@ -101,17 +107,30 @@ void Machine::reset(std::string_view cause) {
   do_reset();
 }
 
+void Machine::note_reset() {
+  resets_after_faults_ = faulted_at_ != kNever ? resets_after_faults_ + 1 : 0;
+  faulted_at_ = kNever;
+  for (std::size_t i = 1; i < report_.resets.size(); ++i) {
+    ResetRecord& seen = report_.resets[i];
+    if (seen.cause != reset_cause_) continue;
+    ++seen.count;
+    seen.last = now();
+    return;
+  }
+  report_.resets.push_back({reset_cause_, now(), now()});
+}
+
 void Machine::do_reset() {
   account();
   reset_cause_ = reset_wanted_;
   reset_wanted_.clear();
-  report_.resets.push_back({reset_cause_, now()});
+  note_reset();
   cpu_.reg = Registers{};
   cpu_.trap_unaligned = config_.variant.arch == Arch::kV6M;
   nvic_.reset();
   systick_.reset();
   show_at_zero(config_.flash_base);
-  vtor_ = config_.flash_base;
+  vtor_ = config_.boot_address;
   cfsr_ = hfsr_ = mmfar_ = bfar_ = scr_ = shcsr_ = cpacr_ = fpcar_ = demcr_ = 0;
   ccr_ = config_.variant.arch == Arch::kV6M ? 0x208 : 0x200;
   fpccr_ = 0xC0000000u;
@@ -346,6 +365,9 @@ void Machine::report_unmodelled(std::string_view peripheral, std::string_view wh
 }
 
 void Machine::note_null(std::uint32_t address, bool is_write) {
+  for (const ElfRange& range : occupied_low_) {
+    if (address - range.begin < range.bytes) return;  // RAM at 0, in which the image has put something
+  }
   ++report_.null_access_count;
   const std::uint32_t pc = cpu_.access_pc();
   for (NullAccess& seen : report_.null_accesses) {
@@ -374,10 +396,11 @@ MachineReport Machine::report() const {
   return result;
 }
 
-std::string FaultRecord::text() const {
+std::string FaultRecord::text(const std::string& where) const {
   constexpr const char* kNames[] = {"NMI", "HardFault", "MemManage", "BusFault", "UsageFault"};
   const char* name = exception >= 2 && exception <= 6 ? kNames[exception - 2] : "fault";
-  return fmt::format("{} at pc 0x{:08x}, status 0x{:08x}, address 0x{:08x}", name, pc, status, address);
+  return fmt::format("{} at pc 0x{:08x}{}{}, status 0x{:08x}, address 0x{:08x}", name, pc,
+                     where.empty() ? "" : " ", where, status, address);
 }
 
 }  // namespace omnihil::mcu

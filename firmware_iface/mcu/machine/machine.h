@@ -46,8 +46,11 @@ struct MachineConfig {
   std::vector<ExtraMemory> memories = {};  // core-coupled RAM, instruction RAM, system memory, further banks
   std::vector<std::pair<std::string, std::uint32_t>> aliases =
       {};  // of "flash", "ram" or one of those, at another base
+  // Name and base of the chip's block at an address, for what is not modelled; an empty name: none is known.
+  std::function<std::pair<std::string_view, std::uint32_t>(std::uint32_t)> block_name = {};
   bool flash_at_zero = true;
-  double reset_hz = 16e6;  // the clock the chip comes out of reset with
+  std::uint32_t boot_address = 0x08000000;  // where the vectors are at reset: in flash or an alias of it
+  double reset_hz = 16e6;                   // the clock the chip comes out of reset with
   double cpi_scale = 1.0;  // cycles of the table are multiplied by this: fit it to one measured duration
   bool fast_forward = true;
 };
@@ -75,6 +78,12 @@ class Machine final : public System, private CpuBus {
   void run_until_ns(std::int64_t end_ns);
   // Until one of them holds: `end` is reached, or the program has stopped for good (lock-up).
   bool stopped() const { return locked_up_; }
+  // How many resets in a row, up to the last one, came after a fault.
+  int resets_after_faults() const { return resets_after_faults_; }
+  // Since when its handler of a fault has not been left; kNever: it is in none.
+  Cycles in_fault_handler_since() const {
+    return faulted_at_ != kNever && fault_handler_active() ? faulted_at_ : kNever;
+  }
 
   MachineReport report() const;
   Cpu& cpu() { return cpu_; }
@@ -131,6 +140,8 @@ class Machine final : public System, private CpuBus {
   const Slot* find_slot(std::uint32_t address);
   bool read_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t& value);
   bool write_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t value);
+  // True where the chip has registers, or may have; what is done with them is reported.
+  bool report_unknown(std::uint32_t address, const char* done);
   bool read_unknown(std::uint32_t address, unsigned bytes, std::uint32_t& value);
   bool write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t value);
   bool bit_band(std::uint32_t address, std::uint32_t& target, unsigned& bit) const;
@@ -170,6 +181,11 @@ class Machine final : public System, private CpuBus {
   bool push_frame();
   bool pop_frame(std::uint32_t exception_return);
   void raise(const Fault& fault);
+  bool fault_handler_active() const {
+    return nvic_.active(kHardFault) || nvic_.active(kMemManage) || nvic_.active(kBusFault) ||
+           nvic_.active(kUsageFault);
+  }
+  void note_fault(int exception, const Fault& fault);
   void lock_up();
   void account();
 
@@ -185,6 +201,7 @@ class Machine final : public System, private CpuBus {
   bool wakes() const;
   void sleep_until(Cycles end);
   void do_reset();
+  void note_reset();
   void show_at_zero(std::uint32_t base);
 
   const MachineConfig config_;
@@ -212,6 +229,9 @@ class Machine final : public System, private CpuBus {
   std::string reset_wanted_;
   std::optional<std::uint32_t> zero_wanted_;  // what address 0 is to show
   std::uint32_t initial_sp_ = 0;
+  Cycles faulted_at_ = kNever;  // the last time since the last reset
+  int resets_after_faults_ = 0;
+  std::vector<ElfRange> occupied_low_;  // by the image, among the addresses of null pointers
 
   std::uint32_t vtor_ = 0, ccr_ = 0x200, cfsr_ = 0, hfsr_ = 0, mmfar_ = 0, bfar_ = 0, scr_ = 0, shcsr_ = 0;
   std::uint32_t cpacr_ = 0, fpccr_ = 0xC0000000u, fpcar_ = 0, demcr_ = 0, dwt_control_ = 0x40000000u;

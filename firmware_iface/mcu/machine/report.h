@@ -26,13 +26,16 @@ struct NullAccess {
 struct FaultRecord {
   int exception;
   std::uint32_t status, address, pc;
-  Cycles at;
-  std::string text() const;
+  Cycles at;  // the first time
+  std::uint64_t count = 1;
+  // `where`: the function of pc, if it is known.
+  std::string text(const std::string& where = {}) const;
 };
 
 struct ResetRecord {
   std::string cause;
-  Cycles at;
+  Cycles at, last;  // the first and the last time by this cause
+  std::uint64_t count = 1;
 };
 
 // One exception's share. Times are in cycles; `busy` leaves out what preempted it, `longest` does not.
@@ -46,9 +49,9 @@ struct MachineReport {
   std::vector<NullAccess> null_accesses;  // by program counter and address, the first kMost of them
   std::uint64_t null_access_count = 0, unaligned_count = 0;
   std::uint32_t first_unaligned_pc = 0;
-  std::vector<FaultRecord> faults;  // the first kMost
+  std::vector<FaultRecord> faults;  // the first kMost that differ in kind and place
   std::uint64_t fault_count = 0;
-  std::vector<ResetRecord> resets;
+  std::vector<ResetRecord> resets;          // power-on, then each cause once
   std::map<int, InterruptLoad> exceptions;  // by exception number: 15 is SysTick, 16 + n is interrupt n
   Cycles thread_cycles = 0, sleep_cycles = 0;
   std::uint32_t main_stack_bytes = 0;  // high-water mark, from the image's initial stack pointer down

@@ -196,16 +196,17 @@ int BxCan::match(const CanFrame& frame, unsigned first, unsigned last, unsigned&
 }
 
 void BxCan::receive(const CanFrame& frame) {
-  if (!running() || frame.fd) return;
+  if (!running() || frame.fd) return off_bus(now());
   const bool second = filters_ != this;
   const unsigned split = filters_->banks_ > 14 ? field(filters_->value(kFmr), 8, 6) : 28;
   unsigned number = 0;
   const int fifo = second ? filters_->match(frame, split, 28, number) : match(frame, 0, split, number);
-  if (fifo < 0) return;
+  if (fifo < 0) return unwanted(now());
   auto& queue = fifos_[static_cast<std::size_t>(fifo)];
   std::uint32_t& rfr = value(kRf0r + 4 * static_cast<unsigned>(fifo));
   if (queue.size() == 3) {
     rfr |= 1u << 4;  // FOVR
+    overflow(now());
     if (!bit(value(kMcr), 3)) queue.back() = {frame, number};
   } else {
     queue.push_back({frame, number});

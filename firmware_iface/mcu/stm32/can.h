@@ -7,7 +7,8 @@
 //
 // Law: ISO 11898-1, bit stuffing counted exactly for classic frames (SOF .. CRC). CAN FD: stuffing of the
 // arbitration phase is taken at its mean of one in ten; its data phase runs at the data rate where BRS is
-// set. Cannot represent: arbitration against other nodes, errors, bus-off. Every frame is acknowledged.
+// set. Cannot represent: arbitration against other nodes, errors, bus-off. Every frame is acknowledged; one
+// that nobody was there for is counted.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <utility>
 
 #include "firmware_iface/mcu/peripheral.h"
+#include "firmware_iface/mcu/stm32/bus_ledger.h"
 
 namespace omnihil::mcu {
 
@@ -33,18 +35,21 @@ unsigned can_fast_bits(const CanFrame& frame);
 unsigned can_dlc(unsigned bytes);
 unsigned can_bytes(unsigned dlc, bool fd);
 
-class CanPort {
+class CanPort : public BusEnd {
  public:
-  virtual ~CanPort() = default;
   virtual void receive(const CanFrame& frame) = 0;
   void on_transmit(std::function<void(const CanFrame&, Cycles end)> listener) {
     on_transmit_ = std::move(listener);
   }
 
  protected:
-  void sent(const CanFrame& frame, Cycles end) const {
-    if (on_transmit_) on_transmit_(frame, end);
+  void sent(const CanFrame& frame, Cycles end) {
+    if (on_transmit_) return on_transmit_(frame, end);
+    ledger_.lost("frame", "sent, nobody is there to acknowledge (taken as acknowledged)", end);
   }
+  void off_bus(Cycles at) { ledger_.lost("frame", "came while the controller was not on the bus", at); }
+  void unwanted(Cycles at) { ledger_.lost("frame", "came that no filter takes", at); }
+  void overflow(Cycles at) { ledger_.lost("frame", "came into a full FIFO", at); }
 
  private:
   std::function<void(const CanFrame&, Cycles)> on_transmit_;

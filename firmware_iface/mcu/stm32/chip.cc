@@ -21,14 +21,25 @@ const ChipSpec* find_chip(std::string_view name) {
   return nullptr;
 }
 
+std::string chip_name(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return lower;
+}
+
 MachineConfig machine_config(const ChipSpec& spec) {
   MachineConfig config;
   config.variant = spec.core;
+  config.block_name = [family = spec.blocks](std::uint32_t address) {
+    const BlockPlace* place = block_at(family, address);
+    return place != nullptr ? std::pair(place->name, place->base) : std::pair(std::string_view{}, 0u);
+  };
   config.reset_hz = spec.reset_hz;
   for (const MemorySpec& memory : spec.memories) {
     if (memory.flash) {
       config.flash_base = memory.base;
       config.flash_bytes = memory.bytes;
+      config.boot_address = spec.boot_address != 0 ? spec.boot_address : memory.base;
     } else if (memory.name == "sram") {
       config.ram_base = memory.base;
       config.ram_bytes = memory.bytes;

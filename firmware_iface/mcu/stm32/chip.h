@@ -18,6 +18,7 @@
 #include "firmware_iface/mcu/core/variant.h"
 #include "firmware_iface/mcu/machine/machine.h"
 #include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/block_map.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/clock/flash.h"
 #include "firmware_iface/mcu/stm32/gpio.h"
@@ -36,7 +37,11 @@ struct ChipSpec {
   std::string_view name;
   std::vector<std::string_view> variants;  // other names of what is the same here
   Variant core = kCortexM4F;
+  BlockFamily blocks = BlockFamily::kUnknown;  // what is where, for messages
   double reset_hz = 16e6;
+  // Where the vectors are at reset. 0: at the flash's base; else as the chip's option bytes are delivered, and a
+  // board may say another.
+  std::uint32_t boot_address = 0;
   std::vector<MemorySpec> memories;
   std::vector<std::pair<std::string_view, std::uint32_t>> aliases = {};  // of a memory, at another base
   void (*build)(Chip& chip) = nullptr;
@@ -44,6 +49,7 @@ struct ChipSpec {
 
 std::span<const ChipSpec* const> all_chips();
 const ChipSpec* find_chip(std::string_view name);  // by name or variant, whatever the case
+std::string chip_name(std::string_view name);      // as the lists have it: in lower case
 MachineConfig machine_config(const ChipSpec& spec);
 void attach(Chip& chip, Machine& machine);  // every block at its address
 

@@ -20,8 +20,9 @@ std::vector<ExtiVector> usual_exti_vectors() {
   return {{0, 0, 6}, {1, 1, 7}, {2, 2, 8}, {3, 3, 9}, {4, 4, 10}, {5, 9, 23}, {10, 15, 40}};
 }
 
-void add_exti(Chip& chip, std::uint32_t exti, std::uint32_t syscfg, std::vector<ExtiVector> vectors) {
-  Syscfg& selection = chip.add(syscfg, 0x30, std::make_unique<Syscfg>(chip.context()));
+void add_exti(Chip& chip, std::uint32_t exti, std::uint32_t syscfg, std::vector<ExtiVector> vectors,
+              bool remaps_zero) {
+  Syscfg& selection = chip.add(syscfg, 0x30, std::make_unique<Syscfg>(chip.context(), remaps_zero));
   Exti& lines = chip.add(exti, 0x400, std::make_unique<Exti>(selection, std::move(vectors), chip.context()));
   for (const Chip::Mapped& block : chip.blocks()) {
     if (auto* port = dynamic_cast<GpioPort*>(block.peripheral)) {
@@ -241,7 +242,7 @@ void add_common_f4(Chip& chip, std::string_view ports, std::uint32_t flash_bytes
   add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
   add_stored(chip, 0x40007400, 0x400, "DAC");
   add_stored(chip, 0x40012C00, 0x400, "SDIO");
-  add_stored(chip, 0x40023000, 0x400, "CRC");
+  chip.add(0x40023000, 0x400, std::make_unique<Crc>(CrcFamily::kV1, chip.context().system));
   // GRSTCTL: AHB idle, core reset and FIFO flushes done
   add_stored(chip, 0x50000000, 0x20000, "OTG_FS", {{0x10, 0x80000000, 0x31}});
   add_stored(chip, 0x40040000, 0x20000, "OTG_HS", {{0x10, 0x80000000, 0x31}});

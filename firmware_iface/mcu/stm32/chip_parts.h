@@ -12,6 +12,7 @@
 #include "firmware_iface/mcu/stm32/chip.h"
 #include "firmware_iface/mcu/stm32/clock/pwr.h"
 #include "firmware_iface/mcu/stm32/clock/rcc.h"
+#include "firmware_iface/mcu/stm32/crc.h"
 #include "firmware_iface/mcu/stm32/dma_v1.h"
 #include "firmware_iface/mcu/stm32/dma_v2.h"
 #include "firmware_iface/mcu/stm32/exti.h"
@@ -26,7 +27,8 @@ namespace omnihil::mcu {
 void add_ports(Chip& chip, std::string_view letters, std::uint32_t base);
 // Lines 0..4 alone, 5..9, 10..15 (all but F0).
 std::vector<ExtiVector> usual_exti_vectors();
-void add_exti(Chip& chip, std::uint32_t exti, std::uint32_t syscfg, std::vector<ExtiVector> vectors);
+void add_exti(Chip& chip, std::uint32_t exti, std::uint32_t syscfg, std::vector<ExtiVector> vectors,
+              bool remaps_zero = true);
 Timer& add_timer(Chip& chip, std::uint32_t base, TimerSpec spec);
 void add_usart(Chip& chip, std::uint32_t base, const UsartSpec& spec);
 void add_spi(Chip& chip, std::uint32_t base, const SpiSpec& spec);

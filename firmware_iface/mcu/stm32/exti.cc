@@ -20,7 +20,8 @@ constexpr RegisterInfo kExti[] = {
     {0x20, "IMR2"}, {0x24, "EMR2"}, {0x28, "RTSR2"}, {0x2C, "FTSR2"}, {0x30, "SWIER2"},  {0x34, "PR2", 0, 0}};
 }  // namespace
 
-Syscfg::Syscfg(ChipContext& context) : RegisterBlock("SYSCFG", context.system, kSyscfg) {}
+Syscfg::Syscfg(ChipContext& context, bool remaps_zero)
+    : RegisterBlock("SYSCFG", context.system, kSyscfg), remaps_zero_(remaps_zero) {}
 
 std::uint32_t Syscfg::load(std::uint32_t offset) {
   const std::uint32_t v = value(offset);
@@ -31,7 +32,7 @@ void Syscfg::store(std::uint32_t offset, std::uint32_t written, std::uint32_t la
   const std::uint32_t before = value(0) & 3u;
   keep(offset, written, lanes);
   const std::uint32_t mode = value(0) & 3u;
-  if (offset != 0 || mode == before) return;
+  if (offset != 0 || mode == before || !remaps_zero_) return;
   constexpr std::uint32_t kShown[] = {0x08000000u, 0x1FFF0000u, 0x08000000u, 0x20000000u};
   system().map_at_zero(kShown[mode]);
 }

@@ -15,13 +15,17 @@ namespace omnihil::mcu {
 
 class Syscfg final : public RegisterBlock {
  public:
-  explicit Syscfg(ChipContext& context);
+  // `remaps_zero`: MEM_MODE says what address 0 shows; F7 has none, there is RAM of its own.
+  Syscfg(ChipContext& context, bool remaps_zero);
   unsigned port_of(unsigned line) const { return value(0x08 + 4 * (line / 4)) >> (4 * (line % 4)) & 15u; }
 
-  // MEM_MODE is followed: 0 flash, 1 system memory, 3 SRAM at address 0 (not on F7, whose bits mean others).
+  // MEM_MODE is followed: 0 flash, 1 system memory, 3 SRAM at address 0.
  protected:
   std::uint32_t load(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
+
+ private:
+  bool remaps_zero_;
 };
 
 struct ExtiVector {

@@ -185,14 +185,15 @@ int Fdcan::filter(const CanFrame& frame, unsigned& index) const {
 }
 
 void Fdcan::receive(const CanFrame& frame) {
-  if (!running() || (frame.fd && !bit(value(kCccr), 8))) return;
+  if (!running() || (frame.fd && !bit(value(kCccr), 8))) return off_bus(now());
   unsigned index = 0;
   const int to = filter(frame, index);
-  if (to < 0) return;
+  if (to < 0) return unwanted(now());
   Fifo& fifo = fifos_[static_cast<std::size_t>(to)];
   const unsigned shift = 3 * static_cast<unsigned>(to);
   if (fifo.fill == kPlaces) {
     fifo.lost = true;
+    overflow(now());
     value(kIr) |= 4u << shift;
     if (!bit(value(kRxgfc), to == 0 ? 9 : 8)) return update();  // blocking; else the oldest goes
     fifo.get = (fifo.get + 1) % kPlaces;

@@ -9,11 +9,14 @@
 // acknowledged (AF, NACKF): a driver's time-outs see what they would with the part missing.
 // Cannot represent: slave mode, 10-bit addresses, SMBus, arbitration, clock stretching by devices.
 #pragma once
+#include <fmt/format.h>
+
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "firmware_iface/mcu/stm32/bus_ledger.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/device.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
@@ -28,7 +31,7 @@ struct I2cSpec {
   int irq_event = -1, irq_error = -1;  // error below 0: with the events
 };
 
-class I2c : public RegisterBlock {
+class I2c : public RegisterBlock, public BusEnd {
  public:
   I2c(I2cSpec spec, std::span<const RegisterInfo> registers, ChipContext& context)
       : RegisterBlock(spec.name, context.system, registers),
@@ -41,10 +44,11 @@ class I2c : public RegisterBlock {
   void connect(I2cDevice& device) { devices_.push_back(&device); }
 
  protected:
-  I2cDevice* find(std::uint32_t address) const {
+  I2cDevice* find(std::uint32_t address) {
     for (I2cDevice* device : devices_) {
       if (device->address() == address) return device;
     }
+    ledger_.lost("call", fmt::format("to address 0x{:02x}, which no device has", address), now());
     return nullptr;
   }
   I2cSpec spec_;

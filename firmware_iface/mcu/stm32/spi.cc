@@ -58,16 +58,19 @@ Cycles Spi::frame_cycles() const {
   return Cycles{frame_bits()} * (2u << field(value(kCr1), 3, 3)) * clock.div / clock.mul;
 }
 
-std::uint32_t Spi::exchange(std::uint32_t out) const {
+std::uint32_t Spi::exchange(std::uint32_t out) {
   std::uint32_t in = wide() ? 0xFFFFu : 0xFFu;
+  bool heard = false;
   for (const Slave& slave : devices_) {
     if (!slave.selected) continue;
+    heard = true;
     std::uint32_t answer = 0;
     if (wide())
       answer = static_cast<std::uint32_t>(slave.device->exchange(static_cast<std::uint8_t>(out >> 8))) << 8;
     answer |= slave.device->exchange(static_cast<std::uint8_t>(out));
     in &= answer;
   }
+  if (!heard) ledger_.lost("byte", "sent with no device selected", now(), wide() ? 2 : 1);
   return in;
 }
 

@@ -6,7 +6,7 @@
 //
 // Law: RM0090 §28, RM0316 §30. A frame of 4..16 bits takes 2^(BR+1) bus clocks per bit; what the device
 // answers is there with the last of them. Frames of 16 bits are two bytes to the device, high byte first. No
-// device selected: reads ones. v2: transmit and receive FIFOs of 4 bytes, packing of byte pairs by 16-bit
+// device selected: reads ones, and is counted. v2: transmit and receive FIFOs of 4 bytes, packing of byte pairs by 16-bit
 // accesses. Cannot represent: slave mode, I2S, CRC, LSB first, half duplex (reads as full duplex), clock
 // phase and polarity (devices answer in any), the I2S halves.
 #pragma once
@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware_iface/mcu/stm32/bus_ledger.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/device.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
@@ -28,7 +29,7 @@ struct SpiSpec {
   int irq = -1;
 };
 
-class Spi final : public RegisterBlock {
+class Spi final : public RegisterBlock, public BusEnd {
  public:
   Spi(SpiSpec spec, ChipContext& context);
   void reset() override;
@@ -52,7 +53,7 @@ class Spi final : public RegisterBlock {
   std::size_t capacity() const { return spec_.v2 ? (wide() ? 2 : 4) : 1; }
   std::size_t ready_at() const { return spec_.v2 && !wide() && !bit(value(0x04), 12) ? 2 : 1; }
   Cycles frame_cycles() const;
-  std::uint32_t exchange(std::uint32_t out) const;
+  std::uint32_t exchange(std::uint32_t out);
   void push(std::uint32_t frame);
   void begin();
   std::uint32_t status() const;

@@ -99,7 +99,11 @@ void Usart::run_events() {
     } else {
       status_ |= kTc;
     }
-    if (on_transmit_) on_transmit_(byte, end);
+    if (on_transmit_) {
+      on_transmit_(byte, end);
+    } else {
+      ledger_.lost("byte", "sent, the port leads nowhere", end);
+    }
   }
   while (!waiting_.empty() && receive_at_ <= now()) {
     const std::uint8_t byte = waiting_.front().byte;
@@ -115,7 +119,7 @@ void Usart::run_events() {
 }
 
 void Usart::receive(std::uint8_t byte) {
-  if (!on(kRe)) return;
+  if (!on(kRe)) return ledger_.lost("byte", "came while the receiver was off", now());
   schedule(idle_at_, now() + frame_cycles());
   std::uint32_t data = byte;
   if ((cr1() & (kPce | kM)) == (kPce | kM)) {  // the parity bit is the ninth
@@ -125,6 +129,7 @@ void Usart::receive(std::uint8_t byte) {
   if ((status_ & kRxne) != 0) {
     if (!(spec_.v2 && bit(cr3(), 12))) status_ |= kOre;
     ++overruns_;
+    ledger_.lost("byte", "came before the one before them was read (overrun)", now());
     if (spec_.v2 && bit(cr3(), 12)) received_ = data;  // OVRDIS: the newest byte wins
   } else {
     received_ = data;

@@ -16,6 +16,7 @@
 #include <string>
 #include <utility>
 
+#include "firmware_iface/mcu/stm32/bus_ledger.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
 
@@ -29,7 +30,7 @@ struct UsartSpec {
   int irq = -1;
 };
 
-class Usart final : public RegisterBlock {
+class Usart final : public RegisterBlock, public BusEnd {
  public:
   Usart(UsartSpec spec, ChipContext& context);
   void reset() override;

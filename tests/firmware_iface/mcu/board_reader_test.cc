@@ -1,6 +1,7 @@
 // Board files: what is right is read, what is wrong is named with its place, all of it at once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <string>
 
@@ -191,6 +192,8 @@ TEST(BoardReader, NamesEveryKindOfMistakeWithItsLineAndKey) {
       {"level = true", "robot_id_bit = 8", "pin[0].robot_id_bit", "out of range"},
       {"level = true", "level = true\nrobot_id_bit = 1", "pin[0].robot_id_bit", "beside a level"},
       {"level = true", "", "pin[0].level", "missing"},
+      {"level = true", "break_beam = \"up\"", "pin[0].break_beam", "neither"},
+      {"level = true", "level = true\nbreak_beam = \"low\"", "pin[0].break_beam", "beside a level"},
       {"omnihil-board/1\"", "omnihil-board/1\"\ncontrol_timer = \"TIM99\"", "control_timer", "no such timer"},
       {"0x08060000", "0x20000000", "flash[0].address", "out of range"},
       {"0x08060000", "0x08060002", "flash[0].address", "multiple of 4"},
@@ -208,6 +211,28 @@ TEST(BoardReader, NamesEveryKindOfMistakeWithItsLineAndKey) {
       EXPECT_EQ(p.text().substr(0, 7), "b.toml:");
     }
     EXPECT_TRUE(found) << c.from << " -> " << c.to << ": " << (problems.empty() ? "" : problems[0].text());
+  }
+}
+
+// What is refused is not in the list of what is allowed.
+TEST(BoardReader, AListOfWhatIsAllowedDoesNotNameWhatItRefuses) {
+  struct Refused {
+    const char *from, *to, *key, *name;
+  };
+  for (const Refused& c :
+       {Refused{"encoder = \"TIM3\"", "encoder = \"TIM6\"", "motor[0].encoder", "TIM6"},
+        Refused{"encoder = \"TIM3\"", "encoder = \"TIM13\"", "motor[0].encoder", "TIM13"},
+        Refused{"reversed = true", "hall = \"TIM9\"\npole_pairs = 4", "motor[1].hall", "TIM9"},
+        Refused{"\"TIM8.1\"", "\"TIM7.1\"", "motor[0].pwm", "TIM7"},
+        Refused{"\"TIM8.1\"", "\"TIM3.1N\"", "motor[0].pwm", "TIM3"},
+        Refused{"\"SPI1\"", "\"I2C1\"", "device[0].bus", "I2C1"}}) {
+    std::vector<BoardProblem> problems;
+    EXPECT_FALSE(read_board(replaced(kGood, c.from, c.to), "b.toml", problems)) << c.to;
+    const auto it =
+        std::find_if(problems.begin(), problems.end(), [&](const BoardProblem& p) { return p.key == c.key; });
+    ASSERT_NE(it, problems.end()) << c.to;
+    EXPECT_FALSE(it->allowed.empty()) << c.to;
+    EXPECT_EQ((it->allowed + ",").find(std::string(c.name) + ","), std::string::npos) << it->text();
   }
 }
 

@@ -219,8 +219,15 @@ TEST(HermesEffects, PingBatteryAndNumberAreAnsweredByteForByte) {
   radio.receive(to_robot(kRobot, kGetNum));
   EXPECT_EQ(radio.transmit(), from_robot(kRobot, kPingResponse));
   EXPECT_EQ(radio.transmit(), from_robot(kRobot, kBatteryResponse, {234}));  // cut off, not rounded
-  EXPECT_EQ(radio.transmit(), from_robot(kRobot, kNumResponse, {3, 0, 0, 0}));
+  EXPECT_EQ(radio.transmit(), from_robot(kRobot, kNumResponse, {2, 0, 0, 0}));
   EXPECT_TRUE(radio.transmit().empty());
+}
+
+// As their communication task counts (RobotMCU 44cc54f, hermes_task.c), and the dongle's own robot.
+TEST(HermesEffects, TheQuestionForTheCountIsNotCounted) {
+  Radio radio;
+  for (int n = 0; n < 3; ++n) radio.receive(to_robot(kRobot, kGetNum));
+  for (int n = 0; n < 3; ++n) EXPECT_EQ(radio.transmit(), from_robot(kRobot, kNumResponse, {0, 0, 0, 0}));
 }
 
 TEST(HermesEffects, RobotZeroAnswersToo) {
@@ -247,7 +254,10 @@ TEST(HermesEffects, AnswerWaitsForABufferThatHoldsIt) {
 
 TEST(HermesEffects, FifthUnreadAnswerIsDroppedAndTheFirstFourStay) {
   Radio radio;
-  for (int n = 0; n < 5; ++n) radio.receive(to_robot(kRobot, kGetNum));
+  for (int n = 0; n < 5; ++n) {
+    radio.receive(to_robot(kRobot, kSpeedMove, floats({0, 0, 0})));
+    radio.receive(to_robot(kRobot, kGetNum));
+  }
   for (std::uint8_t n = 1; n <= 4; ++n) {
     EXPECT_EQ(radio.transmit(), from_robot(kRobot, kNumResponse, {n, 0, 0, 0}));
   }

@@ -13,6 +13,14 @@
 #include "hil/loop/model_store.h"
 #include "hil/recording/session_setup.h"
 
+#if defined(__x86_64__)
+#define OMNIHIL_HOST_MACHINE "x86-64 (machine 62)"
+#elif defined(__aarch64__)
+#define OMNIHIL_HOST_MACHINE "AArch64 (machine 183)"
+#else
+#define OMNIHIL_HOST_MACHINE ""
+#endif
+
 namespace omnihil {
 namespace {
 const std::string kImage = OMNIHIL_BUILD_DIR "/images/wheels.elf";
@@ -98,6 +106,79 @@ TEST_F(ImageOnBoard, FilesThatCannotBeUsedAreAllNamed) {
     EXPECT_NE(text.find("firmware " + kBoard), std::string::npos) << text;
     EXPECT_NE(text.find(kImage + ":"), std::string::npos) << text;
   }
+}
+
+std::string said_of(const std::string& board_text, const std::string& served,
+                    const std::string& image = kImage) {
+  const auto path =
+      std::filesystem::temp_directory_path() / ("omnihil-radio-" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(path) << board_text;
+  SessionConfig config = one_robot(1'000'000);
+  config.radio_format = served;
+  std::string said;
+  try {
+    open_firmware({.file = image, .board = path.string()}, config);
+  } catch (const std::invalid_argument& error) {
+    said = error.what();
+  }
+  std::filesystem::remove(path);
+  return said;
+}
+
+std::string with_radio(const std::string& board_file, const std::string& format, const std::string& via) {
+  std::ifstream file(board_file);
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  if (const std::size_t old = text.find("[radio]"); old != std::string::npos) {
+    const std::size_t next = text.find("\n[", old);
+    text.erase(old, next == std::string::npos ? next : next - old);
+  }
+  return text + "\n[radio]\nformat = \"" + format + "\"\nvia = \"" + via + "\"\n";
+}
+
+TEST_F(ImageOnBoard, AnUnknownRadioFormatIsRefusedWithThoseThatThereAre) {
+  const std::string said = said_of(with_radio(kBoard, "ulaval-hermies", "USART1"), "ulaval-hermes");
+  EXPECT_NE(said.find("radio.format = 'ulaval-hermies'"), std::string::npos) << said;
+  EXPECT_NE(said.find("unknown"), std::string::npos) << said;
+  EXPECT_NE(said.find("roboteam-rem-v8"), std::string::npos) << said;
+  EXPECT_NE(said.find(".toml:"), std::string::npos) << "with its line: " << said;
+}
+
+TEST_F(ImageOnBoard, ARadioFormatThatIsNotServedIsRefused) {
+  const std::string said = said_of(with_radio(kBoard, "ulaval-hermes", "USART1"), "roboteam-rem-v8");
+  EXPECT_NE(said.find("radio.format = 'ulaval-hermes'"), std::string::npos) << said;
+  EXPECT_NE(said.find("allowed: roboteam-rem-v8"), std::string::npos) << said;
+  EXPECT_NE(said.find("--radio ulaval-hermes"), std::string::npos) << said;
+  EXPECT_EQ(said_of(with_radio(kBoard, "ulaval-hermes", "USART1"), "ulaval-hermes"), "");
+}
+
+TEST_F(ImageOnBoard, ABoardWithoutMotorsIsRefused) {
+  const std::string said =
+      said_of("format = \"omnihil-board/1\"\nname = \"n\"\nchip = \"stm32f405\"\n", "ulaval-hermes");
+  EXPECT_NE(said.find("motor: missing"), std::string::npos) << said;
+  EXPECT_NE(said.find("[[motor]]"), std::string::npos) << said;
+}
+
+TEST_F(ImageOnBoard, AProgramOfAnotherMachineIsSaidToBeOne) {
+  std::ifstream file(kBoard);
+  const std::string board((std::istreambuf_iterator<char>(file)), {});
+  for (const std::string& other :
+       {std::string("/proc/self/exe"),
+        std::string(OMNIHIL_BUILD_DIR "/firmware_iface/libomnihil_reference_firmware.so")}) {
+    const std::string said = said_of(board, "ulaval-hermes", other);
+    EXPECT_NE(said.find("an ELF file for " OMNIHIL_HOST_MACHINE), std::string::npos) << said;
+    EXPECT_NE(said.find("needed with --board: a 32-bit ARM executable (machine 40)"), std::string::npos)
+        << said;
+  }
+}
+
+TEST(AvrImageOnBoard, ItsRadioFormatIsLookedAtTheSame) {
+  const std::string image = std::string(OMNIHIL_BUILD_DIR) + "/images/omni_reference_avr.hex",
+                    board = std::string(OMNIHIL_SOURCE_DIR) + "/boards/omni_reference_avr.toml";
+  if (!std::filesystem::exists(image)) GTEST_SKIP() << "no avr-gcc: the image was not built";
+  const std::string unknown = said_of(with_radio(board, "morse", "USART0"), "ulaval-hermes", image);
+  EXPECT_NE(unknown.find("radio.format = 'morse'"), std::string::npos) << unknown;
+  const std::string other = said_of(with_radio(board, "ulaval-hermes", "USART0"), "roboteam-rem-v5", image);
+  EXPECT_NE(other.find("allowed: roboteam-rem-v5"), std::string::npos) << other;
 }
 
 }  // namespace

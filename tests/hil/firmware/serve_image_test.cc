@@ -32,6 +32,38 @@ TEST_F(ServeImage, RunsItOnTwoRobots) {
   EXPECT_FALSE(ran.says("not modelled")) << ran.text;
 }
 
+const std::string kFaults = OMNIHIL_BUILD_DIR "/images/faults.elf",
+                  kStays = OMNIHIL_BUILD_DIR "/images/faults_stays.elf";
+
+TEST_F(ServeImage, AnImageThatOnlyFaultsAndResetsEndsWithSix) {
+  const Ran ran = serve(kFaults, kBoard);
+  EXPECT_EQ(ran.exit_code, 6) << ran.text;
+  EXPECT_TRUE(ran.says("faults and is reset, twice in a row")) << ran.text;
+  EXPECT_TRUE(ran.says("read_nowhere")) << ran.text;
+}
+
+TEST_F(ServeImage, EqualLinesOfSeveralRobotsAreOne) {
+  const Ran ran = serve(kFaults, kBoard);
+  EXPECT_TRUE(ran.says("robots 0-1")) << ran.text;
+  const std::size_t first = ran.text.find("fault: HardFault");
+  ASSERT_NE(first, std::string::npos) << ran.text;
+  EXPECT_EQ(ran.text.find("fault: HardFault", first + 1), std::string::npos) << ran.text;
+}
+
+TEST_F(ServeImage, AnImageThatStaysInItsFaultHandlerEndsWithSix) {
+  const Ran ran =
+      run_omnihil("serve --clock free --duration 0.5 --robots 0 --physics planar --device" +
+                  shell(folder / "dongle") + "--firmware" + shell(kStays) + "--board" + shell(kBoard));
+  EXPECT_EQ(ran.exit_code, 6) << ran.text;
+  EXPECT_TRUE(ran.says("stays in its fault handler")) << ran.text;
+}
+
+TEST_F(ServeImage, AScenarioWithSuchAnImageEndsWithSix) {
+  const Ran ran = run_omnihil("scenario run wheel/direction --no-plots --firmware" + shell(kFaults) +
+                              "--board" + shell(kBoard));
+  EXPECT_EQ(ran.exit_code, 6) << ran.text;
+}
+
 TEST_F(ServeImage, NamesEveryMistakeOfTheBoardFileAndEndsWithTwo) {
   std::ifstream good(kBoard);
   std::string text((std::istreambuf_iterator<char>(good)), {});

@@ -102,7 +102,7 @@ struct Broken {
 };
 class BrokenFirmware : public testing::TestWithParam<Broken> {};
 
-// The four scenarios that ask for one thing each.
+// The scenarios that ask for one thing each.
 constexpr const char* kOneThing[] = {"direction", "wind_up", "radio_silence", "control_period"};
 
 TEST_P(BrokenFirmware, FailsTheMatchingCheckAlone) {
@@ -127,8 +127,42 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Broken{"sign_error", "direction", "commanded_sign", {2}},
                     Broken{"unlimited_integrator", "wind_up", "wind_up", {0}},
                     Broken{"no_timeout", "radio_silence", "stops_after_silence", {0, 1, 2, 3}},
-                    Broken{"over_run", "control_period", "control_periods", {-1}}),
+                    Broken{"over_run", "control_period", "control_periods", {-1}},
+                    Broken{"exchanged_wheels", "direction", "wheel_order", {-1}}),
     [](const auto& of) { return std::string(of.param.library); });
+
+TEST(ScenarioSuite, ExchangedWheelsAreNamedOnTheStandAndOnTheFloor) {
+  for (const char* name : {"/wheel/direction.toml", "/robot/wheel_order.toml"}) {
+    const auto outcomes = run_suite(kSuite + name, options(broken("exchanged_wheels")));
+    ASSERT_EQ(outcomes.size(), 1u);
+    const auto& results = outcomes[0].results;
+    const auto order = std::ranges::find(results, "wheel_order", &CheckResult::name);
+    ASSERT_NE(order, results.end());
+    EXPECT_EQ(order->note, "wheels 1 and 2 are exchanged") << name;
+    EXPECT_FALSE(order->passed);
+  }
+}
+
+// On this robot 127 counts a period are 195 rad/s; nothing else in the suite drives a wheel so fast.
+TEST(ScenarioSuite, CountsThatAreTooNarrowPassEverythingButTheTopSpeed) {
+  SuiteOptions o = options(broken("eight_bit_counts"));
+  o.robot = "ibis_orion";
+  std::set<std::string> failed;
+  for (const ScenarioOutcome& outcome : run_suite(kSuite, o, kNoBall)) {
+    if (!outcome.passed()) failed.insert(std::filesystem::path(outcome.scenario.file).stem().string());
+  }
+  EXPECT_EQ(failed, (std::set<std::string>{"pushed", "top_speed"})) << "pushed: the reference's, too";
+}
+
+TEST(ScenarioSuite, CountsThatAreTooNarrowFailTheTopSpeedOnTheDefaultRobot) {
+  const auto outcomes = run_suite(kSuite + "/wheel/top_speed.toml", options(broken("eight_bit_counts")));
+  ASSERT_EQ(outcomes.size(), 1u);
+  std::set<int> wheels;
+  for (const CheckResult& r : outcomes[0].results) {
+    if (!r.passed && r.name == "steady_error") wheels.insert(r.wheel);
+  }
+  EXPECT_EQ(wheels, (std::set<int>{0, 1, 2, 3}));
+}
 
 TEST(ScenarioSuite, CrashIsAFailedCheckThatNamesIt) {
   const auto outcomes = run_suite(kSuite + "/wheel/direction.toml", options(broken("null_pointer")));

@@ -60,7 +60,7 @@ void build(Chip& chip) {
   add_i2c(chip, 0x40005400, {.name = "I2C1", .v2 = true, .from_hsi = true, .irq_event = 23});
   add_watchdogs(chip, 7, 2);
   add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
-  add_stored(chip, 0x40023000, 0x400, "CRC");
+  chip.add(0x40023000, 0x400, std::make_unique<Crc>(CrcFamily::kV2FixedPolynomial, chip.context().system));
   add_identity(chip, {0x1FFFF7AC, 0x1FFFF7CC, 0x40015800, 0x10006444, 32});
 }
 }  // namespace
@@ -70,6 +70,7 @@ const ChipSpec& chip_stm32f031() {
       .name = "stm32f031",
       .variants = {"stspin32f0", "stspin32f0a", "stm32f031c6"},
       .core = kCortexM0,
+      .blocks = BlockFamily::kF0,
       .reset_hz = 8e6,
       .memories = {{"flash", 0x08000000, 32 * 1024, true}, {"sram", 0x20000000, 4 * 1024}},
       .build = build};

@@ -134,7 +134,7 @@ void build(Chip& chip) {
   add_stored(chip, 0x40006000, 0x400, "USB packet memory");
   add_stored(chip, 0x40007400, 0x400, "DAC");
   add_stored(chip, 0x40010030, 0x3D0, "COMP and OPAMP");
-  add_stored(chip, 0x40023000, 0x400, "CRC");
+  chip.add(0x40023000, 0x400, std::make_unique<Crc>(CrcFamily::kV2, chip.context().system));
   add_stored(chip, 0x40024000, 0x400, "TSC");
   add_identity(chip, {0x1FFFF7AC, 0x1FFFF7CC, 0xE0042000, 0x10036422, 256});
 }
@@ -144,6 +144,7 @@ const ChipSpec& chip_stm32f303() {
   static const ChipSpec spec{.name = "stm32f303",
                              .variants = {"stm32f303rb", "stm32f303rc", "stm32f303cb", "stm32f303cc"},
                              .core = kCortexM4F,
+                             .blocks = BlockFamily::kF3,
                              .reset_hz = 8e6,
                              .memories = {{"flash", 0x08000000, 256 * 1024, true},
                                           {"sram", 0x20000000, 40 * 1024},

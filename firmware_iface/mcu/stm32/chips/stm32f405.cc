@@ -15,6 +15,7 @@ const ChipSpec& chip_stm32f405() {
   static const ChipSpec spec{.name = "stm32f405",
                              .variants = {"stm32f407", "stm32f415", "stm32f417"},
                              .core = kCortexM4F,
+                             .blocks = BlockFamily::kF4,
                              .memories = {{"flash", 0x08000000, 1024 * 1024, true},
                                           {"sram", 0x20000000, 128 * 1024},
                                           {"ccm", 0x10000000, 64 * 1024},

@@ -16,6 +16,7 @@ const ChipSpec& chip_stm32f446() {
   static const ChipSpec spec{.name = "stm32f446",
                              .variants = {},
                              .core = kCortexM4F,
+                             .blocks = BlockFamily::kF446,
                              .memories = {{"flash", 0x08000000, 512 * 1024, true},
                                           {"sram", 0x20000000, 128 * 1024},
                                           {"backup", 0x40024000, 4096}},

@@ -12,7 +12,7 @@ void build(Chip& chip) {
   chip.add(0x40007000, 0x400, make_pwr(PwrFamily::kF7, context));
   chip.add(0x40023C00, 0x400, std::make_unique<Flash>(FlashFamily::kF7, 2048 * 1024, 32768, 4, context));
   add_ports(chip, "ABCDEFGHIJK", 0x40020000);
-  add_exti(chip, 0x40013C00, 0x40013800, usual_exti_vectors());
+  add_exti(chip, 0x40013C00, 0x40013800, usual_exti_vectors(), false);
   add_dma_f4(chip);
   add_timers_f4(chip, true);
   add_adcs_f4(chip, adc_triggers_f7());
@@ -47,7 +47,7 @@ void build(Chip& chip) {
   add_watchdogs(chip, 7, 2);
   add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
   add_stored(chip, 0x40007400, 0x400, "DAC");
-  add_stored(chip, 0x40023000, 0x400, "CRC");
+  chip.add(0x40023000, 0x400, std::make_unique<Crc>(CrcFamily::kV2, chip.context().system));
   add_stored(chip, 0x40028000, 0x2000, "ETH", {{0x1000, 0, 1}});
   add_stored(chip, 0x50060800, 0x400, "RNG", {{0x04, 1}});
   add_stored(chip, 0x50000000, 0x20000, "OTG_FS", {{0x10, 0x80000000, 0x31}});
@@ -60,6 +60,8 @@ const ChipSpec& chip_stm32f767() {
   static const ChipSpec spec{.name = "stm32f767",
                              .variants = {"stm32f765", "stm32f769", "stm32f777", "stm32f779"},
                              .core = kCortexM7,
+                             .blocks = BlockFamily::kF7,
+                             .boot_address = 0x00200000,
                              .memories = {{"flash", 0x08000000, 2048 * 1024, true},
                                           {"itcm", 0x00000000, 16 * 1024},
                                           {"sram", 0x20000000, 512 * 1024},

@@ -154,7 +154,7 @@ void build(Chip& chip) {
   add_stored(chip, 0x40016800, 0x1000, "HRTIM");
   add_stored(chip, 0x40020C00, 0x400, "CORDIC", {{0, 0x80000000}});
   add_stored(chip, 0x40021400, 0x400, "FMAC");
-  add_stored(chip, 0x40023000, 0x400, "CRC");
+  chip.add(0x40023000, 0x400, std::make_unique<Crc>(CrcFamily::kV2, chip.context().system));
   add_stored(chip, 0x50000800, 0x400, "DAC1");
   add_stored(chip, 0x50060800, 0x400, "RNG", {{0x04, 1}});
   add_identity(chip, {0x1FFF7590, 0x1FFF75E0, 0xE0042000, 0x20006469, 512});
@@ -165,6 +165,7 @@ const ChipSpec& chip_stm32g474() {
   static const ChipSpec spec{.name = "stm32g474",
                              .variants = {"stm32g473", "stm32g483", "stm32g484"},
                              .core = kCortexM4F,
+                             .blocks = BlockFamily::kG4,
                              .memories = {{"flash", 0x08000000, 512 * 1024, true},
                                           {"sram", 0x20000000, 96 * 1024},
                                           {"ccm", 0x20018000, 32 * 1024}},

@@ -18,6 +18,15 @@ constexpr RegisterInfo kF4[] = {{0x00, "ACR", 0, 0x1F0F},
                                 {0x10, "CR", 0x80000000, 0x8301837F},
                                 {0x14, "OPTCR", 0x0FFFAAED, 0x0FFFFFFD, 0x2},
                                 {0x18, "OPTCR1", 0x0FFF0000}};
+// RM0410 3.7: as F4, but for the options
+constexpr RegisterInfo kF7[] = {{0x00, "ACR", 0, 0xB0F},
+                                {0x04, "KEYR", 0, 0},
+                                {0x08, "OPTKEYR", 0, 0},
+                                {0x0C, "SR", 0, 0},
+                                {0x10, "CR", 0x80000000, 0x8301837F},
+                                {0x14, "OPTCR", 0xFFFFAAFD, 0xFFFFFFFD, 0x2},
+                                {0x18, "OPTCR1", 0x00400080},
+                                {0x1C, "OPTCR2", 0x800000FF}};
 constexpr RegisterInfo kG4[] = {{0x00, "ACR", 0x600, 0x47F0F},
                                 {0x04, "PDKEYR", 0, 0},
                                 {0x08, "KEYR", 0, 0},
@@ -43,7 +52,7 @@ Layout layout(FlashFamily family) {
 std::span<const RegisterInfo> table(FlashFamily family) {
   if (family == FlashFamily::kF0F3) return kF0F3;
   if (family == FlashFamily::kG4) return kG4;
-  return kF4;
+  return family == FlashFamily::kF7 ? std::span<const RegisterInfo>(kF7) : kF4;
 }
 }  // namespace
 
@@ -57,7 +66,13 @@ Flash::Flash(FlashFamily family, std::uint32_t bytes, std::uint32_t page_bytes, 
 void Flash::reset() {
   RegisterBlock::reset();
   keys_ = 0;
+  if (family_ == FlashFamily::kF7) value(0x18) = (value(0x18) & 0xFFFF0000u) | boot_option_;
   irq_.set(false);
+}
+
+void Flash::set_boot_address(std::uint32_t address) {
+  boot_option_ = address / 16384;
+  reset();
 }
 
 bool Flash::locked() const {

@@ -18,6 +18,8 @@ class Flash final : public RegisterBlock, public FlashWrites {
  public:
   Flash(FlashFamily family, std::uint32_t bytes, std::uint32_t page_bytes, int irq, ChipContext& context);
   void reset() override;
+  // BOOT_ADD0 as OPTCR1 shows it (F7): in units of 16 KiB.
+  void set_boot_address(std::uint32_t address);
   void flash_write(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
 
  protected:
@@ -35,6 +37,7 @@ class Flash final : public RegisterBlock, public FlashWrites {
   std::uint32_t bytes_, page_bytes_;
   IrqLine irq_;
   unsigned keys_ = 0;
+  std::uint32_t boot_option_ = 0x0080;  // as delivered: 0x00200000
 };
 
 }  // namespace omnihil::mcu
