@@ -69,6 +69,7 @@ std::string section(const CheckOutcome& o, std::size_t place, const CheckHistory
                                  o.passed() ? "" : " open", escaped(o.file));
   html += "<pre>" + escaped(check_text(o, false)) + "</pre>\n";
   for (const LineChart& chart : o.charts) html += "<figure>" + line_chart(chart) + "</figure>\n";
+  if (!o.field.empty()) html += "<figure>" + o.field + "</figure>\n";
   html += trend(o, history);
   if (!o.comparison.signals.empty()) html += signals_table(o);
   return html + "</details>\n</section>\n";

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "hil/check/firmware_alone.h"
 #include "hil/check/law_difference.h"
 #include "hil/check/signal_series.h"
+#include "hil/field_view/field_picture.h"
 #include "hil/recording/recording_header.h"
+#include "hil/recording/replay.h"
 #include "hil/recording/replay_report.h"
 #include "hil/recording/session_setup.h"
 
@@ -130,7 +133,18 @@ CheckOutcome check_recording(const std::string& file, const Recording& recording
   out.file = file;
   out.tolerance_reason = options.tolerance_reason;
   out.changed = session_changes(recording.header, options.replay);
-  const ReplayRun run = run_again(recording, options.replay);
+  std::unique_ptr<FieldTrace> trace;
+  ObserverList observers({});
+  ReplayOptions replay = options.replay;
+  if (options.charts > 0 && recording.header.field.contacts) {
+    trace = std::make_unique<FieldTrace>(
+        session_config(session_setup(replay_header(recording.header, options.replay))));
+    observers.add(trace.get());
+    if (replay.observer != nullptr) observers.add(replay.observer);
+    replay.observer = &observers;
+  }
+  const ReplayRun run = run_again(recording, replay);
+  if (trace) out.field = field_picture(*trace, {});
   out.recording = recording_line(recording);
   out.replayed = replay_line(recording, run);
   out.simulated_s = static_cast<double>(run.answer.end_ns) / 1e9;

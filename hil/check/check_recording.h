@@ -37,6 +37,8 @@ struct CheckOutcome {
   std::vector<std::string> cause;        // whether firmware or robot differs, and in what, a line each
   std::string explained;                 // of the model, where it was asked for (explain_difference.h)
   std::vector<LineChart> charts;
+  std::string
+      field;  // SVG of the field from above, of the new run; where charts are asked for and there is one
   double simulated_s = 0.0, wall_s = 0.0;
 
   bool passed() const { return fault == CheckFault::kNone && comparison.agrees(); }

@@ -128,16 +128,21 @@ FirmwareAlone run_firmware_alone(const Recording& recording, const ReplayOptions
   bool phases = false;
   ReplayOptions fed = options;
   fed.observer = nullptr;
-  fed.firmware = [&](const SessionConfig& config) -> Session::FirmwareMaker {
-    Session::FirmwareMaker make =
-        options.firmware ? options.firmware(config) : reference_firmware_for(config);
-    return [&, make](const RobotConfig& robot) -> std::unique_ptr<Firmware> {
+  const auto feed = [&](Session::FirmwareMaker make, std::uint32_t first_key) -> Session::FirmwareMaker {
+    return [&, make, first_key](const RobotConfig& robot) -> std::unique_ptr<Firmware> {
       std::unique_ptr<Firmware> inner = make(robot);
       phases = phases || inner->drives_phases();
-      const auto found = ticks.find(robot.robot_id);
+      const auto found = ticks.find(first_key + robot.robot_id);
       return std::make_unique<FedFirmware>(std::move(inner), *columns,
                                            found == ticks.end() ? Ticks{} : found->second);
     };
+  };
+  fed.firmware = [&](const SessionConfig& config) {
+    return feed(options.firmware ? options.firmware(config) : reference_firmware_for(config), 0);
+  };
+  fed.opponents_firmware = [&](const SessionConfig& alone) {
+    const auto& own = options.opponents_firmware ? options.opponents_firmware : options.firmware;
+    return feed(own ? own(alone) : reference_firmware_for(alone), kOpponentKey);
   };
   ReplayRun run = run_again(recording, fed);
   if (phases) {

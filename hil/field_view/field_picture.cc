@@ -164,6 +164,10 @@ void draw_event(Out out, const View& v, const WorldEvent& e) {
                      x - 3.0, y - 3.0);
       return;
     case WorldEventKind::kTip:
+      fmt::format_to(out,
+                     "<g><title>tips over at {:.2f} s</title><path d=\"M{:.1f} {:.1f} l9 4 l-9 4 z\" "
+                     "fill=\"#d00\" stroke=\"#000\"/></g>\n",
+                     time_s, x, y - 4.0);
       return;
   }
 }
@@ -194,6 +198,8 @@ std::string field_picture(const FieldTrace& trace, const FieldPictureOptions& op
     fmt::format_to(out, "<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"#fff\" text-anchor=\"middle\">{}</text>\n",
                    v.x(robot.points.back().x_m), v.y(robot.points.back().y_m) + 4.0, robot.id);
   }
+  for (const FieldPoint& real : trace.movers())
+    draw_robot(out, v, RobotOutline{}, real, "fill=\"#888\" fill-opacity=\"0.15\"");
   draw_ball(out, v, trace.ball());
   for (const WorldEvent& event : trace.events()) draw_event(out, v, event);
   svg += "</svg>\n";

@@ -3,7 +3,7 @@
 //   std::string svg = field_picture(trace, {.title = "kick and goal"});
 //
 // Robots are drawn where they began (thin) and where they ended (filled), the first team in its colour, opponents in the
-// other; a ball in the air has a dotted way. Without a field the picture is as large as what moved.
+// other, real ones of a mixed match grey; a ball in the air has a dotted way. Without a field the picture is as large as what moved.
 #pragma once
 #include <string>
 

@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hil/field_play/pass_and_shoot.h"
+#include "hil/league/vision.h"
+#include "hil/loop/air_loss.h"
+#include "identify/tyre/tyre_curve_fit.h"
 #include "sim/field/chip_kick.h"
 #include "sim/field/dribbler.h"
 #include "sim/field/kicker.h"
@@ -124,6 +128,105 @@ TourRow dribbler_row(const RobotModel& model) {
                       with_ball_A, world.handling(0).dribbler_current_A)};
 }
 
+// The paper's way on a robot that is pushed evenly, forward and back: force over slip, and a curve through it.
+TourRow tyre_row(const RobotModel& model) {
+  World world = world_of(model, 1);
+  TyrePoints points;
+  for (int push = 0; push < 6; ++push) {
+    for (int ms = 0; ms < 400; ++ms) {
+      RobotDrive drive{};
+      const double duty = (push % 2 == 0 ? 1.0 : -1.0) * (0.1 + 0.1 * push) * (1.0 + ms / 100.0);
+      for (std::size_t i = 0; i < kWheels; ++i) {
+        drive.mode[i] = OMNIHIL_DRIVE_DUTY;
+        drive.duty_ratio[i] = std::clamp(-duty * std::sin(model.wheel_angle_rad[i]), -1.0, 1.0);
+      }
+      world.write(0, drive);
+      world.advance(1'000'000);
+      const RobotTruth truth = world.plant().truth(0);
+      for (std::size_t i = 0; i < kWheels; ++i)
+        points.all.push_back({static_cast<int>(i), 1e-9 * static_cast<double>(world.now_ns()),
+                              -truth.slip_longitudinal_ratio[i], 1e-4,
+                              truth.force_longitudinal_N[i] / std::max(0.1, truth.load_N[i]), 1e-3, 1.0});
+    }
+  }
+  const TyreCurve found = fit_tyre_curve(points.all).curve;
+  return {
+      "tyre curve", "force over slip, eqs. (5) to (7), Fig. 8",
+      fmt::format(
+          "six pushes: grip {:.3f} at slip {:.3f}, {:.3f} sliding; the model has {:.3f} at {:.3f}, {:.3f}",
+          found.extremum_value, found.extremum_slip, found.asymptote_value,
+          model.tyre_longitudinal.extremum_value, model.tyre_longitudinal.extremum_slip,
+          model.tyre_longitudinal.asymptote_value)};
+}
+
+TourRow wireless_row() {
+  // What a robot 8 m away gets, against eqs. (2) and (3).
+  constexpr double kAway_m = 8.0;
+  constexpr int kPackets = 100'000;
+  AirLoss air({.by_distance = true}, 1, [=](int) { return std::pair(kAway_m, 0.0); });
+  for (int n = 0; n < kPackets; ++n) air.lost(0, AirWay::kToRobot);
+  return {
+      "wireless", "eqs. (2), (3): loss by distance",
+      fmt::format("{:.2f} % lost at 0.1 m, {:.2f} % at 5 m, {:.2f} % at 8 m; of {} packets to 8 m {:.2f} %",
+                  100.0 * distance_loss_mean(0.1), 100.0 * distance_loss_mean(5.0),
+                  100.0 * distance_loss_mean(kAway_m), kPackets,
+                  100.0 * static_cast<double>(air.counts().to_robot) / kPackets)};
+}
+
+TourRow vision_row(const RobotModel& model) {
+  VisionOptions options;
+  options.field = kFieldSeedPaper;
+  options.cameras = 2;
+  options.delay_least_s = 0.006;
+  options.delay_most_s = 0.024;
+  options.digit_mm = 2.0;
+  options.seed = 1;
+  Vision vision(options);
+  std::vector<LeagueRobot> robots(10);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    robots[i].id = static_cast<int>(i % 5);
+    robots[i].team = i < 5 ? Team::kBlue : Team::kYellow;
+    robots[i].model = &model;
+    robots[i].sample.vision = {0.5 * static_cast<double>(i) - 2.5, 0.0, 0.0};
+  }
+  const BallState ball = resting_ball(BallParams{}, 0.0, 1.0);
+  int packets = 0;
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  for (std::int64_t now_ns = 0; now_ns < 10 * kSecond_ns; now_ns += 1'000'000) {
+    vision.capture(now_ns, robots, &ball);
+    while (vision.due(now_ns)) ++packets;
+  }
+  return {
+      "vision", "SSL-Vision, two cameras, 60 frames a second, 6 to 24 ms late",
+      fmt::format("ten robots and a ball from two cameras: {:.0f} packets a second of 6 to 24 ms delay, in "
+                  "pixels of {:.0f} mm",
+                  packets / 10.0, options.digit_mm)};
+}
+
+TourRow pass_row(const RobotModel& model) {
+  int goals[2] = {0, 0};
+  constexpr int kPlays = 4;
+  for (std::uint64_t seed = 1; seed <= kPlays; ++seed) {
+    goals[0] += play_pass_and_shoot(model, MotorLoop::kDuty, {.seed = seed}).scored;
+    goals[1] += play_pass_and_shoot(model, MotorLoop::kEmotional, {.seed = seed}).scored;
+  }
+  return {"pass and shoot", "two robots, wheels by emotional learning (BELBIC)",
+          fmt::format("of {} plays over a lossy radio and a late camera {} goals with PI, {} with BELBIC",
+                      kPlays, goals[0], goals[1])};
+}
+
+TourRow mixed_row(const RobotModel& model) {
+  World world = world_of(model, 1, &kFieldSeedPaper);
+  Mover real;
+  real.state.x_m = -0.5;
+  real.state.v_x_m_s = 0.5;
+  world.set_movers(std::vector{real});
+  world.advance(2'000'000'000);
+  return {"mixed match", "future work: virtual and real robots play together",
+          fmt::format("a real robot at 0.5 m/s, as vision tells it, pushes a virtual one {:.2f} m along",
+                      world.plant().planar_state(0).x_m)};
+}
+
 TourRow goal_row(const RobotModel& model) {
   World world = world_of(model, 1, &kFieldSeedPaper);
   world.put_robot(0, 1.5, 0.0, 0.0);
@@ -160,8 +263,9 @@ std::string TourRow::text() const {
 }
 
 std::vector<TourRow> seed_tour(const RobotModel& model) {
-  return {robot_row(model), ball_row(),      robots_row(model),   kick_row(),
-          chip_row(model),  beam_row(model), dribbler_row(model), goal_row(model)};
+  return {robot_row(model), tyre_row(model), ball_row(),          robots_row(model), kick_row(),
+          chip_row(model),  beam_row(model), dribbler_row(model), wireless_row(),    vision_row(model),
+          pass_row(model),  goal_row(model), mixed_row(model)};
 }
 
 }  // namespace omnihil

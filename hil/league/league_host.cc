@@ -27,6 +27,7 @@ LeagueHost::LeagueHost(const LeagueOptions& options, const SessionConfig& config
                        other ? other_team(team_) : team_,
                        true});
   }
+  if (!options.real_group.empty()) real_ = std::make_unique<RealField>(robots_);
 }
 
 std::unique_ptr<LeagueHost> LeagueHost::open(const LeagueOptions& options, const SessionConfig& config,
@@ -49,6 +50,10 @@ std::unique_ptr<LeagueHost> LeagueHost::open(const LeagueOptions& options, const
         UdpPort::multicast(options.vision_group, options.vision_port, options.vision_interface, error);
     if (!host->group_.is_open()) return nullptr;
   }
+  if (host->robot_port_.is_open() && host->real_) {
+    host->real_port_ = UdpPort::join(options.real_group, options.real_port, options.real_interface, error);
+    if (!host->real_port_.is_open()) return nullptr;
+  }
   return host->robot_port_.is_open() ? std::move(host) : nullptr;
 }
 
@@ -60,7 +65,44 @@ std::string LeagueHost::ports() const {
     text += fmt::format(", vision {}:{} by {} at {:g} Hz", options_.vision_group, options_.vision_port,
                         options_.vision_interface, options_.vision.rate_Hz);
   }
+  if (real_port_.is_open())
+    text += fmt::format(", a real game's vision from {}:{}", options_.real_group, options_.real_port);
   return text;
+}
+
+void LeagueHost::real_packet(std::string_view bytes, Session& session) {
+  if (!real_) return;
+  if (real_->packet(bytes, session.now_ns()))
+    real_news_ = true;
+  else
+    ++counts_.real_unreadable;
+  counts_.real_frames = real_->frames();
+  counts_.real_same_id = real_->same_id();
+}
+
+// The real ones are where vision says, whatever ours do to them.
+void LeagueHost::follow_real_game(Session& session) {
+  const std::int64_t now_ns = session.now_ns();
+  if (std::vector<Mover> movers = real_->movers(now_ns);
+      (real_news_ && !movers.empty()) || movers.empty() == real_movers_) {
+    real_movers_ = !movers.empty();
+    session.set_movers(movers);
+  }
+  if (const auto ball = real_->ball(now_ns)) {
+    if (real_news_) session.put_ball(ball->position, ball->velocity, ball->spin);
+    real_ball_ = true;
+  } else if (real_ball_) {
+    session.take_ball_away();
+    real_ball_ = false;
+  }
+  real_news_ = false;
+}
+
+std::vector<LeagueRobot> LeagueHost::all_robots(std::int64_t now_ns) {
+  std::vector<LeagueRobot> all = robots_;
+  if (real_)
+    for (LeagueRobot& robot : real_->robots(now_ns)) all.push_back(std::move(robot));
+  return all;
 }
 
 void LeagueHost::robot_tick(std::int64_t, const RobotSample& sample) {
@@ -123,14 +165,19 @@ void LeagueHost::before_step(Session& session) {
     control_.send(simulator_command(bytes_, session), from);
   for (int i = 0; i < kMostPerStep && robot_port_.receive(bytes_, from); ++i)
     robot_port_.send(robot_control(bytes_, team_, session), from);
-  if (!opponents_port_.is_open()) return;
-  for (int i = 0; i < kMostPerStep && opponents_port_.receive(bytes_, from); ++i)
+  for (int i = 0; opponents_port_.is_open() && i < kMostPerStep && opponents_port_.receive(bytes_, from); ++i)
     opponents_port_.send(robot_control(bytes_, other_team(team_), session), from);
+  for (int i = 0; real_port_.is_open() && i < kMostPerStep && real_port_.receive(bytes_, from); ++i)
+    real_packet(bytes_, session);
+  if (real_) follow_real_game(session);
 }
 
 void LeagueHost::after_step(const Session& session) {
   if (!group_.is_open()) return;
-  vision_.capture(session.now_ns(), robots_, session.world().ball());
+  if (real_)
+    vision_.capture(session.now_ns(), all_robots(session.now_ns()), session.world().ball());
+  else
+    vision_.capture(session.now_ns(), robots_, session.world().ball());
   while (const auto packet = vision_.due(session.now_ns())) {
     group_.send(*packet);
     ++counts_.vision_packets;

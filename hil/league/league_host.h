@@ -15,6 +15,7 @@
 
 #include "hil/league/league_robots.h"
 #include "hil/league/league_simulator.h"
+#include "hil/league/real_field.h"
 #include "hil/league/udp_port.h"
 #include "hil/league/vision.h"
 #include "hil/loop/session.h"
@@ -31,6 +32,10 @@ struct LeagueOptions {
   int vision_port = 10006;
   std::string vision_interface = "127.0.0.1";
   VisionOptions vision;
+  // A real game among ours: its vision comes from this group; empty: none.
+  std::string real_group{};
+  int real_port = 0;
+  std::string real_interface = "127.0.0.1";
 };
 
 struct LeagueCounts {
@@ -38,6 +43,7 @@ struct LeagueCounts {
   std::uint64_t teleports = 0;  // of robots and ball
   std::uint64_t errors = 0;     // answered
   std::uint64_t vision_packets = 0, vision_lost = 0;
+  std::uint64_t real_frames = 0, real_unreadable = 0, real_same_id = 0;
 };
 
 class LeagueHost : public SessionObserver {
@@ -55,21 +61,27 @@ class LeagueHost : public SessionObserver {
   Team team() const { return team_; }
   std::string simulator_command(std::string_view bytes, Session& session);
   std::vector<std::string> frames_now(const Session& session) {
-    return vision_.frames_now(session.now_ns(), robots_, session.world().ball());
+    return vision_.frames_now(session.now_ns(), all_robots(session.now_ns()), session.world().ball());
   }
+  // As if it had come from the real game's group.
+  void real_packet(std::string_view bytes, Session& session);
 
   const LeagueCounts& counts() const { return counts_; }
   std::string ports() const;  // "control UDP 127.0.0.1:10300, …"
 
  private:
   LeagueHost(const LeagueOptions& options, const SessionConfig& config);
+  std::vector<LeagueRobot> all_robots(std::int64_t now_ns);  // real ones, too
+  void follow_real_game(Session& session);
   void put_ball(const LeagueBall& wanted, Session& session);
 
   LeagueOptions options_;
   Team team_;
   std::vector<RobotModel> models_;
   std::vector<LeagueRobot> robots_;
-  UdpPort control_, robot_port_, opponents_port_, group_;
+  UdpPort control_, robot_port_, opponents_port_, group_, real_port_;
+  std::unique_ptr<RealField> real_;
+  bool real_news_ = false, real_ball_ = false, real_movers_ = false;
   Vision vision_;
   LeagueCounts counts_;
   std::string bytes_;

@@ -63,6 +63,30 @@ UdpPort UdpPort::multicast(const std::string& group, int port, const std::string
   return out;
 }
 
+UdpPort UdpPort::join(const std::string& group, int port, const std::string& interface, std::string& error) {
+  UdpPort out;
+  sockaddr_in at{}, via{};
+  if (!address_of(group, port, at, error) || !address_of(interface, 0, via, error)) return out;
+  Descriptor socket = open_socket(error);
+  if (socket.get() < 0) return out;
+  const int yes = 1;
+  ip_mreq membership{};
+  membership.imr_multiaddr = at.sin_addr;
+  membership.imr_interface = via.sin_addr;
+  // Bound to the group itself: what other groups send to this port is not ours.
+  const bool set =
+      ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
+      ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0 &&
+      ::setsockopt(socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) == 0;
+  if (!set) {
+    error = "multicast " + group + ":" + std::to_string(port) + " by interface " + interface + ": " +
+            std::strerror(errno);
+    return out;
+  }
+  out.socket_ = std::move(socket);
+  return out;
+}
+
 bool UdpPort::is_open() const { return socket_.get() >= 0; }
 
 int UdpPort::port() const {

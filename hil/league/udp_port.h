@@ -26,6 +26,9 @@ class UdpPort {
   static UdpPort multicast(const std::string& group, int port, const std::string& interface,
                            std::string& error);
 
+  // Hears a group; other programs may hear it as well.
+  static UdpPort join(const std::string& group, int port, const std::string& interface, std::string& error);
+
   bool is_open() const;
   int port() const;
   bool receive(std::string& bytes, sockaddr_in& from);

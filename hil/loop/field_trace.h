@@ -36,6 +36,8 @@ class FieldTrace : public SessionObserver {
   const std::map<int, RobotPath>& robots() const { return robots_; }  // by key
   const std::vector<FieldPoint>& ball() const { return ball_; }
   const std::vector<WorldEvent>& events() const { return events_; }
+  // Real robots of a mixed match, all of them, every 100 ms.
+  const std::vector<FieldPoint>& movers() const { return movers_; }
 
  private:
   const FieldSize* size_;
@@ -43,7 +45,8 @@ class FieldTrace : public SessionObserver {
   std::map<int, RobotPath> robots_;
   std::vector<FieldPoint> ball_;
   std::vector<WorldEvent> events_;
-  std::int64_t next_ball_ns_ = 0;
+  std::vector<FieldPoint> movers_;
+  std::int64_t next_ball_ns_ = 0, next_movers_ns_ = 0;
 };
 
 }  // namespace omnihil

@@ -32,7 +32,7 @@ Session::FirmwareMaker reference_firmware_for(const SessionConfig& session) {
   for (std::size_t i = 0; i < std::min(session.robots.size(), session.robot_ids.size()); ++i) {
     models.emplace(static_cast<std::uint32_t>(session.robot_ids[i]), session.robots[i]);
   }
-  // Opponents with an id of ours are of its model (session_setup.h).
+  // Opponents with an id of ours: as that robot. Where they differ: opponents_alone().
   const Opponents& others = session.opponents;
   for (std::size_t i = 0; i < std::min(others.robots.size(), others.robot_ids.size()); ++i)
     models.emplace(static_cast<std::uint32_t>(others.robot_ids[i]), others.robots[i]);
@@ -40,6 +40,7 @@ Session::FirmwareMaker reference_firmware_for(const SessionConfig& session) {
     const RobotModel& model = models.at(config.robot_id);
     if (model.motor_loop == MotorLoop::kFoc) return make_foc_firmware(config, motor_config(model));
     if (model.motor_loop == MotorLoop::kSixStep) return make_six_step_firmware(config, motor_config(model));
+    if (model.motor_loop == MotorLoop::kEmotional) return make_emotional_firmware(config);
     return make_reference_firmware(config);
   };
 }

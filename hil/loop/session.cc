@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "hil/loop/mover_values.h"
 #include "hil/loop/session_checks.h"
 #include "protocols/radio_format.h"
 
@@ -19,10 +20,20 @@ constexpr std::size_t kMaxFrameBytes = 512;  // of a frame that a firmware write
 constexpr int kMaxFramesPerTick = 16;  // so that a firmware that never stops sending cannot stop the loop
 
 // A firmware that sets the legs of its robot's bridges, as the plant calls it.
+// After Session::set_world() its clock and its counts go on where they were.
 struct MotorPort : MotorControl {
   explicit MotorPort(Firmware& of) : firmware(of) {}
-  MotorDrive motor_tick(const MotorSensors& sensors) override { return firmware.motor_tick(sensors); }
+  MotorDrive motor_tick(const MotorSensors& sensors) override {
+    if (!shifted) return firmware.motor_tick(sensors);
+    MotorSensors seen = sensors;
+    seen.now_ns = static_cast<std::uint64_t>(static_cast<std::int64_t>(sensors.now_ns) + clock_offset_ns);
+    for (std::size_t w = 0; w < kWheels; ++w) seen.encoder_counts[w] += count_offsets[w];
+    return firmware.motor_tick(seen);
+  }
   Firmware& firmware;
+  bool shifted = false;
+  std::int64_t clock_offset_ns = 0;
+  std::array<std::int64_t, kWheels> count_offsets{};
 };
 std::vector<RobotModel> all_robots(const SessionConfig& config) {
   std::vector<RobotModel> robots = config.robots;
@@ -34,6 +45,8 @@ WorldOptions world_options(const FieldSetup& field) {
   WorldOptions options;
   options.contacts = options.handling = field.contacts;
   options.field = field.size;
+  options.carpet = field.carpet;
+  options.ball.lift_coefficient = field.ball_lift_coefficient;
   return options;
 }
 }  // namespace
@@ -58,7 +71,8 @@ struct Session::Impl {
     std::unique_ptr<RadioLink> link;
   };
 
-  Impl(SessionConfig configuration, const FirmwareMaker& make_firmware)
+  Impl(SessionConfig configuration, const FirmwareMaker& make_firmware,
+       const FirmwareMaker& opponents_firmware)
       : config(std::move(configuration)),
         models(all_robots(config)),
         world(make_world(config, models)),
@@ -69,7 +83,8 @@ struct Session::Impl {
       const bool other = i >= ours;
       const int id = other ? config.opponents.robot_ids[i - ours] : config.robot_ids[i];
       keys.push_back(other ? kOpponentKey + id : id);
-      firmware.push_back(make_firmware(robot_config(models[i], id)));
+      const FirmwareMaker& maker = other && opponents_firmware ? opponents_firmware : make_firmware;
+      firmware.push_back(maker(robot_config(models[i], id)));
       const double y_m = kRowSpacing_m * static_cast<double>(other ? i - ours : i);
       world.put_robot(static_cast<int>(i), other ? kOpponentRow_m : 0.0, y_m, other ? std::numbers::pi : 0.0);
     }
@@ -87,9 +102,53 @@ struct Session::Impl {
       const auto [x_m, y_m] = *config.field.ball_m;
       world.put_ball(x_m, y_m, 0.0, {0, 0, 0});
     }
+    shaft_offsets.resize(firmware.size());
+    shafts_before.resize(firmware.size());
+    if (!config.from.empty() && !set_world(config.from))
+      throw_problems({"the snapshot is of other robots, another physics or another program"});
     next_tick_ns.assign(firmware.size(), 0);
     samples.resize(firmware.size());
     answer.reserve(4096);
+  }
+
+  bool set_world(std::span<const std::uint8_t> saved) {
+    std::vector<MotorSensors> before;
+    for (std::size_t i = 0; i < models.size(); ++i)
+      before.push_back(world.plant().motor_sensors(static_cast<int>(i)));
+    if (!world.restore(saved)) return false;
+    const std::int64_t offset_ns = now_ns - world.now_ns();
+    world.set_clock_offset(offset_ns);
+    for (ShaftOffsets& offsets : shaft_offsets) offsets.due = now_ns > 0;
+    for (std::size_t i = 0; i < motor_ports.size(); ++i) {
+      MotorPort& port = motor_ports[i];
+      const MotorSensors after = world.plant().motor_sensors(static_cast<int>(i));
+      port.shifted = true;
+      port.clock_offset_ns = offset_ns;
+      for (std::size_t w = 0; w < kWheels && now_ns > 0; ++w)
+        port.count_offsets[w] += before[i].encoder_counts[w] - after.encoder_counts[w];
+    }
+    return true;
+  }
+
+  // What turns must not jump under a firmware that goes on: counts and shafts after set_world() continue those before.
+  struct ShaftOffsets {
+    bool due = false;
+    std::array<std::int64_t, kWheels> counts{};
+    std::array<double, kWheels> theta_rotor_rad{};
+  };
+  void continue_shafts(std::size_t i, const std::array<std::int64_t, kWheels>& counts_before,
+                       RobotSample& sample, RobotShafts& shafts) {
+    ShaftOffsets& offsets = shaft_offsets[i];
+    for (std::size_t w = 0; w < kWheels; ++w) {
+      if (offsets.due) {
+        offsets.counts[w] = counts_before[w] - sample.sensors.encoder_counts[w];
+        offsets.theta_rotor_rad[w] = shafts_before[i].theta_rotor_rad[w] - shafts.theta_rotor_rad[w];
+      }
+      sample.sensors.encoder_counts[w] += offsets.counts[w];
+      shafts.theta_rotor_rad[w] += offsets.theta_rotor_rad[w];
+    }
+    offsets.due = false;
+    shafts_before[i] = shafts;
   }
 
   void open_link(TeamPort& port, const std::string& format, Team team) {
@@ -145,11 +204,14 @@ struct Session::Impl {
     Firmware& robot = *firmware[i];
     RobotSample& sample = samples[i];
     sample.robot_id = keys[i];
+    const auto counts_before = std::to_array(sample.sensors.encoder_counts);
     sample.sensors = world.sample_sensors(static_cast<int>(i));
+    sample.sensors.now_us = static_cast<std::uint64_t>(now_ns / 1000);  // the plant's, but after set_world()
     sample.truth = world.plant().truth(static_cast<int>(i));
-    RobotShafts shafts;
+    RobotShafts shafts{};
     std::copy_n(sample.truth.theta_rotor_rad.begin(), kWheels, shafts.theta_rotor_rad);
     std::copy_n(sample.truth.omega_rotor_rad_s.begin(), kWheels, shafts.omega_rotor_rad_s);
+    continue_shafts(i, counts_before, sample, shafts);
     robot.shafts(shafts);
     sample.drive = robot.tick(sample.sensors);
     sample.feedback = robot.feedback();
@@ -181,10 +243,11 @@ struct Session::Impl {
         }
         until_ns = std::min(until_ns, next_tick_ns[i]);
       }
+      const std::int64_t world_ns = world.now_ns();
       world.advance(until_ns - now_ns);
       if (observer && config.field.contacts) observer->world(until_ns, world);
       if (const auto& fault = world.plant().fault()) {
-        give_up(fault->now_ns, keys[static_cast<std::size_t>(fault->robot)],
+        give_up(fault->now_ns + now_ns - world_ns, keys[static_cast<std::size_t>(fault->robot)],
                 fmt::format("{}[{}]", fault->signal, fault->index));
       }
       now_ns = until_ns;
@@ -202,19 +265,30 @@ struct Session::Impl {
   std::int64_t now_ns = 0;
   std::vector<std::int64_t> next_tick_ns;
   std::vector<RobotSample> samples;
+  std::vector<ShaftOffsets> shaft_offsets;
+  std::vector<RobotShafts> shafts_before;
   std::vector<std::uint8_t> answer;
   std::array<std::uint8_t, kMaxFrameBytes> frame{};
   std::uint64_t gains_refused = 0;
 };
 
-Session::Session(SessionConfig config, const FirmwareMaker& make_firmware)
-    : impl_(std::make_unique<Impl>(std::move(config), make_firmware)) {}
+Session::Session(SessionConfig config, const FirmwareMaker& make_firmware,
+                 const FirmwareMaker& opponents_firmware)
+    : impl_(std::make_unique<Impl>(std::move(config), make_firmware, opponents_firmware)) {}
 Session::~Session() = default;
 
 std::int64_t Session::now_ns() const { return impl_->now_ns; }
 const SessionConfig& Session::config() const { return impl_->config; }
 const Plant& Session::plant() const { return impl_->world.plant(); }
 const World& Session::world() const { return impl_->world; }
+SessionConfig opponents_alone(const SessionConfig& config) {
+  SessionConfig alone = config;
+  alone.robots = config.opponents.robots;
+  alone.robot_ids = config.opponents.robot_ids;
+  alone.opponents = {};
+  return alone;
+}
+
 int Session::robot_count() const { return static_cast<int>(impl_->models.size()); }
 int Session::robot_key(int robot_index) const { return impl_->keys[static_cast<std::size_t>(robot_index)]; }
 const RobotModel& Session::model(int robot_index) const {
@@ -298,6 +372,14 @@ void Session::take_ball_away() {
   if (impl_->observer) impl_->observer->field_input(impl_->now_ns, FieldInput::kBall, 0, {});
   impl_->world.take_ball_away();
 }
+
+void Session::set_movers(std::span<const Mover> movers) {
+  if (impl_->observer)
+    impl_->observer->field_input(impl_->now_ns, FieldInput::kMovers, 0, mover_values(movers));
+  impl_->world.set_movers(movers);
+}
+
+bool Session::set_world(std::span<const std::uint8_t> saved) { return impl_->set_world(saved); }
 
 void Session::host_closed() {
   if (impl_->observer) impl_->observer->host_closed(impl_->now_ns);

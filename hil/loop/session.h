@@ -45,6 +45,8 @@ struct FieldSetup {
   bool contacts = false;                        // robots have bodies, kickers, dribblers, break beams
   const FieldSize* size = nullptr;              // with boards and goals; null: an open floor
   std::optional<std::array<double, 2>> ball_m;  // where it lies at the start; none: until it is put somewhere
+  Carpet carpet{};
+  double ball_lift_coefficient = 0.0;  // Magnus
 };
 
 // The other team. Its robots stand opposite, 2 m away along x, looking back.
@@ -65,7 +67,12 @@ struct SessionConfig {
   AirOptions air;                              // what the radio loses; drawn from plant.seed
   FieldSetup field;
   Opponents opponents;
+  std::vector<std::uint8_t>
+      from;  // World::save() of the same robots: they begin there; empty: in a row, at rest
 };
+
+// The other team as if it were the only one: for what makes its firmware.
+SessionConfig opponents_alone(const SessionConfig& config);
 
 // One robot at one control tick, for recordings, status lines and checks.
 struct RobotSample {
@@ -77,7 +84,7 @@ struct RobotSample {
   VisionPose vision{};  // what a camera would see at this tick
 };
 
-enum class FieldInput : std::uint8_t { kPushed, kPresent, kBall };
+enum class FieldInput : std::uint8_t { kPushed, kPresent, kBall, kMovers };
 
 class SessionObserver {
  public:
@@ -92,7 +99,7 @@ class SessionObserver {
   virtual void command(std::int64_t, int /*robot_id*/, const RobotCommand&) {}
   virtual void placed(std::int64_t, int /*robot_id*/, double, double, double) {}
   // kPushed: v_x, v_y (m/s, field frame), omega (rad/s); kPresent: 1 or 0; kBall: position, velocity, spin, or nothing
-  // when it was taken away (robot_id 0).
+  // when it was taken away (robot_id 0); kMovers: as in mover_values.h (robot_id 0).
   virtual void field_input(std::int64_t, FieldInput, int /*robot_id*/, std::span<const double>) {}
   // Once per step, after it, where there is a field; and what happened on it.
   virtual void world(std::int64_t, const World&) {}
@@ -101,8 +108,10 @@ class SessionObserver {
 class Session {
  public:
   using FirmwareMaker = std::function<std::unique_ptr<Firmware>(const RobotConfig&)>;
-  // Throws std::invalid_argument naming every problem of the configuration.
-  Session(SessionConfig config, const FirmwareMaker& make_firmware);
+  // Throws std::invalid_argument naming every problem of the configuration. `opponents_firmware`: empty: as the first
+  // team's.
+  Session(SessionConfig config, const FirmwareMaker& make_firmware,
+          const FirmwareMaker& opponents_firmware = {});
   ~Session();
 
   std::int64_t now_ns() const;
@@ -134,6 +143,10 @@ class Session {
   void set_present(int robot_index, bool present);
   void put_ball(const Vector3& position, const Vector3& velocity, const Vector3& spin = {0, 0, 0});
   void take_ball_away();
+  void set_movers(std::span<const Mover> movers);
+  // All of the world back to what World::save() gave in this session; time, radio and firmware go on. False: not of it.
+  // Encoder counts and shafts, as firmware sees them, go on from where they were. Not seen by observers.
+  bool set_world(std::span<const std::uint8_t> saved);
   // Gain sets that came over the air and that a robot's firmware refused.
   std::uint64_t gains_refused() const;
 

@@ -72,6 +72,12 @@ void radio_problems(const std::string& radio, std::size_t robots, std::vector<st
 
 }  // namespace
 
+std::vector<std::string> radio_format_ids() {
+  std::vector<std::string> ids;
+  for (const RadioFormat* format : radio_formats()) ids.emplace_back(format->id);
+  return ids;
+}
+
 std::vector<std::string> session_problems(const SessionConfig& config) {
   std::vector<std::string> problems = air_problems(config.air);
   radio_problems(config.radio_format, config.robot_ids.size(), problems);

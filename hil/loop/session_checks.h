@@ -22,6 +22,9 @@ std::vector<std::string> firmware_problems(const SessionConfig& config,
 // by the plant: Plant::fault.)
 std::string first_non_finite(const RobotSample& sample);
 
+// Ids of the radio formats that there are.
+std::vector<std::string> radio_format_ids();
+
 // Throws std::invalid_argument with all problems as one text, if there are any.
 void throw_problems(const std::vector<std::string>& problems);
 

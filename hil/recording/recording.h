@@ -9,6 +9,7 @@
 //   v TIME_NS ID vx vy w     a robot was given these speeds: m/s, m/s, rad/s, field frame
 //   a TIME_NS ID 0|1         a robot went away, or came back
 //   b TIME_NS x y z vx vy vz wx wy wz    the ball was put there: m, m/s, rad/s; without numbers: it was taken away
+//   m TIME_NS x y yaw vx vy w radius front height …    real robots among ours, nine numbers of each; none: they are gone
 //   } TIME_NS HEX            bytes that the opponents' host wrote
 //   w TIME_NS x y z vx vy vz    where the ball was, every 10 ms: for pictures
 //   s TIME_NS ID v1 v2 …     one robot at one control tick; column names and units are in the header
@@ -37,6 +38,13 @@ struct ModelText {
   std::string text;
 };
 
+// Robots that are not of the session's model.
+struct OtherRobots {
+  std::vector<int> keys;  // ids; opponents: kOpponentKey + id
+  std::string robot_model, robot_model_text;
+  std::vector<ModelText> included_models;
+};
+
 // Everything needed to run it again.
 struct RecordingHeader {
   std::string commit;            // of the program that wrote it
@@ -57,7 +65,9 @@ struct RecordingHeader {
   std::vector<int> opponent_ids;  // the other team's, of the same model and firmware; none: there was none
   std::string opponents_radio;    // of their dongle; empty: none
   double spread = 0.0;            // of each robot's numbers, in tolerances of the model
-  std::string started;            // ISO 8601 wall time, informative only
+  std::vector<OtherRobots> other_robots;   // robots of other models
+  std::vector<std::uint8_t> from;          // the world at the start (Session, SessionConfig::from)
+  std::string started;                     // ISO 8601 wall time, informative only
   std::vector<ModelText> included_models;  // further files that the model names: its motor
   int sample_every = 10;                   // of a robot's control ticks, every Nth is written
   std::vector<std::string> columns;        // of the `s` lines; the writer fills in sample_columns()
@@ -79,7 +89,8 @@ struct RecordedChunk {
     kPresent,
     kBallPlaced,
     kOpponentsBytes,
-    kBallSeen
+    kBallSeen,
+    kMovers
   } kind = Kind::kHostBytes;
   std::int64_t now_ns = 0;
   std::vector<std::uint8_t> bytes;  // kHostBytes, kDongleBytes

@@ -36,6 +36,33 @@ constexpr std::array<AirKey, 7> kAir{{{"share", &AirOptions::share},
                                       {"burst_share", &AirOptions::burst_share},
                                       {"others_load", &AirOptions::others_load}}};
 
+struct CarpetKey {
+  std::string_view name;
+  double Carpet::*place;
+};
+constexpr std::array<CarpetKey, 6> kCarpet{{{"sliding", &Carpet::sliding_friction},
+                                            {"rolling", &Carpet::rolling_resistance},
+                                            {"spinning", &Carpet::spinning_friction},
+                                            {"restitution", &Carpet::restitution},
+                                            {"nap", &Carpet::nap_ratio},
+                                            {"nap_rad", &Carpet::nap_rad}}};
+
+Json carpet_json(const Carpet& carpet) {
+  const Carpet usual;
+  Json json = Json::object();
+  for (const CarpetKey& key : kCarpet)
+    if (carpet.*(key.place) != usual.*(key.place)) json[std::string(key.name)] = carpet.*(key.place);
+  for (const CarpetPatch& p : carpet.patches)
+    json["patches"].push_back({p.x_from_m, p.x_to_m, p.y_from_m, p.y_to_m, p.sliding_ratio, p.rolling_ratio});
+  return json;
+}
+
+Json models_json(const std::vector<ModelText>& models) {
+  Json json = Json::object();
+  for (const ModelText& model : models) json[model.name] = model.text;
+  return json;
+}
+
 template <class Table, class Enum>
 std::string_view name_of(const Table& table, Enum value) {
   for (const auto& row : table) {
@@ -146,10 +173,57 @@ class HeaderFields {
       } else if (name == "ball" && value.is_array() && value.size() == 2 && value[0].is_number() &&
                  value[1].is_number()) {
         setup.ball_m = {value[0].get<double>(), value[1].get<double>()};
+      } else if (name == "carpet" && value.is_object()) {
+        carpet(key, value, setup.carpet);
+      } else if (name == "ball_lift" && value.is_number()) {
+        setup.ball_lift_coefficient = value.get<double>();
       } else {
-        return refuse(key, found->dump(), "{\"size\": NAME, \"ball\": [x, y]}, each or neither");
+        return refuse(key, found->dump(),
+                      "an object of size, ball, carpet, ball_lift, each as this program writes it");
       }
     }
+  }
+  // Absent: the usual one. Within it every key may be absent.
+  void carpet(const char* key, const Json& found, Carpet& carpet) {
+    for (const auto& [name, value] : found.items()) {
+      const auto row = std::ranges::find(kCarpet, name, &CarpetKey::name);
+      if (row != kCarpet.end() && value.is_number()) {
+        carpet.*(row->place) = value.get<double>();
+      } else if (name == "patches" && value.is_array()) {
+        for (const Json& p : value) {
+          const bool numbers = p.is_array() && p.size() == 6 &&
+                               std::ranges::all_of(p, [](const Json& x) { return x.is_number(); });
+          if (!numbers) return refuse(key, p.dump(), "six numbers of a patch");
+          carpet.patches.push_back({p[0], p[1], p[2], p[3], p[4], p[5]});
+        }
+      } else {
+        return refuse(key, found.dump(), "an object of the carpet's numbers");
+      }
+    }
+    for (const std::string& problem : carpet_problems(carpet)) refuse(key, found.dump(), problem);
+  }
+  // Absent: every robot is of the session's model.
+  void others(const char* key, std::vector<OtherRobots>& others) {
+    if (!json_.contains(key)) return;
+    const Json* found = find(key, "a list", &Json::is_array);
+    if (found == nullptr) return;
+    for (const Json& item : *found) {
+      if (!item.is_object()) return refuse(key, item.dump(), "a list of objects");
+      HeaderFields fields(item, problems_);
+      OtherRobots& other = others.emplace_back();
+      fields.ids("robot_ids", other.keys);
+      fields.text("robot", other.robot_model);
+      fields.text("robot_text", other.robot_model_text);
+      fields.models("included_models", other.included_models);
+      fields.nothing_else();
+    }
+  }
+  // Absent: robots in a row, at rest.
+  void bytes(const char* key, std::vector<std::uint8_t>& value) {
+    if (!json_.contains(key)) return;
+    std::string digits;
+    text(key, digits);
+    if (digits.empty() || !parse_hex(digits, value)) refuse(key, digits.substr(0, 16), "pairs of hex digits");
   }
   // Absent: every robot is the model itself.
   void spread(const char* key, double& value) {
@@ -225,6 +299,8 @@ void read_fields(HeaderFields& fields, RecordingHeader& header) {
   fields.field("field", header.field);
   fields.opponents("opponents", header);
   fields.spread("spread", header.spread);
+  fields.others("other_robots", header.other_robots);
+  fields.bytes("from", header.from);
   fields.natural("sample_every", sample_every);
   if (sample_every < 1 || sample_every > 1'000'000) {
     fields.refuse("sample_every", std::to_string(sample_every), "1 to 1000000");
@@ -268,8 +344,7 @@ std::string to_json(const RecordingHeader& header) {
   json["started"] = header.started;
   json["robot"] = header.robot_model;
   json["robot_text"] = header.robot_model_text;
-  json["included_models"] = Json::object();
-  for (const ModelText& model : header.included_models) json["included_models"][model.name] = model.text;
+  json["included_models"] = models_json(header.included_models);
   json["radio"] = header.radio_format;
   json["firmware"] = header.firmware;
   for (const HashedFile& file : header.firmware_files) json["firmware_files"][file.name] = file.sha256;
@@ -295,6 +370,8 @@ std::string to_json(const RecordingHeader& header) {
     Json field = Json::object();
     if (header.field.size != nullptr) field["size"] = header.field.size->name;
     if (header.field.ball_m) field["ball"] = *header.field.ball_m;
+    if (Json carpet = carpet_json(header.field.carpet); !carpet.empty()) field["carpet"] = std::move(carpet);
+    if (header.field.ball_lift_coefficient != 0.0) field["ball_lift"] = header.field.ball_lift_coefficient;
     json["field"] = std::move(field);
   }
   if (!header.opponent_ids.empty()) {
@@ -302,6 +379,12 @@ std::string to_json(const RecordingHeader& header) {
     if (!header.opponents_radio.empty()) json["opponents"]["radio"] = header.opponents_radio;
   }
   if (header.spread > 0.0) json["spread"] = header.spread;
+  for (const OtherRobots& other : header.other_robots)
+    json["other_robots"].push_back({{"robot_ids", other.keys},
+                                    {"robot", other.robot_model},
+                                    {"robot_text", other.robot_model_text},
+                                    {"included_models", models_json(other.included_models)}});
+  if (!header.from.empty()) json["from"] = to_hex(header.from);
   json["sample_every"] = header.sample_every;
   json["columns"] = header.columns;
   json["units"] = header.units;

@@ -6,7 +6,9 @@
 // Every key is required and no other is allowed, so that a header cannot be half understood. Exceptions:
 // firmware_files, {"NAME":"SHA-256"}, what a user's own firmware came from; absent, this program's own ran; and air,
 // {"share":0.02,…}, what the radio lost; absent, nothing; field, {"size":"division-b","ball":[0,0]}, that robots touch each
-// other, and what else is on the floor; opponents, {"robot_ids":[0,1],"radio":"…"}, the other team.
+// other, and what else is on the floor; opponents, {"robot_ids":[0,1],"radio":"…"}, the other team; other_robots,
+// [{"robot_ids":[3],"robot":…,"robot_text":…,"included_models":{…}}], robots of other models (ids of opponents: 32 + id);
+// from, hex digits, the world that the run began with.
 #pragma once
 #include <optional>
 #include <string>

@@ -52,6 +52,7 @@ void RecordingMemory::field_input(std::int64_t now_ns, FieldInput kind, int robo
                                   std::span<const double> values) {
   using Kind = RecordedChunk::Kind;
   RecordedChunk& chunk = add(kind == FieldInput::kBall     ? Kind::kBallPlaced
+                             : kind == FieldInput::kMovers ? Kind::kMovers
                              : kind == FieldInput::kPushed ? Kind::kPushed
                                                            : Kind::kPresent,
                              now_ns);

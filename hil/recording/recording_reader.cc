@@ -7,6 +7,7 @@
 #include <optional>
 #include <system_error>
 
+#include "hil/loop/mover_values.h"
 #include "hil/recording/command_values.h"
 #include "hil/recording/recording_header.h"
 #include "hil/text/json_text.h"
@@ -14,6 +15,8 @@
 
 namespace omnihil {
 namespace {
+
+constexpr std::size_t kMostMovers = 32;  // ids of two teams
 
 // Lines of numbers: how many, and whether a robot's id stands before them.
 struct InputLine {
@@ -30,6 +33,7 @@ constexpr InputLine kInputLines[] = {
     {"a", RecordedChunk::Kind::kPresent, 1, true, false},
     {"b", RecordedChunk::Kind::kBallPlaced, 9, false, true},
     {"w", RecordedChunk::Kind::kBallSeen, 6, false, false},
+    {"m", RecordedChunk::Kind::kMovers, kMoverValues, false, true},
 };
 
 std::string joined(const std::vector<std::string>& lines) {
@@ -122,13 +126,14 @@ bool RecordingReader::parse_line(RecordedChunk& chunk) {
     if (tag != line.tag) continue;
     chunk.kind = line.kind;
     if (line.of_robot ? !parse_robot(rest, chunk) : !parse_time_alone(rest, chunk)) return false;
-    return parse_numbers(rest, line.values, line.may_be_empty, chunk);
+    return parse_numbers(rest, line.values, line.may_be_empty,
+                         line.kind == RecordedChunk::Kind::kMovers ? kMostMovers : 1, chunk);
   }
   if (tag == "#") {
     parse_end(rest);
   } else {
     problem("line tag: found " + in_quotes(tag) +
-            ", allowed: '>', '<', '}', '!', 's', 'c', 'p', 'v', 'a', 'b', 'w', '#'");
+            ", allowed: '>', '<', '}', '!', 's', 'c', 'p', 'v', 'a', 'b', 'w', 'm', '#'");
   }
   return false;
 }
@@ -171,8 +176,8 @@ bool RecordingReader::parse_robot(std::string_view& rest, RecordedChunk& chunk) 
 }
 
 bool RecordingReader::parse_numbers(std::string_view rest, std::size_t count, bool may_be_empty,
-                                    RecordedChunk& chunk) {
-  while (!rest.empty() && chunk.sample.size() < count) {
+                                    std::size_t most_times, RecordedChunk& chunk) {
+  while (!rest.empty() && chunk.sample.size() < count * most_times) {
     const std::string_view text = next_word(rest);
     double value = 0.0;
     if (!parse_number(text, value)) {
@@ -183,9 +188,9 @@ bool RecordingReader::parse_numbers(std::string_view rest, std::size_t count, bo
     chunk.sample.push_back(value);
   }
   if (rest.empty() && chunk.sample.empty() && may_be_empty) return true;
-  if (rest.empty() && chunk.sample.size() == count) return true;
+  if (rest.empty() && !chunk.sample.empty() && chunk.sample.size() % count == 0) return true;
   problem("values: found " + std::string(rest.empty() ? "fewer" : "more") +
-          ", allowed: " + std::to_string(count));
+          ", allowed: " + std::to_string(count) + (most_times > 1 ? " of each" : ""));
   return false;
 }
 

@@ -51,7 +51,8 @@ class RecordingReader {
   bool parse_bytes(std::string_view rest, RecordedChunk& chunk);
   bool parse_closed(std::string_view rest, RecordedChunk& chunk);
   bool parse_robot(std::string_view& rest, RecordedChunk& chunk);
-  bool parse_numbers(std::string_view rest, std::size_t count, bool may_be_empty, RecordedChunk& chunk);
+  bool parse_numbers(std::string_view rest, std::size_t count, bool may_be_empty, std::size_t most_times,
+                     RecordedChunk& chunk);
   bool parse_time_alone(std::string_view& rest, RecordedChunk& chunk);
   bool parse_sample(std::string_view rest, RecordedChunk& chunk);
   void parse_end(std::string_view json);

@@ -101,9 +101,12 @@ void RecordingWriter::placed(std::int64_t now_ns, int robot_id, double x_m, doub
 
 void RecordingWriter::field_input(std::int64_t now_ns, FieldInput kind, int robot_id,
                                   std::span<const double> values) {
-  const bool ball = kind == FieldInput::kBall;
-  const char tag = ball ? 'b' : kind == FieldInput::kPushed ? 'v' : 'a';
-  input(tag, now_ns, ball ? -1 : robot_id, values);
+  const bool of_robot = kind == FieldInput::kPushed || kind == FieldInput::kPresent;
+  const char tag = kind == FieldInput::kBall     ? 'b'
+                   : kind == FieldInput::kMovers ? 'm'
+                   : kind == FieldInput::kPushed ? 'v'
+                                                 : 'a';
+  input(tag, now_ns, of_robot ? robot_id : -1, values);
 }
 
 void RecordingWriter::opponents_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hil/loop/mover_values.h"
 #include "hil/recording/command_values.h"
 #include "hil/recording/recording_reader.h"
 
@@ -59,6 +60,7 @@ void give(const RecordedChunk& chunk, Session& session) {
       session.put_ball({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]});
     return;
   }
+  if (chunk.kind == Kind::kMovers) session.set_movers(movers_of(v));
   for (int index = 0; index < session.robot_count(); ++index) {
     if (session.robot_key(index) != chunk.robot_id) continue;
     if (chunk.kind == Kind::kCommand) session.command(index, command_of(v));

@@ -23,6 +23,13 @@ std::string failure_of(const Session& session) {
   return {};
 }
 
+Session::FirmwareMaker opponents_maker(const SessionConfig& config, const ReplayOptions& options) {
+  if (config.opponents.robots.empty()) return {};
+  const SessionConfig alone = opponents_alone(config);
+  if (options.opponents_firmware) return options.opponents_firmware(alone);
+  return options.firmware ? options.firmware(alone) : reference_firmware_for(alone);
+}
+
 std::string names_of(const std::vector<HashedFile>& files) {
   std::string text;
   for (const HashedFile& file : files) text += (text.empty() ? "" : ", ") + file.name;
@@ -42,7 +49,8 @@ RecordingHeader replay_header(const RecordingHeader& recorded, const ReplayOptio
 
 bool same_session(const RecordingHeader& recorded, const ReplayOptions& options) {
   RecordingHeader header = replay_header(recorded, options);
-  return session_setup(header).model == session_setup(recorded).model &&
+  const SessionSetup now = session_setup(header), before = session_setup(recorded);
+  return now.model == before.model && now.others == before.others &&
          header.plant.physics == recorded.plant.physics && header.seed == recorded.seed &&
          header.firmware_files == recorded.firmware_files;
 }
@@ -59,7 +67,8 @@ ReplayRun run_again(const Recording& recording, const ReplayOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const RecordingHeader header = replay_header(recording.header, options);
   const SessionConfig config = session_config(session_setup(header));
-  Session session(config, options.firmware ? options.firmware(config) : reference_firmware_for(config));
+  Session session(config, options.firmware ? options.firmware(config) : reference_firmware_for(config),
+                  opponents_maker(config, options));
   RecordingMemory memory(header);
   OutputHash hash;
   std::vector<SessionObserver*> observers{&memory, &hash};

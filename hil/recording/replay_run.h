@@ -24,8 +24,9 @@ struct ReplayOptions {
   std::optional<std::uint64_t> seed{};  // of everything random
   // The user's own firmware (hil/firmware/open_firmware.h); empty: the reference firmware.
   std::function<Session::FirmwareMaker(const SessionConfig&)> firmware{};
-  std::vector<HashedFile> firmware_files{};  // what it comes from
-  SessionObserver* observer = nullptr;       // sees the run too; may be null
+  std::function<Session::FirmwareMaker(const SessionConfig&)> opponents_firmware{};  // empty: the same
+  std::vector<HashedFile> firmware_files{};                                          // what they come from
+  SessionObserver* observer = nullptr;  // sees the run too; may be null
 };
 
 struct ReplayRun {

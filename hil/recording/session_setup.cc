@@ -53,28 +53,40 @@ std::vector<int> parse_robot_list(std::string_view text, std::vector<std::string
 SessionConfig session_config(const SessionSetup& setup) {
   std::vector<std::string> problems;
   SessionConfig config;
-  const ModelReading reading = read_bundle(setup.model);
-  for (const ModelProblem& problem : reading.problems) problems.push_back(problem.text());
-  if (reading.model && !reading.model->robot) {
-    problems.push_back(
-        fmt::format("{}: a model of rig \"{}\", not of a robot", setup.model.robot_file, reading.model->rig));
-  }
-  if (reading.model && reading.model->robot) {
-    config.robots.assign(setup.robot_ids.size(), *reading.model->robot);
-    config.opponents.robots.assign(setup.opponent_ids.size(), *reading.model->robot);
-  } else {
-    config.robots.resize(setup.robot_ids.size());
-    config.opponents.robots.resize(setup.opponent_ids.size());
-  }
-  if (setup.spread > 0.0 && reading.model && reading.model->robot) {
-    const auto draw = [&](std::vector<RobotModel>& robots, const std::vector<int>& ids, int first_key) {
-      for (std::size_t i = 0; i < robots.size(); ++i)
-        robots[i] =
-            spread_robot(*reading.model, setup.spread, setup.plant.seed, first_key + ids[i], setup.plant);
-    };
-    draw(config.robots, setup.robot_ids, 0);
-    draw(config.opponents.robots, setup.opponent_ids, kOpponentKey);
-  }
+  const auto robot_of = [&](const ModelBundle& bundle) -> std::optional<ModelFile> {
+    ModelReading reading = read_bundle(bundle);
+    for (const ModelProblem& problem : reading.problems) problems.push_back(problem.text());
+    if (!reading.model) return std::nullopt;
+    if (!reading.model->robot) {
+      problems.push_back(
+          fmt::format("{}: a model of rig \"{}\", not of a robot", bundle.robot_file, reading.model->rig));
+      return std::nullopt;
+    }
+    return std::move(*reading.model);
+  };
+  const std::optional<ModelFile> usual = robot_of(setup.model);
+  std::vector<std::pair<const OtherModel*, std::optional<ModelFile>>> others;
+  for (const OtherModel& other : setup.others) others.emplace_back(&other, robot_of(other.model));
+  std::size_t known = 0, asked = 0;
+  for (const OtherModel& other : setup.others) asked += other.keys.size();
+  const auto fill = [&](std::vector<RobotModel>& robots, const std::vector<int>& ids, int first_key) {
+    robots.resize(ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const int key = first_key + ids[i];
+      const std::optional<ModelFile>* model = &usual;
+      for (const auto& [other, file] : others) {
+        if (!std::ranges::binary_search(other->keys, key)) continue;
+        model = &file;
+        ++known;
+      }
+      if (!*model) continue;
+      robots[i] = setup.spread > 0.0 ? spread_robot(**model, setup.spread, setup.plant.seed, key, setup.plant)
+                                     : *(*model)->robot;
+    }
+  };
+  fill(config.robots, setup.robot_ids, 0);
+  fill(config.opponents.robots, setup.opponent_ids, kOpponentKey);
+  if (known != asked) problems.push_back("a robot of another model is not on the floor, or has two of them");
   config.radio_format = setup.radio_format;
   config.robot_ids = setup.robot_ids;
   config.team = setup.team;
@@ -85,6 +97,7 @@ SessionConfig session_config(const SessionSetup& setup) {
   config.field = setup.field;
   config.opponents.robot_ids = setup.opponent_ids;
   config.opponents.radio_format = setup.opponents_radio;
+  config.from = setup.from;
   for (std::string& problem : session_problems(config)) problems.push_back(std::move(problem));
   throw_problems(problems);
   return config;
@@ -95,6 +108,7 @@ void set_model(RecordingHeader& header, const ModelBundle& model) {
   header.robot_model_text = model.robot_text;
   header.included_models.clear();
   if (!model.motor_file.empty()) header.included_models.push_back({model.motor_file, model.motor_text});
+  header.other_robots.clear();
 }
 
 RecordingHeader recording_header(const SessionSetup& setup, const std::string& commit) {
@@ -112,19 +126,40 @@ RecordingHeader recording_header(const SessionSetup& setup, const std::string& c
   header.opponent_ids = setup.opponent_ids;
   header.opponents_radio = setup.opponents_radio;
   header.spread = setup.spread;
+  header.from = setup.from;
+  for (const OtherModel& other : setup.others) {
+    OtherRobots& robots = header.other_robots.emplace_back();
+    robots.keys = other.keys;
+    robots.robot_model = other.model.name;
+    robots.robot_model_text = other.model.robot_text;
+    if (!other.model.motor_file.empty())
+      robots.included_models.push_back({other.model.motor_file, other.model.motor_text});
+  }
   header.seed = setup.plant.seed;
   return header;
 }
 
+namespace {
+ModelBundle bundle_of(const std::string& name, const std::string& text,
+                      const std::vector<ModelText>& included) {
+  ModelBundle bundle;
+  bundle.name = name;
+  bundle.robot_file = name + ".toml";
+  bundle.robot_text = text;
+  if (!included.empty()) {
+    bundle.motor_file = included.front().name;
+    bundle.motor_text = included.front().text;
+  }
+  return bundle;
+}
+}  // namespace
+
 SessionSetup session_setup(const RecordingHeader& header) {
   SessionSetup setup;
-  setup.model.name = header.robot_model;
-  setup.model.robot_file = header.robot_model + ".toml";
-  setup.model.robot_text = header.robot_model_text;
-  if (!header.included_models.empty()) {
-    setup.model.motor_file = header.included_models.front().name;
-    setup.model.motor_text = header.included_models.front().text;
-  }
+  setup.model = bundle_of(header.robot_model, header.robot_model_text, header.included_models);
+  for (const OtherRobots& other : header.other_robots)
+    setup.others.push_back(
+        {other.keys, bundle_of(other.robot_model, other.robot_model_text, other.included_models)});
   setup.radio_format = header.radio_format;
   setup.robot_ids = header.robot_ids;
   setup.team = header.team;
@@ -137,6 +172,7 @@ SessionSetup session_setup(const RecordingHeader& header) {
   setup.opponent_ids = header.opponent_ids;
   setup.opponents_radio = header.opponents_radio;
   setup.spread = header.spread;
+  setup.from = header.from;
   return setup;
 }
 

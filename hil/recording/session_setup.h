@@ -21,8 +21,16 @@
 
 namespace omnihil {
 
+// Robots of another model than the session's.
+struct OtherModel {
+  std::vector<int> keys;  // ids, ascending; opponents: kOpponentKey + id
+  ModelBundle model;
+  bool operator==(const OtherModel&) const = default;
+};
+
 struct SessionSetup {
-  ModelBundle model;  // all robots of a session are of one model
+  ModelBundle model;               // of all robots but these:
+  std::vector<OtherModel> others;  // each key at most once
   std::string radio_format;
   std::vector<int> robot_ids;  // ascending
   Team team = Team::kBlue;
@@ -31,9 +39,10 @@ struct SessionSetup {
   std::uint64_t epoch_ms = 1'700'000'000'000;
   AirOptions air;
   FieldSetup field;
-  std::vector<int> opponent_ids;  // of the same model; none: no other team
-  std::string opponents_radio;    // of their dongle; empty: none
-  double spread = 0.0;            // of each robot's numbers, in tolerances of the model (model_spread.h)
+  std::vector<int> opponent_ids;   // of the same model; none: no other team
+  std::string opponents_radio;     // of their dongle; empty: none
+  double spread = 0.0;             // of each robot's numbers, in tolerances of the model (model_spread.h)
+  std::vector<std::uint8_t> from;  // the world at the start (SessionConfig::from)
 };
 
 // Reads the model from its texts; throws std::invalid_argument with every problem, a line each.
@@ -42,7 +51,7 @@ SessionConfig session_config(const SessionSetup& setup);
 // `firmware`, `firmware_files`, `started` and the columns are left to the caller and the writer.
 RecordingHeader recording_header(const SessionSetup& setup, const std::string& commit);
 SessionSetup session_setup(const RecordingHeader& header);
-// The model of `header` replaced, its name and its texts.
+// The model of all robots of `header` replaced, its name and its texts.
 void set_model(RecordingHeader& header, const ModelBundle& model);
 
 // "0-5", "0,2,7", "0-2,7" -> ascending ids, each once. What is wrong goes to `problems`, a line each.

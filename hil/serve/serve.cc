@@ -8,6 +8,7 @@
 #include <ctime>
 #include <exception>
 #include <memory>
+#include <numbers>
 
 #include "firmware_iface/firmware_checks.h"
 #include "hil/league/league_sync.h"
@@ -18,6 +19,7 @@
 #include "hil/serve/serve_port.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/serve/status_printer.h"
+#include "hil/text/merged_lines.h"
 #include "hil/wire/open_wire.h"
 #include "protocols/radio_format.h"
 
@@ -53,10 +55,29 @@ std::string carrier_words(const Carrier& carrier, const LinePace& pace) {
   return fmt::format("{}, paced at {} baud", name, pace.baud);
 }
 
+// A robot that fell is said once, when it happens.
+class TipWatch : public SessionObserver {
+ public:
+  explicit TipWatch(const Session& session) : session_(session) {}
+  void world(std::int64_t, const World& world) override {
+    for (const WorldEvent& event : world.events()) {
+      if (event.kind != WorldEventKind::kTip) continue;
+      const double time_s = 1e-9 * static_cast<double>(event.now_ns);
+      const int robot = session_.robot_key(event.robot);
+      complain(fmt::format("at {:.3f} s robot {} tips over: {:.0f} degrees", time_s, robot,
+                           event.size * 180.0 / std::numbers::pi));
+    }
+  }
+
+ private:
+  const Session& session_;
+};
+
 class Bench {
  public:
-  Bench(SessionConfig config, const Session::FirmwareMaker& make_firmware, const ServeOptions& options)
-      : options_(options), session_(std::move(config), make_firmware) {}
+  Bench(SessionConfig config, const Session::FirmwareMaker& make_firmware, const ServeOptions& options,
+        const Session::FirmwareMaker& opponents_firmware)
+      : options_(options), session_(std::move(config), make_firmware, opponents_firmware) {}
 
   ServeEnd run(RecordingHeader header);
 
@@ -81,7 +102,8 @@ class Bench {
   std::unique_ptr<HostPort> opponents_port_;
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<LeagueHost> league_;
-  std::unique_ptr<ObserverList> observers_;
+  TipWatch tips_{session_};
+  ObserverList observers_{{&tips_}};
   LeagueSync sync_;
   std::unique_ptr<Clock> clock_;
   std::string model_;  // as the user named it
@@ -111,6 +133,7 @@ bool Bench::open(RecordingHeader header) {
       return false;
     }
   }
+  session_.set_observer(&observers_);
   return open_opponents() && open_league() && open_recording(std::move(header));
 }
 
@@ -136,7 +159,7 @@ bool Bench::open_league() {
     complain("league: " + error);
     return false;
   }
-  session_.set_observer(league_.get());
+  observers_.add(league_.get());
   if (options_.league_sync_port == 0 ||
       sync_.listen(options_.league->address, options_.league_sync_port, error))
     return true;
@@ -153,12 +176,7 @@ bool Bench::open_recording(RecordingHeader header) {
     complain("recording " + options_.record + ": " + error.message());
     return false;
   }
-  if (league_) {
-    observers_ = std::make_unique<ObserverList>(std::vector<SessionObserver*>{writer_.get(), league_.get()});
-    session_.set_observer(observers_.get());
-  } else {
-    session_.set_observer(writer_.get());
-  }
+  observers_.add(writer_.get());
   return true;
 }
 
@@ -306,11 +324,10 @@ ServeEnd Bench::run(RecordingHeader header) {
   if (end == ServeEnd::kDone && writer_ && writer_->error()) end = ServeEnd::kIo;
   if (!options_.quiet) {
     fmt::print("{}", final_report(status()));
-    for (std::size_t i = 0; i < static_cast<std::size_t>(session_.robot_count()); ++i) {
-      for (const std::string& line : session_.firmware(static_cast<int>(i)).report()) {
-        fmt::print("  robot {:<11}{}\n", session_.robot_key(static_cast<int>(i)), line);
-      }
-    }
+    std::vector<LinesOf> robots;
+    for (int i = 0; i < session_.robot_count(); ++i)
+      robots.push_back({session_.robot_key(i), session_.firmware(i).report()});
+    for (const std::string& line : merge_lines("robot", "robots", robots)) fmt::print("  {}\n", line);
     if (writer_ && !writer_->error()) {
       fmt::print("  recording        {} ({} bytes)\n", options_.record, writer_->bytes_written());
     }
@@ -322,8 +339,8 @@ ServeEnd Bench::run(RecordingHeader header) {
 }  // namespace
 
 ServeEnd serve(SessionConfig config, const Session::FirmwareMaker& make_firmware, RecordingHeader header,
-               const ServeOptions& options) {
-  Bench bench(std::move(config), make_firmware, options);
+               const ServeOptions& options, const Session::FirmwareMaker& opponents_firmware) {
+  Bench bench(std::move(config), make_firmware, options, opponents_firmware);
   return bench.run(std::move(header));
 }
 

@@ -46,6 +46,6 @@ enum class ServeEnd {
 // `header` describes `config` for the recording. Throws std::invalid_argument naming every problem of
 // the configuration, before anything is opened.
 ServeEnd serve(SessionConfig config, const Session::FirmwareMaker& make_firmware, RecordingHeader header,
-               const ServeOptions& options);
+               const ServeOptions& options, const Session::FirmwareMaker& opponents_firmware = {});
 
 }  // namespace omnihil

@@ -20,6 +20,7 @@
 // two-phase ball of the league's teams. Cannot: a ball that sinks into the pile, uneven floors, oblique spin losses.
 #pragma once
 #include <Eigen/Geometry>
+#include <string>
 #include <vector>
 
 #include "sim/contact/gravity.h"
@@ -61,6 +62,9 @@ struct Carpet {
   };
   Here at(double x_m, double y_m) const;
 };
+
+// What is out of bounds, a line each.
+std::vector<std::string> carpet_problems(const Carpet& carpet);
 
 struct BallState {
   Vector3 position{0, 0, 0};  // of its centre, field frame, m

@@ -31,6 +31,11 @@ double kinetic_of(const ContactBody& b) {
   return 0.5 * twice_J;
 }
 
+// A body that goes its way whatever is put on it can do work.
+bool moves_held(const ContactBody& b) {
+  return b.per_mass.isZero() && b.per_inertia.isZero() && !(b.velocity.isZero() && b.spin.isZero());
+}
+
 }  // namespace
 
 ContactBody planar_contact_body(double mass_kg, double inertia_kg_m2, const Vector2& center,
@@ -143,7 +148,7 @@ void ContactSolver::solve(double step_s) {
   bool passive = true;
   for (const Contact& c : contacts_) {
     rows_.push_back(row_of(c, step_s));
-    passive = passive && c.roller < 0 && c.stiffness_N_per_m == 0.0;
+    passive = passive && c.roller < 0 && c.stiffness_N_per_m == 0.0 && !(c.b >= 0 && moves_held(body(c.b)));
   }
   before_ = bodies_;
   const double before_J = passive ? kinetic_energy_J() : 0.0;

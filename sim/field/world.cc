@@ -16,6 +16,7 @@ World::Impl::Impl(std::span<const RobotModel> robots, const PlantOptions& plant_
       plant(robots, plant_options),
       handling(robots.size()),
       here(robots.size(), 1),
+      tipped(robots.size()),
       drives(robots.size()),
       states(robots.size()),
       shapes(robots.size()),
@@ -25,6 +26,7 @@ World::Impl::Impl(std::span<const RobotModel> robots, const PlantOptions& plant_
   for (const RobotModel& model : models) {
     const PlanarBody<double> b = planar_body(model);
     parts.push_back({b.mass_kg, 1.0 / b.inverse_yaw_inertia, {b.com_x_m, b.com_y_m}, &handling_of(model)});
+    tip_rad.push_back(tipping_angle_rad(model));
   }
   if (options.field == nullptr) return;
   boards = goal_boards(*options.field);
@@ -33,19 +35,25 @@ World::Impl::Impl(std::span<const RobotModel> robots, const PlantOptions& plant_
 }
 
 void World::Impl::report(WorldEventKind kind, int robot, int other, double x_m, double y_m, double size) {
-  events.push_back({kind, plant.now_ns(), robot, other, x_m, y_m, size});
+  events.push_back({kind, plant.now_ns() + clock_offset_ns, robot, other, x_m, y_m, size});
 }
 
 void World::Impl::after_step(Plant&, double step_s) {
   ++steps;
   const std::size_t count = parts.size();
   if (!options.contacts && !options.handling && !has_ball) return;
-  if (has_ball || count > 1 || options.field != nullptr)
+  for (Mover& mover : movers) {
+    mover.state.x_m += step_s * mover.state.v_x_m_s;
+    mover.state.y_m += step_s * mover.state.v_y_m_s;
+    mover.state.yaw_rad += step_s * mover.state.omega_rad_s;
+  }
+  const bool may_touch = has_ball || count > 1 || options.field != nullptr || !movers.empty();
+  if (may_touch)
     for (std::size_t n = 0; n < count; ++n) states[n] = plant.planar_state(static_cast<int>(n));
   if (options.handling)
     for (std::size_t n = 0; n < count; ++n) handle_ball(n, step_s);
   if (has_ball) advance_ball(options.ball, options.carpet, ball, step_s);
-  if (has_ball || count > 1 || options.field != nullptr) touch_all(step_s);
+  if (may_touch) touch_all(step_s);
   if (!has_ball || options.field == nullptr) return;
   const int side =
       goal_at(*options.field, options.ball.radius_m, ball.position.x(), ball.position.y(), ball.position.z());
@@ -103,7 +111,10 @@ void World::write(int robot, const RobotDrive& drive) {
 void World::advance(std::int64_t duration_ns) {
   impl_->events.clear();
   impl_->plant.advance(duration_ns, impl_.get());
+  impl_->look_for_tips();
 }
+
+void World::set_clock_offset(std::int64_t offset_ns) { impl_->clock_offset_ns = offset_ns; }
 
 RobotSensors World::sample_sensors(int robot) {
   RobotSensors s = impl_->plant.sample_sensors(robot);
@@ -139,6 +150,7 @@ void each_memory(Impl& w, Visit visit) {
   visit(&w.ball.on_floor, 1);
   visit(w.handling.data(), w.handling.size());
   visit(w.here.data(), w.here.size());
+  visit(w.tipped.data(), w.tipped.size());
   visit(w.drives.data(), w.drives.size());
   visit(&w.steps, 1);
   visit(&w.goal_side, 1);

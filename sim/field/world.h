@@ -11,6 +11,9 @@
 // ball's free motion (ball.h); impulses of all that touch (contact_solver.h); and what overlaps is moved apart, positions
 // only, so that it does no work. A robot that touches nothing has the bits it has in a plant alone. A kick gives the ball
 // its speed relative to the robot at the plunger, and the robot the recoil.
+// Movers are bodies that follow their own course whatever they meet: real robots in a mixed match.
+// Tipping: a free body whose tilt brings its centre of mass over the edge of its wheels; the other physics refuse a robot
+// that could.
 // Planar physics and Simbody take the same contacts, since both give a robot's planar motion; a free body (it can tip)
 // takes them as planar impulses: what would tip it by a push at its height is left out.
 // Cannot: robots that drive onto the ball, balls under a chassis, more than one ball.
@@ -50,6 +53,12 @@ struct HandlingState {
   bool chips = false;
 };
 
+// Held bodies: speeds are what they are whatever touches them, and they go on by them until told again.
+struct Mover {
+  PlanarState state;
+  RobotOutline outline;
+};
+
 enum class WorldEventKind : std::uint8_t { kKick, kRobotsTouch, kBallTouch, kGoal, kTip };
 struct WorldEvent {
   WorldEventKind kind = WorldEventKind::kKick;
@@ -79,6 +88,10 @@ class World {
   void set_present(int robot, bool present);  // an absent one touches nothing and is not seen
   bool present(int robot) const;
 
+  // In force until set again; not part of save().
+  void set_movers(std::span<const Mover> movers);
+  std::span<const Mover> movers() const;
+
   void write(int robot, const RobotDrive& drive);
   void advance(std::int64_t duration_ns);
   RobotSensors sample_sensors(int robot);
@@ -88,6 +101,9 @@ class World {
   double energy_J()
       const;  // kinetic of bodies and ball, and the ball's potential; wheels and motors left out
 
+  // Whole state; restored, time is what it was then. Events tell times of now_ns() + offset, for a caller whose clock
+  // goes on.
+  void set_clock_offset(std::int64_t offset_ns);
   std::vector<std::uint8_t> save() const;
   bool restore(std::span<const std::uint8_t> bytes);
 

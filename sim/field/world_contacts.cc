@@ -48,18 +48,26 @@ void World::Impl::touch_robots(std::size_t a, std::size_t b) {
   const Touch touch = touch_of(shape_of(a), shape_of(b));
   if (touch.depth_m <= 0.0) return;
   const int body_a = body_of(a), body_b = body_of(b);
+  put_touch(touch, body_b, body_a, static_cast<int>(b), static_cast<int>(a));
+}
+
+// `touch` has its normal from the second to the first.
+void World::Impl::put_touch(const Touch& touch, int first, int second, int who_first, int who_second) {
   for (std::size_t i = 0; i < touch.point_count; ++i) {
     Contact contact;
-    contact.a = body_b;
-    contact.b = body_a;
+    contact.a = first;
+    contact.b = second;
     contact.point = flat(touch.points[i]);
     contact.normal = flat(touch.normal);
     contact.restitution = kRobotRestitution;
     contact.friction = kRobotFriction;
     solver.touch(contact);
   }
-  overlaps.push_back({static_cast<int>(b), static_cast<int>(a), flat(touch.normal), touch.depth_m});
-  touching.emplace_back(static_cast<int>(a), static_cast<int>(b));
+  overlaps.push_back({who_first, who_second, flat(touch.normal), touch.depth_m});
+  if (who_second >= 0)
+    touching.emplace_back(who_second, who_first);
+  else
+    touching.emplace_back(who_first, who_second);
 }
 
 void World::Impl::touch_walls(std::size_t n) {
@@ -117,16 +125,14 @@ void World::Impl::touch_bar(std::size_t n, const Vector3& at) {
   solver.touch(contact);
 }
 
-void World::Impl::touch_ball_with_robot(std::size_t n) {
-  const BallHandling& h = *parts[n].handling;
-  const double dx = ball.position.x() - states[n].x_m, dy = ball.position.y() - states[n].y_m;
-  const double reach_m = h.outline.radius_m + 2.0 * options.ball.radius_m;
-  if (dx * dx + dy * dy > reach_m * reach_m) return;
-  const Vector3 at = in_body(n, ball.position);
-  touch_bar(n, at);
+void World::Impl::touch_ball_with_hull(const RobotOutline& outline, const PlanarState& state,
+                                       double restitution, double friction, int who) {
+  const double c = std::cos(state.yaw_rad), s = std::sin(state.yaw_rad);
+  const double dx = ball.position.x() - state.x_m, dy = ball.position.y() - state.y_m;
+  const Vector3 at(c * dx + s * dy, -s * dx + c * dy, ball.position.z());
   // The hull is a prism: its point next to the ball's middle.
-  const Nearest nearest = nearest_on(h.outline, {at.x(), at.y()});
-  const double r_m = options.ball.radius_m, above_m = at.z() - h.outline.height_m;
+  const Nearest nearest = nearest_on(outline, {at.x(), at.y()});
+  const double r_m = options.ball.radius_m, above_m = at.z() - outline.height_m;
   Vector3 normal(nearest.normal.x(), nearest.normal.y(), 0.0);
   double depth_m = r_m - nearest.distance_m;
   if (above_m > 0.0) {
@@ -136,17 +142,25 @@ void World::Impl::touch_ball_with_robot(std::size_t n) {
     normal = (out_m * normal + Vector3(0, 0, above_m)) / distance_m;
   }
   if (depth_m <= 0.0) return;
-  const double c = std::cos(states[n].yaw_rad), s = std::sin(states[n].yaw_rad);
   Contact contact;
   contact.a = body_of_ball();
-  contact.b = body_of(n);
+  contact.b = who >= 0 ? body_of(static_cast<std::size_t>(who))
+                       : body_of_mover(static_cast<std::size_t>(kFirstMover - who));
   contact.normal = {c * normal.x() - s * normal.y(), s * normal.x() + c * normal.y(), normal.z()};
   contact.point = ball.position - r_m * contact.normal;
-  contact.restitution = h.restitution;
-  contact.friction = h.friction;
+  contact.restitution = restitution;
+  contact.friction = friction;
   solver.touch(contact);
-  overlaps.push_back({-2, static_cast<int>(n), contact.normal, depth_m});
-  touching.emplace_back(static_cast<int>(n), -2);
+  overlaps.push_back({kBallWho, who, contact.normal, depth_m});
+  if (who >= 0) touching.emplace_back(who, kBallWho);
+}
+void World::Impl::touch_ball_with_robot(std::size_t n) {
+  const BallHandling& h = *parts[n].handling;
+  const double dx = ball.position.x() - states[n].x_m, dy = ball.position.y() - states[n].y_m;
+  const double reach_m = h.outline.radius_m + 2.0 * options.ball.radius_m;
+  if (dx * dx + dy * dy > reach_m * reach_m) return;
+  touch_bar(n, in_body(n, ball.position));
+  touch_ball_with_hull(h.outline, states[n], h.restitution, h.friction, static_cast<int>(n));
 }
 
 void World::Impl::touch_ball_with_walls() {
@@ -161,7 +175,7 @@ void World::Impl::touch_ball_with_walls() {
     contact.restitution = options.wall_restitution;
     contact.friction = options.wall_friction;
     solver.touch(contact);
-    overlaps.push_back({-2, -1, normal, depth_m});
+    overlaps.push_back({kBallWho, -1, normal, depth_m});
   };
   const Vector3& p = ball.position;
   const double x_m = field.half_length_m() + out_m, y_m = field.half_width_m() + out_m;
@@ -210,12 +224,12 @@ void World::Impl::move_apart() {
       const double by_m = kMendRatio * (o.depth_m - kSlop_m);
       if (by_m <= 0.0) continue;
       const auto per_mass = [&](int who) {
-        if (who == -2) return 1.0 / options.ball.mass_kg;
+        if (who == kBallWho) return 1.0 / options.ball.mass_kg;
         return who < 0 ? 0.0 : 1.0 / parts[static_cast<std::size_t>(who)].mass_kg;
       };
       const double all = per_mass(o.a) + per_mass(o.b);
       const auto move = [&](int who, double way_m) {
-        if (who == -2) {
+        if (who == kBallWho) {
           ball.position += way_m * o.normal;
           ball.position.z() = std::max(ball.position.z(), options.ball.radius_m);
         } else if (who >= 0) {
@@ -237,6 +251,11 @@ void World::Impl::touch_all(double step_s) {
   std::ranges::fill(body, -1);
   std::ranges::fill(roller, -1);
   std::ranges::fill(shape_known, 0);
+  for (std::size_t m = 0; m < movers.size(); ++m) {
+    const PlanarState& s = movers[m].state;
+    mover_shapes[m] = robot_shape(movers[m].outline, s.x_m, s.y_m, s.yaw_rad);
+    mover_body[m] = -1;
+  }
   ball_body = -1;
   const std::size_t count = parts.size();
   for (std::size_t a = 0; a < count; ++a) {
@@ -245,8 +264,12 @@ void World::Impl::touch_all(double step_s) {
       for (std::size_t b = a + 1; b < count; ++b)
         if (here[b]) touch_robots(a, b);
     if (options.field != nullptr && options.contacts) touch_walls(a);
+    if (options.contacts)
+      for (std::size_t m = 0; m < movers.size(); ++m) touch_robot_with_mover(a, m);
     if (has_ball) touch_ball_with_robot(a);
   }
+  if (has_ball)
+    for (std::size_t m = 0; m < movers.size(); ++m) touch_ball_with_mover(m);
   if (has_ball && options.field != nullptr) touch_ball_with_walls();
   if (solver.empty()) {
     touched_before.clear();
@@ -266,10 +289,11 @@ void World::Impl::touch_all(double step_s) {
   for (const auto& pair : touching) {
     if (std::ranges::find(touched_before, pair) != touched_before.end()) continue;
     const auto at = static_cast<std::size_t>(pair.first);
-    if (pair.second == -2)
+    if (pair.second == kBallWho)
       report(WorldEventKind::kBallTouch, pair.first, -1, ball.position.x(), ball.position.y(), 0.0);
     else
-      report(WorldEventKind::kRobotsTouch, pair.first, pair.second, states[at].x_m, states[at].y_m, 0.0);
+      report(WorldEventKind::kRobotsTouch, pair.first, std::max(pair.second, -1), states[at].x_m,
+             states[at].y_m, 0.0);
   }
   touched_before = touching;
 }

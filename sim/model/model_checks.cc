@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sim/robot/ball_handling.h"
 #include "sim/robot/electric_model.h"
 
 namespace omnihil {
@@ -95,6 +96,10 @@ std::vector<ModelConflict> model_conflicts(const ParameterTable& table, std::uin
     check_tyre(c, "tyre.lateral");
     check_wheels(c, table.find("robot.wheel_angle_deg")->values);
     check_masses(c);
+    if (const Parameter* const chip = table.find("kicker.chip_network");
+        chip != nullptr && !chip->text.empty())
+      c.need(chip_of_text(chip->text).has_value(), "kicker.chip_network", "is no network",
+             "allowed: the 70 numbers that omnihil field chip prints");
     check_electrics(table, out);
   }
   return out;

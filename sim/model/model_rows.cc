@@ -96,7 +96,7 @@ constexpr std::string_view kPwmModes[] = {"complementary", "high_side_chop", "fa
 constexpr std::string_view kShapes[] = {"sine", "trapezoid"};
 constexpr std::string_view kConstantsFor[] = {"as_driven", "block", "sinusoidal"};
 constexpr std::string_view kShuntPlaces[] = {"phase", "low_side", "bus"};
-constexpr std::string_view kMotorLoops[] = {"duty", "foc", "six_step"};
+constexpr std::string_view kMotorLoops[] = {"duty", "foc", "six_step", "emotional"};
 
 constexpr std::uint32_t R = kRigRobot, A = kRigAxis, L = kRigLinearAxis, M = kRigMotor;
 using H = BallHandling;
@@ -352,6 +352,8 @@ constexpr ParameterRow kRows[] = {
      handling<&H::kick, &KickLaw::k_least>},
     {"kicker", "k_most", kNumber, "1", kHandling.kick.k_most, 0, 1e6, true, R, 0,
      "a longer pulse kicks as this one", "", handling<&H::kick, &KickLaw::k_most>},
+    {"kicker", "chip_network", kText, "", kNone, 0, 0, false, R, 0,
+     "speed and angle of a chip: the numbers that omnihil field chip prints", "omnihil field chip TABLE.csv"},
     {"kicker", "reach_m", kNumber, "m", kHandling.kick_reach_m, 0, 0.1, true, R, 0,
      "from the front: how far the plunger takes the ball", "drawing", handling<&H::kick_reach_m>},
     {"kicker", "half_width_m", kNumber, "m", kHandling.kick_half_width_m, 0, 0.1, true, R, 0,
@@ -412,9 +414,9 @@ constexpr ParameterRow kRows[] = {
     {"firmware", "command_timeout_s", kNumber, "s", 0.0, 0, 3600, false, R, 0,
      "the robot stops this long after the last command; 0: the firmware's own", "the firmware's setting",
      robot<&RobotModel::control_timeout_s>},
-    {"firmware", "motor_loop", kChoice, "", 0.0, 0, 2, false, R, 0,
+    {"firmware", "motor_loop", kChoice, "", 0.0, 0, 3, false, R, 0,
      "what the reference firmware gives its bridges: duties, or three legs by field-oriented or six-step "
-     "control",
+     "control; emotional: duties, by BELBIC in place of PI",
      "", motor_loop, kMotorLoops},
     {"firmware", "radio", kText, "", kNone, 0, 0, false, R, 0,
      "radio format the robot speaks: ulaval-hermes …", ""},

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/robot/ball_handling.h"
+
 namespace omnihil {
 std::string parameter_path(const ParameterRow& row) {
   return row.section.empty() ? std::string(row.key) : fmt::format("{}.{}", row.section, row.key);
@@ -70,6 +72,14 @@ RobotModel robot_model_of(const ParameterTable& table) {
   RobotModel model;
   for (const Parameter& p : table.parameters) {
     if (p.row->store != nullptr && !p.values.empty()) p.row->store(model, p.values);
+  }
+  if (const Parameter* const chip = table.find("kicker.chip_network");
+      chip != nullptr && !chip->text.empty()) {
+    if (const auto network = chip_of_text(chip->text)) {
+      auto handling = std::make_shared<BallHandling>(handling_of(model));
+      handling->chip = *network;
+      model.handling = std::move(handling);
+    }
   }
   return model;
 }

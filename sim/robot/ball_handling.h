@@ -9,6 +9,9 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "sim/contact/ball.h"
 #include "sim/contact/convex_shape.h"
@@ -44,6 +47,11 @@ struct ChipNetwork {
   std::array<double, 2> in_least{0, -0.03}, in_most{10, 0.03};  // k, y in m
   std::array<double, 2> out_least{0, 0.5}, out_most{8, 1.1};    // m/s, rad
 };
+
+// A network as a model file has it: its numbers one after another, w1 row by row, b1, w2, b2, least and most of k and y,
+// least and most of speed and angle. Back: none for another count, a number that is not finite, or an empty range.
+std::string chip_text(const ChipNetwork& network);
+std::optional<ChipNetwork> chip_of_text(std::string_view text);
 
 // Trained on the stated model of sim/field/chip_kick.h.
 extern const ChipNetwork kDefaultChip;

@@ -113,7 +113,7 @@ std::vector<std::string> electric_problems(const RobotModel& model) {
   }
   if (e.has_heat()) check_heat(e.heat, out);
   if (e.any()) check_effects(model, out);
-  if (model.motor_loop != MotorLoop::kDuty && !e.three_phase()) {
+  if ((model.motor_loop == MotorLoop::kFoc || model.motor_loop == MotorLoop::kSixStep) && !e.three_phase()) {
     out.push_back(
         "firmware.motor_loop: sets the legs of three phases; drive.kind must be \"dq\" or \"switched\"");
   }

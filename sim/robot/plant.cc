@@ -103,6 +103,14 @@ PlanarState Plant::planar_state(int robot) const {
   return {m.x_m, m.y_m, m.yaw_rad, v[0], v[1], m.velocity.omega_body_rad_s};
 }
 
+double Plant::tilt_rad(int robot) const {
+  const Impl& p = *impl_;
+  if (!p.free()) return 0.0;
+  // The body's vertical axis against the floor's: cos = 1 - 2 (x^2 + y^2) of the unit quaternion (w, x, y, z).
+  const double* at = &p.q[static_cast<std::size_t>(robot) * p.layout.q_per_robot];
+  return std::acos(std::clamp(1.0 - 2.0 * (at[1] * at[1] + at[2] * at[2]), -1.0, 1.0));
+}
+
 void Plant::add_velocity(int robot, double v_x_m_s, double v_y_m_s, double omega_rad_s) {
   impl_->add_velocity(static_cast<std::size_t>(robot), v_x_m_s, v_y_m_s, omega_rad_s);
 }

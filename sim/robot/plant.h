@@ -123,6 +123,7 @@ class Plant {
   void advance(std::int64_t duration_ns, StepListener* listener = nullptr);
   // What contacts do between two mechanical steps: speeds change at once, wheels keep theirs; places are mended.
   PlanarState planar_state(int robot) const;
+  double tilt_rad(int robot) const;  // of its chassis against the vertical; 0 but for a free body
   void add_velocity(int robot, double v_x_m_s, double v_y_m_s, double omega_rad_s);
   void shift(int robot, double x_m, double y_m);
   // What else draws on the robot's bus beside its wheels, until set again; matters where the model has a battery.

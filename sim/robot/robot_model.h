@@ -19,7 +19,7 @@ struct ElectricModel;  // sim/robot/electric_model.h
 struct BallHandling;   // sim/robot/ball_handling.h
 
 // What the robot's own firmware makes of its motors: a duty, or the legs of three phases.
-enum class MotorLoop : std::uint8_t { kDuty, kFoc, kSixStep };
+enum class MotorLoop : std::uint8_t { kDuty, kFoc, kSixStep, kEmotional };
 
 struct RobotModel {
   std::string name;

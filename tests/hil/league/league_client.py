@@ -329,6 +329,67 @@ class League(unittest.TestCase):
         self.assertEqual(odd.detection[0].t_capture, answer.detection[0].t_capture)  # nothing moved
         return states, answer
 
+    def test_mixed_match(self):
+        """A real game's vision comes in: its robot pushes ours away, its ball is there, both stand in what goes out."""
+        record = os.path.join(self.work, "mixed.omnirec")
+        real = ("224.5.23.2", free_port(socket.SOCK_DGRAM))
+        self.serve("--league", "--mixed-vision", f"{real[0]}:{real[1]}", "--field", "division-b", "--record", record)
+        group = self.join()
+        def place(c):
+            for robot_id, x, y in ((0, 0.0, 0.0), (3, 2.0, 2.0)):
+                robot = c.teleport_robot.add()
+                robot.id.id, robot.id.team, robot.x, robot.y, robot.orientation = robot_id, self.sim.BLUE, x, y, 0.0
+        self.command_of(place)
+        out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton("127.0.0.1"))
+        self.addCleanup(out.close)
+        start = time.monotonic()
+        seen_real = pushed = ball = closest = None
+        n = 0
+        while n < 150:
+            t = n / 60
+            packet = self.vision.SSL_WrapperPacket()
+            frame = packet.detection
+            frame.frame_number, frame.camera_id, frame.t_capture, frame.t_sent = n, 0, 50 + t, 50 + t + 0.005
+            for robot_id, x in ((4, -600 + 500 * t), (7, 3000)):
+                r = frame.robots_yellow.add()
+                r.confidence, r.robot_id, r.x, r.y, r.orientation, r.pixel_x, r.pixel_y = 1, robot_id, x, 0, 0, 0, 0
+            b = frame.balls.add()
+            b.confidence, b.x, b.y, b.pixel_x, b.pixel_y = 1, -1000 + 200 * t, -1500, 0, 0
+            out.sendto(packet.SerializeToString(), real)
+            n += 1
+            while time.monotonic() - start < n / 60:
+                group.settimeout(max(0.001, n / 60 - (time.monotonic() - start)))
+                try:
+                    got = self.vision.SSL_WrapperPacket.FromString(group.recv(65536))
+                except TimeoutError:
+                    break
+                if not got.HasField("detection"):
+                    continue
+                yellow = {r.robot_id: r for r in got.detection.robots_yellow}
+                blue = {r.robot_id: r for r in got.detection.robots_blue}
+                self.assertLessEqual(set(yellow), {4, 7})
+                self.assertEqual(set(blue), {0, 3})
+                if 4 in yellow:
+                    seen_real = yellow[4].x
+                    gap = blue[0].x - yellow[4].x
+                    closest = gap if closest is None else min(closest, gap)
+                pushed = blue[0].x
+                if got.detection.balls:
+                    ball = got.detection.balls[0]
+        self.assertGreater(seen_real, 300)
+        self.assertGreater(pushed, 400)  # it stood at 0
+        self.assertGreater(closest, 140)  # flat front against round side
+        self.assertAlmostEqual(ball.y, -1500, delta=5)
+        self.assertGreater(ball.x, -700)
+        self.stop()
+        with open(record) as file:
+            tags = [line.split()[0] for line in file]
+        self.assertGreater(tags.count("m"), 60)
+        self.assertGreater(tags.count("b"), 60)
+        checked = subprocess.run([self.program, "check", "--exact", "--quiet", record], capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
     def test_match_of_two_scripted_teams(self):
         """Six against six, a minute (OMNIHIL_MATCH_SECONDS: longer): whoever is nearest goes behind the ball and kicks at the other goal, the rest
         keep places of their own. No error, no number that is not finite, nobody stuck, goals on both sides are put back."""

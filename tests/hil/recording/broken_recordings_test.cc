@@ -64,7 +64,7 @@ const Broken kBroken[] = {
     {"FewerUnitsThanColumns", 0, "[\"m\",\"m\"]", "[\"m\"]", "key 'units'", "1 units", "2"},
     {"ColumnTwice", 0, "\"true_y_m\"", "\"true_x_m\"", "key 'columns'", "twice", "each name once"},
     {"UnknownTag", 1, ">", "]", "run.omnirec:2: line tag", "']'",
-     "'>', '<', '}', '!', 's', 'c', 'p', 'v', 'a', 'b', 'w', '#'"},
+     "'>', '<', '}', '!', 's', 'c', 'p', 'v', 'a', 'b', 'w', 'm', '#'"},
     {"PlacedWithTooFew", 3, "", "p 2000000 3 1.5 2.5", "run.omnirec:4: values", "fewer", "3"},
     {"PlacedWithTooMany", 3, "", "p 2000000 3 1.5 2.5 0 7", "run.omnirec:4: values", "more", "3"},
     {"CommandOfWords", 3, "", "c 2000000 3 1 forward", "run.omnirec:4: value 2", "'forward'",

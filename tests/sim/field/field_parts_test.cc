@@ -161,5 +161,20 @@ TEST(Field, AGoalIsBehindTheLineAndBetweenThePosts) {
   EXPECT_EQ(find_field("nowhere"), nullptr);
 }
 
+TEST(ChipText, ANetworkComesBackAndDamageDoesNot) {
+  const std::string text = chip_text(kDefaultChip);
+  const auto back = chip_of_text(text);
+  ASSERT_TRUE(back.has_value());
+  for (const double k : {1.0, 4.5, 8.0})
+    for (const double y : {-0.02, 0.0, 0.03}) {
+      EXPECT_NEAR(chip_kick(*back, k, y).speed_m_s, chip_kick(kDefaultChip, k, y).speed_m_s, 1e-6);
+      EXPECT_NEAR(chip_kick(*back, k, y).angle_rad, chip_kick(kDefaultChip, k, y).angle_rad, 1e-6);
+    }
+  EXPECT_FALSE(chip_of_text(text + " 1").has_value());
+  EXPECT_FALSE(chip_of_text(text.substr(0, text.rfind(' '))).has_value());
+  EXPECT_FALSE(chip_of_text("nan " + text.substr(text.find(' ') + 1)).has_value());
+  EXPECT_FALSE(chip_of_text("").has_value());
+}
+
 }  // namespace
 }  // namespace omnihil

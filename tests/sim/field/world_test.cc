@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include "sim/field/dribbler.h"
@@ -284,12 +285,15 @@ TEST(World, EnergyFallsThroughRandomHeaps) {
 }
 
 // Commands, teleports, kicks at random, into each other too: the state stays finite and no robot is far away.
+// OMNIHIL_RANDOM_COMMANDS=1000000: as many as one has time for.
 TEST(World, NothingBreaksIt) {
+  const char* const asked = std::getenv("OMNIHIL_RANDOM_COMMANDS");
+  const int commands = asked != nullptr ? std::atoi(asked) : 20'000;
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> one(-1.0, 1.0);
   World world = make(4, {.field = &kFieldSeedPaper});
   world.put_ball(0, 0, kR, {0, 0, 0});
-  for (int n = 0; n < 20000; ++n) {
+  for (int n = 0; n < commands; ++n) {
     const int who = static_cast<int>(random() % 4);
     switch (random() % 8) {
       case 0:
