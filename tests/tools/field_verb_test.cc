@@ -37,6 +37,37 @@ TEST_F(FieldVerb, FitsATeamsOwnTableOfKicks) {
   EXPECT_TRUE(wrong.says("y_m")) << wrong.text;
 }
 
+// The network that is trained on a table kicks in a model file as it did when it was trained.
+TEST_F(FieldVerb, ATrainedChipGoesIntoAModelFile) {
+  const std::string table = in_folder("chips2.csv");
+  {
+    std::ofstream out(table);
+    out << "k,y_m,speed_m_s,angle_deg\n";
+    for (int k = 2; k <= 10; ++k)
+      for (int y = -3; y <= 3; ++y)
+        out << k << ',' << 0.01 * y << ',' << 0.4 * k * (1.0 - 20.0 * 1e-4 * y * y) << ',' << 50.0 - k
+            << '\n';
+  }
+  const Ran trained = run_omnihil("field chip '" + table + "'");
+  ASSERT_EQ(trained.exit_code, 0) << trained.text;
+  const std::size_t row = trained.text.find("chip_network = ");
+  ASSERT_NE(row, std::string::npos) << trained.text;
+  const std::string model = text_of(OMNIHIL_SOURCE_DIR "/models/robots/omni_default.toml");
+  std::filesystem::create_directory(in_folder("robots"));
+  const std::string file = in_folder("robots/mine.toml"), bad = in_folder("robots/bad.toml");
+  std::filesystem::copy(OMNIHIL_SOURCE_DIR "/models/motors", in_folder("motors"));
+  std::ofstream(file) << model << "\n[kicker]\n"
+                      << trained.text.substr(row, trained.text.find('\n', row) - row) << '\n';
+  std::ofstream(bad) << model << "\n[kicker]\nchip_network = \"1 2 3\"\n";
+  const Ran seed = run_omnihil("field seed --robot '" + file + "'");
+  EXPECT_EQ(seed.exit_code, 0) << seed.text;
+  EXPECT_TRUE(seed.says("k = 6, ball in the middle: 2.4")) << seed.text;
+  EXPECT_TRUE(seed.says("at 44.")) << seed.text;
+  const Ran refused = run_omnihil("models --check '" + bad + "'");
+  EXPECT_EQ(refused.exit_code, 2) << refused.text;
+  EXPECT_TRUE(refused.says("chip_network")) << refused.text;
+}
+
 TEST_F(FieldVerb, ServeWithAFieldIsRecordedReplayedAndDrawn) {
   const std::string record = in_folder("m.omnirec"), picture = in_folder("m.svg");
   const Ran served = run_omnihil(
@@ -51,6 +82,36 @@ TEST_F(FieldVerb, ServeWithAFieldIsRecordedReplayedAndDrawn) {
   std::string first;
   std::getline(in, first);
   EXPECT_TRUE(first.starts_with("<svg ")) << first;
+  const std::string page = in_folder("m.html");
+  EXPECT_EQ(run_omnihil("replay '" + record + "' --picture '" + page + "'").exit_code, 0);
+  EXPECT_NE(text_of(page).find("<th>what</th>"), std::string::npos);
+  EXPECT_NE(text_of(page).find("<svg "), std::string::npos);
+  const Ran other = run_omnihil("replay '" + record + "' --picture '" + in_folder("m.jpg") + "'");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_TRUE(other.says("allowed: a file that ends in .svg, .png or .html")) << other.text;
+}
+
+TEST_F(FieldVerb, APngIsDrawnByRsvgConvertAndItsLackIsSaid) {
+  const std::string record = in_folder("p.omnirec"), picture = in_folder("p.png");
+  ASSERT_EQ(
+      run_omnihil(
+          "serve --robots 0 --ball 0.5,0.1 --physics planar --clock free --duration 0.1 --quiet --device '" +
+          in_folder("dongle") + "' --record '" + record + "'")
+          .exit_code,
+      0);
+  const Ran drawn = run_omnihil("replay '" + record + "' --picture '" + picture + "'");
+  if (std::system("command -v rsvg-convert > /dev/null") != 0) {
+    EXPECT_NE(drawn.exit_code, 0);
+    EXPECT_TRUE(drawn.says("librsvg2-bin")) << drawn.text;
+    EXPECT_FALSE(std::filesystem::exists(picture));
+    GTEST_SKIP() << "rsvg-convert is not installed";
+  }
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.text;
+  // PNG's signature, and its width in the header chunk (ISO/IEC 15948, 5.2, 11.2.2).
+  const std::string png = text_of(picture);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(static_cast<unsigned char>(png[18]) * 256 + static_cast<unsigned char>(png[19]), 900);
+  EXPECT_FALSE(std::filesystem::exists(picture + ".svg"));
 }
 
 TEST_F(FieldVerb, WhatCannotBeIsNamed) {

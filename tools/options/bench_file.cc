@@ -13,7 +13,9 @@ namespace omnihil {
 namespace {
 
 // The names of these are files, or may be.
-constexpr std::array<std::string_view, 6> kFiles{"robot", "firmware", "board", "format", "record", "bench"};
+constexpr std::array<std::string_view, 10> kFiles{
+    "robot",           "firmware",           "board",          "format", "record", "bench", "from",
+    "opponents-robot", "opponents-firmware", "opponents-board"};
 
 std::string dashed(std::string_view key) {
   std::string name(key);

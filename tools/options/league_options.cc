@@ -40,6 +40,13 @@ void add_league_options(Verb& verb, LeagueWords& w) {
   verb.add_option("--vision-interface", w.options.vision_interface,
                   "address of the network interface that it leaves by")
       .capture_default_str();
+  verb.add_option(
+      "--mixed-vision", w.real,
+      "multicast GROUP:PORT of a real game's vision: its robots and ball are on the floor among ours, and "
+      "in the frames that go out (docs/field/mixed.md)");
+  verb.add_option("--mixed-interface", w.options.real_interface,
+                  "address of the network interface that it comes by")
+      .capture_default_str();
   verb.add_option("--vision-rate", w.options.vision.rate_Hz, "frames per second of each camera")
       .range(0.1, 1000.0)
       .capture_default_str();
@@ -76,7 +83,10 @@ void add_league_options(Verb& verb, LeagueWords& w) {
 
 std::optional<LeagueOptions> league_options(const LeagueWords& words, std::uint64_t seed,
                                             std::uint64_t epoch_ms, std::vector<std::string>& problems) {
-  if (!words.on && words.sync_port == 0) return std::nullopt;
+  if (!words.on && words.sync_port == 0) {
+    if (!words.real.empty()) problems.push_back("--mixed-vision: needs --league");
+    return std::nullopt;
+  }
   LeagueOptions options = words.options;
   VisionOptions& vision = options.vision;
   if (words.vision == "off") {
@@ -85,6 +95,15 @@ std::optional<LeagueOptions> league_options(const LeagueWords& words, std::uint6
              !split_address(words.vision, options.vision_group, options.vision_port)) {
     problems.push_back("--vision: found \"" + words.vision +
                        "\", allowed: GROUP:PORT such as 224.5.23.2:10006, or off");
+  }
+  if (!words.real.empty()) {
+    if (!split_address(words.real, options.real_group, options.real_port))
+      problems.push_back("--mixed-vision: found \"" + words.real +
+                         "\", allowed: GROUP:PORT such as 224.5.23.2:10006");
+    else if (options.sends_vision && options.real_group == options.vision_group &&
+             options.real_port == options.vision_port)
+      problems.push_back("--mixed-vision: " + words.real +
+                         " is where our own vision goes: give it another group or port with --vision");
   }
   if (vision.cameras == 3) problems.push_back("--cameras: found 3, allowed: 1, 2, 4");
   if (words.delay_most_ms > 0.0 && words.delay_most_ms < words.delay_least_ms)

@@ -12,7 +12,7 @@ namespace omnihil {
 void add_replay_options(Verb& verb, ReplayWords& words) {
   verb.add_option("--format", words.format_file,
                   "radio format of the recording from this file, where it was made with one");
-  add_firmware_options(verb, words.firmware);
+  add_team_firmware_options(verb, words.firmware);
   verb.add_option("--robot", words.robot, "robot model instead of the recorded one, by name or path");
   verb.add_option(
       "--with", words.with,
@@ -33,14 +33,19 @@ ReplayOptions replay_options(const ReplayWords& words, const RecordingHeader& re
     options.model = stored.bundle;
   }
   if (!words.with.empty() && problems.empty()) {
+    if (!options.model && !recorded.other_robots.empty())
+      problems.push_back("--with: the recording has robots of several models; name one with --robot");
     if (!options.model) options.model = session_setup(recorded).model;
     add_effects(*options.model, words.with, problems);
   }
   throw_problems(problems);
-  options.firmware_files = firmware_files(words.firmware);
-  if (!words.firmware.file.empty()) {
-    options.firmware = [choice = words.firmware](const SessionConfig& config) {
-      return open_firmware(choice, config);
+  options.firmware_files = team_firmware_files(words.firmware);
+  if (words.firmware.names_any()) {
+    options.firmware = [all = words.firmware](const SessionConfig& config) {
+      return open_first_firmware(all, config);
+    };
+    options.opponents_firmware = [all = words.firmware](const SessionConfig& alone) {
+      return open_opponents_firmware(all, alone);
     };
   }
   if (const std::string missing = firmware_missing(recorded, options); !missing.empty())

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "hil/firmware/open_firmware.h"
 #include "hil/recording/replay_run.h"
 #include "tools/command_line.h"
+#include "tools/options/firmware_options.h"
 
 namespace omnihil {
 
 struct ReplayWords {
-  FirmwareChoice firmware;
+  TeamFirmwareWords firmware;
   std::string robot;              // model by name or path; empty: the recorded one
   std::vector<std::string> with;  // effects, over the recorded or the named model
   std::string physics;

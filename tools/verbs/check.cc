@@ -44,7 +44,7 @@ struct CheckWords {
   bool explain = false;
 
   bool has_versus() const {
-    return !versus.firmware.file.empty() || !versus.robot.empty() || !versus.with.empty();
+    return versus.firmware.names_any() || !versus.robot.empty() || !versus.with.empty();
   }
 };
 
@@ -199,7 +199,7 @@ int run_versus(const CheckWords& words, const std::vector<std::string>& files) {
     ReplayWords other = words.versus;
     other.physics = words.replay.physics;
     other.seed = words.replay.seed;
-    if (other.firmware.file.empty()) other.firmware = words.replay.firmware;
+    if (!other.firmware.names_any()) other.firmware = words.replay.firmware;
     if (other.robot.empty()) other.robot = words.replay.robot;
     const ReplayOptions a = replay_options(words.replay, recording.header);
     const ReplayOptions b = replay_options(other, recording.header);
@@ -258,9 +258,9 @@ void add_report_options(Verb& verb, CheckWords& words) {
 }
 
 void add_versus_options(Verb& verb, CheckWords& words) {
-  verb.add_option("--versus-firmware", words.versus.firmware.file,
+  verb.add_option("--versus-firmware", words.versus.firmware.all.file,
                   "a second build: both against the recording and each other, in one table");
-  verb.add_option("--versus-board", words.versus.firmware.board, "its board file");
+  verb.add_option("--versus-board", words.versus.firmware.all.board, "its board file");
   verb.add_option("--versus-robot", words.versus.robot, "a second model, the same way");
   verb.add_option("--versus-with", words.versus.with, "effects of the second model");
 }

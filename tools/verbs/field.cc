@@ -18,6 +18,7 @@
 #include "sim/field/kicker.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
+#include "tools/field_verbs.h"
 #include "tools/guarded.h"
 #include "tools/verbs/verbs.h"
 
@@ -95,6 +96,7 @@ int run_chip(const Arguments& a) {
     fmt::print("{:>8.2f} {:>8.3f} {:>10.2f} {:>10.1f} {:>8.2f} {:>8.2f}\n", k, 0.0, kick.speed_m_s,
                kick.angle_rad * degree, chip_apex_m(kick), chip_distance_m(kick, 0.0));
   }
+  fmt::print("# goes into the robot's model\n[kicker]\nchip_network = \"{}\"\n", chip_text(net));
   return kExitOk;
 }
 
@@ -114,6 +116,10 @@ void add_verb_field(Verb& program, VerbResult& result) {
       .range(1e-3, 1000.0)
       .capture_default_str();
   kick.callback([a, &result] { result.exit_code = guarded("field kick", [&] { return run_kick(*a); }); });
+  add_field_tyre(verb, result);
+  add_field_wheel(verb, result);
+  add_field_pass(verb, result);
+  add_field_rectangle(verb, result);
   Verb chip = verb.add_subcommand("chip", "the seed paper's network trained on a team's own table of chips");
   chip.add_option("TABLE", a->table, "CSV with the columns k, y_m, speed_m_s, angle_deg").required();
   chip.add_option("--seed", a->seed, "of the first weights").capture_default_str();

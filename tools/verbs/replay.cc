@@ -3,17 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
 
-#include "hil/field_view/field_picture.h"
+#include "hil/field_view/field_page.h"
 #include "hil/recording/compare_recordings.h"
 #include "hil/recording/recording_reader.h"
 #include "hil/recording/recording_writer.h"
 #include "hil/recording/replay_report.h"
 #include "hil/recording/replay_run.h"
 #include "hil/recording/session_setup.h"
+#include "hil/recording/snapshot_file.h"
 #include "hil/text/dataset_files.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
@@ -31,7 +33,25 @@ struct Words {
   std::string recording;
   std::string out;
   std::string picture;
+  std::string snapshot;  // file
+  double snapshot_s = 0.0;
   bool sha256_only = false;
+};
+
+// Keeps the world as it was at an instant.
+class SnapshotTaker : public SessionObserver {
+ public:
+  explicit SnapshotTaker(double time_s) : at_ns_(static_cast<std::int64_t>(std::llround(time_s * 1e9))) {}
+  void world(std::int64_t now_ns, const World& world) override {
+    if (!taken_.world.empty() || now_ns < at_ns_) return;
+    taken_.at_ns = now_ns;
+    taken_.world = world.save();
+  }
+  const Snapshot& taken() const { return taken_; }
+
+ private:
+  std::int64_t at_ns_;
+  Snapshot taken_;
 };
 
 std::unique_ptr<RecordingWriter> open_out(const Words& words, const Recording& recording,
@@ -75,6 +95,8 @@ int run_replay(const Words& words) {
   ObserverList observers({});
   if (writer) observers.add(writer.get());
   if (trace) observers.add(trace.get());
+  SnapshotTaker taker(words.snapshot_s);
+  if (!words.snapshot.empty()) observers.add(&taker);
   options.observer = &observers;
   const ReplayRun run = run_again(recording, options);
   if (!run.firmware_failure.empty()) {
@@ -87,7 +109,17 @@ int run_replay(const Words& words) {
   }
   if (trace) {
     const std::string name = std::filesystem::path(words.recording).filename().string();
-    write_new_file(words.picture, field_picture(*trace, {.title = name}));
+    write_field_picture(words.picture, *trace, name);
+  }
+  if (!words.snapshot.empty()) {
+    Snapshot snapshot = taker.taken();
+    if (snapshot.world.empty())
+      throw std::invalid_argument(
+          fmt::format("--snapshot-at {:g}: the run has nothing to keep there", words.snapshot_s));
+    snapshot.commit = program_commit();
+    snapshot.robots = fmt::format("{} and {} of {}", recording.header.robot_ids.size(),
+                                  recording.header.opponent_ids.size(), recording.header.robot_model);
+    write_snapshot(words.snapshot, snapshot);
   }
   if (words.sha256_only) {
     fmt::print("{}\n", run.sha256);
@@ -109,7 +141,13 @@ void add_verb_replay(Verb& program, VerbResult& result) {
   verb.add_option("RECORDING", words->recording, "file that serve --record wrote").required();
   add_replay_options(verb, words->replay);
   verb.add_option("--out", words->out, "write the new run to this file, as a recording");
-  verb.add_option("--picture", words->picture, "write the field from above to this file, as SVG");
+  verb.add_option("--picture", words->picture,
+                  "write the field from above to this file: .svg, .png, or .html with what happened");
+  verb.add_option("--snapshot", words->snapshot,
+                  "write the world of an instant to this file, for serve --from: robots, motors, ball");
+  verb.add_option("--snapshot-at", words->snapshot_s, "which instant, in s")
+      .not_negative()
+      .capture_default_str();
   verb.add_flag("--sha256", words->sha256_only,
                 "print only the SHA-256 of all outputs: bytes with their times, every tick's values");
   verb.footer(

@@ -48,7 +48,7 @@ struct Words {  // as the user gave them
   std::vector<std::string> with;
   SessionSetup setup;
   ServeOptions options;
-  FirmwareChoice firmware;
+  TeamFirmwareWords firmware;
   MotorBusChoice motor_bus;
   LeagueWords league;
   AirWords air;
@@ -93,11 +93,11 @@ std::string understand(Words& words) {
   if (words.motor_bus.bus.empty() != words.motor_bus.port.empty()) {
     problems.push_back("--motor-bus and --bus-port belong together");
   }
-  if (!words.motor_bus.bus.empty() && !words.firmware.file.empty()) {
+  if (!words.motor_bus.bus.empty() && words.firmware.names_any()) {
     problems.push_back("--motor-bus and --firmware: a robot has one or the other");
   }
   understand_air(words.air, setup.air, problems);
-  understand_field(words.field, setup, problems);
+  understand_field(words.field, words.with, setup, problems);
   if (!words.options.opponents_device.empty()) {
     if (setup.opponent_ids.empty()) problems.push_back("--opponents-device: needs --opponents");
     setup.opponents_radio = setup.radio_format;
@@ -120,7 +120,10 @@ std::string understand(Words& words) {
   }
   if (stored.problems.empty()) {
     SessionSetup rest = setup;  // a list of robots that was not understood has been named already
-    if (!problems.empty()) rest.robot_ids = {0};
+    if (!problems.empty()) {
+      rest.robot_ids = {0};
+      rest.others.clear();
+    }
     try {
       session_config(rest);
     } catch (const std::invalid_argument& error) {
@@ -142,15 +145,16 @@ int run(Words& words) {
     RecordingHeader header = recording_header(words.setup, program_commit());
     header.sample_every = words.sample_every;
     const SessionConfig config = session_config(words.setup);
-    words.firmware.virtual_time = !words.options.real_time;
-    const Session::FirmwareMaker maker = words.motor_bus.bus.empty() ? open_firmware(words.firmware, config)
-                                                                     : bus_firmware(words.motor_bus, config);
+    words.firmware.all.virtual_time = !words.options.real_time;
+    const TeamFirmware makers = words.motor_bus.bus.empty()
+                                    ? open_team_firmware(words.firmware, config)
+                                    : TeamFirmware{bus_firmware(words.motor_bus, config), {}};
     if (words.motor_bus.bus.empty()) {
-      header.firmware_files = firmware_files(words.firmware);
+      header.firmware_files = team_firmware_files(words.firmware);
     } else {
       header.firmware_files = {{words.motor_bus.bus + " on " + words.motor_bus.port, ""}};
     }
-    const ServeEnd end = serve(config, maker, std::move(header), words.options);
+    const ServeEnd end = serve(config, makers.first, std::move(header), words.options, makers.opponents);
     switch (end) {
       case ServeEnd::kDone:
         return kExitOk;
@@ -209,7 +213,7 @@ void add_verb_serve(Verb& program, VerbResult& result) {
       .capture_default_str();
   verb.add_option("--robots", w.robots, "robot ids: 0-5 or 0,2,7").capture_default_str();
   verb.add_option("--team", w.team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
-  add_firmware_options(verb, w.firmware);
+  add_team_firmware_options(verb, w.firmware);
   add_bus_options(verb, w.motor_bus);
   add_field_options(verb, w.field);
   verb.add_option(
