@@ -13,6 +13,7 @@
 #include "sim/field/dribbler.h"
 #include "sim/field/kicker.h"
 #include "sim/field/world.h"
+#include "sim/full_wheel/wheel_comparison.h"
 
 namespace omnihil {
 namespace {
@@ -159,6 +160,21 @@ TourRow tyre_row(const RobotModel& model) {
           model.tyre_longitudinal.asymptote_value)};
 }
 
+TourRow wheel_row(const RobotModel& model) {
+  for (const WheelManoeuvre& m : wheel_manoeuvres(model)) {
+    if (m.name != "diagonal") continue;
+    const RollerParams rollers;
+    const WheelDifference d = difference_of(run_full_wheel(model, rollers, m, 1e-4),
+                                            run_simplified(model, m, Physics::kPlanar, 5e-4));
+    return {
+        "omni wheel", "two tyre curves instead of 18 side wheels, as accurate and cheaper",
+        fmt::format("{:.2f} m diagonally on the same voltages: {:.1f} mm between {} rollers and two curves "
+                    "(`field wheel`: more manoeuvres, cost)",
+                    d.way_m, 1e3 * d.end_m, 4 * rollers.count)};
+  }
+  return {"omni wheel", "", "no such manoeuvre"};
+}
+
 TourRow wireless_row() {
   // What a robot 8 m away gets, against eqs. (2) and (3).
   constexpr double kAway_m = 8.0;
@@ -263,9 +279,9 @@ std::string TourRow::text() const {
 }
 
 std::vector<TourRow> seed_tour(const RobotModel& model) {
-  return {robot_row(model), tyre_row(model), ball_row(),          robots_row(model), kick_row(),
-          chip_row(model),  beam_row(model), dribbler_row(model), wireless_row(),    vision_row(model),
-          pass_row(model),  goal_row(model), mixed_row(model)};
+  return {robot_row(model),  wheel_row(model), tyre_row(model), ball_row(),          robots_row(model),
+          kick_row(),        chip_row(model),  beam_row(model), dribbler_row(model), wireless_row(),
+          vision_row(model), pass_row(model),  goal_row(model), mixed_row(model)};
 }
 
 }  // namespace omnihil

@@ -20,7 +20,7 @@
 #include <array>
 #include <memory>
 
-#include "sim/robot/plant.h"
+#include "sim/robot/planar_state.h"
 #include "sim/robot/robot_model.h"
 
 namespace omnihil {

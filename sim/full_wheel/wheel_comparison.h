@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sim/full_wheel/full_wheel_robot.h"
+#include "sim/robot/plant.h"
 
 namespace omnihil {
 

@@ -32,6 +32,7 @@
 
 #include "firmware_iface/robot_io.h"
 #include "sim/robot/electric_ports.h"
+#include "sim/robot/planar_state.h"
 #include "sim/robot/robot_faults.h"
 #include "sim/robot/robot_model.h"
 
@@ -79,12 +80,6 @@ struct PlantFault {
   int robot = 0;
   std::string_view signal;  // "duty_ratio", "pose", "omega_wheel_rad_s", "motor_current_A", …
   int index = 0;            // within the signal: wheel, or place in the pose
-};
-
-// A robot's body as contacts see it: geometric centre, field frame.
-struct PlanarState {
-  double x_m = 0, y_m = 0, yaw_rad = 0;
-  double v_x_m_s = 0, v_y_m_s = 0, omega_rad_s = 0;
 };
 
 class Plant;
