@@ -128,7 +128,8 @@ PathTest path_test(const Run& run, const RobotModel& model, std::vector<std::str
   return t;
 }
 
-std::string path_picture(const PathTest& t, const std::string& title) {
+std::string path_picture(const PathTest& t, const std::string& title, const std::string& real,
+                         const std::string& model) {
   double x_from = t.real.front().x_m, x_to = x_from, y_from = t.real.front().y_m, y_to = y_from;
   for (const auto* path : {&t.real, &t.model})
     for (const PathPoint& p : *path) {
@@ -146,9 +147,9 @@ std::string path_picture(const PathTest& t, const std::string& title) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
       "{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" "
       "fill=\"#fff\"/>\n<text x=\"10\" y=\"20\" font-size=\"15\">{2}</text>\n<text x=\"10\" y=\"38\"><tspan "
-      "fill=\"#1f6feb\">real</tspan> <tspan fill=\"#d33\">model</tspan>, {3:.1f} m of way: {4:.3f} m rms, "
+      "fill=\"#1f6feb\">{6}</tspan> <tspan fill=\"#d33\">{7}</tspan>, {3:.1f} m of way: {4:.3f} m rms, "
       "{5:.3f} m at the end</text>\n",
-      width, height, escaped(title), t.way_m, t.rms_m, t.end_m);
+      width, height, escaped(title), t.way_m, t.rms_m, t.end_m, escaped(real), escaped(model));
   const auto draw = [&](const std::vector<PathPoint>& path, const char* colour) {
     fmt::format_to(out, "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"", colour);
     for (const PathPoint& p : path)

@@ -33,7 +33,8 @@ struct PathTest {
 // What is missing goes to `faults`.
 PathTest path_test(const Run& run, const RobotModel& model, std::vector<std::string>& faults);
 
-// Both paths from above, as SVG.
-std::string path_picture(const PathTest& test, const std::string& title);
+// Both paths from above, as SVG, under these names.
+std::string path_picture(const PathTest& test, const std::string& title, const std::string& real = "real",
+                         const std::string& model = "model");
 
 }  // namespace omnihil

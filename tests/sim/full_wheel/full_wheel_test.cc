@@ -1,20 +1,21 @@
 // The omni wheel with its rollers: energy, momentum, rolling, and that steps converge.
-#include "sim/full_wheel/full_wheel_robot.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/full_wheel/full_wheel_robot.h"
 #include "sim/full_wheel/wheel_comparison.h"
 #include "sim/robot/geometry.h"
+#include "sim/robot/planar_law.h"
+#include "tests/sim/robot/sample_robot.h"
 
 namespace omnihil {
 namespace {
 
 RobotModel centred() {
-  RobotModel model;
+  RobotModel model = sample_robot();
   model.center_of_mass_x_m = model.center_of_mass_y_m = 0.0;
   return model;
 }
@@ -23,7 +24,7 @@ TyreCurve none() { return {0.1, 0.0, 0.4, 0.0}; }
 
 // |kinetic - (work in - work lost)| over work in, after the curve that has everything in it.
 double energy_error(double step_s) {
-  const RobotModel model;
+  const RobotModel model = sample_robot();
   const WheelManoeuvre curve = wheel_manoeuvres(model)[4];
   FullWheelRobot robot(model, {});
   for (double t = 0.0; t < 1.0; t += step_s) {
@@ -73,8 +74,7 @@ TEST(FullWheel, WithoutGripAWheelTurnsByTheModelsInertia) {
   FullWheelRobot robot(model, {});
   robot.set_torques({1e-3, 1e-3, 1e-3, 1e-3});
   for (int n = 0; n < 1000; ++n) robot.advance(1e-4);
-  for (const double w : robot.wheel_rad_s())
-    EXPECT_NEAR(w * spin_inertia_kg_m2(model), 1e-3 * 0.1, 1e-9);
+  for (const double w : robot.wheel_rad_s()) EXPECT_NEAR(w * spin_inertia_kg_m2(model), 1e-3 * 0.1, 1e-9);
 }
 
 // Coasting with the wheels' rims at the floor's speed, the loaded roller turns by the speed along the axle over its radius
@@ -90,7 +90,8 @@ TEST(FullWheel, RollersRollByTheSpeedAlongTheAxle) {
   const WheelGeometry<double> geometry = wheel_geometry(model);
   const PlanarState s = robot.state();
   const double pitch = 2.0 * 3.14159265358979323846 / rollers.count;
-  const double thin_m = model.wheel_radius_m * std::cos(0.5 * pitch) - (model.wheel_radius_m - rollers.radius_m);
+  const double thin_m =
+      model.wheel_radius_m * std::cos(0.5 * pitch) - (model.wheel_radius_m - rollers.radius_m);
   const double c = std::cos(s.yaw_rad), n = std::sin(s.yaw_rad);
   const BodyVelocity<double> v{c * s.v_x_m_s + n * s.v_y_m_s, -n * s.v_x_m_s + c * s.v_y_m_s, s.omega_rad_s};
   for (std::size_t i = 0; i < kWheels; ++i) {
@@ -118,7 +119,7 @@ TEST(FullWheel, SidewaysAWheelFeelsItsBearings) {
 }
 
 TEST(FullWheel, HalfTheStepIsHalfTheError) {
-  const RobotModel model;
+  const RobotModel model = sample_robot();
   const WheelManoeuvre curve{"curve", 1.0, wheel_manoeuvres(model)[4].volt};
   const WheelRun best = run_full_wheel(model, {}, curve, 2.5e-5);
   const double coarse_m = difference_of(best, run_full_wheel(model, {}, curve, 2e-4)).rms_m;
@@ -128,7 +129,7 @@ TEST(FullWheel, HalfTheStepIsHalfTheError) {
 }
 
 TEST(FullWheel, ManyRollersStillAreOneWheel) {
-  const RobotModel model;
+  const RobotModel model = sample_robot();
   const WheelManoeuvre turn{"turn", 0.5, wheel_manoeuvres(model)[3].volt};
   RollerParams many;
   many.count = 36;
@@ -141,12 +142,12 @@ TEST(FullWheel, ManyRollersStillAreOneWheel) {
 TEST(FullWheel, RollersHeavierThanTheWheelAreRefused) {
   RollerParams heavy;
   heavy.mass_kg = 0.05;
-  EXPECT_THROW(FullWheelRobot(RobotModel{}, heavy), std::invalid_argument);
+  EXPECT_THROW(FullWheelRobot(sample_robot(), heavy), std::invalid_argument);
 }
 
 // The paper's claim, on the model that ships: two tyre curves come close to 72 rollers where nothing skids.
 TEST(WheelComparison, TheSimplifiedWheelStaysCloseWhereNothingSkids) {
-  const RobotModel model;
+  const RobotModel model = sample_robot();
   for (const WheelManoeuvre& m : wheel_manoeuvres(model)) {
     if (m.name == "hard start") continue;
     const WheelRun full = run_full_wheel(model, {}, m, 1e-4);
