@@ -72,6 +72,27 @@ WheelMotion<T> wheel_motion(const ContactLaw<T>& law, const BodyVelocity<T>& v,
   return m;
 }
 
+// Of four wheels at once. Divisions take most of a contact's time; in pairs they cost half, with the same bits.
+template <typename T>
+std::array<T, kWheels> quotients(const std::array<T, kWheels>& a, const std::array<T, kWheels>& b) {
+  std::array<T, kWheels> out;
+  if constexpr (std::is_same_v<T, double>) {
+    using Pair [[gnu::vector_size(16)]] = double;
+    for (std::size_t i = 0; i < kWheels; i += 2) {
+      const Pair q = Pair{a[i], a[i + 1]} / Pair{b[i], b[i + 1]};
+      out[i] = q[0];
+      out[i + 1] = q[1];
+    }
+  } else {
+    for (std::size_t i = 0; i < kWheels; ++i) out[i] = a[i] / b[i];
+  }
+  return out;
+}
+template <typename T>
+std::array<T, kWheels> quotients(const std::array<T, kWheels>& a, const T& b) {
+  return quotients(a, std::array<T, kWheels>{b, b, b, b});
+}
+
 // Force over load, signed, per wheel; fills the slips.
 template <typename T>
 struct WheelGrip {
@@ -81,13 +102,21 @@ struct WheelGrip {
 
 template <typename T>
 WheelGrip<T> wheel_grip(const ContactLaw<T>& law, const WheelMotion<T>& m, WheelContacts<T>& out) {
+  std::array<T, kWheels> slides, scale_along, scale_across;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    slides[i] = m.drive_speed_m_s[i] - m.rim_speed_m_s[i];
+    scale_along[i] = slip_scale_m_s(m.drive_speed_m_s[i], m.rim_speed_m_s[i], law.slip_speed_floor_m_s);
+    scale_across[i] = slip_scale_m_s(m.roller_speed_m_s[i], T(0), law.slip_speed_floor_m_s);
+  }
+  const std::array<T, kWheels> along = quotients(slides, scale_along),
+                               across = quotients(m.roller_speed_m_s, scale_across),
+                               x_along = quotients(along, T(law.longitudinal.extremum_slip)),
+                               x_across = quotients(across, T(law.lateral.extremum_slip));
   WheelGrip<T> g;
   for (std::size_t i = 0; i < kWheels; ++i) {
-    const T slip = slip_ratio(m.drive_speed_m_s[i], m.rim_speed_m_s[i], law.slip_speed_floor_m_s);
-    out.slip_longitudinal_ratio[i] = slip;
-    g.longitudinal_ratio[i] = -grip(law.longitudinal, slip);
-    g.lateral_ratio[i] =
-        -grip(law.lateral, slip_ratio(m.roller_speed_m_s[i], T(0), law.slip_speed_floor_m_s));
+    out.slip_longitudinal_ratio[i] = along[i];
+    g.longitudinal_ratio[i] = -grip_at(law.longitudinal, along[i], x_along[i]);
+    g.lateral_ratio[i] = -grip_at(law.lateral, across[i], x_across[i]);
   }
   return g;
 }

@@ -1,7 +1,9 @@
 #include "sim/robot/planar.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace omnihil {
 namespace {
@@ -35,7 +37,10 @@ PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots,
     Robot& r = robots_[n];
     const double* qr = q.data() + n * kPlanarLayout.q_per_robot;
     const double* ur = u.data() + n * kPlanarLayout.u_per_robot;
-    ::sincos(qr[0], &r.sin_yaw, &r.cos_yaw);  // the same bits as sin and cos, at the cost of one
+    if (std::bit_cast<std::uint64_t>(qr[0]) != std::bit_cast<std::uint64_t>(r.yaw_rad)) {  // a step begins where the one before was looked at
+      r.yaw_rad = qr[0];
+      ::sincos(qr[0], &r.sin_yaw, &r.cos_yaw);  // the same bits as sin and cos, at the cost of one
+    }
     r.omega_body_rad_s = ur[0];
     const BodyVelocity<double> velocity = in_body(ur, r.cos_yaw, r.sin_yaw);
     const std::array<double, kWheels> omega_wheel{ur[3], ur[4], ur[5], ur[6]};

@@ -40,8 +40,8 @@ class PlanarMechanics {
     ContactLaw<double> law;
     PlanarBody<double> body;
     double gear_ratio = 1.0;
-    double wheel_viscous_Nm_s_per_rad = 0.0;  // rotor friction seen at the wheel: gear^2 b
-    double cos_yaw = 1.0, sin_yaw = 0.0;      // of the current state
+    double wheel_viscous_Nm_s_per_rad = 0.0;             // rotor friction seen at the wheel: gear^2 b
+    double yaw_rad = 0.0, cos_yaw = 1.0, sin_yaw = 0.0;  // of the current state
     double omega_body_rad_s = 0.0;
     WheelContacts<double> contacts;
     const FloorEffects* effects = nullptr;

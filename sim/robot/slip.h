@@ -18,12 +18,16 @@
 namespace omnihil {
 
 template <typename T>
-T slip_ratio(const T& v_m_s, const T& rim_m_s, const T& floor_m_s) {
+T slip_scale_m_s(const T& v_m_s, const T& rim_m_s, const T& floor_m_s) {
   const T v = v_m_s < T(0) ? T(-v_m_s) : v_m_s;
   const T rim = rim_m_s < T(0) ? T(-rim_m_s) : rim_m_s;
   T scale = v < rim ? rim : v;
-  if (scale < floor_m_s) scale = floor_m_s;
-  return (v_m_s - rim_m_s) / scale;
+  return scale < floor_m_s ? floor_m_s : scale;
+}
+
+template <typename T>
+T slip_ratio(const T& v_m_s, const T& rim_m_s, const T& floor_m_s) {
+  return (v_m_s - rim_m_s) / slip_scale_m_s(v_m_s, rim_m_s, floor_m_s);
 }
 
 }  // namespace omnihil

@@ -28,20 +28,22 @@ struct TyreCurve {
   double asymptote_value = 0.0;
 };
 
-// Curve: TyreCurve, or a struct with the same members of type T when they are fitted.
+// Curve: TyreCurve, or a struct with the same members of type T when they are fitted. x: slip / extremum_slip, for who
+// divides several at once.
 template <typename T, typename Curve>
-T grip(const Curve& curve, const T& slip) {
+T grip_at(const Curve& curve, const T& slip, const T& x) {
   const T size = slip < T(0) ? T(-slip) : slip;
-  if (size <= curve.extremum_slip) {
-    const T x = slip / curve.extremum_slip;
-    return curve.extremum_value * x * (1.5 - 0.5 * x * x);
-  }
+  if (size <= curve.extremum_slip) return curve.extremum_value * x * (1.5 - 0.5 * x * x);
   T value = T(curve.asymptote_value);
   if (size < curve.asymptote_slip) {
     const T y = (size - curve.extremum_slip) / (curve.asymptote_slip - curve.extremum_slip);
     value = curve.extremum_value + (curve.asymptote_value - curve.extremum_value) * y * y * (3.0 - 2.0 * y);
   }
   return slip < T(0) ? T(-value) : value;
+}
+template <typename T, typename Curve>
+T grip(const Curve& curve, const T& slip) {
+  return grip_at(curve, slip, T(slip / curve.extremum_slip));
 }
 
 // Steepest rise of grip over slip: at zero slip. Decides how long an explicit step may be.
