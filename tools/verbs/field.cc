@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "hil/field_view/seed_pictures.h"
 #include "hil/field_view/seed_tour.h"
 #include "hil/loop/model_store.h"
 #include "hil/text/csv_table.h"
+#include "hil/text/dataset_files.h"
 #include "hil/text/program_files.h"
 #include "sim/field/chip_kick.h"
 #include "sim/field/kicker.h"
@@ -27,7 +30,7 @@ namespace {
 
 struct Arguments {
   std::string robot = "omni_default";
-  std::string table;
+  std::string table, pictures;
   double pulse_unit_ms = 1.0;
   std::uint64_t seed = 1;
 };
@@ -51,6 +54,12 @@ int run_seed(const Arguments& a) {
   const StoredModel stored = load_robot_model(a.robot, {data_folder("models")});
   for (const ModelProblem& problem : stored.problems) fmt::print(stderr, "{}\n", problem.text());
   if (!stored.model || !stored.model->robot) return kExitBadInput;
+  if (!a.pictures.empty()) {
+    std::filesystem::create_directories(a.pictures);
+    for (const SeedPicture& p : seed_pictures(*stored.model->robot))
+      replace_file(std::filesystem::path(a.pictures) / (p.name + ".svg"), p.svg);
+    return kExitOk;
+  }
   for (const TourRow& row : seed_tour(*stored.model->robot)) fmt::print("{}", row.text());
   return kExitOk;
 }
@@ -108,6 +117,7 @@ void add_verb_field(Verb& program, VerbResult& result) {
   verb.require_subcommand(1);
   Verb seed = verb.add_subcommand("seed", "the seed paper's systems, each with the figure it gives here");
   seed.add_option("--robot", a->robot, "robot model: a name or a .toml file").capture_default_str();
+  seed.add_option("--pictures", a->pictures, "folder: a picture of each system, as SVG, instead");
   seed.callback([a, &result] { result.exit_code = guarded("field seed", [&] { return run_seed(*a); }); });
   Verb kick =
       verb.add_subcommand("kick", "a cubic through a team's own table of kicks, for its robot's model");

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
+#include "hil/field_view/seed_pictures.h"
 #include "hil/field_view/seed_tour.h"
 #include "hil/loop/reference_firmware.h"
 #include "hil/recording/session_setup.h"
@@ -77,6 +81,21 @@ TEST(SeedTour, EverySystemGivesItsFigure) {
     EXPECT_FALSE(row.here.empty()) << row.system;
     EXPECT_EQ(row.here.find("nan"), std::string::npos) << row.text();
     EXPECT_EQ(row.here.find("inf"), std::string::npos) << row.text();
+  }
+}
+
+TEST(SeedPictures, EachShowsWhatItIsCalled) {
+  const StoredModel stored = load_robot_model("omni_default", {OMNIHIL_SOURCE_DIR "/models"});
+  const std::vector<SeedPicture> pictures = seed_pictures(*stored.model->robot);
+  EXPECT_EQ(pictures.size(), 9u);
+  for (const SeedPicture& p : pictures) {
+    EXPECT_NE(p.svg.find("</svg>"), std::string::npos) << p.name;
+    EXPECT_NE(p.svg.find("<path"), std::string::npos) << p.name;
+    EXPECT_EQ(p.svg.find("nan"), std::string::npos) << p.name;
+    // The one in the manual is what the program draws.
+    std::ifstream in(OMNIHIL_SOURCE_DIR "/docs/img/field_" + p.name + ".svg");
+    const std::string kept{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_EQ(kept, p.svg) << "omnihil field seed --pictures DIR draws docs/img/field_" << p.name << ".svg";
   }
 }
 
