@@ -165,9 +165,9 @@ class DatasetReader {
       const TextPlace at = plan_.runs[r].at;
       if (!motion && !run.steady) {
         problem(at, "runs", fmt::format("\"{}\"", run.file), "has no motion signal",
-                dataset_.rig == Rig::kAxis
-                    ? "one of encoder, position, velocity is needed"
-                    : "encoder_1 to encoder_4, gyro_z or vision_x, vision_y, vision_theta");
+                dataset_.rig == Rig::kAxis ? "one of encoder, position, velocity is needed"
+                                           : "encoder_1 to encoder_4, wheel_speed_1 to wheel_speed_4, gyro_z "
+                                             "or vision_x, vision_y, vision_theta");
       } else if (!compared && !run.steady) {
         problem(at, "runs", fmt::format("\"{}\"", run.file), "leaves nothing to compare",
                 "where the speed is imposed, load_torque must be measured");
@@ -175,14 +175,24 @@ class DatasetReader {
     }
   }
 
-  // No model here makes duties of radio commands: the duties themselves are needed.
+  // Duties of radio commands are made by the model's [controller].
   void check_robot_drive() {
-    for (std::size_t r = 0; r < dataset_.runs.size(); ++r) {
-      if (dataset_.runs[r].signal("duty_1") != nullptr) continue;
-      problem(plan_.runs[r].at, "runs", fmt::format("\"{}\"", dataset_.runs[r].file),
-              "is driven by radio commands alone, of which no duties are computed here",
-              "log duty_1 to duty_4 beside them");
+    const ParameterTable& table = out_.nominal->file.parameters;
+    const auto given = [&](const char* path) { return table.value_or(path, 0.0) > 0.0; };
+    bool by_radio = false, by_body = false;
+    for (const Run& run : dataset_.runs) {
+      by_radio = by_radio || run.signal("duty_1") == nullptr;
+      by_body = by_body || (run.signal("duty_1") == nullptr && run.signal("command_vx") != nullptr);
     }
+    need(!by_radio || given("controller.kp_V_s_per_rad") || given("controller.feedforward_V_s_per_rad"),
+         "controller.kp_V_s_per_rad",
+         "the robot is driven by radio commands: [controller] says what the firmware makes of them, or log "
+         "duty_1 to "
+         "duty_4 beside them");
+    need(!by_body || given("controller.wheel_radius_m"), "controller.wheel_radius_m",
+         "commands of the body's velocity become wheel speeds by the firmware's own constants");
+    need(!by_body || given("controller.wheel_center_radius_m"), "controller.wheel_center_radius_m",
+         "commands of the body's velocity become wheel speeds by the firmware's own constants");
   }
 
   // What the drive input needs of the model.

@@ -76,7 +76,7 @@ std::vector<std::vector<T>> steady_outputs(const AxisSetup& s, const DriveParams
     const double gear = value_of(p.gear_ratio);
     const double speed =
         in.imposed_velocity_rad_s[k] != 0.0 ? in.imposed_velocity_rad_s[k] : s.approach[k] * kCreep_rad_s;
-    DriveInput<T> drive{.kind = in.kind, .setpoint = in.command[k]};
+    DriveInput<T> drive{.kind = in.kind, .setpoint = T(in.command[k])};
     drive.speed_is_imposed = drive.motor_torque_is_needed = true;
     drive.imposed_start_rad_s = drive.imposed_end_rad_s = speed * gear;
     drive.bus_is_measured = !in.bus_voltage_V.empty();

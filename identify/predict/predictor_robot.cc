@@ -163,6 +163,10 @@ Capabilities RobotPredictor::capabilities() const {
   // of an inductance trades with is for the fit to say.
   constexpr std::uint32_t kAlways = kNeedsFloor | kNeedsSeveralMotors | kNeedsSupply | kNeedsWinding |
                                     kNeedsDuty | kNeedsVoltage | kNeedsSimulation;
+  // Where radio commands drive, the model's controller has the delay.
+  std::vector<std::string> present;
+  if (std::any_of(records_.begin(), records_.end(), [](const RobotRecord& r) { return r.radio.has_value(); }))
+    present.emplace_back("controller.latency_s");
   return {
       .rig = kOnRobot,
       .other_rig = "acts on a single axis",
@@ -174,9 +178,10 @@ Capabilities RobotPredictor::capabilities() const {
                {kNeedsCamera, camera, "needs a camera"},
                {kNeedsDribbler, has_channel("dribbler"), "needs the dribbler's speed (channel dribbler)"},
                {kNeedsBodySpeed, body, "needs a body's speed: camera, gyro or accelerometer"},
-               {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle, has_channel("encoder"), "needs encoders"}},
+               {kNeedsShaftSensor, has_channel("encoder") || has_channel("wheel_speed"), "needs wheel speeds"},
+               {kNeedsEncoder | kNeedsAngle, has_channel("encoder"), "needs encoders"}},
       .free_base = {},
-      .present_base = {}};
+      .present_base = std::move(present)};
 }
 
 }  // namespace

@@ -12,8 +12,9 @@
 // Compared: "velocity_1" … "velocity_4" (rotor, differences of counts on both sides), "motor_current_1" …,
 // "gyro_z", "accel_x", "accel_y", "vision_x", "vision_y", "vision_theta" (where there is a frame).
 // bus_voltage, where measured, is an input of the bridges, smoothed; and its drop is compared with that of
-// the model's supply. Without it the model's supply is the input. Cannot: make duties of radio commands
-// (command_vx …); the reader refuses a robot that logged nothing else.
+// the model's supply. Without it the model's supply is the input. Where the record has radio commands and no
+// duties, the model's [controller] (radio_controller.h) closes the loop over the simulated speeds; its numbers
+// are parameters as any others, and "wheel_speed_1" … are compared where telemetry has them.
 #pragma once
 #include <memory>
 

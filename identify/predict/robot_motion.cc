@@ -18,7 +18,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // Everything true, at the samples.
 template <typename T>
 struct Truth {
-  std::vector<std::array<T, kWheels>> theta_rotor_rad, omega_rotor_rad_s, charge_C;
+  std::vector<std::array<T, kWheels>> theta_rotor_rad, omega_rotor_rad_s, reported_rad_s, charge_C;
   std::vector<std::array<T, 3>> velocity;
   std::vector<T> accel_x, accel_y, bus, supply;
 };
@@ -66,7 +66,12 @@ class Runner {
         record_(record),
         options_(options),
         robot_(model.params, model.uses, model.values),
-        timing_states_(initial_states(robot_.effects())) {}
+        timing_states_(initial_states(robot_.effects())) {
+    if (record.radio) {
+      controller_.emplace(model.params.controller, model.params.wheel_angle_rad,
+                          value_of(model.params.drive.gear_ratio));
+    }
+  }
 
   RobotMotion<T> run() {
     camera_age_s_ = T(0);
@@ -97,16 +102,56 @@ class Runner {
     return port.age_s;
   }
 
+  // Commands are heard at their samples; the loop runs once per period, on the mean speed since it last ran.
+  void hear(std::size_t k) {
+    const RadioCommands& radio = *record_.radio;
+    const auto& value = radio.value[k];
+    const std::size_t count = radio.frame == CommandFrame::kBody ? 3 : kWheels;
+    if (std::all_of(value.begin(), value.begin() + static_cast<std::ptrdiff_t>(count),
+                    [](double v) { return std::isfinite(v); }))
+      controller_->hear(record_.time_s[k], value, radio.frame);
+  }
+  void control(const RollingState<T>& x, const RollingInput<T>& in, double now_s, double step_s) {
+    if (now_s < next_control_s_ - 0.5 * step_s) return;
+    const double span_s = now_s - last_control_s_;
+    std::array<T, kWheels> omega;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      omega[i] = span_s > 0.0 ? T(turned_rad_[i] * (1.0 / span_s)) : x.omega_rotor_rad_s(i);
+      turned_rad_[i] = T(0);
+    }
+    const T bus = in.bus_is_measured ? T(in.bus_voltage_V) : x.bus_voltage_V;
+    const T& supply = model_.params.drive.supply_voltage_V;
+    duty_ = controller_->update(now_s, omega, value_of(bus) > 0.0 ? bus : supply,
+                                value_of(model_.params.drive.duty_limit_ratio));
+    last_control_s_ = now_s;
+    next_control_s_ += controller_->period_s();
+  }
+  void count_turns(const std::array<T, kWheels>& before, const RollingState<T>& x, double h) {
+    for (std::size_t i = 0; i < kWheels; ++i)
+      turned_rad_[i] += (before[i] + x.omega_rotor_rad_s(i)) * (0.5 * h);
+  }
+  std::array<T, kWheels> speeds(const RollingState<T>& x) const {
+    std::array<T, kWheels> omega;
+    for (std::size_t i = 0; i < kWheels; ++i) omega[i] = x.omega_rotor_rad_s(i);
+    return omega;
+  }
+
   void simulate() {
     const std::size_t n = record_.size();
     RollingState<T> x = robot_.start(record_.start_velocity, record_.theta_rotor_rad[0]);
     T own_heading = T(0);
-    const double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
+    double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
+    if (controller_) {
+      step_s = std::min(step_s, controller_->period_s());
+      last_control_s_ = next_control_s_ = record_.time_s[0];
+      controller_->begin(speeds(x), model_.params.drive.torque_constant_Nm_per_A);
+    }
     std::array<double, kWheels> between;
     for (std::size_t k = 0;; ++k) {
       keep(x);
       if (k + 1 >= n) break;
-      RollingInput in = record_.input(k);
+      RollingInput<T> in = record_.template input<T>(k);
+      if (controller_) hear(k);
       if (!options_.slave_angle) in.theta_rotor_rad = nullptr;
       const double dt_s = record_.time_s[k + 1] - record_.time_s[k];
       const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - 1e-6)));
@@ -120,7 +165,13 @@ class Runner {
         }
         x.yaw_rad = heading_.empty() ? own_heading : heading_[k];
         const T before = x.velocity[2];
+        const std::array<T, kWheels> omega_before = controller_ ? speeds(x) : std::array<T, kWheels>{};
+        if (controller_) {
+          control(x, in, record_.time_s[k] + dt_s * j / steps, dt_s / steps);
+          in.duty_ratio = duty_;
+        }
         robot_.advance(x, in, dt_s / steps);
+        if (controller_) count_turns(omega_before, x, dt_s / steps);
         own_heading += 0.5 * (before + x.velocity[2]) * (dt_s / steps);
       }
       if (!is_finite(x.velocity[0]) || !is_finite(x.omega_rotor_rad_s(0)) || !is_finite(x.charge_C[0])) {
@@ -149,6 +200,10 @@ class Runner {
       rise += 0.25 * x.drive[i].temperature_rise_K;
     }
     truth_.omega_rotor_rad_s.push_back(omega);
+    if (controller_) {
+      for (std::size_t i = 0; i < kWheels; ++i) omega[i] = controller_->measured_rad_s(i);
+    }
+    truth_.reported_rad_s.push_back(omega);
     truth_.charge_C.push_back(x.charge_C);
     truth_.velocity.push_back(x.velocity);
     truth_.accel_x.push_back(x.accel_x_m_s2);
@@ -162,6 +217,8 @@ class Runner {
     const std::size_t n = record_.size();
     out_.encoder_rad.resize(n);
     out_.current_A.resize(n);
+    out_.wheel_rad_s.resize(n);
+    const T inverse_gear = 1.0 / model_.params.drive.gear_ratio;
     out_.gyro_rad_s.resize(n);
     out_.accel_x_m_s2.resize(n);
     out_.accel_y_m_s2.resize(n);
@@ -180,6 +237,8 @@ class Runner {
         const T theta = seen([&](std::size_t j) { return truth_.theta_rotor_rad[j][i]; });
         const T omega = seen([&](std::size_t j) { return truth_.omega_rotor_rad_s[j][i]; });
         const T charge = seen([&](std::size_t j) { return truth_.charge_C[j][i]; });
+        const T reported = seen([&](std::size_t j) { return truth_.reported_rad_s[j][i]; });
+        out_.wheel_rad_s[k][i] = reported * inverse_gear;
         out_.encoder_rad[k][i] = encoder(k, i, theta, omega, T(theta - last_theta[i]), states[i]);
         out_.current_A[k][i] = value_of(span_s) > 0.0 ? T((charge - last_charge[i]) / span_s) : T(0);
         last_theta[i] = theta;
@@ -303,6 +362,9 @@ class Runner {
   const RobotMotionOptions& options_;
   RollingRobot<T> robot_;
   std::array<T, kMaxEffectStates> timing_states_;
+  std::optional<RadioController<T>> controller_;
+  std::array<T, kWheels> duty_{}, turned_rad_{};
+  double last_control_s_ = 0.0, next_control_s_ = 0.0;
   T camera_age_s_ = T(0);
   std::vector<T> heading_;
   Truth<T> truth_;

@@ -40,6 +40,7 @@ struct RobotMotionOptions {
 template <typename T>
 struct RobotMotion {
   std::vector<std::array<T, kWheels>> encoder_rad;  // unrounded, at the rotor
+  std::vector<std::array<T, kWheels>> wheel_rad_s;  // at the wheel; of a controller: as it measures them
   std::vector<std::array<T, kWheels>> current_A;    // mean over the period that ends at the sample
   std::vector<T> gyro_rad_s, accel_x_m_s2, accel_y_m_s2;
   std::vector<T> bus_voltage_V, supply_voltage_V;  // RollingState

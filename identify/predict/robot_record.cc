@@ -69,7 +69,27 @@ std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
   return out;
 }
 
+// A command is new where its cells are filled; all of a group together.
+void read_radio(const Run& run, RobotRecord& r) {
+  const bool body = run.signal("command_vx") != nullptr;
+  std::array<const std::vector<double>*, kWheels> said{};
+  if (body) {
+    said = {run.signal("command_vx"), run.signal("command_vy"), run.signal("command_w"), nullptr};
+  } else {
+    for (std::size_t i = 0; i < kWheels; ++i) said[i] = run.signal(numbered("command_wheel", i));
+  }
+  RadioCommands radio{.frame = body ? CommandFrame::kBody : CommandFrame::kWheels, .value = {}};
+  radio.value.resize(r.size());
+  const std::vector<double>* enable = run.signal("enable");
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    for (std::size_t a = 0; a < kWheels; ++a) radio.value[k][a] = said[a] != nullptr ? (*said[a])[k] : 0.0;
+    r.enabled[k].fill(enable == nullptr || !((*enable)[k] == 0.0));
+  }
+  r.radio = std::move(radio);
+}
+
 void read_drive(const Run& run, RobotRecord& r) {
+  if (run.signal("duty_1") == nullptr) return read_radio(run, r);
   for (std::size_t i = 0; i < kWheels; ++i) {
     const std::vector<double>* duty = run.signal(numbered("duty", i));
     const std::vector<double>* enable = run.signal("enable");
@@ -206,9 +226,10 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const RollingParams<do
 
 }  // namespace
 
-RollingInput RobotRecord::input(std::size_t k) const {
-  RollingInput in;
-  in.duty_ratio = duty_ratio[k];
+template <typename T>
+RollingInput<T> RobotRecord::input(std::size_t k) const {
+  RollingInput<T> in;
+  for (std::size_t i = 0; i < kWheels; ++i) in.duty_ratio[i] = T(duty_ratio[k][i]);
   in.enabled = enabled[k];
   in.bus_is_measured = !bus_voltage_V.empty();
   if (in.bus_is_measured) in.bus_voltage_V = bus_voltage_V[k];
@@ -216,6 +237,9 @@ RollingInput RobotRecord::input(std::size_t k) const {
   if (has_all_encoders) in.theta_rotor_rad = &theta_rotor_rad[k];
   return in;
 }
+
+template RollingInput<double> RobotRecord::input(std::size_t) const;
+template RollingInput<Jet> RobotRecord::input(std::size_t) const;
 
 RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal) {
   RobotRecord r;

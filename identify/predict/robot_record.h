@@ -22,9 +22,17 @@ struct CameraFrame {
   double x_m = 0.0, y_m = 0.0, theta_rad = 0.0;  // NaN: not seen; theta is unwrapped
 };
 
+// What the radio said, where the record has no duties: NaN where nothing new was said.
+struct RadioCommands {
+  CommandFrame frame = CommandFrame::kBody;
+  std::vector<std::array<double, kWheels>>
+      value;  // n samples; of a body three: m/s, m/s, rad/s; of wheels rad/s
+};
+
 struct RobotRecord {
   std::vector<double> time_s;
-  std::vector<std::array<double, kWheels>> duty_ratio;
+  std::vector<std::array<double, kWheels>> duty_ratio;  // 0 where `radio` drives
+  std::optional<RadioCommands> radio;
   std::vector<std::array<bool, kWheels>> enabled;
   std::vector<double> bus_voltage_V;  // less its sensor's noise; empty: not measured
   double bus_sigma_V = 0.0;           // of the sensor; 0: not stated
@@ -39,7 +47,8 @@ struct RobotRecord {
   BodyVelocity<double> start_velocity;
 
   std::size_t size() const { return time_s.size(); }
-  RollingInput input(std::size_t sample) const;
+  template <typename T = double>
+  RollingInput<T> input(std::size_t sample) const;
 };
 
 // gear_ratio, wheel_radius_m and the wheels' places of the nominal model: for the start alone, and for

@@ -21,6 +21,7 @@ struct Source {
 };
 constexpr Source kSources[] = {
     {RobotOutput::kVelocity, "encoder", "rad/s", true},
+    {RobotOutput::kWheelSpeed, "wheel_speed", "rad/s", true},
     {RobotOutput::kCurrent, "motor_current", "A", true},
     {RobotOutput::kGyro, "gyro_z", "rad/s", false},
     {RobotOutput::kAccelX, "accel_x", "m/s2", false},
@@ -169,6 +170,9 @@ std::vector<T> robot_signal_values(const RobotSignal& s, const RobotRecord& r, c
                  (1.0 / (r.time_s[k] - r.time_s[k - 1]));
       }
       break;
+    case RobotOutput::kWheelSpeed:
+      per_wheel(m.wheel_rad_s);
+      break;
     case RobotOutput::kCurrent:
       per_wheel(m.current_A);
       break;
@@ -222,13 +226,22 @@ namespace {
 constexpr double kMoving_m_s = 0.02;  // a choice
 // Change of duty from row to row that is a step; a choice (an axis: of its range).
 constexpr double kStep_duty = 0.05;  // as above
+// The same of a radio command: m/s, or rad/s; a twentieth of what robots drive at.
+constexpr double kStep_command = 0.1;  // a choice
 
 std::vector<double> time_since_step(const RobotRecord& r) {
   std::vector<double> out(r.size(), 0.0);
   double last_s = r.time_s.empty() ? 0.0 : r.time_s.front();
-  for (std::size_t k = 1; k < r.size(); ++k) {
-    for (std::size_t i = 0; i < kWheels; ++i) {
+  std::array<double, kWheels> said{};
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    for (std::size_t i = 0; i < kWheels && k > 0 && !r.radio; ++i) {
       if (std::abs(r.duty_ratio[k][i] - r.duty_ratio[k - 1][i]) > kStep_duty) last_s = r.time_s[k];
+    }
+    for (std::size_t i = 0; i < kWheels && r.radio; ++i) {
+      const double command = r.radio->value[k][i];
+      if (!std::isfinite(command)) continue;
+      if (k > 0 && std::abs(command - said[i]) > kStep_command) last_s = r.time_s[k];
+      said[i] = command;
     }
     out[k] = r.time_s[k] - last_s;
   }

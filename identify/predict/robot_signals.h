@@ -15,6 +15,7 @@ namespace omnihil {
 
 enum class RobotOutput : std::uint8_t {
   kVelocity,
+  kWheelSpeed,
   kCurrent,
   kGyro,
   kAccelX,

@@ -103,7 +103,7 @@ class AxisRun {
     const auto& p = sim_.params();
     DriveInput<T> in;
     in.kind = input_.kind;
-    in.setpoint = input_.command[k];
+    in.setpoint = T(input_.command[k]);
     in.enabled = input_.enable.empty() || input_.enable[k] != 0;
     in.bus_is_measured = !input_.bus_voltage_V.empty();
     if (in.bus_is_measured) in.bus_voltage_V = input_.bus_voltage_V[k];

@@ -444,7 +444,7 @@ template <typename T>
 DriveResult<T> DriveSim<T>::advance(DriveState<T>& state, const DriveInput<T>& input, int substeps) const {
   assert(substeps > 0);
   if (plain(input)) return advance_plain(state, input, substeps);
-  if (!effects_.command.empty()) state.commands.push(state.now_s, input.setpoint);
+  if (!effects_.command.empty()) state.commands.push(state.now_s, value_of(input.setpoint));
   if (two_masses_ && !state.has_output) {
     state.theta_output_rad = state.theta_rotor_rad * inverse_gear_;
     state.omega_output_rad_s = state.omega_rotor_rad_s * inverse_gear_;

@@ -51,7 +51,7 @@ template <typename T>
 struct DriveInput {
   CommandKind kind = CommandKind::kDuty;
   bool enabled = true;
-  double setpoint = 0.0;         // held over the call
+  T setpoint = T(0);             // held over the call
   double bus_voltage_V = 0.0;    // used when bus_is_measured
   bool bus_is_measured = false;  // at the bridge: then nothing sags it again; else the model's supply voltage
   T other_bus_current_A = T(0);  // of other drives on the same supply

@@ -25,6 +25,7 @@ struct ActuatorDelay {
       .source = "Ljung, System Identification, 2nd ed. 1999 (time delay of the input)",
       .cannot = "vary from packet to packet, drop or reorder commands; delays beyond the last 2048 changes",
       .place = Place::kCommand,
+      .excludes = {"controller.latency_s", BaseExclusion::kWherePresent},
       .twins = {"motor.inductance_H", "winding_inductance", "sampling_delay"},
       .reveals = "chirp, PRBS or steps of the duty: speed later by the same time at every frequency",
       .visible = "a tenth of a sample with steps of full duty; a fiftieth with a good chirp",

@@ -21,6 +21,16 @@ constexpr std::string_view kOwnPaths[] = {
     "tyre.lateral.extremum_value",
     "tyre.lateral.asymptote_slip",
     "tyre.lateral.asymptote_value",
+    "controller.kp_V_s_per_rad",
+    "controller.ki_V_per_rad",
+    "controller.feedforward_V_s_per_rad",
+    "controller.acceleration_feedforward_V_s2_per_rad",
+    "controller.integral_limit_ratio",
+    "controller.rate_limit_rad_s2",
+    "controller.speed_filter_s",
+    "controller.latency_s",
+    "controller.acceleration_limit_m_s2",
+    "controller.yaw_acceleration_limit_rad_s2",
 };
 
 // In the order of kOwnPaths.
@@ -42,7 +52,17 @@ std::array<T*, std::size(kOwnPaths)> own_numbers(RollingParams<T>& p) {
           &p.lateral.extremum_slip,
           &p.lateral.extremum_value,
           &p.lateral.asymptote_slip,
-          &p.lateral.asymptote_value};
+          &p.lateral.asymptote_value,
+          &p.controller.loop.kp_V_s_per_rad,
+          &p.controller.loop.ki_V_per_rad,
+          &p.controller.loop.feedforward_V_s_per_rad,
+          &p.controller.loop.acceleration_feedforward_V_s2_per_rad,
+          &p.controller.loop.integral_limit_ratio,
+          &p.controller.loop.rate_limit_rad_s2,
+          &p.controller.loop.speed_filter_s,
+          &p.controller.latency_s,
+          &p.controller.acceleration_limit_m_s2,
+          &p.controller.yaw_acceleration_limit_rad_s2};
 }
 
 }  // namespace
@@ -73,6 +93,11 @@ RollingParams<T> rolling_params_as(const RollingParams<double>& p) {
   q.wheel_angle_rad = p.wheel_angle_rad;
   q.has_tyre = p.has_tyre;
   q.has_lateral_tyre = p.has_lateral_tyre;
+  q.has_controller = p.has_controller;
+  q.controller.period_s = p.controller.period_s;
+  q.controller.timeout_s = p.controller.timeout_s;
+  q.controller.wheel_radius_m = p.controller.wheel_radius_m;
+  q.controller.wheel_center_radius_m = p.controller.wheel_center_radius_m;
   RollingParams<double> from = p;
   const auto source = own_numbers(from);
   const auto target = own_numbers(q);

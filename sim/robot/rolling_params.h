@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "sim/law/drive_params.h"
+#include "sim/robot/radio_controller.h"
 #include "sim/robot/robot_model.h"
 #include "sim/robot/tyre.h"
 
@@ -35,6 +36,8 @@ struct RollingParams {
   bool has_lateral_tyre = false;  // false: rollers turn freely
   RollingTyre<T> longitudinal, lateral;
   T slip_speed_floor_m_s = T(0);
+  bool has_controller = false;  // false: it is driven by duties
+  RadioControllerParams<T> controller;
 };
 
 // The number of the model file's row `path`; null: it has no place here. For double and Jet.

@@ -149,7 +149,7 @@ RollingState<T> RollingRobot<T>::start(const BodyVelocity<double>& v,
 }
 
 template <typename T>
-void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput& in, double step_s) {
+void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput<T>& in, double step_s) {
   if (step_s != step_s_) {
     for (DriveSim<T>& d : drives_) d.set_step(step_s);
     step_s_ = step_s;
@@ -167,7 +167,7 @@ void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput& in, double
 // ----------------------------------------------------------------------------- what acts, over one step
 
 template <typename T>
-void RollingRobot<T>::ask_floor(const RollingState<T>& x, const RollingInput& in, Step& s) const {
+void RollingRobot<T>::ask_floor(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const {
   std::array<T, kMaxEffectStates> states;
   const T gear = p_.drive.gear_ratio;
   s.force = Vector3(T(0), T(0), T(0));
@@ -235,7 +235,7 @@ void RollingRobot<T>::set_grip(const RollingState<T>& x, std::size_t i, const T&
 }
 
 template <typename T>
-void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput& in, Step& s) const {
+void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const {
   const T turn = x.velocity[2] + 0.5 * x.turn_change_rad_s;
   const T turn2 = turn * turn;
   s.force(0) += p_.mass_kg * turn2 * p_.center_of_mass_x_m;
@@ -281,13 +281,13 @@ void RollingRobot<T>::winding_speed_sensitivity(bool enabled, const Link& link, 
 
 // Four drives, each against the floor's force and the friction of the step before.
 template <typename T>
-void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput& in, Step& s) {
+void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput<T>& in, Step& s) {
   std::array<T, kWheels> bus_A;
   T all_A = T(0);
   const bool shared = !in.bus_is_measured && !effects_.supply.empty();
   for (std::size_t i = 0; i < kWheels; ++i) {
     const T& limit = p_.drive.duty_limit_ratio;
-    T duty = T(in.duty_ratio[i]);
+    T duty = in.duty_ratio[i];
     if (value_of(absolute(duty)) > value_of(limit)) duty = value_of(duty) < 0.0 ? T(-limit) : limit;
     bus_A[i] = shared && in.enabled[i] ? T(duty * x.drive[i].current_A) : T(0);
     all_A += bus_A[i];
@@ -410,7 +410,7 @@ void RollingRobot<T>::solve(RollingState<T>& x, Step& s) {
 }
 
 template <typename T>
-void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput& in, Step& s) const {
+void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput<T>& in, Step& s) const {
   Vector3 pushed(T(0), T(0), T(0));
   T floor_x = T(0), floor_y = T(0);
   for (std::size_t i = 0; i < kWheels; ++i) {
@@ -442,7 +442,7 @@ void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput& in, Step& s
 }
 
 template <typename T>
-void RollingRobot<T>::supply(RollingState<T>& x, const RollingInput& in, const Step& s) const {
+void RollingRobot<T>::supply(RollingState<T>& x, const RollingInput<T>& in, const Step& s) const {
   if (!in.bus_is_measured) {
     x.bus_voltage_V = x.supply_voltage_V = s.wheel[0].drive.bus_voltage_V;
     return;

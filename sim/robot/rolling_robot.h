@@ -39,9 +39,10 @@ namespace omnihil {
 inline constexpr double kRollingStep_s = 1e-3;      // without a tyre
 inline constexpr double kSlippingStep_s = 0.25e-3;  // with one: the floor's force is of order 1 in the step
 
-// Held over one call.
+// Held over one call. T: duties that a controller made of simulated speeds carry derivatives.
+template <typename T = double>
 struct RollingInput {
-  std::array<double, kWheels> duty_ratio{};
+  std::array<T, kWheels> duty_ratio{};
   std::array<bool, kWheels> enabled{true, true, true, true};
   double bus_voltage_V = 0.0;    // used when bus_is_measured
   bool bus_is_measured = false;  // at the bridge: then nothing sags it again
@@ -82,7 +83,7 @@ class RollingRobot {
   // Wheels roll with the body.
   RollingState<T> start(const BodyVelocity<double>& velocity,
                         const std::array<double, kWheels>& theta_rotor_rad) const;
-  void advance(RollingState<T>& state, const RollingInput& input, double step_s);
+  void advance(RollingState<T>& state, const RollingInput<T>& input, double step_s);
 
   const EffectSet<T>& effects() const { return effects_; }
   double steps_unsolved() const { return unsolved_; }  // in which Newton's method ran out of iterations
@@ -95,11 +96,11 @@ class RollingRobot {
   using Vector3 = Eigen::Matrix<T, 3, 1>;
 
   void make_body();
-  void drives(RollingState<T>& x, const RollingInput& in, Step& s);
-  void ask_floor(const RollingState<T>& x, const RollingInput& in, Step& s) const;
+  void drives(RollingState<T>& x, const RollingInput<T>& in, Step& s);
+  void ask_floor(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
   void set_grip(const RollingState<T>& x, std::size_t wheel, const T& hub_m_s, const ContactPort<T>& port,
                 Wheel& w) const;
-  void ask_body(const RollingState<T>& x, const RollingInput& in, Step& s) const;
+  void ask_body(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
   void predict(const RollingState<T>& x, Step& s) const;
   void winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state, double h,
                                  Wheel& w) const;
@@ -107,8 +108,8 @@ class RollingRobot {
               T* friction_Nm) const;
   Eigen::Vector4d solve_values(const RollingState<T>& x, const Step& s, Eigen::Matrix4d& jacobian);
   void solve(RollingState<T>& x, Step& s);
-  void finish(RollingState<T>& x, const RollingInput& in, Step& s) const;
-  void supply(RollingState<T>& x, const RollingInput& in, const Step& s) const;
+  void finish(RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
+  void supply(RollingState<T>& x, const RollingInput<T>& in, const Step& s) const;
 
   RollingParams<T> p_;
   EffectSet<T> effects_;
