@@ -178,8 +178,7 @@ Capabilities RobotPredictor::capabilities() const {
                {kNeedsCamera, camera, "needs a camera"},
                {kNeedsDribbler, has_channel("dribbler"), "needs the dribbler's speed (channel dribbler)"},
                {kNeedsBodySpeed, body, "needs a body's speed: camera, gyro or accelerometer"},
-               {kNeedsShaftSensor, has_channel("encoder") || has_channel("wheel_speed"), "needs wheel speeds"},
-               {kNeedsEncoder | kNeedsAngle, has_channel("encoder"), "needs encoders"}},
+               {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle, has_channel("encoder"), "needs encoders"}},
       .free_base = {},
       .present_base = std::move(present)};
 }

@@ -106,7 +106,7 @@ class Runner {
   void hear(std::size_t k) {
     const RadioCommands& radio = *record_.radio;
     const auto& value = radio.value[k];
-    const std::size_t count = radio.frame == CommandFrame::kBody ? 3 : kWheels;
+    const std::size_t count = radio.frame == CommandFrame::kBodyVelocity ? 3 : kWheels;
     if (std::all_of(value.begin(), value.begin() + static_cast<std::ptrdiff_t>(count),
                     [](double v) { return std::isfinite(v); }))
       controller_->hear(record_.time_s[k], value, radio.frame);

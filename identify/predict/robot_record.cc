@@ -78,7 +78,7 @@ void read_radio(const Run& run, RobotRecord& r) {
   } else {
     for (std::size_t i = 0; i < kWheels; ++i) said[i] = run.signal(numbered("command_wheel", i));
   }
-  RadioCommands radio{.frame = body ? CommandFrame::kBody : CommandFrame::kWheels, .value = {}};
+  RadioCommands radio{.frame = body ? CommandFrame::kBodyVelocity : CommandFrame::kWheelSpeeds, .value = {}};
   radio.value.resize(r.size());
   const std::vector<double>* enable = run.signal("enable");
   for (std::size_t k = 0; k < r.size(); ++k) {

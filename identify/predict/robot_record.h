@@ -24,7 +24,7 @@ struct CameraFrame {
 
 // What the radio said, where the record has no duties: NaN where nothing new was said.
 struct RadioCommands {
-  CommandFrame frame = CommandFrame::kBody;
+  CommandFrame frame = CommandFrame::kBodyVelocity;
   std::vector<std::array<double, kWheels>>
       value;  // n samples; of a body three: m/s, m/s, rad/s; of wheels rad/s
 };

@@ -33,6 +33,10 @@ RollingParams<double> rolling_params(const ParameterTable& table) {
   p.has_lateral_tyre = given(table, "tyre.lateral");
   p.has_controller = given(table, "controller");
   p.controller.period_s = table.value_or("controller.period_s", p.controller.period_s);
+  p.controller.acceleration_limit_m_s2 = table.value_or("controller.acceleration_limit_m_s2", 0.0);
+  p.controller.yaw_acceleration_limit_rad_s2 =
+      table.value_or("controller.yaw_acceleration_limit_rad_s2", 0.0);
+  p.controller.rate_limit_rad_s2 = table.value_or("controller.rate_limit_rad_s2", 0.0);
   p.controller.timeout_s = table.value_or("controller.timeout_s", 0.0);
   p.controller.wheel_radius_m = table.value_or("controller.wheel_radius_m", 0.0);
   p.controller.wheel_center_radius_m = table.value_or("controller.wheel_center_radius_m", 0.0);

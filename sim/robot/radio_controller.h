@@ -1,18 +1,20 @@
 // What makes duties of radio commands: the part of a robot's firmware between the antenna and the bridges, as numbers.
 //
 //   RadioController<double> controller(params, geometry, gear_ratio);
-//   controller.hear(now_s, {0.5, 0.0, 1.0}, CommandFrame::kBody);                 // m/s, m/s, rad/s, held from now on
+//   controller.hear(now_s, {0.5, 0.0, 1.0}, CommandFrame::kBodyVelocity);                 // m/s, m/s, rad/s, held from now on
 //   std::array<double, kWheels> duty = controller.update(now_s, omega_rotor_rad_s, bus_voltage_V, duty_limit_ratio);
 //
 // Once per period_s:
-//   c   = what was commanded, latency_s ago, mean over the period
-//   b   = c as the robot may follow it: |dv| <= acceleration_limit dt, |dw| <= yaw_acceleration_limit dt (0: at once)
-//   r_i = gear (-sin(a_i) b_x + cos(a_i) b_y + R_b b_w) / R     R, R_b: the firmware's constants, not the robot's
+//   b   = what was commanded, as the robot may follow it: |dv| <= acceleration_limit dt, |dw| <= yaw_acceleration_limit
+//         dt, of wheel speeds |dr| <= rate_limit dt (0: at once)
+//   c   = b, latency_s ago, mean over the period
+//   r_i = gear (-sin(a_i) c_x + cos(a_i) c_y + R_b c_w) / R     R, R_b: the firmware's constants, not the robot's
 //   duty_i = speed loop of r_i (speed_loop.h) over the bus
-// Without a command for timeout_s (0: never) the references are zero. Commands of wheel speeds skip the second and the
-// third line. Source: the league's firmwares, as read in docs/radio-driven.md.
+// The limits know no state of the robot, so that the delay may stand behind them: there it has a derivative. Without a
+// command for timeout_s (0: never) zero is commanded. Source: the league's firmwares, as read in docs/radio-driven.md.
 // Cannot: hold a heading by the gyro, control the path, schedule gains, know of a current limit.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -24,17 +26,17 @@ namespace omnihil {
 
 template <typename T>
 struct RadioControllerParams {
-  SpeedLoopParams<T> loop;  // rate_limit_rad_s2 of wheel speed commands alone
-  T latency_s = T(0);       // from a command's stamp to the loop that follows it
-  T acceleration_limit_m_s2 = T(0), yaw_acceleration_limit_rad_s2 = T(0);
+  SpeedLoopParams<T> loop;
+  T latency_s = T(0);  // from a command's stamp to the loop that follows it
+  double acceleration_limit_m_s2 = 0.0, yaw_acceleration_limit_rad_s2 = 0.0, rate_limit_rad_s2 = 0.0;
   double period_s = 1e-3, timeout_s = 0.0;
   double wheel_radius_m = 0.0, wheel_center_radius_m = 0.0;  // that the firmware believes
 };
 
 enum class CommandFrame : std::uint8_t {
-  kBody,
-  kWheels
-};  // of the robot's body; wheels' speeds, rad/s at the wheel
+  kBodyVelocity,  // m/s, m/s, rad/s
+  kWheelSpeeds    // rad/s at the wheel
+};
 
 template <typename T>
 class RadioController {
@@ -55,7 +57,7 @@ class RadioController {
     frame_ = frame;
     heard_s_ = now_s;
     heard_ = true;
-    for (std::size_t a = 0; a < kWheels; ++a) history_[a].push(now_s, command[a]);
+    command_ = command;
   }
 
   // The robot moves already when the record begins: integrals as they are when everything is settled.
@@ -72,7 +74,7 @@ class RadioController {
     const std::array<T, kWheels> reference = references(now_s);
     std::array<T, kWheels> duty{};
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const T u = speed_loop_voltage(params_of_loop(), state_[i],
+      const T u = speed_loop_voltage(p_.loop, state_[i],
                                      {.reference_rad_s = reference[i],
                                       .omega_rad_s = omega_rotor_rad_s[i],
                                       .bus_voltage_V = bus_voltage_V,
@@ -88,55 +90,50 @@ class RadioController {
   double period_s() const { return p_.period_s; }
 
  private:
-  SpeedLoopParams<T> params_of_loop() const {
-    SpeedLoopParams<T> loop = p_.loop;
-    if (frame_ == CommandFrame::kBody) loop.rate_limit_rad_s2 = T(0);  // the body's limits are there
-    return loop;
-  }
-
   std::array<T, kWheels> references(double now_s) {
+    follow(!heard_ || (p_.timeout_s > 0.0 && now_s - heard_s_ > p_.timeout_s));
     std::array<T, kWheels> asked{}, out{};
-    const bool silent = !heard_ || (p_.timeout_s > 0.0 && now_s - heard_s_ > p_.timeout_s);
-    for (std::size_t a = 0; a < kWheels && !silent; ++a)
+    for (std::size_t a = 0; a < kWheels; ++a) {
+      history_[a].push(now_s, followed_[a]);
       asked[a] = mean_over(history_[a], T(now_s - p_.latency_s), p_.period_s);
-    if (frame_ == CommandFrame::kWheels) {
-      for (std::size_t i = 0; i < kWheels; ++i) out[i] = asked[i] * gear_;
-      return out;
     }
-    follow(asked);
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const T rim_m_s = -geometry_.sin_angle[i] * body_[0] + geometry_.cos_angle[i] * body_[1] +
-                        geometry_.wheel_center_radius_m * body_[2];
+      if (frame_ == CommandFrame::kWheelSpeeds) {
+        out[i] = asked[i] * gear_;
+        continue;
+      }
+      const T rim_m_s = -geometry_.sin_angle[i] * asked[0] + geometry_.cos_angle[i] * asked[1] +
+                        geometry_.wheel_center_radius_m * asked[2];
       out[i] = rim_m_s * (gear_ / geometry_.wheel_radius_m);
     }
     return out;
   }
 
-  void follow(const std::array<T, kWheels>& asked) {
-    using std::sqrt;
-    T x = asked[0] - body_[0], y = asked[1] - body_[1], w = asked[2] - body_[2];
-    const T gap2 = x * x + y * y;
-    const T step = p_.acceleration_limit_m_s2 * p_.period_s,
-            turn = p_.yaw_acceleration_limit_rad_s2 * p_.period_s;
-    if (value_of(step) > 0.0 && value_of(gap2) > value_of(step) * value_of(step)) {
-      const T share = step / sqrt(gap2);
-      x *= share;
-      y *= share;
+  void follow(bool silent) {
+    std::array<double, kWheels> gap{};
+    for (std::size_t a = 0; a < kWheels; ++a) gap[a] = (silent ? 0.0 : command_[a]) - followed_[a];
+    const auto within = [&](double& change, double limit_per_s) {
+      const double most = limit_per_s * p_.period_s;
+      if (most > 0.0) change = std::clamp(change, -most, most);
+    };
+    if (frame_ == CommandFrame::kWheelSpeeds) {
+      for (double& change : gap) within(change, p_.rate_limit_rad_s2 / gear_);
+    } else {
+      const double most = p_.acceleration_limit_m_s2 * p_.period_s, size = std::hypot(gap[0], gap[1]);
+      if (most > 0.0 && size > most) gap[0] *= most / size, gap[1] *= most / size;
+      within(gap[2], p_.yaw_acceleration_limit_rad_s2);
     }
-    if (value_of(turn) > 0.0 && std::abs(value_of(w)) > value_of(turn)) w = sign_of(w) * turn;
-    body_[0] += x;
-    body_[1] += y;
-    body_[2] += w;
+    for (std::size_t a = 0; a < kWheels; ++a) followed_[a] += gap[a];
   }
 
   RadioControllerParams<T> p_;
   WheelGeometry<double> geometry_;
   double gear_ = 1.0;
-  CommandFrame frame_ = CommandFrame::kBody;
+  CommandFrame frame_ = CommandFrame::kBodyVelocity;
   double heard_s_ = 0.0;
   bool heard_ = false;
   std::array<CommandHistory, kWheels> history_;
-  std::array<T, 3> body_{};
+  std::array<double, kWheels> command_{}, followed_{};
   std::array<SpeedLoopState<T>, kWheels> state_;
 };
 

@@ -26,11 +26,8 @@ constexpr std::string_view kOwnPaths[] = {
     "controller.feedforward_V_s_per_rad",
     "controller.acceleration_feedforward_V_s2_per_rad",
     "controller.integral_limit_ratio",
-    "controller.rate_limit_rad_s2",
     "controller.speed_filter_s",
     "controller.latency_s",
-    "controller.acceleration_limit_m_s2",
-    "controller.yaw_acceleration_limit_rad_s2",
 };
 
 // In the order of kOwnPaths.
@@ -58,11 +55,8 @@ std::array<T*, std::size(kOwnPaths)> own_numbers(RollingParams<T>& p) {
           &p.controller.loop.feedforward_V_s_per_rad,
           &p.controller.loop.acceleration_feedforward_V_s2_per_rad,
           &p.controller.loop.integral_limit_ratio,
-          &p.controller.loop.rate_limit_rad_s2,
           &p.controller.loop.speed_filter_s,
-          &p.controller.latency_s,
-          &p.controller.acceleration_limit_m_s2,
-          &p.controller.yaw_acceleration_limit_rad_s2};
+          &p.controller.latency_s};
 }
 
 }  // namespace
@@ -94,6 +88,9 @@ RollingParams<T> rolling_params_as(const RollingParams<double>& p) {
   q.has_tyre = p.has_tyre;
   q.has_lateral_tyre = p.has_lateral_tyre;
   q.has_controller = p.has_controller;
+  q.controller.acceleration_limit_m_s2 = p.controller.acceleration_limit_m_s2;
+  q.controller.yaw_acceleration_limit_rad_s2 = p.controller.yaw_acceleration_limit_rad_s2;
+  q.controller.rate_limit_rad_s2 = p.controller.rate_limit_rad_s2;
   q.controller.period_s = p.controller.period_s;
   q.controller.timeout_s = p.controller.timeout_s;
   q.controller.wheel_radius_m = p.controller.wheel_radius_m;

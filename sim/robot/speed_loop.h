@@ -5,10 +5,9 @@
 //   double duty = u_V / 24;
 //
 // All at the rotor:
-//   r'   = r, moved towards the reference by rate_limit dt at most (0: at once)
 //   w'   = mean speed over the period, through a first-order low pass of speed_filter_s
-//   u    = feedforward r' + acceleration_feedforward dr'/dt + kp (r' - w') + I,     |u| <= limit bus
-//   I   += ki (r' - w') dt,  |I| <= integral_limit bus; while u is at its limit only what leads away from it (clamping)
+//   u    = feedforward r + acceleration_feedforward dr/dt + kp (r - w') + I,     |u| <= limit bus
+//   I   += ki (r - w') dt,  |I| <= integral_limit bus; while u is at its limit only what leads away from it (clamping)
 // Source: Astrom and Murray, Feedback Systems, 2008, sect. 10.4 (PI with feed-forward and anti-windup).
 // Cannot: control the body's heading or path, know of a current limit, schedule gains.
 #pragma once
@@ -21,7 +20,6 @@ struct SpeedLoopParams {
   T kp_V_s_per_rad = T(0), ki_V_per_rad = T(0);
   T feedforward_V_s_per_rad = T(0), acceleration_feedforward_V_s2_per_rad = T(0);
   T integral_limit_ratio = T(1);  // of the bus
-  T rate_limit_rad_s2 = T(0);     // 0: none
   T speed_filter_s = T(0);
 };
 
@@ -45,9 +43,8 @@ T speed_loop_voltage(const SpeedLoopParams<T>& p, SpeedLoopState<T>& s, const Sp
     if (value_of(x) > value_of(limit)) return limit;
     return value_of(x) < -value_of(limit) ? T(-limit) : x;
   };
-  T change = in.reference_rad_s - s.reference_rad_s;
-  if (value_of(p.rate_limit_rad_s2) > 0.0) change = within(change, T(p.rate_limit_rad_s2 * in.dt_s));
-  s.reference_rad_s += change;
+  const T change = in.reference_rad_s - s.reference_rad_s;
+  s.reference_rad_s = in.reference_rad_s;
   // exact for a measured speed that is held over the period: 1 - exp(-dt / tau)
   using std::exp;
   const bool filtered = value_of(p.speed_filter_s) > 0.0;

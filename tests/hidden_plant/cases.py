@@ -105,6 +105,7 @@ def classes():
     import axis_case
     import faults
     import outside
+    import radio_case
     import robot_case
 
     strange, broken = outside.names(), list(faults.KINDS)
@@ -152,6 +153,14 @@ def classes():
         ),
         "robot-control": Class(
             "robot, no hidden effect", [()] * 24, lambda c, f: robot_case.make_case(f, c.key, (), 0)
+        ),
+        "radio": Class(
+            "robot by radio, one hidden effect",
+            [(radio_case.IDS[k % len(radio_case.IDS)],) for k in range(4 * len(radio_case.IDS))],
+            lambda c, f: radio_case.make_case(f, c.key, c.what, _robot_share(c)),
+        ),
+        "radio-control": Class(
+            "robot by radio, no hidden effect", [()] * 24, lambda c, f: radio_case.make_case(f, c.key, (), 0)
         ),
     }
 

@@ -21,6 +21,7 @@ BOT = (
     "x",
     "y",
     "turn",
+    *(f"speed_{k}" for k in range(1, 5)),
 )
 SUMS = ("in_J", "lost_J", "stored_J")
 

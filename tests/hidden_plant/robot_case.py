@@ -176,15 +176,15 @@ def signals_of(robot, params, asked):
 class Ruler:
     """Share of the residual energy as in share.py; of the sensors' own shares the largest counts."""
 
-    def __init__(self, robot, asked):
-        self.robot, self.asked = robot, asked
-        self.base = signals_of(robot, robot.true, asked)
+    def __init__(self, robot, asked, signals=signals_of):
+        self.robot, self.asked, self.signals = robot, asked, signals
+        self.base = signals(robot, robot.true, asked)
         self.columns = []
         for name, (_, _, _, tolerance) in BASE.items():
             value = robot.true[name]
             if value == 0 or name in robot.known:
                 continue
-            moved = signals_of(robot, {**robot.true, name: value * (1 + 0.1 * tolerance)}, asked)
+            moved = signals(robot, {**robot.true, name: value * (1 + 0.1 * tolerance)}, asked)
             self.columns.append([10 * d for d in self._difference(moved)])
         self.gram = plant.inner_products(self.columns)
 
@@ -192,7 +192,7 @@ class Ruler:
         return [b - a for group in self.base for a, b in zip(self.base[group], other[group])]
 
     def share(self, hidden):
-        changed = signals_of(self.robot, {**self.robot.true, **hidden}, self.asked)
+        changed = self.signals(self.robot, {**self.robot.true, **hidden}, self.asked)
         difference = self._difference(changed)
         products = [sum(a * b for a, b in zip(column, difference)) for column in self.columns]
         held = [[v + (j == k) for j, v in enumerate(row)] for k, row in enumerate(self.gram)]

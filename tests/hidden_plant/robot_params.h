@@ -23,6 +23,9 @@
   X(battery_ohm, 0) X(battery_rc_ohm, 0) X(battery_rc_s, 0.5) X(edge_V, 0) X(edge_A, 0.2) X(cog_Nm, 0)     \
   X(cog_order, 48) X(cog_phase, 0) X(cog2_Nm, 0) X(drag_Nm, 0) X(current_cap_A, 0) X(late_command_s, 0)    \
   X(loaded_ratio, 0) X(contact_ohm, 0) X(contact_s, 0.4)                                                 \
+  /* firmware: with radio = 1 rows ask for vx, vy, w instead of duties */                                \
+  X(radio, 0) X(loop_kp, 0.03) X(loop_ki, 0.3) X(loop_ff, 0.0335) X(loop_filter_s, 0.003) X(late_radio_s, 0.02) \
+  X(loop_accel_m_s2, 6) X(loop_alpha_rad_s2, 60) X(loop_wheel_m, 0.027) X(loop_base_m, 0.0805)               \
   /* sensors */                                                                                          \
   X(encoder_cpr, 16384) X(current_noise_A, 0.05) X(bus_noise_V, 0.02) X(gyro_noise_rad_s, 0.01)            \
   X(accel_noise_m_s2, 0.15) X(vision_noise_m, 0.0008) X(vision_noise_rad, 0.004) X(vision_Hz, 60)
@@ -48,5 +51,7 @@ enum {
   BOT_X,
   BOT_Y,
   BOT_TURN,
+  BOT_SPEED,  // four, at the wheels, as the firmware measures them
+  BOT_LAST_SPEED = BOT_SPEED + 3,
   BOT_COLUMNS
 };

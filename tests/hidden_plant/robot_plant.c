@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "noise.h"
+#include "robot_firmware.h"
 #include "robot_params.h"
 
 typedef struct {
@@ -223,7 +224,7 @@ static void add_camera(Robot *r, int n, double *out) {
   }
 }
 
-// Runs n samples. `asked`: n x 5, four duties and the dribbler's speed. `out`: n x BOT_COLUMNS. 1 when not
+// Runs n samples. `asked`: n x 5, four duties (or vx, vy, w and nothing) and the dribbler's speed. `out`: n x BOT_COLUMNS. 1 when not
 // finite.
 int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
   Robot r = {.p = p, .noise = {(unsigned long long)p->seed * 7919 + 31}};
@@ -233,7 +234,9 @@ int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
   double charge[4] = {0};
   r.x = p->offset_x_m, r.y = p->offset_y_m;
   r.contact_next_s = p->contact_s;
-  double sag = 0;
+  double sag = 0, duty[4] = {0};
+  Firmware firmware;
+  memset(&firmware, 0, sizeof firmware);
   for (int k = 0; k < n; k++) {
     const double t = k * p->sample_s;
     const double source = p->supply_V + p->supply_drift_V * sin(2 * M_PI * p->supply_drift_Hz * t + 1);
@@ -243,6 +246,13 @@ int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
     }
     r.bus = source + sag;
     write_row(&r, charge, out + k * BOT_COLUMNS);
+    if (p->radio) {
+      const double none[3] = {0};
+      const int heard = (int)floor(k - p->late_radio_s / p->sample_s + 1e-9);
+      firmware_tick(&firmware, p, heard < 0 ? none : asked + 5 * heard, out + k * BOT_COLUMNS + BOT_COUNTS, r.bus,
+                    duty);
+      for (int i = 0; i < 4; i++) out[k * BOT_COLUMNS + BOT_SPEED + i] = firmware.speed[i] / p->gear;
+    }
     memset(charge, 0, sizeof charge);
     for (int j = 0; j < substeps; j++) {
       const double h = p->step_s, late = (t + (j + 0.5) * h - p->late_command_s) / p->sample_s;
@@ -251,7 +261,7 @@ int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
       double before[4];
       memcpy(before, r.amps, sizeof before);
       r.bus = source + sag;
-      step(&r, ask, ask[4], h);
+      step(&r, p->radio ? duty : ask, ask[4], h);
       sag = r.bus;
       for (int i = 0; i < 4; i++) charge[i] += 0.5 * h * (before[i] + r.amps[i]);
     }

@@ -71,7 +71,7 @@ Dataset blank_radio(double duration_s, bool wheels_commanded = false) {
 
 TEST(RadioDriven, TheRobotGoesWhereItIsTold) {
   Dataset d = blank_radio(4.0);
-  for (Run& run : d.runs) {
+  for (omnihil::Run& run : d.runs) {
     for (const char* axis : {"command_vx", "command_vy", "command_w"})
       run.signals[axis].assign(run.time_s.size(), 0.0);
     for (std::size_t k = 30; k < run.time_s.size(); ++k) run.signals["command_vx"][k] = 0.5;
@@ -136,7 +136,8 @@ TEST(RadioDriven, DerivativesAreExact) {
         size += expected * expected;
       }
     }
-    EXPECT_LT(std::sqrt(error), 0.02 * std::sqrt(size) + 1e-9) << unknowns[n].path;
+    // 1e-4 sigma of all samples together for a step that matters: the supply's voltage cancels in u / bus.
+    EXPECT_LT(std::sqrt(error), 0.02 * std::sqrt(size) + 1e-4 / unknowns[n].scale) << unknowns[n].path;
   }
 }
 
@@ -158,7 +159,7 @@ TEST(RadioDriven, TheDelayBelongsToTheController) {
   const auto p = make_predictor(blank_radio(1.0), radio_candidate(), {});
   EXPECT_EQ(p->applies(*find_effect("actuator_delay")), "the base model has controller.latency_s");
   EXPECT_EQ(p->applies(*find_effect("payload")), "");
-  EXPECT_EQ(p->applies(*find_effect("cogging")), "needs encoders");
+  EXPECT_EQ(p->applies(*find_effect("encoder_eccentricity")), "needs encoders");
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ std::vector<T> drive_motor(const RadioControllerParams<T>& p, double command_rad
   std::vector<T> out;
   const double keep = std::exp(-p.period_s * kK * kK / (kR_ohm * kJ_kg_m2));
   for (double t = 0.0; t < seconds; t += p.period_s) {
-    if (t == 0.0) controller.hear(0.0, {}, CommandFrame::kWheels);
-    if (out.size() == 10) controller.hear(t, {command_rad_s, 0, 0, 0}, CommandFrame::kWheels);
+    if (t == 0.0) controller.hear(0.0, {}, CommandFrame::kWheelSpeeds);
+    if (out.size() == 10) controller.hear(t, {command_rad_s, 0, 0, 0}, CommandFrame::kWheelSpeeds);
     const auto duty = controller.update(t, mean, T(bus_V), 1.0);
     const T end = duty[0] * (bus_V / kK), before = omega[0];
     omega[0] = end + (omega[0] - end) * keep;
@@ -51,7 +51,7 @@ TEST(RadioController, WithoutAnIntegralTheSpeedIsShortByTheClosedForm) {
 TEST(RadioController, AnIntegralTakesWhatIsLeft) {
   RadioControllerParams<double> p = some_loop();
   p.loop.ki_V_per_rad = 0.2;
-  EXPECT_NEAR(drive_motor(p, 100.0, 4.0).back(), 300.0, 1e-6);
+  EXPECT_NEAR(drive_motor(p, 100.0, 8.0).back(), 300.0, 1e-6);
 }
 
 // The closed loop's time constant: J R / (k (k + kp)).
@@ -78,9 +78,9 @@ TEST(RadioController, AtItsLimitTheIntegralDoesNotWindUp) {
   RadioControllerParams<double> p = some_loop();
   p.loop.ki_V_per_rad = 2.0;
   RadioController<double> controller(p, kAngle, kGear);
-  controller.hear(0.0, {1000, 0, 0, 0}, CommandFrame::kWheels);
+  controller.hear(0.0, {1000, 0, 0, 0}, CommandFrame::kWheelSpeeds);
   for (int n = 0; n < 2000; ++n) controller.update(1e-3 * n, {}, 24.0, 1.0);  // held: not a turn
-  controller.hear(2.0, {0, 0, 0, 0}, CommandFrame::kWheels);
+  controller.hear(2.0, {0, 0, 0, 0}, CommandFrame::kWheelSpeeds);
   double duty = 1.0;
   int periods = 0;
   for (; duty > 0.5 && periods < 2000; ++periods)
@@ -93,7 +93,7 @@ TEST(RadioController, BodyCommandsBecomeTheFirmwaresWheelSpeeds) {
   p.loop.feedforward_V_s_per_rad = 1.0;
   p.loop.kp_V_s_per_rad = 0.0;
   RadioController<double> controller(p, kAngle, kGear);
-  controller.hear(0.0, {0.5, -0.3, 2.0, 0.0}, CommandFrame::kBody);
+  controller.hear(0.0, {0.5, -0.3, 2.0, 0.0}, CommandFrame::kBodyVelocity);
   const auto duty = controller.update(0.0, {}, 1e6, 1.0);
   for (std::size_t i = 0; i < kWheels; ++i) {
     const double rim = -std::sin(kAngle[i]) * 0.5 + std::cos(kAngle[i]) * -0.3 + 0.08 * 2.0;
@@ -108,7 +108,7 @@ TEST(RadioController, TheBodysAccelerationIsLimitedInItsDirection) {
   p.acceleration_limit_m_s2 = 4.0;
   p.yaw_acceleration_limit_rad_s2 = 30.0;
   RadioController<double> controller(p, kAngle, kGear);
-  controller.hear(0.0, {0.6, 0.8, 3.0, 0.0}, CommandFrame::kBody);
+  controller.hear(0.0, {0.6, 0.8, 3.0, 0.0}, CommandFrame::kBodyVelocity);
   std::array<double, kWheels> duty{};
   for (int n = 0; n < 50; ++n) duty = controller.update(1e-3 * n, {}, 1e6, 1.0);
   for (std::size_t i = 0; i < kWheels; ++i) {
@@ -122,7 +122,7 @@ TEST(RadioController, SilenceBringsItToZero) {
   RadioControllerParams<double> p = some_loop();
   p.timeout_s = 0.1;
   RadioController<double> controller(p, kAngle, kGear);
-  controller.hear(0.0, {10, 0, 0, 0}, CommandFrame::kWheels);
+  controller.hear(0.0, {10, 0, 0, 0}, CommandFrame::kWheelSpeeds);
   EXPECT_GT(controller.update(0.099, {}, 24.0, 1.0)[0], 0.0);
   EXPECT_EQ(controller.update(0.101, {}, 24.0, 1.0)[0], 0.0);
 }
