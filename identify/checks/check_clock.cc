@@ -28,9 +28,40 @@ struct ClockShape {
   double jitter = 0.0;  // over the median period
 };
 
-ClockShape shape_of(const RunView& view) {
+// Instants that belong together: of one sensor's rows, or of several that come in the same ones.
+struct Clock {
+  std::string name;  // of its first signal; "time": of all rows
+  std::vector<double> time_s;
+  double period_s = 0.0;  // median
+};
+
+// A record whose rows are of several clocks (telemetry and camera, each in its own rows) is looked at clock by clock; one
+// with a signal in nearly every row has the rows' clock.
+constexpr double kEveryRow = 0.95;  // of the rows; a choice
+std::vector<Clock> clocks_of(const RunView& view) {
+  const Run& run = *view.run;
+  const auto rows = static_cast<double>(run.time_s.size());
+  std::vector<Clock> clocks;
+  for (const auto& [name, values] : run.signals) {
+    Clock clock{name, {}, 0.0};
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (std::isfinite(values[k])) clock.time_s.push_back(run.time_s[k]);
+    }
+    if (static_cast<double>(clock.time_s.size()) > kEveryRow * rows)
+      return {{"time", run.time_s, view.period_s}};
+    const bool known =
+        std::any_of(clocks.begin(), clocks.end(), [&](const Clock& c) { return c.time_s == clock.time_s; });
+    if (known || clock.time_s.size() < 20) continue;
+    clock.period_s = median_period_s(clock.time_s);
+    clocks.push_back(std::move(clock));
+  }
+  if (clocks.size() < 2) return {{"time", run.time_s, view.period_s}};
+  return clocks;
+}
+
+ClockShape shape_of(const Clock& view) {
   ClockShape s;
-  const std::vector<double>& t = view.run->time_s;
+  const std::vector<double>& t = view.time_s;
   std::vector<double> off;
   for (std::size_t k = 1; k < t.size(); ++k) {
     const double dt = t[k] - t[k - 1], extra = dt - view.period_s;
@@ -49,38 +80,41 @@ ClockShape shape_of(const RunView& view) {
   return s;
 }
 
+void check_one(const Run& run, const Clock& clock, std::vector<DataFinding>& findings) {
+  const double duration_s = clock.time_s.back() - clock.time_s.front();
+  const ClockShape s = shape_of(clock);
+  const auto rows = static_cast<double>(clock.time_s.size());
+  const bool late = static_cast<double>(s.bunched) > kLateShare * rows &&
+                    s.regained_s > kCaughtUp * s.missing_s && s.gaps > 0;
+  if (late) {
+    const double share = static_cast<double>(s.bunched) / rows;
+    findings.push_back(
+        {share > 0.02 && s.late_s > 3.0 * clock.period_s ? Grade::kFault : Grade::kDoubt, "late_timestamps",
+         run.file, clock.name, s.late_s,
+         fmt::format("rows are stamped late, by up to {:.3g} ms, and those after them bunch up ({} intervals "
+                     "shorter than {:.0f} % of the period of {:.4g} ms): the time stamps are those of a busy "
+                     "host's clock, not of the measurement",
+                     1e3 * s.late_s, s.bunched, 100.0 * kShort, 1e3 * clock.period_s)});
+  } else if (s.gaps > 0) {
+    const bool much = s.missing_s > kGapShareDoubtful * duration_s;
+    findings.push_back({much ? Grade::kDoubt : Grade::kNote, "gaps", run.file, clock.name, s.longest_s,
+                        fmt::format("{} gaps in time, the longest {:.3g} s, {:.1f} % of the record missing",
+                                    s.gaps, s.longest_s, 100.0 * s.missing_s / duration_s)});
+  }
+  if (s.jitter > kJitterSaid && !late) {
+    findings.push_back({Grade::kNote, "clock_jitter", run.file, clock.name, s.jitter * clock.period_s,
+                        fmt::format("the clock jitters: intervals differ by {:.2g} ms (1 sigma) from their "
+                                    "median of {:.4g} ms",
+                                    1e3 * s.jitter * clock.period_s, 1e3 * clock.period_s)});
+  }
+}
+
 }  // namespace
 
 void check_clock(const CheckContext& data, std::vector<DataFinding>& findings) {
   for (const RunView& view : data.runs) {
     if (view.run->steady || view.run->time_s.size() < 20) continue;
-    const ClockShape s = shape_of(view);
-    const auto rows = static_cast<double>(view.run->time_s.size());
-    const std::string& run = view.run->file;
-    const bool late = static_cast<double>(s.bunched) > kLateShare * rows &&
-                      s.regained_s > kCaughtUp * s.missing_s && s.gaps > 0;
-    if (late) {
-      const double share = static_cast<double>(s.bunched) / rows;
-      findings.push_back(
-          {share > 0.02 && s.late_s > 3.0 * view.period_s ? Grade::kFault : Grade::kDoubt, "late_timestamps",
-           run, "time", s.late_s,
-           fmt::format(
-               "rows are stamped late, by up to {:.3g} ms, and those after them bunch up ({} intervals "
-               "shorter than {:.0f} % of the period of {:.4g} ms): the time stamps are those of a busy "
-               "host's clock, not of the measurement",
-               1e3 * s.late_s, s.bunched, 100.0 * kShort, 1e3 * view.period_s)});
-    } else if (s.gaps > 0) {
-      const bool much = s.missing_s > kGapShareDoubtful * view.run->duration_s();
-      findings.push_back({much ? Grade::kDoubt : Grade::kNote, "gaps", run, "time", s.longest_s,
-                          fmt::format("{} gaps in time, the longest {:.3g} s, {:.1f} % of the record missing",
-                                      s.gaps, s.longest_s, 100.0 * s.missing_s / view.run->duration_s())});
-    }
-    if (s.jitter > kJitterSaid && !late) {
-      findings.push_back({Grade::kNote, "clock_jitter", run, "time", s.jitter * view.period_s,
-                          fmt::format("the clock jitters: intervals differ by {:.2g} ms (1 sigma) from their "
-                                      "median of {:.4g} ms",
-                                      1e3 * s.jitter * view.period_s, 1e3 * view.period_s)});
-    }
+    for (const Clock& clock : clocks_of(view)) check_one(*view.run, clock, findings);
   }
 }
 

@@ -329,6 +329,38 @@ TEST_P(SpoiltRobot, AsItIsHasNoFault) {
 INSTANTIATE_TEST_SUITE_P(Records, SpoiltRobot, testing::Values("simulated", "recorded"),
                          [](const auto& test) { return std::string(test.param); });
 
+// Telemetry every 16 ms and camera frames every 17 ms, each in rows of its own.
+Dataset two_clocks(double telemetry_late_s) {
+  Dataset d = test::blank_robot(12.0, false);
+  for (omnihil::Run& run : d.runs) {
+    const omnihil::Run full = run;
+    run.time_s.clear();
+    for (auto& [name, values] : run.signals) values.clear();
+    for (std::size_t k = 0; k < full.time_s.size(); ++k) {
+      const bool telemetry = k % 16 == 0, frame = k % 17 == 5;
+      if (!telemetry && !frame) continue;
+      const bool late = !frame && k % 480 == 0;
+      run.time_s.push_back(full.time_s[k] + (late ? telemetry_late_s : 0.0));
+      for (auto& [name, values] : run.signals) {
+        const bool camera = name.starts_with("vision");
+        const double v = full.signals.find(name)->second[k];
+        values.push_back((camera ? frame : telemetry) ? (std::isfinite(v) ? v : 0.0) : std::nan(""));
+      }
+    }
+  }
+  return d;
+}
+
+TEST(CheckDataClock, RowsOfTwoClocksAreNoLateRows) {
+  for (const auto& [late_s, faults] : {std::pair(0.0, false), std::pair(0.0105, true)}) {
+    const auto findings = check_data(two_clocks(late_s), test::robot_candidate());
+    const bool said = std::any_of(findings.begin(), findings.end(), [](const DataFinding& f) {
+      return f.kind == "late_timestamps" && f.signal != "time";
+    });
+    EXPECT_EQ(said, faults) << text_of(findings);
+  }
+}
+
 TEST(CheckDataPosition, DegreesInPlaceOfRadiansAreNamed) {
   Bench bench = simulated_bench({.with = {}, .counts_per_turn = 0.0, .model = ""});
   for (omnihil::Run& run : bench.dataset.runs) {
