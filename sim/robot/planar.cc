@@ -37,7 +37,8 @@ PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots,
     Robot& r = robots_[n];
     const double* qr = q.data() + n * kPlanarLayout.q_per_robot;
     const double* ur = u.data() + n * kPlanarLayout.u_per_robot;
-    if (std::bit_cast<std::uint64_t>(qr[0]) != std::bit_cast<std::uint64_t>(r.yaw_rad)) {  // a step begins where the one before was looked at
+    if (std::bit_cast<std::uint64_t>(qr[0]) !=
+        std::bit_cast<std::uint64_t>(r.yaw_rad)) {  // a step begins where the one before was looked at
       r.yaw_rad = qr[0];
       ::sincos(qr[0], &r.sin_yaw, &r.cos_yaw);  // the same bits as sin and cos, at the cost of one
     }

@@ -11,7 +11,8 @@
 //   r_i = gear (-sin(a_i) c_x + cos(a_i) c_y + R_b c_w) / R     R, R_b: the firmware's constants, not the robot's
 //   duty_i = speed loop of r_i (speed_loop.h) over the bus
 // The limits know no state of the robot, so that the delay may stand behind them: there it has a derivative. Without a
-// command for timeout_s (0: never) zero is commanded. Source: the league's firmwares, as read in docs/radio-driven.md.
+// command for timeout_s (0: never) zero is commanded. Source: what the league's
+// open firmwares have in common (docs/radio-driven.md).
 // Cannot: hold a heading by the gyro, control the path, schedule gains, know of a current limit.
 #pragma once
 #include <algorithm>
