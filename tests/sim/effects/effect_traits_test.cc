@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/law/drive_params.h"
+#include "sim/robot/rolling_params.h"
 #include "tests/sim/effects/port_cases.h"
 
 namespace omnihil::test {
@@ -93,10 +94,12 @@ TEST_P(EffectTraits, ASeriesIsOfDetailsWithAPhaseEach) {
 
 TEST_P(EffectTraits, WhatItExcludesIsABaseParameter) {
   if (info().excludes.path.empty()) return;
-  const auto paths = drive_param_paths();
-  EXPECT_TRUE(std::any_of(paths.begin(), paths.end(), [&](const DriveParamPath& p) {
-    return p.path == info().excludes.path;
-  })) << info().excludes.path;
+  const auto drive = drive_param_paths();
+  const auto robot = rolling_paths();
+  const bool known = std::any_of(drive.begin(), drive.end(),
+                                 [&](const DriveParamPath& p) { return p.path == info().excludes.path; }) ||
+                     std::find(robot.begin(), robot.end(), info().excludes.path) != robot.end();
+  EXPECT_TRUE(known) << info().excludes.path;
 }
 
 INSTANTIATE_TEST_SUITE_P(Effects, EffectTraits,

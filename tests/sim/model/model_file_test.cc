@@ -136,7 +136,7 @@ TEST(ModelRows, EveryUnitIsTheSuffixOfItsKey) {
       if (const auto at = suffix.find(from); at != std::string::npos) suffix.replace(at, from.size(), to);
     };
     replace("N_m", "Nm");
-    if (unit == "m/s") replace("/", "_");
+    if (unit == "m/s" || unit == "m/s2" || unit == "rad/s2") replace("/", "_");
     replace("/", "_per_");
     if (suffix.starts_with("1_")) suffix = suffix.substr(2);
     EXPECT_TRUE(row.key.ends_with(suffix)) << row.key << " in " << row.unit;
