@@ -12,8 +12,8 @@ typedef struct {
   int awake;
 } Firmware;
 
-static void firmware_tick(Firmware *f, const RobotParams *p, const double *command, const double *counts, double bus,
-                          double *duty) {
+static void firmware_tick(Firmware *f, const RobotParams *p, const double *command, const double *counts,
+                          double bus, double *duty) {
   const double dt = p->sample_s, angle[4] = {p->angle_1, p->angle_2, p->angle_3, p->angle_4};
   double gap[3];
   for (int a = 0; a < 3; a++) gap[a] = command[a] - f->goal[a];

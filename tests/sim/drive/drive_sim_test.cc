@@ -193,7 +193,8 @@ TEST(DriveSim, HasTheDerivativeOfAnInductanceOfZero) {
       auto state = sim.initial_state();
       T energy = T(0);
       for (const double value : {0.6, -0.2, 0.4}) {
-        energy += sim.advance(state, {.kind = CommandKind::kDuty, .setpoint = T(value)}, 20).electrical_energy_J;
+        energy +=
+            sim.advance(state, {.kind = CommandKind::kDuty, .setpoint = T(value)}, 20).electrical_energy_J;
       }
       return std::array<T, 3>{state.omega_rotor_rad_s, state.theta_rotor_rad, energy};
     };
