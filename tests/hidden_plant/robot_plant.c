@@ -249,8 +249,8 @@ int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
     if (p->radio) {
       const double none[3] = {0};
       const int heard = (int)floor(k - p->late_radio_s / p->sample_s + 1e-9);
-      firmware_tick(&firmware, p, heard < 0 ? none : asked + 5 * heard, out + k * BOT_COLUMNS + BOT_COUNTS, r.bus,
-                    duty);
+      firmware_tick(&firmware, p, heard < 0 ? none : asked + 5 * heard, out + k * BOT_COLUMNS + BOT_COUNTS,
+                    r.bus, duty);
       for (int i = 0; i < 4; i++) out[k * BOT_COLUMNS + BOT_SPEED + i] = firmware.speed[i] / p->gear;
     }
     memset(charge, 0, sizeof charge);
