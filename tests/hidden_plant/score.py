@@ -229,6 +229,9 @@ def summary(rows):
         "fault named as effect": rate(get("fault"), lambda r: r["verdict"] == "effect" and not r["found"]),
         "robot first": rate(robot, lambda r: r["first"]),
         "robot first two": rate(robot, lambda r: r["first_two"]),
+        "radio first": rate(large(get("radio")), lambda r: r["first"]),
+        # Lost packets are in no model: that something remains is true there, a name is not.
+        "radio false name": rate(get("radio-control"), lambda r: bool(r["named"])),
         "reduction median": median(reductions),
         "reduction p10": quantile(reductions, 0.1),
         "reduction cases": len(reductions),

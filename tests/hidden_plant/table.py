@@ -20,6 +20,8 @@ DONE_WHEN = (
     ("added parameter: median error", (("parameter error median", 0.10, -1),)),
     ("base parameters: median bias afterwards", (("base bias median", 0.03, -1),)),
     ("robot: named first", (("robot first", 0.85, 1),)),
+    ("robot by radio: named first", (("radio first", 0.80, 1),)),
+    ("... a name where nothing is hidden", (("radio false name", 0.03, -1),)),
     ("names: expected calibration error of their probabilities", (("calibration error", 0.03, -1),)),
 )
 # Below these the reduced run of the tests fails: so few cases say only that the diagnosis has not fallen apart.
@@ -67,7 +69,7 @@ def confusion(rows):
     for r in rows:
         if (
             len(r["true"]) == 1
-            and r["class"] in ("single", "generic", "loop", "robot")
+            and r["class"] in ("single", "generic", "loop", "robot", "radio")
             and r["shares"][0] >= 0.15
         ):
             said = r["named"][0] if r["named"] else f"({r['verdict'] or 'no answer'})"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The hidden robot against formulas a reader can check: kinematics, acceleration, tilt, loads, delay, determinism."""
+"""The hidden robot against formulas a reader can check: kinematics, acceleration, tilt, loads, delay, firmware, determinism."""
 import math
 import random
 import unittest
@@ -50,6 +50,22 @@ class RobotPlantTest(unittest.TestCase):
                 self.assertAlmostEqual(
                     rim, -math.sin(a) * body[0] + math.cos(a) * body[1] + 0.0805 * w, delta=0.006
                 )
+
+    def test_its_firmware_drives_what_the_radio_asks_for(self):
+        asked = [[0.0] * 5] * 300 + [[0.5, 0.3, 1.0, 0.0, 0.0]] * 2200
+        late = 0.02
+        c = plant.run_robot({**FREE, "radio": 1, "late_radio_s": late}, asked)
+        turn, s = c["turn"][-1], 1e-3
+        vx, vy = (c["x"][-1] - c["x"][-2]) / s, (c["y"][-1] - c["y"][-2]) / s
+        self.assertAlmostEqual(math.cos(turn) * vx + math.sin(turn) * vy, 0.5, delta=0.01)
+        self.assertAlmostEqual(-math.sin(turn) * vx + math.cos(turn) * vy, 0.3, delta=0.01)
+        self.assertAlmostEqual(c["gyro"][-1], 1.0, delta=0.02)
+        for k, a in enumerate(ANGLES):
+            rim = -math.sin(a) * 0.5 + math.cos(a) * 0.3 + 0.0805 * 1.0
+            self.assertAlmostEqual(c[f"speed_{k + 1}"][-1], rim / 0.027, delta=0.5)
+        # The first speed that is not 0 comes the radio's delay after the command, and a tick of the loop later.
+        first = next(k for k, v in enumerate(c["speed_1"]) if v != 0)
+        self.assertAlmostEqual(1e-3 * (first - 300), late, delta=0.004)
 
     def test_force_makes_the_acceleration_of_mass_and_wheels(self):
         # All four motors at the same current i: moment = 4 R_b (N k i / r) on I + 4 J_w (R_b / r)^2.
