@@ -14,7 +14,7 @@ struct Key {
   std::string_view key;
 };
 // In the order of the format's own example.
-constexpr std::array kKeys{
+constexpr std::array kModelKeys{
     Key{"motor", "resistance_ohm"},
     Key{"motor", "inductance_H"},
     Key{"motor", "torque_constant_Nm_per_A"},
@@ -32,6 +32,15 @@ constexpr std::array kKeys{
     Key{"robot", "wheel_inertia_kg_m2"},
     Key{"robot", "wheel_angle_deg"},
     Key{"robot", "rollers_per_wheel"},
+    Key{"robot", "slip_speed_floor_m_s"},
+    Key{"tyre.longitudinal", "extremum_slip"},
+    Key{"tyre.longitudinal", "extremum_value"},
+    Key{"tyre.longitudinal", "asymptote_slip"},
+    Key{"tyre.longitudinal", "asymptote_value"},
+    Key{"tyre.lateral", "extremum_slip"},
+    Key{"tyre.lateral", "extremum_value"},
+    Key{"tyre.lateral", "asymptote_slip"},
+    Key{"tyre.lateral", "asymptote_value"},
     Key{"effects.coulomb_friction", "torque_Nm"},
 };
 
@@ -42,7 +51,7 @@ std::string dataset_model_text(const ModelFile& model) {
   if (!model.name.empty()) text += "name = " + toml_text(model.name) + "\n";
   if (!model.source.empty()) text += "source = " + toml_text(model.source) + "\n";
   std::string_view section;
-  for (const Key& key : kKeys) {
+  for (const Key& key : kModelKeys) {
     const Parameter* parameter = model.parameters.find(std::string(key.section) + "." + std::string(key.key));
     if (parameter == nullptr || parameter->values.empty()) continue;
     const bool is_count = parameter->row->kind == ParameterKind::kWholeNumber;

@@ -144,7 +144,8 @@ class Runner {
     if (controller_) {
       step_s = std::min(step_s, controller_->period_s());
       last_control_s_ = next_control_s_ = record_.time_s[0];
-      controller_->begin(speeds(x), model_.params.drive.torque_constant_Nm_per_A);
+      controller_->begin(record_.start_velocity, speeds(x), model_.params.drive.torque_constant_Nm_per_A,
+                         record_.radio->frame);
     }
     std::array<double, kWheels> between;
     for (std::size_t k = 0;; ++k) {
@@ -201,7 +202,7 @@ class Runner {
     }
     truth_.omega_rotor_rad_s.push_back(omega);
     if (controller_) {
-      for (std::size_t i = 0; i < kWheels; ++i) omega[i] = controller_->measured_rad_s(i);
+      for (std::size_t i = 0; i < kWheels; ++i) omega[i] = controller_->reported_rad_s(i);
     }
     truth_.reported_rad_s.push_back(omega);
     truth_.charge_C.push_back(x.charge_C);

@@ -204,23 +204,43 @@ double speed_at_start(const RobotRecord& r, std::size_t wheel, std::size_t last)
   return ldlt_solve(normal, right)(1) / kStartSpan_s;
 }
 
-BodyVelocity<double> start_velocity(const RobotRecord& r, const RollingParams<double>& nominal) {
+// Where there are no counts: the first speeds that were reported, unless all are slow; rad/s at the wheels.
+constexpr double kStanding_rad_s = 1.0;  // 3 cm/s of rim: a choice
+std::optional<std::array<double, kWheels>> reported_at_start(const Run& run) {
+  std::array<double, kWheels> omega{};
+  bool moves = false;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const std::vector<double>* reported = run.signal(numbered("wheel_speed", i));
+    if (reported == nullptr) return std::nullopt;
+    omega[i] = first_of(*reported, 0.0);
+    moves = moves || std::abs(omega[i]) > kStanding_rad_s;
+  }
+  return moves ? std::optional(omega) : std::nullopt;
+}
+
+BodyVelocity<double> start_velocity(const RobotRecord& r, const Run& run,
+                                    const RollingParams<double>& nominal) {
   std::size_t last = 0;
   while (last + 1 < r.size() && r.time_s[last] - r.time_s[0] < kStartSpan_s) ++last;
-  if (!r.has_all_encoders || last < 3) return {};
   WheelGeometry<double> g;
-  std::array<double, kWheels> omega_wheel;
   for (std::size_t i = 0; i < kWheels; ++i) {
     g.cos_angle[i] = std::cos(nominal.wheel_angle_rad[i]);
     g.sin_angle[i] = std::sin(nominal.wheel_angle_rad[i]);
+  }
+  g.wheel_center_radius_m = nominal.wheel_center_radius_m;
+  g.wheel_radius_m = nominal.wheel_radius_m;
+  if (!r.has_all_encoders || last < 3) {
+    const auto reported = reported_at_start(run);
+    return reported ? body_velocity(g, *reported) : BodyVelocity<double>{};
+  }
+  std::array<double, kWheels> omega_wheel;
+  for (std::size_t i = 0; i < kWheels; ++i) {
     omega_wheel[i] = speed_at_start(r, i, last) / nominal.drive.gear_ratio;
     // a displacement of up to two counts is no motion
     const double count_rad = kTurn / r.counts_per_rotor_turn[i];
     if (std::abs(r.theta_rotor_rad[last][i] - r.theta_rotor_rad[0][i]) < 2.5 * count_rad)
       omega_wheel[i] = 0.0;
   }
-  g.wheel_center_radius_m = nominal.wheel_center_radius_m;
-  g.wheel_radius_m = nominal.wheel_radius_m;
   return body_velocity(g, omega_wheel);
 }
 
@@ -268,7 +288,7 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   }
   read_frames(run, r);
   unwrap_by_gyro(r);
-  r.start_velocity = start_velocity(r, nominal);
+  r.start_velocity = start_velocity(r, run, nominal);
   return r;
 }
 

@@ -205,6 +205,13 @@ constexpr ParameterRow kRows[] = {
      "the firmware's source"},
     {"controller", "speed_filter_s", kNumber, "s", 0.0, 0, 1, false, R, 0,
      "time constant of the low pass on the measured speed; 0: none", "the firmware's source"},
+    {"controller", "planned_grip", kNumber, "1", 0.0, 0, 10, false, R, 0,
+     "friction coefficient that changes of the body's velocity are planned with, by the hardest-worked "
+     "wheel; 0: none",
+     "the firmware's source"},
+    {"controller", "report_filter_s", kNumber, "s", 0.0, 0, 1, false, R, 0,
+     "time constant of the low pass on the speeds that telemetry tells; 0: as the loop sees them",
+     "the firmware's source"},
     {"controller", "latency_s", kNumber, "s", 0.0, 0, 0.5, false, R, 0,
      "from a command's time in the record to the loop that follows it",
      "step the command, film wheel and lamp"},

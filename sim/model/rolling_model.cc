@@ -37,6 +37,8 @@ RollingParams<double> rolling_params(const ParameterTable& table) {
   p.controller.yaw_acceleration_limit_rad_s2 =
       table.value_or("controller.yaw_acceleration_limit_rad_s2", 0.0);
   p.controller.rate_limit_rad_s2 = table.value_or("controller.rate_limit_rad_s2", 0.0);
+  p.controller.report_filter_s = table.value_or("controller.report_filter_s", 0.0);
+  p.controller.planned_grip = table.value_or("controller.planned_grip", 0.0);
   p.controller.timeout_s = table.value_or("controller.timeout_s", 0.0);
   p.controller.wheel_radius_m = table.value_or("controller.wheel_radius_m", 0.0);
   p.controller.wheel_center_radius_m = table.value_or("controller.wheel_center_radius_m", 0.0);

@@ -6,7 +6,8 @@
 //
 // Once per period_s:
 //   b   = what was commanded, as the robot may follow it: |dv| <= acceleration_limit dt, |dw| <= yaw_acceleration_limit
-//         dt, of wheel speeds |dr| <= rate_limit dt (0: at once)
+//         dt, of wheel speeds |dr| <= rate_limit dt (0: at once); and all three together by what the hardest-worked wheel
+//         may push: |G+ (dv_x, dv_y, R_b^2 dw / 2)|_i <= planned_grip g / 4 dt, a disc on four equal loads (0: no limit)
 //   c   = b, latency_s ago, mean over the period
 //   r_i = gear (-sin(a_i) c_x + cos(a_i) c_y + R_b c_w) / R     R, R_b: the firmware's constants, not the robot's
 //   duty_i = speed loop of r_i (speed_loop.h) over the bus
@@ -15,6 +16,7 @@
 // open firmwares have in common (docs/radio-driven.md).
 // Cannot: hold a heading by the gyro, control the path, schedule gains, know of a current limit.
 #pragma once
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,7 +32,9 @@ struct RadioControllerParams {
   SpeedLoopParams<T> loop;
   T latency_s = T(0);  // from a command's stamp to the loop that follows it
   double acceleration_limit_m_s2 = 0.0, yaw_acceleration_limit_rad_s2 = 0.0, rate_limit_rad_s2 = 0.0;
+  double planned_grip = 0.0;  // friction coefficient that accelerations are planned with; 0: none
   double period_s = 1e-3, timeout_s = 0.0;
+  double report_filter_s = 0.0;  // of the speeds that telemetry tells; 0: as the loop sees them
   double wheel_radius_m = 0.0, wheel_center_radius_m = 0.0;  // that the firmware believes
 };
 
@@ -51,6 +55,13 @@ class RadioController {
     }
     geometry_.wheel_center_radius_m = params.wheel_center_radius_m;
     geometry_.wheel_radius_m = params.wheel_radius_m;
+    Eigen::Matrix<double, kWheels, 3> rim;  // G
+    for (int i = 0; i < static_cast<int>(kWheels); ++i) {
+      const auto w = static_cast<std::size_t>(i);
+      rim.row(i) << -geometry_.sin_angle[w], geometry_.cos_angle[w], params.wheel_center_radius_m;
+    }
+    push_ = rim * (rim.transpose() * rim).inverse();
+    if (params.report_filter_s > 0.0) report_share_ = -std::expm1(-params.period_s / params.report_filter_s);
   }
 
   // Body: v_forward, v_left, omega. Wheels: four speeds.
@@ -61,10 +72,17 @@ class RadioController {
     command_ = command;
   }
 
-  // The robot moves already when the record begins: integrals as they are when everything is settled.
-  void begin(const std::array<T, kWheels>& omega_rotor_rad_s, const T& settled_V_s_per_rad) {
+  // The robot moves already when the record begins: it follows what it does, and integrals are as when all is settled.
+  void begin(const BodyVelocity<double>& body, const std::array<T, kWheels>& omega_rotor_rad_s,
+             const T& settled_V_s_per_rad, CommandFrame frame) {
+    frame_ = frame;
+    followed_ = {body.v_forward_m_s, body.v_left_m_s, body.omega_body_rad_s, 0.0};
+    if (frame == CommandFrame::kWheelSpeeds) {
+      for (std::size_t i = 0; i < kWheels; ++i) followed_[i] = value_of(omega_rotor_rad_s[i]) / gear_;
+    }
+    command_ = followed_;
     for (std::size_t i = 0; i < kWheels; ++i) {
-      state_[i].filtered_rad_s = state_[i].reference_rad_s = omega_rotor_rad_s[i];
+      state_[i].filtered_rad_s = state_[i].reference_rad_s = reported_[i] = omega_rotor_rad_s[i];
       state_[i].integral_V = (settled_V_s_per_rad - p_.loop.feedforward_V_s_per_rad) * omega_rotor_rad_s[i];
     }
   }
@@ -81,13 +99,16 @@ class RadioController {
                                       .bus_voltage_V = bus_voltage_V,
                                       .dt_s = p_.period_s,
                                       .limit_ratio = limit_ratio});
+      reported_[i] += (omega_rotor_rad_s[i] - reported_[i]) * report_share_;
       duty[i] = value_of(bus_voltage_V) > 0.0 ? T(u / bus_voltage_V) : T(0);
     }
     return duty;
   }
 
-  // As the loop sees it, and telemetry reports it.
-  const T& measured_rad_s(std::size_t wheel) const { return state_[wheel].filtered_rad_s; }
+  // As telemetry tells it.
+  const T& reported_rad_s(std::size_t wheel) const {
+    return p_.report_filter_s > 0.0 ? reported_[wheel] : state_[wheel].filtered_rad_s;
+  }
   double period_s() const { return p_.period_s; }
 
  private:
@@ -123,12 +144,23 @@ class RadioController {
       const double most = p_.acceleration_limit_m_s2 * p_.period_s, size = std::hypot(gap[0], gap[1]);
       if (most > 0.0 && size > most) gap[0] *= most / size, gap[1] *= most / size;
       within(gap[2], p_.yaw_acceleration_limit_rad_s2);
+      if (p_.planned_grip > 0.0) plan(gap);
     }
     for (std::size_t a = 0; a < kWheels; ++a) followed_[a] += gap[a];
   }
 
+  void plan(std::array<double, kWheels>& gap) const {
+    constexpr double kQuarterGravity_m_s2 = 9.81 / 4.0;
+    const double yaw = 0.5 * p_.wheel_center_radius_m * p_.wheel_center_radius_m * gap[2];
+    const double hardest = (push_ * Eigen::Vector3d(gap[0], gap[1], yaw)).cwiseAbs().maxCoeff();
+    const double most = p_.planned_grip * kQuarterGravity_m_s2 * p_.period_s;
+    if (hardest <= most) return;
+    for (std::size_t a = 0; a < 3; ++a) gap[a] *= most / hardest;
+  }
+
   RadioControllerParams<T> p_;
   WheelGeometry<double> geometry_;
+  Eigen::Matrix<double, kWheels, 3> push_;  // of each wheel for an acceleration of the body: G (G' G)^-1
   double gear_ = 1.0;
   CommandFrame frame_ = CommandFrame::kBodyVelocity;
   double heard_s_ = 0.0;
@@ -136,6 +168,8 @@ class RadioController {
   std::array<CommandHistory, kWheels> history_;
   std::array<double, kWheels> command_{}, followed_{};
   std::array<SpeedLoopState<T>, kWheels> state_;
+  std::array<T, kWheels> reported_{};
+  double report_share_ = 1.0;  // 1 - exp(-period / report_filter)
 };
 
 }  // namespace omnihil

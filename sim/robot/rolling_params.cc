@@ -92,6 +92,8 @@ RollingParams<T> rolling_params_as(const RollingParams<double>& p) {
   q.controller.yaw_acceleration_limit_rad_s2 = p.controller.yaw_acceleration_limit_rad_s2;
   q.controller.rate_limit_rad_s2 = p.controller.rate_limit_rad_s2;
   q.controller.period_s = p.controller.period_s;
+  q.controller.planned_grip = p.controller.planned_grip;
+  q.controller.report_filter_s = p.controller.report_filter_s;
   q.controller.timeout_s = p.controller.timeout_s;
   q.controller.wheel_radius_m = p.controller.wheel_radius_m;
   q.controller.wheel_center_radius_m = p.controller.wheel_center_radius_m;

@@ -8,8 +8,10 @@
 #include <string>
 
 #include "hil/dataset/dataset_export.h"
+#include "hil/dataset/radio_export.h"
 #include "hil/game_log/vision_csv.h"
 #include "hil/recording/capture_import.h"
+#include "hil/recording/heard_commands.h"
 #include "hil/recording/mcap_export.h"
 #include "hil/recording/pcap_export.h"
 #include "hil/recording/recording_reader.h"
@@ -32,6 +34,7 @@ struct ConvertWords {
   CaptureWords capture;
   std::string to = "dataset";
   std::string out;
+  std::string drive = "duties";
   int robot = -1;
   double camera_Hz = 60.0;
 };
@@ -53,9 +56,17 @@ void to_dataset(const ConvertWords& words, const Recording& recording) {
     for (const ModelProblem& problem : reading.problems) text += (text.empty() ? "" : "\n") + problem.text();
     throw std::invalid_argument(text);
   }
-  const DatasetOptions options{.robot = chosen_robot(words, recording.header), .camera_Hz = words.camera_Hz};
+  const std::optional<int> robot = chosen_robot(words, recording.header);
+  const auto make = [&] {
+    if (words.drive == "duties")
+      return make_dataset(recording, *reading.model, {.robot = robot, .camera_Hz = words.camera_Hz});
+    const RadioFormat* format = format_or_complain(recording.header.radio_format);
+    if (format == nullptr) throw std::invalid_argument("the commands of this recording cannot be read");
+    return make_radio_dataset(recording, *reading.model, heard_commands(recording, *format),
+                              {.robot = robot, .camera_Hz = words.camera_Hz});
+  };
+  const DatasetExport made = make();
   NewFolder folder(words.out);
-  const DatasetExport made = make_dataset(recording, *reading.model, options);
   for (const DatasetFile& file : made.files) folder.write(file.name, file.text);
   folder.finish();
   fmt::print("{}: {} rows in {} runs\n", words.out, made.rows, made.files.size() - 2);
@@ -146,6 +157,12 @@ void add_verb_convert(Verb& program, VerbResult& result) {
                   "radio format of a capture that does not say which way its bytes went");
   add_capture_options(verb, words->capture);
   verb.add_option("--robot", words->robot, "one robot only (default: all)").range(0, 255);
+  verb.add_option(
+          "--drive", words->drive,
+          "of a dataset: duties, with all that a board measures; commands, with what a team's radio and a "
+          "camera tell: reported wheel speeds and pose")
+      .one_of({"duties", "commands"})
+      .capture_default_str();
   verb.add_option("--camera-hz", words->camera_Hz, "rate of the vision columns of a dataset")
       .range(0.1, 10000.0)
       .capture_default_str();
