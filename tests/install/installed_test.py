@@ -76,7 +76,7 @@ def an_avr_image_finds_its_program():
     if not image.exists():
         skip("no cross compiler for AVR: there is no image")
     board = PREFIX / "share/omnihil/boards/omni_reference_avr.toml"
-    omnihil("scenario", "run", "wheel/direction", "--firmware", image, "--board", board)
+    omnihil("scenario", "run", "wheel/direction", "--robot", "omni_1024", "--firmware", image, "--board", board)
 
 
 def headers_find_what_they_include():

@@ -1,0 +1,28 @@
+// The tap's loop on the wall clock, and its own delay.
+//
+//   const TapRun run = run_tap(tap, [] { return StopSignals::requested(); });
+//   run.delay_ns.p50, run.delay_ns.p99;       // from bytes that wait until they are handed on
+//
+// Sleeps until either side has something, 1 ms at most: a host that opens its port is noticed then.
+#pragma once
+#include <cstdint>
+#include <functional>
+
+#include "hil/tap/tap.h"
+
+namespace omnihil {
+
+struct TapDelay {
+  std::uint64_t passes = 0;  // that moved something
+  double p50_us = 0.0, p99_us = 0.0, most_us = 0.0;
+};
+
+struct TapRun {
+  std::int64_t end_ns = 0;  // since its start
+  bool lost = false;        // the dongle or the port went away: tap.problem()
+  TapDelay delay;           // from waking up to written
+};
+
+TapRun run_tap(Tap& tap, const std::function<bool()>& stop);
+
+}  // namespace omnihil

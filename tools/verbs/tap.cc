@@ -1,0 +1,127 @@
+// omnihil tap DEVICE: between the AI host and its real dongle; every byte passes, and is recorded.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hil/loop/effect_overrides.h"
+#include "hil/loop/session_checks.h"
+#include "hil/recording/recording_writer.h"
+#include "hil/recording/session_setup.h"
+#include "hil/serve/serve_signals.h"
+#include "hil/tap/tap_loop.h"
+#include "hil/text/program_files.h"
+#include "hil/wire/open_wire.h"
+#include "tools/command_line.h"
+#include "tools/exit_codes.h"
+#include "tools/format_argument.h"
+#include "tools/guarded.h"
+#include "tools/program_commit.h"
+#include "tools/verbs/verbs.h"
+
+namespace omnihil {
+namespace {
+
+struct TapWords {
+  std::string dongle, device = "./dongle", robot = "omni_default", radio, format_file, robots = "0-5",
+                      team = "blue", out;
+};
+
+SessionSetup tap_setup(const TapWords& words) {
+  SessionSetup setup;
+  std::vector<std::string> problems;
+  const StoredModel stored = load_robot_model(words.robot, {data_folder("models")});
+  for (const ModelProblem& problem : stored.problems) problems.push_back(problem.text());
+  throw_problems(problems);
+  setup.model = stored.bundle;
+  setup.radio_format = !words.radio.empty() ? words.radio : stored.model->radio;
+  setup.robot_ids = parse_robot_list(words.robots, problems);
+  setup.team = words.team == "blue" ? Team::kBlue : Team::kYellow;
+  throw_problems(problems);
+  session_config(setup);  // says what is wrong with it
+  return setup;
+}
+
+std::unique_ptr<ByteWire> open_end(const std::string& text, const char* bare, const char* option) {
+  const WireUrl url = read_wire_url(text, bare);
+  std::vector<std::string> problems = wire_problems(url, WireForm::kBytes);
+  for (std::string& problem : problems) problem = fmt::format("{}: {}", option, problem);
+  throw_problems(problems);
+  WireProblem problem;
+  std::unique_ptr<ByteWire> wire = open_byte_wire(url, {}, problem);
+  if (!wire)
+    throw std::system_error(std::make_error_code(std::errc::io_error),
+                            fmt::format("{}: {}", option, problem.text()));
+  return wire;
+}
+
+int run_tap_verb(TapWords words) {
+  if (!words.format_file.empty()) {
+    const RadioFormat* format = format_file_or_complain(words.format_file);
+    if (format == nullptr) return kExitBadInput;
+    words.radio = format->id;
+  }
+  const SessionSetup setup = tap_setup(words);
+  if (!words.out.empty() && std::filesystem::exists(words.out))
+    throw FileExists(words.out + ": is there already");
+  std::unique_ptr<ByteWire> dongle = open_end(words.dongle, "serial", "DEVICE");
+  std::unique_ptr<ByteWire> host = open_end(words.device, "pty", "--device");
+  std::unique_ptr<RecordingWriter> writer;
+  if (!words.out.empty()) {
+    RecordingHeader header = recording_header(setup, "tapped");
+    header.firmware = "as on the robot";
+    std::error_code error;
+    writer = RecordingWriter::open(words.out, std::move(header), error,
+                                   [](const std::string& text) { fmt::print(stderr, "{}\n", text); });
+    if (!writer) throw std::system_error(error, words.out);
+  }
+  fmt::print("{} ready, passed on to {}\n", host->name(), dongle->name());
+  std::fflush(stdout);
+  const StopSignals stop;
+  Tap tap(std::move(host), std::move(dongle), writer.get(), setup.step_ns);
+  const TapRun run = run_tap(tap, [] { return StopSignals::requested(); });
+  if (writer)
+    writer->finish({.now_ns = (run.end_ns / setup.step_ns + 2) * setup.step_ns,
+                    .wall_s = 1e-9 * static_cast<double>(run.end_ns),
+                    .counters = {}});
+  const TapCounts& c = tap.counts();
+  fmt::print("{:.3f} s: {} bytes to the dongle, {} to the host, {} with no host there; host left {} times\n",
+             1e-9 * static_cast<double>(run.end_ns), c.to_dongle, c.to_host, c.without_host, c.host_left);
+  fmt::print(
+      "own delay, from bytes that wait to bytes handed on: p50 {:.0f} us, p99 {:.0f} us, at most {:.0f} us "
+      "in {} passes\n",
+      run.delay.p50_us, run.delay.p99_us, run.delay.most_us, run.delay.passes);
+  if (writer && writer->error()) throw std::system_error(writer->error(), words.out);
+  if (!run.lost) return kExitOk;
+  fmt::print(stderr, "omnihil tap: {}\n", tap.problem());
+  return kExitIo;
+}
+
+}  // namespace
+
+void add_verb_tap(Verb& program, VerbResult& result) {
+  auto words = std::make_shared<TapWords>();
+  Verb verb =
+      program.add_subcommand("tap", "between an AI host and its real dongle: passes every byte, records it");
+  verb.add_option("DEVICE", words->dongle,
+                  "the real dongle: a serial device, or a wire by URL (udp:, tcp:, pty: …)")
+      .required();
+  verb.add_option("--device", words->device, "what the host opens instead: a path, or a wire by URL")
+      .capture_default_str();
+  verb.add_option("--record", words->out, "recording to make; what is there is never overwritten");
+  verb.add_option("--robot", words->robot, "robot model: a name or a .toml file").capture_default_str();
+  verb.add_option("--radio", words->radio, "radio format (default: the robot model's own)");
+  verb.add_option("--format", words->format_file, "radio format from this file");
+  verb.add_option("--robots", words->robots, "robot ids on the field: 0-5 or 0,2,7").capture_default_str();
+  verb.add_option("--team", words->team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
+  verb.footer(
+      "Ctrl-C ends it; the recording is whole. `check FILE --explain` has the model answer the same "
+      "commands, `dump FILE`\n"
+      "prints the packets. Exit codes: 2 bad words; 3 a device that cannot be opened, or that went away.");
+  verb.callback(
+      [words, &result] { result.exit_code = guarded("tap", [&] { return run_tap_verb(*words); }); });
+}
+
+}  // namespace omnihil
