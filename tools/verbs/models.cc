@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/card/card_gallery.h"
 #include "hil/loop/model_store.h"
 #include "hil/text/program_files.h"
 #include "sim/model/model_figures.h"
@@ -124,7 +125,7 @@ std::vector<std::string> plant_problems_of(const StoredModel& stored) {
 }
 
 int check(const std::vector<std::string>& files) {
-  std::size_t problems = 0;
+  std::size_t problems = 0, stale = 0;
   for (const std::string& file : files) {
     const StoredModel stored = load_model(file, folders());
     print_problems(stored);
@@ -135,8 +136,12 @@ int check(const std::vector<std::string>& files) {
     if (stored.model && refused.empty())
       std::printf("%s: good (%s)\n", file.c_str(), stored.model->rig.c_str());
     for (const std::string& note : stored.notes) std::printf("note: %s\n", note.c_str());
+    for (const std::string& note : stale_card_notes(stored.bundle.robot_file)) {
+      std::printf("stale card: %s\n", note.c_str());
+      ++stale;
+    }
   }
-  if (problems == 0) return kExitOk;
+  if (problems == 0) return stale == 0 ? kExitOk : kExitDiffers;
   std::fprintf(stderr, "%zu problem%s\n", problems, problems == 1 ? "" : "s");
   return kExitBadInput;
 }
