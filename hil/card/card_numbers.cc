@@ -27,6 +27,15 @@ bool has_effect(const Candidate& candidate, std::string_view section) {
                      [&](const EffectUse& use) { return section == "effects." + effect_name(use); });
 }
 
+// A further harmonic that stays at zero, or the phase of one: nothing that the file says.
+bool is_idle_detail(const EffectUse& use, std::size_t i) {
+  const auto& rows = use.entry->info->params;
+  const auto detail = [](const EffectParam& row) { return row.role == ParamRole::kDetail; };
+  const auto first = static_cast<std::size_t>(std::find_if(rows.begin(), rows.end(), detail) - rows.begin());
+  const bool noted = i < use.notes.size() && (!use.notes[i].source.empty() || use.notes[i].fitted);
+  return i >= first && use.values[i] == 0.0 && !noted;
+}
+
 }  // namespace
 
 std::vector<CardNumber> card_numbers(const Candidate& candidate) {
@@ -65,6 +74,7 @@ std::vector<CardEffect> card_effects(const Candidate& candidate) {
     effect.title = use.entry->info->title;
     for (std::size_t i = 0; i < use.values.size() && i < use.entry->info->params.size(); ++i) {
       const EffectParam& row = use.entry->info->params[i];
+      if (is_idle_detail(use, i)) continue;
       CardNumber& n = effect.numbers.emplace_back();
       n.path = effect.name + "." + std::string(row.name);
       n.unit = row.unit;
