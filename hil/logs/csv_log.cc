@@ -17,8 +17,9 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Of SimpleFOC's motor.monitor(): the order in which the library prints what monitor_variables asks for, by default target,
-// voltage q, velocity, angle. Currents are printed in milliamperes (SimpleFOClibrary 2.x, FOCMotor.cpp; docs.simplefoc.com/monitoring).
+// Of SimpleFOC's motor.monitor(): the order in which the library prints what monitor_variables asks for, by default
+// target, voltage q, velocity, angle. Currents are printed in milliamperes (SimpleFOClibrary 2.x, FOCMotor.cpp;
+// docs.simplefoc.com/monitoring).
 constexpr std::array<std::string_view, 7> kMonitorAll = {
     "target",         "voltage.q [V]",    "voltage.d [V]", "current.q [mA]",
     "current.d [mA]", "velocity [rad/s]", "angle [rad]"};

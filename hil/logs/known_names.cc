@@ -116,7 +116,6 @@ constexpr Usual kAnyRig[] = {{"t", "time"},
 constexpr Usual kOfAxis[] = {{"duty", "duty"},
                              {"dutycycle", "duty"},
                              {"pwm", "duty"},
-                             {"voltage", "motor_voltage"},
                              {"motorvoltage", "motor_voltage"},
                              {"appliedvolts", "motor_voltage"},
                              {"appliedvoltage", "motor_voltage"},
@@ -124,10 +123,8 @@ constexpr Usual kOfAxis[] = {{"duty", "duty"},
                              {"vq", "motor_voltage"},
                              {"voltageq", "motor_voltage"},
                              {"vmotor", "motor_voltage"},
-                             {"torque", "motor_torque"},
                              {"motortorque", "motor_torque"},
                              {"torquesetpoint", "motor_torque"},
-                             {"force", "motor_torque"},
                              {"positiontarget", "position_target"},
                              {"postarget", "position_target"},
                              {"posref", "position_target"},
@@ -181,6 +178,16 @@ std::string_view look_up(std::span<const Usual> table, std::string_view name) {
   return it == table.end() ? std::string_view{} : it->signal;
 }
 
+// Names that more than one signal goes by.
+struct Ambiguous {
+  std::string_view name, signals;  // of an axis, with a comma between them
+};
+constexpr Ambiguous kAmbiguous[] = {{"voltage", "motor_voltage,bus_voltage"},
+                                    {"volts", "motor_voltage,bus_voltage"},
+                                    {"u", "duty,motor_voltage"},
+                                    {"torque", "motor_torque,load_torque"},
+                                    {"force", "motor_torque,load_torque"}};
+
 std::string plain(std::string_view name) {
   std::string out;
   for (const char c : name) {
@@ -188,6 +195,23 @@ std::string plain(std::string_view name) {
       out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   return out;
+}
+
+// Of a topic the last word counts: "/drive/velocity", "encoder.angle"; without the place in a list, and without the
+// "data" of std_msgs.
+std::string_view last_word(std::string_view name) {
+  const std::size_t bracket = name.rfind('[');
+  if (bracket != std::string_view::npos && bracket > 0 && name.back() == ']') name = name.substr(0, bracket);
+  if (name.ends_with(".data")) name.remove_suffix(5);
+  const std::size_t cut = name.find_last_of("./:");
+  return cut != std::string_view::npos && cut + 1 < name.size() ? name.substr(cut + 1) : name;
+}
+
+// "battery_status.voltage_v", "/power/battery/voltage": what the supply says of itself.
+bool of_supply(std::string_view name) {
+  const std::string_view last = last_word(name);
+  const std::string path = plain(name.substr(0, static_cast<std::size_t>(last.data() - name.data())));
+  return path.find("battery") != std::string::npos || path.find("supply") != std::string::npos;
 }
 
 }  // namespace
@@ -207,13 +231,22 @@ const KnownName* known_name(LogFormat format, std::string_view column) {
   return nullptr;
 }
 
+std::vector<std::string> ambiguous_signals(std::string_view name, Rig rig) {
+  std::vector<std::string> out;
+  if (rig != Rig::kAxis || of_supply(name)) return out;
+  const std::string word = plain(last_word(name));
+  for (const Ambiguous& a : kAmbiguous) {
+    if (a.name != word) continue;
+    const std::size_t comma = a.signals.find(',');
+    out = {std::string(a.signals.substr(0, comma)), std::string(a.signals.substr(comma + 1))};
+  }
+  return out;
+}
+
 std::string usual_signal(std::string_view name, Rig rig) {
-  // Of a topic the last word counts: "/drive/velocity", "encoder.angle"; without the place in a list.
-  const std::size_t bracket = name.rfind('[');
-  if (bracket != std::string_view::npos && bracket > 0 && name.back() == ']') name = name.substr(0, bracket);
-  const std::size_t cut = name.find_last_of("./:");
-  if (cut != std::string_view::npos && cut + 1 < name.size()) name.remove_prefix(cut + 1);
-  const std::string word = plain(name);
+  const std::string word = plain(last_word(name));
+  if (of_supply(name))
+    return word == "voltage" || word == "volts" || word.starts_with("voltage") ? "bus_voltage" : "";
   if (const std::string_view any = look_up(kAnyRig, word); !any.empty()) return std::string(any);
   if (rig == Rig::kAxis) return std::string(look_up(kOfAxis, word));
   if (const std::string_view whole = look_up(kOfRobot, word); !whole.empty()) return std::string(whole);

@@ -1,13 +1,14 @@
-// Logs with a meaning, as the files of a dataset: CSV with the values as logged, dataset.toml with scales, a README, a picture.
+// Logs with a meaning, as the files of a dataset: CSV with the values as logged, dataset.toml with scales, a README, a
+// picture.
 //
 //   LogDataset made = make_log_dataset(runs, options);
 //   for (const std::string& d : made.doubts) std::puts(d.c_str());        // choices to be made: then there are no files
 //   for (const DatasetFile& f : made.files) folder.write(f.name, f.text);
 //
-// A table's rows stay rows; those without a time, or at the time of the row before, are left out and counted. Topics are put on
-// the clock of the motion with the most samples: what was asked of the drive holds its last value, anything else stands at its
-// nearest instant within half a period and is empty elsewhere; by how much the drive is late is said. The first instant is 0 s.
-// Throws BadLog where time goes backwards. Cannot: align clocks of two files; resample.
+// A table's rows stay rows; those without a time, or at the time of the row before, are left out and counted. Topics
+// are put on the clock of the motion with the most samples: what was asked of the drive holds its last value, anything
+// else stands at its nearest instant within half a period and is empty elsewhere; by how much the drive is late is
+// said. The first instant is 0 s. Throws BadLog where time goes backwards. Cannot: align clocks of two files; resample.
 #pragma once
 #include <optional>
 #include <string>

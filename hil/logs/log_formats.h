@@ -1,7 +1,7 @@
 // The binary formats that can be read: how each begins, and its reader.
 //
 //   for (const BinaryLog& format : binary_logs())
-//     if (format.begins(head)) return format.read("run.ulg");      // throws BadLog
+//     if (format.begins(head)) const LogTable log = format.read("run.ulg");      // throws BadLog
 //
 // What of a file is not numbers (strings, pictures, other encodings) is left out and counted in the notes.
 #pragma once

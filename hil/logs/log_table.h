@@ -3,8 +3,8 @@
 //   LogTable log = read_log("run.ulg", {});                  // throws BadLog with file, place, what is allowed
 //   for (const LogSeries& s : log.series) std::puts(s.name.c_str());
 //
-// Series of a table share its rows and have no clock of their own: one of them is the time. Series of topics (wpilog, ULog,
-// bags) each have their own. A missing value is NaN. Nothing is converted here: values are as logged.
+// Series of a table share its rows and have no clock of their own: one of them is the time. Series of topics (wpilog,
+// ULog, bags) each have their own. A missing value is NaN. Nothing is converted here: values are as logged.
 #pragma once
 #include <memory>
 #include <stdexcept>

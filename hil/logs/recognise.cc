@@ -63,6 +63,7 @@ class Recogniser {
       if (!by_map(m) && !by_document(m)) by_name(m);
     }
     settle_rivals();
+    settle_ambiguous();
     for (ColumnMeaning& m : out_.columns) {
       set_scale(m);
       m.imposed = m.imposed || std::find(context_.imposed.begin(), context_.imposed.end(), m.signal) !=
@@ -105,7 +106,8 @@ class Recogniser {
     if (known == nullptr || (context_.rig == Rig::kRobot && known->signal != "time" &&
                              !known->signal.empty() && find_signal(context_.rig, known->signal) == nullptr))
       return false;
-    m.because = known->signal.empty() ? std::string(known->why) : log_format_name(log_.format) + " says so";
+    m.because =
+        known->signal.empty() ? std::string(known->why) : "a known column of " + log_format_name(log_.format);
     m.signal = known->signal;
     m.unit = known->unit;
     m.imposed = known->imposed;
@@ -117,6 +119,10 @@ class Recogniser {
     const auto [base, unit] = split_unit(name(m));
     m.signal = usual_signal(base, context_.rig);
     m.unit = !unit.empty() ? unit : log_.series[m.series].unit;
+    if (m.signal.empty()) {
+      const std::vector<std::string> may = ambiguous_signals(base, context_.rig);
+      if (!may.empty()) ambiguous_.emplace_back(m.series, may);
+    }
     if (m.signal == "velocity" && m.unit.empty() && (base == "rpm" || base == "RPM")) m.unit = "rpm";
     m.because = m.signal.empty()                  ? "its name says nothing to me"
                 : unit.empty() && !m.unit.empty() ? "its name; unit as the file says"
@@ -153,6 +159,22 @@ class Recogniser {
         rivals[i]->signal.clear();
         rivals[i]->because = fmt::format("\"{}\" is {}", name(*rivals[0]), signal);
       }
+    }
+  }
+
+  // A name that two signals go by is in doubt, unless each of them has its column already.
+  void settle_ambiguous() {
+    for (const auto& [series, may] : ambiguous_) {
+      std::vector<std::string> words;
+      for (const std::string& signal : may) {
+        if (out_.of(signal) == nullptr)
+          words.push_back(fmt::format("--map \"{}={}:{}\"", log_.series[series].name, signal,
+                                      unit_of_signal(signal, context_)));
+      }
+      if (words.empty()) continue;
+      words.push_back(fmt::format("--map \"{}=-\" to leave it out", log_.series[series].name));
+      out_.doubts.push_back(fmt::format("column \"{}\" may be {}; give one of: {}", log_.series[series].name,
+                                        fmt::join(may, " or "), fmt::join(words, ", or ")));
     }
   }
 
@@ -204,6 +226,7 @@ class Recogniser {
               : "no column is what was asked of the drive; give --map \"COLUMN=duty:1\" (or motor_voltage:V, "
                 "motor_torque:Nm, "
                 "position_target:rad), or --imposed motor_current where the current was set");
+    check_drives();
     if (!any([&](const ColumnMeaning& m) {
           return role(m) == SignalRole::kMotion || role(m) == SignalRole::kCounts;
         }))
@@ -212,10 +235,27 @@ class Recogniser {
           "\"COLUMN=encoder:counts\"");
   }
 
+  // A model is driven by one thing: of two that were logged the user says which.
+  void check_drives() {
+    std::map<std::string_view, const ColumnMeaning*> groups;
+    for (const ColumnMeaning& m : out_.columns) {
+      if (m.signal.empty()) continue;
+      const SignalRow* row = find_signal(context_.rig, m.signal);
+      if (row->role == SignalRole::kDrive) groups.try_emplace(row->drive_group, &m);
+    }
+    if (groups.size() < 2) return;
+    std::vector<std::string> words;
+    for (const auto& [group, m] : groups) words.push_back(fmt::format("--map \"{}=-\"", name(*m)));
+    out_.doubts.push_back(
+        fmt::format("{} columns may be what was asked of the drive; leave all but one out: {}", groups.size(),
+                    fmt::join(words, ", or ")));
+  }
+
   const LogTable& log_;
   const MeaningContext& context_;
   const std::vector<ColumnMap>& asked_;
   std::map<std::size_t, int> ranks_;
+  std::vector<std::pair<std::size_t, std::vector<std::string>>> ambiguous_;  // series, and what it may be
   LogMeaning out_;
 };
 

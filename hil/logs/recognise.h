@@ -5,9 +5,10 @@
 //   LogMeaning m = recognise(log, {.rig = Rig::kAxis}, asked);
 //   for (const std::string& d : m.doubts) std::puts(d.c_str());     // a line each, with the flags to give
 //
-// In this order: what the user says; what the format's own documents say (ODrive, moteus, VESC, SimpleFOC); names that are usual, with the
-// unit that stands in the name. Without a unit a column is in doubt, but for a duty within +-1, volts, a time whose steps are between
-// 10 us and 0.5 s, and counts. Two columns for one signal are in doubt as well. Nothing is guessed beyond that.
+// In this order: what the user says; what the format's own documents say (ODrive, moteus, VESC, SimpleFOC); names that
+// are usual, with the unit that stands in the name. Without a unit a column is in doubt, but for a duty within +-1,
+// volts, a time whose steps are between 10 us and 0.5 s, and counts. Two columns for one signal are in doubt as well.
+// Nothing is guessed beyond that.
 #pragma once
 #include <string>
 #include <string_view>

@@ -4,9 +4,9 @@
 //   std::optional<UnitScale> c = unit_scale("rpm", "rad/s", {}, fault);        // signal = value * c->scale
 //   split_unit("motor current [mA]");                                          // {"motor current", "mA"}
 //
-// Known: times, angles, speeds, currents, voltages, torques, forces, lengths, accelerations, temperatures, ratios, counts.
-// Electrical speeds and angles ("erpm", "erad/s", "erad") need the number of pole pairs. Turns are full turns; "Hz" of a speed is turns
-// a second. Cannot: prefixes and products in general.
+// Known: times, angles, speeds, currents, voltages, torques, forces, lengths, accelerations, temperatures, ratios,
+// counts. Electrical speeds and angles ("erpm", "erad/s", "erad") need the number of pole pairs. Turns are full turns;
+// "Hz" of a speed is turns a second. Cannot: prefixes and products in general.
 #pragma once
 #include <optional>
 #include <string>

@@ -20,8 +20,8 @@
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
-#include "tools/import_dataset.h"
 #include "tools/options/capture_options.h"
+#include "tools/options/import_dataset.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 

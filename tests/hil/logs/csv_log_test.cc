@@ -154,6 +154,23 @@ TEST(Meaning, MisspeltMapsAreNamed) {
   EXPECT_EQ(faults.size(), 2u);
 }
 
+TEST(Meaning, ANameOfTwoSignalsIsInDoubt) {
+  const char* text = "time_s,voltage_V,speed_rpm\n0,1,60\n0.01,2,120\n";
+  ASSERT_GE(meaning(text).doubts.size(), 1u);
+  EXPECT_NE(meaning(text).doubts[0].find("may be motor_voltage or bus_voltage"), std::string::npos)
+      << meaning(text).doubts[0];
+  EXPECT_TRUE(meaning(text, {{"voltage_V", "motor_voltage", "V"}}).doubts.empty());
+  EXPECT_EQ(usual_signal("battery_status.voltage", Rig::kAxis), "bus_voltage");
+  EXPECT_EQ(usual_signal("battery.current", Rig::kAxis), "");
+}
+
+TEST(Meaning, TwoDriveInputsAreInDoubt) {
+  const char* text = "time_s,duty,motor_voltage,speed_rpm\n0,0.1,1,60\n0.01,0.2,2,120\n";
+  ASSERT_EQ(meaning(text).doubts.size(), 1u);
+  EXPECT_NE(meaning(text).doubts[0].find("leave all but one out"), std::string::npos);
+  EXPECT_TRUE(meaning(text, {{"duty", "-", ""}}).doubts.empty());
+}
+
 TEST(Meaning, OfARobotNamesEndInTheWheel) {
   EXPECT_EQ(usual_signal("duty_3", Rig::kRobot), "duty_3");
   EXPECT_EQ(usual_signal("enc1", Rig::kRobot), "encoder_1");

@@ -23,9 +23,10 @@ def drive():
     for n in range(int(RATE * SECONDS)):
         if n % 125 == 0:
             duty = rng.uniform(-0.8, 0.8)
-        i = (duty * U - K * w) / R
-        rows.append((n / RATE, duty, U, i, w, angle))
+        rows.append((n / RATE, duty, U, mean if n else 0.0, w, angle))  # current: the mean since the row before
+        mean = 0.0
         for _ in range(20):
+            mean += (duty * U - K * w) / R / 20
             torque = K * (duty * U - K * w) / R - B * w
             if w == 0.0 and abs(torque) <= C:
                 continue

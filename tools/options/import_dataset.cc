@@ -1,4 +1,4 @@
-#include "tools/import_dataset.h"
+#include "tools/options/import_dataset.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
