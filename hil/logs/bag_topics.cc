@@ -63,7 +63,7 @@ void BagTopics::add(std::uint64_t id, std::int64_t log_time_ns, std::string_view
     return;
   }
   std::int64_t at = log_time_ns;
-  if (numbers.stamp_ns > 0 && std::abs(numbers.stamp_ns - log_time_ns) < kMostApart_ns) {
+  if (numbers.stamp_ns > 0 && log_time_ns >= 0 && std::abs(numbers.stamp_ns - log_time_ns) < kMostApart_ns) {
     at = numbers.stamp_ns;
     ++t.stamped;
   }

@@ -10,7 +10,6 @@
 #include <limits>
 #include <optional>
 
-#include "hil/logs/units.h"
 
 namespace omnihil {
 namespace {

@@ -1,11 +1,17 @@
 #include "hil/logs/topic_series.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
 namespace omnihil {
 
 void TopicSeries::add(const std::string& name, std::int64_t time_ns, double value, const std::string& unit) {
+  if (time_ns < 0) {
+    ++untimed_;
+    return;
+  }
   const auto [it, is_new] = index_.try_emplace(name, samples_.size());
   if (is_new) samples_.push_back({name, unit, {}, {}});
   Samples& s = samples_[it->second];
@@ -31,6 +37,7 @@ LogTable TopicSeries::table(LogFormat format) const {
     before = &s;
     out.series.push_back({s.name, s.unit, s.value, clock});
   }
+  if (untimed_ > 0) out.notes.push_back(fmt::format("{} values with an impossible time left out", untimed_));
   return out;
 }
 

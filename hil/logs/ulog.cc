@@ -82,7 +82,7 @@ class UlogMessage {
   UlogMessage(const UlogFormats& formats, LogBytes& in) : formats_(formats), in_(in) {}
 
   std::vector<std::pair<std::string, double>> values;
-  std::int64_t time_us = -1;
+  std::int64_t time_ns = -1;
   std::string unknown_type;
 
   // False: a type that no format names, or deeper than any real log.
@@ -109,7 +109,7 @@ class UlogMessage {
         if (size == 0) {
           if (!read(field.type, name + ".", depth + 1)) return false;
         } else if (depth == 0 && field.name == "timestamp") {
-          time_us = static_cast<std::int64_t>(in_.number<std::uint64_t>());
+          time_ns = ns_of_us(in_.number<std::uint64_t>());
         } else {
           values.emplace_back(name, value_of(field.type, in_));
         }
@@ -177,10 +177,10 @@ LogTable read_ulog(const std::string& path) {
       UlogMessage reader(formats, message);
       if (!reader.read(to->second.first, to->second.second + ".", 0)) {
         unknown.insert(reader.unknown_type);
-      } else if (reader.time_us < 0) {
+      } else if (reader.time_ns < 0) {
         ++untimed;
       } else {
-        for (const auto& [name, value] : reader.values) topics.add(name, reader.time_us * 1000, value);
+        for (const auto& [name, value] : reader.values) topics.add(name, reader.time_ns, value);
       }
     }
   }

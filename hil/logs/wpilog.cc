@@ -65,7 +65,7 @@ LogTable read_wpilog(const std::string& path) {
       break;
     }
     const std::uint64_t id = in.bytes_number(id_size), size = in.bytes_number(payload_size);
-    const auto time_us = static_cast<std::int64_t>(in.bytes_number(time_size));
+    const std::int64_t time_ns = ns_of_us(in.bytes_number(time_size));
     if (in.left() < size) {
       cut = true;
       break;
@@ -89,7 +89,7 @@ LogTable read_wpilog(const std::string& path) {
     WpilogEntry& e = entry->second;
     const bool is_list = e.type.ends_with("[]");
     const bool taken = numbers_of(e.type, payload, [&](std::size_t i, double value) {
-      topics.add(is_list ? fmt::format("{}[{}]", e.name, i) : e.name, time_us * 1000, value);
+      topics.add(is_list ? fmt::format("{}[{}]", e.name, i) : e.name, time_ns, value);
     });
     e.left_out += !taken;
   }

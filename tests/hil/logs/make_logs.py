@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes one simulated drive in the formats of other tools, from their public documents alone: what `omnihil import` has to read.
 
-    make_logs.py FOLDER          truth.csv, model.toml and one log per format; formats whose Python module is missing are left out
+    make_logs.py FOLDER [SECONDS]          truth.csv, model.toml and one log per format; formats whose Python module is missing are left out
 
 A DC motor with friction, stepped duty, 12 V, 7 pole pairs; the same numbers in each format's own units.
 """
@@ -17,10 +17,10 @@ RATE, SECONDS = 500, 4.0
 TURN = 2 * math.pi
 
 
-def drive():
+def drive(seconds):
     """Rows of (t, duty, bus_V, current_A, velocity_rad_s, position_rad), from an exact step of 0.1 ms."""
     rng, rows, w, angle, duty = random.Random(1), [], 0.0, 0.0, 0.0
-    for n in range(int(RATE * SECONDS)):
+    for n in range(round(RATE * seconds)):
         if n % 125 == 0:
             duty = rng.uniform(-0.8, 0.8)
         rows.append((n / RATE, duty, U, mean if n else 0.0, w, angle))  # current: the mean since the row before
@@ -279,7 +279,7 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.toml").write_text(MODEL)
-    rows = drive()
+    rows = drive(float(sys.argv[2]) if len(sys.argv) > 2 else SECONDS)
     for write in (csv_family, mat, wpilog, ulog, mcap, rosbag):
         write(folder, rows)
 
