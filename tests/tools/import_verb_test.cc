@@ -113,5 +113,21 @@ TEST_F(ImportVerb, FaultsOfTheDataAreSaid) {
   EXPECT_TRUE(ran.says("data fault: ")) << ran.text;
 }
 
+// Real recordings of a robot with three wheels, where they are at hand.
+TEST_F(ImportVerb, LiftedWheelsOfARealRobotBecomeDatasets) {
+  const char* shared = std::getenv("OMNIHIL_SHARED");
+  const fs::path recordings = fs::path(shared == nullptr ? "" : shared) / "data/kiwi_omni";
+  if (!fs::exists(recordings)) GTEST_SKIP() << "no recordings: $OMNIHIL_SHARED/data/kiwi_omni";
+  fs::remove_all(out());
+  const std::string command = "'" OMNIHIL_SOURCE_DIR "/examples/import/kiwi_omni.sh'" + shell(recordings) +
+                              shell(out()) + "'" OMNIHIL_PROGRAM "' </dev/null >/dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  for (const char* wheel : {"wheel_1", "wheel_2", "wheel_3"}) {
+    const Ran ran = run_omnihil("compare" + shell(out() / wheel));
+    EXPECT_EQ(ran.exit_code, 0) << ran.text;
+    EXPECT_TRUE(ran.says("velocity  holdout")) << ran.text;
+  }
+}
+
 }  // namespace
 }  // namespace omnihil

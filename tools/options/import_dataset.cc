@@ -184,7 +184,7 @@ void add_import_dataset_options(Verb& verb, ImportDatasetWords& words) {
       .not_negative();
   verb.add_option("--shaft", words.shaft, "dataset: of the encoder").one_of({"rotor", "output"});
   verb.add_option("--columns", words.columns, "dataset: names of a table without a header line, by commas")
-      .type_name("NAME,…");
+      .type_name("NAMES");
   verb.add_option("--period", words.period_s, "dataset: seconds from row to row, where no column is the time")
       .not_negative();
   verb.add_option("--imposed", words.imposed, "dataset: signals that the bench set, such as motor_current")
