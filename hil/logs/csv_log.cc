@@ -10,7 +10,6 @@
 #include <limits>
 #include <optional>
 
-
 namespace omnihil {
 namespace {
 

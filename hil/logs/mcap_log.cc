@@ -15,8 +15,8 @@
 namespace omnihil {
 namespace {
 
-constexpr std::uint64_t kMostUnpacked = std::uint64_t{1}
-                                        << 30;  // of one chunk: writers make chunks of a megabyte or so
+// Bytes of one chunk: writers make chunks of a megabyte or so.
+constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 28;
 
 std::string unpacked_lz4(std::string_view packed, std::size_t size, const std::string& path) {
   LZ4F_dctx* made = nullptr;

@@ -39,12 +39,20 @@ class ImportVerb : public CliTest {
 fs::path ImportVerb::logs_;
 
 TEST_F(ImportVerb, EveryFormatGivesTheDriveThatWasLogged) {
-  const std::pair<const char*, const char*> all[] = {
-      {"plain.csv", ""},  {"comma.csv", ""},  {"moteus.csv", ""},
-      {"vesc.csv", ""},   {"run4.mat", ""},   {"simplefoc.txt", " --period 0.002"},
-      {"run.mat", ""},    {"run.wpilog", ""}, {"run.ulg", ""},
-      {"plain.mcap", ""}, {"zstd.mcap", ""},  {"lz4.mcap", ""},
-      {"run.db3", ""}};
+  const std::pair<const char*, const char*> all[] = {{"plain.csv", ""},
+                                                     {"comma.csv", ""},
+                                                     {"moteus.csv", ""},
+                                                     {"vesc.csv", ""},
+                                                     {"run4.mat", ""},
+                                                     {"run73.mat", ""},
+                                                     {"simplefoc.txt", " --period 0.002"},
+                                                     {"run.mat", ""},
+                                                     {"run.wpilog", ""},
+                                                     {"run.ulg", ""},
+                                                     {"plain.mcap", ""},
+                                                     {"zstd.mcap", ""},
+                                                     {"lz4.mcap", ""},
+                                                     {"run.db3", ""}};
   for (const auto& [log, flags] : all) {
     if (!fs::exists(logs_ / log)) continue;
     const Ran ran = import(log, std::string(" --split 0.6") + flags);

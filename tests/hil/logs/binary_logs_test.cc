@@ -64,7 +64,7 @@ std::string notes(const LogTable& log) {
 
 constexpr double kSingle = 1e-6;  // of numbers kept in four bytes
 
-TEST(MatLog, VectorsAlsoInStructsOfVersions4And5) {
+TEST(MatLog, VectorsAlsoInStructsOfVersions4To73) {
   if (!fs::exists(logs() / "run.mat")) GTEST_SKIP() << "scipy is not installed (python3-scipy)";
   const LogTable five = read("run.mat");
   EXPECT_EQ(five.format, LogFormat::kMat);
@@ -73,6 +73,8 @@ TEST(MatLog, VectorsAlsoInStructsOfVersions4And5) {
   for (const char* word : {"note", "gain", "picture"})
     EXPECT_NE(notes(five).find(word), std::string::npos) << notes(five);
   expect_same(series(read("run4.mat"), "velocity_rad_s").value, truth("velocity"), 0.0);
+  if (fs::exists(logs() / "run73.mat"))  // python3-h5py
+    expect_same(series(read("run73.mat"), "velocity_rad_s").value, truth("velocity"), 0.0);
 }
 
 TEST(Wpilog, EntriesWithTheirOwnTimes) {

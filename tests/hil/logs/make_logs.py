@@ -77,6 +77,24 @@ def mat(folder, rows):
     scipy.io.savemat(folder / "run4.mat", {"time_s": t, "duty": d, "velocity_rad_s": w}, format="4")
 
 
+def mat_73(folder, rows):
+    """Version 7.3: HDF5 behind a head of 512 bytes; each dataset says its MATLAB class, columns lie as rows."""
+    try:
+        import h5py
+        import numpy
+    except ImportError:
+        return
+    path = folder / "run73.mat"
+    with h5py.File(path, "w", userblock_size=512, libver="earliest") as out:
+        for name, column in (("time_s", 0), ("duty", 1), ("velocity_rad_s", 4)):
+            data = out.create_dataset(name, data=numpy.array([[row[column] for row in rows]]))
+            word = h5py.h5t.C_S1.copy()
+            word.set_size(6)
+            h5py.h5a.create(data.id, b"MATLAB_class", word, h5py.h5s.create(h5py.h5s.SCALAR)).write(numpy.array(b"double"), word)
+    with open(path, "r+b") as out:
+        out.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64, Created by a test".ljust(116) + bytes(8) + b"\x00\x02IM")
+
+
 def wpilog(folder, rows):
     """WPILib data log 1.0: records of a bit field, entry id, size, timestamp in us, payload; entry 0 is control."""
     def number(value, size):
@@ -280,7 +298,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.toml").write_text(MODEL)
     rows = drive(float(sys.argv[2]) if len(sys.argv) > 2 else SECONDS)
-    for write in (csv_family, mat, wpilog, ulog, mcap, rosbag):
+    for write in (csv_family, mat, mat_73, wpilog, ulog, mcap, rosbag):
         write(folder, rows)
 
 
