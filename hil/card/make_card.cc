@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 
 #include "hil/card/card_numbers.h"
@@ -39,6 +43,22 @@ bool fitted_to(const ModelCard& card, const std::string& fingerprint) {
   });
 }
 
+// Throws std::invalid_argument when the user's axes are not among those of these data.
+void check_axes(const std::array<std::string, 2>& axes, const Predictor& predictor, const Candidate& model) {
+  if (axes[0].empty()) return;
+  std::vector<std::string> names;
+  for (int r = 0; r < predictor.run_count(); ++r) {
+    for (const RegimeTrack& track : predictor.regimes(model, r)) {
+      if (std::find(names.begin(), names.end(), track.name) == names.end()) names.push_back(track.name);
+    }
+  }
+  for (const std::string& axis : axes) {
+    if (std::find(names.begin(), names.end(), axis) == names.end())
+      throw std::invalid_argument(
+          fmt::format("--axes {}: these data have no such axis; allowed: {}", axis, fmt::join(names, ", ")));
+  }
+}
+
 CardData data_of(const CardRequest& request, const std::string& path, const DatasetReading& reading,
                  const ModelCard& card) {
   CardData out;
@@ -67,6 +87,7 @@ CardData data_of(const CardRequest& request, const std::string& path, const Data
   out.findings = check_data(dataset, *reading.nominal);
   out.notes = dataset.notes;
   const auto axes = request.axes[0].empty() ? validity_axes(*predictor, *reading.nominal) : request.axes;
+  check_axes(request.axes, *predictor, *reading.nominal);
   std::vector<std::string> signals;
   for (const SignalError& e : out.comparison.errors) {
     if (std::find(signals.begin(), signals.end(), e.signal) == signals.end()) signals.push_back(e.signal);

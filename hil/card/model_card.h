@@ -9,6 +9,7 @@
 // is the test of `omnihil add`: the model without it and with it, the base parameters refitted in both, held against
 // runs that neither was fitted to. Cannot: vouch for regimes without data; say more of an effect than these data can.
 #pragma once
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -103,6 +104,7 @@ struct CardOutcome {
   bool interrupted = false;
 };
 
+// Throws std::invalid_argument where `axes` are none of these data's.
 CardOutcome make_card(const CardRequest& request);
 
 std::string card_html(const ModelCard& card);  // one file, no script, nothing from outside

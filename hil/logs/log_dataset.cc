@@ -165,6 +165,16 @@ std::string readme_of(const std::vector<LogRun>& runs, const LogDataset& made) {
   return out;
 }
 
+// The answer to a doubt goes for all runs: what the first has asked is not asked again of the others.
+void add_doubts(const std::string& path, const std::vector<std::string>& doubts, LogDataset& made) {
+  for (const std::string& doubt : doubts) {
+    const std::string about = doubt.substr(0, doubt.find(" (largest"));
+    const bool asked = std::any_of(made.doubts.begin(), made.doubts.end(),
+                                   [&](const std::string& d) { return d.find(about) != std::string::npos; });
+    if (!asked) made.doubts.push_back(path + ": " + doubt);
+  }
+}
+
 std::string run_toml(const std::string& file, Split use) {
   return fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\n", toml_text(file), split_name(use));
 }
@@ -186,12 +196,9 @@ LogDataset make_log_dataset(const std::vector<LogRun>& runs, const LogDatasetOpt
   std::string run_text, picture;
   for (const LogRun& run : runs) {
     const LogMeaning meaning = recognise(run.table, o.context, o.asked);
-    if (&run == &runs.front() || !meaning.doubts.empty()) {
-      for (std::string& line : table_of(run, meaning, o)) made.table.push_back(std::move(line));
-    }
+    if (&run == &runs.front()) made.table = table_of(run, meaning, o);
     for (const std::string& note : run.table.notes) made.notes.push_back(note);
-    for (const std::string& doubt : meaning.doubts)
-      made.doubts.push_back(runs.size() > 1 ? run.path + ": " + doubt : doubt);
+    add_doubts(run.path, meaning.doubts, made);
     if (!meaning.doubts.empty()) continue;
     const LogRows rows = log_rows(run.table, meaning, o.context, run.path);
     if (rows.time_s.size() < 2)

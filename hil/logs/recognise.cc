@@ -189,14 +189,19 @@ class Recogniser {
       m.unit = unit_by_values(m.signal, log_.series[m.series].value);
       if (!m.unit.empty()) m.because += fmt::format("; no unit, by its values {}", m.unit);
     }
+    if (m.unit.empty() && context_.si) {
+      m.unit = to;
+      m.because += "; unit by --si";
+    }
     if (m.unit.empty()) {
       std::vector<std::string> words;
       for (const std::string& unit : units_for(to)) {
         if (words.size() < 3) words.push_back(fmt::format("--map \"{}={}:{}\"", name(m), m.signal, unit));
       }
-      out_.doubts.push_back(fmt::format(
-          "column \"{}\" is {}, but nothing says in which unit (largest value {:.4g}); give one of: {}",
-          name(m), m.signal, largest_of(log_.series[m.series].value), fmt::join(words, ", or ")));
+      out_.doubts.push_back(
+          fmt::format("column \"{}\" is {}, but nothing says in which unit (largest value {:.4g}); give one "
+                      "of: {}; or --si",
+                      name(m), m.signal, largest_of(log_.series[m.series].value), fmt::join(words, ", or ")));
       return;
     }
     std::string fault;

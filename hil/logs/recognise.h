@@ -46,8 +46,9 @@ struct MeaningContext {
   bool linear = false;
   double pole_pairs = 0.0;  // of the model; 0: not known
   double period_s = 0.0;    // of rows without a time column; 0: none was given
-  std::vector<std::string>
-      imposed{};  // signals that the bench set: a motor_current among them drives the model
+  bool si = false;          // columns whose unit is not said are in the signal's own
+  // Signals that the bench set: a motor_current among them drives the model.
+  std::vector<std::string> imposed{};
 };
 
 LogMeaning recognise(const LogTable& log, const MeaningContext& context, const std::vector<ColumnMap>& asked);

@@ -33,9 +33,9 @@ constexpr Unit kUnits[] = {{"s", "time"},
                            {"rev", "angle", kTurn},
                            {"erad", "angle", 1.0, true},
                            {"rad/s", "speed"},
+                           {"rpm", "speed", kTurn / 60},
                            {"deg/s", "speed", kTurn / 360},
                            {"°/s", "speed", kTurn / 360},
-                           {"rpm", "speed", kTurn / 60},
                            {"turn/s", "speed", kTurn},
                            {"turns/s", "speed", kTurn},
                            {"rev/s", "speed", kTurn},
@@ -112,7 +112,12 @@ std::vector<std::string> units_for(std::string_view to) {
   const Unit* target = find_unit(to);
   if (target == nullptr) return {std::string(to)};
   for (const Unit& u : kUnits) {
-    if (u.kind == target->kind) out.emplace_back(u.name);
+    // One spelling of each.
+    const auto same = [&](const Unit& other) {
+      return other.kind == u.kind && other.factor == u.factor && other.electrical == u.electrical;
+    };
+    if (u.kind == target->kind && std::find_if(std::begin(kUnits), std::end(kUnits), same)->name == u.name)
+      out.emplace_back(u.name);
   }
   return out;
 }

@@ -57,6 +57,9 @@ TEST_F(CardVerb, AGalleryNeedsCardsAndAPlaceForItsPage) {
 
 TEST_F(CardVerb, FaultyInputLeavesNoFile) {
   EXPECT_EQ(card("--axes speed").exit_code, 2);
+  const Ran axes = card("--axes speed,luck");
+  EXPECT_EQ(axes.exit_code, 2) << axes.text;
+  EXPECT_TRUE(axes.says("--axes luck: these data have no such axis; allowed: ")) << axes.text;
   std::ofstream(model_, std::ios::app) << "\n[motor2]\nx = 1\n";
   const Ran ran = card();
   EXPECT_EQ(ran.exit_code, 2) << ran.text;

@@ -114,6 +114,26 @@ TEST_F(ImportVerb, SeveralLogsBecomeRunsOfTheirUse) {
   EXPECT_NE(toml.find("title = \"two runs\""), std::string::npos);
 }
 
+// The columns of a whole robot are known by the wheel's number; a simulated one comes back with the same errors.
+TEST_F(ImportVerb, RobotsComeBackAsTheyWereLogged) {
+  const fs::path made = logs_ / "robot";
+  ASSERT_EQ(run_omnihil("sim omni_default --excite steps --duration 2 --out" + shell(made)).exit_code, 0);
+  const std::string files = shell(made / "steps.csv") + "--holdout" + shell(made / "steps_holdout.csv");
+  fs::remove_all(out());
+  const Ran doubt =
+      run_omnihil("import" + files + "--model omni_default --out" + shell(out()) + "</dev/null");
+  EXPECT_EQ(doubt.exit_code, 2) << doubt.text;
+  EXPECT_EQ(doubt.text.find("gyro_z:rad/s"), doubt.text.rfind("gyro_z:rad/s"))
+      << "asked once, not once a run";
+  const Ran ran = run_omnihil("import" + files + "--model omni_default --si --out" + shell(out()));
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+  const auto error = [](const fs::path& bench) {
+    const nlohmann::json j = nlohmann::json::parse(run_omnihil("compare" + shell(bench) + "--json -").text);
+    return j["holdout"]["gyro_z"]["rmse"].get<double>();
+  };
+  EXPECT_NEAR(error(out()), error(made), 1e-3 * error(made));
+}
+
 // A wrong scale is a fault of the data: the dataset is there, and the exit code says so.
 TEST_F(ImportVerb, FaultsOfTheDataAreSaid) {
   const Ran ran = import("plain.csv", " --map 'speed_rpm=velocity:rad/s' --split 0.6");

@@ -137,7 +137,7 @@ int check_written(const LogDataset& made, const std::string& out) {
 bool ImportDatasetWords::any() const {
   return !holdout.empty() || !extrapolation.empty() || !maps.empty() || !columns.empty() ||
          !imposed.empty() || !model.empty() || !title.empty() || counts_per_rev > 0.0 || period_s > 0.0 ||
-         split < 1.0;
+         split < 1.0 || si;
 }
 
 int import_dataset(ImportDatasetWords words) {
@@ -152,6 +152,7 @@ int import_dataset(ImportDatasetWords words) {
   options.title = words.title.empty() ? fs::path(words.files.front()).stem().string() : words.title;
   options.context.period_s = words.period_s;
   options.context.imposed = words.imposed;
+  options.context.si = words.si;
   if (!take_model(words, options)) return kExitBadInput;
   if (fs::exists(words.out) && !(fs::is_directory(words.out) && fs::is_empty(words.out)))
     throw FileExists(words.out + ": is there already");
@@ -174,6 +175,8 @@ void add_import_dataset_options(Verb& verb, ImportDatasetWords& words) {
   verb.add_option("--model", words.model, "dataset: the nominal model of what was measured, copied into it");
   verb.add_option("--map", words.maps,
                   "dataset: COLUMN=SIGNAL:UNIT says what a column is; COLUMN=- leaves it out");
+  verb.add_flag("--si", words.si,
+                "dataset: columns whose unit is not said are in rad/s, A, V, m, as the signals are");
   verb.add_option("--holdout", words.holdout, "dataset: logs that are never fitted to").type_name("LOG");
   verb.add_option("--extrapolation", words.extrapolation, "dataset: logs of another kind of motion")
       .type_name("LOG");

@@ -113,6 +113,17 @@ TEST(Meaning, WithoutAUnitTheFlagsToGiveAreSaid) {
       meaning("time_s,duty,speed\n0,0.1,60\n0.01,0.2,120\n", {{"speed", "velocity", "rpm"}}).doubts.empty());
 }
 
+TEST(Meaning, SiIsTheUsersWordForUnitsThatAreNotSaid) {
+  MeaningContext context;
+  context.si = true;
+  const LogTable log =
+      parse_csv_log("time_s,duty,speed,current_mA\n0,0.1,60,5\n0.01,0.2,120,6\n", "log.csv", {});
+  const LogMeaning m = recognise(log, context, {});
+  EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
+  EXPECT_EQ(m.of("velocity")->unit, "rad/s");
+  EXPECT_EQ(m.of("motor_current")->unit, "mA");  // said by its name
+}
+
 TEST(Meaning, ADutyBeyondOneIsInDoubt) {
   const LogMeaning m = meaning("time_s,duty,speed_rpm\n0,10,60\n0.01,20,120\n");
   ASSERT_EQ(m.doubts.size(), 1u);
