@@ -1,4 +1,5 @@
-// omnihil import LOG: what a real robot's radio was heard to say, as a recording that `check` takes.
+// omnihil import LOG…: what a real robot's radio was heard to say, as a recording that `check` takes; or logs of numbers, as a
+// dataset.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/logs/log_table.h"
 #include "hil/loop/effect_overrides.h"
 #include "hil/loop/session_checks.h"
 #include "hil/recording/capture_import.h"
@@ -19,6 +21,7 @@
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
 #include "tools/options/capture_options.h"
+#include "tools/options/import_dataset.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -28,6 +31,7 @@ namespace {
 struct ImportWords {
   std::string log, robot = "omni_default", radio, format_file, robots = "0-5", team = "blue", out;
   CaptureWords capture;
+  ImportDatasetWords dataset;
 };
 
 SessionSetup setup_of(const ImportWords& words) {
@@ -78,6 +82,15 @@ ImportedLog text_log(const ImportWords& words, const SessionSetup& setup) {
 }
 
 int run_import(ImportWords words) {
+  if (words.dataset.any() ||
+      (!is_capture_file(words.dataset.files.front()) && looks_like_log(words.dataset.files.front()))) {
+    words.dataset.out = words.out;
+    return import_dataset(words.dataset);
+  }
+  if (words.dataset.files.size() > 1)
+    throw std::invalid_argument(words.dataset.files[1] +
+                                ": a recording is made of one log; several make a dataset, with --model");
+  words.log = words.dataset.files.front();
   if (!words.format_file.empty()) {
     const RadioFormat* format = format_file_or_complain(words.format_file);
     if (format == nullptr) return kExitBadInput;
@@ -120,11 +133,13 @@ int run_import(ImportWords words) {
 
 void add_verb_import(Verb& program, VerbResult& result) {
   auto words = std::make_shared<ImportWords>();
-  Verb verb = program.add_subcommand("import", "what a real robot's radio said, as a recording to check");
+  Verb verb = program.add_subcommand(
+      "import", "logs as what omnihil takes: radio as a recording, numbers as a dataset");
   verb.add_option(
-          "LOG", words->log,
-          "candump, asc, pcap, pcapng, CSV of time and hex, or text, a line each: TIME_S > HEX (host) "
-          "or TIME_S < HEX (robots)")
+          "LOG", words->dataset.files,
+          "radio: candump, asc, pcap, pcapng, CSV of time and hex, or text, a line each: TIME_S > HEX (host) "
+          "or TIME_S < HEX (robots); numbers: CSV (also of ODrive, moteus, VESC, SimpleFOC), .mat, wpilog, "
+          "ULog, MCAP, rosbag2")
       .required();
   verb.add_option("--robot", words->robot, "robot model: a name or a .toml file").capture_default_str();
   verb.add_option("--radio", words->radio, "radio format (default: the robot model's own)");
@@ -132,13 +147,19 @@ void add_verb_import(Verb& program, VerbResult& result) {
   verb.add_option("--robots", words->robots, "robot ids that were on the field: 0-5 or 0,2,7")
       .capture_default_str();
   verb.add_option("--team", words->team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
-  verb.add_option("--out", words->out, "recording to make; what is there is never overwritten").required();
+  verb.add_option("--out", words->out,
+                  "recording, or folder of the dataset, to make; what is there is never overwritten")
+      .required();
   add_capture_options(verb, words->capture);
+  add_import_dataset_options(verb, words->dataset);
   verb.footer(
       "`check RECORDING --explain` then has the model answer the same commands and says what of it differs.\n"
       "Times may begin anywhere (Unix time). What of a capture was left out or taken for granted is said in "
       "notes.\n"
-      "Exit codes: 2 a line that cannot be used, all named; 3 a file.");
+      "A dataset is what `compare` and `diagnose` take; in doubt over a column it is not written and the "
+      "flags to give are said.\n"
+      "Exit codes: 1 the dataset was written, but has a fault of the data; 2 a line that cannot be used, all "
+      "named; 3 a file.");
   verb.callback(
       [words, &result] { result.exit_code = guarded("import", [&] { return run_import(*words); }); });
 }

@@ -1,4 +1,4 @@
-// omnihil models [NAME|PATH] [--check FILE…] [--keys]: lists, explains or checks model files.
+// omnihil models [NAME|PATH] [--check FILE…] [--export FORMAT] [--keys]: lists, explains, checks or exports model files.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -6,13 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "hil/card/card_gallery.h"
 #include "hil/loop/model_store.h"
+#include "hil/model_export/model_export.h"
+#include "hil/text/dataset_files.h"
 #include "hil/text/program_files.h"
 #include "sim/model/model_figures.h"
 #include "sim/model/model_keys.h"
 #include "sim/robot/validate.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
+#include "tools/guarded.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -26,6 +30,7 @@ const std::vector<std::string>& folders() {
 struct Arguments {
   std::string model;
   std::vector<std::string> check;
+  std::string format, out;  // of --export
   bool keys = false;
 };
 
@@ -124,7 +129,7 @@ std::vector<std::string> plant_problems_of(const StoredModel& stored) {
 }
 
 int check(const std::vector<std::string>& files) {
-  std::size_t problems = 0;
+  std::size_t problems = 0, stale = 0;
   for (const std::string& file : files) {
     const StoredModel stored = load_model(file, folders());
     print_problems(stored);
@@ -135,8 +140,12 @@ int check(const std::vector<std::string>& files) {
     if (stored.model && refused.empty())
       std::printf("%s: good (%s)\n", file.c_str(), stored.model->rig.c_str());
     for (const std::string& note : stored.notes) std::printf("note: %s\n", note.c_str());
+    for (const std::string& note : stale_card_notes(stored.bundle.robot_file)) {
+      std::printf("stale card: %s\n", note.c_str());
+      ++stale;
+    }
   }
-  if (problems == 0) return kExitOk;
+  if (problems == 0) return stale == 0 ? kExitOk : kExitDiffers;
   std::fprintf(stderr, "%zu problem%s\n", problems, problems == 1 ? "" : "s");
   return kExitBadInput;
 }
@@ -144,6 +153,39 @@ int check(const std::vector<std::string>& files) {
 int print_keys() {
   std::fputs(model_keys_markdown().c_str(), stdout);
   return kExitOk;
+}
+
+int write_export(const Arguments& a) {
+  if (a.model.empty()) throw std::invalid_argument("--export: needs MODEL, a robot's name or file");
+  const StoredModel stored = load_robot_model(a.model, folders());
+  print_problems(stored);
+  if (!stored.model) return kExitBadInput;
+  const ExportFormat format = a.format == "mjcf"   ? ExportFormat::kMjcf
+                              : a.format == "urdf" ? ExportFormat::kUrdf
+                                                   : ExportFormat::kC;
+  const ModelExport made = export_robot(*stored.model, format, stored.bundle.name);
+  if (!made.problem.empty()) {
+    std::fprintf(stderr, "omnihil models: %s: %s\n", stored.bundle.robot_file.c_str(), made.problem.c_str());
+    return kExitBadInput;
+  }
+  if (a.out.empty()) {
+    std::fputs(made.text.c_str(), stdout);
+  } else {
+    replace_file(a.out, made.text);
+  }
+  std::FILE* to = a.out.empty() ? stderr : stdout;  // the file itself has standard output
+  for (const std::string& line : made.lost) std::fprintf(to, "does not survive: %s\n", line.c_str());
+  for (const std::string& line : made.assumed) std::fprintf(to, "assumed: %s\n", line.c_str());
+  if (!a.out.empty()) std::printf("%s written\n", a.out.c_str());
+  return kExitOk;
+}
+
+int run(const Arguments& a) {
+  if (!a.out.empty() && a.format.empty()) throw std::invalid_argument("--out: goes with --export only");
+  if (!a.format.empty()) return write_export(a);
+  if (a.keys) return print_keys();
+  if (!a.check.empty()) return check(a.check);
+  return a.model.empty() ? list() : explain(a.model);
 }
 
 }  // namespace
@@ -159,13 +201,16 @@ void add_verb_models(Verb& program, VerbResult& result) {
           .excludes(model);
   verb.add_flag("--keys", arguments->keys, "print every key a model file may have (Markdown)")
       .excludes(files);
-  verb.footer("A name is looked for in $OMNIHIL_MODELS, then among the models that come with the program.");
-  verb.callback([arguments, &result] {
-    result.exit_code = arguments->keys             ? print_keys()
-                       : !arguments->check.empty() ? check(arguments->check)
-                       : !arguments->model.empty() ? explain(arguments->model)
-                                                   : list();
-  });
+  verb.add_option("--export", arguments->format,
+                  "write MODEL, a robot, for another program, and say what is lost")
+      .one_of({"mjcf", "urdf", "c"})
+      .excludes(files);
+  verb.add_option("--out", arguments->out, "file of --export (default: standard output)");
+  verb.footer(
+      "A name is looked for in $OMNIHIL_MODELS, then among the models that come with the program.\n"
+      "Exit code 1 of --check: good, but edited since the card beside it was made (omnihil card).");
+  verb.callback(
+      [arguments, &result] { result.exit_code = guarded("models", [&] { return run(*arguments); }); });
 }
 
 }  // namespace omnihil

@@ -1,0 +1,238 @@
+#include "hil/logs/log_dataset.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "hil/logs/log_rows.h"
+#include "hil/text/line_chart.h"
+#include "identify/record/signal_list.h"
+
+namespace omnihil {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A name that a CSV header and a TOML text take as it is.
+std::string plain_name(const std::string& name) {
+  std::string out;
+  for (const char c : name)
+    out += c == ',' || c == '"' || c == '\\' || c == '\n' || c == '\r' || c == '\t' ? '_' : c;
+  return out == "time_s" ? "time_s_" : out;  // the rows' own
+}
+
+std::string toml_text(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + "\"";
+}
+
+std::string csv_text(const LogTable& log, const LogRows& rows, std::size_t from, std::size_t to) {
+  std::string out = "time_s";
+  for (const ColumnMeaning* m : rows.meaning) out += "," + plain_name(log.series[m->series].name);
+  out += "\n";
+  const double first = rows.time_s[from];
+  for (std::size_t i = from; i < to; ++i) {
+    fmt::format_to(std::back_inserter(out), "{:.9g}", rows.time_s[i] - first);
+    for (const std::vector<double>& column : rows.columns) {
+      out += ',';
+      if (std::isfinite(column[i])) fmt::format_to(std::back_inserter(out), "{}", column[i]);
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+std::string picture_of(const LogRows& rows, const LogDatasetOptions& o, const std::string& title) {
+  LineChart chart{
+      .title = title, .x = rows.time_s, .x_label = "time in s", .panels = {}, .shade = {}, .mark = {}};
+  for (std::size_t k = 0; k < rows.meaning.size(); ++k) {
+    const ColumnMeaning& m = *rows.meaning[k];
+    const std::string unit(signal_unit(*find_signal(o.context.rig, m.signal), o.context.linear));
+    ChartCurve curve{m.signal, {}};
+    double last = std::numeric_limits<double>::quiet_NaN();
+    for (const double v : rows.columns[k]) {
+      if (std::isfinite(v)) last = v * m.scale.scale + m.scale.offset;
+      curve.y.push_back(last);  // a slower sensor is drawn as steps
+    }
+    const auto panel = std::find_if(chart.panels.begin(), chart.panels.end(),
+                                    [&](const ChartPanel& p) { return p.unit == unit; });
+    if (panel == chart.panels.end()) {
+      chart.panels.push_back({unit, {std::move(curve)}});
+    } else {
+      panel->curves.push_back(std::move(curve));
+    }
+  }
+  return line_chart(chart);
+}
+
+std::pair<double, double> range_of_values(const std::vector<double>& values) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  return {low, high};
+}
+
+std::vector<std::string> table_of(const LogRun& run, const LogMeaning& meaning, const LogDatasetOptions& o) {
+  std::size_t wide = 6;
+  for (const LogSeries& s : run.table.series) wide = std::max(wide, s.name.size());
+  std::vector<std::string> out = {fmt::format("{:<{}}  {:<20} {:<8} {:<8} {:>8} {:>22}  {}", "column", wide,
+                                              "signal", "unit", "becomes", "samples", "values as logged",
+                                              "because")};
+  for (const ColumnMeaning& m : meaning.columns) {
+    const LogSeries& s = run.table.series[m.series];
+    const auto [low, high] = range_of_values(s.value);
+    const SignalRow* row = m.signal.empty() ? nullptr : find_signal(o.context.rig, m.signal);
+    out.push_back(fmt::format("{:<{}}  {:<20} {:<8} {:<8} {:>8} {:>22}  {}", s.name, wide,
+                              (m.signal.empty() ? "(left out)" : m.signal) + (m.imposed ? ", imposed" : ""),
+                              m.signal.empty() ? "" : m.unit,
+                              row == nullptr ? "" : signal_unit(*row, o.context.linear), s.value.size(),
+                              fmt::format("{:.4g} … {:.4g}", low, high), m.because));
+  }
+  return out;
+}
+
+// Every channel once, as the first run that has it says.
+class Channels {
+ public:
+  Channels(const LogDatasetOptions& o, LogDataset& out) : o_(o), out_(out) {}
+
+  void add(const LogRun& run, const LogRows& rows) {
+    for (const ColumnMeaning* m : rows.meaning) {
+      const std::string column = plain_name(run.table.series[m->series].name);
+      const auto [it, is_new] = lines_.try_emplace(m->signal, line_of(*m, column));
+      if (is_new) {
+        order_.push_back(m->signal);
+      } else if (it->second != line_of(*m, column)) {
+        out_.doubts.push_back(
+            fmt::format("{}: {} is \"{}\" in {} there, other than in the run before; give --map for all runs",
+                        run.path, m->signal, column, m->unit));
+      }
+    }
+  }
+
+  std::string text() const {
+    std::string out = "time = { column = \"time_s\" }\n";
+    for (const std::string& signal : order_) out += lines_.at(signal) + "\n";
+    return out;
+  }
+
+ private:
+  std::string line_of(const ColumnMeaning& m, const std::string& column) {
+    std::string line = fmt::format("{} = {{ column = {}", m.signal, toml_text(column));
+    if (m.scale.scale != 1.0) line += fmt::format(", scale = {}", m.scale.scale);
+    if (m.scale.offset != 0.0) line += fmt::format(", offset = {}", m.scale.offset);
+    if (find_signal(o_.context.rig, m.signal)->role == SignalRole::kCounts) {
+      if (!(o_.counts_per_rev > 0.0) && !said_)
+        out_.doubts.push_back(
+            "an encoder's counts per turn are not known; give --counts-per-rev N (after quadrature), and "
+            "--shaft output where "
+            "it is not on the rotor");
+      said_ = said_ || !(o_.counts_per_rev > 0.0);
+      line += fmt::format(", counts_per_rev = {}", o_.counts_per_rev);
+      if (o_.on_output) line += ", shaft = \"output\"";
+    }
+    if (m.imposed) line += ", role = \"imposed\"";
+    return line + " }";
+  }
+
+  const LogDatasetOptions& o_;
+  LogDataset& out_;
+  std::map<std::string, std::string> lines_;
+  std::vector<std::string> order_;
+  bool said_ = false;
+};
+
+std::string readme_of(const std::vector<LogRun>& runs, const LogDataset& made) {
+  std::string out = "# Imported by omnihil\n\n- Source: ";
+  for (const LogRun& run : runs)
+    out += fmt::format("{}{} ({}, sha256:{})", &run == &runs.front() ? "" : ", ", run.file.name,
+                       log_format_name(run.table.format), run.file.sha256.substr(0, 12));
+  out += "\n- Values are as logged; the scales are in dataset.toml.\n\n```\n";
+  for (const std::string& line : made.table) out += line + "\n";
+  out += "```\n";
+  for (const std::string& note : made.notes) out += "- " + note + "\n";
+  return out;
+}
+
+// The answer to a doubt goes for all runs: what the first has asked is not asked again of the others.
+void add_doubts(const std::string& path, const std::vector<std::string>& doubts, LogDataset& made) {
+  for (const std::string& doubt : doubts) {
+    const std::string about = doubt.substr(0, doubt.find(" (largest"));
+    const bool asked = std::any_of(made.doubts.begin(), made.doubts.end(),
+                                   [&](const std::string& d) { return d.find(about) != std::string::npos; });
+    if (!asked) made.doubts.push_back(path + ": " + doubt);
+  }
+}
+
+std::string run_toml(const std::string& file, Split use) {
+  return fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\n", toml_text(file), split_name(use));
+}
+
+// "walk.wpilog" -> "walk"; of two of one name the second is walk_2.
+std::string stem_of(const std::string& path, std::map<std::string, int>& used) {
+  std::string stem = plain_name(fs::path(path).stem().string());
+  const int n = ++used[stem];
+  return n == 1 ? stem : fmt::format("{}_{}", stem, n);
+}
+
+}  // namespace
+
+LogDataset make_log_dataset(const std::vector<LogRun>& runs, const LogDatasetOptions& o) {
+  LogDataset made;
+  Channels channels(o, made);
+  std::vector<DatasetFile> csv;
+  std::map<std::string, int> used;
+  std::string run_text, picture;
+  for (const LogRun& run : runs) {
+    const LogMeaning meaning = recognise(run.table, o.context, o.asked);
+    if (&run == &runs.front()) made.table = table_of(run, meaning, o);
+    for (const std::string& note : run.table.notes) made.notes.push_back(note);
+    add_doubts(run.path, meaning.doubts, made);
+    if (!meaning.doubts.empty()) continue;
+    const LogRows rows = log_rows(run.table, meaning, o.context, run.path);
+    if (rows.time_s.size() < 2)
+      throw BadLog(fmt::format("{}: {} rows are left; allowed: at least two", run.path, rows.time_s.size()));
+    for (const std::string& note : rows.notes) made.notes.push_back(note);
+    channels.add(run, rows);
+    const std::string stem = stem_of(run.path, used);
+    if (picture.empty()) picture = picture_of(rows, o, run.file.name);
+    std::size_t cut = rows.time_s.size();
+    if (run.use == kTraining && o.fit_share < 1.0) {
+      const double end = rows.time_s.back() * o.fit_share;
+      cut = static_cast<std::size_t>(std::upper_bound(rows.time_s.begin(), rows.time_s.end(), end) -
+                                     rows.time_s.begin());
+      if (cut < 2 || rows.time_s.size() - cut < 2)
+        throw BadLog(
+            fmt::format("{}: --split {:g} leaves a part with less than two rows", run.path, o.fit_share));
+    }
+    csv.push_back({stem + ".csv", csv_text(run.table, rows, 0, cut)});
+    run_text += run_toml(csv.back().name, run.use);
+    if (cut == rows.time_s.size()) continue;
+    csv.push_back({stem + "_holdout.csv", csv_text(run.table, rows, cut, rows.time_s.size())});
+    run_text += run_toml(csv.back().name, kValidation);
+  }
+  if (!made.doubts.empty()) return made;
+  std::string toml = fmt::format(
+      "format = \"omnihil-dataset/1\"\ntitle = {}\nrig = \"{}\"\nmodel = \"model.toml\"\n\n[channels]\n{}{}",
+      toml_text(o.title), o.context.rig == Rig::kAxis ? "axis" : "robot", channels.text(), run_text);
+  if (!made.doubts.empty()) return made;
+  made.files = {{"dataset.toml", std::move(toml)},
+                {"model.toml", o.model_text},
+                {"README.md", readme_of(runs, made)},
+                {"import.svg", std::move(picture)}};
+  for (DatasetFile& f : csv) made.files.push_back(std::move(f));
+  return made;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,221 @@
+// Tables as text, units, and what columns mean: on lines as the tools write them.
+#include "hil/logs/csv_log.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "hil/logs/known_names.h"
+#include "hil/logs/log_rows.h"
+#include "hil/logs/recognise.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+std::string refusal(std::string_view text, const LogOptions& options = {}) {
+  try {
+    parse_csv_log(text, "log.csv", options);
+  } catch (const BadLog& bad) {
+    return bad.what();
+  }
+  return "";
+}
+
+TEST(CsvLog, SeparatorsAndDecimalCommasAreTold) {
+  for (const char* text : {"a,b\n1.5,2\n3,4\n", "a;b\r\n1,5;2\r\n3;4\r\n", "a\tb\n1.5\t2\n3\t4\n",
+                           "a b\n1.5  2\n3 4\n", "\xEF\xBB\xBF# x\n\"a\",b\n1.5,2\n3,4\n"}) {
+    const LogTable log = parse_csv_log(text, "log.csv", {});
+    ASSERT_EQ(log.series.size(), 2u) << text;
+    EXPECT_EQ(log.series[0].name, "a") << text;
+    EXPECT_EQ(log.series[0].value, (std::vector<double>{1.5, 3.0})) << text;
+    EXPECT_EQ(log.series[1].value, (std::vector<double>{2.0, 4.0})) << text;
+  }
+}
+
+TEST(CsvLog, WhatIsNotMeasuredIsMissingAndSaid) {
+  const LogTable log = parse_csv_log("t,v,word\n0,1,on\n1,,off\n2,nan,on\n3,x,on\n4,2", "log.csv", {});
+  ASSERT_EQ(log.series.size(), 2u);
+  EXPECT_EQ(log.series[1].value.size(), 4u);  // the last line is cut
+  EXPECT_TRUE(std::isnan(log.series[1].value[1]) && std::isnan(log.series[1].value[2]) &&
+              std::isnan(log.series[1].value[3]));
+  std::string all;
+  for (const std::string& note : log.notes) all += note + "\n";
+  EXPECT_NE(all.find("log.csv:6: the last line is cut"), std::string::npos) << all;
+  EXPECT_NE(all.find("v: 1 cells are no numbers"), std::string::npos) << all;
+  EXPECT_NE(all.find("columns without a number left out: word"), std::string::npos) << all;
+}
+
+TEST(CsvLog, BrokenTablesAreRefusedWithTheirLine) {
+  EXPECT_NE(refusal("t,v\n0,1\n1,2,3\n2,3\n").find("log.csv:3: 3 cells; allowed: 2"), std::string::npos);
+  EXPECT_NE(refusal("t,t\n0,1\n1,2\n").find("stands twice"), std::string::npos);
+  EXPECT_NE(refusal("t,v\n").find("has 1 lines"), std::string::npos);
+  EXPECT_NE(refusal("0,1,2\n1,2,3\n").find("--columns"), std::string::npos);
+  EXPECT_NE(refusal("0,1,2\n1,2,3\n", {{"a", "b"}}).find("2 names, the table 3 columns"), std::string::npos);
+  EXPECT_NE(refusal("a,b\nx,y\nz,w\n").find("has no numbers"), std::string::npos);
+}
+
+// The first lines of a log that VESC Tool's app wrote, with columns left out; each ends in a semicolon.
+TEST(CsvLog, VescToolsLogIsKnownByItsColumns) {
+  const LogTable log = parse_csv_log(
+      "ms_today;input_voltage;temp_motor;current_motor;q_axis_current;erpm;duty_cycle;fault_code;\n"
+      "80069026;55.3;26.9;0;0;0;0;0;\n80069188;55.3;26.9;0.5;0.4;4200;0.25;0;\n80069300;55.2;26.9;0.5;0.4;"
+      "4300;0.25;0;\n",
+      "vesc.csv", {});
+  EXPECT_EQ(log.format, LogFormat::kVesc);
+  MeaningContext context;
+  context.pole_pairs = 7;
+  const LogMeaning m = recognise(log, context, {});
+  EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
+  ASSERT_NE(m.of("velocity"), nullptr);
+  EXPECT_DOUBLE_EQ(m.of("velocity")->scale.scale, kTurn / 60 / 7);
+  EXPECT_EQ(log.series[m.of("motor_current")->series].name, "q_axis_current");  // before current_motor
+  EXPECT_DOUBLE_EQ(m.of("time")->scale.scale, 1e-3);
+  context.pole_pairs = 0;
+  ASSERT_EQ(recognise(log, context, {}).doubts.size(), 1u);
+  EXPECT_NE(recognise(log, context, {}).doubts[0].find("motor.pole_pairs"), std::string::npos);
+}
+
+TEST(CsvLog, SimpleFocsMonitorNeedsNoHeaderButAPeriod) {
+  const LogTable log =
+      parse_csv_log("MOT: Ready.\n2.0\t1.5\t10.2\t0.1\n2.0\t1.6\t10.4\t0.2\n", "mon.txt", {});
+  EXPECT_EQ(log.format, LogFormat::kSimpleFoc);
+  MeaningContext context;
+  EXPECT_NE(recognise(log, context, {}).doubts.at(0).find("--period"), std::string::npos);
+  context.period_s = 0.001;
+  const LogMeaning m = recognise(log, context, {});
+  EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
+  EXPECT_EQ(log.series[m.of("motor_voltage")->series].value[1], 1.6);
+  EXPECT_EQ(log_rows(log, m, context, "mon.txt").time_s[1], 0.001);
+}
+
+LogMeaning meaning(std::string_view text, std::vector<ColumnMap> asked = {}) {
+  return recognise(parse_csv_log(text, "log.csv", {}), {}, asked);
+}
+
+TEST(Meaning, AUnitInTheNameSettlesIt) {
+  const LogMeaning m = meaning("t_ms,pwm_percent,speed [rpm],I (mA)\n0,10,60,1\n1,20,120,2\n",
+                               {{"I (mA)", "motor_current", "mA"}});
+  EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
+  EXPECT_DOUBLE_EQ(m.of("time")->scale.scale, 1e-3);
+  EXPECT_DOUBLE_EQ(m.of("duty")->scale.scale, 0.01);
+  EXPECT_DOUBLE_EQ(m.of("velocity")->scale.scale, kTurn / 60);
+  EXPECT_DOUBLE_EQ(m.of("motor_current")->scale.scale, 1e-3);
+}
+
+TEST(Meaning, WithoutAUnitTheFlagsToGiveAreSaid) {
+  const LogMeaning m = meaning("time_s,duty,speed\n0,0.1,60\n0.01,0.2,120\n");
+  ASSERT_EQ(m.doubts.size(), 1u);
+  EXPECT_NE(m.doubts[0].find("--map \"speed=velocity:rad/s\""), std::string::npos) << m.doubts[0];
+  EXPECT_TRUE(
+      meaning("time_s,duty,speed\n0,0.1,60\n0.01,0.2,120\n", {{"speed", "velocity", "rpm"}}).doubts.empty());
+}
+
+TEST(Meaning, SiIsTheUsersWordForUnitsThatAreNotSaid) {
+  MeaningContext context;
+  context.si = true;
+  const LogTable log =
+      parse_csv_log("time_s,duty,speed,current_mA\n0,0.1,60,5\n0.01,0.2,120,6\n", "log.csv", {});
+  const LogMeaning m = recognise(log, context, {});
+  EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
+  EXPECT_EQ(m.of("velocity")->unit, "rad/s");
+  EXPECT_EQ(m.of("motor_current")->unit, "mA");  // said by its name
+}
+
+TEST(Meaning, ADutyBeyondOneIsInDoubt) {
+  const LogMeaning m = meaning("time_s,duty,speed_rpm\n0,10,60\n0.01,20,120\n");
+  ASSERT_EQ(m.doubts.size(), 1u);
+  EXPECT_NE(m.doubts[0].find("duty=duty:%"), std::string::npos) << m.doubts[0];
+}
+
+TEST(Meaning, AClockInOddStepsIsInDoubt) {
+  EXPECT_EQ(meaning("t,duty,speed_rpm\n0,0.1,1\n10,0.2,2\n20,0.2,2\n").doubts.size(), 1u);
+  EXPECT_TRUE(meaning("t,duty,speed_rpm\n0,0.1,1\n0.01,0.2,2\n0.02,0.2,2\n").doubts.empty());
+}
+
+TEST(Meaning, TwoColumnsForOneSignalAreInDoubtUntilOneIsNamed) {
+  const char* text = "time_s,duty,speed_rpm,omega_rad_s\n0,0.1,60,6\n0.01,0.2,120,12\n";
+  ASSERT_EQ(meaning(text).doubts.size(), 1u);
+  EXPECT_NE(meaning(text).doubts[0].find("2 columns may be velocity"), std::string::npos);
+  const LogMeaning m = meaning(text, {{"omega_rad_s", "velocity", "rad/s"}});
+  EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
+  EXPECT_EQ(m.of("velocity")->series, 3u);
+}
+
+TEST(Meaning, MissingDriveOrMotionIsSaid) {
+  EXPECT_NE(meaning("time_s,speed_rpm\n0,1\n1e-2,2\n")
+                .doubts.at(0)
+                .find("no column is what was asked of the drive"),
+            std::string::npos);
+  EXPECT_NE(meaning("time_s,duty\n0,1\n1e-2,0.2\n").doubts.at(0).find("no column is a motion"),
+            std::string::npos);
+}
+
+TEST(Meaning, MisspeltMapsAreNamed) {
+  const LogMeaning m = meaning("time_s,duty,speed_rpm\n0,0.1,60\n0.01,0.2,120\n",
+                               {{"sped_rpm", "velocity", "rpm"}, {"duty", "dutty", "1"}});
+  ASSERT_GE(m.doubts.size(), 2u);
+  EXPECT_NE(m.doubts[0].find("did you mean \"speed_rpm\""), std::string::npos) << m.doubts[0];
+  EXPECT_NE(m.doubts[1].find("did you mean \"duty\""), std::string::npos) << m.doubts[1];
+  std::vector<std::string> faults;
+  parse_map("speed", faults);
+  parse_map("speed=velocity:furlong", faults);
+  EXPECT_EQ(faults.size(), 2u);
+}
+
+TEST(Meaning, ANameOfTwoSignalsIsInDoubt) {
+  const char* text = "time_s,voltage_V,speed_rpm\n0,1,60\n0.01,2,120\n";
+  ASSERT_GE(meaning(text).doubts.size(), 1u);
+  EXPECT_NE(meaning(text).doubts[0].find("may be motor_voltage or bus_voltage"), std::string::npos)
+      << meaning(text).doubts[0];
+  EXPECT_TRUE(meaning(text, {{"voltage_V", "motor_voltage", "V"}}).doubts.empty());
+  EXPECT_EQ(usual_signal("battery_status.voltage", Rig::kAxis), "bus_voltage");
+  EXPECT_EQ(usual_signal("battery.current", Rig::kAxis), "");
+}
+
+TEST(Meaning, TwoDriveInputsAreInDoubt) {
+  const char* text = "time_s,duty,motor_voltage,speed_rpm\n0,0.1,1,60\n0.01,0.2,2,120\n";
+  ASSERT_EQ(meaning(text).doubts.size(), 1u);
+  EXPECT_NE(meaning(text).doubts[0].find("leave all but one out"), std::string::npos);
+  EXPECT_TRUE(meaning(text, {{"duty", "-", ""}}).doubts.empty());
+}
+
+TEST(Meaning, OfARobotNamesEndInTheWheel) {
+  EXPECT_EQ(usual_signal("duty_3", Rig::kRobot), "duty_3");
+  EXPECT_EQ(usual_signal("enc1", Rig::kRobot), "encoder_1");
+  EXPECT_EQ(usual_signal("enc0", Rig::kRobot), "");
+  EXPECT_EQ(usual_signal("enc5", Rig::kRobot), "");
+  EXPECT_EQ(usual_signal("Motor Current 4", Rig::kRobot), "motor_current_4");
+  EXPECT_EQ(usual_signal("/drive/velocity", Rig::kAxis), "velocity");
+}
+
+TEST(Units, LeadToTheSignalsOwn) {
+  std::string fault;
+  EXPECT_DOUBLE_EQ(unit_scale("turn/s", "rad/s", {}, fault)->scale, kTurn);
+  EXPECT_DOUBLE_EQ(unit_scale("deg", "rad", {}, fault)->scale, kTurn / 360);
+  EXPECT_DOUBLE_EQ(unit_scale("erad/s", "rad/s", {4}, fault)->scale, 0.25);
+  EXPECT_DOUBLE_EQ(unit_scale("mNm", "N m", {}, fault)->scale, 1e-3);
+  EXPECT_FALSE(unit_scale("A", "rad/s", {}, fault));
+  EXPECT_NE(fault.find("allowed: rad/s"), std::string::npos) << fault;
+  EXPECT_EQ(split_unit("current_A").second, "A");
+  EXPECT_EQ(split_unit("omega_rad_s"), (std::pair<std::string, std::string>("omega", "rad/s")));
+  EXPECT_EQ(split_unit("alpha_a").second, "");
+}
+
+TEST(Rows, ClocksThatGoBackwardsAreRefusedRepeatedOnesCounted) {
+  MeaningContext context;
+  const LogTable back =
+      parse_csv_log("time_s,duty,speed_rpm\n0,0.1,60\n0.02,0.2,120\n0.01,0.2,120\n", "log.csv", {});
+  EXPECT_THROW(log_rows(back, recognise(back, context, {}), context, "log.csv"), BadLog);
+  const LogTable twice =
+      parse_csv_log("time_s,duty,speed_rpm\n5,0.1,60\n5.01,0.2,120\n5.01,0.2,120\n,1,1\n", "log.csv", {});
+  const LogRows rows = log_rows(twice, recognise(twice, context, {}), context, "log.csv");
+  EXPECT_EQ(rows.time_s.size(), 2u);
+  EXPECT_EQ(rows.time_s[0], 0.0);
+  EXPECT_EQ(rows.notes.size(), 2u);
+}
+
+}  // namespace
+}  // namespace omnihil

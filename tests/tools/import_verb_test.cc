@@ -1,0 +1,161 @@
+// `omnihil import` of logs of numbers: from every format a dataset that the model of the simulated drive fits.
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli.h"
+
+namespace omnihil {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImportVerb : public CliTest {
+ protected:
+  static void SetUpTestSuite() {
+    logs_ = fs::temp_directory_path() / "omnihil-import-verb";
+    fs::remove_all(logs_);
+    const std::string command =
+        "/usr/bin/python3 '" OMNIHIL_SOURCE_DIR "/tests/hil/logs/make_logs.py' '" + logs_.string() + "'";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+  }
+  static void TearDownTestSuite() { fs::remove_all(logs_); }
+
+  Ran import(const std::string& log, const std::string& more = "") const {
+    fs::remove_all(out());
+    return run_omnihil("import" + shell(logs_ / log) + "--model" + shell(logs_ / "model.toml") + "--out" +
+                       shell(out()) + more + " </dev/null");
+  }
+  static fs::path out() { return logs_ / "made"; }
+
+  // Of the held-out run, in rad/s; the drive was simulated in Python, in steps of 0.1 ms.
+  static double velocity_error() {
+    const Ran ran = run_omnihil("compare" + shell(out()) + "--json -");
+    const nlohmann::json j = nlohmann::json::parse(ran.text, nullptr, false);
+    return j.is_discarded() ? 1e9 : j["holdout"]["velocity"]["rmse"].get<double>();
+  }
+  static fs::path logs_;
+};
+fs::path ImportVerb::logs_;
+
+TEST_F(ImportVerb, EveryFormatGivesTheDriveThatWasLogged) {
+  const std::pair<const char*, const char*> all[] = {{"plain.csv", ""},
+                                                     {"comma.csv", ""},
+                                                     {"moteus.csv", ""},
+                                                     {"vesc.csv", ""},
+                                                     {"run4.mat", ""},
+                                                     {"run73.mat", ""},
+                                                     {"simplefoc.txt", " --period 0.002"},
+                                                     {"run.mat", ""},
+                                                     {"run.wpilog", ""},
+                                                     {"run.ulg", ""},
+                                                     {"plain.mcap", ""},
+                                                     {"zstd.mcap", ""},
+                                                     {"lz4.mcap", ""},
+                                                     {"run.db3", ""}};
+  for (const auto& [log, flags] : all) {
+    if (!fs::exists(logs_ / log)) continue;
+    const Ran ran = import(log, std::string(" --split 0.6") + flags);
+    EXPECT_EQ(ran.exit_code, 0) << log << "\n" << ran.text;
+    EXPECT_TRUE(ran.says("2 runs, 2000 rows")) << log << "\n" << ran.text;
+    EXPECT_LT(velocity_error(), 0.15) << log;  // of 175 rad/s rms; the two simulations' steps differ
+    EXPECT_TRUE(fs::exists(out() / "import.svg")) << log;
+  }
+}
+
+// Torque-controlled: the model is run the other way round.
+TEST_F(ImportVerb, OdriveLogsAreDrivenByTheirTorque) {
+  const Ran ran = import("odrive.csv", " --split 0.6");
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+  EXPECT_NE(
+      text_of(out() / "dataset.toml").find("motor_torque = { column = \"axis0.controller.input_torque\" }"),
+      std::string::npos);
+  EXPECT_EQ(run_omnihil("compare" + shell(out())).exit_code, 0);
+}
+
+TEST_F(ImportVerb, InDoubtTheFlagsAreSaidAndNothingIsWritten) {
+  std::ofstream(logs_ / "doubt.csv") << "time_s,duty,speed\n0,0.1,1\n0.01,0.2,2\n0.02,0.2,3\n";
+  const Ran ran = import("doubt.csv");
+  EXPECT_EQ(ran.exit_code, 2) << ran.text;
+  EXPECT_TRUE(ran.says("--map \"speed=velocity:rad/s\"")) << ran.text;
+  EXPECT_FALSE(fs::exists(out()));
+  const Ran given = import("doubt.csv", " --map speed=velocity:rpm");
+  EXPECT_NE(given.exit_code, 2) << given.text;
+  EXPECT_NE(text_of(out() / "dataset.toml").find("velocity = { column = \"speed\", scale = 0.1047"),
+            std::string::npos);
+}
+
+TEST_F(ImportVerb, UnusableInputIsNamedAndNothingIsWritten) {
+  std::ofstream(logs_ / "back.csv") << "time_s,duty,velocity_rad_s\n0,0.1,1\n0.02,0.2,2\n0.01,0.2,3\n";
+  const Ran back = import("back.csv");
+  EXPECT_EQ(back.exit_code, 2) << back.text;
+  EXPECT_TRUE(back.says("row 3: time goes backwards")) << back.text;
+  EXPECT_FALSE(fs::exists(out()));
+  const Ran no_model = run_omnihil("import" + shell(logs_ / "plain.csv") + "--out" + shell(out()));
+  EXPECT_EQ(no_model.exit_code, 2);
+  EXPECT_TRUE(no_model.says("--model: found none")) << no_model.text;
+  EXPECT_EQ(import("plain.csv", " --map nonsense").exit_code, 2);
+  std::ofstream(logs_ / "noise.bin", std::ios::binary) << std::string("\0\1\2\3noise", 9);
+  EXPECT_EQ(import("noise.bin").exit_code, 2);
+  fs::create_directories(out());
+  std::ofstream(out() / "mine") << "x";
+  EXPECT_EQ(run_omnihil("import" + shell(logs_ / "plain.csv") + "--model" + shell(logs_ / "model.toml") +
+                        "--out" + shell(out()))
+                .exit_code,
+            2);
+  EXPECT_TRUE(fs::exists(out() / "mine"));
+}
+
+TEST_F(ImportVerb, SeveralLogsBecomeRunsOfTheirUse) {
+  const Ran ran = import("plain.csv", " --holdout" + shell(logs_ / "plain.csv") + "--title 'two runs'");
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+  const std::string toml = text_of(out() / "dataset.toml");
+  EXPECT_NE(toml.find("file = \"plain_2.csv\"\nuse = \"holdout\""), std::string::npos) << toml;
+  EXPECT_NE(toml.find("title = \"two runs\""), std::string::npos);
+}
+
+// The columns of a whole robot are known by the wheel's number; a simulated one comes back with the same errors.
+TEST_F(ImportVerb, RobotsComeBackAsTheyWereLogged) {
+  const fs::path made = logs_ / "robot";
+  ASSERT_EQ(run_omnihil("sim omni_default --excite steps --duration 2 --out" + shell(made)).exit_code, 0);
+  const std::string files = shell(made / "steps.csv") + "--holdout" + shell(made / "steps_holdout.csv");
+  fs::remove_all(out());
+  const Ran doubt =
+      run_omnihil("import" + files + "--model omni_default --out" + shell(out()) + "</dev/null");
+  EXPECT_EQ(doubt.exit_code, 2) << doubt.text;
+  EXPECT_EQ(doubt.text.find("gyro_z:rad/s"), doubt.text.rfind("gyro_z:rad/s"))
+      << "asked once, not once a run";
+  const Ran ran = run_omnihil("import" + files + "--model omni_default --si --out" + shell(out()));
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+  const auto error = [](const fs::path& bench) {
+    const nlohmann::json j = nlohmann::json::parse(run_omnihil("compare" + shell(bench) + "--json -").text);
+    return j["holdout"]["gyro_z"]["rmse"].get<double>();
+  };
+  EXPECT_NEAR(error(out()), error(made), 1e-3 * error(made));
+}
+
+// A wrong scale is a fault of the data: the dataset is there, and the exit code says so.
+TEST_F(ImportVerb, FaultsOfTheDataAreSaid) {
+  const Ran ran = import("plain.csv", " --map 'speed_rpm=velocity:rad/s' --split 0.6");
+  EXPECT_EQ(ran.exit_code, 1) << ran.text;
+  EXPECT_TRUE(ran.says("data fault: ")) << ran.text;
+}
+
+// Real recordings of a robot with three wheels, where they are at hand.
+TEST_F(ImportVerb, LiftedWheelsOfARealRobotBecomeDatasets) {
+  const char* shared = std::getenv("OMNIHIL_SHARED");
+  const fs::path recordings = fs::path(shared == nullptr ? "" : shared) / "data/kiwi_omni";
+  if (!fs::exists(recordings)) GTEST_SKIP() << "no recordings: $OMNIHIL_SHARED/data/kiwi_omni";
+  fs::remove_all(out());
+  const std::string command = "'" OMNIHIL_SOURCE_DIR "/examples/import/kiwi_omni.sh'" + shell(recordings) +
+                              shell(out()) + "'" OMNIHIL_PROGRAM "' </dev/null >/dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  for (const char* wheel : {"wheel_1", "wheel_2", "wheel_3"}) {
+    const Ran ran = run_omnihil("compare" + shell(out() / wheel));
+    EXPECT_EQ(ran.exit_code, 0) << ran.text;
+    EXPECT_TRUE(ran.says("velocity  holdout")) << ran.text;
+  }
+}
+
+}  // namespace
+}  // namespace omnihil
