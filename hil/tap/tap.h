@@ -1,7 +1,7 @@
 // Between an AI host and its real dongle: every byte passes both ways, unchanged and in order, and is recorded on the way.
 //
 //   Tap tap(std::move(host_wire), std::move(dongle_wire), recorder, 1'000'000);
-//   while (tap.pass(now_ns)) wait_for_either(tap.host_handle(), tap.dongle_handle(), 1'000'000);
+//   while (tap.pass(now_ns)) wait_for(tap.host_handle(), 1'000'000, false);       // or as tap_loop.h does
 //   tap.counts().to_dongle, tap.problem();
 //
 // What the far end does not take at once waits in a queue, in its order: a host is stopped by its own full port only when
@@ -16,6 +16,7 @@
 
 #include "hil/loop/session.h"
 #include "hil/wire/byte_wire.h"
+#include "hil/wire/descriptor.h"
 
 namespace omnihil {
 

@@ -24,6 +24,7 @@ void wait_for_either(int a, int b) {
 
 // Of what is kept; every further one replaces a kept one in turn, so that a long run is told by its end.
 constexpr std::size_t kKept = 1 << 20;
+constexpr int kLastPasses = 64;  // of 4 kB: both queues and what a pty holds
 
 }  // namespace
 
@@ -47,6 +48,10 @@ TapRun run_tap(Tap& tap, const std::function<bool()>& stop) {
       delay_us[run.delay.passes % kKept] = taken_us;
     }
     ++run.delay.passes;
+  }
+  // What waits when the user stops it still belongs to the record.
+  for (int n = 0; n < kLastPasses && !run.lost; ++n) {
+    if (!tap.pass(since_start()) || !tap.moved()) break;
   }
   run.end_ns = since_start();
   if (delay_us.empty()) return run;

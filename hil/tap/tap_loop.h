@@ -1,7 +1,7 @@
 // The tap's loop on the wall clock, and its own delay.
 //
-//   const TapRun run = run_tap(tap, [] { return StopSignals::requested(); });
-//   run.delay_ns.p50, run.delay_ns.p99;       // from bytes that wait until they are handed on
+//   const TapRun run = run_tap(tap, [] { return false; });      // or when a signal came
+//   run.delay.p50_us, run.delay.p99_us;       // from bytes that wait until they are handed on
 //
 // Sleeps until either side has something, 1 ms at most: a host that opens its port is noticed then.
 #pragma once
