@@ -26,10 +26,11 @@ bool Tap::take(End& from, End& to, std::int64_t now_ns, bool from_host) {
   if (read_.empty()) return true;
   moved_ = true;
   if (recorder_ != nullptr) {
+    recorded_ns_ = std::max(recorded_ns_, from_host ? next_step_ns(now_ns) : now_ns);
     if (from_host) {
-      recorder_->host_bytes((now_ns + step_ns_ - 1) / step_ns_ * step_ns_, read_);
+      recorder_->host_bytes(recorded_ns_, read_);
     } else {
-      recorder_->dongle_bytes(now_ns, read_);
+      recorder_->dongle_bytes(recorded_ns_, read_);
     }
   }
   to.waiting.insert(to.waiting.end(), read_.begin(), read_.end());
@@ -57,7 +58,8 @@ bool Tap::pass(std::int64_t now_ns) {
   if (!take(host_, dongle_, now_ns, true) || !give(dongle_, counts_.to_dongle)) return false;
   if (host_.wire->take_peer_closed()) {
     ++counts_.host_left;
-    if (recorder_ != nullptr) recorder_->host_closed((now_ns + step_ns_ - 1) / step_ns_ * step_ns_);
+    recorded_ns_ = std::max(recorded_ns_, next_step_ns(now_ns));
+    if (recorder_ != nullptr) recorder_->host_closed(recorded_ns_);
   }
   return take(dongle_, host_, now_ns, false) && give(host_, counts_.to_host);
 }

@@ -6,7 +6,8 @@
 //
 // What the far end does not take at once waits in a queue, in its order: a host is stopped by its own full port only when
 // 64 kB wait. Bytes of a dongle for which no host is there are recorded and dropped, as a serial line drops them.
-// Times of the recording: a dongle's bytes when they were read, a host's at the next loop step, as `import` has them.
+// Times of the recording: a host's bytes at the next loop step, as `import` has them; a dongle's when they were read, but
+// not before what came earlier.
 // Pure but for its wires: the caller has the clock. Cannot: line settings of the host's side, which a pty does not tell.
 #pragma once
 #include <cstdint>
@@ -57,7 +58,12 @@ class Tap {
 
   End host_, dongle_;
   SessionObserver* recorder_;
+  std::int64_t next_step_ns(std::int64_t now_ns) const {
+    return (now_ns + step_ns_ - 1) / step_ns_ * step_ns_;
+  }
+
   std::int64_t step_ns_;
+  std::int64_t recorded_ns_ = 0;  // last time in the recording, which never goes back
   std::vector<std::uint8_t> read_;
   TapCounts counts_;
   std::string problem_;

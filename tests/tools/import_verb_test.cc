@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 class ImportVerb : public CliTest {
  protected:
   static void SetUpTestSuite() {
-    logs_ = fs::temp_directory_path() / "omnihil-import-verb";
+    logs_ = fs::temp_directory_path() / ("omnihil-import-verb-" + std::to_string(::getpid()));
     fs::remove_all(logs_);
     const std::string command =
         "/usr/bin/python3 '" OMNIHIL_SOURCE_DIR "/tests/hil/logs/make_logs.py' '" + logs_.string() + "'";
@@ -125,7 +125,8 @@ TEST_F(ImportVerb, RobotsComeBackAsTheyWereLogged) {
   EXPECT_EQ(doubt.exit_code, 2) << doubt.text;
   EXPECT_EQ(doubt.text.find("gyro_z:rad/s"), doubt.text.rfind("gyro_z:rad/s"))
       << "asked once, not once a run";
-  const Ran ran = run_omnihil("import" + files + "--model omni_default --si --out" + shell(out()));
+  const Ran ran =
+      run_omnihil("import" + files + "--model" + shell(made / "model.toml") + "--si --out" + shell(out()));
   EXPECT_EQ(ran.exit_code, 0) << ran.text;
   const auto error = [](const fs::path& bench) {
     const nlohmann::json j = nlohmann::json::parse(run_omnihil("compare" + shell(bench) + "--json -").text);

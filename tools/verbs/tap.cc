@@ -105,8 +105,7 @@ void add_verb_tap(Verb& program, VerbResult& result) {
   auto words = std::make_shared<TapWords>();
   Verb verb =
       program.add_subcommand("tap", "between an AI host and its real dongle: passes every byte, records it");
-  verb.add_option("DEVICE", words->dongle,
-                  "the real dongle: a serial device, or a wire by URL (udp:, tcp:, pty: …)")
+  verb.add_option("DEVICE", words->dongle, "the real dongle: a serial device, or a wire by URL (udp:, tcp:)")
       .required();
   verb.add_option("--device", words->device, "what the host opens instead: a path, or a wire by URL")
       .capture_default_str();

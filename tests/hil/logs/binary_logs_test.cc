@@ -1,5 +1,6 @@
 // Logs of other tools, written by Python from the formats' documents, come back with the numbers that went in.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -17,7 +18,8 @@ namespace fs = std::filesystem;
 
 const fs::path& logs() {
   static const fs::path folder = [] {
-    const fs::path made = fs::temp_directory_path() / "omnihil-logs-of-others";
+    const fs::path made =
+        fs::temp_directory_path() / ("omnihil-logs-of-others-" + std::to_string(::getpid()));
     fs::remove_all(made);
     const std::string command =
         "/usr/bin/python3 '" OMNIHIL_SOURCE_DIR "/tests/hil/logs/make_logs.py' '" + made.string() + "'";
@@ -141,7 +143,7 @@ TEST(RosbagLog, KnownTypesNeedNoDefinition) {
 
 // Every reader, on every beginning of a file: it reads what is whole, or refuses; it never reads beyond.
 TEST(BinaryLogs, FilesThatEndEarlyAreReadAsFarAsTheyGoOrRefused) {
-  const fs::path cut = fs::temp_directory_path() / "omnihil-cut-log";
+  const fs::path cut = fs::temp_directory_path() / ("omnihil-cut-log-" + std::to_string(::getpid()));
   for (const char* name :
        {"run.wpilog", "run.ulg", "plain.mcap", "chunk.mcap", "zstd.mcap", "run.db3", "run.mat"}) {
     if (!fs::exists(logs() / name)) continue;
@@ -170,7 +172,7 @@ TEST(BinaryLogs, FilesThatEndEarlyAreReadAsFarAsTheyGoOrRefused) {
 }
 
 TEST(BinaryLogs, RandomBytesBehindAGoodHeadDoNoHarm) {
-  const fs::path noise = fs::temp_directory_path() / "omnihil-noise-log";
+  const fs::path noise = fs::temp_directory_path() / ("omnihil-noise-log-" + std::to_string(::getpid()));
   std::uint32_t state = 1;
   for (const std::string& head :
        {std::string("WPILOG\0\x01\0\0\0\0", 12), std::string("ULog\x01\x12\x35\x01") + std::string(8, '\0'),

@@ -2,6 +2,7 @@
 #include "hil/model_export/model_export.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -27,7 +28,9 @@ const ModelFile& model(const std::string& name = "omni_default") {
   return *it->second.model;
 }
 
-fs::path file(const std::string& name) { return fs::temp_directory_path() / ("omnihil-export-" + name); }
+fs::path file(const std::string& name) {
+  return fs::temp_directory_path() / ("omnihil-export-" + std::to_string(::getpid()) + "-" + name);
+}
 
 fs::path written(const std::string& name, const std::string& text) {
   std::ofstream(file(name), std::ios::binary) << text;

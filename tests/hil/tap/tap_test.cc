@@ -99,7 +99,11 @@ TEST(Tap, AHostsBytesAreRecordedAtTheNextStepADonglesWhenTheyCame) {
   b.dongle.arrives = {2};
   ASSERT_TRUE(b.tap.pass(2'300'000));
   EXPECT_EQ(b.recorder.host_ns, std::vector<std::int64_t>{3'000'000});
-  EXPECT_EQ(b.recorder.dongle_ns, std::vector<std::int64_t>{2'300'000});
+  EXPECT_EQ(b.recorder.dongle_ns,
+            std::vector<std::int64_t>{3'000'000});  // the recording's time never goes back
+  b.dongle.arrives = {4};
+  ASSERT_TRUE(b.tap.pass(3'300'000));
+  EXPECT_EQ(b.recorder.dongle_ns.back(), 3'300'000);
 }
 
 TEST(Tap, ADongleThatTakesNothingStopsTheHostAtItsOwnPort) {
