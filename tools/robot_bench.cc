@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -51,10 +52,19 @@ Duties duties_of(const RobotModel& m, double forward, double left, double turn) 
   return d;
 }
 
+// Largest change of a duty in a second that a tyre follows without skidding: half of what its grip can accelerate, over the
+// rim's speed at full duty. A robot that skids shows its floor and little else.
+double gentle_slew_per_s(const RobotModel& m) {
+  const double full_m_s =
+      m.bus_voltage_V / (m.motor.torque_constant_Nm_per_A * m.gear_ratio) * m.wheel_radius_m;
+  return 0.5 * m.tyre_longitudinal.extremum_value * 9.81 / full_m_s;
+}
+
 std::vector<Duties> excited(Excitation kind, const RobotModel& m, const BenchOptions& o, double scale,
                             std::uint64_t seed) {
   std::vector<Duties> out;
   const auto count = static_cast<std::size_t>(o.duration_s * o.rate_Hz + 1e-6) + 1;
+  const double most = gentle_slew_per_s(m) / o.rate_Hz;
   for (std::size_t n = 0; n < count; ++n) {
     const double t = static_cast<double>(n) / o.rate_Hz;
     const auto one = [&](std::uint64_t which) {
@@ -67,7 +77,10 @@ std::vector<Duties> excited(Excitation kind, const RobotModel& m, const BenchOpt
     const double x = seeded ? 0.6 * one(0) : one(0) * part(0), y = seeded ? 0.6 * one(1) : one(0) * part(1);
     const double w = seeded ? 0.4 * one(2) : one(0) * part(2);
     Duties d = duties_of(m, x, y, w);
-    for (double& v : d) v *= o.amplitude * scale;
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const double before = out.empty() ? 0.0 : out.back()[i];
+      d[i] = before + std::clamp(d[i] * o.amplitude * scale - before, -most, most);
+    }
     out.push_back(d);
   }
   return out;

@@ -4,6 +4,7 @@
 //   std::optional<RobotBench> bench = make_robot_bench(options, faults);    // none: every fault is in `faults`
 //   folder.write(bench->files[0].name, bench->files[0].text);               // dataset.toml, model.toml, runs
 //
+// Duties of an excitation by name change no faster than half of the tyre's grip lets the robot follow; a file's are taken as they are.
 // An excitation by name drives forward, sideways and turn at once, each by a pattern of its own; the held-out
 // run has other patterns and 0.8 of the amplitude. A CSV file gives time and four duties, or time and one
 // duty that is driven straight ahead; its last third is held out.
