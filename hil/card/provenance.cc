@@ -17,7 +17,7 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-std::string stripped(std::string text) {
+std::string stripped(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r\n*");
   const auto last = text.find_last_not_of(" \t\r\n*");
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
@@ -27,7 +27,7 @@ std::string first_line(const std::string& text) {
   std::size_t at = 0;
   while (at < text.size()) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = stripped(text.substr(at, end - at));
+    std::string line = stripped(text.substr(at, end - at));
     if (!line.empty()) return line;
     at = end + 1;
   }
