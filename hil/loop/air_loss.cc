@@ -1,7 +1,5 @@
 #include "hil/loop/air_loss.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <numbers>
 
@@ -13,26 +11,7 @@ namespace {
 constexpr std::uint64_t kStream = stream_of("air_loss");
 constexpr std::uint64_t kNormalStream = stream_of("air_loss_distance");
 
-void between(double value, double low, double high, const char* what, std::vector<std::string>& problems) {
-  if (value >= low && value <= high) return;
-  problems.push_back(fmt::format("{}: found {}, allowed: {} to {}", what, value, low, high));
-}
-
 }  // namespace
-
-std::vector<std::string> air_problems(const AirOptions& o) {
-  std::vector<std::string> problems;
-  between(o.share, 0.0, 1.0, "air: share", problems);
-  between(o.burst_share, 0.0, 1.0, "air: share lost in bursts", problems);
-  between(o.others_load, 0.0, 10.0, "air: load of others", problems);
-  between(o.x_m, -100.0, 100.0, "air: transmitter's x in m", problems);
-  between(o.y_m, -100.0, 100.0, "air: transmitter's y in m", problems);
-  if (o.burst_bad_packets != 0.0 || o.burst_good_packets != 0.0) {
-    between(o.burst_good_packets, 1.0, 1e9, "air: mean packets between bursts", problems);
-    between(o.burst_bad_packets, 1.0, 1e9, "air: mean packets of a burst", problems);
-  }
-  return problems;
-}
 
 // m = 1 + (2/pi) atan(0.4 (d - 5)), eq. (2), in percent
 double distance_loss_mean(double distance_m) {

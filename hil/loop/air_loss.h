@@ -14,52 +14,35 @@
 // others       senders that do not listen first: a packet collides with probability 1 - exp(-2 G), G their offered load
 //              in packet times (Abramson 1970, pure ALOHA)
 // Each is a chance of its own; a packet passes only when it passes all. Pure: drawn from the seed and the packet's number.
-// Cannot: delay, repeat or reorder packets, or change bits; a dongle's own repeats are packets of their own here.
+// A dongle's own repeats are packets of their own here. Late packets and wrong bits: air_delay.h, air_bits.h.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
+#include "hil/loop/air_options.h"
 #include "protocols/radio_air.h"
 
 namespace omnihil {
-
-struct AirOptions {
-  double share = 0.0;  // 0 to 1
-  bool by_distance = false;
-  double x_m = 0.0, y_m = 0.0;                                                  // of the transmitter
-  double burst_good_packets = 0.0, burst_bad_packets = 0.0, burst_share = 0.0;  // 0: no bursts
-  double others_load = 0.0;
-
-  bool any() const { return share > 0.0 || by_distance || burst_bad_packets > 0.0 || others_load > 0.0; }
-  bool operator==(const AirOptions&) const = default;
-};
-
-// What is wrong with them, a line each.
-std::vector<std::string> air_problems(const AirOptions& options);
 
 // Eqs. (2), (3) of the seed paper, as shares.
 double distance_loss_mean(double distance_m);
 double distance_loss_sigma(double distance_m);
 
-struct AirCounts {
+struct AirLossCounts {
   std::uint64_t to_robot = 0, to_host = 0;            // lost
   std::uint64_t sent_to_robot = 0, sent_to_host = 0;  // all
 };
 
-class AirLoss : public RadioAir {
+class AirLoss {
  public:
   // `position`: x and y in m of a robot.
   AirLoss(const AirOptions& options, std::uint64_t seed,
           std::function<std::pair<double, double>(int)> position);
 
-  bool lost(int robot_id, AirWay way) override;
-  const AirCounts& counts() const { return counts_; }
+  bool lost(int robot_id, AirWay way);
+  const AirLossCounts& counts() const { return counts_; }
 
  private:
   double draw();
@@ -70,7 +53,7 @@ class AirLoss : public RadioAir {
   std::uint64_t drawn_ = 0;
   std::function<std::pair<double, double>(int)> position_;
   std::map<std::pair<int, AirWay>, bool> bad_;  // state of each chain
-  AirCounts counts_;
+  AirLossCounts counts_;
 };
 
 }  // namespace omnihil

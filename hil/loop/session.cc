@@ -67,7 +67,7 @@ struct Session::Impl {
     Impl& impl;
     std::size_t first;
     const std::vector<int>& robot_ids;
-    std::unique_ptr<AirLoss> air;  // before the link, which asks it
+    std::unique_ptr<Air> air;  // before the link, which asks it
     std::unique_ptr<RadioLink> link;
   };
 
@@ -160,8 +160,8 @@ struct Session::Impl {
     link_config.wheel_radius_m = models[port.first].wheel_radius_m;
     if (config.air.any()) {
       // Each team draws from a seed of its own.
-      port.air = std::make_unique<AirLoss>(config.air, config.plant.seed + (&port == &opponents ? 1 : 0),
-                                           [this, &port](int id) { return position_of(port, id); });
+      port.air = std::make_unique<Air>(config.air, config.plant.seed + (&port == &opponents ? 1 : 0),
+                                       [this, &port](int id) { return position_of(port, id); });
       link_config.air = port.air.get();
     }
     port.link = find_radio_format(format)->make_link(link_config);

@@ -31,7 +31,7 @@
 #include <vector>
 
 #include "firmware_iface/ports.h"
-#include "hil/loop/air_loss.h"
+#include "hil/loop/air.h"
 #include "protocols/radio_link.h"
 #include "sim/field/world.h"
 
@@ -64,7 +64,7 @@ struct SessionConfig {
   PlantOptions plant;
   std::int64_t step_ns = 1'000'000;            // one loop step
   std::uint64_t epoch_ms = 1'700'000'000'000;  // Unix time at virtual time 0
-  AirOptions air;                              // what the radio loses; drawn from plant.seed
+  AirOptions air;                              // what the radio does to packets; drawn from plant.seed
   FieldSetup field;
   Opponents opponents;
   std::vector<std::uint8_t>
@@ -123,7 +123,7 @@ class Session {
   const RobotModel& model(int robot_index) const;
   const RadioLink& link() const;
   const RadioLink* opponents_link() const;  // null: they have no dongle
-  AirCounts air() const;                    // packets that the air took; none without one
+  AirCounts air() const;                    // of the first team's; none without one
   const Firmware& firmware(int robot_index) const;
   void set_observer(SessionObserver* observer);  // not owned; may be null
 

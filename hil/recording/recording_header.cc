@@ -28,13 +28,23 @@ struct AirKey {
   std::string_view name;
   double AirOptions::*place;
 };
-constexpr std::array<AirKey, 7> kAir{{{"share", &AirOptions::share},
-                                      {"x_m", &AirOptions::x_m},
-                                      {"y_m", &AirOptions::y_m},
-                                      {"burst_good_packets", &AirOptions::burst_good_packets},
-                                      {"burst_bad_packets", &AirOptions::burst_bad_packets},
-                                      {"burst_share", &AirOptions::burst_share},
-                                      {"others_load", &AirOptions::others_load}}};
+constexpr std::array<AirKey, 14> kAir{{{"share", &AirOptions::share},
+                                       {"x_m", &AirOptions::x_m},
+                                       {"y_m", &AirOptions::y_m},
+                                       {"burst_good_packets", &AirOptions::burst_good_packets},
+                                       {"burst_bad_packets", &AirOptions::burst_bad_packets},
+                                       {"burst_share", &AirOptions::burst_share},
+                                       {"others_load", &AirOptions::others_load},
+                                       {"latency_least_s", &AirOptions::latency_least_s},
+                                       {"latency_mean_s", &AirOptions::latency_mean_s},
+                                       {"latency_sigma", &AirOptions::latency_sigma},
+                                       {"twice_share", &AirOptions::twice_share},
+                                       {"held_share", &AirOptions::held_share},
+                                       {"held_s", &AirOptions::held_s},
+                                       {"bit_error_rate", &AirOptions::bit_error_rate}}};
+constexpr std::array<Name<LatencyLaw>, 3> kLatencyLaws{{{LatencyLaw::kExponential, "exponential"},
+                                                        {LatencyLaw::kUniform, "uniform"},
+                                                        {LatencyLaw::kLognormal, "lognormal"}}};
 
 struct CarpetKey {
   std::string_view name;
@@ -146,12 +156,20 @@ class HeaderFields {
     models(key, texts);
     for (ModelText& each : texts) values.push_back({std::move(each.name), std::move(each.text)});
   }
-  // Absent: nothing is lost. Within it every key may be absent, which is 0.
+  // Absent: nothing is lost. Within it every key may be absent, which is 0, no, and exponential.
   void air(const char* key, AirOptions& options) {
     if (!json_.contains(key)) return;
     const Json* found = find(key, "an object of numbers", &Json::is_object);
     if (found == nullptr) return;
     for (const auto& [name, value] : found->items()) {
+      if (name == "latency_law" && value.is_string()) {
+        HeaderFields(*found, problems_).one_of("latency_law", kLatencyLaws, options.latency_law);
+        continue;
+      }
+      if (name == "in_order" && value.is_boolean()) {
+        options.in_order = value.get<bool>();
+        continue;
+      }
       const auto row = std::ranges::find(kAir, name, &AirKey::name);
       if (row == kAir.end() || !value.is_number())
         return refuse(key, found->dump(), "an object of the air's numbers");
@@ -364,6 +382,9 @@ std::string to_json(const RecordingHeader& header) {
       const bool told = of_place ? header.air.by_distance : header.air.*(key.place) != 0.0;
       if (told) air[std::string(key.name)] = header.air.*(key.place);
     }
+    if (header.air.latency_law != LatencyLaw::kExponential)
+      air["latency_law"] = name_of(kLatencyLaws, header.air.latency_law);
+    if (header.air.in_order) air["in_order"] = true;
     json["air"] = std::move(air);
   }
   if (header.field.contacts) {

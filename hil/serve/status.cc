@@ -105,6 +105,21 @@ std::string final_report(const ServeStatus& s) {
     text += fmt::format("  lost on the air  {} of {} to robots, {} of {} from them\n", s.air.to_robot,
                         s.air.sent_to_robot, s.air.to_host, s.air.sent_to_host);
   }
+  const AirCounts& air = s.air;
+  if (air.twice + air.held + air.overtaken > 0) {
+    text += fmt::format("  out of turn      {} arrived twice, {} held back, {} after a later one\n",
+                        air.twice, air.held, air.overtaken);
+  }
+  const std::uint64_t damaged = air.refused[0] + air.refused[1] + air.slipped[0] + air.slipped[1];
+  if (damaged > 0) {
+    text += fmt::format(
+        "  wrong bits       {} packets to robots, {} of them not seen; {} from them, {} not seen\n",
+        air.refused[0] + air.slipped[0], air.slipped[0], air.refused[1] + air.slipped[1], air.slipped[1]);
+  }
+  if (air.crowded[0] + air.crowded[1] > 0) {
+    text += fmt::format("  crowded out      {} packets: too many were under way at once\n",
+                        air.crowded[0] + air.crowded[1]);
+  }
   if (s.gains_refused > 0) {
     text += fmt::format("  gains            {} sets refused by the firmware\n", s.gains_refused);
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "firmware_iface/robot_io.h"
-#include "hil/loop/air_loss.h"
+#include "hil/loop/air.h"
 #include "hil/loop/clock.h"
 #include "hil/serve/serve_port.h"
 #include "protocols/packet_error.h"

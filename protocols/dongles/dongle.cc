@@ -43,6 +43,27 @@ PacketError Dongle::fault_from_robot(std::span<const std::uint8_t> frame) const 
                                                                              : PacketError::kNone;
 }
 
+PacketError Dongle::fault_to_robot(int robot, std::span<const std::uint8_t> packet) const {
+  const DecodeResult result = format_.decode(packet);
+  if (result.error != PacketError::kNone) return result.error;
+  if (never_from_host(*result.values.message) || result.values.message->direction == Direction::kToDongle)
+    return PacketError::kDirection;
+  const Address address = address_of(result.values);
+  const bool meant = address.all_robots || address.robot < 0 || address.robot == robot;
+  return meant && address.team.value_or(config_.team) == config_.team ? PacketError::kNone
+                                                                      : PacketError::kAddress;
+}
+
+bool Dongle::survives(int robot, AirWay way, std::span<std::uint8_t> packet) {
+  if (config_.air == nullptr || !config_.air->flip(packet)) return true;
+  const bool up = way == AirWay::kToHost;
+  const PacketError error = up ? fault_from_robot(packet) : fault_to_robot(robot, packet);
+  config_.air->judged(way, error == PacketError::kNone ? AirVerdict::kSlipped : AirVerdict::kRefused);
+  if (error == PacketError::kNone) return true;
+  if (up) from_robots_.count(error);
+  return !up && config_.firmware_decodes;
+}
+
 void Dongle::deliver_frame(RadioSink& sink, int robot, const Message& message,
                            std::span<const std::uint8_t> frame, std::int64_t at_ns) {
   Delivery delivery;

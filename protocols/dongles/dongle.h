@@ -9,7 +9,7 @@
 //     }
 //   };
 //
-// Around it: ring.h (bounded queue), outbox.h (latest command and queue of a robot), robot_table.h,
+// Around it: ring.h (bounded queue), air_queue.h (what arrives when), outbox.h (latest command and queue of a robot), robot_table.h,
 // kept_packet.h, heartbeat.h, delimited_stream.h and sized_stream.h (bytes into frames). plain_dongle.h is
 // the whole of a dongle that does no more than pass frames on. All of it is a pure function of bytes and
 // times; after start nothing is allocated.
@@ -61,8 +61,21 @@ class Dongle : public RadioLink {
     return error;
   }
 
-  // Whether the air takes this packet; asked once for each.
-  bool lost(int robot, AirWay way) const { return config_.air != nullptr && config_.air->lost(robot, way); }
+  // Asks the air once for a packet that would arrive at `at_ns`: arrive(late_ns) for each copy that does.
+  template <class Arrive>
+  void through_air(int robot, AirWay way, std::int64_t at_ns, Arrive&& arrive) const {
+    if (config_.air == nullptr) return arrive(std::int64_t{0});
+    const AirFate fate = config_.air->fate(robot, way, at_ns);
+    for (int i = 0; i < fate.copies; ++i) arrive(fate.late_ns[static_cast<std::size_t>(i)]);
+  }
+  // How many can be under way at once in an AirQueue that only the air fills.
+  std::size_t air_room() const { return config_.air == nullptr ? 0 : kAirRoom; }
+  // A copy that arrives, with what the air flipped in it. False: its own checks refuse it, and nobody acts on it. A
+  // firmware that decodes gets every one and refuses by itself.
+  bool survives(int robot, AirWay way, std::span<std::uint8_t> packet);
+  void crowded_out(AirWay way) const { config_.air->judged(way, AirVerdict::kCrowded); }
+  // Why a robot would not act on a packet that came over the air.
+  virtual PacketError fault_to_robot(int robot, std::span<const std::uint8_t> packet) const;
   // A frame that a robot's firmware sent: what is wrong with it by itself.
   PacketError fault_from_robot(std::span<const std::uint8_t> frame) const;
   // Frame as it is, for a firmware that decodes by itself.
@@ -79,6 +92,8 @@ class Dongle : public RadioLink {
   PacketCounts from_robots_;
 
  private:
+  static constexpr std::size_t kAirRoom = 1024;  // choice: 16 robots at 100 Hz, 0.6 s late
+
   std::size_t host_buffer_bytes_;
   std::vector<std::uint8_t> host_out_;
   std::vector<std::uint8_t> encoded_;

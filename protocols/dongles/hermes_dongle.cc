@@ -2,13 +2,16 @@
 //
 //   host -> DelimitedStream -> queue -> one frame at a time over the air -> robot -> answer -> host
 //
-// Cannot: lose frames on the air, or repeat the radio's mistaking of a new frame for a repetition (the robot
-// acts once on each frame; the second transmission only takes its time).
+// What the air makes late (radio_air.h) is late behind the robot's radio, which has acknowledged it in time; an answer
+// that is not back within the wait is one that nobody waits for.
+// Cannot: repeat the radio's mistaking of a new frame for a repetition (the robot acts once on each frame; the second
+// transmission only takes its time).
 #include "protocols/dongles/hermes_dongle.h"
 
 #include <algorithm>
 #include <cassert>
 
+#include "protocols/dongles/air_queue.h"
 #include "protocols/dongles/delimited_stream.h"
 #include "protocols/dongles/dongle.h"
 #include "protocols/dongles/hermes_air.h"
@@ -31,6 +34,13 @@ struct Frame {
   std::int64_t arrived_ns = 0;
 };
 
+// A frame that the robot's radio has, on its way to those who read it.
+struct Arriving {
+  Frame frame;
+  std::uint64_t number = 0;  // of the frame the dongle has on the air
+  std::int64_t at_ns = 0;
+};
+
 struct Robot {
   std::optional<RobotFeedback> feedback;
   HermesRobot radio;
@@ -41,7 +51,8 @@ class HermesDongle final : public Dongle {
   HermesDongle(const RadioFormat& format, const RadioLinkConfig& config)
       : Dongle(format, config, kHostBuffer),
         stream_(static_cast<std::size_t>(format.max_frame_bytes), from_host_),
-        robots_(config.robot_ids) {
+        robots_(config.robot_ids),
+        late_(air_room()) {
     assert(static_cast<std::size_t>(format.max_frame_bytes) <= hermes::kPayloadBytes);
   }
 
@@ -53,6 +64,7 @@ class HermesDongle final : public Dongle {
   void poll(std::int64_t now_ns, RadioSink& sink) override {
     while (step(now_ns, sink)) {
     }
+    arrive(now_ns, sink);
   }
 
   // Radios send payloads of one length: what stands behind the delimiter is padding.
@@ -80,12 +92,16 @@ class HermesDongle final : public Dongle {
   PacketError take_answer(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns);
   bool step(std::int64_t now_ns, RadioSink& sink);
   void transmit(std::int64_t start_ns);
-  void reach_robot(RadioSink& sink);
+  void leave_dongle(RadioSink& sink);
+  void arrive(std::int64_t now_ns, RadioSink& sink);
+  void reach_robot(Arriving at, RadioSink& sink);
   void finish(std::int64_t at_ns);
   void end_of_wait();
 
   DelimitedStream stream_;
   RobotTable<Robot, 256> robots_;
+  AirQueue<Arriving> late_;  // as the air brings them
+  std::uint64_t number_ = 0;
   Ring<Frame, hermes::kQueueFrames> queue_;
   hermes::RepeatRule repeat_rule_;
 
@@ -126,12 +142,13 @@ bool HermesDongle::step(std::int64_t now_ns, RadioSink& sink) {
       if (start_ns > now_ns) return false;
       tries_left_ = queue_.front().tries;
       answered_ = false;
+      ++number_;
       transmit(start_ns);
       return true;
     }
     case Phase::kOnAir:
       if (reached_ns_ > now_ns) return false;
-      reach_robot(sink);
+      leave_dongle(sink);
       phase_ = Phase::kAcknowledge;
       return true;
     case Phase::kAcknowledge:
@@ -160,26 +177,48 @@ void HermesDongle::transmit(std::int64_t start_ns) {
   phase_ = Phase::kOnAir;
 }
 
-void HermesDongle::reach_robot(RadioSink& sink) {
+void HermesDongle::leave_dongle(RadioSink& sink) {
   const Frame& frame = queue_.front();
-  if (!frame.reaches_robot || lost(frame.robot, AirWay::kToRobot)) return;
+  if (!frame.reaches_robot) return;
+  through_air(frame.robot, AirWay::kToRobot, reached_ns_, [&](std::int64_t late_ns) {
+    const Arriving at{.frame = frame, .number = number_, .at_ns = reached_ns_ + late_ns};
+    if (config_.air == nullptr) return reach_robot(at, sink);
+    if (!late_.push(at, at.at_ns)) crowded_out(AirWay::kToRobot);
+  });
+  arrive(reached_ns_, sink);
+}
+
+void HermesDongle::arrive(std::int64_t now_ns, RadioSink& sink) {
+  for (; const Arriving* at = late_.due(now_ns); late_.pop()) reach_robot(*at, sink);
+}
+
+void HermesDongle::reach_robot(Arriving at, RadioSink& sink) {
+  Frame& frame = at.frame;
+  if (!survives(frame.robot, AirWay::kToRobot, frame.packet.span())) return;
   if (config_.firmware_decodes) {
-    return deliver_frame(sink, frame.robot, *frame.message, frame.packet.span(), reached_ns_);
+    return deliver_frame(sink, frame.robot, *frame.message, frame.packet.span(), at.at_ns);
   }
   Robot& robot = *robots_.find(frame.robot);
-  const DecodeResult result = format_.decode(frame.packet.span());  // the robot's own reading
-  if (const std::optional<RobotCommand> command = robot.radio.receive(result.values, reached_ns_)) {
+  const Values values = format_.decode(frame.packet.span()).values;  // the robot's own reading
+  if (const std::optional<RobotCommand> command = robot.radio.receive(values, at.at_ns)) {
     Delivery delivery;
     delivery.robot_id = frame.robot;
-    delivery.message = frame.message->name;
+    delivery.message = values.message->name;
     delivery.command = *command;
-    sink.deliver(delivery, reached_ns_);
+    sink.deliver(delivery, at.at_ns);
   }
-  if (frame.tries > 0 && robot.feedback && !answered_ && !lost(frame.robot, AirWay::kToHost)) {
+  if (frame.tries == 0 || !robot.feedback || values.message != frame.message) return;
+  const bool waits = at.number == number_ && phase_ != Phase::kIdle;
+  if (waits && answered_) return;
+  through_air(frame.robot, AirWay::kToHost, at.at_ns, [&](std::int64_t late_ns) {
+    const std::int64_t back_ns =
+        std::max(end_ns_, at.at_ns + hermes::kRobotTurnaround_ns) + hermes::kFrame_ns + late_ns;
+    if (!waits || answered_ || back_ns > end_ns_ + hermes::kAnswerTimeout_ns)
+      return from_robots_.count(PacketError::kOverrun);
     answered_ = true;
     answer_.clear();
-    answer_ns_ = std::max(end_ns_, reached_ns_ + hermes::kRobotTurnaround_ns) + hermes::kFrame_ns;
-  }
+    answer_ns_ = back_ns;
+  });
 }
 
 void HermesDongle::end_of_wait() {
@@ -199,6 +238,10 @@ void HermesDongle::end_of_wait() {
     robot->radio.answer(frame.robot, robot->feedback.value_or(RobotFeedback{}), values);
     encode(values, answer_);
   }
+  if (!survives(frame.robot, AirWay::kToHost, answer_)) {  // it waits on
+    answered_ = false;
+    return;
+  }
   from_robots_.count(to_host(answer_));
   finish(answer_ns_);
 }
@@ -216,11 +259,15 @@ PacketError HermesDongle::take_answer(int robot_id, std::span<const std::uint8_t
   const bool first_on_its_way = phase_ == Phase::kOnAir && tries_left_ == queue_.front().tries;
   if (first_on_its_way) return PacketError::kOverrun;
   if (queue_.front().robot != robot_id) return PacketError::kAddress;
-  if (lost(robot_id, AirWay::kToHost)) return PacketError::kNone;
-  answered_ = true;
-  answer_.assign(frame.begin(), frame.end());
   const bool on_air = phase_ != Phase::kAwait;
-  answer_ns_ = (on_air ? std::max(now_ns, end_ns_) : now_ns) + hermes::kFrame_ns;
+  const std::int64_t back_ns = (on_air ? std::max(now_ns, end_ns_) : now_ns) + hermes::kFrame_ns;
+  through_air(robot_id, AirWay::kToHost, now_ns, [&](std::int64_t late_ns) {
+    const bool too_late = late_ns > 0 && back_ns + late_ns > end_ns_ + hermes::kAnswerTimeout_ns;
+    if (answered_ || too_late) return from_robots_.count(PacketError::kOverrun);
+    answered_ = true;
+    answer_.assign(frame.begin(), frame.end());
+    answer_ns_ = back_ns + late_ns;
+  });
   return PacketError::kNone;
 }
 

@@ -13,18 +13,19 @@ namespace omnihil {
 
 template <std::size_t kBytes>
 struct KeptPacket {
-  static_assert(kBytes <= 255);
+  static_assert(kBytes <= 65535);
   std::array<std::uint8_t, kBytes> bytes{};
-  std::uint8_t size = 0;
+  std::uint16_t size = 0;
 
   static KeptPacket of(std::span<const std::uint8_t> from) {
     assert(from.size() <= kBytes);
     KeptPacket kept;
-    kept.size = static_cast<std::uint8_t>(from.size());
+    kept.size = static_cast<std::uint16_t>(from.size());
     std::copy(from.begin(), from.end(), kept.bytes.begin());
     return kept;
   }
   std::span<const std::uint8_t> span() const { return std::span(bytes).first(size); }
+  std::span<std::uint8_t> span() { return std::span(bytes).first(size); }
 };
 
 }  // namespace omnihil

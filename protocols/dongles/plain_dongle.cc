@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "protocols/dongles/air_queue.h"
 #include "protocols/dongles/dongle.h"
 #include "protocols/dongles/kept_packet.h"
 #include "protocols/dongles/ring.h"
@@ -38,7 +39,10 @@ class PlainLink final : public Dongle {
         stream_(plain.frame_bytes != nullptr ? FrameBytes(plain.frame_bytes)
                                              : frames_by_tables(format, plain.silent_line),
                 from_host_),
-        robots_(config.robot_ids) {
+        robots_(config.robot_ids),
+        late_(air_room()),
+        answers_(kInFlight + air_room()),
+        late_listed_(air_room()) {
     answer_.reserve(static_cast<std::size_t>(format.max_frame_bytes));
     if (format.list != nullptr) listed_answers_.reserve(static_cast<std::size_t>(format.list->most));
   }
@@ -53,9 +57,10 @@ class PlainLink final : public Dongle {
 
   void poll(std::int64_t now_ns, RadioSink& sink) override {
     while (!to_robots_.empty() && to_robots_.front().arrives_ns <= now_ns) {
-      reach_robot(to_robots_.front(), sink);
+      leave_dongle(to_robots_.front(), sink);
       to_robots_.pop();
     }
+    arrive(now_ns, sink);
   }
 
   void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
@@ -70,9 +75,9 @@ class PlainLink final : public Dongle {
   }
 
   void take_host_bytes(std::int64_t now_ns, std::vector<std::uint8_t>& out) override {
-    while (!answers_.empty() && answers_.front().arrives_ns <= now_ns) {
-      from_robots_.count(to_host(answers_.front().packet.span()));
-      answers_.pop();
+    for (; InFlight* at = answers_.due(now_ns); answers_.pop()) {
+      if (at->robot < 0 || survives(at->robot, AirWay::kToHost, at->packet.span()))
+        from_robots_.count(to_host(at->packet.span()));
     }
     Dongle::take_host_bytes(now_ns, out);
   }
@@ -88,7 +93,11 @@ class PlainLink final : public Dongle {
   PacketError send_to(int id, std::span<const std::uint8_t> frame, std::int64_t at_ns, bool ends_list);
   void end_list(std::int64_t at_ns);
   PacketError send_back(int robot, std::span<const std::uint8_t> frame, std::int64_t now_ns);
-  void reach_robot(const InFlight& at, RadioSink& sink);
+  void leave_dongle(const InFlight& at, RadioSink& sink);
+  void arrive(std::int64_t now_ns, RadioSink& sink);
+  void reach_robot(InFlight at, RadioSink& sink);
+  void list_answer(int robot, const Values& answer, std::int64_t now_ns);
+  PacketError fault_to_robot(int robot, std::span<const std::uint8_t> packet) const override;
   void act(const Values& values, const InFlight& at, RadioSink& sink);
   bool answer(const Values& to_robot, int id, const RobotFeedback& feedback, Values& out) const {
     if (plain_.answer != nullptr) return plain_.answer(to_robot, id, feedback, out);
@@ -100,7 +109,9 @@ class PlainLink final : public Dongle {
   std::int64_t last_byte_ns_ = 0;
   RobotTable<Robot, 256> robots_;
   Ring<InFlight, kInFlight> to_robots_;
-  Ring<InFlight, kInFlight> answers_;
+  AirQueue<InFlight> late_;  // to robots, as the air brings them
+  AirQueue<InFlight> answers_;
+  AirQueue<InFlight> late_listed_;  // answers for a list
   std::vector<std::uint8_t> answer_;
   std::vector<Values> listed_answers_;
   std::int64_t next_answer_ns_ = 0;
@@ -179,6 +190,11 @@ PacketError PlainLink::accept_list(std::span<const std::uint8_t> frame, std::int
 }
 
 void PlainLink::end_list(std::int64_t at_ns) {
+  for (; InFlight* at = late_listed_.due(at_ns); late_listed_.pop()) {
+    if (!survives(at->robot, AirWay::kToHost, at->packet.span())) continue;
+    if (listed_answers_.size() < static_cast<std::size_t>(format_.list->most))
+      listed_answers_.push_back(format_.decode(at->packet.span()).values);
+  }
   answer_.clear();
   if (encode_list(format_, listed_answers_, answer_).error == PacketError::kNone) {
     const PacketError error = send_back(-1, answer_, at_ns);
@@ -187,16 +203,40 @@ void PlainLink::end_list(std::int64_t at_ns) {
   listed_answers_.clear();
 }
 
-void PlainLink::reach_robot(const InFlight& at, RadioSink& sink) {
-  if (at.robot >= 0 && !lost(at.robot, AirWay::kToRobot)) {
-    const Values values = format_.decode(at.packet.span()).values;
-    if (config_.firmware_decodes) {
-      deliver_frame(sink, at.robot, *values.message, at.packet.span(), at.arrives_ns);
-    } else {
-      act(values, at, sink);
-    }
+void PlainLink::leave_dongle(const InFlight& at, RadioSink& sink) {
+  if (at.robot >= 0) {
+    through_air(at.robot, AirWay::kToRobot, at.arrives_ns, [&](std::int64_t late_ns) {
+      if (config_.air == nullptr) return reach_robot(at, sink);
+      InFlight copy = at;
+      copy.arrives_ns += late_ns;
+      if (!late_.push(copy, copy.arrives_ns)) crowded_out(AirWay::kToRobot);
+    });
+    arrive(at.arrives_ns, sink);
   }
   if (at.ends_list && !config_.firmware_decodes) end_list(at.arrives_ns + plain_.turn_ns);
+}
+
+void PlainLink::arrive(std::int64_t now_ns, RadioSink& sink) {
+  for (; const InFlight* at = late_.due(now_ns); late_.pop()) reach_robot(*at, sink);
+}
+
+PacketError PlainLink::fault_to_robot(int robot, std::span<const std::uint8_t> packet) const {
+  const PacketError error = Dongle::fault_to_robot(robot, packet);
+  if (error != PacketError::kNone || plain_.robots == nullptr) return error;
+  std::array<int, 16> ids{};
+  const auto end =
+      ids.begin() + static_cast<std::ptrdiff_t>(plain_.robots(format_.decode(packet).values, ids));
+  return std::find(ids.begin(), end, robot) == end ? PacketError::kAddress : PacketError::kNone;
+}
+
+void PlainLink::reach_robot(InFlight at, RadioSink& sink) {
+  const Message* sent = config_.firmware_decodes ? format_.decode(at.packet.span()).values.message : nullptr;
+  if (!survives(at.robot, AirWay::kToRobot, at.packet.span())) return;
+  if (config_.firmware_decodes) {
+    deliver_frame(sink, at.robot, *sent, at.packet.span(), at.arrives_ns);
+  } else {
+    act(format_.decode(at.packet.span()).values, at, sink);
+  }
 }
 
 // What a robot whose firmware takes commands does with a packet.
@@ -221,24 +261,41 @@ void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
   Values out;
   if (!feedback || !answer(values, at.robot, *feedback, out)) return;
   if (plain_.remember != nullptr) plain_.remember(values, robots_.find(at.robot)->kept, out);
-  if (format_.list != nullptr) {
-    if (lost(at.robot, AirWay::kToHost)) return;
-    if (listed_answers_.size() < static_cast<std::size_t>(format_.list->most)) listed_answers_.push_back(out);
-    return;
-  }
+  if (format_.list != nullptr) return list_answer(at.robot, out, at.arrives_ns);
   answer_.clear();
   encode(out, answer_);
   const PacketError error = send_back(at.robot, answer_, at.arrives_ns);
   if (error != PacketError::kNone) from_robots_.count(error);
 }
 
+// For the list that ends next after it has come.
+void PlainLink::list_answer(int robot, const Values& answer, std::int64_t now_ns) {
+  if (config_.air == nullptr) {
+    if (listed_answers_.size() < static_cast<std::size_t>(format_.list->most))
+      listed_answers_.push_back(answer);
+    return;
+  }
+  answer_.clear();
+  encode(answer, answer_);
+  through_air(robot, AirWay::kToHost, now_ns, [&](std::int64_t late_ns) {
+    const InFlight at{.packet = KeptPacket<255>::of(answer_), .robot = robot, .arrives_ns = now_ns + late_ns};
+    if (!late_listed_.push(at, at.arrives_ns)) crowded_out(AirWay::kToHost);
+  });
+}
+
 PacketError PlainLink::send_back(int robot, std::span<const std::uint8_t> frame, std::int64_t now_ns) {
-  if (robot >= 0 && lost(robot, AirWay::kToHost)) return PacketError::kNone;
   const std::int64_t at_ns = std::max(now_ns + plain_.to_host_ns, next_answer_ns_);
-  const bool room =
-      answers_.push({.packet = KeptPacket<255>::of(frame), .robot = robot, .arrives_ns = at_ns});
-  if (room) next_answer_ns_ = at_ns + plain_.answer_gap_ns;
-  return room ? PacketError::kNone : PacketError::kOverrun;
+  PacketError error = PacketError::kNone;
+  const auto arrive_at_host = [&](std::int64_t late_ns) {
+    const InFlight at{.packet = KeptPacket<255>::of(frame), .robot = robot, .arrives_ns = at_ns + late_ns};
+    if (!answers_.push(at, at.arrives_ns)) {
+      error = PacketError::kOverrun;
+      return;
+    }
+    next_answer_ns_ = at_ns + plain_.answer_gap_ns;
+  };
+  robot < 0 ? arrive_at_host(0) : through_air(robot, AirWay::kToHost, at_ns, arrive_at_host);
+  return error;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cstdio>
 
+#include "protocols/dongles/air_queue.h"
 #include "protocols/dongles/dongle.h"
 #include "protocols/dongles/heartbeat.h"
 #include "protocols/dongles/outbox.h"
@@ -36,6 +37,12 @@ struct Robot {
 struct Answer {
   int robot = 0;
   std::int64_t asked_ns = 0;
+  AirFate way_back{};
+};
+
+struct Said {  // one packet of an answer
+  int robot = 0;
+  KeptPacket<255> packet;
 };
 
 class RemDongle final : public Dongle {
@@ -46,7 +53,9 @@ class RemDongle final : public Dongle {
         answer_sizes_(format),
         stream_(format, from_host_),
         channel_(config.team),
-        robots_(config.robot_ids) {
+        robots_(config.robot_ids),
+        late_to_robots_(air_room()),
+        late_to_host_(air_room()) {
     for (const int id : config.robot_ids) robots_.find(id)->radio = rem::RadioEnd(id);
   }
 
@@ -63,18 +72,20 @@ class RemDongle final : public Dongle {
     for (bool more = true; more;) {
       more = run_slots(now_ns);
       while (!in_flight_.empty() && in_flight_.front().arrives_ns <= now_ns) {
-        deliver(in_flight_.front(), sink);
+        cross(in_flight_.front(), sink);
         in_flight_.pop();
       }
     }
+    arrive(now_ns, sink);
     if (heartbeat_.due(now_ns)) log_status(now_ns);
   }
 
-  void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t) override {
+  void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
     PacketError error = fault_from_robot(frame);
     if (error == PacketError::kNone && robots_.find(robot_id) == nullptr) error = PacketError::kAddress;
-    if (error == PacketError::kNone && lost(robot_id, AirWay::kToHost)) return;
-    from_robots_.count(error == PacketError::kNone ? to_host(frame) : error);
+    if (error != PacketError::kNone) return from_robots_.count(error);
+    through_air(robot_id, AirWay::kToHost, now_ns,
+                [&](std::int64_t late_ns) { say(robot_id, frame, now_ns + late_ns); });
   }
 
   void robot_feedback(int robot_id, const RobotFeedback& feedback, const RobotGains& gains,
@@ -87,6 +98,10 @@ class RemDongle final : public Dongle {
       const Answer answer = answers_.front();
       if (!answer_if_due(answer, now_ns)) break;
       answers_.pop();
+    }
+    for (; Said* said = late_to_host_.due(now_ns); late_to_host_.pop()) {
+      if (survives(said->robot, AirWay::kToHost, said->packet.span()))
+        from_robots_.count(to_host(said->packet.span()));
     }
     Dongle::take_host_bytes(now_ns, out);
   }
@@ -105,7 +120,11 @@ class RemDongle final : public Dongle {
   bool run_slots(std::int64_t until_ns);
   bool all_idle() const;
   void send_slot(int id, std::int64_t slot_ns);
+  void cross(const AirPacket& air, RadioSink& sink);
+  void arrive(std::int64_t now_ns, RadioSink& sink);
   void deliver(const AirPacket& air, RadioSink& sink);
+  void deliver_one(const AirPacket& air, std::span<const std::uint8_t> bytes, RadioSink& sink);
+  void say(int robot, std::span<const std::uint8_t> packet, std::int64_t at_ns);
   bool answer_if_due(const Answer& answer, std::int64_t now_ns);
   void report_refusal(std::int64_t now_ns);
   void log_status(std::int64_t now_ns);
@@ -123,6 +142,9 @@ class RemDongle final : public Dongle {
   std::uint64_t answered_ = 0;
   Ring<AirPacket, kInFlight> in_flight_;
   Ring<Answer, kInFlight> answers_;
+  AirQueue<AirPacket> late_to_robots_;  // as the air brings them
+  AirQueue<Said> late_to_host_;
+  std::vector<std::uint8_t> said_;
   Values scratch_;
 };
 
@@ -205,21 +227,45 @@ void RemDongle::send_slot(int id, std::int64_t slot_ns) {
   in_flight_.push(air);
 }
 
+void RemDongle::cross(const AirPacket& air, RadioSink& sink) {
+  through_air(air.robot, AirWay::kToRobot, air.arrives_ns, [&](std::int64_t late_ns) {
+    if (config_.air == nullptr) return deliver(air, sink);
+    AirPacket copy = air;
+    copy.arrives_ns += late_ns;
+    if (!late_to_robots_.push(copy, copy.arrives_ns)) crowded_out(AirWay::kToRobot);
+  });
+  arrive(air.arrives_ns, sink);
+}
+
+void RemDongle::arrive(std::int64_t now_ns, RadioSink& sink) {
+  for (; const AirPacket* air = late_to_robots_.due(now_ns); late_to_robots_.pop()) deliver(*air, sink);
+}
+
 void RemDongle::deliver(const AirPacket& air, RadioSink& sink) {
-  if (lost(air.robot, AirWay::kToRobot)) return;
-  rem::RadioEnd& radio = robots_.find(air.robot)->radio;
   for (std::span<const std::uint8_t> rest = air.span(); !rest.empty();) {
     const auto bytes = rest.first(stream_.packet_bytes(rest));
     rest = rest.subspan(bytes.size());
-    if (config_.firmware_decodes) {
-      deliver_frame(sink, air.robot, *message_of_type(format_.messages, bytes[0]), bytes, air.arrives_ns);
-    } else if (const auto delivery = radio.receive(format_.decode(bytes).values)) {
-      sink.deliver(*delivery, air.arrives_ns);
-    }
+    deliver_one(air, bytes, sink);
   }
-  if (config_.firmware_decodes || !radio.has_state() || lost(air.robot, AirWay::kToHost)) return;
-  if (!answers_.push({.robot = air.robot, .asked_ns = air.arrives_ns}))
-    from_robots_.count(PacketError::kOverrun);
+  if (config_.firmware_decodes || !robots_.find(air.robot)->radio.has_state()) return;
+  Answer answer{.robot = air.robot, .asked_ns = air.arrives_ns};
+  if (config_.air != nullptr) answer.way_back = config_.air->fate(air.robot, AirWay::kToHost, air.arrives_ns);
+  if (answer.way_back.copies == 0) return;
+  if (!answers_.push(answer)) from_robots_.count(PacketError::kOverrun);
+}
+
+// Each packet of a stitched one is damaged and judged by itself.
+void RemDongle::deliver_one(const AirPacket& air, std::span<const std::uint8_t> bytes, RadioSink& sink) {
+  auto packet = KeptPacket<rem::kAirBytes>::of(bytes);
+  if (!survives(air.robot, AirWay::kToRobot, packet.span())) return;
+  if (config_.firmware_decodes) {
+    deliver_frame(sink, air.robot, *message_of_type(format_.messages, bytes[0]), packet.span(),
+                  air.arrives_ns);
+    return;
+  }
+  rem::RadioEnd& radio = robots_.find(air.robot)->radio;
+  if (const auto delivery = radio.receive(format_.decode(packet.span()).values))
+    sink.deliver(*delivery, air.arrives_ns);
 }
 
 // --- to the host -----------------------------------------------------------------------------------------
@@ -243,10 +289,21 @@ bool RemDongle::answer_if_due(const Answer& answer, std::int64_t now_ns) {
   const std::int64_t after_ns = rem::kTurnaround_ns + rem::air_time_ns(plan.bytes);
   const std::int64_t due_ns = answer.asked_ns + std::min(after_ns, rem::kAnswerWindow_ns);
   if (due_ns > now_ns) return false;
-  radio.answer(plan, telemetry_, header(answer.robot, due_ns), scratch_,
-               [this](const Values& packet) { from_robots_.count(to_host(packet)); });
+  radio.answer(plan, telemetry_, header(answer.robot, due_ns), scratch_, [&](const Values& packet) {
+    said_.clear();
+    encode(packet, said_);
+    for (int i = 0; i < answer.way_back.copies; ++i)
+      say(answer.robot, said_, due_ns + answer.way_back.late_ns[static_cast<std::size_t>(i)]);
+  });
   ++answered_;
   return true;
+}
+
+// A robot's packet is at the base station at this time.
+void RemDongle::say(int robot, std::span<const std::uint8_t> packet, std::int64_t at_ns) {
+  if (config_.air == nullptr) return from_robots_.count(to_host(packet));
+  if (!late_to_host_.push({.robot = robot, .packet = KeptPacket<255>::of(packet)}, at_ns))
+    crowded_out(AirWay::kToHost);
 }
 
 void RemDongle::report_refusal(std::int64_t now_ns) {

@@ -1,4 +1,4 @@
-// The options with which `serve` loses packets on the air.
+// The options with which `serve` loses, delays, repeats and damages packets on the air.
 //
 //   add_air_options(verb, words);
 //   understand_air(words, air, problems);
@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "hil/loop/air_loss.h"
+#include "hil/loop/air_options.h"
 #include "tools/command_line.h"
 
 namespace omnihil {
 
 struct AirWords {
-  double loss_percent = 0.0, others_load = 0.0;
-  std::string transmitter, burst;
+  double loss_percent = 0.0, others_load = 0.0, duplicates_percent = 0.0, bit_errors = 0.0;
+  std::string transmitter, burst, latency, reorder;
+  bool in_order = false;
 };
 
 void add_air_options(Verb& verb, AirWords& words);

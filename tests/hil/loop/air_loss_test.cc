@@ -128,6 +128,33 @@ TEST_P(LossyAir, DropsCommandsAndAnswersAndReplays) {
   EXPECT_GT(bytes, 0U);
 }
 
+// All of it at once: the recording, as text and back, replays to the same bytes and values.
+TEST_P(LossyAir, LateDoubleAndWrongPacketsReplayExactly) {
+  SessionSetup setup = real::setup(GetParam());
+  setup.air = {.share = 0.05,
+               .latency_least_s = 0.001,
+               .latency_mean_s = 0.006,
+               .twice_share = 0.1,
+               .held_share = 0.1,
+               .held_s = 0.025,
+               .bit_error_rate = 1e-3};
+  const Recording run = real::record(setup, 1500);
+  const Recording read = real::from_text(real::text_of(run));
+  EXPECT_EQ(session_setup(read.header).air, setup.air);
+  const ReplayRun again = run_again(read, {});
+  const auto bytes_of = [](const Recording& recording) {
+    std::vector<std::pair<std::int64_t, std::vector<std::uint8_t>>> bytes;
+    for (const RecordedChunk& chunk : recording.chunks)
+      if (chunk.kind == RecordedChunk::Kind::kDongleBytes) bytes.emplace_back(chunk.now_ns, chunk.bytes);
+    return bytes;
+  };
+  EXPECT_GT(bytes_of(run).size(), 5U);
+  EXPECT_EQ(bytes_of(run), bytes_of(again.answer));
+  EXPECT_EQ(run_again(read, {}).sha256, again.sha256);
+  setup.plant.seed = 12;
+  EXPECT_NE(bytes_of(real::record(setup, 1500)), bytes_of(run));
+}
+
 INSTANTIATE_TEST_SUITE_P(Dongles, LossyAir, testing::Values(real::kHermes, real::kRem),
                          [](const auto& param) { return std::string(param.param.robot); });
 
@@ -139,14 +166,24 @@ TEST(AirInAHeader, UnknownKeysAndNumbersOutOfRangeAreRefused) {
                .burst_good_packets = 100.0,
                .burst_bad_packets = 5.0,
                .burst_share = 0.9,
-               .others_load = 0.01};
+               .others_load = 0.01,
+               .latency_least_s = 0.001,
+               .latency_mean_s = 0.004,
+               .latency_law = LatencyLaw::kLognormal,
+               .latency_sigma = 0.5,
+               .in_order = true,
+               .twice_share = 0.03,
+               .held_share = 0.02,
+               .held_s = 0.015,
+               .bit_error_rate = 1e-5};
   const std::string json = to_json(recording_header(setup, "abc"));
   std::vector<std::string> problems;
   const auto read = parse_recording_header(json, problems);
   ASSERT_TRUE(read) << problems.at(0);
   EXPECT_EQ(read->air, setup.air);
   for (const auto& [from, to] :
-       {std::pair{"\"share\":0.1", "\"share\":7"}, std::pair{"\"share\"", "\"shore\""}}) {
+       {std::pair{"\"share\":0.1", "\"share\":7"}, std::pair{"\"share\"", "\"shore\""},
+        std::pair{"lognormal", "abnormal"}, std::pair{"\"in_order\":true", "\"in_order\":1.5"}}) {
     std::string wrong = json;
     wrong.replace(wrong.find(from), std::string(from).size(), to);
     problems.clear();
