@@ -45,6 +45,10 @@ std::unique_ptr<LeagueHost> LeagueHost::open(const LeagueOptions& options, const
         UdpPort::listen(options.address, port_of(options.opponents_port, other_team(config.team)), error);
     if (!host->opponents_port_.is_open()) return nullptr;
   }
+  if (host->robot_port_.is_open() && options.grsim_port > 0) {
+    host->grsim_port_ = UdpPort::listen(options.address, options.grsim_port, error);
+    if (!host->grsim_port_.is_open()) return nullptr;
+  }
   if (host->robot_port_.is_open() && options.sends_vision) {
     host->group_ =
         UdpPort::multicast(options.vision_group, options.vision_port, options.vision_interface, error);
@@ -61,6 +65,8 @@ std::string LeagueHost::ports() const {
   std::string text = fmt::format("simulation control UDP {}:{}, robot control {}:{}", options_.address,
                                  control_.port(), options_.address, robot_port_.port());
   if (opponents_port_.is_open()) text += fmt::format(" and {} of the opponents", opponents_port_.port());
+  if (grsim_port_.is_open())
+    text += fmt::format(", grSim's packets {}:{}", options_.address, grsim_port_.port());
   if (group_.is_open()) {
     text += fmt::format(", vision {}:{} by {} at {:g} Hz", options_.vision_group, options_.vision_port,
                         options_.vision_interface, options_.vision.rate_Hz);
@@ -124,24 +130,57 @@ std::string LeagueHost::robot_control(std::string_view bytes, Team team, Session
 
 std::string LeagueHost::simulator_command(std::string_view bytes, Session& session) {
   const LeagueControl read = read_simulator_command(bytes, robots_);
-  for (const LeagueTeleport& t : read.teleports) {
-    const int index = static_cast<int>(t.robot_index);
-    if (t.present) {
-      robots_[t.robot_index].present = *t.present;
-      session.set_present(index, *t.present);
-    }
-    const PlanarState now = session.plant().planar_state(index);
-    if (t.x_m || t.y_m || t.yaw_rad)
-      session.set_pose(index, t.x_m.value_or(now.x_m), t.y_m.value_or(now.y_m),
-                       t.yaw_rad.value_or(now.yaw_rad));
-    if (t.v_x_m_s || t.v_y_m_s || t.omega_rad_s)
-      session.set_velocity(index, t.v_x_m_s.value_or(0.0), t.v_y_m_s.value_or(0.0),
-                           t.omega_rad_s.value_or(0.0));
-  }
+  for (const LeagueTeleport& t : read.teleports) put_robot(t, session);
   if (read.ball) put_ball(*read.ball, session);
   counts_.teleports += read.teleports.size() + (read.ball ? 1 : 0);
   counts_.errors += read.errors.size();
   return simulator_response(read.errors);
+}
+
+void LeagueHost::put_robot(const LeagueTeleport& wanted, Session& session) {
+  const int index = static_cast<int>(wanted.robot_index);
+  if (wanted.present) {
+    robots_[wanted.robot_index].present = *wanted.present;
+    session.set_present(index, *wanted.present);
+  }
+  const PlanarState now = session.plant().planar_state(index);
+  if (wanted.x_m || wanted.y_m || wanted.yaw_rad)
+    session.set_pose(index, wanted.x_m.value_or(now.x_m), wanted.y_m.value_or(now.y_m),
+                     wanted.yaw_rad.value_or(now.yaw_rad));
+  if (wanted.v_x_m_s || wanted.v_y_m_s || wanted.omega_rad_s)
+    session.set_velocity(index, wanted.v_x_m_s.value_or(0.0), wanted.v_y_m_s.value_or(0.0),
+                         wanted.omega_rad_s.value_or(0.0));
+}
+
+void LeagueHost::grsim_packet(std::string_view bytes, Session& session) {
+  const GrsimPacket read = read_grsim_packet(bytes, robots_);
+  for (const LeagueRobotCommand& c : read.commands)
+    session.command(static_cast<int>(c.robot_index), c.command);
+  for (const LeagueTeleport& t : read.teleports) put_robot(t, session);
+  if (read.ball) put_ball(*read.ball, session);
+  counts_.commands += read.commands.size();
+  counts_.teleports += read.teleports.size() + (read.ball ? 1 : 0);
+  ++counts_.grsim_packets;
+  counts_.grsim_errors += read.errors.size();
+  if (!read.errors.empty()) counts_.grsim_error = read.errors.back().code + " " + read.errors.back().message;
+}
+
+void LeagueHost::tell_grsim(const sockaddr_in& client, std::int64_t now_ns) {
+  for (const Team team : {Team::kBlue, Team::kYellow}) {
+    const auto news = grsim_status_.news(robots_, team, now_ns);
+    if (!news) continue;
+    sockaddr_in to = client;
+    to.sin_port = htons(static_cast<std::uint16_t>(team == Team::kBlue ? options_.grsim_blue_port
+                                                                       : options_.grsim_yellow_port));
+    grsim_port_.send(*news, to);
+  }
+}
+
+void LeagueHost::world(std::int64_t now_ns, const World& world) {
+  for (const WorldEvent& event : world.events()) {
+    if (event.kind == WorldEventKind::kKick && event.robot >= 0)
+      grsim_status_.kicked(static_cast<std::size_t>(event.robot), world.handling(event.robot).chips, now_ns);
+  }
 }
 
 // What is not given stays as it is; a ball that was not there comes to the middle of the field.
@@ -167,6 +206,10 @@ void LeagueHost::before_step(Session& session) {
     robot_port_.send(robot_control(bytes_, team_, session), from);
   for (int i = 0; opponents_port_.is_open() && i < kMostPerStep && opponents_port_.receive(bytes_, from); ++i)
     opponents_port_.send(robot_control(bytes_, other_team(team_), session), from);
+  for (int i = 0; grsim_port_.is_open() && i < kMostPerStep && grsim_port_.receive(bytes_, from); ++i) {
+    grsim_packet(bytes_, session);
+    tell_grsim(from, session.now_ns());
+  }
   for (int i = 0; real_port_.is_open() && i < kMostPerStep && real_port_.receive(bytes_, from); ++i)
     real_packet(bytes_, session);
   if (real_) follow_real_game(session);

@@ -328,6 +328,11 @@ ServeEnd Bench::run(RecordingHeader header) {
     for (int i = 0; i < session_.robot_count(); ++i)
       robots.push_back({session_.robot_key(i), session_.firmware(i).report()});
     for (const std::string& line : merge_lines("robot", "robots", robots)) fmt::print("  {}\n", line);
+    if (league_ && league_->counts().grsim_packets > 0) {
+      const LeagueCounts& league = league_->counts();
+      fmt::print("  grSim            {} packets, {} errors{}\n", league.grsim_packets, league.grsim_errors,
+                 league.grsim_error.empty() ? "" : ", the last: " + league.grsim_error);
+    }
     if (writer_ && !writer_->error()) {
       fmt::print("  recording        {} ({} bytes)\n", options_.record, writer_->bytes_written());
     }

@@ -15,6 +15,21 @@ bool split_address(const std::string& text, std::string& host, int& port) {
   return error == std::errc{} && at == end && port > 0 && port < 65'536;
 }
 
+// "20011" or "20011,30011,30012"
+bool split_ports(const std::string& text, LeagueOptions& options) {
+  const char *at = text.data(), *const end = text.data() + text.size();
+  const auto take = [&](int& port) {
+    const auto [next, error] = std::from_chars(at, end, port);
+    if (error != std::errc{} || port < 1 || port > 65'535) return false;
+    at = next;
+    return true;
+  };
+  const auto comma = [&] { return at < end && *at++ == ','; };
+  if (!take(options.grsim_port)) return false;
+  if (at == end) return true;
+  return comma() && take(options.grsim_blue_port) && comma() && take(options.grsim_yellow_port) && at == end;
+}
+
 }  // namespace
 
 void add_league_options(Verb& verb, LeagueWords& w) {
@@ -36,6 +51,10 @@ void add_league_options(Verb& verb, LeagueWords& w) {
   verb.add_option("--league-sync", w.sync_port,
                   "TCP port of the synchronous protocol: time goes on by a client's requests alone")
       .range(1, 65'535);
+  verb.add_option(
+      "--grsim", w.grsim,
+      "UDP port on which grSim's packets are taken, usually 20011; with the ports that hear of the "
+      "robots: 20011,30011,30012 (default: not taken)");
   verb.add_option("--vision", w.vision, "multicast GROUP:PORT instead of 224.5.23.2:10006, or off");
   verb.add_option("--vision-interface", w.options.vision_interface,
                   "address of the network interface that it leaves by")
@@ -85,6 +104,7 @@ std::optional<LeagueOptions> league_options(const LeagueWords& words, std::uint6
                                             std::uint64_t epoch_ms, std::vector<std::string>& problems) {
   if (!words.on && words.sync_port == 0) {
     if (!words.real.empty()) problems.push_back("--mixed-vision: needs --league");
+    if (!words.grsim.empty()) problems.push_back("--grsim: needs --league");
     return std::nullopt;
   }
   LeagueOptions options = words.options;
@@ -105,6 +125,9 @@ std::optional<LeagueOptions> league_options(const LeagueWords& words, std::uint6
       problems.push_back("--mixed-vision: " + words.real +
                          " is where our own vision goes: give it another group or port with --vision");
   }
+  if (!words.grsim.empty() && !split_ports(words.grsim, options))
+    problems.push_back("--grsim: found \"" + words.grsim +
+                       "\", allowed: PORT or COMMANDS,BLUE,YELLOW such as 20011,30011,30012");
   if (vision.cameras == 3) problems.push_back("--cameras: found 3, allowed: 1, 2, 4");
   if (words.delay_most_ms > 0.0 && words.delay_most_ms < words.delay_least_ms)
     problems.push_back("--vision-delay-most: less than --vision-delay");

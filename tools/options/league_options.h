@@ -17,6 +17,7 @@ struct LeagueWords {
   LeagueOptions options;
   std::string vision;  // GROUP:PORT, or "off"
   std::string real;    // GROUP:PORT
+  std::string grsim;   // COMMANDS or COMMANDS,BLUE,YELLOW
   double delay_least_ms = 0.0, delay_most_ms = 0.0;
   double position_sigma_mm = 0.0, clock_sigma_ms = 0.0, askew_mm = 0.0;
   int sync_port = 0;

@@ -285,7 +285,8 @@ INSTANTIATE_TEST_SUITE_P(PythonProtobuf, LeagueClient,
                                          "test_every_refused_field_has_its_error", "test_teleport_and_vision",
                                          "test_steps_are_exact_and_repeat",
                                          "test_recording_of_the_league_replays", "test_two_teams_and_a_ball",
-                                         "test_match_of_two_scripted_teams", "test_mixed_match"),
+                                         "test_match_of_two_scripted_teams", "test_mixed_match",
+                                         "test_old_client_of_grsim"),
                          [](const auto& param) { return std::string(param.param); });
 
 }  // namespace
