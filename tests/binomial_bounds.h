@@ -4,6 +4,7 @@
 //   EXPECT_GE(count, low);
 //   EXPECT_LE(count, high);
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -21,7 +22,10 @@ inline double binomial_probability(std::uint64_t n, double p, std::uint64_t k) {
 
 // The least and the greatest count that are not in the tails of this probability each.
 inline std::pair<std::uint64_t, std::uint64_t> binomial_bounds(std::uint64_t n, double p, double tail) {
-  std::uint64_t low = 0, high = n;
+  // 40 deviations and 100 off the mean the tails are below 1e-100: they are not summed.
+  const double mean = static_cast<double>(n) * p, far = 40.0 * std::sqrt(mean) + 100.0;
+  auto low = static_cast<std::uint64_t>(std::max(0.0, mean - far));
+  auto high = std::min(n, static_cast<std::uint64_t>(mean + far));
   for (double sum = binomial_probability(n, p, low); sum < tail && low < n;
        sum += binomial_probability(n, p, low))
     ++low;

@@ -1,6 +1,7 @@
 // Packets under way, each with the time of its arrival: they come out by time, of one time in the order they went in.
 //
 //   AirQueue<int> queue(64);
+//   int crowded_out = 0;
 //   if (!queue.push(7, 2'000'000)) ++crowded_out;   // full: the newcomer is refused
 //   while (const int* packet = queue.due(now_ns)) { …; queue.pop(); }
 //

@@ -162,7 +162,9 @@ TEST(Grsim, NoBytesFromOutsideAreActedOnUnread) {
       ASSERT_LT(c.robot_index, 3U);
       EXPECT_TRUE(std::isfinite(c.command.v_forward_m_s) && std::abs(c.command.v_forward_m_s) <= 20.0);
     }
-    if (out.ball && out.ball->x_m) EXPECT_LE(std::abs(*out.ball->x_m), 100.0);
+    if (out.ball && out.ball->x_m) {
+      EXPECT_LE(std::abs(*out.ball->x_m), 100.0);
+    }
   }
 }
 

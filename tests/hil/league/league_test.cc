@@ -274,9 +274,10 @@ TEST_P(LeagueClient, IsServed) {
           "command -v protoc > /dev/null && /usr/bin/python3 -c 'import google.protobuf' 2> /dev/null") != 0)
     GTEST_SKIP() << "needs protoc and python3-protobuf";
   fake::TempFolder folder;
+  const bool grsim = std::string_view(GetParam()).find("grsim") != std::string_view::npos;
   const std::string command =
-      std::string("/usr/bin/python3 -W ignore '" OMNIHIL_SOURCE_DIR
-                  "/tests/hil/league/league_client.py' '" OMNIHIL_PROGRAM "' '" OMNIHIL_SOURCE_DIR "' '") +
+      std::string("/usr/bin/python3 -W ignore '" OMNIHIL_SOURCE_DIR "/tests/hil/league/") +
+      (grsim ? "grsim" : "league") + "_client.py' '" OMNIHIL_PROGRAM "' '" OMNIHIL_SOURCE_DIR "' '" +
       std::string(folder / "work") + "' " + GetParam() + " > '" + std::string(folder / "log") + "' 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << fake::read_text(folder / "log");
 }

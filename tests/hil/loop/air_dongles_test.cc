@@ -24,11 +24,15 @@ TEST_P(EveryDongleOnTheAir, ALatePacketIsAsMuchLater) {
   // Who has to be told that a host is there hears it later, too: a command may come to deaf ears meanwhile.
   EXPECT_GE(late.drives, without.drives - 1);
   EXPECT_LE(late.drives, without.drives);
-  if (late.drives == without.drives) EXPECT_EQ(late.first_ns, without.first_ns + 3'000'000);
+  if (late.drives == without.drives) {
+    EXPECT_EQ(late.first_ns, without.first_ns + 3'000'000);
+  }
   EXPECT_EQ(late.last_ns, without.last_ns + 3'000'000);
   if (without.from_robots > 0) {
     // A list of answers goes out in time, without those that are late.
-    if (format.list == nullptr) EXPECT_GE(late.first_answer_ns, without.first_answer_ns + 3'000'000);
+    if (format.list == nullptr) {
+      EXPECT_GE(late.first_answer_ns, without.first_answer_ns + 3'000'000);
+    }
     EXPECT_GT(late.from_robots, without.from_robots / 2);
   }
 }
@@ -55,7 +59,9 @@ TEST_P(EveryDongleOnTheAir, WrongBitsAreCountedAndNeverBreakIt) {
     EXPECT_GT(counts.refused[0] + counts.slipped[0], 0U) << rate;
     EXPECT_EQ(counts.crowded[0] + counts.crowded[1], 0U) << rate;
     EXPECT_GE(passed.refused, counts.refused[1]) << rate;
-    if (rate == 0.5) EXPECT_LT(passed.drives, without.drives);
+    if (rate == 0.5) {
+      EXPECT_LT(passed.drives, without.drives);
+    }
   }
 }
 
