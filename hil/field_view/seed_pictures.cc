@@ -94,7 +94,8 @@ SeedPicture contacts_picture(const RobotModel& model) {
 
 SeedPicture kicker_picture() {
   std::vector<double> k, full, half, fitted_out;
-  for (double power = 0.0; power <= 30.0; power += 0.1) {
+  for (int tenth = 0; tenth <= 300; ++tenth) {
+    const double power = 0.1 * tenth;
     k.push_back(power);
     full.push_back(kick_speed_m_s(kSeedKick, 1e-3 * power, 1.0));
     half.push_back(kick_speed_m_s(kSeedKick, 1e-3 * power, 0.5));
@@ -108,7 +109,8 @@ SeedPicture kicker_picture() {
 
 SeedPicture chip_picture(const RobotModel& model) {
   std::vector<double> k, far_middle, far_edge, apex;
-  for (double power = 0.0; power <= 8.0; power += 0.05) {
+  for (int twentieth = 0; twentieth <= 160; ++twentieth) {
+    const double power = 0.05 * twentieth;
     const ChipKick middle = chip_kick(handling_of(model).chip, power, 0.0),
                    edge = chip_kick(handling_of(model).chip, power, 0.025);
     k.push_back(power);
