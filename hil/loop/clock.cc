@@ -37,7 +37,8 @@ void DeadlineKeeper::begin_step(std::int64_t now_ns) {
   deadline_ns_ += options_.step_ns;
 }
 
-RealClock::RealClock(const RealClockOptions& options) : keeper_(options, monotonic_now_ns()) {
+RealClock::RealClock(const RealClockOptions& options)
+    : keeper_(options, options.start_ns != 0 ? options.start_ns : monotonic_now_ns()) {
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
 }
 

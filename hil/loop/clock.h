@@ -47,6 +47,7 @@ class FreeClock : public Clock {
 struct RealClockOptions {
   std::int64_t step_ns = 1'000'000;
   std::int64_t backlog_ns = 20'000'000;
+  std::int64_t start_ns = 0;  // when step 0 is due, CLOCK_MONOTONIC; 0: at once
 };
 
 // The rule above without a clock: what RealClock does with the times it reads.

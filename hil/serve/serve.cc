@@ -243,10 +243,11 @@ bool Bench::step() {
   if (!error && opponents_port_) error = opponents_port_->receive(session_.now_ns(), opponents_host_);
   if (league_) league_->before_step(session_);
   session_.step(host_, answer_, opponents_host_, opponents_answer_);
+  // The answer first: whoever waits for it does not wait for what the cameras see.
+  if (!error) error = port_->send(session_.now_ns(), answer_);
   if (!error && opponents_port_) error = opponents_port_->send(session_.now_ns(), opponents_answer_);
   if (league_) league_->after_step(session_);
   note_failures();
-  if (!error) error = port_->send(session_.now_ns(), answer_);
   if (port_->take_host_closed()) session_.host_closed();
   if (error) complain("device " + options_.device + ": " + error.message());
   return !error;
@@ -306,7 +307,8 @@ ServeEnd Bench::run(RecordingHeader header) {
   if (!open(std::move(header))) return ServeEnd::kIo;
   start_ns_ = monotonic_now_ns();
   if (options_.real_time) {
-    clock_ = std::make_unique<RealClock>(RealClockOptions{.step_ns = session_.config().step_ns});
+    clock_ = std::make_unique<RealClock>(
+        RealClockOptions{.step_ns = session_.config().step_ns, .start_ns = options_.start_ns});
   } else {
     clock_ = std::make_unique<FreeClock>();
   }

@@ -26,6 +26,7 @@ struct ServeOptions {
   bool pacing = true;
   std::optional<std::int64_t> baud;     // instead of the carrier's; 8N1
   bool real_time = true;                // false: virtual time as fast as it goes
+  std::int64_t start_ns = 0;            // real time: when step 0 is due, CLOCK_MONOTONIC; 0: at once
   std::int64_t duration_ns = 0;         // simulated; 0: until a signal
   bool quiet = false;                   // the ready line and errors only
   bool strict = false;                  // real time: the first slip ends the run

@@ -93,6 +93,15 @@ TEST(RealClockTest, NeverStartsAStepBeforeItsDeadline) {
   EXPECT_TRUE(clock.report().real_time);
 }
 
+TEST(RealClockTest, StepZeroIsDueWhenItWasTold) {
+  const std::int64_t start = monotonic_now_ns() + 5 * kMs;
+  RealClock clock({.step_ns = kMs, .start_ns = start});
+  for (int k = 0; k < 3; ++k) {
+    ASSERT_TRUE(clock.wait());
+    EXPECT_GE(monotonic_now_ns(), start + k * kMs);
+  }
+}
+
 TEST(FreeClockTest, NeverWaitsAndReportsNoLateness) {
   FreeClock clock;
   for (int k = 0; k < 1000; ++k) ASSERT_TRUE(clock.wait());
