@@ -8,7 +8,7 @@
 namespace omnihil::mcu {
 namespace {
 
-constexpr std::uint32_t kSystemControl = 0xE000E000, kDwt = 0xE0001000, kDebug = 0xE000EDF0;
+constexpr std::uint32_t kSystemControl = 0xE000E000, kDebug = 0xE000EDF0;
 
 bool in(std::uint32_t address, std::uint32_t base, std::uint32_t size) { return address - base < size; }
 bool is_private(std::uint32_t address) { return in(address, 0xE0000000, 0x100000); }
