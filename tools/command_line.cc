@@ -80,6 +80,23 @@ void Verb::footer(const std::string& text) { app_->footer(text); }
 
 void Verb::callback(std::function<void()> run) { app_->callback(std::move(run)); }
 
+std::vector<OptionSetting> Verb::settings() const {
+  std::vector<OptionSetting> settings;
+  for (const CLI::Option* option : app_->get_options()) {
+    if (option->get_lnames().empty()) continue;
+    OptionSetting& setting = settings.emplace_back();
+    setting.name = option->get_lnames().front();
+    setting.is_flag = option->get_items_expected_max() == 0;
+    setting.is_list = option->get_items_expected_max() > 1;
+    if (option->count() > 0) {
+      setting.values = option->results();
+    } else if (!setting.is_flag && !option->get_default_str().empty()) {
+      setting.values = {option->get_default_str()};
+    }
+  }
+  return settings;
+}
+
 void Verb::require_subcommand(int count) { app_->require_subcommand(count); }
 
 }  // namespace omnihil

@@ -38,6 +38,13 @@ class Option {
   CLI::Option* option_;
 };
 
+// What an option is set to now: on the command line, or by itself.
+struct OptionSetting {
+  std::string name;  // without the dashes
+  bool is_flag = false, is_list = false;
+  std::vector<std::string> values;  // as texts; none: not set. Of a flag that is set, one
+};
+
 class Verb {
  public:
   explicit Verb(CLI::App* app) : app_(app) {}
@@ -49,6 +56,7 @@ class Verb {
   void footer(const std::string& text);
   void callback(std::function<void()> run);
   void require_subcommand(int count);
+  std::vector<OptionSetting> settings() const;  // of all options, in their order
 
  private:
   CLI::App* app_;

@@ -17,9 +17,10 @@ struct AirCounts : AirLossCounts, AirDelayCounts {
 
 class Air final : public RadioAir {
  public:
-  // `position`: x and y in m of a robot.
-  Air(const AirOptions& options, std::uint64_t seed, std::function<std::pair<double, double>(int)> position)
-      : loss_(options, seed, std::move(position)),
+  // `position`: x and y in m of a robot. `silent`: whether nothing passes to and from it now; empty: never.
+  Air(const AirOptions& options, std::uint64_t seed, std::function<std::pair<double, double>(int)> position,
+      std::function<bool(int)> silent = {})
+      : loss_(options, seed, std::move(position), std::move(silent)),
         delay_(options, seed),
         bits_(options.bit_error_rate, seed) {}
 

@@ -22,8 +22,8 @@ double distance_loss_mean(double distance_m) {
 double distance_loss_sigma(double distance_m) { return 0.03 * std::log(1.0 + distance_m / 5.0) / 100.0; }
 
 AirLoss::AirLoss(const AirOptions& options, std::uint64_t seed,
-                 std::function<std::pair<double, double>(int)> position)
-    : options_(options), seed_(seed), position_(std::move(position)) {}
+                 std::function<std::pair<double, double>(int)> position, std::function<bool(int)> silent)
+    : options_(options), seed_(seed), position_(std::move(position)), silent_(std::move(silent)) {}
 
 double AirLoss::draw() { return uniform(seed_, kStream, drawn_++); }
 
@@ -47,6 +47,7 @@ bool AirLoss::lost(int robot_id, AirWay way) {
   }
   if (options_.burst_bad_packets > 0.0) gone = lost_in_burst(robot_id, way) || gone;
   if (options_.others_load > 0.0) gone = draw() < 1.0 - std::exp(-2.0 * options_.others_load) || gone;
+  if (silent_ && silent_(robot_id)) gone = true;
   (way == AirWay::kToRobot ? counts_.sent_to_robot : counts_.sent_to_host) += 1;
   if (gone) (way == AirWay::kToRobot ? counts_.to_robot : counts_.to_host) += 1;
   return gone;

@@ -37,9 +37,9 @@ struct AirLossCounts {
 
 class AirLoss {
  public:
-  // `position`: x and y in m of a robot.
+  // `position`: x and y in m of a robot. `silent`: whether nothing passes to and from it now; empty: never.
   AirLoss(const AirOptions& options, std::uint64_t seed,
-          std::function<std::pair<double, double>(int)> position);
+          std::function<std::pair<double, double>(int)> position, std::function<bool(int)> silent = {});
 
   bool lost(int robot_id, AirWay way);
   const AirLossCounts& counts() const { return counts_; }
@@ -52,6 +52,7 @@ class AirLoss {
   std::uint64_t seed_;
   std::uint64_t drawn_ = 0;
   std::function<std::pair<double, double>(int)> position_;
+  std::function<bool(int)> silent_;
   std::map<std::pair<int, AirWay>, bool> bad_;  // state of each chain
   AirLossCounts counts_;
 };

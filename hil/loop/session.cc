@@ -158,10 +158,18 @@ struct Session::Impl {
     link_config.firmware_decodes = firmware[port.first]->radio_format() == format;
     link_config.epoch_ms = config.epoch_ms;
     link_config.wheel_radius_m = models[port.first].wheel_radius_m;
-    if (config.air.any()) {
+    const bool silence = any_silence(config.faults);
+    if (config.air.any() || silence) {
       // Each team draws from a seed of its own.
-      port.air = std::make_unique<Air>(config.air, config.plant.seed + (&port == &opponents ? 1 : 0),
-                                       [this, &port](int id) { return position_of(port, id); });
+      const bool other = &port == &opponents;
+      std::function<bool(int)> silent;
+      if (silence)
+        silent = [this, other](int id) {
+          return silent_at(config.faults, other ? kOpponentKey + id : id, now_ns);
+        };
+      port.air = std::make_unique<Air>(
+          config.air, config.plant.seed + (other ? 1 : 0),
+          [this, &port](int id) { return position_of(port, id); }, std::move(silent));
       link_config.air = port.air.get();
     }
     port.link = find_radio_format(format)->make_link(link_config);
@@ -233,6 +241,18 @@ struct Session::Impl {
                                          static_cast<double>(at_ns) * 1e-9, id, signal));
   }
 
+  // Robots that the plan names; faults of others are their callers'.
+  void take_faults() {
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const bool named =
+          std::ranges::any_of(config.faults, [&](const TimedFault& f) { return f.key == keys[i]; });
+      if (!named) continue;
+      const RobotFaults now = faults_at(config.faults, keys[i], now_ns);
+      const int index = static_cast<int>(i);
+      if (now != world.plant().faults(index)) world.plant().set_faults(index, now);
+    }
+  }
+
   void run_until(std::int64_t end_ns) {
     while (now_ns < end_ns) {
       std::int64_t until_ns = end_ns;
@@ -285,7 +305,9 @@ SessionConfig opponents_alone(const SessionConfig& config) {
   SessionConfig alone = config;
   alone.robots = config.opponents.robots;
   alone.robot_ids = config.opponents.robot_ids;
+  if (!config.opponents.radio_format.empty()) alone.radio_format = config.opponents.radio_format;
   alone.opponents = {};
+  alone.faults.clear();
   return alone;
 }
 
@@ -311,6 +333,7 @@ void Session::step(std::span<const std::uint8_t> host, std::vector<std::uint8_t>
 void Session::step(std::span<const std::uint8_t> host, std::vector<std::uint8_t>& out,
                    std::span<const std::uint8_t> opponents_host, std::vector<std::uint8_t>& opponents_out) {
   Impl& s = *impl_;
+  if (!s.config.faults.empty()) s.take_faults();
   RadioLink* const other = s.opponents.link.get();
   if (!host.empty()) {
     if (s.observer) s.observer->host_bytes(s.now_ns, host);

@@ -32,6 +32,7 @@
 
 #include "firmware_iface/ports.h"
 #include "hil/loop/air.h"
+#include "hil/loop/timed_faults.h"
 #include "protocols/radio_link.h"
 #include "sim/field/world.h"
 
@@ -67,6 +68,7 @@ struct SessionConfig {
   AirOptions air;                              // what the radio does to packets; drawn from plant.seed
   FieldSetup field;
   Opponents opponents;
+  std::vector<TimedFault> faults;  // of both teams
   std::vector<std::uint8_t>
       from;  // World::save() of the same robots: they begin there; empty: in a row, at rest
 };

@@ -86,6 +86,9 @@ std::vector<std::string> session_problems(const SessionConfig& config) {
   if (config.robot_ids.empty()) problems.push_back("robots: none; a session needs at least one");
   id_problems("robots", config.robots.size(), config.robot_ids, problems);
   id_problems("opponents", config.opponents.robots.size(), config.opponents.robot_ids, problems);
+  std::vector<int> keys = config.robot_ids;
+  for (const int id : config.opponents.robot_ids) keys.push_back(kOpponentKey + id);
+  for (std::string& problem : fault_problems(config.faults, keys)) problems.push_back(std::move(problem));
   const std::int64_t mechanical_ns = config.plant.mechanical_step_ns;
   if (mechanical_ns <= 0) {
     problems.push_back(fmt::format("mechanical step: {} ns; must be more than 0", mechanical_ns));

@@ -64,7 +64,9 @@ struct RecordingHeader {
   FieldSetup field;               // what was on the floor; absent: robots alone, as runs were before
   std::vector<int> opponent_ids;  // the other team's, of the same model and firmware; none: there was none
   std::string opponents_radio;    // of their dongle; empty: none
-  double spread = 0.0;            // of each robot's numbers, in tolerances of the model
+  std::vector<TimedFault> faults;
+  std::string bench;    // what the bench file said with all its options; empty: there was none
+  double spread = 0.0;  // of each robot's numbers, in tolerances of the model
   std::vector<OtherRobots> other_robots;   // robots of other models
   std::vector<std::uint8_t> from;          // the world at the start (Session, SessionConfig::from)
   std::string started;                     // ISO 8601 wall time, informative only

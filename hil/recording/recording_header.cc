@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "hil/loop/timed_faults_json.h"
 #include "hil/text/json_text.h"
 #include "hil/text/recording_text.h"
 
@@ -243,6 +244,17 @@ class HeaderFields {
     text(key, digits);
     if (digits.empty() || !parse_hex(digits, value)) refuse(key, digits.substr(0, 16), "pairs of hex digits");
   }
+  // Absent: none. Which robots there are is the session's to check.
+  void faults(const char* key, std::vector<TimedFault>& value) {
+    if (!json_.contains(key)) return;
+    const Json* found = find(key, "a list", &Json::is_array);
+    if (found == nullptr) return;
+    if (const std::string allowed = read_faults(*found, value); !allowed.empty())
+      refuse(key, found->dump(), allowed);
+  }
+  void text_or_none(const char* key, std::string& value) {
+    if (json_.contains(key)) text(key, value);
+  }
   // Absent: every robot is the model itself.
   void spread(const char* key, double& value) {
     if (!json_.contains(key)) return;
@@ -316,6 +328,8 @@ void read_fields(HeaderFields& fields, RecordingHeader& header) {
   fields.air("air", header.air);
   fields.field("field", header.field);
   fields.opponents("opponents", header);
+  fields.faults("faults", header.faults);
+  fields.text_or_none("bench", header.bench);
   fields.spread("spread", header.spread);
   fields.others("other_robots", header.other_robots);
   fields.bytes("from", header.from);
@@ -387,6 +401,8 @@ std::string to_json(const RecordingHeader& header) {
     if (header.air.in_order) air["in_order"] = true;
     json["air"] = std::move(air);
   }
+  if (!header.faults.empty()) json["faults"] = faults_json(header.faults);
+  if (!header.bench.empty()) json["bench"] = header.bench;
   if (header.field.contacts) {
     Json field = Json::object();
     if (header.field.size != nullptr) field["size"] = header.field.size->name;

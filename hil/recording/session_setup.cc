@@ -50,6 +50,20 @@ std::vector<int> parse_robot_list(std::string_view text, std::vector<std::string
   return ids;
 }
 
+std::vector<int> parse_robot_keys(std::string_view text, const SessionSetup& setup,
+                                  std::vector<std::string>& problems) {
+  constexpr std::string_view kOther = "opponents:";
+  const bool other = text.starts_with(kOther);
+  std::vector<int> keys = parse_robot_list(other ? text.substr(kOther.size()) : text, problems);
+  const std::vector<int>& ids = other ? setup.opponent_ids : setup.robot_ids;
+  for (int& key : keys) {
+    if (!std::ranges::binary_search(ids, key))
+      problems.push_back(fmt::format("{}robot {} is not on the floor", other ? kOther : "", key));
+    if (other) key += kOpponentKey;
+  }
+  return keys;
+}
+
 SessionConfig session_config(const SessionSetup& setup) {
   std::vector<std::string> problems;
   SessionConfig config;
@@ -97,6 +111,7 @@ SessionConfig session_config(const SessionSetup& setup) {
   config.field = setup.field;
   config.opponents.robot_ids = setup.opponent_ids;
   config.opponents.radio_format = setup.opponents_radio;
+  config.faults = setup.faults;
   config.from = setup.from;
   for (std::string& problem : session_problems(config)) problems.push_back(std::move(problem));
   throw_problems(problems);
@@ -126,6 +141,7 @@ RecordingHeader recording_header(const SessionSetup& setup, const std::string& c
   header.opponent_ids = setup.opponent_ids;
   header.opponents_radio = setup.opponents_radio;
   header.spread = setup.spread;
+  header.faults = setup.faults;
   header.from = setup.from;
   for (const OtherModel& other : setup.others) {
     OtherRobots& robots = header.other_robots.emplace_back();
@@ -172,6 +188,7 @@ SessionSetup session_setup(const RecordingHeader& header) {
   setup.opponent_ids = header.opponent_ids;
   setup.opponents_radio = header.opponents_radio;
   setup.spread = header.spread;
+  setup.faults = header.faults;
   setup.from = header.from;
   return setup;
 }

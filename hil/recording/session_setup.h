@@ -39,8 +39,9 @@ struct SessionSetup {
   std::uint64_t epoch_ms = 1'700'000'000'000;
   AirOptions air;
   FieldSetup field;
-  std::vector<int> opponent_ids;   // of the same model; none: no other team
-  std::string opponents_radio;     // of their dongle; empty: none
+  std::vector<int> opponent_ids;  // of the same model; none: no other team
+  std::string opponents_radio;    // of their dongle; empty: none
+  std::vector<TimedFault> faults;
   double spread = 0.0;             // of each robot's numbers, in tolerances of the model (model_spread.h)
   std::vector<std::uint8_t> from;  // the world at the start (SessionConfig::from)
 };
@@ -53,6 +54,10 @@ RecordingHeader recording_header(const SessionSetup& setup, const std::string& c
 SessionSetup session_setup(const RecordingHeader& header);
 // The model of all robots of `header` replaced, its name and its texts.
 void set_model(RecordingHeader& header, const ModelBundle& model);
+
+// "3,4": robots of the first team; "opponents:0-2": of the other one; their keys. What is wrong goes to `problems`.
+std::vector<int> parse_robot_keys(std::string_view text, const SessionSetup& setup,
+                                  std::vector<std::string>& problems);
 
 // "0-5", "0,2,7", "0-2,7" -> ascending ids, each once. What is wrong goes to `problems`, a line each.
 std::vector<int> parse_robot_list(std::string_view text, std::vector<std::string>& problems);

@@ -27,6 +27,7 @@
 
 #include "firmware_iface/robot_io.h"
 #include "sim/model/model_file.h"
+#include "sim/robot/robot_faults.h"
 
 namespace omnihil {
 
@@ -120,5 +121,12 @@ struct ScenarioReading {
 };
 
 ScenarioReading read_scenario(std::string_view text, const std::string& file);
+
+// What a fault's step puts in force (a disturbance is one, radio silence is none of the robot's).
+RobotFaults faults_of(const ScenarioStep& step);
+
+// A step that lasts, as the inside of its table: `at_s = 1.0, for_s = 0.2, do = "wheel_blocked", wheels = [0]`. until_s is
+// infinite where for_s is not given. What is wrong goes to `problems`, a line each.
+std::optional<ScenarioStep> read_fault(std::string_view text, std::vector<std::string>& problems);
 
 }  // namespace omnihil

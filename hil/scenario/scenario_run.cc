@@ -8,6 +8,7 @@
 
 #include "firmware_iface/firmware_checks.h"
 #include "hil/loop/session_checks.h"
+#include "hil/loop/timed_faults.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
@@ -138,41 +139,8 @@ class Bench : public SessionObserver {
   }
 
   void apply(const ScenarioStep& step, RobotFaults& faults) {
-    const auto join = [&step](std::array<bool, kWheels>& set) {
-      for (std::size_t w = 0; w < kWheels; ++w) set[w] = set[w] || step.wheels[w];
-    };
-    switch (step.kind) {
-      case StepKind::kDisturb:
-        faults.force_forward_N += step.force_forward_N;
-        faults.force_left_N += step.force_left_N;
-        faults.moment_Nm += step.moment_Nm;
-        break;
-      case StepKind::kRadioSilence:
-        silent_ = true;
-        break;
-      case StepKind::kBrownOut:
-        faults.supply_ratio *= step.supply_ratio;
-        break;
-      case StepKind::kEncoderStuck:
-        join(faults.encoder_stuck);
-        break;
-      case StepKind::kPhaseLost:
-        join(faults.phase_lost);
-        break;
-      case StepKind::kWindingHot:
-        for (std::size_t w = 0; w < kWheels; ++w) {
-          if (step.wheels[w]) faults.winding_rise_K[w] = step.rise_K;
-        }
-        break;
-      case StepKind::kWheelLifted:
-        join(faults.lifted);
-        break;
-      case StepKind::kWheelBlocked:
-        join(faults.blocked);
-        break;
-      default:
-        break;
-    }
+    if (step.kind == StepKind::kRadioSilence) silent_ = true;
+    join_faults(faults, faults_of(step));
   }
 
   // At which the back-EMF meets the supply.

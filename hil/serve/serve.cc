@@ -194,6 +194,7 @@ void Bench::say_ready() const {
   if (options_.league_sync_port > 0)
     fmt::print("league synchronous protocol: TCP {}:{}; time goes on by its requests alone\n",
                options_.league->address, sync_.port());
+  if (!options_.quiet) fmt::print("{}", options_.load);
   std::fflush(stdout);
 }
 
@@ -313,6 +314,10 @@ ServeEnd Bench::run(RecordingHeader header) {
     clock_ = std::make_unique<FreeClock>();
   }
   say_ready();
+  for (const StartPose& start : options_.starts) {
+    for (int i = 0; i < session_.robot_count(); ++i)
+      if (session_.robot_key(i) == start.key) session_.set_pose(i, start.x_m, start.y_m, start.yaw_rad);
+  }
   ServeEnd end = ServeEnd::kDone;
   try {
     end = loop();

@@ -20,6 +20,11 @@ namespace omnihil {
 
 inline constexpr std::string_view kServeDevice = "pty";  // what a bare path is
 
+struct StartPose {
+  int key = 0;  // the robot's id; an opponent's: kOpponentKey + id
+  double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
+};
+
 struct ServeOptions {
   std::string device = "./dongle";  // a wire's URL for bytes; a bare path is a pty's name
   std::string opponents_device;     // of the other team's dongle, likewise; empty: none
@@ -33,6 +38,8 @@ struct ServeOptions {
   bool fifo = false;                    // SCHED_FIFO, memory locked
   std::string record;                   // file; empty: none
   std::optional<LeagueOptions> league;  // the league's ports, beside the device
+  std::vector<StartPose> starts;        // before the first step; in the recording
+  std::string load;                     // what is said of the load (serve_load.h); lines with ends
   int league_sync_port = 0;             // TCP; time then goes on by the client's requests alone; 0: no
 };
 

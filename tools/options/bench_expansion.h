@@ -9,6 +9,8 @@
 
 namespace omnihil {
 
+// The file is one of serve's options whatever the verb; the verb takes those that it has, too. `replay` and `check` take only
+// what a recording has not: firmware and a radio format's file.
 // What is wrong with the file, a line each; the arguments are then as they were.
 std::string expand_bench(std::vector<std::string>& arguments, const CLI::App& app);
 

@@ -1,5 +1,6 @@
 #include "tools/options/bench_file.h"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <sstream>
 
 #include "hil/text/toml_keys.h"
+#include "tools/options/bench_robots.h"
 
 namespace omnihil {
 namespace {
@@ -33,22 +35,52 @@ class Reader {
         given_(given),
         out_(out) {}
 
-  void read(const toml::table& top) {
-    for (const auto& [key, node] : top) {
+  void read(const ModelDocument& document) {
+    read_rows(document);
+    for (const auto& [key, node] : document.table) {
       if (key.str() == "format") continue;
+      if ((key.str() == "robot" || key.str() == "fault") && node.is_array_of_tables()) continue;
       if (const toml::table* table = node.as_table()) {
         if (const BenchOption* flag = find(dashed(key.str())); flag != nullptr && flag->is_flag)
           add_flag(flag->name);
         for (const auto& [inner, value] : *table)
-          take(inner, std::string(key.str()), dashed(key.str()) + "-" + dashed(inner.str()), value);
+          take(inner, std::string(key.str()), name_within(dashed(key.str()), dashed(inner.str())), value);
         continue;
       }
-      // The key "format" says what file this is; the radio format's file is "radio_file".
-      take(key, "", key.str() == "radio_file" ? "format" : dashed(key.str()), node);
+      take(key, "", top_name(key.str()), node);
     }
   }
 
  private:
+  // The key "format" says what file this is, [[robot]] are single ones: two names of their own.
+  static std::string top_name(std::string_view key) {
+    return key == "radio_file" ? "format" : key == "model" ? "robot" : dashed(key);
+  }
+
+  // [opponents] robots is --opponents, as robots is --robots.
+  std::string name_within(const std::string& table, const std::string& key) const {
+    const BenchOption* whole = find(table);
+    return key == "robots" && whole != nullptr && !whole->is_flag ? table : table + "-" + key;
+  }
+
+  void read_rows(const ModelDocument& document) {
+    const auto found = [this](const std::string& value) { return beside("robot", value); };
+    const BenchRows rows = bench_rows(document, found, out_.problems);
+    const auto join = [&](const std::vector<std::string>& ids, const char* name, bool said) {
+      std::string list;
+      for (const std::string& id : ids) list += (list.empty() ? "" : ",") + id;
+      if (!list.empty() && !said && !given_.contains(name))
+        out_.arguments.push_back("--" + std::string(name) + "=" + list);
+    };
+    const toml::node* opponents = document.table.get("opponents");
+    join(rows.own, "robots", document.table.contains("robots"));
+    join(rows.opponents, "opponents",
+         opponents != nullptr && (!opponents->is_table() || opponents->as_table()->contains("robots")));
+    for (const std::string& argument : rows.arguments) {
+      if (!given_.contains(argument.substr(2, argument.find('=') - 2))) out_.arguments.push_back(argument);
+    }
+  }
+
   const BenchOption* find(const std::string& name) const {
     const auto at = std::ranges::find(options_, name, &BenchOption::name);
     return at == options_.end() || name == "bench" ? nullptr : &*at;
@@ -89,8 +121,7 @@ class Reader {
     } else if (const auto* whole = node.as_integer()) {
       text << whole->get();
     } else if (const auto* number = node.as_floating_point()) {
-      text.precision(17);
-      text << number->get();
+      text << fmt::format("{}", number->get());  // the shortest that gives the same number back
     } else {
       return keys_.wrong(node, key_path(path, key.str()), "has no value for an option",
                          "a text, a number or a list of them");
@@ -126,7 +157,7 @@ BenchArguments bench_arguments(const std::string& text, const std::string& file,
   } else {
     keys.word(document->table, "", "format", formats, {});
   }
-  Reader(*document, folder, options, given, out).read(document->table);
+  Reader(*document, folder, options, given, out).read(*document);
   std::ranges::stable_sort(out.problems, {}, &ModelProblem::line);
   if (!out.problems.empty()) out.arguments.clear();
   return out;

@@ -1,7 +1,7 @@
 // A bench as a file: what the options of `serve` say, in TOML. `serve --bench match.toml` is `serve` with those options.
 //
 //   format    = "omnihil-bench/1"
-//   robot     = "my_robot.toml"        # --robot; names of files are looked for beside this file first
+//   model     = "my_robot.toml"        # --robot (which is a key as well); names of files are looked for beside this file first
 //   robots    = "0-5"
 //   firmware  = "build/libfw.so"
 //   with      = ["battery_sag", "floor_tilt"]
@@ -9,10 +9,15 @@
 //   sync = 10304
 //   [air]
 //   loss = 2                           # --air-loss
+//   [[robot]]                          # one robot: bench_robots.h
+//   id = 3
+//   [[fault]]                          # something that goes wrong at an instant
+//   robots = 3
 //
 // A key is an option's name, with _ or - between words; a table is its first word. true sets a flag, a list gives an
 // option several times. What stands on the command line, too, is taken from there. Unknown keys are named with line and
-// nearest spelling; values are judged as on the command line. Cannot: say other things than the options do.
+// nearest spelling; values are judged as on the command line. Every table of a robot or a fault is an option, too, so a file
+// says nothing that a command line cannot: bench_text.h prints one from the other.
 #pragma once
 #include <set>
 #include <span>

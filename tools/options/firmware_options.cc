@@ -16,8 +16,11 @@ struct OfRobots {
   FirmwareChoice choice;
 };
 
-// "3,4=FILE" or "3,4=FILE+BOARD".
-std::vector<OfRobots> read_of(const TeamFirmwareWords& words, std::vector<std::string>& problems) {
+constexpr std::string_view kOther = "opponents:";
+
+// "3,4=FILE" or "3,4=FILE+BOARD", with opponents: before it of the other team.
+std::vector<OfRobots> read_of(const TeamFirmwareWords& words, bool opponents,
+                              std::vector<std::string>& problems) {
   std::vector<OfRobots> all;
   for (const std::string& text : words.of) {
     const std::size_t equals = text.find('=');
@@ -28,8 +31,10 @@ std::vector<OfRobots> read_of(const TeamFirmwareWords& words, std::vector<std::s
                       text));
       continue;
     }
+    if (text.starts_with(kOther) != opponents) continue;
     OfRobots& robots = all.emplace_back();
-    robots.ids = parse_robot_list(std::string_view(text).substr(0, equals), problems);
+    const std::size_t first = opponents ? kOther.size() : 0;
+    robots.ids = parse_robot_list(std::string_view(text).substr(first, equals - first), problems);
     const std::string file = text.substr(equals + 1);
     const std::size_t plus = file.rfind('+');
     robots.choice = words.all;
@@ -64,16 +69,20 @@ void add_firmware_options(Verb& verb, FirmwareChoice& choice) {
 void add_team_firmware_options(Verb& verb, TeamFirmwareWords& words) {
   add_firmware_options(verb, words.all);
   verb.add_option("--firmware-of", words.of,
-                  "IDS=FILE or IDS=IMAGE+BOARD: robots of the first team that run another firmware, such as "
-                  "3,4=libother.so; several allowed");
+                  "IDS=FILE or IDS=IMAGE+BOARD: robots that run another firmware, such as 3,4=libother.so or "
+                  "opponents:0=libtheirs.so; several allowed");
   verb.add_option("--opponents-firmware", words.opponents,
                   "what the other team runs (default: as --firmware)");
   verb.add_option("--opponents-board", words.opponents_board, "board file of the other team's image");
 }
 
-Session::FirmwareMaker open_first_firmware(const TeamFirmwareWords& words, const SessionConfig& config) {
+namespace {
+
+// `config` of one team, `choice` what its robots run that are not named.
+Session::FirmwareMaker open_of(const TeamFirmwareWords& words, bool opponents, const FirmwareChoice& choice,
+                               const SessionConfig& config) {
   std::vector<std::string> problems;
-  const std::vector<OfRobots> others = read_of(words, problems);
+  const std::vector<OfRobots> others = read_of(words, opponents, problems);
   std::map<std::uint32_t, std::size_t> other_of;  // by id, place in others
   for (std::size_t i = 0; i < others.size(); ++i) {
     for (const int id : others[i].ids) {
@@ -84,7 +93,7 @@ Session::FirmwareMaker open_first_firmware(const TeamFirmwareWords& words, const
     }
   }
   throw_problems(problems);
-  const Session::FirmwareMaker usual = open_firmware(words.all, config);
+  const Session::FirmwareMaker usual = open_firmware(choice, config);
   std::vector<Session::FirmwareMaker> makers;
   for (const OfRobots& robots : others) makers.push_back(open_firmware(robots.choice, config));
   if (makers.empty()) return usual;
@@ -94,10 +103,16 @@ Session::FirmwareMaker open_first_firmware(const TeamFirmwareWords& words, const
   };
 }
 
+}  // namespace
+
+Session::FirmwareMaker open_first_firmware(const TeamFirmwareWords& words, const SessionConfig& config) {
+  return open_of(words, false, words.all, config);
+}
+
 Session::FirmwareMaker open_opponents_firmware(const TeamFirmwareWords& words, const SessionConfig& alone) {
   if (words.opponents.empty() && !words.opponents_board.empty())
     throw_problems({"--opponents-board: needs --opponents-firmware IMAGE beside it"});
-  return open_firmware(opponents_choice(words), alone);
+  return open_of(words, true, opponents_choice(words), alone);
 }
 
 TeamFirmware open_team_firmware(const TeamFirmwareWords& words, const SessionConfig& config) {
@@ -119,7 +134,8 @@ std::vector<HashedFile> team_firmware_files(const TeamFirmwareWords& words) {
       if (std::ranges::find(files, file) == files.end()) files.push_back(std::move(file));
   };
   std::vector<std::string> problems;  // named when it was opened
-  for (const OfRobots& robots : read_of(words, problems)) add(robots.choice);
+  for (const bool opponents : {false, true})
+    for (const OfRobots& robots : read_of(words, opponents, problems)) add(robots.choice);
   if (!words.opponents.empty()) add(opponents_choice(words));
   return files;
 }

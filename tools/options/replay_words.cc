@@ -10,6 +10,10 @@
 namespace omnihil {
 
 void add_replay_options(Verb& verb, ReplayWords& words) {
+  verb.add_option(
+      "--bench", words.bench,
+      "firmware (and a radio format's file) as this bench file says (docs/bench.md); what is given "
+      "here wins");
   verb.add_option("--format", words.format_file,
                   "radio format of the recording from this file, where it was made with one");
   add_team_firmware_options(verb, words.firmware);

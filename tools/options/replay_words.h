@@ -19,6 +19,7 @@ struct ReplayWords {
   std::vector<std::string> with;  // effects, over the recorded or the named model
   std::string physics;
   std::string format_file;
+  std::string bench;  // expanded before the command line is read (bench_expansion.h)
   std::optional<std::uint64_t> seed;
 };
 

@@ -23,6 +23,7 @@ namespace {
 struct Arguments {
   std::vector<std::string> paths;
   std::string level, junit, physics = "planar";
+  std::string bench;  // expanded before the command line is read (bench_expansion.h)
   bool all = false, no_plots = false;
   SuiteOptions suite;
 };
@@ -94,6 +95,10 @@ void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result
   Verb sub = verb.add_subcommand("run", "run scenarios and judge them");
   sub.add_option("PATH", a->paths,
                  "scenario files, folders of them, or names of shipped ones; none: all shipped");
+  sub.add_option(
+      "--bench", a->bench,
+      "robot, firmware, effects, radio, physics and seed as this bench file says (docs/bench.md); what "
+      "is given here wins");
   add_firmware_options(sub, a->suite.firmware);
   sub.add_option("--level", a->level,
                  "wheel: what a firmware of one wheel can do, too; robot; without it: all")

@@ -14,12 +14,14 @@
 #include "hil/radio_file/radio_file.h"
 #include "hil/recording/recording_header.h"
 #include "hil/recording/session_setup.h"
+#include "hil/serve/serve_load.h"
 #include "hil/text/program_files.h"
 #include "hil/wire/open_wire.h"
 #include "protocols/radio_format.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/options/air_options.h"
+#include "tools/options/bench_text.h"
 #include "tools/options/field_options.h"
 #include "tools/options/firmware_options.h"
 #include "tools/options/league_options.h"
@@ -33,7 +35,9 @@ constexpr const char* kDefaultRadio = "ulaval-hermes";
 
 struct Words {  // as the user gave them
   std::string robot = "omni_default";
-  std::string bench;  // expanded before the command line is read (bench_expansion.h)
+  bool print_bench = false;
+  std::string bench_text;  // of all options
+  std::string bench;       // expanded before the command line is read (bench_expansion.h)
   std::string radio;
   std::string format_file;
   std::string robots = "0-5";
@@ -100,11 +104,15 @@ std::string understand(Words& words) {
   understand_field(words.field, words.with, setup, problems);
   if (!words.options.opponents_device.empty()) {
     if (setup.opponent_ids.empty()) problems.push_back("--opponents-device: needs --opponents");
-    setup.opponents_radio = setup.radio_format;
+    setup.opponents_radio =
+        words.field.opponents_radio.empty() ? setup.radio_format : words.field.opponents_radio;
     for (const std::string& problem :
          wire_problems(read_wire_url(words.options.opponents_device, kServeDevice), WireForm::kBytes))
       problems.push_back("--opponents-device: " + problem);
   }
+  if (words.options.opponents_device.empty() && !words.field.opponents_radio.empty())
+    problems.push_back("--opponents-radio: needs --opponents-device");
+  words.options.starts = start_poses(words.field, setup, problems);
   if (setup.field.size != nullptr) words.league.options.vision.field = *setup.field.size;
   words.options.league = league_options(words.league, setup.plant.seed, setup.epoch_ms, problems);
   // Clients hold a frame's times against their own clock.
@@ -136,6 +144,10 @@ std::string understand(Words& words) {
 }
 
 int run(Words& words) {
+  if (words.print_bench) {
+    std::fputs(words.bench_text.c_str(), stdout);
+    return kExitOk;
+  }
   const std::string problems = understand(words);
   if (!problems.empty()) {
     complain(problems);
@@ -144,6 +156,7 @@ int run(Words& words) {
   try {
     RecordingHeader header = recording_header(words.setup, program_commit());
     header.sample_every = words.sample_every;
+    if (!words.bench.empty()) header.bench = words.bench_text;
     const SessionConfig config = session_config(words.setup);
     words.firmware.all.virtual_time = !words.options.real_time;
     const TeamFirmware makers = words.motor_bus.bus.empty()
@@ -154,6 +167,8 @@ int run(Words& words) {
     } else {
       header.firmware_files = {{words.motor_bus.bus + " on " + words.motor_bus.port, ""}};
     }
+    if (words.options.real_time && !words.options.quiet)
+      words.options.load = load_words(measured_load(config));
     const ServeEnd end = serve(config, makers.first, std::move(header), words.options, makers.opponents);
     switch (end) {
       case ServeEnd::kDone:
@@ -201,7 +216,9 @@ void add_verb_serve(Verb& program, VerbResult& result) {
       "serve", "robots behind a virtual radio dongle that an AI host opens as a serial port");
   Words& w = *words;
   verb.add_option("--bench", w.bench,
-                  "a file that says what these options say (docs/serve.md); what is given here wins");
+                  "a file that says what these options say (docs/bench.md); what is given here wins");
+  verb.add_flag("--print-bench", w.print_bench,
+                "print all options with their values as such a file, and end");
   verb.add_option("--robot", w.robot, "robot model: a name or a .toml file").capture_default_str();
   verb.add_option("--with", w.with,
                   "add an effect to every robot: ID.parameter=value, or ID for its typical size; several "
@@ -247,7 +264,10 @@ void add_verb_serve(Verb& program, VerbResult& result) {
                 "end with exit code 5 when this computer cannot keep up with real time");
   verb.add_flag("--fifo", w.options.fifo, "real-time scheduling (SCHED_FIFO) and locked memory");
   verb.add_flag("--quiet", w.options.quiet, "only the ready line and errors");
-  verb.callback([words, &result] { result.exit_code = run(*words); });
+  verb.callback([words, verb, &result] {
+    words->bench_text = bench_text(verb.settings());
+    result.exit_code = run(*words);
+  });
 }
 
 }  // namespace omnihil

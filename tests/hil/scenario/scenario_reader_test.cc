@@ -126,5 +126,32 @@ TEST(ScenarioReader, ShippedSuiteReadsAndShowsEveryStepAndCheck) {
   }
 }
 
+TEST(ScenarioFault, IsOneStepThatLasts) {
+  std::vector<std::string> problems;
+  const auto step =
+      read_fault(" at_s = 1.5, for_s = 0.25, do = \"wheel_blocked\", wheels = [0, 2]", problems);
+  ASSERT_TRUE(step) << problems.at(0);
+  EXPECT_EQ(step->at_s, 1.5);
+  EXPECT_EQ(step->until_s, 1.75);
+  EXPECT_EQ(faults_of(*step).blocked, (std::array{true, false, true, false}));
+  const auto forever = read_fault("at_s = 0, do = \"brown_out\", supply_ratio = 0.5", problems);
+  ASSERT_TRUE(forever) << problems.at(0);
+  EXPECT_TRUE(std::isinf(forever->until_s));
+  EXPECT_EQ(faults_of(*forever).supply_ratio, 0.5);
+  for (const char* wrong :
+       {"", "at_s = 1.0", "at_s = 1.0, do = \"ball\"", "at_s = 1.0, do = \"wheel_blokked\", wheels = [0]",
+        "at_s = 1.0, do = \"disturb\", push = 3",
+        "at_s = 1.0, do = \"disturb\" }, { at_s = 2.0, do = \"disturb\"", "at_s = 1.0,\ndo = \"disturb\"",
+        "at_s = ", "at_s = 1.0, do = \"disturb\"}]\n#"}) {
+    problems.clear();
+    EXPECT_FALSE(read_fault(wrong, problems)) << wrong;
+    EXPECT_FALSE(problems.empty()) << wrong;
+  }
+  problems.clear();
+  read_fault("at_s = 1.0, do = \"wheel_blokked\", wheels = [0]", problems);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0].find("do = \"wheel_blokked\""), 0U) << problems[0];
+}
+
 }  // namespace
 }  // namespace omnihil
