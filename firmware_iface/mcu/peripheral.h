@@ -65,6 +65,8 @@ class Peripheral {
   // `offset` from the block's base; `bytes` 1, 2 or 4, `offset` a multiple of it.
   virtual std::uint32_t read(std::uint32_t offset, unsigned bytes) = 0;
   virtual void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) = 0;
+  // The word at `offset`, a multiple of 4, as a debugger sees it: what read() would give, and nothing else happens.
+  virtual std::uint32_t peek(std::uint32_t /*offset*/) { return 0; }
   // The next instant at which it acts by itself; run_events() is then called with now() at that instant.
   virtual Cycles next_event() const {
     if (next_event_field_ != nullptr) return *next_event_field_;

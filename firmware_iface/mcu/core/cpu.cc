@@ -42,6 +42,11 @@ void Cpu::memory_changed() {
       ccm_ = window;
     }
   }
+  if (!watches_.empty()) {  // every access then goes the far way, where they are looked at
+    ram_ = flash_ = ccm_ = Window{};
+    shared_begin_ = 0;
+    shared_end_ = ~0u;
+  }
   leave_code_out();
 }
 
@@ -284,9 +289,15 @@ void Cpu::add_up_row() {
   }
   for (Op* op : row_) {
     op->known = 1;
-    if (op->entry != kResync)
-      shorten(*op, code_->base + static_cast<std::uint32_t>(op - code_->ops.data()) * 2);
+    if (!halts_.empty() && std::ranges::binary_search(halts_, address_of(op))) op->entry = kHalt;
   }
+  for (Op* op : row_) {
+    if (op->entry != kResync && op->entry != kHalt) shorten(*op, address_of(op));
+  }
+}
+
+std::uint32_t Cpu::address_of(const Op* op) const {
+  return code_->base + static_cast<std::uint32_t>(op - code_->ops.data()) * 2;
 }
 
 bool Cpu::go_to(std::uint32_t pc) {
@@ -356,6 +367,7 @@ bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value,
 
 bool Cpu::far_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align) {
   if (invalid_access(address, bytes, must_align)) return false;
+  if (!watches_.empty()) note_watched(address, bytes, kReads);
   const MemoryRegion* region = memory_.find(address);
   if (region && address - region->base <= region->size - bytes) {
     value = 0;
@@ -379,6 +391,7 @@ bool Cpu::far_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, 
 
 bool Cpu::far_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align) {
   if (invalid_access(address, bytes, must_align)) return false;
+  if (!watches_.empty()) note_watched(address, bytes, kWrites);
   const MemoryRegion* region = memory_.find(address);
   if (region && region->writable() && address - region->base <= region->size - bytes) {
     const std::uint32_t at = address - region->base;

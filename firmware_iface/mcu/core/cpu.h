@@ -12,6 +12,8 @@
 // exception flags, flush-to-zero, alternative half precision.
 #pragma once
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "firmware_iface/mcu/core/decode.h"
@@ -22,7 +24,16 @@
 
 namespace omnihil::mcu {
 
-enum class Stop : std::uint8_t { kDeadline, kWfi, kWfe, kSvc, kExceptionReturn, kBreakpoint, kFault };
+enum class Stop : std::uint8_t {
+  kDeadline,
+  kWfi,
+  kWfe,
+  kSvc,
+  kExceptionReturn,
+  kBreakpoint,
+  kFault,
+  kHalted
+};
 
 // Bits of the configurable fault status register (DDI 0403E.e B3.2.15).
 enum FaultStatus : std::uint32_t {
@@ -44,6 +55,18 @@ enum FaultStatus : std::uint32_t {
 struct Fault {
   std::uint32_t status = 0;
   std::uint32_t address = 0;
+};
+
+// Accesses that a debugger wants to hear of.
+enum AccessKinds : std::uint8_t { kReads = 1, kWrites = 2 };
+struct AccessWatch {
+  std::uint32_t address = 0, bytes = 0;
+  std::uint8_t kinds = 0;
+  bool operator==(const AccessWatch&) const = default;
+};
+struct AccessHit {
+  AccessWatch watch;
+  bool is_write = false;
 };
 
 // What is not plain memory. `false`: a bus fault. Peripherals may ask the core to stop by Cpu::stop_soon().
@@ -90,6 +113,12 @@ class Cpu {
     fp_plain_ = fp_ready_ && !(reg.fpscr & kFlushToZero);
   }
   const Variant& variant() const { return variant_; }
+  // For a debugger, between two runs. Before an instruction at one of these addresses run() ends with
+  // Stop::kHalted; after one that has touched what is watched, with kDeadline and a hit. Loads of constants from
+  // the code's own memory are not seen.
+  void set_halts(std::vector<std::uint32_t> addresses);
+  void set_watches(std::vector<AccessWatch> watches);
+  std::optional<AccessHit> take_hit() { return std::exchange(hit_, std::nullopt); }
   std::int64_t subcycles(int cycles) const { return cycles * scale_; }
 
   Registers reg;
@@ -151,6 +180,9 @@ class Cpu {
   Pace watch_loop(const Op* at, Pace pace, std::int64_t end);
   void leave_code_out();  // of store_
   bool is_near_constant(std::uint32_t address) const;
+  std::uint32_t address_of(const Op* op) const;
+  void forget_decoded(std::uint32_t pc);
+  void note_watched(std::uint32_t address, unsigned bytes, AccessKinds kind);
   static std::uint8_t* words_in(const Window& window, std::uint32_t address, std::uint32_t bytes);
   template <class T>
   bool load(std::uint32_t address, T& value) const;
@@ -172,6 +204,9 @@ class Cpu {
   std::vector<Op*> row_;  // that is being decoded
   const Op* access_op_ = nullptr;
   Watch watch_;
+  std::vector<std::uint32_t> halts_;  // in order
+  std::vector<AccessWatch> watches_;
+  std::optional<AccessHit> hit_;
 };
 
 // Parallel additions and subtractions; `ge` is set by the plain ones.

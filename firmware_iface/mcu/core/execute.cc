@@ -267,6 +267,9 @@ step:
   count += static_cast<std::uint64_t>(cur->count) - cur->charged_count;
   CHOOSE_ENTRIES();
   goto* codes[cur->condition < kAlways ? kIfEq + cur->condition : int{cur->code}];
+  CASE(kHalt)  // a debugger's: nothing of it has been done
+  stop = Stop::kHalted;
+  goto out_of_time;
   CASE(kOffEnd)  // memory may go on behind it
   target = PC_OF(cur);
   goto relocate;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "firmware_iface/mcu/machine/machine.h"
 
@@ -157,6 +158,55 @@ bool Machine::write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t
   const unsigned shift = 8 * (address & 3);
   const std::uint32_t mask = (bytes == 4 ? ~0u : (1u << (8 * bytes)) - 1) << shift;
   word = (word & ~mask) | (value << shift & mask);
+  return true;
+}
+
+bool Machine::peek_word(std::uint32_t address, std::uint32_t& word) {
+  constexpr std::uint32_t kSysTick = kSystemControl + 0x10;
+  if (const Slot* slot = slot_at(address)) {
+    word = slot->peripheral->peek(address - slot->base);
+  } else if (in(address, kSysTick, 16)) {
+    SysTick copy = systick_;  // reading clears COUNTFLAG
+    word = copy.read(address - kSysTick, now());
+  } else if (is_private(address)) {
+    const auto told = report_.unmodelled;  // a debugger's look is no use of the image
+    const bool system = in(address, kSystemControl, 0x1000) && !in(address, kDebug, 16);
+    const auto index = unmodelled_index_;
+    word = system ? read_system(address - kSystemControl) : read_debug(address);
+    report_.unmodelled = told;
+    unmodelled_index_ = index;
+  } else {
+    const auto stored = unknown_.find(address);
+    word = stored == unknown_.end() ? 0 : stored->second;
+    return stored != unknown_.end() || may_be_peripheral(address);
+  }
+  return true;
+}
+
+bool Machine::peek(std::uint32_t address, std::span<std::uint8_t> bytes) {
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const std::uint32_t at = address + static_cast<std::uint32_t>(i);
+    if (memory_.read(at, bytes.subspan(i, 1))) continue;
+    std::uint32_t word = 0;
+    if (!peek_word(at & ~3u, word)) return false;
+    bytes[i] = static_cast<std::uint8_t>(word >> 8 * (at & 3));
+  }
+  return true;
+}
+
+bool Machine::poke(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  if (memory_.write(address, bytes)) return true;
+  while (!bytes.empty()) {
+    const unsigned whole = address % 4 == 0 && bytes.size() >= 4   ? 4
+                           : address % 2 == 0 && bytes.size() >= 2 ? 2
+                                                                   : 1;
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data(), whole);
+    const bool there = is_private(address) || slot_at(address) != nullptr || may_be_peripheral(address);
+    if (!there || !write(address, whole, value)) return false;
+    address += whole;
+    bytes = bytes.subspan(whole);
+  }
   return true;
 }
 

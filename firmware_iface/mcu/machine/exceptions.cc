@@ -183,6 +183,7 @@ void Machine::return_from(std::uint32_t exception_return) {
 // A synchronous fault of the instruction at r[15]; no bits: one that has no handler but HardFault.
 void Machine::raise(const Fault& fault) {
   ++report_.fault_count;
+  if (debug_) debug_->note_fault(fault);
   cfsr_ |= fault.status;
   if (fault.status & kBusAddressValid) bfar_ = fault.address;
   int e = kHardFault;

@@ -47,6 +47,11 @@ void Machine::attach(std::uint32_t base, std::uint32_t size, Peripheral& periphe
   }
 }
 
+DebugUnit& Machine::debug(DebugListener& listener) {
+  if (!debug_) debug_ = std::make_unique<DebugUnit>(*this, listener);
+  return *debug_;
+}
+
 bool Machine::load(const ElfImage& image, std::vector<std::string>& problems) {
   const std::size_t before = problems.size();
   for (const ElfSegment& segment : image.segments) {
@@ -250,6 +255,7 @@ void Machine::run_events_due() {
 // ---- running
 
 void Machine::run_until_ns(std::int64_t end_ns) {
+  if (debug_) debug_->about_to_run();
   // The clock may change on the way, which moves the cycle that this instant is.
   while (clock_.to_ns(now()) < end_ns) {
     const Cycles end = clock_.from_ns(end_ns);
@@ -272,6 +278,7 @@ void Machine::run_to(Cycles end, bool until_clock_changes) {
     }
     if (zero_wanted_) show_at_zero(*zero_wanted_);
     if (until_clock_changes && clock_.hz() != hz) return;
+    if (debug_ && debug_->halt_if_due()) continue;
     if (locked_up_) {
       now_ = static_cast<std::int64_t>(std::max<Cycles>(std::min(end, next_event()), now() + 1)) * kSubcycles;
       continue;
@@ -287,11 +294,16 @@ void Machine::run_to(Cycles end, bool until_clock_changes) {
       }
     }
     cpu_.set_attention(nvic_.any_pending());
+    std::int64_t until = static_cast<std::int64_t>(std::min(end, next_event())) * kSubcycles;
+    if (debug_) [[unlikely]]
+      until = debug_->limit(now_, until);
     running_ = true;
-    const Stop stop = cpu_.run(now_, static_cast<std::int64_t>(std::min(end, next_event())) * kSubcycles);
+    const Stop stop = cpu_.run(now_, until);
     running_ = false;
     now_ = cpu_.now();
     if (stop != Stop::kDeadline) handle(stop);
+    if (debug_) [[unlikely]]
+      debug_->ran(stop);
   }
 }
 
@@ -342,7 +354,7 @@ void Machine::handle(Stop stop) {
     case Stop::kBreakpoint:
       if (breakpoint_hook_ && breakpoint_hook_(cpu_.breakpoint)) {
         cpu_.reg.r[15] += 2;
-      } else {
+      } else if (debug_ == nullptr || !debug_->takes_breakpoint_instruction()) {
         hfsr_ |= 1u << 31;  // DEBUGEVT
         raise({0, 0});
       }

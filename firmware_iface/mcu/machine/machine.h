@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,7 @@
 
 #include "firmware_iface/mcu/core/cpu.h"
 #include "firmware_iface/mcu/machine/core_clock.h"
+#include "firmware_iface/mcu/machine/debug_unit.h"
 #include "firmware_iface/mcu/machine/elf_image.h"
 #include "firmware_iface/mcu/machine/nvic.h"
 #include "firmware_iface/mcu/machine/report.h"
@@ -65,6 +67,13 @@ class Machine final : public System, private CpuBus {
   // BKPT asks here first; true: go on behind it. Without a hook, or refused, it is a fault as without a
   // debugger.
   void set_breakpoint_hook(std::function<bool(std::uint32_t)> hook) { breakpoint_hook_ = std::move(hook); }
+
+  // Whom a debugger halts it by; made when it is first asked for. The listener must outlive the machine.
+  DebugUnit& debug(DebugListener& listener);
+  // Memory and registers as they are, without what reading them would do; false: nothing is there.
+  bool peek(std::uint32_t address, std::span<std::uint8_t> bytes);
+  // As the core would write them, but flash as it lies. False: nothing is there.
+  bool poke(std::uint32_t address, std::span<const std::uint8_t> bytes);
 
   // Copies the image into flash and RAM. False, with every problem named, if it does not fit; then nothing is
   // copied.
@@ -136,6 +145,7 @@ class Machine final : public System, private CpuBus {
   void note_null(std::uint32_t address, bool is_write) override;
   void note_unaligned(std::uint32_t address) override;
 
+  bool peek_word(std::uint32_t address, std::uint32_t& word);
   const Slot* slot_at(std::uint32_t address);
   const Slot* find_slot(std::uint32_t address);
   bool read_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t& value);
@@ -218,6 +228,7 @@ class Machine final : public System, private CpuBus {
   std::map<std::pair<std::string, std::string>, std::size_t> unmodelled_index_;
   FlashWrites* flash_writes_ = nullptr;
   std::function<bool(std::uint32_t)> breakpoint_hook_;
+  std::unique_ptr<DebugUnit> debug_;
 
   std::int64_t now_ = 0;      // in subcycles
   Cycles event_at_ = kNever;  // the instant of the events that are being run

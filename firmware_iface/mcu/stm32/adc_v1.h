@@ -28,6 +28,7 @@ class AdcV1 final : public Adc {
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
+  std::uint32_t shown(std::uint32_t offset) override { return value(offset); }
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
   unsigned length(Group group) const override;
   unsigned channel(Group group, unsigned place) const override;

@@ -25,6 +25,7 @@ class FdcanRam final : public Peripheral {
   void reset() override {}
   std::uint32_t read(std::uint32_t offset, unsigned bytes) override;
   void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) override;
+  std::uint32_t peek(std::uint32_t offset) override { return read(offset, 4); }
   std::uint32_t word(std::uint32_t offset) { return read(offset, 4); }
 
  private:

@@ -43,6 +43,7 @@ class I2cV2 final : public I2c {
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
+  std::uint32_t shown(std::uint32_t offset) override { return value(offset); }
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:

@@ -32,7 +32,7 @@ void RegisterBlock::reset() {
   for (const RegisterInfo& r : registers_) value(r.offset) = r.reset;
 }
 
-inline const RegisterInfo* RegisterBlock::info(std::uint32_t offset) const {
+const RegisterInfo* RegisterBlock::info(std::uint32_t offset) const {
   const std::uint32_t word = offset >> 2;
   return word < rows_.size() ? rows_[word] : nullptr;
 }

@@ -33,6 +33,7 @@ class RegisterBlock : public Peripheral {
   void reset() override;
   std::uint32_t read(std::uint32_t offset, unsigned bytes) final;
   void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) final;
+  std::uint32_t peek(std::uint32_t offset) final { return info(offset) != nullptr ? shown(offset) : 0; }
   std::span<const RegisterInfo> registers() const { return registers_; }
   // Registers change by accesses and events alone; blocks with others, or with reads that do something, say
   // so.
@@ -41,6 +42,8 @@ class RegisterBlock : public Peripheral {
  protected:
   // Default: what is stored.
   virtual std::uint32_t load(std::uint32_t offset) { return value(offset); }
+  // Of a block whose load() does more than to tell: the same without it.
+  virtual std::uint32_t shown(std::uint32_t offset) { return load(offset); }
   // Default: kept under the mask of the table. `value` stands in place; only bits of `lanes` were written.
   virtual void store(std::uint32_t offset, std::uint32_t value, std::uint32_t lanes) {
     keep(offset, value, lanes);

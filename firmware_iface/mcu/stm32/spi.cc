@@ -138,6 +138,11 @@ std::uint32_t Spi::load(std::uint32_t offset) {
   return data;
 }
 
+std::uint32_t Spi::shown(std::uint32_t offset) {
+  if (offset != kDr) return load(offset);
+  return receive_.empty() ? 0 : receive_.front();
+}
+
 void Spi::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
   if (offset == kDr) {
     if (wide()) {

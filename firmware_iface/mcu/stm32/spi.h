@@ -41,6 +41,7 @@ class Spi final : public RegisterBlock, public BusEnd {
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
+  std::uint32_t shown(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:

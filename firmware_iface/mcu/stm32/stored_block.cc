@@ -8,12 +8,16 @@ std::uint32_t mask_of(unsigned bytes) { return bytes >= 4 ? 0xFFFFFFFFu : (1u <<
 
 std::uint32_t StoredBlock::read(std::uint32_t offset, unsigned bytes) {
   system_.report_unmodelled(name(), kReport);
+  return peek(offset & ~3u) >> (8 * (offset & 3u)) & mask_of(bytes);
+}
+
+std::uint32_t StoredBlock::peek(std::uint32_t offset) {
   if (offset / 4 >= words_.size()) return 0;
   std::uint32_t word = words_[offset / 4];
   for (const Fixed& f : fixed_) {
-    if (f.offset == (offset & ~3u)) word = (word | f.ones) & ~f.zeros;
+    if (f.offset == offset) word = (word | f.ones) & ~f.zeros;
   }
-  return word >> (8 * (offset & 3u)) & mask_of(bytes);
+  return word;
 }
 
 void StoredBlock::write(std::uint32_t offset, unsigned bytes, std::uint32_t value) {

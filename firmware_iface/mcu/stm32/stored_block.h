@@ -25,6 +25,7 @@ class StoredBlock final : public Peripheral {
         words_((bytes + 3) / 4, 0) {}
   void reset() override { words_.assign(words_.size(), 0); }
   std::uint32_t read(std::uint32_t offset, unsigned bytes) override;
+  std::uint32_t peek(std::uint32_t offset) override;
   void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) override;
 
  private:
@@ -43,6 +44,7 @@ class Signature final : public Peripheral {
   }
   void reset() override {}
   std::uint32_t read(std::uint32_t offset, unsigned bytes) override;
+  std::uint32_t peek(std::uint32_t offset) override { return read(offset, 4); }
   void write(std::uint32_t, unsigned, std::uint32_t) override {
     system_.report_unmodelled(name(), "write to read-only memory ignored");
   }

@@ -183,6 +183,11 @@ std::uint32_t Usart::load(std::uint32_t offset) {
   return offset == 0x24 ? take() : value(offset);
 }
 
+std::uint32_t Usart::shown(std::uint32_t offset) {
+  if (offset == (spec_.v2 ? 0x24u : 0x04u)) return received_;
+  return !spec_.v2 && offset == 0x00 ? status_ : load(offset);
+}
+
 void Usart::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
   if (offset == (spec_.v2 ? 0x28u : 0x04u)) {
     transmit(written & 0x1FFu);

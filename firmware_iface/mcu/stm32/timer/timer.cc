@@ -301,6 +301,14 @@ void Timer::update_irqs() {
   irq_trigger_.set((on & (kTrigger | kCom)) != 0);
 }
 
+// Of an encoder without looking at the shaft, which is what wraps the counter and turns its direction.
+std::uint32_t Timer::shown(std::uint32_t offset) {
+  if (!encoder()) return offset == kSr || offset == kCnt || offset == kCr1 ? load(offset) : value(offset);
+  if (offset == kCr1) return (value(kCr1) & ~kDir) | (shaft_falling_ ? kDir : 0u);
+  const std::int64_t turns = static_cast<std::int64_t>(law_.arr) + 1;
+  return offset == kCnt ? static_cast<std::uint32_t>((unwrapped() % turns + turns) % turns) : value(offset);
+}
+
 void Timer::run_events() {
   sync();
   plan();
