@@ -10,7 +10,10 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <string_view>
 #include <system_error>
 
 #include "hil/firmware/child_socket.h"
@@ -24,6 +27,16 @@ constexpr const char* kProgram = "omnihil_firmware_process";
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::system_error(errno, std::generic_category(), "firmware process: " + what);
+}
+
+// proc(5): the process that traces it, 0 for none.
+bool is_traced(pid_t process) {
+  std::ifstream status(fmt::format("/proc/{}/status", process));
+  constexpr std::string_view kKey = "TracerPid:";
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(kKey)) return std::atoi(line.c_str() + kKey.size()) != 0;
+  }
+  return false;
 }
 
 }  // namespace
@@ -66,11 +79,15 @@ void FirmwareProcess::start() {
   }
 }
 
-// True once the socket is ready; false when the firmware took too long, which ends it.
+// True once the socket is ready; false when the firmware took too long, which ends it. While a debugger is attached,
+// its time is not its own.
 bool FirmwareProcess::wait_for(short what) {
-  if (socket_ready(socket_, what, deadline_s_)) return true;
-  note_end(true);
-  return false;
+  while (!socket_ready(socket_, what, deadline_s_)) {
+    if (is_traced(child_)) continue;
+    note_end(true);
+    return false;
+  }
+  return true;
 }
 
 void FirmwareProcess::send(WireRequest request, const void* body, std::size_t bytes) {

@@ -5,7 +5,8 @@
 //   std::span<const std::uint8_t> answer = process.receive();     // empty: it is no more
 //   process.end();                                       // "crashed in tick() at tick 1234 …"
 //
-// The deadline is of wall time and for hangs alone: an answer that comes is the same whenever it comes.
+// The deadline is of wall time and for hangs alone: an answer that comes is the same whenever it comes. It does not end a
+// process that a debugger is attached to.
 #pragma once
 #include <sys/types.h>
 

@@ -2,10 +2,18 @@
 // and said in words.
 #include "hil/firmware/guarded_firmware.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/ptrace.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstring>
+#include <fstream>
+#include <future>
 #include <stdexcept>
+#include <thread>
 
 #include "firmware_iface/host_firmware.h"
 #include "hil/loop/reference_firmware.h"
@@ -145,6 +153,38 @@ TEST(GuardedFirmware, AfterItsEndTheWheelsCoast) {
   std::array<std::uint8_t, 64> frame{};
   EXPECT_EQ(firmware.radio_transmit(frame), 0u);
   EXPECT_FALSE(firmware.set_gains({}));
+}
+
+pid_t only_child() {
+  std::ifstream children(fmt::format("/proc/self/task/{}/children", ::getpid()));
+  pid_t child = 0;
+  children >> child;
+  return child;
+}
+
+TEST(GuardedFirmware, ADebuggerMayHoldItBeyondTheDeadline) {
+  constexpr double kDeadline_s = 0.1;
+  constexpr int kHeld_ms = 1000;
+  GuardedFirmware firmware(
+      {std::string(OMNIHIL_BUILD_DIR) + "/firmware_iface/libomnihil_reference_firmware.so", kDeadline_s},
+      config());
+  firmware.tick(sensors_at(1));
+  const pid_t child = only_child();
+  ASSERT_GT(child, 0);
+  std::promise<bool> holds;
+  std::thread debugger([&] {
+    const bool attached = ::ptrace(PTRACE_ATTACH, child, nullptr, nullptr) == 0;
+    if (attached) ::waitpid(child, nullptr, __WALL);
+    holds.set_value(attached);
+    ::poll(nullptr, 0, kHeld_ms);
+    if (attached) ::ptrace(PTRACE_DETACH, child, nullptr, nullptr);
+  });
+  const bool attached = holds.get_future().get();
+  if (attached) firmware.tick(sensors_at(2));
+  debugger.join();
+  if (!attached) GTEST_SKIP() << "this system allows no ptrace";
+  EXPECT_EQ(firmware.failure(), "");
+  EXPECT_EQ(failure_of(firmware), "");
 }
 
 TEST(GuardedFirmware, HangEndsAtTheDeadline) {
