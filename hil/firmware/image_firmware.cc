@@ -16,8 +16,12 @@ struct Image {
 
 class ImageFirmware final : public Firmware {
  public:
-  ImageFirmware(std::shared_ptr<const Image> image, const RobotConfig& config)
-      : image_(std::move(image)), mcu_(image_->board, image_->elf, config) {}
+  ImageFirmware(std::shared_ptr<const Image> image, const RobotConfig& config, const BoardListener& on_board)
+      : image_(std::move(image)), mcu_(image_->board, image_->elf, config) {
+    if (!on_board) return;
+    for (int b = 0; b < mcu_.boards(); ++b)
+      on_board({config.robot_id, b, mcu_.boards(), mcu_.board(b), image_->elf});
+  }
 
   std::string_view name() const override { return mcu_.name(); }
   std::string_view radio_format() const override { return mcu_.radio_format(); }
@@ -57,7 +61,7 @@ class ImageFirmware final : public Firmware {
 }  // namespace
 
 Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file,
-                                      std::string_view served) {
+                                      std::string_view served, BoardListener on_board) {
   auto image = std::make_shared<Image>();
   read_image_files(
       image_file, board_file,
@@ -68,8 +72,8 @@ Session::FirmwareMaker image_firmware(const std::string& image_file, const std::
         if (auto board = mcu::read_board(text, board_file, problems, served_radio(served)))
           image->board = std::move(*board);
       });
-  return [image](const RobotConfig& config) -> std::unique_ptr<Firmware> {
-    return std::make_unique<ImageFirmware>(image, config);
+  return [image, on_board = std::move(on_board)](const RobotConfig& config) -> std::unique_ptr<Firmware> {
+    return std::make_unique<ImageFirmware>(image, config, on_board);
   };
 }
 

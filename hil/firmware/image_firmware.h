@@ -5,15 +5,26 @@
 // Each robot gets a board of its own with the same image. Throws std::invalid_argument with every problem of
 // both files, a line each; the maker does if the image does not fit the chip's memory.
 #pragma once
+#include <functional>
 #include <string>
 #include <string_view>
 
+#include "firmware_iface/mcu/board/board.h"
 #include "hil/loop/session.h"
 
 namespace omnihil {
 
+// A board that a robot has just been given, before it runs; of its session's life.
+struct MadeBoard {
+  std::uint32_t robot_id;
+  int board, boards;  // of its robot, and how many it has
+  mcu::McuBoard& mcu;
+  const mcu::ElfImage& image;
+};
+using BoardListener = std::function<void(const MadeBoard&)>;
+
 // `served`: the radio format that the session serves, which the board's must be; empty: any that there is.
 Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file,
-                                      std::string_view served = {});
+                                      std::string_view served = {}, BoardListener on_board = {});
 
 }  // namespace omnihil

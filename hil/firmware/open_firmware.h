@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/firmware/image_firmware.h"
 #include "hil/loop/session.h"
 #include "hil/text/hashed_file.h"
 
@@ -21,6 +22,7 @@ struct FirmwareChoice {
   std::string file{};        // empty, "reference": the reference firmware
   std::string board{};       // board file of a microcontroller image
   double deadline_s = 10.0;  // of wall time: a call that takes longer hangs
+  BoardListener on_board{};  // hears of every emulated board
   bool virtual_time = true;  // false: the run is paced by wall time, so a board on the desk is not waited for
 };
 

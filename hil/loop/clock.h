@@ -33,6 +33,8 @@ class Clock {
   // Returns when the next step is due: true. False: a signal came first; nothing is consumed.
   virtual bool wait() = 0;
   virtual const ClockReport& report() const = 0;
+  // So much wall time is not held against the loop: a debugger held it.
+  virtual void forgive(std::int64_t /*wall_ns*/) {}
 };
 
 class FreeClock : public Clock {
@@ -55,6 +57,7 @@ class DeadlineKeeper {
  public:
   DeadlineKeeper(const RealClockOptions& options, std::int64_t start_ns);
   std::int64_t deadline_ns() const { return deadline_ns_; }
+  void forgive(std::int64_t wall_ns) { deadline_ns_ += wall_ns; }
   void begin_step(std::int64_t now_ns);  // at or after the deadline: counts, and sets the next one
   const ClockReport& report() const { return report_; }
 
@@ -69,6 +72,7 @@ class RealClock : public Clock {
   explicit RealClock(const RealClockOptions& options);
   bool wait() override;
   const ClockReport& report() const override { return keeper_.report(); }
+  void forgive(std::int64_t wall_ns) override { keeper_.forgive(wall_ns); }
 
  private:
   DeadlineKeeper keeper_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <stdexcept>
 #include <system_error>
 
 #include "hil/loop/effect_overrides.h"
@@ -119,7 +121,13 @@ SuiteReading read_suite(const std::vector<std::string>& paths, const std::string
 
 ScenarioOutcome run_one(const Scenario& scenario, const SuiteOptions& options) {
   const SessionConfig config = config_of(scenario, options);
-  const ScenarioRun run = run_scenario(scenario, config, open_firmware(options.firmware, config));
+  const Session::FirmwareMaker maker = open_firmware(options.firmware, config);
+  const ScenarioRun run = run_scenario(scenario, config, [&](const RobotConfig& robot) {
+    std::unique_ptr<Firmware> firmware = maker(robot);
+    if (options.gdb != nullptr && !options.gdb->problem().empty())
+      throw std::invalid_argument("--gdb: " + options.gdb->problem());
+    return firmware;
+  });
   ScenarioOutcome outcome;
   outcome.scenario = scenario;
   outcome.firmware = run.firmware;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/debugger/gdb_server.h"
 #include "hil/firmware/open_firmware.h"
 #include "hil/scenario/scenario_report.h"
 
@@ -29,7 +30,8 @@ struct SuiteOptions {
   std::vector<std::string> model_folders;
   Physics physics = Physics::kPlanar;
   std::uint64_t seed = 0;
-  std::string plots;  // folder for the plots of failed checks; empty: none
+  GdbServer* gdb = nullptr;  // not owned; firmware.on_board adds to it
+  std::string plots;         // folder for the plots of failed checks; empty: none
 };
 
 // std::invalid_argument: robot, effects, radio or firmware cannot be used. std::system_error: a plot cannot

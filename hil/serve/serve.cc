@@ -9,6 +9,7 @@
 #include <exception>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 
 #include "firmware_iface/firmware_checks.h"
 #include "hil/league/league_sync.h"
@@ -89,6 +90,7 @@ class Bench {
   void say_ready() const;
   ServeEnd loop();
   bool step();
+  void forgive(std::int64_t stood_ns);
   void note_failures();
   ServeStatus status() const;
   void finish_recording();
@@ -254,6 +256,12 @@ bool Bench::step() {
   return !error;
 }
 
+// Time that the bench stood for the debugger is nobody's lateness.
+void Bench::forgive(std::int64_t stood_ns) {
+  clock_->forgive(stood_ns);
+  start_ns_ += stood_ns;
+}
+
 ServeEnd Bench::loop() {
   std::unique_ptr<StatusPrinter> printer;
   if (!options_.quiet) printer = std::make_unique<StatusPrinter>(stdout);
@@ -269,6 +277,7 @@ ServeEnd Bench::loop() {
     } else {
       continue;
     }
+    if (options_.gdb != nullptr) forgive(options_.gdb->take_stood_ns());
     if (!device_good) return ServeEnd::kIo;
     if (options_.strict && clock_->report().slips > 0) {
       complain("--strict: this computer could not keep up with real time");
@@ -326,6 +335,7 @@ ServeEnd Bench::run(RecordingHeader header) {
     end = ServeEnd::kDiverged;
   }
   finish_recording();
+  if (options_.gdb != nullptr) options_.gdb->end(0);
   const bool firmware_failed = std::find(failed_.begin(), failed_.end(), true) != failed_.end();
   if (end == ServeEnd::kDone && firmware_failed) end = ServeEnd::kFirmware;
   if (end == ServeEnd::kDone && writer_ && writer_->error()) end = ServeEnd::kIo;
@@ -353,6 +363,8 @@ ServeEnd Bench::run(RecordingHeader header) {
 ServeEnd serve(SessionConfig config, const Session::FirmwareMaker& make_firmware, RecordingHeader header,
                const ServeOptions& options, const Session::FirmwareMaker& opponents_firmware) {
   Bench bench(std::move(config), make_firmware, options, opponents_firmware);
+  if (options.gdb != nullptr && !options.gdb->problem().empty())
+    throw std::invalid_argument("--gdb: " + options.gdb->problem());
   return bench.run(std::move(header));
 }
 

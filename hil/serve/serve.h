@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "hil/debugger/gdb_server.h"
 #include "hil/league/league_host.h"
 #include "hil/loop/session.h"
 #include "hil/recording/recording.h"
@@ -40,6 +41,7 @@ struct ServeOptions {
   std::optional<LeagueOptions> league;  // the league's ports, beside the device
   std::vector<StartPose> starts;        // before the first step; in the recording
   std::string load;                     // what is said of the load (serve_load.h); lines with ends
+  GdbServer* gdb = nullptr;             // not owned; the boards of `make_firmware` have been added to it
   int league_sync_port = 0;             // TCP; time then goes on by the client's requests alone; 0: no
 };
 

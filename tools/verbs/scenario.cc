@@ -15,6 +15,7 @@
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/options/firmware_options.h"
+#include "tools/options/gdb_options.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -26,6 +27,7 @@ struct Arguments {
   std::string bench;  // expanded before the command line is read (bench_expansion.h)
   bool all = false, no_plots = false;
   SuiteOptions suite;
+  GdbWords gdb;
 };
 
 void print_rows() {
@@ -75,6 +77,12 @@ int run(Arguments& a) {
   a.suite.model_folders = {data_folder("models")};
   a.suite.physics = *parse_physics(a.physics);
   if (a.no_plots) a.suite.plots.clear();
+  const std::unique_ptr<GdbServer> gdb = open_gdb(a.gdb, [] { return false; });
+  if (gdb && suite.scenarios.size() != 1)
+    throw std::invalid_argument(
+        fmt::format("--gdb: {} scenarios; allowed: one at a time", suite.scenarios.size()));
+  a.suite.gdb = gdb.get();
+  a.suite.firmware.on_board = gdb_listener(gdb.get());
   std::vector<ScenarioOutcome> outcomes;
   bool passed = true, firmware_failed = false;
   for (const Scenario& scenario : suite.scenarios) {
@@ -88,7 +96,9 @@ int run(Arguments& a) {
   }
   fmt::print("{}", summary_line(outcomes));
   if (!a.junit.empty()) write_junit(a.junit, outcomes);
-  return firmware_failed ? kExitFirmware : passed ? kExitOk : kExitDiffers;
+  const int code = firmware_failed ? kExitFirmware : passed ? kExitOk : kExitDiffers;
+  if (gdb) gdb->end(code);
+  return code;
 }
 
 void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result) {
@@ -100,6 +110,7 @@ void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result
       "robot, firmware, effects, radio, physics and seed as this bench file says (docs/bench.md); what "
       "is given here wins");
   add_firmware_options(sub, a->suite.firmware);
+  add_gdb_options(sub, a->gdb);
   sub.add_option("--level", a->level,
                  "wheel: what a firmware of one wheel can do, too; robot; without it: all")
       .one_of({"wheel", "robot", "field"});

@@ -15,6 +15,7 @@
 #include "hil/recording/recording_header.h"
 #include "hil/recording/session_setup.h"
 #include "hil/serve/serve_load.h"
+#include "hil/serve/serve_signals.h"
 #include "hil/text/program_files.h"
 #include "hil/wire/open_wire.h"
 #include "protocols/radio_format.h"
@@ -24,6 +25,7 @@
 #include "tools/options/bench_text.h"
 #include "tools/options/field_options.h"
 #include "tools/options/firmware_options.h"
+#include "tools/options/gdb_options.h"
 #include "tools/options/league_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
@@ -53,6 +55,7 @@ struct Words {  // as the user gave them
   SessionSetup setup;
   ServeOptions options;
   TeamFirmwareWords firmware;
+  GdbWords gdb;
   MotorBusChoice motor_bus;
   LeagueWords league;
   AirWords air;
@@ -159,6 +162,9 @@ int run(Words& words) {
     if (!words.bench.empty()) header.bench = words.bench_text;
     const SessionConfig config = session_config(words.setup);
     words.firmware.all.virtual_time = !words.options.real_time;
+    const std::unique_ptr<GdbServer> gdb = open_gdb(words.gdb, [] { return StopSignals::requested(); });
+    words.options.gdb = gdb.get();
+    words.firmware.all.on_board = gdb_listener(gdb.get());
     const TeamFirmware makers = words.motor_bus.bus.empty()
                                     ? open_team_firmware(words.firmware, config)
                                     : TeamFirmware{bus_firmware(words.motor_bus, config), {}};
@@ -185,6 +191,9 @@ int run(Words& words) {
   } catch (const std::invalid_argument& error) {
     complain(error.what());
     return kExitBadInput;
+  } catch (const GdbUnreachable& error) {
+    complain(error.what());
+    return kExitIo;
   }
   return kExitDiverged;
 }
@@ -231,6 +240,7 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   verb.add_option("--robots", w.robots, "robot ids: 0-5 or 0,2,7").capture_default_str();
   verb.add_option("--team", w.team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
   add_team_firmware_options(verb, w.firmware);
+  add_gdb_options(verb, w.gdb);
   add_bus_options(verb, w.motor_bus);
   add_field_options(verb, w.field);
   verb.add_option(

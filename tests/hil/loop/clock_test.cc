@@ -84,6 +84,16 @@ TEST(DeadlineKeeperTest, AStallBeyondTheBacklogSlipsByExactlyTheExcessAndIsCount
   EXPECT_EQ(keeper.deadline_ns(), 21 * kMs + keeper.report().slipped_ns);
 }
 
+TEST(DeadlineKeeperTest, TimeThatADebuggerHeldTheLoopIsForgivenWhole) {
+  DeadlineKeeper keeper({kMs, 20 * kMs}, 0);
+  keeper.begin_step(0);  // and the step takes 5 s, of which GDB had 4.999
+  keeper.forgive(4'999 * kMs);
+  keeper.begin_step(5'000 * kMs);
+  EXPECT_EQ(keeper.report().slipped_ns, 0);
+  EXPECT_EQ(keeper.report().late_steps, 0u);
+  EXPECT_EQ(keeper.deadline_ns(), 5'001 * kMs);
+}
+
 TEST(RealClockTest, NeverStartsAStepBeforeItsDeadline) {
   const std::int64_t start = monotonic_now_ns();
   RealClock clock({.step_ns = kMs, .backlog_ns = 20 * kMs});

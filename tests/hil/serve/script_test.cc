@@ -1,69 +1,36 @@
 // Clients in Python at a running `omnihil serve`: each test is a function of a script beside this file.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
+#include "tests/hil/serve/script_outcome.h"
 
-#include <array>
-#include <cstdio>
-#include <string>
-
+namespace omnihil {
 namespace {
 
-struct Outcome {
-  int exit_code = -1;
-  std::string text;
-};
-
-Outcome run(const std::string& script, const std::string& name) {
-  const std::string command =
-      "OMNIHIL_PROGRAM='" OMNIHIL_PROGRAM "' PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 '" +
-      std::string(OMNIHIL_SOURCE_DIR) + "/tests/hil/serve/" + script + "' " + name + " 2>&1";
-  Outcome outcome;
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer{};
-  for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-    outcome.text.append(buffer.data(), n);
-  }
-  const int status = ::pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
-  return outcome;
-}
-
-constexpr int kSkipped = 77;
-
-#define SCRIPT_TEST(suite, script, name)                             \
-  TEST(suite, name) {                                                \
-    const Outcome outcome = run(script, #name);                      \
-    if (outcome.exit_code == kSkipped) GTEST_SKIP() << outcome.text; \
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.text;                 \
-  }
-
-SCRIPT_TEST(ServeTest, "serial_client.py", drives_a_robot_through_the_serial_port)
-SCRIPT_TEST(ServeTest, "serial_client.py", serves_a_socket_as_it_does_a_serial_port)
-SCRIPT_TEST(ServeTest, "serial_client.py", works_through_a_socat_relay)
-SCRIPT_TEST(ServeTest, "serial_client.py", can_be_closed_and_opened_again)
-SCRIPT_TEST(ServeTest, "serial_client.py", serves_two_clients_one_after_the_other)
-SCRIPT_TEST(ServeTest, "serial_client.py", survives_a_flood_of_a_megabyte)
-SCRIPT_TEST(ServeTest, "serial_client.py", goes_on_when_the_client_stops_reading)
-SCRIPT_TEST(ServeTest, "serial_client.py", resynchronises_after_half_packets_garbage_and_reopening)
-SCRIPT_TEST(ServeTest, "serial_client.py", survives_an_unplug_in_the_middle_of_a_frame)
-SCRIPT_TEST(ServeTest, "serial_client.py", line_modes_of_one_client_do_not_reach_the_next)
-SCRIPT_TEST(ServeTest, "serial_client.py", counts_bad_packets_by_their_cause)
-SCRIPT_TEST(ServeTest, "serial_client.py", simulated_time_does_not_stall_while_a_client_floods)
-SCRIPT_TEST(ServeTest, "serial_client.py", paces_bytes_at_the_rate_that_is_asked_for)
-SCRIPT_TEST(ServeTest, "serial_client.py", ends_cleanly_on_every_stop_signal)
-SCRIPT_TEST(ServeTest, "serial_client.py", a_computer_that_cannot_keep_up_is_said)
-SCRIPT_TEST(ServeTest, "serial_client.py", the_status_line_fits_the_terminal)
-SCRIPT_TEST(ServeTest, "serial_client.py", refuses_a_name_that_a_file_has)
-SCRIPT_TEST(ServeTest, "serial_client.py", names_every_bad_argument)
-SCRIPT_TEST(PhaseClientTest, "phase_client.py", field_oriented_control_follows_a_velocity)
-SCRIPT_TEST(PhaseClientTest, "phase_client.py", six_step_control_follows_a_velocity)
-SCRIPT_TEST(RemClientTest, "rem_client.py", one_metre_per_second_forward)
-SCRIPT_TEST(HostStreamTest, "hermes_stream.py", real_host_drives_six_robots_with_no_frame_refused)
-SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py", bad_words_are_all_named)
-SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py",
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", drives_a_robot_through_the_serial_port)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", serves_a_socket_as_it_does_a_serial_port)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", works_through_a_socat_relay)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", can_be_closed_and_opened_again)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", serves_two_clients_one_after_the_other)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", survives_a_flood_of_a_megabyte)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", goes_on_when_the_client_stops_reading)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", resynchronises_after_half_packets_garbage_and_reopening)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", survives_an_unplug_in_the_middle_of_a_frame)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", line_modes_of_one_client_do_not_reach_the_next)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", counts_bad_packets_by_their_cause)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", simulated_time_does_not_stall_while_a_client_floods)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", paces_bytes_at_the_rate_that_is_asked_for)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", ends_cleanly_on_every_stop_signal)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", a_computer_that_cannot_keep_up_is_said)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", the_status_line_fits_the_terminal)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", refuses_a_name_that_a_file_has)
+SCRIPT_TEST(ServeTest, "serve/serial_client.py", names_every_bad_argument)
+SCRIPT_TEST(PhaseClientTest, "serve/phase_client.py", field_oriented_control_follows_a_velocity)
+SCRIPT_TEST(PhaseClientTest, "serve/phase_client.py", six_step_control_follows_a_velocity)
+SCRIPT_TEST(RemClientTest, "serve/rem_client.py", one_metre_per_second_forward)
+SCRIPT_TEST(HostStreamTest, "serve/hermes_stream.py", real_host_drives_six_robots_with_no_frame_refused)
+SCRIPT_TEST(MotorBusClientTest, "serve/motor_bus_client.py", bad_words_are_all_named)
+SCRIPT_TEST(MotorBusClientTest, "serve/motor_bus_client.py",
             odrive_reaches_the_commanded_speed_and_stops_when_the_watchdog_expires)
-SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py", ateam_main_board_drives_four_uarts)
-SCRIPT_TEST(MotorBusClientTest, "motor_bus_client.py", ateam_main_board_at_four_serial_ports)
+SCRIPT_TEST(MotorBusClientTest, "serve/motor_bus_client.py", ateam_main_board_drives_four_uarts)
+SCRIPT_TEST(MotorBusClientTest, "serve/motor_bus_client.py", ateam_main_board_at_four_serial_ports)
 
 }  // namespace
+}  // namespace omnihil
