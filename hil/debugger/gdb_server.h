@@ -1,6 +1,6 @@
 // GDB attached to the emulated boards of a bench: one thread per board, one wire, everything stands while one stands.
 //
-//   GdbServer server(std::move(wire), {.boards = "3"});
+//   GdbServer server(std::move(wire), {.robot = 3});
 //   server.add({.robot = 3, .board = 0, .machine = &machine, .image = &image});      // every board, before it runs
 //   …                                              // the bench runs; it waits within a board's run while GDB says so
 //   clock.forgive(server.take_stood_ns());

@@ -29,7 +29,7 @@ TEST(GdbPacket, SpecialBytesAreEscapedAndComeBack) {
 }
 
 TEST(GdbPacket, AStreamIsCutWhereverItIsSplit) {
-  const std::string stream = "+$g#67\x03$m8000000,4#91-";
+  const std::string stream = "+$g#67\x03$m8000000,4#25-";
   for (std::size_t cut = 0; cut <= stream.size(); ++cut) {
     GdbInput input;
     std::vector<GdbEventKind> kinds;
