@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "identify/record/statistics.h"
+#include "identify/record/wiener.h"
 
 namespace omnihil {
 namespace {
@@ -190,13 +191,15 @@ void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& 
   if (!bench_torque) in.load_torque_Nm = steps(r.load_torque_Nm);
   std::vector<double> position = linear(position_of(r));
   std::vector<double> velocity = linear(r.velocity);
+  // The motion is the regressor here: its noise would make the inertia small (wiener.h).
   if (velocity.empty()) {
-    position = zero_phase(s.filter, position);
-    velocity = central_differences(position);
+    velocity = wiener_smoothed(central_differences(position), NoiseSpectrum::kDifferenced);
     for (double& v : velocity) v *= rate;
+    position = zero_phase(s.filter, position);
   } else {
-    velocity = zero_phase(s.filter, velocity);
+    velocity = wiener_smoothed(velocity, NoiseSpectrum::kWhite);
   }
+  velocity = zero_phase(s.filter, velocity);
   in.imposed_velocity_rad_s = velocity;
   in.measured_position_rad = position;
   if (!position.empty()) in.initial_position_rad = position.front();

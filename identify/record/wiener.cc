@@ -1,0 +1,120 @@
+#include "identify/record/wiener.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+#include "identify/record/statistics.h"
+
+namespace omnihil {
+namespace {
+
+// Segments, powers of two, by cost and resolution: at 1 kHz 1 Hz. At least eight fit into a record.
+constexpr std::size_t kShortest = 32, kLongest = 1024;
+// Where the noise is looked for, in shares of the Nyquist frequency: above the motion, and below where differences of
+// a position have no noise left. Choices.
+constexpr double kNoiseFrom = 0.5, kNoiseTo = 0.9;
+// Standard deviations of the periodogram's mean that a frequency has to stand above the noise: a slope multiplies what
+// is let through by chance with its frequency. One in 3e4 by chance (normal, one-sided).
+constexpr double kAbove_sigmas = 4.0;
+
+std::size_t segment_length(std::size_t samples) {
+  std::size_t length = kShortest;
+  while (length < kLongest && 2 * length * 8 <= samples) length *= 2;
+  return length;
+}
+
+// One-sided periodogram (length / 2 + 1 values), summed over half-overlapped segments without their means; relative
+// standard deviation 1.03 / sqrt(segments) with Hann's window (Welch 1967).
+struct Periodogram {
+  std::vector<double> power;
+  double segments = 0.0;
+};
+Periodogram welch(std::span<const double> x, std::size_t length) {
+  Eigen::FFT<double> fft;
+  Periodogram out{.power = std::vector<double>(length / 2 + 1, 0.0)};
+  std::vector<double> segment(length);
+  std::vector<std::complex<double>> spectrum;
+  for (std::size_t from = 0; from + length <= x.size(); from += length / 2) {
+    double mean = 0.0;
+    for (std::size_t i = 0; i < length; ++i) mean += x[from + i] / static_cast<double>(length);
+    for (std::size_t i = 0; i < length; ++i) {
+      const double turn = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length);
+      segment[i] = 0.5 * (1.0 - std::cos(turn)) * (x[from + i] - mean);
+    }
+    fft.fwd(spectrum, segment);
+    for (std::size_t k = 0; k < out.power.size(); ++k) out.power[k] += std::norm(spectrum[k]);
+    out.segments += 1.0;
+  }
+  return out;
+}
+
+double shape_of(NoiseSpectrum noise, double share_of_nyquist) {
+  const double s = std::sin(std::numbers::pi * share_of_nyquist);
+  return noise == NoiseSpectrum::kWhite ? 1.0 : s * s;
+}
+
+// H at the frequencies of the periodogram.
+std::vector<double> gain_of(const Periodogram& periodogram, NoiseSpectrum noise) {
+  const std::vector<double>& power = periodogram.power;
+  const double above = 1.0 + kAbove_sigmas * 1.03 / std::sqrt(periodogram.segments);
+  const double top = static_cast<double>(power.size() - 1);
+  std::vector<double> level;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    const double share = static_cast<double>(k) / top;
+    if (share >= kNoiseFrom && share <= kNoiseTo) level.push_back(power[k] / shape_of(noise, share));
+  }
+  const double size = median(std::move(level));
+  std::vector<double> gain;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    const double noise_power = size * shape_of(noise, static_cast<double>(k) / top);
+    gain.push_back(power[k] > above * noise_power ? 1.0 - noise_power / power[k] : 0.0);
+  }
+  // What is slower than a segment is not in its spectrum, and far above any noise.
+  gain[0] = gain[1] = 1.0;
+  return gain;
+}
+
+// The gain as a kernel in time, h[0] its middle, h[i] = h[-i], length / 2 values; tapered to its end.
+std::vector<double> kernel_of(const std::vector<double>& gain) {
+  const std::size_t half = gain.size() - 1;
+  std::vector<double> h(half, 0.0);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < half; ++i) {
+    const double step = std::numbers::pi * static_cast<double>(i) / static_cast<double>(half);
+    double value = 0.5 * (gain[0] + gain[half] * std::cos(step * static_cast<double>(half)));
+    for (std::size_t k = 1; k < half; ++k) value += gain[k] * std::cos(step * static_cast<double>(k));
+    h[i] = value / static_cast<double>(half) * 0.5 * (1.0 + std::cos(step));
+    sum += i == 0 ? h[i] : 2.0 * h[i];
+  }
+  for (double& v : h) v /= sum;  // a constant stays what it is
+  return h;
+}
+
+}  // namespace
+
+std::vector<double> wiener_smoothed(std::span<const double> x, NoiseSpectrum noise) {
+  const std::size_t n = x.size();
+  if (n < static_cast<std::size_t>(kLeastSmoothed)) return {x.begin(), x.end()};
+  const std::vector<double> h = kernel_of(gain_of(welch(x, segment_length(n)), noise));
+  const std::size_t pad = h.size() - 1;
+  // continued point-symmetrically at either end
+  std::vector<double> y;
+  y.reserve(n + 2 * pad);
+  for (std::size_t i = pad; i > 0; --i) y.push_back(2.0 * x[0] - x[i]);
+  y.insert(y.end(), x.begin(), x.end());
+  for (std::size_t i = 1; i <= pad; ++i) y.push_back(2.0 * x[n - 1] - x[n - 1 - i]);
+  std::vector<double> out(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double* const middle = y.data() + k + pad;
+    double value = h[0] * middle[0];
+    for (std::size_t i = 1; i <= pad; ++i)
+      value += h[i] * (middle[i] + middle[-static_cast<std::ptrdiff_t>(i)]);
+    out[k] = value;
+  }
+  return out;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,33 @@
+// Smooths a measured record by what its spectrum has above the sensor's noise, so that a fit on it is not pulled low.
+//
+//   std::vector<double> v = wiener_smoothed(speed, NoiseSpectrum::kWhite);        // a speed that is measured
+//   std::vector<double> w = wiener_smoothed(slope, NoiseSpectrum::kDifferenced);  // central differences of a position
+//
+// Law: the least-squares estimate of a signal from itself with noise, H(f) = max(0, 1 - S_n(f) / S_x(f)) (N. Wiener,
+// Extrapolation, Interpolation, and Smoothing of Stationary Time Series, 1949), as a symmetric kernel in time. Why:
+// noise in a regressor makes the coefficient too small by var(x) / (var(x) + var(n)) (Fuller, Measurement Error Models,
+// 1987, sec. 1.1.1), above all that of an acceleration, whose noise grows with the square of the band. With the
+// regressor's expectation given the measurement in its place the coefficient is right (regression calibration: Carroll
+// et al., Measurement Error in Nonlinear Models, 2nd ed. 2006, ch. 4); slopes of the smoothed record are the expected
+// slopes, for both are linear.
+// Spectrum: Welch (IEEE Trans. Audio Electroacoust. 15, 1967), Hann window, half overlapped. The noise's size is the
+// median between half and 0.9 of the Nyquist frequency, so that lines there do not count.
+// Validity: evenly spaced samples, noise that has the named spectrum; a motion that fills that band is taken for noise.
+// Cannot: tell noise that comes and goes (steps of a coarse encoder at low speed).
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace omnihil {
+
+enum class NoiseSpectrum : std::uint8_t {
+  kWhite,        // the same at every frequency
+  kDifferenced,  // of central differences of white noise: sin^2(w T)
+};
+
+// n samples to n, of x's unit. Fewer than kLeastSmoothed samples are returned as they are.
+inline constexpr int kLeastSmoothed = 256;  // eight segments of the shortest length
+std::vector<double> wiener_smoothed(std::span<const double> x, NoiseSpectrum noise);
+
+}  // namespace omnihil
