@@ -131,24 +131,25 @@ class Diagnosing {
         return say(fmt::format("round {}: {}", n + 1, doing), from + share * (to - from));
       };
       Iteration iteration = selection_iteration(task_, current_);
-      if (out_.effects.empty() && n == 0) first_ranking(iteration);
+      const bool first = out_.effects.empty() && n == 0;
+      if (first) first_ranking(iteration);
       if (n == 0 || !iteration.orders.empty())
         order_ = iteration.orders.empty() ? 0.0 : iteration.orders.front();
+      // The refit may find better base parameters for the parent itself: rank again from there.
+      if (iteration.chosen >= 0 && parent_not_converged(iteration) && ++restarts <= kMostRestarts) {
+        --n;
+        continue;
+      }
+      std::optional<Fitted> converged = converged_choice(iteration);
+      if (first) out_.ranking = iteration.ranking;
       out_.ladder.back().ranking = iteration.ranking;
-      if (iteration.chosen < 0) {
+      if (!converged) {
         if (iteration.stopped || !pairs_asked() || !worth_another_iteration() || !take_pair(iteration))
           return;
         from = to;
         continue;
       }
-      if (parent_not_converged(iteration)) {
-        // The refit found better base parameters for the parent itself: rank again from there.
-        if (++restarts <= kMostRestarts) {
-          --n;
-          continue;
-        }
-      }
-      take(iteration);
+      take(iteration, std::move(*converged));
       if (!worth_another_iteration()) return;
       from = to;
     }
@@ -191,11 +192,23 @@ class Diagnosing {
       say("first ranking: " + iteration.ranking.front().effect, kAfterNull);
   }
 
-  void take(const Iteration& iteration) {
+  // The best candidate, fitted to convergence: the shortlist's refits are coarse, and the energy that they did not
+  // remove would be the next iteration's structure. A candidate whose parameters go to a bound on that way imitates
+  // something else, and the next one is looked at.
+  std::optional<Fitted> converged_choice(Iteration& iteration) {
+    while (iteration.chosen >= 0) {
+      const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
+      Fitted fitted = refit_to_convergence(context_.setup(true, stop()), best.fitted);
+      const std::string why = ends_at_bound(fitted.fit, best.screened.name);
+      if (why.empty() || stopped_) return fitted;
+      refuse_chosen(task_, current_, why, iteration);
+    }
+    return std::nullopt;
+  }
+
+  void take(const Iteration& iteration, Fitted converged) {
     const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
-    // The shortlist's refits are coarse: the energy that they did not remove would be the next iteration's
-    // structure.
-    current_ = refit_to_convergence(context_.setup(true, stop()), best.fitted);
+    current_ = std::move(converged);
     if (!best.screened.extends) {
       out_.effects.push_back(best.screened.name);
       aliased_parameter_[best.screened.name] = best.screened.aliased_parameter();
@@ -218,16 +231,20 @@ class Diagnosing {
     return true;
   }
 
-  // Backward elimination: an effect that is no longer needed beside later ones is removed.
+  // Backward elimination: an effect that is no longer needed beside later ones is removed, and one that went to a
+  // bound beside them.
   void eliminate() {
-    for (std::size_t n = 0; out_.effects.size() > 1 && n < out_.effects.size() && !stopped_;) {
+    for (std::size_t n = 0; n < out_.effects.size() && !stopped_;) {
       const std::string name = out_.effects[n];
+      const bool symptom = !ends_at_bound(current_.fit, name).empty();
+      const bool latest = n + 1 == out_.effects.size();  // tested when it was added
+      if (latest && !symptom) return;
       say("is " + name + " still needed", kAfterRounds);
       const Fitted less =
           refit_as_it_is(context_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
       const AcceptanceResult needed = test_acceptance(task_.acceptance_context, less, current_, name,
                                                       kScreenedBefore, aliased_parameter_[name]);
-      if (needed.accepted() || needed.decisive || !less.finite || n + 1 == out_.effects.size()) {
+      if (!less.finite || (!symptom && (needed.accepted() || needed.decisive))) {
         ++n;
         continue;
       }
@@ -259,8 +276,11 @@ class Diagnosing {
       RefitSetup setup = context_.setup(false, stop());
       setup.robust = true;
       const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);
-      if (last.finite && energy_ratio(context_.splits()[kTraining], current_.residual[kTraining],
-                                      last.residual[kTraining]) < kRobustLoss) {
+      const auto to_bound = [&](const std::string& name) { return !ends_at_bound(last.fit, name).empty(); };
+      const bool imitates = std::any_of(out_.effects.begin(), out_.effects.end(), to_bound);
+      if (last.finite && !imitates &&
+          energy_ratio(context_.splits()[kTraining], current_.residual[kTraining], last.residual[kTraining]) <
+              kRobustLoss) {
         current_ = last;
         out_.ladder.back().comparison = compare(context_.predictor(), current_.fit.model);
         out_.ladder.back().parameters = current_.fit.parameters;

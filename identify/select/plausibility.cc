@@ -75,8 +75,19 @@ bool jointly_significant(const FitResult& child, const std::vector<Eigen::Index>
   return d.dot(ldlt_solve(covariance, d)) > asked;
 }
 
+// The catalogue's row of an effect's parameter; null: none.
+const EffectParam* row_of(const EffectEntry* entry, const FitResult& fit, std::string_view key) {
+  if (entry == nullptr) return nullptr;
+  for (const EffectParam& row : entry->info->params) {
+    if (row.name == key || param_key(row, fit.model.file.linear) == key) return &row;
+  }
+  return nullptr;
+}
+
 // A parameter of the effect that no drive can have, or a strength that is not significant; empty: none.
 std::string implausible_estimate(const FitResult& child, const std::string& name, bool decisive) {
+  const std::string at_bound = ends_at_bound(child, name);
+  if (!at_bound.empty()) return at_bound;
   const EffectEntry* entry = find_effect(name);
   bool strong = entry == nullptr;
   std::vector<Eigen::Index> strengths;
@@ -84,15 +95,7 @@ std::string implausible_estimate(const FitResult& child, const std::string& name
   for (std::size_t n = 0; n < child.parameters.size(); ++n) {
     const ParameterEstimate& p = child.parameters[n];
     if (!p.path.starts_with(name + ".")) continue;
-    const std::string key = p.path.substr(name.size() + 1);
-    const EffectParam* row = nullptr;
-    for (std::size_t i = 0; entry != nullptr && i < entry->info->params.size(); ++i) {
-      const EffectParam& r = entry->info->params[i];
-      if (r.name == key || param_key(r, child.model.file.linear) == key) row = &r;
-    }
-    if (suspicious_bound(p, row, child.model.file.linear)) {
-      return fmt::format("{} ends at a bound ({:.4g} {}): a symptom, not a result", p.path, p.value, p.unit);
-    }
+    const EffectParam* row = row_of(entry, child, p.path.substr(name.size() + 1));
     if (row == nullptr || row->role == ParamRole::kShape) continue;
     const double size = std::abs(p.value - row->neutral);
     if (p.unphysical && size > 1e-9)
@@ -174,6 +177,17 @@ std::string below_time_resolution(const FitResult& child, const std::string& nam
     return fmt::format(
         "{} = {:.2g} {} is below the time resolution: at {:g} Hz such an effect is visible from {:.2g} {}",
         p.path, p.value, p.unit, rate_Hz, visible, p.unit);
+  }
+  return "";
+}
+
+std::string ends_at_bound(const FitResult& child, const std::string& name) {
+  const EffectEntry* entry = find_effect(name);
+  for (const ParameterEstimate& p : child.parameters) {
+    if (!p.path.starts_with(name + ".")) continue;
+    const EffectParam* row = row_of(entry, child, p.path.substr(name.size() + 1));
+    if (suspicious_bound(p, row, child.model.file.linear))
+      return fmt::format("{} ends at a bound ({:.4g} {}): a symptom, not a result", p.path, p.value, p.unit);
   }
   return "";
 }

@@ -55,6 +55,10 @@ std::string restores_prior(const FitResult& parent, const FitResult& child,
 // this sampling rate that the model's sub-steps and the time stamps' resolution amount to as much? Empty: no.
 std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz);
 
+// A parameter of the effect that ends at a bound as no result does (a strength away from neutral, a shape that is
+// neither periodic nor a choice of form). Empty: none.
+std::string ends_at_bound(const FitResult& child, const std::string& name);
+
 // `decisive`: skip the significance test of the strength; the gain alone proves it, even if strength and
 // shape are correlated.
 std::string implausibility(const FitResult& parent, const FitResult& child, const std::string& name,

@@ -312,6 +312,20 @@ Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
   return iteration;
 }
 
+void refuse_chosen(const SelectionTask& task, const Fitted& parent, const std::string& why,
+                   Iteration& iteration) {
+  AcceptanceResult& refused = iteration.candidates[static_cast<std::size_t>(iteration.chosen)].acceptance;
+  refused.accepted_by = AcceptedBy::kNone;
+  refused.plausible = false;
+  refused.why = why;
+  iteration.chosen = -1;
+  iteration.confounded.clear();
+  iteration.ranking.clear();
+  for (CandidateEffect& c : iteration.candidates) c.selection_frequency = 0.0;
+  select_best(task, parent, iteration);
+  make_ranking(task, parent, iteration);
+}
+
 Iteration selection_iteration(const SelectionTask& task, const Fitted& parent) {
   Iteration iteration = screening_iteration(task, parent, not_yet(task, parent.fit.model));
   iteration.stopped = task.progress && !task.progress("screening", 0.5);

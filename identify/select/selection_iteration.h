@@ -57,6 +57,11 @@ struct Iteration {
 
 Iteration selection_iteration(const SelectionTask& task, const Fitted& parent);
 
+// Refuses the candidate that was chosen, for a reason that showed only when it was fitted to convergence, and
+// chooses among the others.
+void refuse_chosen(const SelectionTask& task, const Fitted& parent, const std::string& why,
+                   Iteration& iteration);
+
 // The screening alone: what these effects would gain, in the data and in the null.
 Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
                               const std::vector<const EffectEntry*>& effects);

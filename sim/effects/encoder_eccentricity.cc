@@ -12,8 +12,8 @@ struct EncoderEccentricity {
       {.name = "amplitude_rad",
        .unit = "rad",
        .typical = 0.01,  // 0.2 to 1 deg (estimate)
-       .lower = -0.5,
-       .upper = 0.5,
+       .lower = -0.1,    // the order that the law leaves out, (a / r)^2, is 1 % there
+       .upper = 0.1,
        .prior_scale = 0.02,
        .what = "amplitude of the angle error, at the encoder's shaft",
        .how = "constant speed: ripple of the measured speed over the angle, divided by the speed"},

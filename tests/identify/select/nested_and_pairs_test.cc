@@ -84,5 +84,28 @@ TEST(EffectPairs, NoneIsFoundWhereOneEffectIsAllThereIs) {
   EXPECT_FALSE(selection_pair(refused.task, refused.context.base(), refused.singles).found());
 }
 
+// What is refused after its fit converged is in the ranking with that reason, and the next accepted one is chosen.
+TEST(RefusedChoice, TheNextAcceptedOneIsChosenAndTheReasonStands) {
+  const TorqueMap map({.coulomb_Nm = 0.003});
+  Refused bench(map);
+  Iteration iteration = selection_iteration(bench.task, bench.context.base());
+  ASSERT_GE(iteration.chosen, 0);
+  const auto name_of = [](const CandidateEffect& c) { return c.screened.name; };
+  const std::string first = name_of(iteration.candidates[static_cast<std::size_t>(iteration.chosen)]);
+  refuse_chosen(bench.task, bench.context.base(), "it ends at a bound", iteration);
+  ASSERT_GE(iteration.chosen, 0);
+  const CandidateEffect& next = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
+  EXPECT_NE(name_of(next), first);
+  EXPECT_TRUE(next.acceptance.accepted());
+  double draws = 0.0;
+  for (const RankedEffect& r : iteration.ranking) {
+    draws += r.selection_frequency;
+    if (r.effect != first) continue;
+    EXPECT_EQ(r.accepted_by, AcceptedBy::kNone);
+    EXPECT_EQ(r.why, "it ends at a bound");
+  }
+  EXPECT_LE(draws, 1.0 + 1e-9);  // shares of the same draws
+}
+
 }  // namespace
 }  // namespace omnihil

@@ -50,5 +50,23 @@ TEST(SmoothingBound, IsTheSharpLawBelowAndASymptomAbove) {
             "");
 }
 
+// The law is of first order in the eccentricity: a tenth of a radian is where it ends, and no disc is so far off its axis.
+TEST(StrengthBound, AnEncoderHalfARadianOffItsAxisIsASymptom) {
+  FitResult fit;
+  fit.model = robot_candidate();
+  ParameterEstimate size;
+  size.path = "encoder_eccentricity.amplitude_rad";
+  size.unit = "rad";
+  size.sigma = 1e-3;
+  const EffectParam& row = find_effect("encoder_eccentricity")->info->params.front();
+  size.value = row.upper;
+  size.at_bound = true;
+  fit.parameters = {size};
+  EXPECT_LE(row.upper * row.upper, 0.01 * (1.0 + 1e-12));  // of second order
+  EXPECT_NE(ends_at_bound(fit, "encoder_eccentricity"), "");
+  fit.parameters.front().at_bound = false;
+  EXPECT_EQ(ends_at_bound(fit, "encoder_eccentricity"), "");
+}
+
 }  // namespace
 }  // namespace omnihil::test
