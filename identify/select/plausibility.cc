@@ -21,6 +21,9 @@ constexpr double kSignificant_sigmas = 2.0;
 constexpr double kOutOfTolerance_sigmas = 3.5;  // tuned
 constexpr double kDeviationRise_sigmas = 0.7;   // tuned
 
+// Standard deviation of an angle of which nothing is known, 2 pi / sqrt(12).
+constexpr double kUniformAngle_rad = 1.8138;  // derived
+
 // A base parameter that the addition moves out of its tolerance; empty: none. What its prior rejects without the
 // addition too absorbs something else that is missing (an inductance a delay): beside a decisive gain it says nothing
 // against this addition.
@@ -84,10 +87,28 @@ const EffectParam* row_of(const EffectEntry* entry, const FitResult& fit, std::s
   return nullptr;
 }
 
+// An effect over an angle of which the data determine no phase (a harmonic without strength has none of its own).
+std::string not_locked_to_angle(const FitResult& child, const std::string& name) {
+  const EffectEntry* entry = find_effect(name);
+  const ParameterEstimate* vague = nullptr;
+  for (const ParameterEstimate& p : child.parameters) {
+    if (!p.path.starts_with(name + ".")) continue;
+    const EffectParam* row = row_of(entry, child, p.path.substr(name.size() + 1));
+    if (row == nullptr || row->trait != ParamTrait::kPeriodic) continue;
+    if (p.sigma <= kUniformAngle_rad) return "";
+    if (vague == nullptr) vague = &p;
+  }
+  if (vague == nullptr) return "";
+  return fmt::format("{} is not determined (+- {:.2g} rad): what it takes is not locked to the angle",
+                     vague->path, vague->sigma);
+}
+
 // A parameter of the effect that no drive can have, or a strength that is not significant; empty: none.
 std::string implausible_estimate(const FitResult& child, const std::string& name, bool decisive) {
   const std::string at_bound = ends_at_bound(child, name);
   if (!at_bound.empty()) return at_bound;
+  std::string loose = not_locked_to_angle(child, name);
+  if (!loose.empty()) return loose;
   const EffectEntry* entry = find_effect(name);
   bool strong = entry == nullptr;
   std::vector<Eigen::Index> strengths;

@@ -3,8 +3,8 @@
 //
 //   std::string why = implausibility(parent.fit, child.fit, "cogging", false);   // empty: nothing against it
 //
-// Against it: a shape estimated at its bound, a sign that is not physical, a strength that is not
-// significantly different from neutral (alone or jointly, Wald), a base parameter moved out of the tolerance
+// Against it: a shape estimated at its bound, a phase of which the data know nothing, a sign that is not physical, a
+// strength that is not significantly different from neutral (alone or jointly, Wald), a base parameter moved out of the tolerance
 // that the model file states. Prior deviations are z-scores: (estimate - prior mean) / prior standard
 // deviation.
 #pragma once

@@ -34,6 +34,22 @@ TEST(PeriodicBound, SpeaksAgainstNoEffect) {
             "");
 }
 
+// Known to 2 pi / sqrt(12) = 1.81 rad is not known at all.
+TEST(PeriodicShape, APhaseThatIsNotDeterminedIsNoTorqueOverTheAngle) {
+  FitResult fit = at_bound("cogging.amplitude_Nm", "cogging.phase_rad", 1.0);
+  fit.parameters.back().at_bound = false;
+  fit.parameters.back().sigma = 1.7;
+  EXPECT_EQ(implausibility({}, fit, "cogging", true), "");
+  fit.parameters.back().sigma = 1.9;
+  EXPECT_NE(implausibility({}, fit, "cogging", true), "");
+  // a harmonic that is there, beside the main order that is not
+  ParameterEstimate second = fit.parameters.back();
+  second.path = "cogging.phase_2";
+  second.sigma = 0.1;
+  fit.parameters.push_back(second);
+  EXPECT_EQ(implausibility({}, fit, "cogging", true), "");
+}
+
 TEST(PeriodicBound, OfAnotherShapeIsASymptom) {
   EXPECT_EQ(
       implausibility({}, at_bound("wheel_slip.compliance_m_s", "wheel_slip.grip", 2.0), "wheel_slip", false),
