@@ -139,4 +139,50 @@ bool answer_by_meaning(const RadioFormat& format, const Values& to_robot, int id
   return true;
 }
 
+namespace {
+
+// What a driving field of a host is filled with; 0: it is for something else, and says nothing.
+double wanted_of(const RobotCommand& c, std::string_view word) {
+  if (word == "v_forward_m_s") return c.v_forward_m_s;
+  if (word == "v_left_m_s") return c.v_left_m_s;
+  if (word == "omega_body_rad_s") return c.omega_body_rad_s;
+  for (std::size_t w = 0; w < kWheels; ++w) {
+    const std::string_view number(&"0123"[w], 1);
+    if (word.starts_with("omega_wheel_rad_s[") && word.substr(18, 1) == number) return c.omega_wheel_rad_s[w];
+    if (word.starts_with("duty_ratio[") && word.substr(11, 1) == number) return c.duty_ratio[w];
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+bool ask_by_meaning(const RadioFormat& format, const RobotCommand& command, const CommandTo& to,
+                    std::vector<std::uint8_t>& out) {
+  const bool in_field = (command.flags & OMNIHIL_COMMAND_FIELD_FRAME) != 0;
+  for (const Message& message : format.messages) {
+    if (message.role != MessageRole::kCommand || message.asks != static_cast<int>(command.mode)) continue;
+    if (command.mode == OMNIHIL_MODE_BODY_VELOCITY && message.in_field_frame != in_field) continue;
+    Values values;
+    values.message = &message;
+    for (std::size_t i = 0; i < message.fields.size(); ++i) {
+      const Field& field = message.fields[i];
+      double number = 0.0;
+      if (field.role == FieldRole::kRobot) number = to.robot_id;
+      if (field.role == FieldRole::kTeam) number = to.team == Team::kBlue ? 1.0 : 0.0;
+      if (field.means != nullptr && field.means->ask != nullptr)
+        number = wanted_of(command, field.means->word) / field.times;
+      if (field.kind == FieldKind::kInteger) number = std::round(number);
+      values.fields[i].number = number;
+    }
+    if (format.encode(values, out).error == PacketError::kNone) return true;
+  }
+  return false;
+}
+
+bool encode_drive(const RadioFormat& format, const RobotCommand& command, const CommandTo& to,
+                  std::vector<std::uint8_t>& out) {
+  return format.encode_command != nullptr ? format.encode_command(command, to, out)
+                                          : ask_by_meaning(format, command, to, out);
+}
+
 }  // namespace omnihil

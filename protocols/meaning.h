@@ -3,6 +3,7 @@
 //   const Meaning* meaning = find_meaning("v_forward_m_s");
 //   RobotCommand command = command_by_meaning(values);
 //   answer_by_meaning(format, to_robot, id, feedback, out);
+//   ask_by_meaning(format, command, {.robot_id = 3}, bytes);             // the other way: what a host writes
 //
 // quantity = times * number of the field. A packet's Message::asks says what it drives.
 #pragma once
@@ -28,5 +29,14 @@ RobotCommand command_by_meaning(const Values& values);
 // The packet of role kFeedback. False: the format has none.
 bool answer_by_meaning(const RadioFormat& format, const Values& to_robot, int id,
                        const RobotFeedback& feedback, Values& out);
+
+// Appends the frame of the command packet that drives in this mode and frame: velocity, wheel speeds or duties alone.
+// False: the format has none, or a number does not fit; nothing is appended.
+bool ask_by_meaning(const RadioFormat& format, const RobotCommand& command, const CommandTo& to,
+                    std::vector<std::uint8_t>& out);
+
+// By the format's own code, where it has one, else by the fields' meanings.
+bool encode_drive(const RadioFormat& format, const RobotCommand& command, const CommandTo& to,
+                  std::vector<std::uint8_t>& out);
 
 }  // namespace omnihil

@@ -55,6 +55,8 @@ struct CommandTo {
   // With the packets that must reach the robot before commands of this kind act (ULaval: the register of the
   // control loop). False: they have gone before.
   bool set_up = true;
+  // And ask for all that the robot can tell of itself (telemetry.h), where it does not do so by itself.
+  bool tell_all = false;
 };
 
 // Kinds of drive as bits: drives(OMNIHIL_MODE_WHEEL_DUTY) | …

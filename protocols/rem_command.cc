@@ -135,6 +135,7 @@ bool encode_as(const Message& message, const RobotCommand& command, const Comman
   values.set("toRobotId", to.robot_id);
   values.set("toColor", to.team == Team::kBlue ? 1.0 : 0.0);
   values.set("fromPC", 1.0);
+  if (to.tell_all) put(values, "sendStateInfo", 1.0);
   return encode(values, out).error == PacketError::kNone;
 }
 

@@ -174,7 +174,10 @@ bool encode_command(const RobotCommand& command, const CommandTo& to, std::vecto
   }
   const std::size_t before = out.size();
   if (to.set_up && encode(loop, out).error != PacketError::kNone) return false;
-  if (encode(wanted, out).error == PacketError::kNone) return true;
+  bool said = encode(wanted, out).error == PacketError::kNone;
+  if (to.tell_all)
+    said = said && encode(packet_to(to.robot_id, hermes::kGetBatterie), out).error == PacketError::kNone;
+  if (said) return true;
   out.resize(before);
   return false;
 }
