@@ -31,6 +31,7 @@ class UdpPort {
 
   bool is_open() const;
   int port() const;
+  int handle() const { return socket_.get(); }  // readable when a datagram waits
   bool receive(std::string& bytes, sockaddr_in& from);
   void send(std::string_view bytes, const sockaddr_in& to);
   void send(std::string_view bytes) { send(bytes, group_); }
