@@ -119,7 +119,8 @@ class RunsReader {
               fmt::format("{:g}", *bad), fmt::format("{} is a flag", channel.signal), "allowed: 0, 1");
       }
     }
-    if (row->role == SignalRole::kDrive && measured < values.size()) {
+    const bool event = channel.signal.starts_with("command_");  // holds until the next
+    if (row->role == SignalRole::kDrive && !event && measured < values.size()) {
       notes_.add(fmt::format("{}: {} of {} cells are empty: no drive is known there", channel.signal,
                              values.size() - measured, values.size()),
                  run.file);

@@ -102,8 +102,9 @@ class RadioRuns {
   std::size_t rows_ = 0;
 };
 
-// What the reference firmware makes of its model, in the plain loop's words.
-std::string reference_controller(const RobotModel& model) {
+}  // namespace
+
+std::string reference_controller_text(const RobotModel& model) {
   const RobotConfig config = robot_config(model, 0);
   const double period_s = 1e-6 * static_cast<double>(REFERENCE_PERIOD_US);
   wheel_tuning t;
@@ -129,6 +130,8 @@ std::string reference_controller(const RobotModel& model) {
       static_cast<double>(t.encoder.report_filter_s), 4.0 / radius_m * gear, period_s, radius_m,
       model.wheel_center_radius_m);
 }
+
+namespace {
 
 std::string radio_dataset_text(const RecordingHeader& header, bool wheels,
                                const std::vector<std::pair<std::string, const char*>>& runs) {
@@ -213,7 +216,7 @@ DatasetExport make_radio_dataset(const Recording& recording, const ModelFile& mo
                     left_out));
   std::string text = dataset_model_text(model);
   if (recording.header.firmware.starts_with(kReferenceName)) {
-    text += reference_controller(*model.robot);
+    text += reference_controller_text(*model.robot);
   } else {
     made.notes.push_back("model.toml has no [controller]: write in what the firmware makes of commands");
   }

@@ -25,4 +25,7 @@ struct RadioDatasetOptions {
 DatasetExport make_radio_dataset(const Recording& recording, const ModelFile& model,
                                  std::span<const HeardCommand> commands, const RadioDatasetOptions& options);
 
+// [controller] of a model whose robot runs the reference firmware, with tolerances where the plain loop is not all of it.
+std::string reference_controller_text(const RobotModel& model);
+
 }  // namespace omnihil

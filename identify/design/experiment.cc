@@ -44,6 +44,7 @@ class Planner {
  private:
   bool prepare();
   bool prepare_question();
+  bool by_command() const { return bench_.inputs.front().starts_with("command_"); }
   void prepare_rivals();
   void prepare_menu();
   PlannedInputs inputs(const Trial& t) const;
@@ -138,9 +139,14 @@ bool Planner::prepare_question() {
 void Planner::prepare_menu() {
   const double duration_s =
       options_.coarse ? std::min(options_.limits.duration_s, kCoarseLongest_s) : options_.limits.duration_s;
-  const auto count = static_cast<std::size_t>(std::llround(duration_s * options_.rate_Hz));
-  for (std::size_t k = 0; k <= count; ++k) time_s_.push_back(static_cast<double>(k) / options_.rate_Hz);
-  menu_ = dataset_.rig == Rig::kRobot
+  // Where commands drive, the record's own rows: nothing is said or told between them.
+  const double own_Hz =
+      by_command() ? 1.0 / std::max(median_period_s(bench_.example.time_s), 1e-3) : options_.rate_Hz;
+  const double rate_Hz = std::min(options_.rate_Hz, own_Hz);
+  const auto count = static_cast<std::size_t>(std::llround(duration_s * rate_Hz));
+  for (std::size_t k = 0; k <= count; ++k) time_s_.push_back(static_cast<double>(k) / rate_Hz);
+  menu_ = bench_.inputs.front() == "command_vx" ? body_menu(time_s_, options_.seed)
+          : dataset_.rig == Rig::kRobot
               ? robot_menu(time_s_, rolling_params(rivals_.front().model.file.parameters).wheel_angle_rad,
                            options_.seed)
               : axis_menu(time_s_, options_.seed);
@@ -148,7 +154,7 @@ void Planner::prepare_menu() {
 
 double Planner::largest_level() const {
   const bool by_voltage =
-      !bench_.imposed && bench_.inputs.front() != "position_target" && bench_.supply_V > 0.0;
+      !bench_.imposed && !by_command() && bench_.inputs.front() != "position_target" && bench_.supply_V > 0.0;
   const double share = options_.limits.voltage_V > 0.0 && by_voltage
                            ? std::min(1.0, options_.limits.voltage_V / bench_.supply_V)
                            : 1.0;
@@ -157,8 +163,9 @@ double Planner::largest_level() const {
 
 PlannedInputs Planner::inputs(const Trial& t) const {
   PlannedInputs in{.time_s = time_s_, .drive = menu_[t.entry].drive};
-  for (auto& drive : in.drive) {
-    for (double& v : drive) v *= t.level;
+  for (std::size_t i = 0; i < in.drive.size(); ++i) {
+    const double scale = t.level * (bench_.input_scale.empty() ? 1.0 : bench_.input_scale[i]);
+    for (double& v : in.drive[i]) v *= scale;
   }
   return in;
 }
@@ -259,12 +266,15 @@ void Planner::describe(const Trial& best) {
   const std::string level =
       bench_.imposed
           ? fmt::format("{:.3g} {}/s and {:.3g} {}/s2", best.level, unit, bench_.most_acceleration, unit)
-      : by_target ? fmt::format("{:.3g} rad", best.level)
-                  : percent(best.level / std::max(bench_.full_input, 1e-12)) + " of full duty";
+      : by_target    ? fmt::format("{:.3g} rad", best.level)
+      : by_command() ? fmt::format("{:.3g} {}", best.level, bench_.input_scale.empty() ? "rad/s" : "m/s")
+                     : percent(best.level / std::max(bench_.full_input, 1e-12)) + " of full duty";
   const double duration_s = time_s_.back();
   plan_.run = PlannedRun{.excitation = run.excitation,
                          .words = fmt::format("{}; up to {}, {:.3g} s", run.words, level, duration_s),
-                         .input = dataset_.rig == Rig::kRobot ? "duty" : bench_.inputs.front(),
+                         .input = by_command()                  ? bench_.inputs.front()
+                                  : dataset_.rig == Rig::kRobot ? "duty"
+                                                                : bench_.inputs.front(),
                          .time_s = time_s_,
                          .duty = bench_.imposed
                                      ? std::vector<std::vector<double>>{imposed_speed(bench_, inputs(best))}

@@ -103,14 +103,16 @@ std::array<double, kWheels> duties(const std::array<double, kWheels>& angle, dou
 
 using Twist = std::function<std::array<double, 3>(double time_s)>;
 
+// `angle` null: the twist itself, of the body.
 MenuRun robot_run(std::string name, std::string words, const std::vector<double>& time_s,
-                  const std::array<double, kWheels>& angle, const Twist& twist) {
-  MenuRun run{std::move(name), std::move(words), std::vector<std::vector<double>>(kWheels)};
+                  const std::array<double, kWheels>* angle, const Twist& twist) {
+  const std::size_t drives = angle != nullptr ? kWheels : 3;
+  MenuRun run{std::move(name), std::move(words), std::vector<std::vector<double>>(drives)};
   double largest = 1e-12;
   for (const double t : time_s) {
     const auto [x, y, w] = twist(t - time_s.front());
-    const auto d = duties(angle, x, y, w);
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    const auto d = angle != nullptr ? duties(*angle, x, y, w) : std::array<double, kWheels>{x, y, w, 0.0};
+    for (std::size_t i = 0; i < drives; ++i) {
       run.drive[i].push_back(d[i]);
       largest = std::max(largest, std::abs(d[i]));
     }
@@ -134,7 +136,10 @@ std::vector<MenuRun> axis_menu(const std::vector<double>& time_s, std::uint64_t 
   return menu;
 }
 
-std::vector<MenuRun> robot_menu(const std::vector<double>& time_s, const std::array<double, kWheels>& angle,
+namespace {
+
+// Along x, y and the turn; of the wheels at these angles, or of the body.
+std::vector<MenuRun> twist_menu(const std::vector<double>& time_s, const std::array<double, kWheels>* angle,
                                 std::uint64_t seed) {
   std::vector<MenuRun> menu;
   const double duration_s = time_s.back() - time_s.front();
@@ -177,6 +182,18 @@ std::vector<MenuRun> robot_menu(const std::vector<double>& time_s, const std::ar
                     }));
     }
   }
+  return menu;
+}
+
+}  // namespace
+
+std::vector<MenuRun> body_menu(const std::vector<double>& time_s, std::uint64_t seed) {
+  return twist_menu(time_s, nullptr, seed);
+}
+
+std::vector<MenuRun> robot_menu(const std::vector<double>& time_s, const std::array<double, kWheels>& angle,
+                                std::uint64_t seed) {
+  std::vector<MenuRun> menu = twist_menu(time_s, &angle, seed);
   // One wheel against all four: the difference is due to what they share, the supply.
   MenuRun single{"one_and_all", "each wheel alone, then all four together, again and again",
                  std::vector<std::vector<double>>(kWheels)};

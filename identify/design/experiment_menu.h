@@ -1,6 +1,7 @@
-// Menu of excitations: values of -1 … 1 over time, for one drive or for a robot's four.
+// Menu of excitations: values of -1 … 1 over time, for one drive, for a robot's four, or for its body.
 //
 //   for (const MenuRun& run : axis_menu(time_s, seed)) run.drive[0][k];
+//   for (const MenuRun& run : body_menu(time_s, seed)) run.drive[0][k];      // ahead, to the left, turn
 //   for (const MenuRun& run : robot_menu(time_s, wheel_angle_rad, seed)) run.drive[i][k];
 //
 // Besides those of sim/bench/excitation.h: multisine (harmonics with Schroeder's phases), staircase,
@@ -27,5 +28,6 @@ struct MenuRun {
 std::vector<MenuRun> axis_menu(const std::vector<double>& time_s, std::uint64_t seed);
 std::vector<MenuRun> robot_menu(const std::vector<double>& time_s,
                                 const std::array<double, kWheels>& wheel_angle_rad, std::uint64_t seed);
+std::vector<MenuRun> body_menu(const std::vector<double>& time_s, std::uint64_t seed);
 
 }  // namespace omnihil

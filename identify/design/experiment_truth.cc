@@ -180,7 +180,8 @@ void fill_motion(const Dataset& given, const Predictor& predictor, const Candida
 }  // namespace
 
 PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const Predictor& predictor) {
-  PlannedBench bench{.like = given, .example = {}, .nominal = nominal, .inputs = {}, .problem = {}};
+  PlannedBench bench{
+      .like = given, .example = {}, .nominal = nominal, .inputs = {}, .input_scale = {}, .problem = {}};
   bench.like.runs.clear();
   for (const Run& run : given.runs) {
     if (run.split == Split::kTraining && !run.steady) {
@@ -199,7 +200,19 @@ PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const
   }
   bench.supply_V = nominal.file.parameters.value_or("supply.voltage_V", 0.0);
   const bool robot = given.rig == Rig::kRobot;
-  if (robot) {
+  const bool by_duty = bench.example.signal("duty_1") != nullptr;
+  if (robot && !by_duty && bench.example.signal("command_vx") != nullptr) {
+    bench.inputs = {"command_vx", "command_vy", "command_w"};
+    bench.full_input = std::max(largest_of(given, "command_vx"), largest_of(given, "command_vy"));
+    // A turn at an excitation's value of 1 moves the rim as fast as a drive at 1.
+    const double radius_m = rolling_params(nominal.file.parameters).wheel_center_radius_m;
+    bench.input_scale = {1.0, 1.0, 1.0 / std::max(radius_m, 1e-3)};
+  } else if (robot && !by_duty && bench.example.signal("command_wheel_1") != nullptr) {
+    bench.inputs = {"command_wheel_1", "command_wheel_2", "command_wheel_3", "command_wheel_4"};
+    bench.full_input = 0.0;
+    for (const std::string& input : bench.inputs)
+      bench.full_input = std::max(bench.full_input, largest_of(given, input));
+  } else if (robot) {
     bench.inputs = {"duty_1", "duty_2", "duty_3", "duty_4"};
   } else {
     for (const char* name : {"duty", "motor_voltage", "position_target"}) {

@@ -24,7 +24,8 @@ struct PlannedBench {
   Dataset like;  // channels as given, noise sigmas filled in; no runs
   Run example;   // a run of the given data, for the list of its signals
   Candidate nominal;
-  std::vector<std::string> inputs;  // "duty"; "duty_1" …
+  std::vector<std::string> inputs;  // "duty"; "duty_1" …; "command_vx" … where radio commands drive
+  std::vector<double> input_scale;  // of each input at an excitation's value of 1, over full_input; empty: 1
   double full_input = 1.0;          // input at an excitation's value of 1, in the input's unit
   double supply_V = 0.0;
   double camera_period_s = 0.0;  // 0: none
