@@ -6,13 +6,100 @@
 #include <cmath>
 
 #include "hil/recording/stream_file.h"
+#include "protocols/meaning.h"
 
 namespace omnihil {
+
+namespace {
+
+bool by_body(const PlannedRun& run) { return run.input == "command_vx"; }
+bool by_wheel_speed(const PlannedRun& run) { return run.input == "command_wheel_1"; }
+
+// Values held from step to step, at the packets' times; only where they change.
+PlanRun plan_run(std::string name, Split use, const PlannedRun& run, double packets_Hz, double factor) {
+  PlanRun out{.name = std::move(name),
+              .use = use,
+              .excitation = run.words,
+              .duration_s = run.time_s.back(),
+              .steps = {}};
+  double next_s = 0.0;
+  for (std::size_t k = 0; k < run.time_s.size(); ++k) {
+    if (run.time_s[k] < next_s - 1e-9) continue;
+    next_s += 1.0 / packets_Hz;
+    PlanStep step{.at_s = run.time_s[k], .value = {}};
+    for (std::size_t i = 0; i < run.duty.size(); ++i) step.value[i] = factor * run.duty[i][k];
+    if (out.steps.empty() || out.steps.back().value != step.value) out.steps.push_back(step);
+  }
+  return out;
+}
+
+PlannedRun backwards(PlannedRun run) {
+  for (auto& drive : run.duty) std::reverse(drive.begin(), drive.end());
+  run.words = "half as much and backwards: " + run.words;
+  return run;
+}
+
+PlanRun body_run(std::string name, Split use, std::string words, const std::vector<BodyStep>& steps,
+                 double duration_s) {
+  PlanRun out{.name = std::move(name),
+              .use = use,
+              .excitation = std::move(words),
+              .duration_s = duration_s,
+              .steps = {}};
+  for (const BodyStep& s : steps) out.steps.push_back({s.at_s, {s.value[0], s.value[1], s.value[2], 0.0}});
+  return out;
+}
+
+constexpr const char* kScanWords = "out and back in twelve directions, and turns";
+
+}  // namespace
+
+std::optional<AcquirePlan> acquire_plan_of(const ExperimentPlan& plan, const ExperimentLimits& limits,
+                                           double packets_Hz, const BodyDriveOptions& other) {
+  if (!plan.run || plan.run->duty.size() < 3) return std::nullopt;
+  const PlannedRun& run = *plan.run;
+  AcquirePlan out;
+  out.title = plan.next.separates.empty()
+                  ? run.excitation
+                  : fmt::format("to tell {} apart", fmt::join(plan.next.separates, ", "));
+  out.drive = by_body(run)          ? PlanDrive::kBodyVelocity
+              : by_wheel_speed(run) ? PlanDrive::kWheelSpeed
+                                    : PlanDrive::kWheelDuty;
+  out.packets_Hz = packets_Hz;
+  out.limits.travel_m = limits.travel;
+  out.limits.current_A = limits.current_A;
+  out.runs.push_back(plan_run("fit", Split::kTraining, run, packets_Hz, 1.0));
+  out.runs.push_back(plan_run("holdout", Split::kValidation, run, packets_Hz, -1.0));
+  out.runs.push_back(by_body(run)
+                         ? body_run("extrapolation", Split::kExtrapolation, kScanWords,
+                                    scan_body_drive(other), other.duration_s)
+                         : plan_run("extrapolation", Split::kExtrapolation, backwards(run), packets_Hz, 0.5));
+  return out;
+}
+
+AcquirePlan usual_plan(const BodyDriveOptions& drive, double packets_Hz) {
+  AcquirePlan plan;
+  plan.title = "the usual drives";
+  plan.packets_Hz = packets_Hz;
+  plan.limits.travel_m = drive.room_m + 0.5;
+  constexpr const char* kWords = "random levels in all directions";
+  BodyDriveOptions second = drive;
+  second.seed = drive.seed + 1;
+  plan.runs = {
+      body_run("fit", Split::kTraining, kWords, random_body_drive(drive), drive.duration_s),
+      body_run("holdout", Split::kValidation, kWords, random_body_drive(second), drive.duration_s),
+      body_run("extrapolation", Split::kExtrapolation, kScanWords, scan_body_drive(drive), drive.duration_s)};
+  return plan;
+}
 
 std::string planned_csv(const PlannedRun& run) {
   std::string text = "time_s";
   for (std::size_t i = 0; i < run.duty.size(); ++i) {
-    text += run.duty.size() == 1 ? "," + run.input : fmt::format(",{}_{}", run.input, i + 1);
+    constexpr const char* kBody[] = {",command_vx", ",command_vy", ",command_w"};
+    text += run.duty.size() == 1  ? "," + run.input
+            : by_body(run)        ? kBody[i]
+            : by_wheel_speed(run) ? fmt::format(",command_wheel_{}", i + 1)
+                                  : fmt::format(",{}_{}", run.input, i + 1);
   }
   text += '\n';
   for (std::size_t k = 0; k < run.time_s.size(); ++k) {
@@ -26,21 +113,24 @@ std::string planned_csv(const PlannedRun& run) {
 std::string planned_stream(const PlannedRun& run, const RadioFormat& format, CommandTo robot, double rate_Hz,
                            std::string& fault) {
   HostStream stream;
-  const auto frames = [&](double time_s, const std::array<double, 4>& duty) {
+  const PlanDrive drive = by_body(run)          ? PlanDrive::kBodyVelocity
+                          : by_wheel_speed(run) ? PlanDrive::kWheelSpeed
+                                                : PlanDrive::kWheelDuty;
+  const auto frames = [&](double time_s, const std::array<double, 4>& value) {
     StreamChunk chunk{.at_ns = std::llround(time_s * 1e9), .bytes = {}};
-    RobotCommand command{};
-    command.mode = OMNIHIL_MODE_WHEEL_DUTY;
-    std::copy(duty.begin(), duty.end(), command.duty_ratio);
+    const RobotCommand command = plan_command(drive, value);
     robot.set_up = stream.chunks.empty();
-    if (!format.encode_command(command, robot, chunk.bytes)) {
-      fault = fmt::format("{} refuses the duties at {:.3f} s", format.id, time_s);
+    if (!encode_drive(format, command, robot, chunk.bytes)) {
+      fault = fmt::format("{} refuses what is asked at {:.3f} s", format.id, time_s);
     }
     stream.chunks.push_back(std::move(chunk));
   };
   double next_s = 0.0;
   for (std::size_t k = 0; k < run.time_s.size() && fault.empty(); ++k) {
     if (run.time_s[k] < next_s - 1e-9) continue;
-    frames(run.time_s[k], {run.duty[0][k], run.duty[1][k], run.duty[2][k], run.duty[3][k]});
+    std::array<double, 4> value{};
+    for (std::size_t i = 0; i < run.duty.size(); ++i) value[i] = run.duty[i][k];
+    frames(run.time_s[k], value);
     next_s += 1.0 / rate_Hz;
   }
   if (!fault.empty()) return "";

@@ -1,54 +1,18 @@
 // `tap` between a real host's bytes and a bench that stands for the real dongle: both recordings have the same bytes.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <fstream>
 #include <sstream>
 #include <thread>
 
-#include "tests/hil/recording/fake_run.h"
-#include "tests/tools/cli.h"
+#include "tests/tools/bench_test.h"
 
 namespace omnihil {
 namespace {
 
-class TapVerb : public CliTest {
+class TapVerb : public BenchTest {
  protected:
-  void TearDown() override {
-    for (const pid_t child : children_) stop(child);
-  }
-  pid_t start(const std::vector<std::string>& words) {
-    std::vector<char*> arguments{const_cast<char*>(OMNIHIL_PROGRAM)};
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t quiet;
-    posix_spawn_file_actions_init(&quiet);
-    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, (folder_ / "said").c_str(),
-                                     O_WRONLY | O_CREAT | O_APPEND, 0644);
-    posix_spawn_file_actions_adddup2(&quiet, STDOUT_FILENO, STDERR_FILENO);
-    pid_t child = -1;
-    EXPECT_EQ(posix_spawn(&child, OMNIHIL_PROGRAM, &quiet, nullptr, arguments.data(), environ), 0);
-    posix_spawn_file_actions_destroy(&quiet);
-    children_.push_back(child);
-    return child;
-  }
-  int stop(pid_t child) {
-    std::erase(children_, child);
-    ::kill(child, SIGTERM);
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  void wait_for_device(const char* name) {
-    for (int n = 0; n < 1000 && !std::filesystem::exists(folder_ / name); ++n)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    ASSERT_TRUE(std::filesystem::exists(folder_ / name)) << name << "\n" << text_of(folder_ / "said");
-  }
   // All bytes of one way, as hex.
   std::string bytes(const char* name, const std::string& way) {
     std::istringstream lines(text_of(folder_ / name));
@@ -60,14 +24,6 @@ class TapVerb : public CliTest {
     }
     return all;
   }
-  std::string at(const char* name) { return (folder_ / name).string(); }
-  static std::string text_of(const std::filesystem::path& path) {
-    std::ifstream in(path);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
-  fake::TempFolder folder_;
-  std::vector<pid_t> children_;
 };
 
 TEST_F(TapVerb, NeitherSideNoticesAndBothRecordingsAgree) {

@@ -31,7 +31,9 @@ namespace {
 constexpr std::string_view kBase = "base";
 
 struct Arguments {
-  std::string dataset, model, out, radio;
+  std::string dataset, model, out, radio, write;
+  bool usual = false;
+  BodyDriveOptions body;
   std::vector<std::string> separate;
   ExperimentQuestion question;
   ExperimentOptions options;
@@ -134,7 +136,24 @@ void write_plan(const Arguments& a, const ExperimentPlan& plan, const RadioForma
   folder.finish();
 }
 
+// The plan for `omnihil acquire`, whole or not at all.
+void write_acquire_plan(const std::string& path, const AcquirePlan& plan) {
+  write_new_file(path, plan_text(plan));
+  fmt::print("{}: {} runs for `omnihil acquire`; --dry-run says what they take\n", path, plan.runs.size());
+}
+
+int run_usual(const Arguments& a) {
+  if (a.write.empty()) throw std::invalid_argument("--usual: needs --write PLAN");
+  write_acquire_plan(a.write, usual_plan(a.body, a.packets_Hz));
+  return kExitOk;
+}
+
 int run(Arguments a) {
+  // Half a metre of the travel is for stopping and drift.
+  if (a.options.limits.travel > 0.0) a.body.room_m = std::max(0.2, a.options.limits.travel - 0.5);
+  a.body.duration_s = a.options.limits.duration_s;
+  a.body.seed = a.options.seed;
+  if (a.usual) return run_usual(a);
   std::vector<std::string> faults;
   const std::vector<std::string> names = words_of(a.separate);
   if (a.dataset.empty() && a.model.empty())
@@ -142,10 +161,10 @@ int run(Arguments a) {
   if (names.size() < 2 && a.question.shrink.empty())
     faults.push_back("--separate A,B: two effects (or \"base\") to tell apart, or --shrink PATH");
   const RadioFormat* format = a.radio.empty() ? nullptr : find_radio_format(a.radio);
-  if (!a.radio.empty() && (format == nullptr || !format->can_drive(OMNIHIL_MODE_WHEEL_DUTY))) {
+  if (!a.radio.empty() && (format == nullptr || format->command_drives == 0)) {
     faults.push_back(fmt::format("--radio {}: {}", a.radio,
                                  format == nullptr ? "there is no such format; `omnihil formats` lists them"
-                                                   : "has no packet that hands duties to the wheels"));
+                                                   : "has no packet that drives a robot so"));
   }
   std::string where = a.dataset;
   const std::filesystem::path own =
@@ -184,6 +203,12 @@ int run(Arguments a) {
   std::string text = plan_text(plan);
   if (plan.run && !a.out.empty()) write_plan(a, plan, format, text);
   std::fputs(text.c_str(), plan.run ? stdout : stderr);
+  if (plan.run && !a.write.empty()) {
+    const auto acquire = acquire_plan_of(plan, a.options.limits, a.packets_Hz, a.body);
+    if (!acquire)
+      throw std::invalid_argument("--write: a plan for `acquire` is of a robot; --out has this run");
+    write_acquire_plan(a.write, *acquire);
+  }
   if (StopSignals::requested()) return kExitInterrupted;
   return plan.run ? kExitOk : kExitBadInput;
 }
@@ -219,6 +244,11 @@ void add_verb_experiment(Verb& program, VerbResult& result) {
   verb.add_option("--packets", a->packets_Hz, "radio packets per second")
       .range(1.0, 1000.0)
       .capture_default_str();
+  verb.add_option("--write", a->write, "new plan file for `omnihil acquire` (robots)");
+  verb.add_flag("--usual", a->usual,
+                "no question: random drives by commanded velocity for a first measurement; needs --write");
+  verb.add_option("--velocity", a->body.speed_m_s, "of --usual, m/s").positive().capture_default_str();
+  verb.add_option("--turn", a->body.turn_rad_s, "of --usual, rad/s").positive().capture_default_str();
   verb.add_option("--seed", a->options.seed, "of the random excitations").capture_default_str();
   verb.add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")
       .range(1, 256)

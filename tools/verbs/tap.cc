@@ -13,11 +13,11 @@
 #include "hil/serve/serve_signals.h"
 #include "hil/tap/tap_loop.h"
 #include "hil/text/program_files.h"
-#include "hil/wire/open_wire.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
+#include "tools/open_end.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -42,19 +42,6 @@ SessionSetup tap_setup(const TapWords& words) {
   throw_problems(problems);
   session_config(setup);  // says what is wrong with it
   return setup;
-}
-
-std::unique_ptr<ByteWire> open_end(const std::string& text, const char* bare, const char* option) {
-  const WireUrl url = read_wire_url(text, bare);
-  std::vector<std::string> problems = wire_problems(url, WireForm::kBytes);
-  for (std::string& problem : problems) problem = fmt::format("{}: {}", option, problem);
-  throw_problems(problems);
-  WireProblem problem;
-  std::unique_ptr<ByteWire> wire = open_byte_wire(url, {}, problem);
-  if (!wire)
-    throw std::system_error(std::make_error_code(std::errc::io_error),
-                            fmt::format("{}: {}", option, problem.text()));
-  return wire;
 }
 
 int run_tap_verb(TapWords words) {

@@ -1,0 +1,31 @@
+// What `omnihil acquire` says and writes down: what will happen, what a run was, whence the data are.
+//
+//   fmt::print("{}", plan_words(plan, robot, format));        // the dry run
+//   folder.add_run(run.name, csv, end.packets, run_note(run, end, rows));
+//   folder.describe(dataset, readme_text(about, plan, notes));
+#pragma once
+#include <string>
+#include <vector>
+
+#include "hil/acquire/acquire_loop.h"
+#include "sim/robot/rolling_params.h"
+
+namespace omnihil {
+
+std::string plan_words(const AcquirePlan& plan, const RollingParams<double>& robot, const RadioFormat& format,
+                       bool vision);
+std::string run_note(const PlanRun& run, const RunEnd& end, const RunRows& rows, const std::string& started);
+
+struct AcquireAbout {
+  std::string device, team, commit, plan_sha256, model_sha256;
+  const RadioFormat* format = nullptr;
+  int robot = 0;
+};
+std::string readme_text(const AcquireAbout& about, const AcquirePlan& plan,
+                        const std::vector<std::string>& notes);
+
+// `unix_start_s`: Unix time by this computer's clock at 0 of the lines' own.
+std::string clock_words(const std::map<unsigned, ClockLine>& cameras, double unix_start_s);
+std::string utc_now();  // "2026-03-01T12:34:56Z"
+
+}  // namespace omnihil
