@@ -5,8 +5,8 @@
 //   folder.describe(dataset_text, readme);                           // bench.part is a dataset now
 //   folder.finish();                                                 // and bench.part becomes bench
 //
-// A run is one CSV; it is there when it is whole. Beside it packets/NAME.txt, the bytes both ways, and packets/NAME.note, what the README
-// says of it. plan.toml and model.toml are those that it was begun with: going on with others is refused.
+// A run is one CSV; it is there when it is whole. Beside it packets/NAME.txt, the bytes both ways, and packets/NAME.note,
+// what the README says of it. plan.toml and model.toml are those that it was begun with: going on with others is refused.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -76,8 +76,8 @@ class Acquirer {
   const AcquirePlan& plan_;
   Clock::time_point start_ = Clock::now();
   double unix_start_s_ = 1e-9 * static_cast<double>(std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                    std::chrono::system_clock::now().time_since_epoch())
-                                    .count());
+                                                        std::chrono::system_clock::now().time_since_epoch())
+                                                        .count());
   std::map<unsigned, ClockLine> cameras_;
   FrameCutter cutter_;
   SendQueue waiting_;

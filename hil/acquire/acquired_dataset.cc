@@ -12,8 +12,9 @@
 namespace omnihil {
 namespace {
 
-constexpr double kSettled_s = 0.3;   // five time constants of a robot's speed loop of 60 ms
-constexpr double kLeastShare = 1e-6;  // of the largest value: a signal that stands still has no noise to state
+constexpr double kSettled_s = 0.3;  // five time constants of a robot's speed loop of 60 ms
+constexpr double kLeastShare =
+    1e-6;                            // of the largest value: a signal that stands still has no noise to state
 constexpr std::size_t kEnough = 30;  // third differences: sigma to 13 % then
 
 struct Signal {
@@ -120,8 +121,9 @@ std::string acquired_dataset_text(const AcquirePlan& plan, const std::vector<Acq
     std::string words = one.run->excitation;
     std::replace_if(
         words.begin(), words.end(), [](char c) { return c == '"' || c == '\\'; }, ' ');
-    text += fmt::format("\n[[runs]]\nfile = \"{}.csv\"\nuse = \"{}\"\nexcitation = \"{}\"\n", one.run->name,
-                        split_name(one.run->use), words);
+    text +=
+        fmt::format("\n[[runs]]\nfile = \"{}.csv\"\nuse = \"{}\"\n", one.run->name, split_name(one.run->use));
+    if (!words.empty()) text += fmt::format("excitation = \"{}\"\n", words);
   }
   return text;
 }

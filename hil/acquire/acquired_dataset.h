@@ -1,7 +1,7 @@
 // Finished runs of a plan as a measurement on disk: dataset.toml with what is known of each sensor, and a README of where it is from.
 //
 //   std::vector<AcquiredRun> runs;                       // rows read back from the folder, in the plan's order
-//   acquired_dataset_text(plan, runs, wheel_speed_step_rad_s(format));
+//   acquired_dataset_text(plan, runs, steady_noise(plan, runs, wheel_speed_step_rad_s(format)));
 //
 // Noise of a sensor: third differences of its samples where the command has been the same for kSettled_s, robustly (sigma_by_mad over
 // sqrt(20), the variance of a third difference); at least what its step leaves, step / sqrt(12). Not stated under kEnough samples.

@@ -1,6 +1,6 @@
 // How much floor a planned run takes: the way of a robot that does at once what it is asked.
 //
-//   FloorNeed need = floor_need(plan, run, rolling_params(model.parameters));
+//   FloorNeed need = floor_need(plan, run, robot);                // rolling_params(model.parameters)
 //   need.x_from_m, need.x_to_m;      // from where it stands, x where it looks
 //   need.stopping_m;                 // beyond that, wherever it is stopped
 //

@@ -1,6 +1,6 @@
 // One run of a plan, packet by packet: when what is asked, and the stop that ends it, whatever happens.
 //
-//   RunDriver driver(plan, plan.runs[0], watch);
+//   RunDriver driver(plan, plan.runs[0], watch, now_ns);
 //   while (driver.state() != RunState::kDone) {
 //     driver.look(now_ns);                                        // limits
 //     if (std::optional<PlannedPacket> p = driver.due(now_ns)) send(p->value);

@@ -4,9 +4,10 @@
 //   RunRows rows = run_rows(log, PlanDrive::kBodyVelocity);
 //   std::string csv = rows_csv(rows);
 //
-// A row per command, per answer and per camera frame, from kLead_s before the first packet that drives to the last stop packet. Commands
-// of formats that ask in the field's frame stand as what the robot makes of them: turned back by the heading that it tells (else
-// the camera's) at each row's time. A frame's time is its capture, brought to our clock by its camera's line (clock_line.h).
+// A row per command, per answer and per camera frame, from kLead_s before the first packet that drives to the last stop
+// packet. Commands of formats that ask in the field's frame stand as what the robot makes of them: turned back by the heading
+// that it tells (else the camera's) at each row's time. A frame's time is its capture, brought to our clock by its camera's
+// line (clock_line.h).
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // What SSL-Vision says of one robot: each detection with the camera's own times.
 //
-//   for (const RobotSight& s : robot_sights(datagram, Team::kBlue, 3)) line[s.camera].add(s.sent_s, arrived_s);
+//   for (const RobotSight& s : robot_sights(datagram, Team::kBlue, 3)) use(s.camera, s.x_m, s.sent_s);
 //
 // Nothing for a datagram that is no SSL_WrapperPacket, holds no detection, or does not see the robot.
 #pragma once

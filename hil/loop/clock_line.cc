@@ -1,5 +1,7 @@
 #include "hil/loop/clock_line.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -48,6 +50,23 @@ ClockFit ClockLine::fit() const {
   std::nth_element(beyond.begin(), middle, beyond.end());
   fit.delay_p50_s = *middle;
   return fit;
+}
+
+std::string clock_words(const std::map<unsigned, ClockLine>& cameras, double unix_start_s) {
+  std::string out;
+  for (const auto& [camera, line] : cameras) {
+    const ClockFit fit = line.fit();
+    const std::string drift = fit.drift_ratio == 0.0
+                                  ? "too short to tell a drift"
+                                  : fmt::format("drifts by {:+.2f} ppm", -1e6 * fit.drift_ratio);
+    out += fmt::format(
+        "camera {}: {} frames; its clock is {:+.3f} s from this computer's, {}; half of the frames within "
+        "{:.1f} ms of the "
+        "quickest{}\n",
+        camera, fit.messages, -fit.offset_s - unix_start_s, drift, 1e3 * fit.delay_p50_s,
+        fit.set_anew > 0 ? "; it was set anew on the way" : "");
+  }
+  return out;
 }
 
 }  // namespace omnihil

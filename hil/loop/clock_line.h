@@ -12,6 +12,8 @@
 // A clock that was set anew begins a new line: a jump of more than kJump_s.
 #pragma once
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace omnihil {
@@ -45,5 +47,9 @@ class ClockLine {
   double sum_sent_s_ = 0.0;           // of sent less the first's
   std::uint64_t set_anew_ = 0;
 };
+
+// For people, a line per camera: frames, offset from this computer's clock, drift, delay. `unix_start_s`: Unix time by this
+// computer's clock at 0 of the lines' own.
+std::string clock_words(const std::map<unsigned, ClockLine>& cameras, double unix_start_s);
 
 }  // namespace omnihil

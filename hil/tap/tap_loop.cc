@@ -12,10 +12,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void wait_for_either(int a, int b) {
-  pollfd watched[2];
+void wait_for_any(int a, int b, int c) {
+  pollfd watched[3];
   nfds_t count = 0;
-  for (const int fd : {a, b}) {
+  for (const int fd : {a, b, c}) {
     if (fd >= 0) watched[count++] = {fd, POLLIN, 0};
   }
   const timespec most{0, 1'000'000};
@@ -28,20 +28,24 @@ constexpr int kLastPasses = 64;  // of 4 kB: both queues and what a pty holds
 
 }  // namespace
 
-TapRun run_tap(Tap& tap, const std::function<bool()>& stop) {
+TapRun run_tap(Tap& tap, const std::function<bool()>& stop, TapVision* vision) {
   const auto start = Clock::now();
   const auto since_start = [&] {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
   };
   TapRun run;
+  run.unix_start_s =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   std::vector<float> delay_us;
   while (!stop()) {
-    wait_for_either(tap.host_handle(), tap.dongle_handle());
+    wait_for_any(tap.host_handle(), tap.dongle_handle(), vision != nullptr ? vision->handle() : -1);
     const std::int64_t woken_ns = since_start();
     run.lost = !tap.pass(woken_ns);
     if (run.lost) break;
+    const std::int64_t done_ns = since_start();
+    if (vision != nullptr) vision->pass(done_ns);
     if (!tap.moved()) continue;
-    const auto taken_us = static_cast<float>(static_cast<double>(since_start() - woken_ns) / 1e3);
+    const auto taken_us = static_cast<float>(static_cast<double>(done_ns - woken_ns) / 1e3);
     if (delay_us.size() < kKept) {
       delay_us.push_back(taken_us);
     } else {

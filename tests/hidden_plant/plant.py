@@ -129,6 +129,25 @@ def run_robot(params, asked):
     return Columns.split(out, BOT)
 
 
+class LiveRobot:
+    """The hidden robot row by row: `row(heard)` goes on by sample_s and gives the columns of BOT at its beginning."""
+
+    def __init__(self, params):
+        _lib.robot_open.restype = ctypes.c_void_p
+        self._robot = ctypes.c_void_p(_lib.robot_open(ROBOT.pack(params)))
+        self._out = _doubles(len(BOT))
+        self._heard = _doubles(3)
+
+    def row(self, heard):
+        self._heard[:] = array.array("d", heard)
+        if _lib.robot_row(self._robot, _pointer(self._heard), _pointer(self._out)):
+            raise ArithmeticError("the hidden robot stopped being finite")
+        return dict(zip(BOT, self._out))
+
+    def close(self):
+        _lib.robot_close(self._robot)
+
+
 def inner_products(rows):
     """Matrix of the inner products of equally long series."""
     m, n = len(rows), len(rows[0])

@@ -271,6 +271,48 @@ int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
   return 0;
 }
 
+// The same robot row by row, for a bench that lives: it is driven by radio commands as they come.
+typedef struct {
+  RobotParams p;
+  Robot r;
+  Firmware firmware;
+  double charge[4], duty[4], sag;
+} Live;
+
+void *robot_open(const RobotParams *p) {
+  Live *l = calloc(1, sizeof *l);
+  l->p = *p;
+  l->r = (Robot){.p = &l->p, .noise = {(unsigned long long)p->seed * 7919 + 31}};
+  prepare(&l->r);
+  share_load(&l->r, 0, 0);
+  l->r.x = p->offset_x_m, l->r.y = p->offset_y_m;
+  return l;
+}
+
+void robot_close(void *live) { free(live); }
+
+// One row: `heard` is what the firmware acts on now (m/s, m/s, rad/s, body frame); `out`: BOT_COLUMNS at its beginning, no camera.
+int robot_row(void *live, const double *heard, double *out) {
+  Live *l = live;
+  Robot *r = &l->r;
+  const RobotParams *p = &l->p;
+  r->bus = p->supply_V + l->sag;
+  write_row(r, l->charge, out);
+  firmware_tick(&l->firmware, p, heard, out + BOT_COUNTS, r->bus, l->duty);
+  for (int i = 0; i < 4; i++) out[BOT_SPEED + i] = l->firmware.speed[i] / p->gear;
+  memset(l->charge, 0, sizeof l->charge);
+  const int substeps = (int)lround(p->sample_s / p->step_s);
+  for (int j = 0; j < substeps; j++) {
+    double before[4];
+    memcpy(before, r->amps, sizeof before);
+    r->bus = p->supply_V + l->sag;
+    step(r, l->duty, 0, p->step_s);
+    l->sag = r->bus;
+    for (int i = 0; i < 4; i++) l->charge[i] += 0.5 * p->step_s * (before[i] + r->amps[i]);
+  }
+  return !isfinite(r->vx + r->rim[0] + r->amps[0]);
+}
+
 static const char *const kNames[] = {
 #define X(name, value) #name,
     ROBOT_PARAMS(X)

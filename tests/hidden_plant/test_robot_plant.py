@@ -125,6 +125,17 @@ class RobotPlantTest(unittest.TestCase):
             rms = math.sqrt(sum((a - b) ** 2 for a, b in zip(coarse[name], fine[name])) / 4000)
             self.assertLess(rms, least, name)
 
+    def test_row_by_row_is_the_same_robot(self):
+        params = dict(radio=1, late_radio_s=0, seed=7, payload_kg=0.3, radius_2=1.02)
+        asked = [[0.8, 0.2, 1.0, 0.0, 0.0]] * 400 + [[-0.5, 0.0, 0.0, 0.0, 0.0]] * 400
+        whole = plant.run_robot(params, asked)
+        live = plant.LiveRobot(params)
+        for k, row in enumerate(asked):
+            now = live.row(row[:3])
+            for name in ("x", "y", "turn", "speed_1", "bus", "gyro", "counts_3"):
+                self.assertEqual(now[name], whole[name][k], (k, name))
+        live.close()
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,7 +1,5 @@
 // `acquire` drives a bench's robot through its dongle's own packets and makes a measurement of it; it stops whatever happens.
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 
 #include <cmath>
 #include <fstream>
@@ -39,24 +37,12 @@ duration_s = 60
 steps = [[0.0, 0.5, 0, 0]]
 )";
 
-int free_port() {
-  const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in any{};
-  any.sin_family = AF_INET;
-  any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof any;
-  EXPECT_EQ(::bind(fd, reinterpret_cast<sockaddr*>(&any), size), 0);
-  EXPECT_EQ(::getsockname(fd, reinterpret_cast<sockaddr*>(&any), &size), 0);
-  ::close(fd);
-  return ntohs(any.sin_port);
-}
-
 class AcquireVerb : public BenchTest {
  protected:
   void write(const char* name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   // Robot 3 behind `radio`, with vision.
   pid_t bench(const char* radio) {
-    vision_ = "224.5.23.2:" + std::to_string(free_port());
+    vision_ = "224.5.23.2:" + std::to_string(free_udp_port());
     const pid_t child = start({"serve",
                                "--device",
                                at("dongle"),
@@ -73,9 +59,9 @@ class AcquireVerb : public BenchTest {
                                "--record",
                                at("bench.omnirec"),
                                "--league-robot-port",
-                               std::to_string(free_port()),
+                               std::to_string(free_udp_port()),
                                "--league-control-port",
-                               std::to_string(free_port()),
+                               std::to_string(free_udp_port()),
                                "--vision-noise",
                                "1"});
     wait_for_device("dongle");

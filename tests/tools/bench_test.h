@@ -4,10 +4,12 @@
 //   wait_for_device("dongle");
 //   EXPECT_EQ(stop(bench), 0) << text_of(folder_ / "said");
 #pragma once
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,6 +23,18 @@
 #include "tests/tools/cli.h"
 
 namespace omnihil {
+
+inline int free_udp_port() {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in any{};
+  any.sin_family = AF_INET;
+  any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof any;
+  EXPECT_EQ(::bind(fd, reinterpret_cast<sockaddr*>(&any), size), 0);
+  EXPECT_EQ(::getsockname(fd, reinterpret_cast<sockaddr*>(&any), &size), 0);
+  ::close(fd);
+  return ntohs(any.sin_port);
+}
 
 class BenchTest : public CliTest {
  protected:

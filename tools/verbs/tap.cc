@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
-#include "tools/open_end.h"
+#include "tools/options/open_end.h"
+#include "tools/options/vision_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -27,6 +29,7 @@ namespace {
 struct TapWords {
   std::string dongle, device = "./dongle", robot = "omni_default", radio, format_file, robots = "0-5",
                       team = "blue", out;
+  VisionWords vision;
 };
 
 SessionSetup tap_setup(const TapWords& words) {
@@ -64,11 +67,18 @@ int run_tap_verb(TapWords words) {
                                    [](const std::string& text) { fmt::print(stderr, "{}\n", text); });
     if (!writer) throw std::system_error(error, words.out);
   }
+  std::optional<TapVision> vision;
+  if (std::optional<UdpPort> group = open_vision(words.vision)) {
+    if (words.out.empty())
+      throw std::invalid_argument("--vision: needs --record, beside which its table stands");
+    vision.emplace(std::move(*group), words.out + ".vision.csv");
+  }
   fmt::print("{} ready, passed on to {}\n", host->name(), dongle->name());
   std::fflush(stdout);
   const StopSignals stop;
   Tap tap(std::move(host), std::move(dongle), writer.get(), setup.step_ns);
-  const TapRun run = run_tap(tap, [] { return StopSignals::requested(); });
+  const TapRun run = run_tap(
+      tap, [] { return StopSignals::requested(); }, vision ? &*vision : nullptr);
   if (writer)
     writer->finish({.now_ns = (run.end_ns / setup.step_ns + 2) * setup.step_ns,
                     .wall_s = 1e-9 * static_cast<double>(run.end_ns),
@@ -80,6 +90,9 @@ int run_tap_verb(TapWords words) {
       "own delay, from bytes that wait to bytes handed on: p50 {:.0f} us, p99 {:.0f} us, at most {:.0f} us "
       "in {} passes\n",
       run.delay.p50_us, run.delay.p99_us, run.delay.most_us, run.delay.passes);
+  if (vision)
+    fmt::print("vision: {} frames, in {}.vision.csv on the recording's clock\n{}", vision->frames(),
+               words.out, vision->finish(run.unix_start_s));
   if (writer && writer->error()) throw std::system_error(writer->error(), words.out);
   if (!run.lost) return kExitOk;
   fmt::print(stderr, "omnihil tap: {}\n", tap.problem());
@@ -102,6 +115,7 @@ void add_verb_tap(Verb& program, VerbResult& result) {
   verb.add_option("--format", words->format_file, "radio format from this file");
   verb.add_option("--robots", words->robots, "robot ids on the field: 0-5 or 0,2,7").capture_default_str();
   verb.add_option("--team", words->team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
+  add_vision_options(verb, words->vision);
   verb.footer(
       "Ctrl-C ends it; the recording is whole. `check FILE --explain` has the model answer the same "
       "commands, `dump FILE`\n"

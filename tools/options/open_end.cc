@@ -1,4 +1,4 @@
-#include "tools/open_end.h"
+#include "tools/options/open_end.h"
 
 #include <fmt/format.h>
 

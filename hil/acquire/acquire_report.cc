@@ -1,4 +1,4 @@
-#include "tools/acquire_report.h"
+#include "hil/acquire/acquire_report.h"
 
 #include <fmt/format.h>
 
@@ -97,19 +97,6 @@ std::string readme_text(const AcquireAbout& about, const AcquirePlan& plan,
       "quickest frames. Columns: cmd as asked of the robot in its own frame (m/s, rad/s), wheel speeds in "
       "rad/s at the wheel, battery in V, "
       "vision in m and rad.\n";
-  return out;
-}
-
-std::string clock_words(const std::map<unsigned, ClockLine>& cameras, double unix_start_s) {
-  std::string out;
-  for (const auto& [camera, line] : cameras) {
-    const ClockFit fit = line.fit();
-    out += fmt::format("camera {}: {} frames; its clock is {:+.3f} s from this computer's, {}; half of the frames within {:.1f} ms "
-                       "of the quickest{}\n",
-                       camera, fit.messages, -fit.offset_s - unix_start_s,
-                       fit.drift_ratio == 0.0 ? "drift: too short to tell" : fmt::format("drifts by {:+.2f} ppm", -1e6 * fit.drift_ratio),
-                       1e3 * fit.delay_p50_s, fit.set_anew > 0 ? "; it was set anew on the way" : "");
-  }
   return out;
 }
 

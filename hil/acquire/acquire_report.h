@@ -1,7 +1,7 @@
 // What `omnihil acquire` says and writes down: what will happen, what a run was, whence the data are.
 //
-//   fmt::print("{}", plan_words(plan, robot, format));        // the dry run
-//   folder.add_run(run.name, csv, end.packets, run_note(run, end, rows));
+//   std::cout << plan_words(plan, robot, format, true);        // the dry run
+//   folder.add_run(run.name, csv, end.packets, run_note(run, end, rows, started));
 //   folder.describe(dataset, readme_text(about, plan, notes));
 #pragma once
 #include <string>
@@ -24,8 +24,6 @@ struct AcquireAbout {
 std::string readme_text(const AcquireAbout& about, const AcquirePlan& plan,
                         const std::vector<std::string>& notes);
 
-// `unix_start_s`: Unix time by this computer's clock at 0 of the lines' own.
-std::string clock_words(const std::map<unsigned, ClockLine>& cameras, double unix_start_s);
 std::string utc_now();  // "2026-03-01T12:34:56Z"
 
 }  // namespace omnihil

@@ -1,6 +1,6 @@
 // A wire for bytes by its URL, as an option gave it: opened, or every problem thrown with the option's name.
 //
-//   std::unique_ptr<ByteWire> dongle = open_end(words.dongle, "serial", "DEVICE");
+//   std::unique_ptr<ByteWire> dongle = open_end("/dev/ttyACM0", "serial", "DEVICE");
 #pragma once
 #include <memory>
 #include <string>
