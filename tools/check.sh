@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Format, style, rooms, API reference, static checks, sanitizers, ten seconds of fuzzing per target. Called by `./dev check [STEP…]`.
+# Format, style, rooms, API reference, static checks, sanitizers, ten seconds of fuzzing per target; by name alone: tidy_changed,
+# memory (valgrind). Called by `./dev check [STEP…]`.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 steps=("$@")
@@ -46,6 +47,8 @@ check_sanitizers() {
   cmake --preset asan-ubsan >/dev/null && ninja -C build/asan-ubsan &&
     (cd build/asan-ubsan && ctest --output-on-failure -j "$(nproc)" -LE 'slow|allocations')
 }
+# Without a build of its own: for a day on which the sanitizers' takes too long.
+check_memory() { tools/memcheck.sh build/release; }
 check_fuzz() {
   # seconds for each target of tests/fuzz/targets
   cmake --preset fuzz >/dev/null && ninja -C build/fuzz fuzz_targets && tools/fuzz.sh build/fuzz "${OMNIHIL_FUZZ_S:-10}"

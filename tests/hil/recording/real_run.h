@@ -26,6 +26,10 @@ struct Case {
   const char* robot;
   Physics physics;
 };
+// Without it a test's name would have the struct's bytes, padding and all.
+inline void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.radio << ' ' << c.robot << ' ' << to_string(c.physics);
+}
 
 inline Bytes frame(const RadioFormat& format, const char* message,
                    const std::vector<std::pair<const char*, double>>& fields) {
