@@ -1,5 +1,6 @@
 // What of the model explains that the robot answers the same commands otherwise: its parameters and the catalogue's
-// effects, one at a time, each run over the recording again.
+// effects, one at a time, each run over the recording again; and where the best is certain, a second one beside it
+// (explain_pair.h).
 //
 //   const DifferenceExplained all = explain_difference(recording, format, options);
 //   all.headline;      // "found: motor.torque_constant_Nm_per_A 0.0245 -> 0.0257 Nm/A (+5.0 % +- 0.2 %); …"
@@ -12,7 +13,8 @@
 // block, than the model as it stands (paired t test; Diebold and Mariano 1995). Two candidates that the same test does
 // not tell apart are both named.
 // The firmware is told of a changed parameter as it is at a start: one that takes its constants from its code alone
-// is not touched by that. Cannot: find two causes at once, or a law that is not in the catalogue (what is left says so).
+// is not touched by that. Cannot: find two causes of which neither is seen alone, or a law that is not in the catalogue
+// (what is left says so).
 #pragma once
 #include <functional>
 #include <string>
@@ -37,9 +39,12 @@ struct DifferenceExplained {
   std::string headline;
   std::string why_not;             // not searched; empty: it was
   std::vector<ExplainedBy> found;  // the best, then what these data cannot tell from it
+  std::vector<ExplainedBy>
+      second;                   // a second cause, both refitted together, then what cannot be told from it
+  bool second_certain = false;  // else it is a perhaps
   std::size_t tried = 0;
   double error_over_noise = 0.0;    // RMS of the difference by the noise, of the model as it stands
-  double left_over_noise = 0.0;     // with the best
+  double left_over_noise = 0.0;     // with the best, or with both
   std::vector<std::string> series;  // what was compared
 };
 
