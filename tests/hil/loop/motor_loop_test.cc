@@ -66,6 +66,7 @@ struct Case {
   DriveKind kind;
   MotorLoop loop;
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 class MotorLoopTest : public ::testing::TestWithParam<Case> {};
 
 TEST_P(MotorLoopTest, FollowsAVelocityCommandOverTheRadioAndStopsWhenItFallsSilent) {

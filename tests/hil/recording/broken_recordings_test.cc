@@ -46,6 +46,7 @@ struct Broken {
   std::string found;
   std::string allowed;
 };
+void PrintTo(const Broken& c, std::ostream* out) { *out << c.name; }
 
 const Broken kBroken[] = {
     {"NotAHeader", 0, "# {", "{", "run.omnirec:1: header", "{\"format\"", "'# {…}'"},
