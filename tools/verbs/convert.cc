@@ -7,7 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "hil/acquire/tapped_dataset.h"
 #include "hil/dataset/dataset_export.h"
+#include "hil/dataset/dataset_model.h"
 #include "hil/dataset/radio_export.h"
 #include "hil/game_log/vision_csv.h"
 #include "hil/recording/capture_import.h"
@@ -18,6 +20,8 @@
 #include "hil/recording/session_setup.h"
 #include "hil/recording/stream_file.h"
 #include "hil/text/dataset_files.h"
+#include "hil/text/program_files.h"
+#include "hil/text/text_file.h"
 #include "tools/command_line.h"
 #include "tools/convert_capture.h"
 #include "tools/exit_codes.h"
@@ -34,7 +38,7 @@ struct ConvertWords {
   CaptureWords capture;
   std::string to = "dataset";
   std::string out;
-  std::string drive = "duties";
+  std::string drive = "duties", model;
   int robot = -1;
   double camera_Hz = 60.0;
 };
@@ -49,13 +53,44 @@ std::optional<int> chosen_robot(const ConvertWords& words, const RecordingHeader
   return words.robot;
 }
 
-void to_dataset(const ConvertWords& words, const Recording& recording) {
-  const ModelReading reading = read_bundle(session_setup(recording.header).model);
-  if (!reading.model) {
-    std::string text;
-    for (const ModelProblem& problem : reading.problems) text += (text.empty() ? "" : "\n") + problem.text();
-    throw std::invalid_argument(text);
+std::string all_of(const std::vector<ModelProblem>& problems) {
+  std::string text;
+  for (const ModelProblem& problem : problems) text += (text.empty() ? "" : "\n") + problem.text();
+  return text;
+}
+
+void write_dataset(const ConvertWords& words, const DatasetExport& made) {
+  NewFolder folder(words.out);
+  for (const DatasetFile& file : made.files) folder.write(file.name, file.text);
+  folder.finish();
+  fmt::print("{}: {} rows in {} runs\n", words.out, made.rows, made.files.size() - 2);
+  for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
+}
+
+// A recording of `tap`: a real robot, of which the bytes are known and what the cameras saw beside them.
+void tapped_to_dataset(const ConvertWords& words, const Recording& recording) {
+  if (words.model.empty() || words.robot < 0)
+    throw std::invalid_argument(
+        "a tapped recording needs --robot and --model (with [controller], docs/radio-driven.md)");
+  const StoredModel stored = load_robot_model(words.model, {data_folder("models")});
+  if (!stored.model) throw std::invalid_argument(all_of(stored.problems));
+  const RadioFormat* format = format_or_complain(recording.header.radio_format);
+  if (format == nullptr) throw std::invalid_argument("the commands of this recording cannot be read");
+  TappedOptions options{.robot = *chosen_robot(words, recording.header), .model_text = {}, .vision_csv = {}};
+  options.model_text =
+      stored.bundle.motor_text.empty() ? stored.bundle.robot_text : dataset_model_text(*stored.model);
+  if (const std::string seen = words.recording + ".vision.csv"; std::filesystem::exists(seen)) {
+    std::string error;
+    options.vision_csv = read_text_file(seen, error);
+    if (!error.empty()) throw std::invalid_argument(seen + ": " + error);
   }
+  write_dataset(words, tapped_dataset(recording, *format, options));
+}
+
+void to_dataset(const ConvertWords& words, const Recording& recording) {
+  if (is_tapped(recording)) return tapped_to_dataset(words, recording);
+  const ModelReading reading = read_bundle(session_setup(recording.header).model);
+  if (!reading.model) throw std::invalid_argument(all_of(reading.problems));
   const std::optional<int> robot = chosen_robot(words, recording.header);
   const auto make = [&] {
     if (words.drive == "duties")
@@ -65,12 +100,7 @@ void to_dataset(const ConvertWords& words, const Recording& recording) {
     return make_radio_dataset(recording, *reading.model, heard_commands(recording, *format),
                               {.robot = robot, .camera_Hz = words.camera_Hz});
   };
-  const DatasetExport made = make();
-  NewFolder folder(words.out);
-  for (const DatasetFile& file : made.files) folder.write(file.name, file.text);
-  folder.finish();
-  fmt::print("{}: {} rows in {} runs\n", words.out, made.rows, made.files.size() - 2);
-  for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
+  write_dataset(words, make());
 }
 
 int run_convert_capture(const ConvertWords& words) {
@@ -163,6 +193,8 @@ void add_verb_convert(Verb& program, VerbResult& result) {
           "camera tell: reported wheel speeds and pose")
       .one_of({"duties", "commands"})
       .capture_default_str();
+  verb.add_option("--model", words->model,
+                  "of a tapped recording: the robot's model that goes with the data, a name or a .toml file");
   verb.add_option("--camera-hz", words->camera_Hz, "rate of the vision columns of a dataset")
       .range(0.1, 10000.0)
       .capture_default_str();
