@@ -69,7 +69,8 @@ struct ExperimentOptions {
 struct PlannedRun {
   std::string excitation;  // "creep", …
   std::string words;       // "ramps slowly through zero, ±10 % duty, 16 s a period"
-  // Or "motor_voltage", "position_target", as the given data have it; "velocity": of a bench that imposes the motion.
+  // Or "motor_voltage", "position_target", as the given data have it; "velocity": of a bench that imposes the motion;
+  // "command_vx": m/s ahead, m/s to the left, rad/s; "command_wheel_1": rad/s of four wheels.
   std::string input = "duty";
   std::vector<double> time_s;             // n samples
   std::vector<std::vector<double>> duty;  // [drive][sample] in the input's unit; one drive, or one per wheel

@@ -1,6 +1,5 @@
 // omnihil acquire PLAN: drives a robot by its own radio as a plan says, and writes what came of it as a measurement.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
