@@ -1,9 +1,11 @@
-// What hosts of the league send: robot control, simulation control, and lengths of the synchronous protocol. Byte 0 picks.
+// What hosts of the league send: robot control, simulation control, lengths of the synchronous protocol, grSim's packets.
+// Byte 0 picks.
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
+#include "hil/league/grsim.h"
 #include "hil/league/league_robots.h"
 #include "hil/league/league_simulator.h"
 #include "hil/league/league_sync.h"
@@ -56,6 +58,23 @@ void control_simulator(std::string_view bytes) {
   simulator_response(read.errors);
 }
 
+void take_grsim(std::string_view bytes) {
+  const GrsimPacket read = read_grsim_packet(bytes, robots());
+  for (const LeagueRobotCommand& c : read.commands) {
+    demand(c.robot_index < robots().size(), "a robot that is there");
+    demand(std::isfinite(c.command.v_forward_m_s) && std::isfinite(c.command.v_left_m_s) &&
+               std::isfinite(c.command.omega_body_rad_s) && std::isfinite(c.command.v_kick_m_s),
+           "a finite command");
+    for (const double omega : c.command.omega_wheel_rad_s)
+      demand(std::isfinite(omega), "finite wheel speeds");
+  }
+  for (const LeagueTeleport& t : read.teleports) {
+    demand(t.robot_index < robots().size(), "a robot that is there");
+    demand(finite(t.x_m) && finite(t.y_m) && finite(t.yaw_rad), "a place that is one");
+  }
+  if (read.ball) demand(finite(read.ball->x_m) && finite(read.ball->v_x_m_s), "a ball that is somewhere");
+}
+
 void take_messages(std::string_view bytes) {
   std::string waiting, message;
   bool bad = false;
@@ -73,11 +92,13 @@ void take_messages(std::string_view bytes) {
 
 OMNIHIL_FUZZ_TARGET(bytes) {
   using namespace omnihil;
-  switch (take_byte(bytes) % 3) {
+  switch (take_byte(bytes) % 4) {
     case 0:
       return control_robots(text_of(bytes));
     case 1:
       return control_simulator(text_of(bytes));
+    case 3:
+      return take_grsim(text_of(bytes));
     default:
       return take_messages(text_of(bytes));
   }
