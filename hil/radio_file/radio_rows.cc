@@ -164,7 +164,7 @@ Field PacketReader::field(const toml::table& t, const std::string& path, const M
   out.unit = out_.keep(keys_.text(t, path, "unit").value_or(""));
   out.what = out_.keep(keys_.text(t, path, "what").value_or(std::string(out.name)));
   out.envelope = flag(keys_, t, path, "envelope");
-  if (message.field_index(out.name) >= 0)
+  if (t.get("name") != nullptr && message.field_index(out.name) >= 0)
     keys_.wrong(*t.get("name"), path + ".name", "is there twice", "needed: a name of its own");
   by_kind(t, path, out);
   robot_side(t, path, out);

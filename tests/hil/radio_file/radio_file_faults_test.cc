@@ -1,4 +1,5 @@
 // Faults of a radio format's file: each with line, key, value and what is allowed; all of them at once.
+#include <algorithm>
 #include <string>
 
 #include "hil/radio_file/radio_file.h"
@@ -122,6 +123,16 @@ TEST(RadioFileFaults, TwoPacketsThatNothingTellsApartAreRefused) {
   const RadioFile file = read_radio_file(text + replaced(packet, "\"GO\"", "\"STOP\""), "x.toml");
   ASSERT_EQ(file.problems.size(), 1u);
   EXPECT_NE(file.problems[0].text().find("cannot be told from packet GO"), std::string::npos);
+}
+
+TEST(RadioFileFaults, EachOfTwoFieldsWithoutANameIsNamed) {
+  std::string text = replaced(kGood, "{ name = \"kind\",", "{");
+  text = replaced(text, "{ name = \"sum\",", "{");
+  const RadioFile file = read_radio_file(text, "x.toml");
+  const auto of_names = std::count_if(file.problems.begin(), file.problems.end(), [](const ModelProblem& p) {
+    return p.text().find("the field's name") != std::string::npos;
+  });
+  EXPECT_EQ(of_names, 2);
 }
 
 TEST(RadioFileFaults, NoFileAndNoTomlSaySo) {
