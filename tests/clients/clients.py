@@ -4,6 +4,7 @@
                         OMNIHIL_CLIENTS_NPM, OMNIHIL_PRELOAD
 """
 import json
+import math
 import os
 import pty
 import re
@@ -12,6 +13,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import tty
 
@@ -135,6 +137,33 @@ def node_with_a_dbc_file():
     assert abs(seen["speed_rev_s"] - 4.0) <= 0.08 and seen["states"][-1] == "CLOSED_LOOP_CONTROL", seen
     assert seen["unknown"] == 0 and seen["frames"] > 20, seen
     assert report.code == 0 and ", 0 for others, 0 refused" in report.text, report.text
+
+
+def dbc_files_say_what_the_tables_say():
+    """candied reads what `formats ID --dbc` writes: packets of another encoder have the values there that they were made of."""
+    with open(os.path.join(SOURCE, "tests/protocols/golden/packets.jsonl"), encoding="utf-8") as file:
+        golden = [json.loads(line) for line in file]
+    for format_id, device in (("odrive-can", "ODrive"), ("ibis-orion-can", "ibis_ssl")):
+        rows = [row for row in golden if row["format"] == format_id and row["in"].get("node", 0) < 4]
+        frames = [bytes.fromhex(row["hex"]) for row in rows]
+        lines = "".join(json.dumps({"id": int.from_bytes(frame[:4], "little"), "data": list(frame[8:8 + frame[4]])}) + "\n"
+                        for frame in frames)
+        with tempfile.NamedTemporaryFile(suffix=".dbc") as dbc:
+            subprocess.run([os.environ["OMNIHIL_PROGRAM"], "formats", format_id, "--dbc"], stdout=dbc, check=True)
+            run = subprocess.run([installed("node"), os.path.join(HERE, "dbc_values.mjs"), dbc.name], input=lines,
+                                 capture_output=True, text=True, check=False, timeout=DEADLINE_S)
+        if run.returncode == 77:
+            raise Skip(run.stdout.strip())
+        assert run.returncode == 0, (run.stdout, run.stderr)
+        read = [json.loads(line) for line in run.stdout.splitlines()]
+        assert len(read) == len(rows) >= 12, run.stdout
+        for row, seen in zip(rows, read):
+            given = dict(row["in"])
+            number = given.pop("node", given.pop("motor", ""))
+            assert seen["name"] == f"{device}{number}_{row['packet']}", (row, seen)
+            assert set(seen["values"]) == set(given), (row, seen)
+            for name, value in given.items():
+                assert math.isclose(seen["values"][name], value, rel_tol=1e-6, abs_tol=1e-9), (row, seen)
 
 
 def every_message_of_the_dbc_file_is_the_bus_s():

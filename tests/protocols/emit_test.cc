@@ -48,6 +48,13 @@ TEST(WiresharkDissector, IsWhatTheTablesGive) {
   }
 }
 
+TEST(DbcFile, OfTheExamplesIsWhatTheTablesGive) {
+  expect_golden("/examples/can/odrive.dbc", emit_dbc(*find_radio_format("odrive-can")),
+                "./dev exec formats odrive-can --dbc > examples/can/odrive.dbc");
+  expect_golden("/examples/can/ibis-orion.dbc", emit_dbc(*find_radio_format("ibis-orion-can")),
+                "./dev exec formats ibis-orion-can --dbc > examples/can/ibis-orion.dbc");
+}
+
 TEST(Documentation, NamesEveryPacketAndEveryFieldWithItsMeaning) {
   for (const RadioFormat* format : radio_formats()) {
     const std::string page = emit_markdown(*format);

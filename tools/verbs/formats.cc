@@ -17,6 +17,7 @@ struct Arguments {
   bool wireshark = false;
   bool c_header = false;
   bool toml = false;
+  bool dbc = false;
 };
 
 void print_list() {
@@ -28,9 +29,10 @@ void print_list() {
 
 int run(const Arguments& arguments) {
   if (arguments.id.empty() && arguments.file.empty()) {
-    if (arguments.wireshark || arguments.c_header || arguments.toml) {
-      std::fprintf(stderr,
-                   "omnihil formats: --wireshark, --c-header and --toml need a format ID or --format FILE\n");
+    if (arguments.wireshark || arguments.c_header || arguments.toml || arguments.dbc) {
+      std::fprintf(
+          stderr,
+          "omnihil formats: --wireshark, --c-header, --toml and --dbc need a format ID or --format FILE\n");
       return kExitBadInput;
     }
     print_list();
@@ -44,9 +46,15 @@ int run(const Arguments& arguments) {
                  reason.c_str());
     return kExitBadInput;
   }
+  if (arguments.dbc && format->carrier.kind != Carrier::Kind::kCan) {
+    std::fprintf(stderr, "omnihil formats: --dbc is of CAN formats; %s is none\n",
+                 std::string(format->id).c_str());
+    return kExitBadInput;
+  }
   const std::string text = arguments.wireshark  ? emit_wireshark(*format)
                            : arguments.c_header ? emit_c_header(*format)
                            : arguments.toml     ? emit_toml(*format)
+                           : arguments.dbc      ? emit_dbc(*format)
                                                 : emit_markdown(*format);
   std::fputs(text.c_str(), stdout);
   return kExitOk;
@@ -66,9 +74,14 @@ void add_verb_formats(Verb& program, VerbResult& result) {
   const Option c_header =
       verb.add_flag("--c-header", arguments->c_header, "print the places of all fields as C macros")
           .excludes(wireshark);
+  const Option dbc =
+      verb.add_flag("--dbc", arguments->dbc, "print the messages of a CAN format as a DBC file")
+          .excludes(wireshark)
+          .excludes(c_header);
   verb.add_flag("--toml", arguments->toml, "print its packet tables as a file that --format takes")
       .excludes(wireshark)
-      .excludes(c_header);
+      .excludes(c_header)
+      .excludes(dbc);
   verb.callback([arguments, &result] { result.exit_code = run(*arguments); });
 }
 
