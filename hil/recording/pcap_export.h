@@ -7,6 +7,8 @@
 // packet are records too. Cannot: say which way a packet went, since USER0 has no direction (its message does).
 // Source: Tcpdump group, pcap-savefile(5); link types, www.tcpdump.org/linktypes.html.
 #pragma once
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "hil/recording/recording.h"
@@ -15,5 +17,10 @@
 namespace omnihil {
 
 std::string pcap_of(const Recording& recording, const RadioFormat& format);
+
+// Its parts: what a file begins with, and one packet at `now_ns` after `epoch_ms`.
+std::string pcap_header();
+void append_pcap_packet(std::string& out, std::uint64_t epoch_ms, std::int64_t now_ns,
+                        std::span<const std::uint8_t> bytes);
 
 }  // namespace omnihil

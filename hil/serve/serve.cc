@@ -17,6 +17,7 @@
 #include "hil/recording/recording_header.h"
 #include "hil/recording/recording_writer.h"
 #include "hil/recording/replay.h"
+#include "hil/serve/packet_feed.h"
 #include "hil/serve/serve_port.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/serve/status_printer.h"
@@ -50,7 +51,7 @@ LinePace pace_of(const Carrier& carrier, const ServeOptions& options) {
 }
 
 std::string carrier_words(const Carrier& carrier, const LinePace& pace) {
-  constexpr std::string_view kNames[] = {"USB CDC", "UART", "UDP"};
+  constexpr std::string_view kNames[] = {"USB CDC", "UART", "UDP", "SPI", "CAN"};
   const std::string_view name = kNames[static_cast<std::size_t>(carrier.kind)];
   if (pace.baud == 0) return fmt::format("{}, not paced", name);
   return fmt::format("{}, paced at {} baud", name, pace.baud);
@@ -87,6 +88,7 @@ class Bench {
   bool open_opponents();
   bool open_league();
   bool open_recording(RecordingHeader header);
+  bool open_capture(std::uint64_t epoch_ms);
   void say_ready() const;
   ServeEnd loop();
   bool step();
@@ -103,6 +105,7 @@ class Bench {
   std::unique_ptr<ByteWire> opponents_wire_;  // null: the other team has no dongle
   std::unique_ptr<HostPort> opponents_port_;
   std::unique_ptr<RecordingWriter> writer_;
+  std::unique_ptr<PacketFeed> feed_;
   std::unique_ptr<LeagueHost> league_;
   TipWatch tips_{session_};
   ObserverList observers_{{&tips_}};
@@ -136,7 +139,8 @@ bool Bench::open(RecordingHeader header) {
     }
   }
   session_.set_observer(&observers_);
-  return open_opponents() && open_league() && open_recording(std::move(header));
+  return open_opponents() && open_league() && open_capture(header.epoch_ms) &&
+         open_recording(std::move(header));
 }
 
 bool Bench::open_opponents() {
@@ -167,6 +171,19 @@ bool Bench::open_league() {
     return true;
   complain("league: " + error);
   return false;
+}
+
+bool Bench::open_capture(std::uint64_t epoch_ms) {
+  if (options_.capture.empty()) return true;
+  std::error_code error;
+  feed_ =
+      PacketFeed::open(options_.capture, *find_radio_format(session_.config().radio_format), epoch_ms, error);
+  if (!feed_) {
+    complain("--capture " + options_.capture + ": " + error.message());
+    return false;
+  }
+  observers_.add(feed_.get());
+  return true;
 }
 
 bool Bench::open_recording(RecordingHeader header) {
@@ -250,6 +267,7 @@ bool Bench::step() {
   if (!error) error = port_->send(session_.now_ns(), answer_);
   if (!error && opponents_port_) error = opponents_port_->send(session_.now_ns(), opponents_answer_);
   if (league_) league_->after_step(session_);
+  if (feed_) feed_->turn();
   note_failures();
   if (port_->take_host_closed()) session_.host_closed();
   if (error) complain("device " + options_.device + ": " + error.message());

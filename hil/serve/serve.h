@@ -38,6 +38,7 @@ struct ServeOptions {
   bool strict = false;                  // real time: the first slip ends the run
   bool fifo = false;                    // SCHED_FIFO, memory locked
   std::string record;                   // file; empty: none
+  std::string capture;                  // Unix socket that gives passing packets as pcap; empty: none
   std::optional<LeagueOptions> league;  // the league's ports, beside the device
   std::vector<StartPose> starts;        // before the first step; in the recording
   std::string load;                     // what is said of the load (serve_load.h); lines with ends

@@ -249,6 +249,9 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   add_league_options(verb, w.league);
   add_air_options(verb, w.air);
   verb.add_option("--record", w.options.record, "write a recording to this file");
+  verb.add_option(
+      "--capture", w.options.capture,
+      "Unix socket that gives passing packets as pcap; `omnihil extcap` brings them into Wireshark");
   verb.add_option("--sample-every", w.sample_every,
                   "of each robot's control ticks, record every Nth (bytes are all recorded)")
       .range(1, 1'000'000)

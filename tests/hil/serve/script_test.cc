@@ -25,6 +25,8 @@ SCRIPT_TEST(ServeTest, "serve/serial_client.py", names_every_bad_argument)
 SCRIPT_TEST(PhaseClientTest, "serve/phase_client.py", field_oriented_control_follows_a_velocity)
 SCRIPT_TEST(PhaseClientTest, "serve/phase_client.py", six_step_control_follows_a_velocity)
 SCRIPT_TEST(RemClientTest, "serve/rem_client.py", one_metre_per_second_forward)
+SCRIPT_TEST(ExtcapTest, "serve/extcap_client.py", answers_what_wireshark_asks)
+SCRIPT_TEST(ExtcapTest, "serve/extcap_client.py", tshark_shows_the_values_that_pass_a_running_bench)
 SCRIPT_TEST(HostStreamTest, "serve/hermes_stream.py", real_host_drives_six_robots_with_no_frame_refused)
 SCRIPT_TEST(MotorBusClientTest, "serve/motor_bus_client.py", bad_words_are_all_named)
 SCRIPT_TEST(MotorBusClientTest, "serve/motor_bus_client.py",
