@@ -1,6 +1,7 @@
 #include "protocols/codec.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -20,10 +21,25 @@ constexpr BitPlace place_of(int bit, BitOrder order) {
   return {static_cast<std::size_t>(bit / 8), order == BitOrder::kMsbFirst ? 7 - in_byte : in_byte};
 }
 
-PacketError contradiction(FieldKind kind) {
-  if (kind == FieldKind::kType) return PacketError::kUnknownType;
-  if (kind == FieldKind::kLength) return PacketError::kLength;
-  return PacketError::kConstant;
+PacketError contradiction(const Field& field) {
+  if (field.kind == FieldKind::kType) return PacketError::kUnknownType;
+  if (field.kind == FieldKind::kLength) return PacketError::kLength;
+  if (field.cause == ConstCause::kVersion) return PacketError::kVersion;
+  return field.cause == ConstCause::kAddress ? PacketError::kAddress : PacketError::kConstant;
+}
+
+// What a checksum's field must hold. Where it stands inside its own bytes it counts as 0.
+std::uint64_t sum_of(const Field& field, BitOrder order, std::span<const std::uint8_t> packet) {
+  const auto first = static_cast<std::size_t>(field.bit / 8);
+  const int until = field.check->until;
+  const auto end =
+      until > 0 ? static_cast<std::size_t>(until) : packet.size() - static_cast<std::size_t>(-until);
+  std::array<std::uint8_t, 1024> others;
+  if (first < static_cast<std::size_t>(field.check->from) || first >= end || packet.size() > others.size())
+    return field.check->of(packet);
+  std::copy(packet.begin(), packet.end(), others.begin());
+  write_bits(others, field.bit, field.bits, order, 0);
+  return field.check->of(std::span<const std::uint8_t>(others).first(packet.size()));
 }
 
 bool is_limited(const Field& field) { return field.lo != field.hi; }
@@ -35,7 +51,7 @@ PacketError check_decoded(const Field& field, const Message& message, std::size_
     case FieldKind::kType:
     case FieldKind::kLength:
       return value.raw == required_raw(field, message, packet_bytes) ? PacketError::kNone
-                                                                     : contradiction(field.kind);
+                                                                     : contradiction(field);
     case FieldKind::kFloat32:
       if (!std::isfinite(value.number)) return PacketError::kNotFinite;
       [[fallthrough]];
@@ -168,7 +184,7 @@ PacketError encode_field(const Field& field, const Message& message, std::size_t
       raw = required_raw(field, message, packet_bytes);
       if (raw > mask(field.bits)) return PacketError::kTooLong;
       return value.number == 0.0 || value.number == static_cast<double>(raw) ? PacketError::kNone
-                                                                             : contradiction(field.kind);
+                                                                             : contradiction(field);
     case FieldKind::kInteger:
     case FieldKind::kReserved:
       return encode_integer(field, value, raw);
@@ -299,6 +315,13 @@ Value nearest_value(const Field& field, double number) {
 FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> bytes,
                          std::size_t packet_bytes, Values& out) {
   out.message = &message;
+  // Damage is named before what it has made of the fields.
+  for (const Field& field : message.fields) {
+    if (field.kind != FieldKind::kChecksum || field.check == nullptr) continue;
+    const std::uint64_t raw = read_bits(bytes, field.bit, field.bits, message.bit_order);
+    if (sum_of(field, message.bit_order, bytes.first(packet_bytes)) != raw)
+      return {PacketError::kChecksum, field.name};
+  }
   for (std::size_t i = 0; i < message.fields.size(); ++i) {
     const Field& field = message.fields[i];
     Value& value = out.fields[i];
@@ -308,9 +331,7 @@ FieldFault decode_fields(const Message& message, std::span<const std::uint8_t> b
       value.number = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
-    PacketError error = check_decoded(field, message, packet_bytes, value);
-    const bool summed = field.kind == FieldKind::kChecksum && field.check != nullptr;
-    if (summed && field.check->of(bytes.first(packet_bytes)) != value.raw) error = PacketError::kChecksum;
+    const PacketError error = check_decoded(field, message, packet_bytes, value);
     if (error != PacketError::kNone) return {error, field.name};
   }
   return {};

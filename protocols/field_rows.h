@@ -35,6 +35,11 @@ constexpr Field sign_and_magnitude(std::string_view name, int bits, std::string_
   field.sign = Sign::kMagnitude;
   return field;
 }
+// The same row with words for its values; see Field::names.
+constexpr Field named(std::string_view names, Field field) {
+  field.names = names;
+  return field;
+}
 constexpr Field flag(std::string_view name, std::string_view what) { return number(name, 1, "", what); }
 // A flag that the team's own programs take and give as true or false; their other flags are 0 and 1.
 constexpr Field boolean(std::string_view name, std::string_view what) {
@@ -45,6 +50,15 @@ constexpr Field reserved(std::string_view name, int bits, std::string_view what)
 }
 constexpr Field constant(std::string_view name, int bits, std::uint64_t value, std::string_view what) {
   return {.name = name, .bits = bits, .kind = FieldKind::kConst, .constant = value, .what = what};
+}
+// A constant of the packet tables' version, or that says whom a packet is for; see ConstCause.
+constexpr Field version(Field field) {
+  field.cause = ConstCause::kVersion;
+  return field;
+}
+constexpr Field address(Field field) {
+  field.cause = ConstCause::kAddress;
+  return field;
 }
 constexpr Field type_code(std::string_view name, int bits, std::string_view what = "packet type") {
   return {.name = name, .bits = bits, .kind = FieldKind::kType, .what = what};
@@ -96,6 +110,11 @@ constexpr Field scaled(std::string_view name, int bits, Sign sign, const ScaleRu
           .scale = &rule,
           .unit = unit,
           .what = what};
+}
+// The same row as the field of this number in a protobuf message; see Field::tag.
+constexpr Field tagged(int tag, Field field) {
+  field.tag = tag;
+  return field;
 }
 // The same row as a part of the frame; see Field::envelope.
 constexpr Field enveloped(Field field) {

@@ -30,6 +30,13 @@ enum class FieldKind : std::uint8_t {
   kChecksum,  // computed by `check`; without one by the format's own rule, and the walker leaves it out
 };
 
+// Why a packet is refused whose kConst field holds something else.
+enum class ConstCause : std::uint8_t {
+  kConstant,
+  kVersion,  // packet tables of another version, which may be laid out otherwise: looked at before the length
+  kAddress,  // for somebody else
+};
+
 enum class Sign : std::uint8_t {
   kNone,            // 0 to 2^bits - 1
   kTwosComplement,  // -2^(bits-1) to 2^(bits-1) - 1
@@ -57,7 +64,7 @@ struct ScaleRule {
   bool none_at_lowest = false;  // the lowest count says that there is no number: NaN, null in JSON
 };
 
-// A sum or CRC over bytes of a packet as it stands in its frame without framing; not over the field itself.
+// A sum or CRC over bytes of a packet as it stands in its frame without framing; the field itself counts as 0.
 struct ChecksumRule {
   const ChecksumKind* kind = nullptr;
   int from = 0;   // the first byte of the sum
@@ -72,12 +79,13 @@ struct ChecksumRule {
 // What a field tells a dongle, whatever the team calls it.
 enum class FieldRole : std::uint8_t {
   kNone,
-  kRobot,      // the robot meant
-  kRobotBits,  // a bit for each robot meant
-  kTeam,       // its team: 0 yellow, 1 blue
-  kAllRobots,  // not 0: every robot of the team
-  kForDongle,  // not 0: the dongle itself
-  kForHost,    // not 0: the host; a dongle that gets this from the host gives it back
+  kRobot,       // the robot meant
+  kRobotBits,   // a bit for each robot meant
+  kTeam,        // its team: 0 yellow, 1 blue
+  kTeamYellow,  // its team: 0 blue, 1 yellow
+  kAllRobots,   // not 0: every robot of the team
+  kForDongle,   // not 0: the dongle itself
+  kForHost,     // not 0: the host; a dongle that gets this from the host gives it back
 };
 
 struct Field {
@@ -89,7 +97,8 @@ struct Field {
   Sign sign = Sign::kNone;  // kInteger and kScaled
   double lo = 0.0;          // smallest and largest value, in `unit`; equal: not limited
   double hi = 0.0;
-  std::uint64_t constant = 0;           // kConst: the content; kType, kLength: see there
+  std::uint64_t constant = 0;  // kConst: the content; kType, kLength: see there
+  ConstCause cause = ConstCause::kConstant;
   const ScaleRule* scale = nullptr;     // kScaled
   const ChecksumRule* check = nullptr;  // kChecksum
   std::string_view unit{};  // "m/s", "rad", "" for a plain number, "bool" for true and false in JSON
@@ -104,6 +113,8 @@ struct Field {
   // In formats that come from files: what the number is to a robot, times * number; meaning.h.
   const Meaning* means = nullptr;
   double times = 1.0;
+  std::string_view names{};  // of its values, where they have some: "1 IDLE, 8 CLOSED_LOOP_CONTROL"
+  int tag = 0;               // of Framing::kProtobuf: its number in the protobuf message
 };
 
 // kInside: between the boards of one robot, never on the radio.

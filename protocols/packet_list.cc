@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "protocols/codec.h"
 #include "protocols/plain_packet.h"
+#include "protocols/protobuf_list.h"
 
 namespace omnihil {
 namespace {
@@ -54,20 +56,74 @@ RadioFormat::EncodeResult encode_packets(const PacketList& list, std::span<const
   return {};
 }
 
+// A packet by the first table that fits it; where none does, the fault of the first.
+DecodeResult decode_protobuf(std::span<const Message> messages, std::span<const std::uint8_t> packet) {
+  DecodeResult first;
+  for (const Message& message : messages) {
+    FlatPacket flat;
+    DecodeResult result;
+    FieldFault fault = flatten(message, packet, flat);
+    if (fault.error == PacketError::kNone) {
+      fault = decode_fields(message, flat.span(), flat.size, result.values);
+    }
+    result.error = fault.error;
+    result.field = fault.field;
+    if (fault.error == PacketError::kNone) return result;
+    if (first.error == PacketError::kNone) first = result;
+  }
+  return first;
+}
+
+RadioFormat::EncodeResult encode_protobuf(const PacketList& list, std::span<const Values> packets,
+                                          std::vector<std::uint8_t>& out) {
+  const std::size_t before = out.size();
+  out.push_back(0);
+  FlatPacket flat;
+  RadioFormat::EncodeResult result;
+  if (packets.size() > static_cast<std::size_t>(list.most)) result.error = PacketError::kTooLong;
+  for (const Values& packet : packets) {
+    if (result.error != PacketError::kNone) break;
+    flat.size = static_cast<std::size_t>(packet.message->size_bytes);
+    const FieldFault fault = encode_fields(packet, flat.size, std::span(flat.bytes).first(flat.size));
+    result = {fault.error, fault.field};
+    if (fault.error == PacketError::kNone) append_protobuf(*packet.message, flat.span(), out);
+  }
+  const std::size_t size = out.size() - before - 1;
+  if (result.error == PacketError::kNone && size > 0xFF) result.error = PacketError::kTooLong;
+  if (result.error == PacketError::kNone) {
+    out[before] = static_cast<std::uint8_t>(size);
+  } else {
+    out.resize(before);
+  }
+  return result;
+}
+
+// The faults of a whole frame, by the framing.
+PacketError frame_fault(const RadioFormat& format, std::span<const std::uint8_t> frame) {
+  if (format.framing != Framing::kProtobuf) return frame_fault(*format.list, frame);
+  PacketError fault = PacketError::kNone;
+  const std::optional<std::size_t> packets = protobuf_packets(frame, &fault);
+  if (packets && *packets > static_cast<std::size_t>(format.list->most)) return PacketError::kLength;
+  return fault;
+}
+
 }  // namespace
 
 std::optional<std::size_t> listed_packets(const RadioFormat& format, std::span<const std::uint8_t> frame) {
   if (format.list == nullptr) return 1;
-  if (frame_fault(*format.list, frame) != PacketError::kNone) return std::nullopt;
-  return frame[format.list->begin.size()];
+  if (frame_fault(format, frame) != PacketError::kNone) return std::nullopt;
+  return format.framing == Framing::kProtobuf ? protobuf_packets(frame)
+                                              : std::size_t{frame[format.list->begin.size()]};
 }
 
 DecodeResult decode_listed(const RadioFormat& format, std::span<const std::uint8_t> frame,
                            std::size_t index) {
   if (format.list == nullptr) return format.decode(frame);
-  const PacketError fault = frame_fault(*format.list, frame);
+  const PacketError fault = frame_fault(format, frame);
   if (fault != PacketError::kNone) return without_packet(fault);
-  return decode_packet(format.messages, packet_bytes(*format.list, frame, index));
+  return format.framing == Framing::kProtobuf
+             ? decode_protobuf(format.messages, protobuf_packet(frame, index))
+             : decode_packet(format.messages, packet_bytes(*format.list, frame, index));
 }
 
 bool is_frame(const RadioFormat& format, std::span<const std::uint8_t> frame) {
@@ -80,22 +136,17 @@ bool is_frame(const RadioFormat& format, std::span<const std::uint8_t> frame) {
 
 RadioFormat::EncodeResult encode_list(const RadioFormat& format, std::span<const Values> packets,
                                       std::vector<std::uint8_t>& out) {
+  if (format.framing == Framing::kProtobuf) return encode_protobuf(*format.list, packets, out);
   if (format.list != nullptr) return encode_packets(*format.list, packets, out);
   return packets.size() == 1 ? format.encode(packets[0], out)
                              : RadioFormat::EncodeResult{PacketError::kLength, {}};
 }
 
-DecodeResult decode_list_of_one(const PacketList& list, std::span<const Message> messages,
-                                std::span<const std::uint8_t> frame) {
-  const PacketError fault = frame_fault(list, frame);
+DecodeResult decode_list_of_one(const RadioFormat& format, std::span<const std::uint8_t> frame) {
+  const PacketError fault = frame_fault(format, frame);
   if (fault != PacketError::kNone) return without_packet(fault);
-  if (frame[list.begin.size()] != 1) return without_packet(PacketError::kLength);
-  return decode_packet(messages, packet_bytes(list, frame, 0));
-}
-
-RadioFormat::EncodeResult encode_list_of_one(const PacketList& list, const Values& values,
-                                             std::vector<std::uint8_t>& out) {
-  return encode_packets(list, std::span(&values, 1), out);
+  if (*listed_packets(format, frame) != 1) return without_packet(PacketError::kLength);
+  return decode_listed(format, frame, 0);
 }
 
 }  // namespace omnihil

@@ -1,4 +1,4 @@
-// Frames that list packets: AA 55 · number · packets of one length · FF.
+// Frames that list packets: AA 55 · number · packets of one length · FF, or protobuf messages (protobuf_list.h).
 //
 //   const std::size_t count = listed_packets(format, frame).value_or(0);
 //   for (std::size_t i = 0; i < count; ++i) answers.push_back(decode_listed(format, frame, i).values);
@@ -21,10 +21,7 @@ bool is_frame(const RadioFormat& format, std::span<const std::uint8_t> frame);
 RadioFormat::EncodeResult encode_list(const RadioFormat& format, std::span<const Values> packets,
                                       std::vector<std::uint8_t>& out);
 
-// The codec of a list of one, for RadioFormat::decode and encode.
-DecodeResult decode_list_of_one(const PacketList& list, std::span<const Message> messages,
-                                std::span<const std::uint8_t> frame);
-RadioFormat::EncodeResult encode_list_of_one(const PacketList& list, const Values& values,
-                                             std::vector<std::uint8_t>& out);
+// The codec of a list of one, for RadioFormat::decode.
+DecodeResult decode_list_of_one(const RadioFormat& format, std::span<const std::uint8_t> frame);
 
 }  // namespace omnihil

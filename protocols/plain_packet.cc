@@ -23,6 +23,13 @@ std::size_t bytes_to_type(const Message& message) {
   return static_cast<std::size_t>(bits + 7) / 8;
 }
 
+const Field* length_field(const Message& message) {
+  for (const Field& field : message.fields) {
+    if (field.kind == FieldKind::kLength) return &field;
+  }
+  return nullptr;
+}
+
 // The field that tells packets apart, to be named where none fits.
 std::string_view type_name(std::span<const Message> messages) {
   for (const Message& message : messages) {
@@ -40,6 +47,30 @@ DecodeResult refused(PacketError error, std::string_view field = {}) {
   return result;
 }
 
+// A version that this packet does not have. Where the version stands in front of the type, a packet of another version
+// need not have one of ours.
+const Field* other_version(const Message& message, std::span<const std::uint8_t> packet, bool before_type) {
+  int type_bit = 0;
+  for (const Field& field : message.fields) {
+    if (is_type_field(field)) type_bit = field.bit;
+  }
+  for (const Field& field : message.fields) {
+    const bool is_version = field.kind == FieldKind::kConst && field.cause == ConstCause::kVersion;
+    if (!is_version || (field.bit < type_bit) != before_type) continue;
+    if (read_bits(packet, field.bit, field.bits, message.bit_order) != field.constant) return &field;
+  }
+  return nullptr;
+}
+
+// The whole packet's length: with a text it says so itself; 0: it says less than its fields have.
+std::size_t packet_size(const Message& message, std::span<const std::uint8_t> packet) {
+  const auto fields_bytes = static_cast<std::size_t>(message.size_bytes);
+  if (!message.text_tail) return fields_bytes;
+  const Field* field = length_field(message);
+  const std::uint64_t size = read_bits(packet, field->bit, field->bits, message.bit_order) + field->constant;
+  return size < fields_bytes ? 0 : static_cast<std::size_t>(size);
+}
+
 }  // namespace
 
 bool has_type_of(const Message& message, std::span<const std::uint8_t> bytes) {
@@ -55,10 +86,18 @@ bool has_type_of(const Message& message, std::span<const std::uint8_t> bytes) {
 DecodeResult decode_packet(std::span<const Message> messages, std::span<const std::uint8_t> packet) {
   const Message* found = nullptr;
   std::size_t type_bytes = 0;
+  std::size_t smallest = static_cast<std::size_t>(messages.front().size_bytes);
   for (const Message& message : messages) {
     type_bytes = std::max(type_bytes, bytes_to_type(message));
+    smallest = std::min(smallest, static_cast<std::size_t>(message.size_bytes));
+  }
+  if (packet.size() < smallest) return refused(PacketError::kTooShort);
+  if (const Field* version = other_version(messages.front(), packet, true))
+    return refused(PacketError::kVersion, version->name);
+  for (const Message& message : messages) {
     if (!has_type_of(message, packet)) continue;
-    const bool fits = packet.size() == static_cast<std::size_t>(message.size_bytes);
+    const auto fields_bytes = static_cast<std::size_t>(message.size_bytes);
+    const bool fits = message.text_tail ? packet.size() >= fields_bytes : packet.size() == fields_bytes;
     const bool has_type = bytes_to_type(message) > 0;  // without one the length alone tells it
     if (fits || (found == nullptr && has_type)) found = &message;
     if (fits) break;
@@ -67,28 +106,40 @@ DecodeResult decode_packet(std::span<const Message> messages, std::span<const st
     return packet.size() < type_bytes ? refused(PacketError::kTooShort)
                                       : refused(PacketError::kUnknownType, type_name(messages));
   }
-  const auto size = static_cast<std::size_t>(found->size_bytes);
+  const auto fields_bytes = static_cast<std::size_t>(found->size_bytes);
+  if (packet.size() < fields_bytes) return refused(PacketError::kTooShort);
+  if (const Field* version = other_version(*found, packet, false))
+    return refused(PacketError::kVersion, version->name);
+  const std::size_t size = packet_size(*found, packet);
+  if (size == 0) return refused(PacketError::kLength, length_field(*found)->name);
   if (packet.size() < size) return refused(PacketError::kTooShort);
   if (packet.size() > size) return refused(PacketError::kTooLong);
   DecodeResult result;
   const FieldFault fault = decode_fields(*found, packet, size, result.values);
   result.error = fault.error;
   result.field = fault.field;
+  const auto text = packet.subspan(fields_bytes);
+  result.values.text = {reinterpret_cast<const char*>(text.data()), text.size()};
   return result;
 }
 
 RadioFormat::EncodeResult encode_packet(const Values& values, std::vector<std::uint8_t>& out) {
   const auto size = static_cast<std::size_t>(values.message->size_bytes);
+  const std::string_view text = values.message->text_tail ? values.text : std::string_view{};
   const std::size_t before = out.size();
   out.resize(before + size);
-  const FieldFault fault = encode_fields(values, size, std::span(out).subspan(before, size));
-  if (fault.error != PacketError::kNone) out.resize(before);
-  return {fault.error, fault.field};
+  const FieldFault fault = encode_fields(values, size + text.size(), std::span(out).subspan(before, size));
+  if (fault.error != PacketError::kNone) {
+    out.resize(before);
+    return {fault.error, fault.field};
+  }
+  out.insert(out.end(), text.begin(), text.end());
+  return {};
 }
 
 DecodeResult decode_frame(const RadioFormat& format, std::span<const std::uint8_t> frame) {
   if (format.framing == Framing::kNone) return decode_packet(format.messages, frame);
-  if (format.framing == Framing::kList) return decode_list_of_one(*format.list, format.messages, frame);
+  if (format.list != nullptr) return decode_list_of_one(format, frame);
   if (frame.empty()) return refused(PacketError::kTooShort);
   if (frame.back() != 0) return refused(PacketError::kFraming);
   std::array<std::uint8_t, kLongestStuffed> buffer{};
@@ -103,7 +154,7 @@ DecodeResult decode_frame(const RadioFormat& format, std::span<const std::uint8_
 RadioFormat::EncodeResult encode_frame(const RadioFormat& format, const Values& values,
                                        std::vector<std::uint8_t>& out) {
   if (format.framing == Framing::kNone) return encode_packet(values, out);
-  if (format.framing == Framing::kList) return encode_list_of_one(*format.list, values, out);
+  if (format.list != nullptr) return encode_list(format, std::span(&values, 1), out);
   std::array<std::uint8_t, kLongestStuffed> buffer{};
   const auto size = static_cast<std::size_t>(values.message->size_bytes);
   const auto packet = std::span(buffer).first(size);

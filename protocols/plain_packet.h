@@ -4,7 +4,8 @@
 //   encode_packet(result.values, bytes);                            // appends the same bytes
 //
 // A packet is the message whose type fields all hold their code; of several such, the one of its length. Its
-// length must be the table's. A message without a type field is told by its length alone.
+// length must be the table's, or with a text what its length field says. A message without a type field is told by
+// its length alone.
 #pragma once
 #include "protocols/radio_format.h"
 

@@ -23,7 +23,7 @@ namespace omnihil {
 
 // How bytes travel between the AI host and the dongle.
 struct Carrier {
-  enum class Kind : std::uint8_t { kUsbCdc, kUart, kUdp } kind = Kind::kUsbCdc;
+  enum class Kind : std::uint8_t { kUsbCdc, kUart, kUdp, kSpi, kCan } kind = Kind::kUsbCdc;
   int baud = 0;            // kUart only; USB CDC ignores the rate a host sets
   int bits_per_byte = 10;  // 8N1: start + 8 + stop
 };
@@ -32,7 +32,8 @@ struct Carrier {
 enum class Framing : std::uint8_t {
   kNone,      // packets follow each other; the type gives the length
   kCobsZero,  // COBS, then 00
-  kList       // frames that list packets: RadioFormat::list
+  kList,      // frames that list packets: RadioFormat::list
+  kProtobuf   // the same as protobuf messages: protobuf_list.h
 };
 
 struct DecodeResult {
@@ -41,7 +42,8 @@ struct DecodeResult {
   Values values;           // valid when error is kNone
 };
 
-// Frames that list packets of one length: a beginning, their number in one byte, the packets, an end.
+// Frames that list packets of one length: a beginning, their number in one byte, the packets, an end. Of protobuf
+// messages `most` alone counts.
 struct PacketList {
   std::span<const std::uint8_t> begin;
   std::uint8_t end = 0;
@@ -61,6 +63,9 @@ struct CommandTo {
 
 // Kinds of drive as bits: drives(OMNIHIL_MODE_WHEEL_DUTY) | …
 constexpr std::uint32_t drives(std::uint32_t mode) { return 1U << mode; }
+
+// Of a format that has no packet for any command.
+inline bool no_command(const RobotCommand&, const CommandTo&, std::vector<std::uint8_t>&) { return false; }
 
 struct RadioFormat {
   std::string_view id;      // "ulaval-hermes"
@@ -86,14 +91,15 @@ struct RadioFormat {
   DecodeResult (*own_decode)(std::span<const std::uint8_t> frame) = nullptr;
   EncodeResult (*own_encode)(const Values& values, std::vector<std::uint8_t>& out) = nullptr;
   std::string_view own_codec{};  // what they do beyond the tables
-  // Of Framing::kList: decode and encode are then of a frame that lists one packet (packet_list.h has the rest).
+  // Of Framing::kList and kProtobuf: decode and encode are then of a frame that lists one packet (packet_list.h has the rest).
   const PacketList* list = nullptr;
   // Appends the frames with which a host asks for this. False: the format cannot say it, or not so large, and
   // nothing is appended. What is said is the command rounded to the fields' steps.
   bool (*encode_command)(const RobotCommand& command, const CommandTo& to,
-                         std::vector<std::uint8_t>& out) = nullptr;
+                         std::vector<std::uint8_t>& out) = no_command;
   std::uint32_t command_drives = 0;  // kinds of drive that encode_command has packets for: drives(…) | …
   // The dongle with the robots' radio ends behind it: a factory of protocols/dongles. The format outlives it.
+  // Null: packets between boards of a robot alone, which no dongle has.
   std::unique_ptr<RadioLink> (*dongle)(const RadioFormat& self, const RadioLinkConfig& config) = nullptr;
 
   // A format from a file whose tables are those of a built-in one is that one towards its robots.
@@ -105,6 +111,7 @@ struct RadioFormat {
   std::unique_ptr<RadioLink> make_link(const RadioLinkConfig& config) const {
     return serves_as != nullptr ? serves_as->make_link(config) : dongle(*this, config);
   }
+  bool has_dongle() const { return serves_as != nullptr ? serves_as->has_dongle() : dongle != nullptr; }
   bool can_drive(std::uint32_t mode) const { return (command_drives & drives(mode)) != 0; }
   const Message* find(std::string_view message_name) const;
   // False: its packets name no robot; a wire is one robot.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "protocols/rem_packet.h"
+#include "protocols/plain_packet.h"
 
 namespace omnihil::rem {
 namespace {
@@ -136,7 +136,7 @@ bool encode_as(const Message& message, const RobotCommand& command, const Comman
   values.set("toColor", to.team == Team::kBlue ? 1.0 : 0.0);
   values.set("fromPC", 1.0);
   if (to.tell_all) put(values, "sendStateInfo", 1.0);
-  return encode(values, out).error == PacketError::kNone;
+  return encode_packet(values, out).error == PacketError::kNone;
 }
 
 }  // namespace

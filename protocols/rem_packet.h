@@ -1,6 +1,6 @@
 // RoboTeam Twente's REM packets: what all versions share beyond the rows of their tables.
 //
-//   DecodeResult result = rem::decode(kMessages, frame);      // kMessages: the tables of the version at hand
+//   std::size_t size = rem::packet_bytes(kMessages, stream).value_or(0);   // kMessages: the tables of the version at hand
 //
 // A packet has no framing and no checksum: byte 0 is the type, the type gives the length, and the header's
 // payloadSize repeats it. Where packets follow each other on a wire, `packet_bytes` finds the next one.
@@ -18,8 +18,5 @@ namespace omnihil::rem {
 // a text by its payloadSize. Empty while more bytes are needed; 0 when no packet starts like this.
 std::optional<std::size_t> packet_bytes(std::span<const Message> messages,
                                         std::span<const std::uint8_t> bytes);
-
-DecodeResult decode(std::span<const Message> messages, std::span<const std::uint8_t> frame);
-RadioFormat::EncodeResult encode(const Values& values, std::vector<std::uint8_t>& out);
 
 }  // namespace omnihil::rem

@@ -12,18 +12,19 @@ inline constexpr std::string_view kRadioFileFormat = "omnihil-radio/1";
 inline constexpr std::string_view kKindWords[] = {"integer", "constant", "type",     "length",  "float32",
                                                   "ranged",  "scaled",   "reserved", "checksum"};
 inline constexpr std::string_view kSignWords[] = {"none", "twos-complement", "magnitude"};
+inline constexpr std::string_view kCauseWords[] = {"constant", "version", "address"};
 inline constexpr std::string_view kBitOrderWords[] = {"msb first", "lsb first"};
 inline constexpr std::string_view kDirectionWords[] = {"to robot",  "from robot",  "both",
                                                        "to dongle", "from dongle", "inside"};
-inline constexpr std::string_view kFieldRoleWords[] = {"none",       "robot",      "robot bits", "team",
-                                                       "all robots", "for dongle", "for host"};
+inline constexpr std::string_view kFieldRoleWords[] = {"none",        "robot",      "robot bits", "team",
+                                                       "team yellow", "all robots", "for dongle", "for host"};
 inline constexpr std::string_view kMessageRoleWords[] = {
     "none",           "header only", "filler",           "command",
     "single command", "kill",        "set gains",        "get gains",
     "gains",          "announce",    "acknowledge",      "feedback",
     "state info",     "text",        "configure dongle", "ask dongle"};
-inline constexpr std::string_view kCarrierWords[] = {"usb", "uart", "udp"};
-inline constexpr std::string_view kFramingWords[] = {"none", "cobs", "list"};
+inline constexpr std::string_view kCarrierWords[] = {"usb", "uart", "udp", "spi", "can"};
+inline constexpr std::string_view kFramingWords[] = {"none", "cobs", "list", "protobuf"};
 // By OMNIHIL_MODE_*.
 inline constexpr std::string_view kAsksWords[] = {"coast", "body velocity", "wheel speed", "wheel duty"};
 inline constexpr std::string_view kFrameWords[] = {"robot", "field"};

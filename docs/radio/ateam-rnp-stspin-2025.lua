@@ -5,6 +5,78 @@ local proto = Proto(PROTOCOL, "SSL A-Team RNP and motor UART, 2025")
 
 -- name, bytes, types: { first bit, bits, content }, fields: { name, first bit, bits, kind, unit, sign, of a scaled one the unit per count and the value at 0 }
 local packets = {
+  { name = "uart_motor_command_motion", size = 52, types = { { 0, 8, 33 }, { 8, 24, 0 }, { 32, 32, 0 } }, lsb_first = true, fields = {
+    { "type", 0, 8, "number", "", "" },
+    { "type_padding", 8, 24, "number", "", "" },
+    { "crc", 32, 32, "number", "", "" },
+    { "reset", 64, 1, "number", "", "" },
+    { "enable_telemetry", 65, 1, "number", "", "" },
+    { "flags", 66, 30, "number", "", "" },
+    { "motion_control_type", 96, 8, "number", "", "" },
+    { "control_padding", 104, 24, "number", "", "" },
+    { "setpoint", 128, 32, "float", "rad/s", "" },
+    { "rest[0]", 160, 64, "number", "", "" },
+    { "rest[1]", 224, 64, "number", "", "" },
+    { "rest[2]", 288, 64, "number", "", "" },
+    { "rest[3]", 352, 64, "number", "", "" },
+  } },
+  { name = "uart_motor_command_params", size = 52, types = { { 0, 8, 32 }, { 8, 24, 0 }, { 32, 32, 0 } }, lsb_first = true, fields = {
+    { "type", 0, 8, "number", "", "" },
+    { "type_padding", 8, 24, "number", "", "" },
+    { "crc", 32, 32, "number", "", "" },
+    { "flags", 64, 32, "number", "", "" },
+    { "timestamp", 96, 32, "number", "", "" },
+    { "vel_pid_imax[0]", 128, 32, "float", "", "" },
+    { "vel_pid_imax[1]", 160, 32, "float", "", "" },
+    { "vel_pid_imax[2]", 192, 32, "float", "", "" },
+    { "vel_pid_imax[3]", 224, 32, "float", "", "" },
+    { "cur_pid_imax[0]", 256, 32, "float", "", "" },
+    { "cur_pid_imax[1]", 288, 32, "float", "", "" },
+    { "cur_pid_imax[2]", 320, 32, "float", "", "" },
+    { "cur_pid_imax[3]", 352, 32, "float", "", "" },
+    { "cur_clamp", 384, 16, "number", "", "" },
+    { "end_padding", 400, 16, "number", "", "" },
+  } },
+  { name = "uart_motor_response_motion", size = 56, types = { { 0, 8, 129 }, { 8, 24, 0 }, { 32, 32, 0 } }, lsb_first = true, fields = {
+    { "type", 0, 8, "number", "", "" },
+    { "type_padding", 8, 24, "number", "", "" },
+    { "crc", 32, 32, "number", "", "" },
+    { "flags", 64, 32, "number", "", "" },
+    { "vel_setpoint", 96, 32, "float", "rad/s", "" },
+    { "vel_setpoint_clamped", 128, 32, "float", "rad/s", "" },
+    { "encoder_delta", 160, 32, "number", "rad/s", "signed" },
+    { "vel_enc_estimate", 192, 32, "float", "rad/s", "" },
+    { "vel_computed_error", 224, 32, "float", "rad/s", "" },
+    { "vel_computed_setpoint", 256, 32, "float", "", "" },
+    { "torque_setpoint", 288, 32, "float", "N m", "" },
+    { "current_estimate", 320, 32, "float", "A", "" },
+    { "torque_estimate", 352, 32, "float", "N m", "" },
+    { "torque_computed_error", 384, 32, "float", "N m", "" },
+    { "torque_computed_setpoint", 416, 32, "float", "", "" },
+  } },
+  { name = "uart_motor_response_params", size = 56, types = { { 0, 8, 128 }, { 8, 24, 0 }, { 32, 32, 0 } }, lsb_first = true, fields = {
+    { "type", 0, 8, "number", "", "" },
+    { "type_padding", 8, 24, "number", "", "" },
+    { "crc", 32, 32, "number", "", "" },
+    { "version[0]", 64, 8, "number", "", "" },
+    { "version[1]", 72, 8, "number", "", "" },
+    { "version[2]", 80, 16, "number", "", "" },
+    { "timestamp", 96, 32, "number", "", "" },
+    { "vel_pid_imax[0]", 128, 32, "float", "", "" },
+    { "vel_pid_imax[1]", 160, 32, "float", "", "" },
+    { "vel_pid_imax[2]", 192, 32, "float", "", "" },
+    { "vel_pid_imax[3]", 224, 32, "float", "", "" },
+    { "cur_pid_imax[0]", 256, 32, "float", "", "" },
+    { "cur_pid_imax[1]", 288, 32, "float", "", "" },
+    { "cur_pid_imax[2]", 320, 32, "float", "", "" },
+    { "cur_pid_imax[3]", 352, 32, "float", "", "" },
+    { "cur_clamp", 384, 16, "number", "", "" },
+    { "end_padding", 400, 16, "number", "", "" },
+    { "wheel_img_hash[0]", 416, 8, "number", "", "" },
+    { "wheel_img_hash[1]", 424, 8, "number", "", "" },
+    { "wheel_img_hash[2]", 432, 8, "number", "", "" },
+    { "wheel_img_hash[3]", 440, 8, "number", "", "" },
+  } },
   { name = "empty", size = 12, types = { }, lsb_first = true, fields = {
     { "crc32", 0, 32, "number", "", "" },
     { "version_major", 32, 16, "number", "", "" },
@@ -209,78 +281,6 @@ local packets = {
     { "values[23]", 864, 32, "float", "", "" },
     { "values[24]", 896, 32, "float", "", "" },
   } },
-  { name = "uart_motor_command_motion", size = 52, types = { { 0, 8, 33 } }, lsb_first = true, fields = {
-    { "type", 0, 8, "number", "", "" },
-    { "type_padding", 8, 24, "number", "", "" },
-    { "crc", 32, 32, "number", "", "" },
-    { "reset", 64, 1, "number", "", "" },
-    { "enable_telemetry", 65, 1, "number", "", "" },
-    { "flags", 66, 30, "number", "", "" },
-    { "motion_control_type", 96, 8, "number", "", "" },
-    { "control_padding", 104, 24, "number", "", "" },
-    { "setpoint", 128, 32, "float", "rad/s", "" },
-    { "rest[0]", 160, 64, "number", "", "" },
-    { "rest[1]", 224, 64, "number", "", "" },
-    { "rest[2]", 288, 64, "number", "", "" },
-    { "rest[3]", 352, 64, "number", "", "" },
-  } },
-  { name = "uart_motor_command_params", size = 52, types = { { 0, 8, 32 } }, lsb_first = true, fields = {
-    { "type", 0, 8, "number", "", "" },
-    { "type_padding", 8, 24, "number", "", "" },
-    { "crc", 32, 32, "number", "", "" },
-    { "flags", 64, 32, "number", "", "" },
-    { "timestamp", 96, 32, "number", "", "" },
-    { "vel_pid_imax[0]", 128, 32, "float", "", "" },
-    { "vel_pid_imax[1]", 160, 32, "float", "", "" },
-    { "vel_pid_imax[2]", 192, 32, "float", "", "" },
-    { "vel_pid_imax[3]", 224, 32, "float", "", "" },
-    { "cur_pid_imax[0]", 256, 32, "float", "", "" },
-    { "cur_pid_imax[1]", 288, 32, "float", "", "" },
-    { "cur_pid_imax[2]", 320, 32, "float", "", "" },
-    { "cur_pid_imax[3]", 352, 32, "float", "", "" },
-    { "cur_clamp", 384, 16, "number", "", "" },
-    { "end_padding", 400, 16, "number", "", "" },
-  } },
-  { name = "uart_motor_response_motion", size = 56, types = { { 0, 8, 129 } }, lsb_first = true, fields = {
-    { "type", 0, 8, "number", "", "" },
-    { "type_padding", 8, 24, "number", "", "" },
-    { "crc", 32, 32, "number", "", "" },
-    { "flags", 64, 32, "number", "", "" },
-    { "vel_setpoint", 96, 32, "float", "rad/s", "" },
-    { "vel_setpoint_clamped", 128, 32, "float", "rad/s", "" },
-    { "encoder_delta", 160, 32, "number", "rad/s", "signed" },
-    { "vel_enc_estimate", 192, 32, "float", "rad/s", "" },
-    { "vel_computed_error", 224, 32, "float", "rad/s", "" },
-    { "vel_computed_setpoint", 256, 32, "float", "", "" },
-    { "torque_setpoint", 288, 32, "float", "N m", "" },
-    { "current_estimate", 320, 32, "float", "A", "" },
-    { "torque_estimate", 352, 32, "float", "N m", "" },
-    { "torque_computed_error", 384, 32, "float", "N m", "" },
-    { "torque_computed_setpoint", 416, 32, "float", "", "" },
-  } },
-  { name = "uart_motor_response_params", size = 56, types = { { 0, 8, 128 } }, lsb_first = true, fields = {
-    { "type", 0, 8, "number", "", "" },
-    { "type_padding", 8, 24, "number", "", "" },
-    { "crc", 32, 32, "number", "", "" },
-    { "version[0]", 64, 8, "number", "", "" },
-    { "version[1]", 72, 8, "number", "", "" },
-    { "version[2]", 80, 16, "number", "", "" },
-    { "timestamp", 96, 32, "number", "", "" },
-    { "vel_pid_imax[0]", 128, 32, "float", "", "" },
-    { "vel_pid_imax[1]", 160, 32, "float", "", "" },
-    { "vel_pid_imax[2]", 192, 32, "float", "", "" },
-    { "vel_pid_imax[3]", 224, 32, "float", "", "" },
-    { "cur_pid_imax[0]", 256, 32, "float", "", "" },
-    { "cur_pid_imax[1]", 288, 32, "float", "", "" },
-    { "cur_pid_imax[2]", 320, 32, "float", "", "" },
-    { "cur_pid_imax[3]", 352, 32, "float", "", "" },
-    { "cur_clamp", 384, 16, "number", "", "" },
-    { "end_padding", 400, 16, "number", "", "" },
-    { "wheel_img_hash[0]", 416, 8, "number", "", "" },
-    { "wheel_img_hash[1]", 424, 8, "number", "", "" },
-    { "wheel_img_hash[2]", 432, 8, "number", "", "" },
-    { "wheel_img_hash[3]", 440, 8, "number", "", "" },
-  } },
 }
 
 local protocol_fields = {}
@@ -358,13 +358,8 @@ local function packet_at(range)
   return found
 end
 
--- One packet without framing; answers its length, 0 where no packet starts like this.
-local function add_packet(tree, range, pinfo)
-  local packet = packet_at(range)
-  if not packet or range:len() < packet.size then
-    tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
-    return 0
-  end
+-- The fields of this packet; answers its length.
+local function add_fields(tree, packet, range, pinfo)
   local size = packet.size
   if packet.text_size_at then
     size = math.max(size, math.min(range:len(), range(packet.text_size_at, 1):uint()))
@@ -381,6 +376,16 @@ local function add_packet(tree, range, pinfo)
   end
   pinfo.cols.info:append(" " .. packet.name)
   return size
+end
+
+-- One packet without framing; answers its length, 0 where no packet starts like this.
+local function add_packet(tree, range, pinfo)
+  local packet = packet_at(range)
+  if not packet or range:len() < packet.size then
+    tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
+    return 0
+  end
+  return add_fields(tree, packet, range, pinfo)
 end
 
 function proto.dissector(buffer, pinfo, tree)

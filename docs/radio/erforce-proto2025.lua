@@ -432,13 +432,8 @@ local function packet_at(range)
   return found
 end
 
--- One packet without framing; answers its length, 0 where no packet starts like this.
-local function add_packet(tree, range, pinfo)
-  local packet = packet_at(range)
-  if not packet or range:len() < packet.size then
-    tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
-    return 0
-  end
+-- The fields of this packet; answers its length.
+local function add_fields(tree, packet, range, pinfo)
   local size = packet.size
   if packet.text_size_at then
     size = math.max(size, math.min(range:len(), range(packet.text_size_at, 1):uint()))
@@ -455,6 +450,16 @@ local function add_packet(tree, range, pinfo)
   end
   pinfo.cols.info:append(" " .. packet.name)
   return size
+end
+
+-- One packet without framing; answers its length, 0 where no packet starts like this.
+local function add_packet(tree, range, pinfo)
+  local packet = packet_at(range)
+  if not packet or range:len() < packet.size then
+    tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
+    return 0
+  end
+  return add_fields(tree, packet, range, pinfo)
 end
 
 -- The bytes behind COBS, nil where the codes do not fit.

@@ -61,6 +61,10 @@ void radio_problems(const std::string& radio, std::size_t robots, std::vector<st
     problems.push_back(fmt::format(
         "robots: packets of radio {} name no robot: one wire, one robot; start a bench for each", radio));
   }
+  if (format != nullptr && !format->has_dongle()) {
+    problems.push_back(fmt::format(
+        "radio: {} is spoken between boards of a robot, by no radio; see serve --motor-bus", radio));
+  }
   if (format != nullptr) return;
   std::vector<std::string_view> known;
   for (const RadioFormat* each : radio_formats()) known.push_back(each->id);

@@ -14,6 +14,7 @@
 #include "protocols/codec.h"
 #include "protocols/dongles/table_dongle.h"
 #include "protocols/plain_packet.h"
+#include "protocols/protobuf_list.h"
 #include "protocols/table_words.h"
 
 namespace omnihil {
@@ -49,10 +50,7 @@ class FileReader {
     format.messages = out_.messages;
     sizes();
     if (!problems_.empty()) return;
-    told_apart();
-    format.encode_command = [](const RobotCommand&, const CommandTo&, std::vector<std::uint8_t>&) {
-      return false;
-    };
+    if (format.framing != Framing::kProtobuf) told_apart();
     format.dongle = make_table_dongle;
     robots();
   }
@@ -104,11 +102,22 @@ class FileReader {
   void list() {
     const toml::table* t = part("list");
     const bool is_list = out_.format.framing == Framing::kList;
+    const bool protobuf = out_.format.framing == Framing::kProtobuf;
     if (t == nullptr) {
       if (is_list) keys_.missing(table_, "", "list", "[list] with begin, end and most");
+      if (protobuf) keys_.missing(table_, "", "list", "[list] with most");
       return;
     }
-    if (!is_list) return keys_.wrong(*t, "list", "is of no meaning here", "allowed: with framing = \"list\"");
+    if (protobuf) {
+      static constexpr std::string_view kMost[] = {"most"};
+      keys_.only(*t, "list", kMost);
+      out_.list.most = static_cast<int>(whole(*t, "list", "most", 1, 255).value_or(1));
+      out_.format.list = &out_.list;
+      return;
+    }
+    if (!is_list)
+      return keys_.wrong(*t, "list", "is of no meaning here",
+                         "allowed: with framing = \"list\" or \"protobuf\"");
     static constexpr std::string_view kKeys[] = {"begin", "end", "most"};
     keys_.only(*t, "list", kKeys);
     const toml::node* begin = t->get("begin");
@@ -156,11 +165,40 @@ class FileReader {
         keys_.wrong(packet_node(m), fmt::format("packet[{}]", m), fmt::format("has {} bytes", size),
                     fmt::format("allowed with framing = \"cobs\": {}", kLongestStuffed));
     }
+    if (format.framing == Framing::kProtobuf) return protobuf_sizes();
+    for (std::size_t m = 0; m < out_.messages.size(); ++m) {
+      if (!out_.messages[m].text_tail) continue;
+      const bool alone = format.framing == Framing::kNone && !sums_up(out_.messages[m]);
+      if (!alone)
+        keys_.wrong(packet_node(m), fmt::format("packet[{}].text", m), "is of no meaning here",
+                    "allowed: with framing = \"none\" and without checksum");
+      longest = std::max(longest, kLongestPacket);
+    }
     std::size_t frame = longest;
     if (format.framing == Framing::kCobsZero) frame += 2;
     if (format.list != nullptr)
       frame = out_.list_begin.size() + 2 + longest * static_cast<std::size_t>(out_.list.most);
     format.max_frame_bytes = static_cast<int>(frame);
+  }
+
+  static bool sums_up(const Message& message) {
+    return std::ranges::any_of(message.fields, [](const Field& f) { return f.kind == FieldKind::kChecksum; });
+  }
+
+  // Each packet's length stands in one byte, and so does that of a frame.
+  void protobuf_sizes() {
+    int longest = 0;
+    for (std::size_t m = 0; m < out_.messages.size(); ++m) {
+      const int size = most_protobuf_bytes(out_.messages[m]);
+      longest = std::max(longest, size);
+      if (size > kLongestProtobuf)
+        keys_.wrong(packet_node(m), fmt::format("packet[{}]", m), fmt::format("has up to {} bytes", size),
+                    fmt::format("allowed with framing = \"protobuf\": {}", kLongestProtobuf));
+      if (out_.messages[m].bit_order != BitOrder::kLsbFirst)
+        keys_.wrong(packet_node(m), fmt::format("packet[{}].bit_order", m), "is not that of protobuf",
+                    "needed: \"lsb first\"");
+    }
+    out_.format.max_frame_bytes = protobuf_frame_bytes(longest, out_.list.most);
   }
 
   // No two packets of one length have the same type.
@@ -207,10 +245,10 @@ class FileReader {
     const std::string id = keys_.text(table_, "", "robots").value_or("");
     std::vector<std::string_view> known;
     for (const RadioFormat* each : radio_formats()) {
-      if (each->own_codec.empty()) known.push_back(each->id);
+      if (each->own_codec.empty() && each->has_dongle()) known.push_back(each->id);
     }
     const auto like = std::ranges::find(radio_formats(), id, &RadioFormat::id);
-    if (like == radio_formats().end() || !(*like)->own_codec.empty())
+    if (like == radio_formats().end() || !(*like)->own_codec.empty() || !(*like)->has_dongle())
       return keys_.wrong(*node, "robots", "is no built-in format with tables alone",
                          spelling_hint(id, known));
     const std::string difference = first_difference(out_.format, **like);

@@ -30,8 +30,8 @@ std::vector<std::string_view> names_of(const Rows& rows, Name name) {
 }
 
 // Keys of every field, and those of its kind alone.
-constexpr std::string_view kKeysOfAll[] = {"name", "bits",     "kind",  "unit",  "what",
-                                           "role", "envelope", "means", "times", "only_if"};
+constexpr std::string_view kKeysOfAll[] = {"name",     "bits",  "kind",  "unit",    "what",   "role",
+                                           "envelope", "means", "times", "only_if", "number", "names"};
 std::vector<std::string_view> keys_of(FieldKind kind) {
   std::vector<std::string_view> keys(std::begin(kKeysOfAll), std::end(kKeysOfAll));
   const auto add = [&](std::initializer_list<std::string_view> more) { keys.insert(keys.end(), more); };
@@ -40,7 +40,7 @@ std::vector<std::string_view> keys_of(FieldKind kind) {
       add({"sign", "lo", "hi"});
       break;
     case FieldKind::kConst:
-      add({"is"});
+      add({"is", "cause"});
       break;
     case FieldKind::kType:
       add({"from_bit"});
@@ -85,8 +85,9 @@ std::optional<std::int64_t> whole_number(TomlKeys& keys, const toml::table& tabl
 
 void PacketReader::read(const toml::table& t) {
   const std::string path = fmt::format("packet[{}]", out_.messages.size());
-  static constexpr std::string_view kKeys[] = {"name",        "type", "direction", "bit_order", "role",
-                                               "answer_type", "asks", "frame",     "what",      "fields"};
+  static constexpr std::string_view kKeys[] = {"name", "type",        "direction", "bit_order",
+                                               "role", "answer_type", "asks",      "frame",
+                                               "what", "fields",      "text"};
   keys_.only(t, path, kKeys);
   Message message;
   if (t.get("name") == nullptr) keys_.missing(t, path, "name", "the packet's name");
@@ -104,7 +105,11 @@ void PacketReader::read(const toml::table& t) {
     message.asks = static_cast<int>(keys_.word(t, path, "asks", kAsksWords, 0).value_or(0));
   message.in_field_frame = keys_.word(t, path, "frame", kFrameWords, 0).value_or(0) == 1;
   message.what = out_.keep(keys_.text(t, path, "what").value_or(std::string(message.name)));
+  message.text_tail = flag(keys_, t, path, "text");
   fields(t, path, message);
+  if (message.text_tail &&
+      std::ranges::none_of(message.fields, [](const Field& f) { return f.kind == FieldKind::kLength; }))
+    keys_.wrong(*t.get("text"), path + ".text", "has no length", "needed: a field of kind \"length\"");
   out_.messages.push_back(message);
 }
 
@@ -163,10 +168,12 @@ Field PacketReader::field(const toml::table& t, const std::string& path, const M
     keys_.wrong(*t.get("sign"), path + ".sign", "a single bit has no sign", "needed: bits = 2 or more");
   out.unit = out_.keep(keys_.text(t, path, "unit").value_or(""));
   out.what = out_.keep(keys_.text(t, path, "what").value_or(std::string(out.name)));
+  out.names = out_.keep(keys_.text(t, path, "names").value_or(""));
   out.envelope = flag(keys_, t, path, "envelope");
   if (t.get("name") != nullptr && message.field_index(out.name) >= 0)
     keys_.wrong(*t.get("name"), path + ".name", "is there twice", "needed: a name of its own");
   by_kind(t, path, out);
+  number(t, path, message, out);
   robot_side(t, path, out);
   const std::string flag_name = keys_.text(t, path, "only_if").value_or("");
   if (!flag_name.empty() && message.field_index(flag_name) < 0)
@@ -174,6 +181,27 @@ Field PacketReader::field(const toml::table& t, const std::string& path, const M
                 spelling_hint(flag_name, names_of(message.fields, [](const Field& f) { return f.name; })));
   out.only_if = out_.keep(flag_name);
   return out;
+}
+
+// Of protobuf alone, and needed there; they ascend, as encoders write them.
+void PacketReader::number(const toml::table& t, const std::string& path, const Message& message, Field& out) {
+  constexpr std::int64_t kLargest = (1 << 29) - 1;
+  const bool protobuf = out_.format.framing == Framing::kProtobuf;
+  if (t.get("number") == nullptr) {
+    if (protobuf) keys_.missing(t, path, "number", "its number in the protobuf message");
+    return;
+  }
+  if (!protobuf)
+    return keys_.wrong(*t.get("number"), path + ".number", "is of no meaning here",
+                       "allowed: with framing = \"protobuf\"");
+  out.tag = static_cast<int>(whole_number(keys_, t, path, "number", 1, kLargest).value_or(0));
+  if (!message.fields.empty() && out.tag <= message.fields.back().tag)
+    keys_.wrong(*t.get("number"), path + ".number", "does not ascend",
+                fmt::format("needed: more than {}", message.fields.back().tag));
+  const bool whole = out.kind == FieldKind::kInteger && out.sign == Sign::kNone && out.bits % 8 == 0;
+  if (!whole && out.kind != FieldKind::kFloat32)
+    keys_.wrong(t, path, "is no field of a protobuf message",
+                "needed: kind = \"float32\", or \"integer\" without sign, of whole bytes");
 }
 
 void PacketReader::by_kind(const toml::table& t, const std::string& path, Field& out) {
@@ -186,6 +214,7 @@ void PacketReader::by_kind(const toml::table& t, const std::string& path, Field&
       if (t.get("is") == nullptr) keys_.missing(t, path, "is", "the content");
       out.constant =
           static_cast<std::uint64_t>(whole_number(keys_, t, path, "is", 0, largest_of(out.bits)).value_or(0));
+      out.cause = static_cast<ConstCause>(keys_.word(t, path, "cause", kCauseWords, 0).value_or(0));
       break;
     case FieldKind::kType:
       bits_must_be(out.bits <= 32, "allowed: 1 to 32");

@@ -21,6 +21,7 @@ class PacketReader {
  private:
   void fields(const toml::table& packet, const std::string& path, Message& message);
   Field field(const toml::table& row, const std::string& path, const Message& message);
+  void number(const toml::table& row, const std::string& path, const Message& message, Field& field);
   void by_kind(const toml::table& row, const std::string& path, Field& field);
   void limits(const toml::table& row, const std::string& path, bool needed, Field& field);
   void sum(const toml::table& row, const std::string& path, Field& field);

@@ -14,14 +14,15 @@ bool same(const ChecksumRule* a, const ChecksumRule* b) {
 
 bool same(const Field& a, const Field& b) {
   return a.name == b.name && a.bit == b.bit && a.bits == b.bits && a.kind == b.kind && a.sign == b.sign &&
-         a.lo == b.lo && a.hi == b.hi && a.constant == b.constant && a.scale == b.scale &&
-         same(a.check, b.check) && a.unit == b.unit && a.envelope == b.envelope && a.role == b.role &&
-         a.only_if == b.only_if;
+         a.lo == b.lo && a.hi == b.hi && a.constant == b.constant && a.cause == b.cause &&
+         a.scale == b.scale && same(a.check, b.check) && a.unit == b.unit && a.envelope == b.envelope &&
+         a.role == b.role && a.only_if == b.only_if && a.tag == b.tag && a.names == b.names;
 }
 
 bool same_head(const Message& a, const Message& b) {
   return a.name == b.name && a.type == b.type && a.size_bytes == b.size_bytes && a.direction == b.direction &&
-         a.bit_order == b.bit_order && a.role == b.role && a.answer_type == b.answer_type;
+         a.bit_order == b.bit_order && a.text_tail == b.text_tail && a.role == b.role &&
+         a.answer_type == b.answer_type;
 }
 
 bool same_list(const RadioFormat& a, const RadioFormat& b) {

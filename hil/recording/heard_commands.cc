@@ -22,6 +22,7 @@ class Listener : public RadioSink {
 }  // namespace
 
 std::vector<HeardCommand> heard_commands(const Recording& recording, const RadioFormat& format) {
+  if (!format.has_dongle()) return {};
   RadioLinkConfig config;
   config.robot_ids = recording.header.robot_ids;
   config.team = recording.header.team;

@@ -14,6 +14,9 @@ Address address_of(const Values& values) {
   if (values.message->field_index(FieldRole::kTeam) >= 0) {
     address.team = is_set(FieldRole::kTeam) ? Team::kBlue : Team::kYellow;
   }
+  if (values.message->field_index(FieldRole::kTeamYellow) >= 0) {
+    address.team = is_set(FieldRole::kTeamYellow) ? Team::kYellow : Team::kBlue;
+  }
   return address;
 }
 

@@ -53,7 +53,14 @@ Size of_message(const Message& message, Front front) {
       return kNoFrame;
     }
   }
-  return whole ? Size(size) : std::nullopt;
+  if (!whole || !message.text_tail) return whole ? Size(size) : std::nullopt;
+  if (front.size() < size) return std::nullopt;
+  for (const Field& field : message.fields) {
+    if (field.kind != FieldKind::kLength) continue;
+    const std::uint64_t said = read_bits(front, field.bit, field.bits, message.bit_order) + field.constant;
+    return said < size ? kNoFrame : Size(said);
+  }
+  return kNoFrame;
 }
 
 Size by_type(const RadioFormat& format, Front front) {
@@ -73,12 +80,14 @@ FrameBytes frames_by_tables(const RadioFormat& format, std::string_view line) {
   return [&format, line](Front front) -> Size {
     if (!line.empty() && begins_alike(front, line)) return line.size();
     if (format.framing == Framing::kCobsZero) return delimited(format, front);
+    if (format.framing == Framing::kProtobuf) return std::size_t{1} + front[0];
     return format.framing == Framing::kList ? listed(format, front) : by_type(format, front);
   };
 }
 
 bool is_empty(const RadioFormat& format, Front frame) {
-  return format.framing == Framing::kCobsZero && frame.size() == 1 && frame.front() == 0;
+  const bool may_be = format.framing == Framing::kCobsZero || format.framing == Framing::kProtobuf;
+  return may_be && frame.size() == 1 && frame.front() == 0;
 }
 
 }  // namespace omnihil

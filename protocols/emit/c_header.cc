@@ -28,6 +28,10 @@ void define_message(std::string& out, const std::string& prefix, const Message& 
   define(out, name + "_LSB_FIRST", message.bit_order == BitOrder::kLsbFirst ? 1 : 0, "%llu");
   for (const Field& field : message.fields) {
     const std::string field_name = name + "_" + c_macro_name(field.name);
+    if (field.tag != 0) {
+      define(out, field_name + "_NUMBER", static_cast<std::uint64_t>(field.tag), "%llu");
+      continue;
+    }
     define(out, field_name + "_BIT", static_cast<std::uint64_t>(field.bit), "%llu");
     define(out, field_name + "_BITS", static_cast<std::uint64_t>(field.bits), "%llu");
     if (field.kind == FieldKind::kConst) define(out, field_name + "_CONST", field.constant, "0x%02llXu");

@@ -22,6 +22,9 @@ std::string emit_c_header(const RadioFormat& format);
 // A dissector in Lua: registers the format as a protocol to be chosen with "Decode As" on UDP and USER DLTs.
 std::string emit_wireshark(const RadioFormat& format);
 
+// The messages of a CAN format as a DBC file, those of nodes 0 to 3 where the id holds a node. Only of Carrier::Kind::kCan.
+std::string emit_dbc(const RadioFormat& format);
+
 // The tables as a file that `--format` takes (hil/radio_file). Only where no_toml_reason is empty.
 std::string emit_toml(const RadioFormat& format);
 // What tables alone cannot say of this format; empty: they say all of it.

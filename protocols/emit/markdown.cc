@@ -4,6 +4,7 @@
 
 #include "protocols/codec.h"
 #include "protocols/emit/emit.h"
+#include "protocols/protobuf_list.h"
 
 namespace omnihil {
 namespace {
@@ -50,6 +51,10 @@ std::string carrier_text(const Carrier& carrier) {
              " bits on the line per byte";
     case Carrier::Kind::kUdp:
       return "UDP";
+    case Carrier::Kind::kSpi:
+      return "SPI";
+    case Carrier::Kind::kCan:
+      return "CAN; a frame as Linux has it in `struct can_frame`, 16 bytes";
   }
   return "";
 }
@@ -119,8 +124,11 @@ std::string kind_text(const Field& field, const Message& message) {
   return "";
 }
 
-// "11.0+16": byte, bit in the byte in the message's own bit order, width.
+std::string tag_form(const Field& field) { return field.kind == FieldKind::kFloat32 ? "4 bytes" : "varint"; }
+
+// "11.0+16": byte, bit in the byte in the message's own bit order, width. Of protobuf "number 2, 4 bytes".
 std::string place_text(const Field& field) {
+  if (field.tag != 0) return "number " + std::to_string(field.tag) + ", " + tag_form(field);
   return std::to_string(field.bit / 8) + "." + std::to_string(field.bit % 8) + "+" +
          std::to_string(field.bits);
 }
@@ -177,8 +185,20 @@ std::string shared_byte(const Message& message, int byte) {
   return cells + "  " + names;
 }
 
+// The fields of a protobuf message from top to bottom: those that are not 0 follow each other like this.
+std::string protobuf_picture(const Message& message) {
+  std::string out = "```\nkey      content\n";
+  for (const Field& field : message.fields) {
+    const int key = field.tag << 3 | (field.kind == FieldKind::kFloat32 ? 5 : 0);
+    out += padded(hex_text(static_cast<std::uint64_t>(key)), 9) + "[" + tag_form(field) + "] " +
+           text(field.name) + "\n";
+  }
+  return out + "```\n";
+}
+
 // The bytes of a packet from top to bottom, starting at `first_byte`.
 std::string byte_picture(const Message& message, int first_byte) {
+  if (message.fields.front().tag != 0) return protobuf_picture(message);
   std::string out = "```\nbyte     7 6 5 4 3 2 1 0\n";
   int byte = first_byte;
   while (byte < message.size_bytes) {
@@ -210,11 +230,17 @@ bool has_two_orders(const RadioFormat& format) {
   });
 }
 
+// The most bytes that a protobuf message has; else those of its table.
+std::string size_text(const Message& message) {
+  if (message.fields.front().tag == 0) return std::to_string(message.size_bytes) + " bytes";
+  return "up to " + std::to_string(most_protobuf_bytes(message)) + " bytes";
+}
+
 std::string message_section(const RadioFormat& format, const Message& message) {
   const Message* head = head_of(format, message);
   const std::size_t first = head == nullptr ? 0 : head->fields.size();
   std::string out = "\n## " + text(message.name) + "\n\n" + text(message.what) + " Type " +
-                    hex_text(message.type) + ", " + std::to_string(message.size_bytes) + " bytes" +
+                    hex_text(message.type) + ", " + size_text(message) +
                     (message.text_tail ? " and the text" : "") + ", " +
                     text(direction_text(message.direction)) + ".\n";
   if (has_two_orders(format)) out += text(order_text(message.bit_order)) + "\n";
@@ -230,9 +256,15 @@ std::string message_section(const RadioFormat& format, const Message& message) {
   for (const Field& field : message.fields.subspan(first)) {
     const std::string only_if = field.only_if.empty() ? "" : "; only if `" + text(field.only_if) + "`";
     out += "| `" + text(field.name) + "` | " + place_text(field) + " | " + kind_text(field, message) +
-           only_if + " | " + text(field.unit) + " | " + text(field.what) + " |\n";
+           (field.names.empty() ? "" : ": " + text(field.names)) + only_if + " | " + text(field.unit) +
+           " | " + text(field.what) + " |\n";
   }
   return out;
+}
+
+std::string size_cell(const Message& message) {
+  if (message.fields.front().tag != 0) return size_text(message);
+  return std::to_string(message.size_bytes) + (message.text_tail ? " + text" : "");
 }
 
 }  // namespace
@@ -244,14 +276,19 @@ std::string emit_markdown(const RadioFormat& format) {
   out += "- Source: " + text(format.source) + ".\n";
   out += "- Carrier: " + carrier_text(format.carrier) + ".\n";
   out += "- Longest frame on the wire: " + std::to_string(format.max_frame_bytes) + " bytes.\n";
+  if (format.framing == Framing::kProtobuf) {
+    out +=
+        "- A frame: length in one byte, then for each packet 0Ah, its length, and its fields that are not 0 "
+        "in the order "
+        "of their numbers.\n";
+  }
   out += has_two_orders(format) ? "- Packets differ in their bit order; each says which it has.\n"
                                 : "- " + text(order_text(format.messages.front().bit_order)) + "\n";
   out += "- Bits named `padding` and fields called unknown or not used are kept as they are.\n\n";
   out += "## Notes\n\n" + text(format.notes) + "\n## Packets\n\n";
   out += "| packet | type | bytes | direction | what for |\n| --- | --- | --- | --- | --- |\n";
   for (const Message& message : format.messages) {
-    out += "| `" + text(message.name) + "` | " + hex_text(message.type) + " | " +
-           std::to_string(message.size_bytes) + (message.text_tail ? " + text" : "") + " | " +
+    out += "| `" + text(message.name) + "` | " + hex_text(message.type) + " | " + size_cell(message) + " | " +
            text(direction_text(message.direction)) + " | " + text(message.what) + " |\n";
   }
   for (const Message& message : format.messages) out += message_section(format, message);

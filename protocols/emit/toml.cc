@@ -63,7 +63,8 @@ std::string kind_keys(const Field& field) {
   if (field.sign != Sign::kNone) out += ", sign = " + word(kSignWords, field.sign);
   switch (field.kind) {
     case FieldKind::kConst:
-      return out + ", is = " + toml_hex(field.constant);
+      out += ", is = " + toml_hex(field.constant);
+      return field.cause == ConstCause::kConstant ? out : out + ", cause = " + word(kCauseWords, field.cause);
     case FieldKind::kType:
       return field.constant == 0 ? out : out + ", from_bit = " + std::to_string(field.constant);
     case FieldKind::kLength:
@@ -83,6 +84,8 @@ std::string kind_keys(const Field& field) {
 std::string toml_field(const Field& field) {
   std::string out = "  { name = " + quoted(field.name) + ", bits = " + std::to_string(field.bits) +
                     ", kind = " + word(kKindWords, field.kind) + kind_keys(field);
+  if (field.tag != 0) out += ", number = " + std::to_string(field.tag);
+  if (!field.names.empty()) out += ", names = " + quoted(field.names);
   if (!field.unit.empty()) out += ", unit = " + quoted(field.unit);
   if (field.role != FieldRole::kNone) out += ", role = " + word(kFieldRoleWords, field.role);
   if (!field.only_if.empty()) out += ", only_if = " + quoted(field.only_if);
@@ -99,6 +102,7 @@ std::string packet_table(const Message& message) {
   if (message.role != MessageRole::kNone) out += "role = " + word(kMessageRoleWords, message.role) + "\n";
   if (message.answer_type != 0) out += "answer_type = " + toml_hex(message.answer_type) + "\n";
   if (message.asks >= 0) out += "asks = " + quoted(kAsksWords[static_cast<std::size_t>(message.asks)]) + "\n";
+  if (message.text_tail) out += "text = true\n";
   if (message.in_field_frame) out += "frame = \"field\"\n";
   out += "what = " + quoted(message.what) + "\nfields = [\n";
   for (const Field& field : message.fields) out += toml_field(field);
@@ -106,6 +110,7 @@ std::string packet_table(const Message& message) {
 }
 
 std::string list_table(const PacketList& list) {
+  if (list.begin.empty()) return "\n[list]\nmost = " + std::to_string(list.most) + "\n";
   std::string begin;
   for (const std::uint8_t byte : list.begin) begin += (begin.empty() ? "" : ", ") + toml_hex(byte);
   return "\n[list]\nbegin = [" + begin + "]\nend = " + toml_hex(list.end) +
@@ -127,7 +132,6 @@ std::string no_toml_reason(const RadioFormat& format) {
   if (!format.own_codec.empty())
     return "its codec is more than its tables: it " + std::string(format.own_codec);
   for (const Message& message : format.messages) {
-    if (message.text_tail) return "packet " + std::string(message.name) + " carries a text";
     int bit = 0;
     for (const Field& field : message.fields) {
       const std::string_view problem = toml_problem(field, bit);
@@ -145,7 +149,7 @@ std::string emit_toml(const RadioFormat& format) {
   out += "format = " + quoted(kRadioFileFormat) + "\nid = " + quoted(format.id) +
          "\ntitle = " + quoted(format.title) + "\nsource = " + quoted(format.source) +
          "\nnotes = " + text_block(format.notes) + "\n";
-  const RadioFormat* robots = format.dongle == make_table_dongle ? nullptr : &format;
+  const RadioFormat* robots = format.dongle == make_table_dongle || !format.has_dongle() ? nullptr : &format;
   if (format.serves_as != nullptr) robots = format.serves_as;
   if (robots != nullptr) {
     out +=

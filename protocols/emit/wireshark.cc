@@ -85,13 +85,8 @@ local function packet_at(range)
   return found
 end
 
--- One packet without framing; answers its length, 0 where no packet starts like this.
-local function add_packet(tree, range, pinfo)
-  local packet = packet_at(range)
-  if not packet or range:len() < packet.size then
-    tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
-    return 0
-  end
+-- The fields of this packet; answers its length.
+local function add_fields(tree, packet, range, pinfo)
   local size = packet.size
   if packet.text_size_at then
     size = math.max(size, math.min(range:len(), range(packet.text_size_at, 1):uint()))
@@ -108,6 +103,16 @@ local function add_packet(tree, range, pinfo)
   end
   pinfo.cols.info:append(" " .. packet.name)
   return size
+end
+
+-- One packet without framing; answers its length, 0 where no packet starts like this.
+local function add_packet(tree, range, pinfo)
+  local packet = packet_at(range)
+  if not packet or range:len() < packet.size then
+    tree:add(proto, range):add_proto_expert_info(fault, packet and "too short" or "unknown type")
+    return 0
+  end
+  return add_fields(tree, packet, range, pinfo)
 end
 )lua";
 
@@ -191,6 +196,80 @@ function proto.dissector(buffer, pinfo, tree)
 end
 )lua";
 
+constexpr std::string_view kDissectProtobuf = R"lua(
+-- The varint at `at` and the place behind it, nil where it is cut off.
+local function varint_at(range, at)
+  local value, weight = 0, 1
+  while at < range:len() do
+    local byte = range(at, 1):uint()
+    value, weight, at = value + weight * (byte % 128), weight * 128, at + 1
+    if byte < 128 then return value, at end
+  end
+  return nil, at
+end
+
+-- The fields of a protobuf message side by side, as the packet's rows have them; nil where it is not that packet.
+local function flat(packet, range)
+  local out, at = ByteArray.new(), 0
+  out:set_size(packet.size)
+  for i = 0, packet.size - 1 do out:set_index(i, 0) end
+  while at < range:len() do
+    local key, row = nil, nil
+    key, at = varint_at(range, at)
+    for _, each in ipairs(packet.fields) do
+      if key and each.number == math.floor(key / 8) then row = each end
+    end
+    if not row or key % 8 ~= (row[4] == "float" and 5 or 0) then return nil end
+    local first, bytes = row[2] / 8, row[3] / 8
+    if row[4] == "float" then
+      if at + 4 > range:len() then return nil end
+      for i = 0, 3 do out:set_index(first + i, range(at + i, 1):uint()) end
+      local number = range(at, 4):le_float()
+      if row.lo and (number < row.lo or number > row.hi) then return nil end
+      at = at + 4
+    else
+      local value
+      value, at = varint_at(range, at)
+      if not value or value >= 2 ^ row[3] or row.lo and (value < row.lo or value > row.hi) then return nil end
+      for i = 0, bytes - 1 do out:set_index(first + i, math.floor(value / 256 ^ i) % 256) end
+    end
+  end
+  return out
+end
+
+function proto.dissector(buffer, pinfo, tree)
+  pinfo.cols.protocol = PROTOCOL
+  local start = 0
+  while start < buffer:len() do
+    local stop = start + 1 + buffer(start, 1):uint()
+    local at = start + 1
+    while at < stop do
+      local size, first = nil, at
+      if stop <= buffer:len() and buffer(at, 1):uint() == 10 then size, first = varint_at(buffer(), at + 1) end
+      if not size or first + size > stop then
+        tree:add(proto, buffer(start)):add_proto_expert_info(fault, "framing")
+        return
+      end
+      local found = nil
+      for _, packet in ipairs(packets) do
+        local bytes = size > 0 and flat(packet, buffer(first, size)) or size == 0 and ByteArray.new(string.rep("00", packet.size))
+        if bytes then
+          found = { packet, bytes }
+          break
+        end
+      end
+      if found then
+        add_fields(tree, found[1], found[2]:tvb("fields side by side")(), pinfo)
+      else
+        tree:add(proto, buffer(at, first + size - at)):add_proto_expert_info(fault, "unknown type")
+      end
+      at = first + size
+    end
+    start = stop
+  end
+end
+)lua";
+
 constexpr std::string_view kRegister = R"lua(
 -- Chosen with "Decode As": a UDP port, or the link type USER 0 of a capture of serial bytes.
 DissectorTable.get("udp.port"):add_for_decode_as(proto)
@@ -220,6 +299,12 @@ std::string field_row(const Field& field) {
   }
   if (field.kind == FieldKind::kScaled && field.scale->none_at_lowest)
     row += ", none = " + std::to_string(integer_of(field, 1ull << (field.bits - 1)));
+  if (field.tag != 0) {
+    row += ", number = " + std::to_string(field.tag);
+    char limits[64];
+    std::snprintf(limits, sizeof limits, ", lo = %.9g, hi = %.9g", field.lo, field.hi);
+    if (field.lo != field.hi) row += limits;
+  }
   if (!field.only_if.empty()) row += ", only_if = \"" + std::string(field.only_if) + "\"";
   return row + " },\n";
 }
@@ -259,6 +344,7 @@ std::string list_rows(const PacketList& list) {
 
 std::string_view dissector_of(Framing framing) {
   if (framing == Framing::kCobsZero) return kDissectCobs;
+  if (framing == Framing::kProtobuf) return kDissectProtobuf;
   return framing == Framing::kList ? kDissectList : kDissectRaw;
 }
 
@@ -285,7 +371,7 @@ std::string emit_wireshark(const RadioFormat& format) {
   out += "local packets = {\n";
   for (const Message& message : format.messages) out += packet_entry(message);
   out += "}\n";
-  if (format.list != nullptr) out += list_rows(*format.list);
+  if (format.framing == Framing::kList) out += list_rows(*format.list);
   out += kEngine;
   out += dissector_of(format.framing);
   out += kRegister;

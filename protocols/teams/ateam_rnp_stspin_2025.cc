@@ -212,8 +212,8 @@ constexpr auto kParameter = in_order(
 
 // On the wire to a motor controller: 2 Mbaud, 8 bits and even parity, a pause between structs, no CRC.
 constexpr std::array kWireHead{type_code("type", 8, "what the struct is"),
-                               enveloped(constant("type_padding", 24, 0, "sent as 0")),
-                               enveloped(constant("crc", 32, 0, "not computed"))};
+                               enveloped(type_code_bits("type_padding", 24, 8, "0: no datagram")),
+                               enveloped(type_code_bits("crc", 32, 8, "not computed: 0"))};
 constexpr auto kMotorMotion = in_order(
     kWireHead,
     std::array{flag("reset", "the controller restarts"), flag("enable_telemetry", "answer every 5 ms"),
@@ -283,6 +283,14 @@ constexpr Message row(std::string_view name, Type type, int size_bytes, Directio
 }
 using enum Direction;
 constexpr std::array kMessages{
+    // First: seven zeros behind the type are no datagram, whose version stands there.
+    row("uart_motor_command_motion", kWireMotion, 52, kInside, kMotorMotion,
+        "Main board to motor: set-point."),
+    row("uart_motor_command_params", kWireParams, 52, kInside, kMotorParams, "Main board to motor: gains."),
+    row("uart_motor_response_motion", kWireMotionReply, 56, kInside, kMotorMotionReply,
+        "Motor to main board: state."),
+    row("uart_motor_response_params", kWireParamsReply, 56, kInside, kMotorParamsReply,
+        "Motor to main board: gains."),
     row("empty", kAlone, 12, kBoth, kEmpty, "A header alone.", MessageRole::kHeaderOnly),
     row("hello_request", kHello, 14, kFromRobot, kHelloRequest, "A robot looks for a host."),
     row("hello_response", kHelloAnswer, 18, kToRobot, kHelloResponse,
@@ -295,27 +303,8 @@ constexpr std::array kMessages{
         "The robot's controllers at length.", MessageRole::kStateInfo),
     row("robot_parameter_command", kParameters, 116, kBoth, kParameter,
         "Read or write a parameter, and the answer."),
-    row("uart_motor_command_motion", kWireMotion, 52, kInside, kMotorMotion,
-        "Main board to motor: set-point."),
-    row("uart_motor_command_params", kWireParams, 52, kInside, kMotorParams, "Main board to motor: gains."),
-    row("uart_motor_response_motion", kWireMotionReply, 56, kInside, kMotorMotionReply,
-        "Motor to main board: state."),
-    row("uart_motor_response_params", kWireParamsReply, 56, kInside, kMotorParamsReply,
-        "Motor to main board: gains."),
 };
 static_assert(all_tiled(kMessages));
-
-// Structs on a motor's wire have zeros where a packet has its version.
-bool is_of_a_wire(std::span<const std::uint8_t> frame) {
-  return frame.size() >= 8 &&
-         std::all_of(frame.begin() + 1, frame.begin() + 8, [](auto byte) { return byte == 0; });
-}
-constexpr std::size_t kPackets = 7;  // of kMessages; the others are on wires
-
-DecodeResult decode(std::span<const std::uint8_t> frame) {
-  const std::span<const Message> all(kMessages);
-  return decode_packet(is_of_a_wire(frame) ? all.subspan(kPackets) : all.first(kPackets), frame);
-}
 
 constexpr double kFastestDribbler_rpm = 12'000.0;  // choice: the largest that the sources name is full duty
 
@@ -469,9 +458,6 @@ constinit const RadioFormat kFormat{
     .carrier = {.kind = Carrier::Kind::kUdp},
     .max_frame_bytes = 308,
     .messages = kMessages,
-    .own_decode = decode,
-    .own_encode = encode_packet,
-    .own_codec = "tells the structs of the motor wires from datagrams by the first bytes",
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY),
     .dongle = [](const RadioFormat& self,

@@ -24,7 +24,8 @@ constexpr auto header_rows(std::string_view type_name, std::uint64_t version, in
       reserved("reserved", 1, "not used"),
       flag("fromBS", "sent by the base station"),
       flag("fromPC", "sent by the host"),
-      constant("remVersion", 4, version, "version of the packet tables; another version is dropped"),
+      omnihil::version(
+          constant("remVersion", 4, version, "version of the packet tables; another version is dropped")),
       number("messageId", 4, "", "counter of the sender, modulo 16"),
       number("timestamp", timestamp_bits, timestamp_unit, timestamp_what),
       length("payloadSize", 8, "length of the whole packet, header and text included"),
@@ -62,7 +63,7 @@ inline constexpr std::array kMusicRows{
 constexpr auto filler_rows(std::uint64_t version) {
   return std::array{
       type_code("header", 8),
-      constant("remVersion", 4, version, "version of the packet tables"),
+      omnihil::version(constant("remVersion", 4, version, "version of the packet tables")),
       reserved("fillerBits", 36, "any content"),
   };
 }

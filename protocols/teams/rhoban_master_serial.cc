@@ -15,6 +15,9 @@
 #include "protocols/packet_list.h"
 
 namespace omnihil {
+
+const RadioFormat& radio_format_rhoban_master_serial();
+
 namespace {
 
 constexpr int kToRobotBytes = 17, kFromRobotBytes = 11;
@@ -120,7 +123,8 @@ bool encode_command(const RobotCommand& wanted, const CommandTo& to, std::vector
     values.set("t_speed", std::round(1000.0 * wanted.omega_body_rad_s));
   }
   if (kicks) values.set("kick_power", std::round(wanted.kick_pulse_s / kKickStep_s));
-  return encode_list_of_one(kList, values, out).error == PacketError::kNone;
+  return encode_list(radio_format_rhoban_master_serial(), std::span(&values, 1), out).error ==
+         PacketError::kNone;
 }
 
 bool answer(const Values&, int id, const RobotFeedback& feedback, Values& out) {

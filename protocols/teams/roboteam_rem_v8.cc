@@ -227,9 +227,6 @@ constinit const RadioFormat kFormat{
     .carrier = {.kind = Carrier::Kind::kUsbCdc},
     .max_frame_bytes = 255,
     .messages = kMessages,
-    .own_decode = [](std::span<const std::uint8_t> frame) { return rem::decode(kMessages, frame); },
-    .own_encode = rem::encode,
-    .own_codec = "looks at the version before the type, and packets may carry a text",
     .encode_command =
         [](const RobotCommand& command, const CommandTo& to, std::vector<std::uint8_t>& out) {
           return rem::encode_command(kMessages, command, to, out);

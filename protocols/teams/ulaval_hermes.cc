@@ -13,19 +13,23 @@
 #include "protocols/dongles/hermes_dongle.h"
 #include "protocols/field_rows.h"
 #include "protocols/hermes_types.h"
+#include "protocols/plain_packet.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
+
+const RadioFormat& radio_format_ulaval_hermes();
+
 namespace {
 
-constexpr std::size_t kHeaderBytes = 5;
-constexpr std::size_t kChecksumAt = 4;
 constexpr std::uint64_t kHostAddress = 0xFE;
 constexpr std::uint64_t kBaseStationAddress = 0x00;
 
-constexpr Field kVersion = enveloped(constant("version", 8, 1, "protocol version"));
+constexpr Field kVersion = enveloped(version(constant("version", 8, 1, "protocol version")));
 constexpr Field kType = enveloped(type_code("type", 8));
-constexpr Field kSum = enveloped(checksum("checksum", 8, "sum of all other bytes before COBS, modulo 256"));
+constexpr ChecksumRule kSumRule{.kind = &kSum8};
+constexpr Field kSum =
+    enveloped(checksum("checksum", 8, "sum of all other bytes before COBS, modulo 256", &kSumRule));
 
 // Header of a packet to a robot, and of a robot's answer.
 constexpr std::array kToRobot{kVersion, enveloped(constant("source", 8, kHostAddress, "address of the host")),
@@ -33,7 +37,8 @@ constexpr std::array kToRobot{kVersion, enveloped(constant("source", 8, kHostAdd
                               kSum};
 constexpr std::array kFromRobot{
     kVersion, number("robot", 8, "", "answering robot"),
-    enveloped(constant("destination", 8, kBaseStationAddress, "address of the base station")), kType, kSum};
+    enveloped(address(constant("destination", 8, kBaseStationAddress, "address of the base station"))), kType,
+    kSum};
 
 constexpr std::array kSpeed{
     float32("vx", "m/s", "velocity along the robot's x axis"),
@@ -97,57 +102,6 @@ constexpr std::size_t kLongest = 21;
 constexpr std::size_t kLongestFrame = cobs_max_size(kLongest) + 1;
 
 // Sum of all bytes but the checksum's own.
-std::uint8_t expected_checksum(std::span<const std::uint8_t> packet) {
-  return static_cast<std::uint8_t>(sum8(packet) - packet[kChecksumAt]);
-}
-
-DecodeResult refused(PacketError error, std::string_view field = {}) {
-  DecodeResult result;
-  result.error = error;
-  result.field = field;
-  return result;
-}
-
-// The order of the checks is that of the robot's firmware, so that both name the same cause.
-DecodeResult decode_packet(std::span<const std::uint8_t> packet) {
-  if (packet.size() < kHeaderBytes) return refused(PacketError::kTooShort);
-  if (packet[0] != kVersion.constant) return refused(PacketError::kVersion, "version");
-  const Message* message = message_of_type(kMessages, packet[3]);
-  if (message == nullptr) return refused(PacketError::kUnknownType, "type");
-  const auto size = static_cast<std::size_t>(message->size_bytes);
-  if (packet.size() < size) return refused(PacketError::kTooShort);
-  if (packet.size() > size) return refused(PacketError::kTooLong);
-  if (packet[kChecksumAt] != expected_checksum(packet)) return refused(PacketError::kChecksum, "checksum");
-  DecodeResult result;
-  const FieldFault fault = decode_fields(*message, packet, size, result.values);
-  result.error = fault.field == "destination" ? PacketError::kAddress : fault.error;
-  result.field = fault.field;
-  return result;
-}
-
-DecodeResult decode(std::span<const std::uint8_t> frame) {
-  if (frame.empty()) return refused(PacketError::kTooShort);
-  if (frame.back() != 0) return refused(PacketError::kFraming);
-  std::array<std::uint8_t, kLongest> packet{};
-  const CobsResult cobs = cobs_decode(frame.first(frame.size() - 1), packet);
-  if (cobs.status == CobsStatus::kBadCode) return refused(PacketError::kFraming);
-  if (cobs.status == CobsStatus::kTooLong) return refused(PacketError::kTooLong);
-  return decode_packet(std::span(packet).first(cobs.size));
-}
-
-RadioFormat::EncodeResult encode(const Values& values, std::vector<std::uint8_t>& out) {
-  std::array<std::uint8_t, kLongest> buffer{};
-  const auto packet = std::span(buffer).first(static_cast<std::size_t>(values.message->size_bytes));
-  const FieldFault fault = encode_fields(values, packet.size(), packet);
-  if (fault.error != PacketError::kNone) return {fault.error, fault.field};
-  packet[kChecksumAt] = expected_checksum(packet);
-  const double given = values.number("checksum");
-  if (given != 0.0 && given != packet[kChecksumAt]) return {PacketError::kChecksum, "checksum"};
-  cobs_encode(packet, out);
-  out.push_back(0);
-  return {};
-}
-
 Values packet_to(int robot_id, hermes::Type type) {
   Values values;
   values.message = message_of_type(kMessages, type);
@@ -173,10 +127,14 @@ bool encode_command(const RobotCommand& command, const CommandTo& to, std::vecto
       wanted.set(hermes::kDutyFields[w], command.duty_ratio[w]);
   }
   const std::size_t before = out.size();
-  if (to.set_up && encode(loop, out).error != PacketError::kNone) return false;
-  bool said = encode(wanted, out).error == PacketError::kNone;
+  if (to.set_up && encode_frame(radio_format_ulaval_hermes(), loop, out).error != PacketError::kNone)
+    return false;
+  bool said = encode_frame(radio_format_ulaval_hermes(), wanted, out).error == PacketError::kNone;
   if (to.tell_all)
-    said = said && encode(packet_to(to.robot_id, hermes::kGetBatterie), out).error == PacketError::kNone;
+    said =
+        said &&
+        encode_frame(radio_format_ulaval_hermes(), packet_to(to.robot_id, hermes::kGetBatterie), out).error ==
+            PacketError::kNone;
   if (said) return true;
   out.resize(before);
   return false;
@@ -210,9 +168,6 @@ constinit const RadioFormat kFormat{
     .framing = Framing::kCobsZero,
     .max_frame_bytes = static_cast<int>(kLongestFrame),
     .messages = kMessages,
-    .own_decode = decode,
-    .own_encode = encode,
-    .own_codec = "checks in the order of the robot's firmware; the checksum leaves itself out",
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_WHEEL_DUTY),
     .dongle = make_hermes_dongle,

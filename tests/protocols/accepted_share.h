@@ -65,6 +65,8 @@ inline double packets_share(const Message& message, std::size_t bytes) {
 // with its one code (packets below 254 bytes) and its delimiter leaves one frame in 256^2.
 inline double frames_share(const RadioFormat& format, std::size_t bytes) {
   std::size_t overhead = format.framing == Framing::kCobsZero ? 2 : 0;
+  // Length, 0A, length of the packet have one content each; what is inside is always less likely than certain.
+  if (format.framing == Framing::kProtobuf) return bytes < 3 ? 0.0 : std::ldexp(1.0, -24);
   if (format.list != nullptr) overhead = format.list->begin.size() + 2;  // begin, number, end
   if (bytes < overhead) return 0.0;
   double share = 0.0;

@@ -1,5 +1,7 @@
 // Packets made by the teams' own programs, from the folder of reference data.
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <set>
 
 #include "protocols/codec.h"
@@ -164,6 +166,67 @@ TEST(TeamVectors, RepliesOfAteamsWheelFirmwareDecodeAndComeBack) {
   EXPECT_EQ(motion, 394);
   EXPECT_GT(settled, 50);
   EXPECT_EQ(params, 1);
+}
+
+// What went in and out of the unmodified firmware of ibis' motor boards: frames of its CAN bus.
+TEST(TeamVectors, FramesOfIbisMotorBoardsDecodeAndComeBack) {
+  SKIP_WITHOUT_SHARED();
+  const RadioFormat& format = *find_radio_format("ibis-orion-can");
+  const json file = read_json(shared + "/vectors/ibis-f303-firmware-io.json");
+  std::map<std::string, int> seen;
+  const auto check = [&](const json& said) {
+    const Bytes data = from_hex(said.at("data"));
+    Bytes frame(16);
+    const auto id = said.at("id").get<std::uint32_t>();
+    for (std::size_t i = 0; i < 4; ++i) frame[i] = static_cast<std::uint8_t>(id >> 8 * i);
+    frame[4] = static_cast<std::uint8_t>(data.size());
+    std::copy(data.begin(), data.end(), frame.begin() + 8);
+    ASSERT_TRUE(survives_round_trip(format, frame)) << said;
+    const Values values = format.decode(frame).values;
+    float first = 0.0F;
+    std::memcpy(&first, data.data(), sizeof first);
+    const std::string name(values.message->name);
+    if (name == "set_speed" || name == "motor_state") {
+      EXPECT_EQ(values.number("motor"), id & 3u);
+      EXPECT_TRUE(same_float32(values.number("speed"), first)) << said;
+    }
+    ++seen[name];
+  };
+  int rows = 0;
+  for (const json& row : file.at("rows")) {
+    for (const char* way : {"can_in", "can_out"}) {
+      for (const json& said : row.at(way)) check(said), ++rows;
+    }
+    const json& speeds = row.at("cmd_rps");
+    EXPECT_EQ(row.at("can_in").size(), speeds.size());
+  }
+  for (const json& said : file.at("telemetry").at("frames")) check(said), ++rows;
+  EXPECT_EQ(rows, 32 * 4 + 27);
+  EXPECT_EQ(seen["set_speed"], 64);
+  for (const char* name :
+       {"motor_state", "motor_battery", "motor_temperature", "motor_current", "motor_constant"})
+    EXPECT_GT(seen[name], 1) << name;
+  std::printf("ibis-orion-can: %d frames both ways\n", rows);
+}
+
+// Each file of the folder goes both ways in one of these tests, and each loader reads one that is there.
+TEST(TeamVectors, NoFileOfTheFolderIsForgotten) {
+  SKIP_WITHOUT_SHARED();
+  // By the tests of their own above and below.
+  std::set<std::string> gone_through{"roboteam-rem-v8.json",         "roboteam-rem-v5.json",
+                                     "ulaval-hermes.json",           "ulaval-strategyai-host-stream.json",
+                                     "ateam-wheel-firmware-io.json", "ibis-f303-firmware-io.json"};
+  for (const TeamFile& file : team_files()) {
+    file.load([&](const char* name) {
+      gone_through.insert(name);
+      return read_json(shared + "/vectors/" + name);
+    });
+  }
+  std::set<std::string> there;
+  for (const auto& entry : std::filesystem::directory_iterator(shared + "/vectors")) {
+    if (entry.path().extension() == ".json") there.insert(entry.path().filename());
+  }
+  EXPECT_EQ(there, gone_through);
 }
 
 TEST(TeamVectors, RemV8BothWays) {
