@@ -1,6 +1,6 @@
 // RoboTeam Twente's REM packets: what all versions share beyond the rows of their tables.
 //
-//   std::size_t size = rem::packet_bytes(kMessages, stream).value_or(0);   // kMessages: the tables of the version at hand
+//   std::size_t size = rem::packet_bytes(kMessages, frame).value_or(0);   // kMessages: the tables of the version at hand
 //
 // A packet has no framing and no checksum: byte 0 is the type, the type gives the length, and the header's
 // payloadSize repeats it. Where packets follow each other on a wire, `packet_bytes` finds the next one.

@@ -205,7 +205,7 @@ TEST(TeamVectors, FramesOfIbisMotorBoardsDecodeAndComeBack) {
   EXPECT_EQ(seen["set_speed"], 64);
   for (const char* name :
        {"motor_state", "motor_battery", "motor_temperature", "motor_current", "motor_constant"})
-    EXPECT_GT(seen[name], 1) << name;
+    EXPECT_GT(seen[name], 0) << name;
   std::printf("ibis-orion-can: %d frames both ways\n", rows);
 }
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 
+#include "hil/serve/extcap_capture.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
-#include "tools/extcap_capture.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {

@@ -1,4 +1,4 @@
-#include "tools/extcap_capture.h"
+#include "hil/serve/extcap_capture.h"
 
 #include <fcntl.h>
 #include <poll.h>
