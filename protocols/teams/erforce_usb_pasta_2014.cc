@@ -332,9 +332,10 @@ constinit const RadioFormat kFormat{
     .source = "https://github.com/robotics-erlangen/framework at 9814d05",
     .notes =
         "- The device is no serial port: the host's libusb writes several records in one bulk transfer and "
-        "reads the "
-        "same way (03eb:6127). Here the bytes of those transfers travel over any wire. A program with libusb "
-        "needs a library of ours in between that is not there.\n"
+        "reads the same "
+        "way (03eb:6127). Here the bytes of those transfers travel over any wire; a program with libusb is "
+        "started with "
+        "[a library](../usb.md) that carries them.\n"
         "- Byte 4 of the address (offset 6 of the record) is what stood in the host's memory: it is kept and "
         "ignored; "
         "so is Pasta's sync counter.\n"

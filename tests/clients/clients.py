@@ -116,6 +116,66 @@ def terminal_program(command):
     assert report.code == 0 and report.good >= TIMES and report.refused == 0, report.text
 
 
+def encoded(format_id, packet, *rows):
+    lines = "".join(json.dumps(row) + "\n" for row in rows)
+    return subprocess.run([os.environ["OMNIHIL_PROGRAM"], "encode", format_id, packet], input=lines, capture_output=True,
+                          text=True, check=True).stdout.replace("\n", "")
+
+
+def usb_host(words, devices):
+    """Runs the client with the preload, and without it: (its exit code without, its transfers with)."""
+    command = [built("libusb_client"), *words]
+    alone = subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S)
+    run = subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S,
+                         env=dict(os.environ, LD_PRELOAD=os.environ["OMNIHIL_USB_PRELOAD"], OMNIHIL_USB=devices))
+    assert run.returncode == 0, (run.returncode, run.stdout, run.stderr)
+    return alone.returncode, [bytes.fromhex(line) for line in run.stdout.split()]
+
+
+def libusb_host_of_the_usb_transceiver():
+    """ER-Force's host side: records out and back in bulk transfers; INIT, PING and a command to robot 3."""
+    time_sent = bytes(range(8))
+    with Bench(["--radio", "erforce-usb-pasta-2014", "--robots", "3", "--physics", "planar"]) as bench:
+        request = "00020500" + "0108" + time_sent.hex() + encoded(
+            "erforce-usb-pasta-2014", "gen2014_command",
+            {"address_id": 3, "id": 3, "expected_response_size": 11, "counter": 77, "v_f": 0.5})
+        for way in ("sync", "async"):
+            alone, transfers = usb_host([way, "03eb", "6127", "0", "02", "81", request, "30"], f"03eb:6127={bench.device}")
+            assert alone == 3, "without the preload there is no such device"
+            records, kinds = b"".join(transfers), []
+            while len(records) >= 2:
+                record, records = records[2:2 + records[0]], records[2 + records[0]:] if len(records) >= 2 + records[0] else b""
+                kinds.append(record)
+            assert bytes.fromhex("0500") in kinds and time_sent in kinds, kinds
+            answers = [record for record in kinds if len(record) == 11]
+            assert len(answers) >= 5 and all(record[:2] == bytes([2, 77]) and record[2] & 15 == 3 for record in answers), kinds
+        report = bench.stop()
+    assert report.code == 0 and report.refused == 0 and report.good >= 30, report.text
+
+
+def libusb_transfers_are_packets_where_the_dongle_sends_packets():
+    """RoboTeam's host takes a transfer for one packet: four robots' feedback and state, each in a transfer of its own."""
+    with Bench(["--radio", "roboteam-rem-v8", "--robots", "0-3", "--team", "blue", "--physics", "planar"]) as bench:
+        request = encoded("roboteam-rem-v8", "REM_RobotCommand",
+                          *({"toRobotId": robot, "toColor": 1, "fromPC": 1, "sendStateInfo": 1} for robot in range(4)))
+        for way in ("sync", "async"):
+            alone, transfers = usb_host([way, "0483", "5740", "1", "01", "81", request, "40"],
+                                        f"0483:5740={bench.device},length_at=10")
+            assert alone == 3
+            assert len(transfers) == 40 and all(len(packet) == packet[10] for packet in transfers), transfers
+            assert {packet[0] for packet in transfers} >= {0x27, 0x28}, "RobotFeedback and RobotStateInfo"
+            assert {packet[2] >> 4 for packet in transfers if packet[0] == 0x27} == {0, 1, 2, 3}
+        report = bench.stop()
+    assert report.code == 0 and report.refused == 0, report.text
+
+
+def usb_devices_that_are_not_understood_are_said():
+    run = subprocess.run([built("libusb_client"), "sync", "03eb", "6127", "0", "02", "81", "00", "1"], capture_output=True, text=True,
+                         timeout=DEADLINE_S, env=dict(os.environ, LD_PRELOAD=os.environ["OMNIHIL_USB_PRELOAD"],
+                                                      OMNIHIL_USB="03eb=./x;03eb:6127=/nowhere/dongle"))
+    assert run.returncode == 3 and "03eb=./x" in run.stderr and "/nowhere" not in run.stderr, run
+
+
 def picocom():
     terminal_program([installed("picocom"), "--quiet", "--no-escape", "--noreset", "--baud", "115200"])
 
