@@ -60,9 +60,10 @@ inline Values contents_from(const Message& message, std::span<const std::uint8_t
 }
 
 // An answer of ER-Force's robots with nothing behind its first fields has the bytes of a halt: nothing in their packets says
-// which way they go (notes of erforce-proto2025).
+// which way they go (notes of erforce-proto2025). Protobuf packets whose fields that are not 0 fit an earlier table, too,
+// are that one's.
 inline bool is_read_as(const RadioFormat& format, const Message& sent, const Message& read) {
-  return &sent == &read ||
+  return &sent == &read || (format.framing == Framing::kProtobuf && &read < &sent) ||
          (format.id.starts_with("erforce-proto2025") && sent.name == "response" && read.name == "halt");
 }
 

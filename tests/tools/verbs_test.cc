@@ -262,7 +262,18 @@ TEST_F(Verbs, AFormatFromItsFileIsTheFormat) {
     expect_same("decode", "", hex);
     for (const auto& [packet, lines] : given) expect_same("encode", " " + packet, lines);
   }
-  EXPECT_EQ(formats, 9);
+  EXPECT_EQ(formats, static_cast<int>(radio_formats().size()));
+}
+
+TEST_F(Verbs, WhatIsSpokenInsideARobotIsNoRadioAndOnlyCanFormatsAreDbcFiles) {
+  const Output served = run("serve --radio thunderbots-spi", "");
+  EXPECT_EQ(served.exit_code, 2);
+  EXPECT_NE(served.err.find("thunderbots-spi is spoken between boards of a robot"), std::string::npos)
+      << served.err;
+  EXPECT_EQ(run("formats odrive-can --dbc", "").out, emit_dbc(*find_radio_format("odrive-can")));
+  const Output radio = run("formats ulaval-hermes --dbc", "");
+  EXPECT_EQ(radio.exit_code, 2);
+  EXPECT_EQ(radio.out, "");
 }
 
 TEST_F(Verbs, AFaultyFormatFileIsNamedByLineAndNothingIsDone) {
