@@ -53,6 +53,12 @@ constexpr Row kRows[] = {
     {"status", "voltage_raw", kBattery, 0.125, 0.0625},
     {"status", "ang_raw", kYaw, 0.001},
     {"response", "battery", kBattery, kErforceFull_V},
+    {"BaseFeedback", "motor_1_speed", kWheel<0>},
+    {"BaseFeedback", "motor_2_speed", kWheel<1>},
+    {"BaseFeedback", "motor_3_speed", kWheel<2>},
+    {"BaseFeedback", "motor_4_speed", kWheel<3>},
+    {"BaseFeedback", "voltage", kBattery},
+    {"robot_status_message", "battery_voltage", kBattery, 0.09884, 0.04942},  // cut off
 };
 // By what their fields mean.
 struct MeansRow {
