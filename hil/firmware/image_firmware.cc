@@ -1,5 +1,7 @@
 #include "hil/firmware/image_firmware.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <utility>
 
@@ -10,17 +12,24 @@
 namespace omnihil {
 namespace {
 struct Image {
+  std::string board_file;
   mcu::BoardSpec board;
   mcu::ElfImage elf;
 };
 
 class ImageFirmware final : public Firmware {
  public:
-  ImageFirmware(std::shared_ptr<const Image> image, const RobotConfig& config, const BoardListener& on_board)
+  ImageFirmware(std::shared_ptr<const Image> image, const RobotConfig& config,
+                const ImageListeners& listeners)
       : image_(std::move(image)), mcu_(image_->board, image_->elf, config) {
-    if (!on_board) return;
-    for (int b = 0; b < mcu_.boards(); ++b)
-      on_board({config.robot_id, b, mcu_.boards(), mcu_.board(b), image_->elf});
+    for (int b = 0; b < mcu_.boards(); ++b) {
+      if (!image_->board.ports.empty()) {
+        ports_.push_back(std::make_unique<BoardPorts>(
+            mcu_.board(b), BoardPortsOptions{config.robot_id, b, image_->board_file, listeners.on_line}));
+      }
+      if (listeners.on_board)
+        listeners.on_board({config.robot_id, b, mcu_.boards(), mcu_.board(b), image_->elf});
+    }
   }
 
   std::string_view name() const override { return mcu_.name(); }
@@ -34,7 +43,10 @@ class ImageFirmware final : public Firmware {
   bool set_gains(const RobotGains& gains) override { return mcu_.set_gains(gains); }
   RobotGains gains() const override { return mcu_.gains(); }
   void shafts(const RobotShafts& exact) override { mcu_.shafts(exact); }
-  RobotDrive tick(const RobotSensors& sensors) override { return mcu_.tick(sensors); }
+  RobotDrive tick(const RobotSensors& sensors) override {
+    for (const auto& ports : ports_) ports->pump();
+    return mcu_.tick(sensors);
+  }
   RobotFeedback feedback() const override { return mcu_.feedback(); }
   bool drives_phases() const override { return mcu_.drives_phases(); }
   MotorDrive motor_tick(const MotorSensors& sensors) override { return mcu_.motor_tick(sensors); }
@@ -47,22 +59,32 @@ class ImageFirmware final : public Firmware {
     return failure_;
   }
   std::vector<std::string> report() const override {
-    if (mcu_.boards() == 1) return board_report(mcu_.board(0), image_->elf);
+    if (mcu_.boards() == 1) return with_ports(board_report(mcu_.board(0), image_->elf));
     std::vector<LinesOf> boards;
     for (int b = 0; b < mcu_.boards(); ++b) boards.push_back({b, board_report(mcu_.board(b), image_->elf)});
-    return merge_lines("board", "boards", boards);
+    return with_ports(merge_lines("board", "boards", boards));
   }
 
  private:
+  std::vector<std::string> with_ports(std::vector<std::string> lines) const {
+    for (std::size_t b = 0; b < ports_.size(); ++b) {
+      for (const std::string& line : ports_[b]->report())
+        lines.push_back(ports_.size() == 1 ? line : fmt::format("board {}: {}", b, line));
+    }
+    return lines;
+  }
+
   std::shared_ptr<const Image> image_;
   mcu::McuFirmware mcu_;
-  mutable std::string failure_;  // once it has failed
+  std::vector<std::unique_ptr<BoardPorts>> ports_;  // of each board; none: it has no ports
+  mutable std::string failure_;                     // once it has failed
 };
 }  // namespace
 
 Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file,
-                                      std::string_view served, BoardListener on_board) {
+                                      std::string_view served, ImageListeners listeners) {
   auto image = std::make_shared<Image>();
+  image->board_file = board_file;
   read_image_files(
       image_file, board_file,
       [&](std::span<const std::uint8_t> bytes, std::vector<std::string>& problems) {
@@ -71,9 +93,11 @@ Session::FirmwareMaker image_firmware(const std::string& image_file, const std::
       [&](const std::string& text, std::vector<mcu::BoardProblem>& problems) {
         if (auto board = mcu::read_board(text, board_file, problems, served_radio(served)))
           image->board = std::move(*board);
+        for (mcu::BoardProblem& problem : port_problems(image->board, board_file))
+          problems.push_back(std::move(problem));
       });
-  return [image, on_board = std::move(on_board)](const RobotConfig& config) -> std::unique_ptr<Firmware> {
-    return std::make_unique<ImageFirmware>(image, config, on_board);
+  return [image, listeners = std::move(listeners)](const RobotConfig& config) -> std::unique_ptr<Firmware> {
+    return std::make_unique<ImageFirmware>(image, config, listeners);
   };
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "firmware_iface/mcu/board/board.h"
+#include "hil/firmware/board_ports.h"
 #include "hil/loop/session.h"
 
 namespace omnihil {
@@ -23,8 +24,13 @@ struct MadeBoard {
 };
 using BoardListener = std::function<void(const MadeBoard&)>;
 
+struct ImageListeners {
+  BoardListener on_board = {};
+  ConsoleListener on_line = {};
+};
+
 // `served`: the radio format that the session serves, which the board's must be; empty: any that there is.
 Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file,
-                                      std::string_view served = {}, BoardListener on_board = {});
+                                      std::string_view served = {}, ImageListeners listeners = {});
 
 }  // namespace omnihil

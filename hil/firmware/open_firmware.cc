@@ -145,7 +145,7 @@ Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const Session
           {fmt::format("firmware {}: a microcontroller image; needs --board FILE beside it", choice.file)});
     }
     return kind == ImageKind::kArm
-               ? image_firmware(choice.file, choice.board, session.radio_format, choice.on_board)
+               ? image_firmware(choice.file, choice.board, session.radio_format, choice.listeners)
                : avr_firmware(choice.file, choice.board, choice.deadline_s, session.radio_format);
   }
   throw_problems(problems_of(choice));

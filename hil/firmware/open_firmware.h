@@ -19,10 +19,10 @@
 namespace omnihil {
 
 struct FirmwareChoice {
-  std::string file{};        // empty, "reference": the reference firmware
-  std::string board{};       // board file of a microcontroller image
-  double deadline_s = 10.0;  // of wall time: a call that takes longer hangs
-  BoardListener on_board{};  // hears of every emulated board
+  std::string file{};          // empty, "reference": the reference firmware
+  std::string board{};         // board file of a microcontroller image
+  double deadline_s = 10.0;    // of wall time: a call that takes longer hangs
+  ImageListeners listeners{};  // of emulated boards
   bool virtual_time = true;  // false: the run is paced by wall time, so a board on the desk is not waited for
 };
 

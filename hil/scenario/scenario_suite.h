@@ -30,7 +30,7 @@ struct SuiteOptions {
   std::vector<std::string> model_folders;
   Physics physics = Physics::kPlanar;
   std::uint64_t seed = 0;
-  GdbServer* gdb = nullptr;  // not owned; firmware.on_board adds to it
+  GdbServer* gdb = nullptr;  // not owned; firmware.listeners adds to it
   std::string plots;         // folder for the plots of failed checks; empty: none
 };
 

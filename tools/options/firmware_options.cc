@@ -46,7 +46,7 @@ std::vector<OfRobots> read_of(const TeamFirmwareWords& words, bool opponents,
 
 FirmwareChoice opponents_choice(const TeamFirmwareWords& words) {
   FirmwareChoice choice = words.all;
-  choice.on_board = {};  // who listens knows robots of the first team
+  choice.listeners = {};  // who listens knows robots of the first team
   if (words.opponents.empty()) return choice;
   choice.file = words.opponents;
   choice.board = words.opponents_board;

@@ -14,6 +14,7 @@
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
+#include "tools/options/console_options.h"
 #include "tools/options/firmware_options.h"
 #include "tools/options/gdb_options.h"
 #include "tools/verbs/verbs.h"
@@ -28,6 +29,7 @@ struct Arguments {
   bool all = false, no_plots = false;
   SuiteOptions suite;
   GdbWords gdb;
+  std::string console;
 };
 
 void print_rows() {
@@ -82,7 +84,8 @@ int run(Arguments& a) {
     throw std::invalid_argument(
         fmt::format("--gdb: {} scenarios; allowed: one at a time", suite.scenarios.size()));
   a.suite.gdb = gdb.get();
-  a.suite.firmware.on_board = gdb_listener(gdb.get());
+  a.suite.firmware.listeners.on_line = console_listener(a.console);
+  a.suite.firmware.listeners.on_board = gdb_listener(gdb.get());
   std::vector<ScenarioOutcome> outcomes;
   bool passed = true, firmware_failed = false;
   for (const Scenario& scenario : suite.scenarios) {
@@ -111,6 +114,7 @@ void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result
       "is given here wins");
   add_firmware_options(sub, a->suite.firmware);
   add_gdb_options(sub, a->gdb);
+  add_console_option(sub, a->console);
   sub.add_option("--level", a->level,
                  "wheel: what a firmware of one wheel can do, too; robot; without it: all")
       .one_of({"wheel", "robot", "field"});

@@ -23,6 +23,7 @@
 #include "tools/exit_codes.h"
 #include "tools/options/air_options.h"
 #include "tools/options/bench_text.h"
+#include "tools/options/console_options.h"
 #include "tools/options/field_options.h"
 #include "tools/options/firmware_options.h"
 #include "tools/options/gdb_options.h"
@@ -56,6 +57,7 @@ struct Words {  // as the user gave them
   ServeOptions options;
   TeamFirmwareWords firmware;
   GdbWords gdb;
+  std::string console;
   MotorBusChoice motor_bus;
   LeagueWords league;
   AirWords air;
@@ -164,7 +166,8 @@ int run(Words& words) {
     words.firmware.all.virtual_time = !words.options.real_time;
     const std::unique_ptr<GdbServer> gdb = open_gdb(words.gdb, [] { return StopSignals::requested(); });
     words.options.gdb = gdb.get();
-    words.firmware.all.on_board = gdb_listener(gdb.get());
+    words.firmware.all.listeners.on_line = console_listener(words.console);
+    words.firmware.all.listeners.on_board = gdb_listener(gdb.get());
     const TeamFirmware makers = words.motor_bus.bus.empty()
                                     ? open_team_firmware(words.firmware, config)
                                     : TeamFirmware{bus_firmware(words.motor_bus, config), {}};
@@ -241,6 +244,7 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   verb.add_option("--team", w.team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
   add_team_firmware_options(verb, w.firmware);
   add_gdb_options(verb, w.gdb);
+  add_console_option(verb, w.console);
   add_bus_options(verb, w.motor_bus);
   add_field_options(verb, w.field);
   verb.add_option(

@@ -32,6 +32,7 @@ class Reader {
   void read_device_wires(const toml::table& t, const std::string& path, DeviceEntry& device);
   void read_analog(const toml::table& t, const std::string& path);
   void read_flash(const toml::table& t, const std::string& path);
+  void read_port(const toml::table& t, const std::string& path);
   void read_radio();
   void read_wheel_commands();
   std::optional<PinName> pin(const toml::table& t, const std::string& path, std::string_view key);
@@ -70,7 +71,7 @@ void Reader::read_top() {
   keys_.only(top_, "",
              {"format", "name", "source", "chip", "boot_address", "crystal_Hz", "cpi_scale", "coupling_us",
               "adc_reference_V", "control_timer", "boards_per_robot", "wheel_commands", "radio", "motor",
-              "device", "analog", "pin", "flash"});
+              "device", "analog", "pin", "flash", "port"});
   if (const auto format = keys_.text(top_, "", "format"); !format || *format != kFormat) {
     keys_.wrong(top_, "", "format", format ? "unknown" : "missing", kFormat);
   }
@@ -417,6 +418,34 @@ void Reader::read_pin(const toml::table& t, const std::string& path) {
                           static_cast<int>(id_bit.value_or(-1)), beam.has_value()});
 }
 
+// What the radio or the main board hangs on leads nowhere else.
+void Reader::read_port(const toml::table& t, const std::string& path) {
+  keys_.only(t, path, {"of", "as", "console"});
+  PortEntry port;
+  port.key = path;
+  port.of = keys_.text(t, path, "of").value_or("");
+  port.as = keys_.text(t, path, "as").value_or("");
+  const bool text_only = port.of == "semihosting" || port.of == "ITM";
+  port.console = keys_.flag(t, path, "console").value_or(text_only);
+  if (const toml::node* node = t.get("as")) port.line = node->source().begin.line;
+  if (port.of == "semihosting") port.source = PortSource::kSemihosting;
+  if (port.of == "ITM") port.source = PortSource::kItm;
+  if (names_ && names_->has_can(port.of)) port.source = PortSource::kCan;
+  if (!names_ || text_only || names_->has_serial(port.of) || names_->has_can(port.of)) {
+    claim(t, path, "of", port.of + " as a port");
+  } else {
+    keys_.wrong(t, path, "of", t.contains("of") ? "no such port" : "missing",
+                names_->serials() + ", " + names_->cans() + ", semihosting, ITM");
+  }
+  if (!port.of.empty() && (port.of == spec_.radio_via || port.of == spec_.wheel_commands.via))
+    keys_.wrong(t, path, "of", "the robot's commands come in by it", "another port");
+  if (port.source == PortSource::kCan && port.console)
+    keys_.wrong(t, path, "console", "a CAN has no text", "false");
+  if (port.as.empty() && !port.console)
+    keys_.missing(t, path, "as", "a wire such as pty:./console (omnihil wires), or console = true");
+  spec_.ports.push_back(std::move(port));
+}
+
 BoardSpec Reader::read() {
   read_top();
   for (const auto& [t, path] : keys_.tables(top_, "motor")) read_motor(*t, path);
@@ -430,6 +459,7 @@ BoardSpec Reader::read() {
   }
   read_radio();
   read_wheel_commands();
+  for (const auto& [t, path] : keys_.tables(top_, "port")) read_port(*t, path);
   return std::move(spec_);
 }
 }  // namespace

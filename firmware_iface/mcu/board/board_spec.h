@@ -87,6 +87,17 @@ struct FlashEntry {
   int board_number_at = -1;  // not negative: this word is the board's number instead
 };
 
+// A serial port or a CAN that leads out of the bench, or a console whose text is kept.
+enum class PortSource : std::uint8_t { kSerial, kCan, kSemihosting, kItm };
+struct PortEntry {
+  PortSource source = PortSource::kSerial;
+  std::string of;        // "USART2", "CAN1", "semihosting", "ITM"
+  std::string as;        // a wire's URL; empty: none
+  bool console = false;  // what it says is text, kept line by line
+  std::string key;       // "port[0]", in messages
+  unsigned line = 0;
+};
+
 // A board that drives wheels as the robot's main board tells it, which the bench stands in for.
 struct WheelCommands {
   const MotorBusKind* bus = nullptr;  // whose main board speaks; null: none
@@ -113,6 +124,7 @@ struct BoardSpec {
   std::vector<AnalogEntry> analog;
   std::vector<PinEntry> pins;
   std::vector<FlashEntry> flash;
+  std::vector<PortEntry> ports;
 };
 
 std::optional<BoardSpec> read_board(std::string_view text, const std::string& file,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware_iface/mcu/board/can_frames.h"
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/usart.h"
 
@@ -18,18 +19,6 @@ BoardSpec numbered(BoardSpec spec, int number) {
     entry.words[static_cast<std::size_t>(entry.board_number_at)] = static_cast<std::uint32_t>(number);
   }
   return spec;
-}
-
-CanFrame can_frame_of(const BusFrame& f) {
-  CanFrame frame{.id = f.id,
-                 .extended = f.extended,
-                 .remote = f.remote,
-                 .fd = f.fd,
-                 .fast = f.bitrate_switch,
-                 .bytes = f.size,
-                 .data = {}};
-  std::copy_n(f.data.begin(), frame.data.size(), frame.data.begin());
-  return frame;
 }
 }  // namespace
 

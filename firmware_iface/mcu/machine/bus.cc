@@ -148,7 +148,7 @@ bool Machine::write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t
       if (!write_system(address - kSystemControl, bytes, value)) {
         report_unmodelled("system control", fmt::format("0x{:08x} written", address));
       }
-    } else {
+    } else if (!write_trace(address, bytes, value)) {
       write_debug(address, value);
     }
     return true;

@@ -75,6 +75,10 @@ class Machine final : public System, private CpuBus {
   // As the core would write them, but flash as it lies. False: nothing is there.
   bool poke(std::uint32_t address, std::span<const std::uint8_t> bytes);
 
+  // Text that the program says: through semihosting (BKPT 0xAB), through the stimulus ports of ITM, of which all are on.
+  void set_semihosting(std::function<void(std::string_view)> listener);
+  void set_trace_listener(std::function<void(std::string_view)> listener) { trace_ = std::move(listener); }
+
   // Copies the image into flash and RAM. False, with every problem named, if it does not fit; then nothing is
   // copied.
   bool load(const ElfImage& image, std::vector<std::string>& problems);
@@ -173,6 +177,9 @@ class Machine final : public System, private CpuBus {
   void write_handler_control(std::uint32_t value);
   std::uint32_t read_debug(std::uint32_t address);
   void write_debug(std::uint32_t address, std::uint32_t value);
+  // program_text.cc
+  bool read_trace(std::uint32_t address, std::uint32_t& value) const;
+  bool write_trace(std::uint32_t address, unsigned bytes, std::uint32_t value);
   void apply_control();
 
   // interrupt_registers.cc
@@ -229,6 +236,7 @@ class Machine final : public System, private CpuBus {
   FlashWrites* flash_writes_ = nullptr;
   std::function<bool(std::uint32_t)> breakpoint_hook_;
   std::unique_ptr<DebugUnit> debug_;
+  std::function<void(std::string_view)> trace_;
 
   std::int64_t now_ = 0;      // in subcycles
   Cycles event_at_ = kNever;  // the instant of the events that are being run

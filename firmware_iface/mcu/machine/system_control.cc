@@ -255,6 +255,8 @@ void Machine::apply_control() {
 }
 
 std::uint32_t Machine::read_debug(std::uint32_t address) {
+  std::uint32_t traced = 0;
+  if (read_trace(address, traced)) return traced;
   switch (address) {
     case kDwtControl:
       return dwt_control_;

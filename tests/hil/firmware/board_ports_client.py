@@ -1,0 +1,120 @@
+"""Clients that are not ours at the ports of emulated boards: pyserial, socket and python-can at `omnihil serve`."""
+import os
+import socket
+import struct
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "serve"))
+import bench as benches  # noqa: E402
+
+BUILD, SOURCE = os.environ["OMNIHIL_BUILD"], os.path.join(os.path.dirname(__file__), "..", "..", "..")
+IMAGE = os.path.join(BUILD, "images", "ports.elf")
+
+
+def served(ports, *arguments):
+    """A bench whose robots' boards have these ports; {folder} stands for the bench's own folder."""
+    if not os.path.exists(IMAGE):
+        raise benches.Skip("no arm-none-eabi-gcc: the image was not built")
+
+    class Served(benches.Bench):
+        def __init__(self):
+            import tempfile
+            self.boards = tempfile.mkdtemp(prefix="omnihil-ports-")
+            with open(os.path.join(SOURCE, "boards", "four_wheels_f405.toml"), encoding="utf-8") as file:
+                text = file.read()
+            board = os.path.join(self.boards, "board.toml")
+            with open(board, "w", encoding="utf-8") as file:
+                file.write(text + ports.replace("{folder}", self.boards))
+            super().__init__(["--physics", "planar", "--firmware", IMAGE, "--board", board, *arguments])
+
+        def at(self, name):
+            return os.path.join(self.boards, name)
+
+        def __exit__(self, *what):
+            import shutil
+            super().__exit__(*what)
+            shutil.rmtree(self.boards, ignore_errors=True)
+
+    return Served()
+
+
+def a_serial_port_is_a_terminal_both_ways():
+    import serial
+    with served('\n[[port]]\nof = "USART2"\nas = "pty:{folder}/console{id}"\n', "--robots", "0-1") as bench:
+        for robot in (0, 1):
+            with serial.Serial(bench.at(f"console{robot}"), 115200, timeout=benches.DEADLINE_S) as port:
+                port.write(b"hello, board")
+                answer = b""
+                while not answer.endswith(b"HELLO, BOARD"):
+                    more = port.read(1)
+                    assert more, answer
+                    answer += more
+        report = bench.stop()
+    assert report.code == 0 and "USART2 at pty:" in report.text, report.text
+    assert "12 in" in report.text, report.text
+
+
+def a_socket_carries_a_flood_at_the_line_rate():
+    """More bytes than the line carries at once wait in the socket; none is lost."""
+    sent = bytes(range(97, 123)) * 400
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    with served(f'\n[[port]]\nof = "USART2"\nas = "tcp:127.0.0.1:{port}"\n', "--robots", "0", "--clock", "free",
+                "--duration", "1000") as bench:
+        with socket.create_connection(("127.0.0.1", port), timeout=benches.DEADLINE_S) as line:
+            line.sendall(sent)
+            answer = b""
+            while len(answer.replace(b"boot\r\n", b"")) < len(sent):
+                more = line.recv(4096)
+                assert more, len(answer)
+                answer += more
+        bench.stop()
+    assert answer.replace(b"boot\r\n", b"") == sent.upper()
+
+
+def can_frames_come_and_go():
+    import can
+    with served('\n[[port]]\nof = "CAN1"\nas = "slcan:{folder}/can"\n', "--robots", "0") as bench:
+        with can.interface.Bus(bench.at("can"), interface="slcan", bitrate=1000000, ttyBaudrate=115200,
+                               sleep_after_open=0) as bus:
+            for n in range(20):
+                bus.send(can.Message(arbitration_id=0x200 + n, data=bytes(range(n % 9)), is_extended_id=False))
+            for n in range(20):
+                answer = bus.recv(benches.DEADLINE_S)
+                assert answer is not None and answer.arbitration_id == 0x201 + n, (n, answer)
+                assert bytes(answer.data) == bytes(b + 1 for b in range(n % 9)), (n, answer)
+        report = bench.stop()
+    assert "20 frames out" in report.text and "20 in" in report.text, report.text
+
+
+def a_motor_turns_as_its_can_is_told():
+    import can
+    with served('\n[[port]]\nof = "CAN1"\nas = "slcan:{folder}/can"\n', "--robots", "0") as bench:
+        with can.interface.Bus(bench.at("can"), interface="slcan", bitrate=1000000, ttyBaudrate=115200,
+                               sleep_after_open=0) as bus:
+            def count(duty):
+                bus.send(can.Message(arbitration_id=0x100, data=struct.pack("<h", duty), is_extended_id=False))
+                answer = bus.recv(benches.DEADLINE_S)
+                assert answer is not None and answer.arbitration_id == 0x101, answer
+                return struct.unpack("<i", bytes(answer.data))[0]
+
+            assert count(0) == 0
+            first, turned = count(2000), 0
+            while turned < 4096:  # a turn of the rotor; ends by recv's deadline if it stands
+                turned = abs(count(2000) - first)
+        bench.stop()
+
+
+def what_it_says_is_in_the_report_and_on_the_terminal():
+    ports = ''.join(f'\n[[port]]\nof = "{of}"\nconsole = true\n' for of in ("USART2", "semihosting", "ITM"))
+    with served(ports, "--robots", "2", "--console", "2", "--clock", "free", "--duration", "0.1") as bench:
+        report = bench.finish()
+    assert report.code == 0, report.text
+    for of, line in (("USART2", "boot"), ("semihosting", "by semihosting"), ("ITM", "by trace")):
+        assert f"robot 2 {of} | {line}" in report.text, report.text
+        assert f"{of} said 1 lines:" in report.text, report.text
+
+
+if __name__ == "__main__":
+    sys.exit(benches.main({name: thing for name, thing in globals().items() if callable(thing)}))
