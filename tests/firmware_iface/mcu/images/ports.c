@@ -36,13 +36,13 @@ static void trace(const char *text) {
 static void start(void) {
   REG(USART2 + 8) = 139; /* 115200 of 16 MHz */
   REG(USART2 + 0x0C) = 1u << 13 | 1u << 3 | 1u << 2;
-  REG(CAN1) = 1;                               /* INRQ */
-  REG(CAN1 + 0x1C) = 12u << 16 | 1u << 20;     /* 16 quanta: 1 Mbit/s of 16 MHz */
-  REG(CAN1 + 0x200) = 1;                       /* filters: bank 0 takes all into FIFO 0 */
+  REG(CAN1) = 1;                           /* INRQ */
+  REG(CAN1 + 0x1C) = 12u << 16 | 1u << 20; /* 16 quanta: 1 Mbit/s of 16 MHz */
+  REG(CAN1 + 0x200) |= 1;                  /* filters: bank 0 takes all into FIFO 0 */
   REG(CAN1 + 0x20C) = 1;
   REG(CAN1 + 0x240) = REG(CAN1 + 0x244) = 0;
   REG(CAN1 + 0x21C) = 1;
-  REG(CAN1 + 0x200) = 0;
+  REG(CAN1 + 0x200) &= ~1u;
   REG(CAN1) = 0;
   REG(GPIOE) = 0x55u;
   REG(TIM1 + 0x2C) = 8399;
