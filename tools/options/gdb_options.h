@@ -2,7 +2,7 @@
 //
 //   add_gdb_options(verb, words);                          // --gdb, --gdb-robot, --gdb-run
 //   std::unique_ptr<GdbServer> gdb = open_gdb(words, stop);        // null: not asked for
-//   choice.on_board = gdb_listener(gdb.get());
+//   choice.listeners.on_board = gdb_listener(gdb.get());
 #pragma once
 #include <functional>
 #include <memory>
