@@ -36,6 +36,9 @@ inline RobotFeedback feedback_of(const RobotShafts& exact, const RobotSensors& s
   return feedback;
 }
 
+class FirmwareMemory;
+class FirmwareChip;
+
 class Firmware {
  public:
   virtual ~Firmware() = default;
@@ -61,6 +64,10 @@ class Firmware {
   virtual std::string_view failure() const { return {}; }
   // Control periods that were due and did not run, where this side can count them (an emulated image).
   virtual std::uint64_t missed_control_periods() const { return 0; }
+  // Its memory, for whoever looks at it between two calls (firmware_memory.h); null: it shows none.
+  virtual FirmwareMemory* memory() { return nullptr; }
+  // The chip that it runs on, for whoever breaks it (firmware_chip.h); null: there is none that can be broken.
+  virtual FirmwareChip* chip() { return nullptr; }
   // What it has to say for itself after a run (counts of its wire, of its chip), a line each.
   virtual std::vector<std::string> report() const { return {}; }
 };

@@ -45,6 +45,7 @@ void GuardedFirmware::load() {
   name_ = text.substr(0, loaded.name_bytes);
   radio_ = text.substr(std::min<std::size_t>(loaded.name_bytes, text.size()), loaded.radio_bytes);
   period_ns_ = std::int64_t{loaded.control_period_us} * 1000;
+  state_bytes_ = loaded.state_bytes;
   has_motor_tick_ = loaded.has_motor_tick != 0;
 }
 
@@ -89,6 +90,25 @@ std::size_t GuardedFirmware::radio_transmit(std::span<std::uint8_t> out) {
 bool GuardedFirmware::set_gains(const RobotGains& gains) {
   process_.send({.call = FirmwareCall::kSetGains}, &gains, sizeof gains);
   return take_state() && state_.code == 0;
+}
+
+bool GuardedFirmware::read(std::span<const MemoryPiece> pieces, std::span<std::uint8_t> out) {
+  process_.send({.call = FirmwareCall::kPeek}, pieces.data(), pieces.size_bytes());
+  const std::span<const std::uint8_t> answer = process_.receive();
+  note_failure();
+  if (answer.size() != out.size() + 1 || answer[0] != 1) return false;
+  std::ranges::copy(answer.subspan(1), out.begin());
+  return true;
+}
+
+bool GuardedFirmware::write(const MemoryPiece& piece, std::span<const std::uint8_t> bytes) {
+  std::vector<std::uint8_t> body(sizeof piece + bytes.size());
+  std::memcpy(body.data(), &piece, sizeof piece);
+  std::ranges::copy(bytes, body.begin() + sizeof piece);
+  process_.send({.call = FirmwareCall::kPoke}, body.data(), body.size());
+  const std::span<const std::uint8_t> answer = process_.receive();
+  note_failure();
+  return !answer.empty() && answer[0] == 1;
 }
 
 RobotDrive GuardedFirmware::tick(const RobotSensors& sensors) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "firmware_iface/firmware_checks.h"
+#include "firmware_iface/firmware_memory.h"
 #include "hil/firmware/firmware_process.h"
 
 namespace omnihil {
@@ -24,7 +25,7 @@ struct GuardedLibrary {
   double deadline_s = 10.0;  // of wall time, for one call
 };
 
-class GuardedFirmware final : public CheckedFirmware {
+class GuardedFirmware final : public CheckedFirmware, private FirmwareMemory {
  public:
   // std::invalid_argument: not a firmware, or it refused the robot, or it was gone before the first tick.
   GuardedFirmware(const GuardedLibrary& library, const RobotConfig& config,
@@ -43,8 +44,15 @@ class GuardedFirmware final : public CheckedFirmware {
   bool drives_phases() const override { return drives_phases_; }
   MotorDrive motor_tick(const MotorSensors& sensors) override;
   std::string_view failure() const override { return failure_; }
+  FirmwareMemory* memory() override { return this; }
 
  private:
+  // FirmwareMemory
+  bool read(std::span<const MemoryPiece> pieces, std::span<std::uint8_t> out) override;
+  bool write(const MemoryPiece& piece, std::span<const std::uint8_t> bytes) override;
+  void when_started(std::function<void()> work) override { work(); }
+  std::uint64_t state_bytes() const override { return state_bytes_; }
+
   void load();
   bool take_state();  // the answer to a call; false: there is none any more
   void note_failure();
@@ -52,6 +60,7 @@ class GuardedFirmware final : public CheckedFirmware {
   FirmwareProcess process_;
   std::string library_, name_, radio_, failure_;
   std::int64_t period_ns_ = 0;
+  std::uint64_t state_bytes_ = 0;
   bool has_motor_tick_ = false, drives_phases_ = false;
   WireTick state_;
   std::uint32_t next_frame_ = 0;

@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "firmware_iface/mcu/board/boards_chip.h"
+#include "firmware_iface/mcu/board/boards_memory.h"
 #include "firmware_iface/mcu/board/mcu_firmware.h"
 #include "hil/firmware/image_files.h"
 #include "hil/text/merged_lines.h"
@@ -20,8 +22,13 @@ struct Image {
 class ImageFirmware final : public Firmware {
  public:
   ImageFirmware(std::shared_ptr<const Image> image, const RobotConfig& config,
-                const ImageListeners& listeners)
-      : image_(std::move(image)), mcu_(image_->board, image_->elf, config) {
+                const ImageListeners& listeners, std::shared_ptr<ImageObserver> observer)
+      : image_(std::move(image)),
+        observer_(std::move(observer)),
+        mcu_(image_->board, image_->elf, config),
+        memory_(mcu_, image_->elf),
+        chip_(mcu_, image_->elf) {
+    if (observer_) observer_->begins(mcu_, image_->elf, config.robot_id);
     for (int b = 0; b < mcu_.boards(); ++b) {
       if (!image_->board.ports.empty()) {
         ports_.push_back(std::make_unique<BoardPorts>(
@@ -31,6 +38,11 @@ class ImageFirmware final : public Firmware {
         listeners.on_board({config.robot_id, b, mcu_.boards(), mcu_.board(b), image_->elf});
     }
   }
+  ~ImageFirmware() override {
+    if (observer_) observer_->ends(mcu_);
+  }
+  ImageFirmware(const ImageFirmware&) = delete;
+  ImageFirmware& operator=(const ImageFirmware&) = delete;
 
   std::string_view name() const override { return mcu_.name(); }
   std::string_view radio_format() const override { return mcu_.radio_format(); }
@@ -51,6 +63,8 @@ class ImageFirmware final : public Firmware {
   bool drives_phases() const override { return mcu_.drives_phases(); }
   MotorDrive motor_tick(const MotorSensors& sensors) override { return mcu_.motor_tick(sensors); }
   std::uint64_t missed_control_periods() const override { return mcu_.missed_control_periods(); }
+  FirmwareMemory* memory() override { return &memory_; }
+  FirmwareChip* chip() override { return &chip_; }
   std::string_view failure() const override {
     for (int b = 0; b < mcu_.boards(); ++b) {
       if (!failure_.empty()) break;
@@ -75,14 +89,18 @@ class ImageFirmware final : public Firmware {
   }
 
   std::shared_ptr<const Image> image_;
+  std::shared_ptr<ImageObserver> observer_;
   mcu::McuFirmware mcu_;
+  mcu::BoardsMemory memory_;
+  mcu::BoardsChip chip_;
   std::vector<std::unique_ptr<BoardPorts>> ports_;  // of each board; none: it has no ports
   mutable std::string failure_;                     // once it has failed
 };
 }  // namespace
 
 Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file,
-                                      std::string_view served, ImageListeners listeners) {
+                                      std::string_view served, ImageListeners listeners,
+                                      std::shared_ptr<ImageObserver> observer) {
   auto image = std::make_shared<Image>();
   image->board_file = board_file;
   read_image_files(
@@ -96,8 +114,9 @@ Session::FirmwareMaker image_firmware(const std::string& image_file, const std::
         for (mcu::BoardProblem& problem : port_problems(image->board, board_file))
           problems.push_back(std::move(problem));
       });
-  return [image, listeners = std::move(listeners)](const RobotConfig& config) -> std::unique_ptr<Firmware> {
-    return std::make_unique<ImageFirmware>(image, config, listeners);
+  return [image, listeners = std::move(listeners),
+          observer](const RobotConfig& config) -> std::unique_ptr<Firmware> {
+    return std::make_unique<ImageFirmware>(image, config, listeners, observer);
   };
 }
 

@@ -6,11 +6,13 @@
 // both files, a line each; the maker does if the image does not fit the chip's memory.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "firmware_iface/mcu/board/board.h"
 #include "hil/firmware/board_ports.h"
+#include "hil/firmware/image_observer.h"
 #include "hil/loop/session.h"
 
 namespace omnihil {
@@ -31,6 +33,7 @@ struct ImageListeners {
 
 // `served`: the radio format that the session serves, which the board's must be; empty: any that there is.
 Session::FirmwareMaker image_firmware(const std::string& image_file, const std::string& board_file,
-                                      std::string_view served = {}, ImageListeners listeners = {});
+                                      std::string_view served = {}, ImageListeners listeners = {},
+                                      std::shared_ptr<ImageObserver> observer = nullptr);
 
 }  // namespace omnihil

@@ -145,7 +145,8 @@ Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const Session
           {fmt::format("firmware {}: a microcontroller image; needs --board FILE beside it", choice.file)});
     }
     return kind == ImageKind::kArm
-               ? image_firmware(choice.file, choice.board, session.radio_format, choice.listeners)
+               ? image_firmware(choice.file, choice.board, session.radio_format, choice.listeners,
+                                choice.observer)
                : avr_firmware(choice.file, choice.board, choice.deadline_s, session.radio_format);
   }
   throw_problems(problems_of(choice));

@@ -9,6 +9,7 @@
 //   a microcontroller image (32-bit ARM executable) with its board file: emulated, one board per robot
 //   an AVR image (ELF or Intel HEX) with its board file: emulated by omnihil-avr, one board per wheel
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,14 @@
 
 namespace omnihil {
 
+class ImageObserver;
+
 struct FirmwareChoice {
-  std::string file{};          // empty, "reference": the reference firmware
-  std::string board{};         // board file of a microcontroller image
-  double deadline_s = 10.0;    // of wall time: a call that takes longer hangs
-  ImageListeners listeners{};  // of emulated boards
+  std::string file{};                         // empty, "reference": the reference firmware
+  std::string board{};                        // board file of a microcontroller image
+  double deadline_s = 10.0;                   // of wall time: a call that takes longer hangs
+  ImageListeners listeners{};                 // of emulated boards
+  std::shared_ptr<ImageObserver> observer{};  // of what an image does (image_observer.h); null: nobody
   bool virtual_time = true;  // false: the run is paced by wall time, so a board on the desk is not waited for
 };
 

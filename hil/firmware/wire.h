@@ -6,6 +6,8 @@
 //   Request{kInit} + StartInput   ──►       int32 code, then TickReply of the state before the first tick
 //   Request{kCommand} + …         ──►       (no answer: it is dealt with before the next tick)
 //   Request{kTick} + RobotSensors ──►       TickReply: drive, feedback, gains and the frames to send
+//   Request{kPeek} + MemoryPiece… ──►       one byte 1 and the pieces' bytes; or one byte 0
+//   Request{kPoke} + MemoryPiece, bytes ──► one byte: 1 done, 0 not there
 //
 // Lock-step: the bench waits for the answer of a tick, so the result does not depend on how long it took.
 // Both sides are of one build; the numbers pass as they are in memory.
@@ -29,10 +31,15 @@ enum class FirmwareCall : std::uint32_t {
   kTick,
   kFeedback,
   kMotorTick,
+  kPeek,
+  kPoke,
 };
 inline constexpr const char* kFirmwareCallNames[] = {
-    "loading the library", "init()",      "motor_init()", "command()",  "radio_receive()", "radio_transmit()",
-    "set_gains()",         "get_gains()", "tick()",       "feedback()", "motor_tick()"};
+    "loading the library", "init()",          "motor_init()",
+    "command()",           "radio_receive()", "radio_transmit()",
+    "set_gains()",         "get_gains()",     "tick()",
+    "feedback()",          "motor_tick()",    "reading variables",
+    "setting a variable"};
 
 inline constexpr std::size_t kWireFrameBytes = 512;  // of a frame that a firmware sends
 inline constexpr int kWireFrames = 16;               // per tick
@@ -55,6 +62,7 @@ struct WireLoaded {
   std::uint32_t problem_bytes = 0;  // of `text`: why it cannot be used; 0: it can
   std::uint32_t control_period_us = 0;
   std::uint32_t has_motor_tick = 0;
+  std::uint64_t state_bytes = 0;
   std::uint32_t name_bytes = 0, radio_bytes = 0;  // of `text`
   char text[kWireTextBytes];                      // problems; or name, then radio format
 };

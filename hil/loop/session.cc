@@ -224,6 +224,7 @@ struct Session::Impl {
     sample.drive = robot.tick(sample.sensors);
     sample.feedback = robot.feedback();
     sample.vision = world.plant().vision(static_cast<int>(i));
+    if (watch) sample.watched = watch->read(static_cast<int>(i), robot);
     if (const std::string broken = first_non_finite(sample); !broken.empty())
       give_up(now_ns, keys[i], broken);
     world.write(static_cast<int>(i), sample.drive);
@@ -282,6 +283,7 @@ struct Session::Impl {
   std::vector<MotorPort> motor_ports;
   TeamPort own, opponents;
   SessionObserver* observer = nullptr;
+  FirmwareWatch* watch = nullptr;
   std::int64_t now_ns = 0;
   std::vector<std::int64_t> next_tick_ns;
   std::vector<RobotSample> samples;
@@ -318,6 +320,13 @@ const RobotModel& Session::model(int robot_index) const {
 }
 const RadioLink& Session::link() const { return *impl_->own.link; }
 const RadioLink* Session::opponents_link() const { return impl_->opponents.link.get(); }
+void Session::set_watch(FirmwareWatch* watch) { impl_->watch = watch; }
+FirmwareMemory* Session::firmware_memory(int robot_index) {
+  return impl_->firmware[static_cast<std::size_t>(robot_index)]->memory();
+}
+FirmwareChip* Session::firmware_chip(int robot_index) {
+  return impl_->firmware[static_cast<std::size_t>(robot_index)]->chip();
+}
 const Firmware& Session::firmware(int robot_index) const {
   return *impl_->firmware[static_cast<std::size_t>(robot_index)];
 }

@@ -83,7 +83,8 @@ struct RobotSample {
   RobotSensors sensors{};
   RobotFeedback feedback{};
   RobotTruth truth{};
-  VisionPose vision{};  // what a camera would see at this tick
+  VisionPose vision{};                // what a camera would see at this tick
+  std::span<const double> watched{};  // of its firmware, as Session::set_watch() says
 };
 
 enum class FieldInput : std::uint8_t { kPushed, kPresent, kBall, kMovers };
@@ -107,6 +108,13 @@ class SessionObserver {
   virtual void world(std::int64_t, const World&) {}
 };
 
+// Reads values out of a robot's firmware after each of its control ticks.
+class FirmwareWatch {
+ public:
+  virtual ~FirmwareWatch() = default;
+  virtual std::span<const double> read(int robot_index, Firmware& firmware) = 0;
+};
+
 class Session {
  public:
   using FirmwareMaker = std::function<std::unique_ptr<Firmware>(const RobotConfig&)>;
@@ -127,7 +135,10 @@ class Session {
   const RadioLink* opponents_link() const;  // null: they have no dongle
   AirCounts air() const;                    // of the first team's; none without one
   const Firmware& firmware(int robot_index) const;
-  void set_observer(SessionObserver* observer);  // not owned; may be null
+  void set_observer(SessionObserver* observer);      // not owned; may be null
+  void set_watch(FirmwareWatch* watch);              // likewise
+  FirmwareMemory* firmware_memory(int robot_index);  // null: it shows none
+  FirmwareChip* firmware_chip(int robot_index);      // null: none that can be broken
 
   // One loop step of config().step_ns. `host` arrived before the step; what leaves the dongle during it is
   // appended to `out`. Throws std::runtime_error naming time, robot and signal if a state is not finite.

@@ -158,6 +158,15 @@ void McuBoard::wire_radio() {
   });
 }
 
+void McuBoard::run_to_due(std::int64_t end_ns) {
+  while (!due_.empty() && due_.begin()->first < end_ns) {
+    machine_.run_until_ns(due_.begin()->first);
+    const auto work = std::move(due_.begin()->second);
+    due_.erase(due_.begin());
+    work();
+  }
+}
+
 void McuBoard::set_world(const WorldState& world) {
   world_ = world;
   for (const auto& hall : halls_) hall->world_changed();

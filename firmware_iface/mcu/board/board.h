@@ -8,6 +8,8 @@
 // Deterministic: a function of spec, image, worlds and packets with their instants.
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -38,7 +40,12 @@ class McuBoard {
   const Chip& chip() const { return chip_; }
   std::int64_t now_ns() const { return machine_.to_ns(machine_.now()); }
   void set_world(const WorldState& world);
-  void run_until_ns(std::int64_t end_ns) { machine_.run_until_ns(end_ns); }
+  void run_until_ns(std::int64_t end_ns) {
+    if (!due_.empty()) run_to_due(end_ns);
+    machine_.run_until_ns(end_ns);
+  }
+  // Does `work` between two instructions, at the first boundary at or after this instant.
+  void at(std::int64_t at_ns, std::function<void()> work) { due_.emplace(at_ns, std::move(work)); }
   MotorWire* wire(int wheel) const;  // null: the board drives no such motor
   Device* device(std::string_view name) const;
   // Packets of the radio, at now_ns().
@@ -52,6 +59,7 @@ class McuBoard {
     std::unique_ptr<Device> device;
     DeviceEntry entry;
   };
+  void run_to_due(std::int64_t end_ns);
   void wire_motors();
   void wire_device(const DeviceEntry& entry);
   void wire_analog();
@@ -70,6 +78,7 @@ class McuBoard {
   Usart* serial_ = nullptr;
   std::vector<std::uint8_t> sent_;  // bytes of a serial radio, not yet a frame
   std::int64_t sent_last_ns_ = 0;
+  std::multimap<std::int64_t, std::function<void()>> due_;
 };
 
 }  // namespace omnihil::mcu

@@ -68,7 +68,7 @@ Stop Cpu::run(std::int64_t now, std::int64_t deadline) {
   watching_ = false;
   watch_.rest = watch_.rest < 2 ? 2 : watch_.rest;
   if ((reg.fpscr & kRoundingMode) != 0) return run_rounded(now, deadline);
-  const Stop stop = execute(now, deadline);
+  const Stop stop = observer_ == nullptr ? execute(now, deadline) : execute_observed(now, deadline);
   if ((reg.fpscr & kRoundingMode) != 0) std::fesetround(FE_TONEAREST);
   return stop;
 }
@@ -76,7 +76,7 @@ Stop Cpu::run(std::int64_t now, std::int64_t deadline) {
 Stop Cpu::run_rounded(std::int64_t now, std::int64_t deadline) {
   const int host = std::fegetround();
   std::fesetround(host_rounding(reg.fpscr));
-  const Stop stop = execute(now, deadline);
+  const Stop stop = observer_ == nullptr ? execute(now, deadline) : execute_observed(now, deadline);
   std::fesetround(host);
   return stop;
 }

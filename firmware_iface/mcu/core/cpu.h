@@ -80,6 +80,15 @@ class CpuBus {
   virtual void note_unaligned(std::uint32_t address) = 0;
 };
 
+// Sees every instruction before it runs. While there is one, the core runs by a loop of its own (execute_observed.cc)
+// with the same results at the same instants; without, nothing asks for it.
+class CpuObserver {
+ public:
+  virtual ~CpuObserver() = default;
+  // `met` false: its IT block's condition does not hold, and it does nothing. `at` in 16ths of a cycle.
+  virtual void instruction(std::uint32_t pc, const Op& op, bool met, std::int64_t at) = 0;
+};
+
 struct CpuStatistics {
   std::uint64_t instructions = 0;
   std::uint64_t skipped_subcycles = 0;  // of them spent in busy-waiting loops that were fast-forwarded
@@ -119,6 +128,7 @@ class Cpu {
   void set_halts(std::vector<std::uint32_t> addresses);
   void set_watches(std::vector<AccessWatch> watches);
   std::optional<AccessHit> take_hit() { return std::exchange(hit_, std::nullopt); }
+  void observe(CpuObserver* observer) { observer_ = observer; }  // not owned; null: nobody
   std::int64_t subcycles(int cycles) const { return cycles * scale_; }
 
   Registers reg;
@@ -151,8 +161,9 @@ class Cpu {
   };
 
   Stop execute(std::int64_t now, std::int64_t deadline);
-  Stop run_rounded(std::int64_t now, std::int64_t deadline);  // in another mode than to nearest
-  bool go_to(std::uint32_t pc);                               // sets code_; false: a fault
+  Stop execute_observed(std::int64_t now, std::int64_t deadline);  // the same, telling the observer
+  Stop run_rounded(std::int64_t now, std::int64_t deadline);       // in another mode than to nearest
+  bool go_to(std::uint32_t pc);                                    // sets code_; false: a fault
   void fill(std::uint32_t pc, std::uint8_t it);
   Op make(std::uint32_t pc, std::uint8_t it) const;
   void shorten(Op& op, std::uint32_t pc) const;
@@ -207,6 +218,7 @@ class Cpu {
   std::vector<std::uint32_t> halts_;  // in order
   std::vector<AccessWatch> watches_;
   std::optional<AccessHit> hit_;
+  CpuObserver* observer_ = nullptr;
 };
 
 // Parallel additions and subtractions; `ge` is set by the plain ones.

@@ -165,12 +165,30 @@ F fuse(F x, F y, F z) {
     goto interwork;        \
   } while (0)
 #define PC_OF(slot) (code_base + static_cast<std::uint32_t>((slot)-slots) * 2)
-// After whatever may have changed what the FPU may be used for, or the time that is left.
+// After whatever may have changed what the FPU may be used for, or the time that is left. Observed, each instruction is
+// looked at before it runs; what is not decoded yet comes round again.
+#ifdef OMNIHIL_OBSERVED
+#define EXECUTE execute_observed
+#define CHOOSE_ENTRIES()                            \
+  do {                                              \
+    codes = fp_plain_ ? kEntries : kCarefulEntries; \
+    entries = kSteps;                               \
+  } while (0)
+#define OBSERVE()                                                                                  \
+  do {                                                                                             \
+    if (cur->entry > kOffEnd)                                                                      \
+      observer_->instruction(PC_OF(cur), *cur, cur->condition >= kAlways || holds(cur->condition), \
+                             end - left - cur->charged - 1);                                       \
+  } while (0)
+#else
+#define EXECUTE execute
 #define CHOOSE_ENTRIES()                            \
   do {                                              \
     codes = fp_plain_ ? kEntries : kCarefulEntries; \
     entries = left < 0 ? kSteps : codes;            \
   } while (0)
+#define OBSERVE()
+#endif
 // What a bus access may want to know, and what it may ask for: that this instruction is the last one.
 #define REQUEST_CHECK()                                           \
   do {                                                            \
@@ -213,7 +231,7 @@ F fuse(F x, F y, F z) {
 #define RA R.r[cur->a]
 #define FLAGS_NZ(x) (R.n = R.z = (x))
 
-Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
+Stop Cpu::EXECUTE(std::int64_t now, std::int64_t deadline) {
   static const void* const kEntries[] = {
 #define OP(name, cycles) &&entry_k##name,
 #include "firmware_iface/mcu/core/op_codes.inc"
@@ -253,6 +271,7 @@ Stop Cpu::execute(std::int64_t now, std::int64_t deadline) {
   ENTER_ROW(cur);
 step:
   if (left + cur->charged < 0) goto out_of_time;
+  OBSERVE();
   goto* codes[cur->entry >= kVcmpFlags ? int{cur->code} : int{cur->entry}];  // two in one are taken apart
   CASE(kUndecoded) {
     const Op before = *cur;

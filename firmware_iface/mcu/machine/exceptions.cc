@@ -89,6 +89,7 @@ void Machine::enter_handler(std::uint32_t exception_return) {
   ++load.count;
   load.longest_latency = std::max(load.longest_latency, at - std::min(at, nvic_.pended_at(e)));
   frames_.push_back({e, at, &load});
+  if (observer_ != nullptr) observer_->exception_begins(e, at);
   nvic_.activate(e);
   R.ipsr = static_cast<std::uint32_t>(e);
   R.r[14] = exception_return;
@@ -153,6 +154,7 @@ void Machine::return_from(std::uint32_t exception_return) {
     load.longest = std::max(load.longest, now() - frames_.back().entered);
     frames_.pop_back();
   }
+  if (observer_ != nullptr) observer_->exception_ends(e, now());
   const bool was_active = nvic_.active(e);
   nvic_.deactivate(e, now());
   if (e != kNmi) R.faultmask = 0;

@@ -92,6 +92,7 @@ void Machine::power_on() {
   unknown_.clear();
   unmodelled_index_.clear();
   clock_ = CoreClock(static_cast<std::uint64_t>(std::llround(config_.reset_hz)));
+  clock_error_ = 1.0;
   report_ = MachineReport{};
   faulted_at_ = kNever;
   frames_.clear();
@@ -143,7 +144,8 @@ void Machine::do_reset() {
   sleeping_ = Sleep::kNo;
   locked_up_ = false;
   frames_.clear();
-  clock_.change(now(), static_cast<std::uint64_t>(std::llround(config_.reset_hz)));
+  nominal_hz_ = config_.reset_hz;
+  clock_.change(now(), static_cast<std::uint64_t>(std::llround(nominal_hz_ * clock_error_)));
   for (const Slot& slot : slots_) slot.peripheral->reset();
   apply_control();
   std::uint32_t start = 0;
@@ -155,6 +157,7 @@ void Machine::do_reset() {
   cpu_.reg.r[15] = start & ~1u;
   cpu_.set_attention(false);
   if (!(start & 1)) lock_up();
+  if (observer_ != nullptr) observer_->was_reset(now());
   next_event_known_ = armed_known_ = false;
 }
 
@@ -173,9 +176,15 @@ void Machine::show_at_zero(std::uint32_t base) {
 // ---- time
 
 void Machine::set_core_hz(double hz) {
-  clock_.change(now(), static_cast<std::uint64_t>(std::llround(hz)));
+  nominal_hz_ = hz;
+  clock_.change(now(), static_cast<std::uint64_t>(std::llround(hz * clock_error_)));
   for (const Slot& slot : slots_) slot.peripheral->clock_changed();
   reschedule();
+}
+
+void Machine::set_clock_error(double ratio) {
+  clock_error_ = ratio;
+  set_core_hz(nominal_hz_);
 }
 
 void Machine::reschedule() {
@@ -352,7 +361,8 @@ void Machine::handle(Stop stop) {
       return_from(cpu_.exception_return);
       return;
     case Stop::kBreakpoint:
-      if (breakpoint_hook_ && breakpoint_hook_(cpu_.breakpoint)) {
+      if (visit()) {
+      } else if (breakpoint_hook_ && breakpoint_hook_(cpu_.breakpoint)) {
         cpu_.reg.r[15] += 2;
       } else if (debug_ == nullptr || !debug_->takes_breakpoint_instruction()) {
         hfsr_ |= 1u << 31;  // DEBUGEVT

@@ -57,6 +57,15 @@ struct MachineConfig {
   bool fast_forward = true;
 };
 
+// Sees what the core does: every instruction, and every change of what it handles.
+class MachineObserver : public CpuObserver {
+ public:
+  virtual void exception_begins(int /*exception*/, Cycles /*at*/) {
+  }  // after stacking, before its first instruction
+  virtual void exception_ends(int /*exception*/, Cycles /*at*/) {}  // at its last one
+  virtual void was_reset(Cycles /*at*/) {}
+};
+
 class Machine final : public System, private CpuBus {
  public:
   explicit Machine(const MachineConfig& config);
@@ -68,6 +77,9 @@ class Machine final : public System, private CpuBus {
   // debugger.
   void set_breakpoint_hook(std::function<bool(std::uint32_t)> hook) { breakpoint_hook_ = std::move(hook); }
 
+  // Does `work` when the program first comes to this address, before the instruction there runs; once. Until then a
+  // BKPT stands in its place. False: no code is there.
+  bool when_at(std::uint32_t address, std::function<void()> work);
   // Whom a debugger halts it by; made when it is first asked for. The listener must outlive the machine.
   DebugUnit& debug(DebugListener& listener);
   // Memory and registers as they are, without what reading them would do; false: nothing is there.
@@ -97,6 +109,14 @@ class Machine final : public System, private CpuBus {
   Cycles in_fault_handler_since() const {
     return faulted_at_ != kNever && fault_handler_active() ? faulted_at_ : kNever;
   }
+
+  // Not owned; null: nobody. Slower while somebody looks, with the same results.
+  void observe(MachineObserver* observer) {
+    observer_ = observer;
+    cpu_.observe(observer);
+  }
+  // The oscillators run at this part of their rate from now on, and with them all that counts core cycles.
+  void set_clock_error(double ratio);
 
   MachineReport report() const;
   Cpu& cpu() { return cpu_; }
@@ -237,6 +257,16 @@ class Machine final : public System, private CpuBus {
   std::function<bool(std::uint32_t)> breakpoint_hook_;
   std::unique_ptr<DebugUnit> debug_;
   std::function<void(std::string_view)> trace_;
+  struct Visit {
+    std::uint8_t original[2];
+    std::vector<std::function<void()>> work;
+  };
+  bool visit();
+  std::map<std::uint32_t, Visit> visits_;  // by address, those that have not been yet
+
+  MachineObserver* observer_ = nullptr;
+  double clock_error_ = 1.0;  // real rate over nominal one
+  double nominal_hz_ = 0.0;
 
   std::int64_t now_ = 0;      // in subcycles
   Cycles event_at_ = kNever;  // the instant of the events that are being run

@@ -23,4 +23,12 @@ inline void move_item(System& system, DmaTransfer& t) {
   }
 }
 
+// A controller of which a transfer can be made to fail from outside: its channel is off, with the error flag and the
+// interrupt that goes with it (RM0316 §13.4.4, RM0090 §10.3.18).
+class DmaErrors {
+ public:
+  virtual ~DmaErrors() = default;
+  virtual bool fail_transfer() = 0;  // false: none is going on
+};
+
 }  // namespace omnihil::mcu

@@ -12,7 +12,7 @@ enum : std::uint32_t { kIsr = 0x00, kIfcr = 0x04 };
 enum : unsigned { kCcr, kCndtr, kCpar, kCmar };  // of a channel
 constexpr std::uint32_t kEn = 1, kDir = 1u << 4, kCirc = 1u << 5, kPinc = 1u << 6, kMinc = 1u << 7,
                         kMem2Mem = 1u << 14;
-constexpr std::uint32_t kGlobal = 1, kComplete = 2, kHalf = 4;
+constexpr std::uint32_t kGlobal = 1, kComplete = 2, kHalf = 4, kError = 8;
 constexpr int kMaxItemsAtOnce = 256;  // a peripheral that never lowers its request must not stop time
 
 std::span<const RegisterInfo> table() {
@@ -155,6 +155,18 @@ void DmaV1::item(unsigned c) {
   if (last) value(kIsr) |= (kGlobal | kComplete) << (4 * c);
   if (half && !last) value(kIsr) |= (kGlobal | kHalf) << (4 * c);
   if (last || half) update_irqs();
+}
+
+bool DmaV1::fail_transfer() {
+  for (unsigned c = 0; c < irqs_.size(); ++c) {
+    if ((reg(c, kCcr) & kEn) == 0 || channels_[c].left == 0) continue;
+    reg(c, kCcr) &= ~kEn;
+    reg(c, kCndtr) = channels_[c].left;
+    value(kIsr) |= (kGlobal | kError) << (4 * c);
+    update_irqs();
+    return true;
+  }
+  return false;
 }
 
 std::uint32_t DmaV1::load(std::uint32_t offset) {

@@ -25,13 +25,14 @@ class DmaMux final : public RegisterBlock {
   std::vector<int> lines_;  // by request number
 };
 
-class DmaV1 final : public RegisterBlock, public DmaSink {
+class DmaV1 final : public RegisterBlock, public DmaSink, public DmaErrors {
  public:
   DmaV1(int number, std::vector<int> irqs, ChipContext& context);  // one interrupt per channel
   void connect(std::string_view request, unsigned channel);        // from 1
   void use_mux(const DmaMux& mux, unsigned first);
   void reset() override;
   void requested(int line) override;
+  bool fail_transfer() override;
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;

@@ -11,7 +11,7 @@ constexpr unsigned kPlace[] = {0, 6, 16, 22};  // of a stream's flags in LISR, H
 enum : unsigned { kCr, kNdtr, kPar, kM0ar, kM1ar, kFcr };
 constexpr std::uint32_t kEn = 1, kCirc = 1u << 8, kPinc = 1u << 9, kMinc = 1u << 10, kDbm = 1u << 18,
                         kCt = 1u << 19;
-constexpr std::uint32_t kHalf = 1u << 4, kComplete = 1u << 5;
+constexpr std::uint32_t kHalf = 1u << 4, kComplete = 1u << 5, kError = 1u << 3;
 constexpr int kMaxItemsAtOnce = 256;
 
 std::span<const RegisterInfo> table() {
@@ -63,7 +63,8 @@ void DmaV2::flag(unsigned s, std::uint32_t flags) {
 void DmaV2::update_irqs() {
   for (unsigned s = 0; s < irqs_.size(); ++s) {
     const std::uint32_t cr = reg(s, kCr), f = flags(s);
-    irqs_[s].set(((f & kComplete) != 0 && bit(cr, 4)) || ((f & kHalf) != 0 && bit(cr, 3)));
+    irqs_[s].set(((f & kComplete) != 0 && bit(cr, 4)) || ((f & kHalf) != 0 && bit(cr, 3)) ||
+                 ((f & kError) != 0 && bit(cr, 2)));
   }
 }
 
@@ -128,6 +129,17 @@ void DmaV2::item(unsigned s) {
   move_item(system(), now_moved);
   if (last) flag(s, kComplete);
   if (half) flag(s, kHalf);
+}
+
+bool DmaV2::fail_transfer() {
+  for (unsigned s = 0; s < kStreams; ++s) {
+    if ((reg(s, kCr) & kEn) == 0 || streams_[s].left == 0) continue;
+    reg(s, kCr) &= ~kEn;
+    reg(s, kNdtr) = streams_[s].left;
+    flag(s, kError);
+    return true;
+  }
+  return false;
 }
 
 std::uint32_t DmaV2::load(std::uint32_t offset) {

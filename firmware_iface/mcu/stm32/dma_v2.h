@@ -15,12 +15,13 @@
 
 namespace omnihil::mcu {
 
-class DmaV2 final : public RegisterBlock, public DmaSink {
+class DmaV2 final : public RegisterBlock, public DmaSink, public DmaErrors {
  public:
   DmaV2(int number, std::vector<int> irqs, ChipContext& context);
   void connect(std::string_view request, unsigned stream, unsigned channel);
   void reset() override;
   void requested(int line) override;
+  bool fail_transfer() override;
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;

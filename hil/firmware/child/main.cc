@@ -18,7 +18,9 @@
 #include <vector>
 
 #include "firmware_iface/firmware_checks.h"
+#include "firmware_iface/firmware_memory.h"
 #include "hil/firmware/child/crash_notes.h"
+#include "hil/firmware/child/own_memory.h"
 #include "hil/firmware/child/state_block.h"
 #include "hil/firmware/wire.h"
 
@@ -69,6 +71,7 @@ class Process {
   int socket_;
   WirePage& page_;
   omnihil_firmware_api api_{};
+  void* library_ = nullptr;
   std::unique_ptr<StateBlock> block_;
   WireTick reply_;
 };
@@ -83,6 +86,7 @@ std::string Process::open_library(const std::string& path) {
   const std::vector<std::string> faults = check_firmware_api(api);
   if (!faults.empty()) return faults_text("its table cannot be used:", faults);
   api_ = table_of(api);
+  library_ = library;
   return {};
 }
 
@@ -98,6 +102,7 @@ void Process::load(const std::string& path) {
     loaded.name_bytes = static_cast<std::uint32_t>(name.size());
     loaded.radio_bytes = static_cast<std::uint32_t>(text.size() - name.size());
     loaded.control_period_us = api_.control_period_us;
+    loaded.state_bytes = api_.state_bytes;
     loaded.has_motor_tick = api_.motor_tick != nullptr ? 1 : 0;
   }
   text = text.substr(0, kWireTextBytes);
@@ -202,6 +207,14 @@ bool Process::deal(const WireRequest& request, const std::uint8_t* body) {
       break;
     case FirmwareCall::kMotorTick:
       motor_tick(value_of<MotorSensors>(body));
+      break;
+    case FirmwareCall::kPeek: {
+      const std::vector<std::uint8_t> answer = peek({body, request.count}, library_, block_.get());
+      send(*answer.data(), answer.size());
+      break;
+    }
+    case FirmwareCall::kPoke:
+      send(poke({body, request.count}, library_, block_.get()));
       break;
     default:
       return false;

@@ -47,7 +47,7 @@ std::uint32_t Rcc::reset_flags() const {
   const std::string_view cause = system().reset_cause();
   if (cause == "IWDG") return kPin | kIwdg;
   if (cause == "WWDG") return kPin | kWwdg;
-  if (cause == "power-on") return kPin | kPower;
+  if (cause == "power-on" || cause == "brown-out") return kPin | kPower;
   return kPin | kSoftware;
 }
 
