@@ -72,8 +72,10 @@ struct RecordingHeader {
   std::string started;                     // ISO 8601 wall time, informative only
   std::vector<ModelText> included_models;  // further files that the model names: its motor
   int sample_every = 10;                   // of a robot's control ticks, every Nth is written
-  std::vector<std::string> columns;        // of the `s` lines; the writer fills in sample_columns()
+  std::vector<std::string> columns;  // of the `s` lines; the writer fills in sample_columns() and `watched`
   std::vector<std::string> units;
+  std::vector<std::string>
+      watched;  // variables of the firmware: columns "var:NAME"; read back as columns alone
 };
 
 // Of both teams: what stands as ID in its lines.

@@ -11,6 +11,10 @@ RecordingHeader with_sample_columns(RecordingHeader header) {
     header.columns.push_back(column.name);
     header.units.push_back(column.unit);
   }
+  for (const std::string& variable : header.watched) {
+    header.columns.push_back("var:" + variable);
+    header.units.emplace_back("1");
+  }
   return header;
 }
 

@@ -215,6 +215,10 @@ bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) 
   for (const std::string& column : header_.columns) {
     const std::string_view text = next_word(rest);
     double value = 0.0;
+    if (column.starts_with("var:") && is_no_number(text, value)) {  // a variable may be what it likes
+      chunk.sample.push_back(value);
+      continue;
+    }
     if (!parse_number(text, value)) {
       problem("column '" + column + "': found " + in_quotes(text) + ", allowed: a finite number");
       return false;

@@ -65,6 +65,7 @@ RecordingWriter::RecordingWriter(int fd, std::filesystem::path path, RecordingHe
       report_(std::move(report)),
       decimation_(robot_keys(header), header.sample_every) {
   header.sample_every = decimation_.every();
+  watched_ = header.watched.size();
   buffer_.reserve(2 * kBuffer_bytes);
   buffer_ += "# " + to_json(header) + "\n";
 }
@@ -147,6 +148,10 @@ void RecordingWriter::robot_tick(std::int64_t now_ns, const RobotSample& sample)
   for (const SampleColumn& column : sample_columns()) {
     buffer_ += ' ';
     append_number(buffer_, column.get(sample));
+  }
+  for (std::size_t i = 0; i < watched_; ++i) {
+    buffer_ += ' ';
+    append_number(buffer_, i < sample.watched.size() ? sample.watched[i] : 0.0);
   }
   end_line(now_ns);
 }

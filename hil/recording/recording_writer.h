@@ -67,6 +67,7 @@ class RecordingWriter : public SessionObserver {
   SampleDecimation decimation_;
   std::int64_t flushed_ns_ = 0;
   std::int64_t next_ball_ns_ = 0;
+  std::size_t watched_ = 0;  // values of variables per sample
   std::uint64_t bytes_written_ = 0;
   std::error_code error_;
 };

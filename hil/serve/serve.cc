@@ -22,6 +22,7 @@
 #include "hil/serve/serve_signals.h"
 #include "hil/serve/status_printer.h"
 #include "hil/text/merged_lines.h"
+#include "hil/variables/variable_watch.h"
 #include "hil/wire/open_wire.h"
 #include "protocols/radio_format.h"
 
@@ -79,7 +80,11 @@ class Bench {
  public:
   Bench(SessionConfig config, const Session::FirmwareMaker& make_firmware, const ServeOptions& options,
         const Session::FirmwareMaker& opponents_firmware)
-      : options_(options), session_(std::move(config), make_firmware, opponents_firmware) {}
+      : options_(options), session_(std::move(config), make_firmware, opponents_firmware) {
+    if (options.watch.empty() && options.set.empty()) return;
+    variables_ = std::make_unique<VariableWatch>(options.firmware_file, options.watch, options.set, session_);
+    session_.set_watch(variables_.get());
+  }
 
   ServeEnd run(RecordingHeader header);
 
@@ -99,6 +104,7 @@ class Bench {
 
   const ServeOptions& options_;
   Session session_;
+  std::unique_ptr<VariableWatch> variables_;  // null: nobody looks at any
   StopSignals stop_;
   std::unique_ptr<ByteWire> wire_;
   std::unique_ptr<HostPort> port_;
@@ -190,6 +196,7 @@ bool Bench::open_recording(RecordingHeader header) {
   if (options_.record.empty()) return true;
   std::error_code error;
   header.firmware = session_.firmware(0).name();
+  if (variables_) header.watched = variables_->names();
   writer_ = RecordingWriter::open(options_.record, std::move(header), error, complain);
   if (!writer_) {
     complain("recording " + options_.record + ": " + error.message());
@@ -234,6 +241,7 @@ ServeStatus Bench::status() const {
   s.port = port_->counts();
   take_clock(clock_->report(), s);
   const RobotTruth truth = session_.plant().truth(0);
+  if (variables_) s.variables = variables_->text(0);
   s.robot_id = session_.config().robot_ids[0];
   s.omega_wheel_rad_s = truth.omega_wheel_rad_s;
   s.x_m = truth.x_m;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hil/debugger/gdb_server.h"
 #include "hil/league/league_host.h"
@@ -43,6 +44,8 @@ struct ServeOptions {
   std::vector<StartPose> starts;        // before the first step; in the recording
   std::string load;                     // what is said of the load (serve_load.h); lines with ends
   GdbServer* gdb = nullptr;             // not owned; the boards of `make_firmware` have been added to it
+  std::string firmware_file;            // that `watch` and `set` mean variables of
+  std::vector<std::string> watch, set;  // variables by name; "NAME=VALUE" at the start
   int league_sync_port = 0;             // TCP; time then goes on by the client's requests alone; 0: no
 };
 

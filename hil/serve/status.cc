@@ -92,6 +92,7 @@ std::string status_line(const ServeStatus& s, std::size_t width) {
       s.from_host.refused(), causes.empty() ? "" : " (" + causes + ")", s.from_robots.good, clock_words(s),
       s.robot_id, s.omega_wheel_rad_s[0], s.omega_wheel_rad_s[1], s.omega_wheel_rad_s[2],
       s.omega_wheel_rad_s[3], s.x_m, s.y_m, s.yaw_rad * 180.0 / std::numbers::pi);
+  if (!s.variables.empty()) line += " | " + s.variables;
   if (width > 0 && line.size() > width) line.resize(width);
   return line;
 }

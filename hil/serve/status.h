@@ -39,6 +39,7 @@ struct ServeStatus {
   int robot_id = 0;
   std::array<double, kWheels> omega_wheel_rad_s{};
   double x_m = 0, y_m = 0, yaw_rad = 0;
+  std::string variables;  // of its firmware, "ticks 120, mode kDriving"; empty: none is watched
 };
 
 void take_clock(const ClockReport& report, ServeStatus& status);

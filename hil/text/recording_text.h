@@ -19,6 +19,7 @@ std::string to_hex(std::span<const std::uint8_t> bytes);
 
 // The whole of `text` must be the value; a number must be finite. Hex takes digits of either case.
 bool parse_number(std::string_view text, double& value);
+bool is_no_number(std::string_view text, double& value);  // "nan", "inf", "-inf"
 bool parse_integer(std::string_view text, std::int64_t& value);
 bool parse_hex(std::string_view text, std::vector<std::uint8_t>& bytes);
 

@@ -28,6 +28,7 @@
 #include "tools/options/firmware_options.h"
 #include "tools/options/gdb_options.h"
 #include "tools/options/league_options.h"
+#include "tools/options/variable_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
@@ -104,6 +105,11 @@ std::string understand(Words& words) {
   }
   if (!words.motor_bus.bus.empty() && words.firmware.names_any()) {
     problems.push_back("--motor-bus and --firmware: a robot has one or the other");
+  }
+  words.options.firmware_file = words.firmware.all.file;
+  const bool variables = !words.options.watch.empty() || !words.options.set.empty();
+  if (variables && (!words.firmware.of.empty() || !words.firmware.opponents.empty())) {
+    problems.push_back("--watch, --set: all robots have to run one firmware (--firmware)");
   }
   understand_air(words.air, setup.air, problems);
   understand_field(words.field, words.with, setup, problems);
@@ -246,6 +252,7 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   add_gdb_options(verb, w.gdb);
   add_console_option(verb, w.console);
   add_bus_options(verb, w.motor_bus);
+  add_variable_options(verb, w.options.watch, w.options.set);
   add_field_options(verb, w.field);
   verb.add_option(
       "--opponents-device", w.options.opponents_device,
