@@ -25,6 +25,7 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware_iface/firmware_chip.h"
 #include "firmware_iface/robot_io.h"
 #include "sim/model/model_file.h"
 #include "sim/robot/robot_faults.h"
@@ -46,6 +47,8 @@ enum class StepKind : std::uint8_t {
   kOpponentAt,
   kMark,
   kRewind,
+  kSet,
+  kChip,
 };
 
 using WheelSet = std::array<bool, kWheels>;
@@ -65,6 +68,8 @@ struct ScenarioStep {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, yaw_rad = 0.0;  // kBall, kRobotAt, kOpponentAt
   double v_x_m_s = 0.0, v_y_m_s = 0.0, v_z_m_s = 0.0;     // kBall
   int opponent = 0;
+  std::string variable, value;  // kSet
+  ChipFault chip;               // kChip
 };
 
 enum class CheckKind : std::uint8_t {
@@ -74,6 +79,7 @@ enum class CheckKind : std::uint8_t {
   kSteadyError,
   kCommandedSign,
   kStopsAfterSilence,
+  kStopsSafely,
   kWindUp,
   kCurrentLimit,
   kDutyLimit,
@@ -87,10 +93,10 @@ struct ScenarioCheck {
   int line = 0;
   double from_s = 0.0, to_s = 0.0;
   WheelSet wheels{};
-  std::string_view signal{};                    // of scenario_signals.h
+  std::string signal{};                         // of scenario_signals.h
   std::optional<double> at_most{}, at_least{};  // in the check's unit
   double band_ratio = 0.05;                     // kSettlingTime
-  double standstill_rad_s = 1.0;                // kStopsAfterSilence
+  double standstill_rad_s = 1.0;                // kStopsAfterSilence, kStopsSafely
   bool magnitude = false;                       // kSignal: of the value's size
 };
 
@@ -111,6 +117,8 @@ struct Scenario {
   CommandPath path = CommandPath::kAny;
   double duration_s = 0.0;
   double command_every_s = 0.01;
+  std::string text;                 // of the file
+  bool goes_on = false;             // after a firmware has failed, too: what do its motors do then?
   std::vector<ScenarioStep> steps;  // by time
   std::vector<ScenarioCheck> checks;
 };

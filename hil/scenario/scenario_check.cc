@@ -135,9 +135,9 @@ class Checker {
   void one(const ScenarioCheck& c, std::size_t w) {
     CheckResult r = blank(c, w);
     const std::string_view signal = signal_of(c);
-    r.signals = {signal};
+    r.signals = {std::string(signal)};
     const ScenarioSignal& row = *find_scenario_signal(signal);
-    if (!row.target.empty()) r.signals.push_back(row.target);
+    if (!row.target.empty()) r.signals.emplace_back(row.target);
     if (signal != "duty_ratio" && row.of_wheels) r.signals.push_back("duty_ratio");
     const Window window = window_of(run_.trace, signal, w, c.from_s, c.to_s);
     constexpr double kTick_s = 0.0015;  // the last control period begins before the window's end
@@ -187,6 +187,8 @@ class Checker {
       }
       case CheckKind::kStopsAfterSilence:
         return standstill(c, w);
+      case CheckKind::kStopsSafely:
+        return safe_from(c, w, window_of(run_.trace, "driven_count", wheel, c.from_s, c.to_s));
       case CheckKind::kWindUp: {
         const double r = w.target.back();
         if (std::abs(r) < kSmallest) return {{}, c.from_s, "no speed is commanded after the release"};
@@ -205,6 +207,14 @@ class Checker {
     if (i == w.size()) {
       return {{}, w.t.back(), fmt::format("it still turns at {:.4g} rad/s", w.y.back())};
     }
+    return {w.t[i] - c.from_s, w.t[i], {}};
+  }
+
+  static Found safe_from(const ScenarioCheck& c, const Window& w, const Window& driven) {
+    std::size_t i = w.size();
+    while (i > 0 && (std::abs(w.y[i - 1]) < c.standstill_rad_s || driven.y[i - 1] == 0.0)) --i;
+    if (i == w.size())
+      return {{}, w.t.back(), fmt::format("it is still driven, at {:.4g} rad/s", w.y.back())};
     return {w.t[i] - c.from_s, w.t[i], {}};
   }
 
@@ -245,6 +255,13 @@ class Checker {
       r.passed = at_least ? *found.value >= limit : *found.value <= limit;
       results_.push_back(r);
     };
+    const auto no_number = std::ranges::find_if(w.y, [](double y) { return std::isnan(y); });
+    if (no_number != w.y.end()) {
+      r.measured = *no_number;
+      r.at_s = w.t[static_cast<std::size_t>(no_number - w.y.begin())];
+      results_.push_back(r);
+      return;
+    }
     if (c.at_most) judge(largest(w, value), *c.at_most, false);
     if (!c.at_least) return;
     Found least = largest(w, [&](std::size_t i) { return -value(i); });

@@ -31,8 +31,8 @@ struct CheckResult {
   std::string unit;
   double at_s = 0.0;  // instant of the measured value
   double from_s = 0.0, to_s = 0.0;
-  std::string note;                       // in words, where numbers do not say it
-  std::vector<std::string_view> signals;  // to plot
+  std::string note;                  // in words, where numbers do not say it
+  std::vector<std::string> signals;  // to plot
 
   std::string measured_text() const;  // "0.082 s", "never"
   std::string allowed_text() const;   // "at most 0.3 s"

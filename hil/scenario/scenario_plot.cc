@@ -17,6 +17,7 @@ std::string scenario_plot(const std::string& title, const ScenarioTrace& trace, 
   const std::size_t wheel = r.wheel < 0 ? 0 : static_cast<std::size_t>(r.wheel);
   for (const std::string_view name : r.signals) {
     std::string unit(find_scenario_signal(name)->unit);
+    if (name.starts_with(kVariablePrefix)) unit = name;  // of variables nobody knows which share one
     if (unit.empty()) unit = "ratio";
     const std::span<const double> y = trace.column(name, wheel);
     // Signals of one unit share a panel: what was and what was commanded lie over each other.

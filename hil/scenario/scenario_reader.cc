@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hil/scenario/chip_fault_reader.h"
 #include "hil/scenario/scenario.h"
 #include "hil/scenario/scenario_rows.h"
 #include "hil/scenario/scenario_signals.h"
@@ -55,9 +56,20 @@ class Reader {
  private:
   void head() {
     const toml::table& t = document_.table;
-    static constexpr std::string_view kKeys[] = {
-        "format",           "title", "what",  "level", "robot",    "stand", "commands", "duration_s",
-        "command_every_ms", "step",  "check", "field", "opponents"};
+    static constexpr std::string_view kKeys[] = {"format",
+                                                 "title",
+                                                 "what",
+                                                 "level",
+                                                 "robot",
+                                                 "stand",
+                                                 "commands",
+                                                 "duration_s",
+                                                 "command_every_ms",
+                                                 "step",
+                                                 "check",
+                                                 "field",
+                                                 "opponents",
+                                                 "goes_on_after_failure"};
     keys_.only(t, "", kKeys);
     static constexpr std::string_view kFormat[] = {"omnihil-scenario/1"};
     need(t, "", "format", "\"omnihil-scenario/1\"");
@@ -72,6 +84,7 @@ class Reader {
     static constexpr std::string_view kPaths[] = {"any", "radio", "hal"};
     out_.path = static_cast<CommandPath>(keys_.word(t, "", "commands", kPaths, 0).value_or(0));
     out_.stand = flag(t, "", "stand");
+    out_.goes_on = flag(t, "", "goes_on_after_failure");
     std::vector<std::string_view> fields;
     for (const FieldSize& size : field_sizes()) fields.push_back(size.name);
     if (t.get("field") != nullptr) {
@@ -190,17 +203,29 @@ class Reader {
     const auto kind = keys_.word(t, path, "do", words, std::nullopt);
     ScenarioStep s;
     s.line = static_cast<int>(t.source().begin.line);
-    s.at_s = time(t, path, "at_s", false, out_.duration_s > 0.0 ? out_.duration_s : kLongest_s).value_or(0.0);
+    const double last_s = out_.duration_s > 0.0 ? out_.duration_s : kLongest_s;
+    const bool of_chip = kind && step_rows()[*kind].kind == StepKind::kChip;  // between any two instructions
+    s.at_s =
+        of_chip
+            ? keys_.number(t, path, "at_s", 0.0, last_s, false, fmt::format("allowed: 0 to {:g} s", last_s))
+                  .value_or(0.0)
+            : time(t, path, "at_s", false, last_s).value_or(0.0);
     if (!kind) return;
     const StepRow& row = step_rows()[*kind];
     s.kind = row.kind;
+    if (of_chip) s.chip.kind = *chip_fault_kind(row.word);
     std::vector<std::string_view> known = words_of(row.keys);
     known.insert(known.end(), {"at_s", "do"});
     if (row.lasts) known.push_back("for_s");
     if (row.of_wheels) known.push_back("wheels");
     keys_.only(t, path, known);
     s.until_s = out_.duration_s;
-    if (const auto span = time(t, path, "for_s", true, kLongest_s)) s.until_s = s.at_s + *span;
+    if (const auto span =
+            of_chip ? keys_.number(t, path, "for_s", 0.0, kLongest_s, true, "allowed: above 0 to 600 s")
+                    : time(t, path, "for_s", true, kLongest_s)) {
+      s.until_s = s.at_s + *span;
+      s.chip.until_ns = std::llround(s.until_s * 1e9);
+    }
     if (row.of_wheels) s.wheels = wheels(t, path, true);
     step_values(t, path, s);
     out_.steps.push_back(s);
@@ -243,6 +268,15 @@ class Reader {
         break;
       case StepKind::kRobotAt:
         place(t, path, s);
+        break;
+      case StepKind::kSet:
+        need(t, path, "name", "a variable of the firmware");
+        s.variable = keys_.text(t, path, "name").value_or("");
+        s.value = value_text(keys_, t, path);
+        break;
+      case StepKind::kChip:
+        s.chip.at_ns = std::llround(s.at_s * 1e9);
+        read_chip_fault(keys_, t, path, s.chip);
         break;
       default:
         break;
@@ -349,7 +383,10 @@ class Reader {
       for (const ScenarioSignal& s : scenario_signals()) {
         if (!row.follows_step || !s.target.empty()) allowed.push_back(s.name);
       }
-      if (std::ranges::find(allowed, *name) == allowed.end()) {
+      const bool variable = !row.follows_step && name->starts_with(kVariablePrefix);
+      if (variable && name->size() > kVariablePrefix.size()) {
+        c.signal = *name;
+      } else if (std::ranges::find(allowed, *name) == allowed.end()) {
         keys_.wrong(*t.get("signal"), key_path(path, "signal"), "no such signal here",
                     spelling_hint(*name, allowed));
       } else {
@@ -390,7 +427,7 @@ class Reader {
     const ScenarioStep* cause = nullptr;
     const bool follows = row.follows_step || c.kind == CheckKind::kWheelOrder;
     if (follows) cause = find_step(StepKind::kCommand, std::max(0.0, c.from_s));
-    if (c.kind == CheckKind::kStopsAfterSilence) cause = find_step(StepKind::kRadioSilence, c.from_s);
+    if (follows_silence(c.kind)) cause = find_step(StepKind::kRadioSilence, c.from_s);
     if (c.kind == CheckKind::kWindUp) cause = find_step(StepKind::kWheelBlocked, c.from_s);
     if (follows && cause == nullptr && c.from_s < 0.0) {
       return wrong_check(n, fmt::format("\"{}\" has no command to follow", row.word),
@@ -404,7 +441,7 @@ class Reader {
     if (c.kind == CheckKind::kWindUp) {
       c.from_s = cause->until_s;
       for (std::size_t w = 0; w < kWheels; ++w) c.wheels[w] = c.wheels[w] && cause->wheels[w];
-    } else if (c.kind == CheckKind::kStopsAfterSilence) {
+    } else if (follows_silence(c.kind)) {
       c.from_s = cause->at_s;
       if (c.to_s < 0.0) c.to_s = cause->until_s;
     } else if (c.from_s < 0.0) {
@@ -417,9 +454,10 @@ class Reader {
     }
   }
 
-  static bool needs_cause(CheckKind kind) {
-    return kind == CheckKind::kWindUp || kind == CheckKind::kStopsAfterSilence;
+  static bool follows_silence(CheckKind kind) {
+    return kind == CheckKind::kStopsAfterSilence || kind == CheckKind::kStopsSafely;
   }
+  static bool needs_cause(CheckKind kind) { return kind == CheckKind::kWindUp || follows_silence(kind); }
 
   double next_step_s(double after_s) const {
     for (const ScenarioStep& s : out_.steps) {
@@ -441,6 +479,7 @@ ScenarioReading read_scenario(std::string_view text, const std::string& file) {
   const auto document = parse_document(text, file, reading.problems);
   if (!document) return reading;
   Scenario scenario = Reader(*document, reading.problems).read();
+  scenario.text = text;
   if (reading.problems.empty()) reading.scenario = std::move(scenario);
   return reading;
 }

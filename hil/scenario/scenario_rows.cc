@@ -49,6 +49,33 @@ constexpr StepRow kSteps[] = {
     {StepKind::kRewind, "rewind", false, false, "",
      "all of it goes back to the last mark, or to the start; firmware, radio and encoder counts go on",
      "at_s = 1.5, do = \"rewind\""},
+    {StepKind::kSet, "set", false, false, "name value",
+     "a variable of the firmware, by name, is given this value (docs/variables.md)",
+     "at_s = 1.0, do = \"set\", name = \"wheel[2].integral\", value = 0.5"},
+    {StepKind::kChip, "flip_ram", false, false, "address bit board",
+     "a bit of a byte of the emulated chip's RAM turns over; of all steps on the chip at_s may be any "
+     "instant",
+     "at_s = 1.000123, do = \"flip_ram\", address = 0x20000010, bit = 3"},
+    {StepKind::kChip, "flip_register", false, false, "register bit board",
+     "a bit of a core register turns over: 0 to 12, 13 the stack pointer, 14 the link register",
+     "at_s = 1.000123, do = \"flip_register\", register = 4, bit = 30"},
+    {StepKind::kChip, "flip_flash", false, false, "address bit board",
+     "a bit of a byte of the flash turns over, for good",
+     "at_s = 1.0, do = \"flip_flash\", address = 0x08000400, bit = 0"},
+    {StepKind::kChip, "clock_off", true, false, "ratio board",
+     "the chip's oscillators run at this part of their rate",
+     "at_s = 1.0, for_s = 0.5, do = \"clock_off\", ratio = 0.99"},
+    {StepKind::kChip, "brown_out_reset", false, false, "board",
+     "the chip is reset as by its brown-out detector", "at_s = 1.0, do = \"brown_out_reset\""},
+    {StepKind::kChip, "interrupt_storm", true, false, "irq rate_Hz board",
+     "this interrupt of the chip is raised so often, whoever else raises it",
+     "at_s = 1.0, for_s = 0.2, do = \"interrupt_storm\", irq = 37, rate_Hz = 20000.0"},
+    {StepKind::kChip, "dma_error", false, false, "board",
+     "a DMA transfer that is going on fails: its channel is off, with the error flag",
+     "at_s = 1.0, do = \"dma_error\""},
+    {StepKind::kChip, "watchdog_late", true, false, "ratio board",
+     "the independent watchdog's oscillator runs at this part of its rate",
+     "at_s = 1.0, do = \"watchdog_late\", ratio = 0.5"},
 };
 
 constexpr CheckRow kChecks[] = {
@@ -65,6 +92,8 @@ constexpr CheckRow kChecks[] = {
     {CheckKind::kStopsAfterSilence, "stops_after_silence", "s", "s", true, false, "standstill_rad_s",
      "time from the start of radio_silence until the wheel stands for good (slower than standstill_rad_s, "
      "1)"},
+    {CheckKind::kStopsSafely, "stops_safely", "s", "s", true, false, "standstill_rad_s",
+     "time from the start of radio_silence from which on, for good, the wheel stands or its bridge is off"},
     {CheckKind::kWindUp, "wind_up", "ratio", "", true, false, "",
      "largest excess over the commanded wheel speed after a blocked wheel is released, as part of it"},
     {CheckKind::kCurrentLimit, "current_limit", "A", "A", true, false, "", "largest motor current"},
@@ -84,6 +113,22 @@ constexpr CheckRow kChecks[] = {
 
 std::span<const StepRow> step_rows() { return kSteps; }
 std::span<const CheckRow> check_rows() { return kChecks; }
+
+namespace {
+// In the order of ChipFaultKind.
+constexpr std::string_view kChipWords[] = {"flip_ram",  "flip_register",   "flip_flash",
+                                           "clock_off", "brown_out_reset", "interrupt_storm",
+                                           "dma_error", "watchdog_late"};
+static_assert(std::size(kChipWords) == kChipFaultKinds);
+}  // namespace
+
+std::optional<ChipFaultKind> chip_fault_kind(std::string_view word) {
+  const auto found = std::ranges::find(kChipWords, word);
+  if (found == std::end(kChipWords)) return std::nullopt;
+  return static_cast<ChipFaultKind>(found - std::begin(kChipWords));
+}
+
+std::string_view chip_fault_word(ChipFaultKind kind) { return kChipWords[static_cast<std::size_t>(kind)]; }
 
 const StepRow& row_of(StepKind kind) { return *std::ranges::find(kSteps, kind, &StepRow::kind); }
 

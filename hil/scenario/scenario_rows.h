@@ -1,5 +1,6 @@
 // The steps and checks there are: one row each, for the reader, the help and the reports.
 #pragma once
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -31,6 +32,9 @@ struct CheckRow {
 std::span<const StepRow> step_rows();
 std::span<const CheckRow> check_rows();
 const StepRow& row_of(StepKind kind);
+// Of the steps that break the chip.
+std::optional<ChipFaultKind> chip_fault_kind(std::string_view word);
+std::string_view chip_fault_word(ChipFaultKind kind);
 const CheckRow& row_of(CheckKind kind);
 
 }  // namespace omnihil

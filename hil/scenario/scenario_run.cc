@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "firmware_iface/firmware_checks.h"
 #include "hil/loop/session_checks.h"
 #include "hil/loop/timed_faults.h"
+#include "hil/scenario/scenario_rows.h"
+#include "hil/variables/variable_watch.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
@@ -18,7 +21,8 @@ std::int64_t ns(double time_s) { return std::llround(time_s * 1e3) * 1'000'000; 
 
 class Bench : public SessionObserver {
  public:
-  Bench(const Scenario& scenario, const SessionConfig& config, const Session::FirmwareMaker& make_firmware)
+  Bench(const Scenario& scenario, const SessionConfig& config, const Session::FirmwareMaker& make_firmware,
+        const ScenarioVariables& variables)
       : scenario_(scenario),
         geometry_(wheel_geometry(config.robots.at(0))),
         model_(config.robots.at(0)),
@@ -34,6 +38,8 @@ class Bench : public SessionObserver {
                        "host's commands can be written in",
                        scenario.file, session_.firmware(0).name())});
     }
+    look_at(variables);
+    break_chip();
   }
 
   ScenarioRun run() {
@@ -41,7 +47,7 @@ class Bench : public SessionObserver {
     marked_ = session_.world().save();
     const std::int64_t end_ns = ns(scenario_.duration_s);
     try {
-      while (session_.now_ns() < end_ns && run_.failure.empty()) {
+      while (session_.now_ns() < end_ns && (run_.failure.empty() || scenario_.goes_on)) {
         begin_and_end_steps();
         session_.step(host_packet(), answer_);
         answer_.clear();
@@ -53,6 +59,11 @@ class Bench : public SessionObserver {
     run_.commands = format_ != nullptr && !past_radio_
                         ? fmt::format("commands by radio {}", session_.config().radio_format)
                         : std::string("commands past the radio");
+    if (const FirmwareChip* const chip = session_.firmware_chip(0)) {
+      run_.ram_in_use = chip->ram_in_use();
+      run_.flash_in_use = chip->flash_in_use();
+      run_.interrupts_in_use = chip->interrupts_in_use();
+    }
     return std::move(run_);
   }
 
@@ -84,10 +95,51 @@ class Bench : public SessionObserver {
   }
 
  private:
+  // What the scenario names and what is asked for besides.
+  void look_at(const ScenarioVariables& wanted) {
+    std::vector<std::string> watch, problems;
+    for (const ScenarioCheck& check : scenario_.checks) {
+      if (check.signal.starts_with(kVariablePrefix))
+        watch.push_back(check.signal.substr(kVariablePrefix.size()));
+    }
+    const std::size_t of_checks = watch.size();
+    watch.insert(watch.end(), wanted.watch.begin(), wanted.watch.end());
+    const auto sets = [](const ScenarioStep& step) { return step.kind == StepKind::kSet; };
+    if (watch.empty() && wanted.set.empty() && std::ranges::none_of(scenario_.steps, sets)) return;
+    variables_ = std::make_unique<VariableWatch>(wanted.file, watch, wanted.set, session_);
+    for (std::size_t i = 0; i < of_checks; ++i) {
+      if (std::ranges::find(variables_->names(), watch[i]) == variables_->names().end())
+        problems.push_back(fmt::format("{}: variable {}: is no single value", scenario_.file, watch[i]));
+    }
+    for (const ScenarioStep& step : scenario_.steps) {
+      if (!sets(step)) continue;
+      const std::string problem = variables_->set_problem(step.variable, step.value);
+      if (!problem.empty()) problems.push_back(fmt::format("{}:{}: {}", scenario_.file, step.line, problem));
+    }
+    throw_problems(problems);
+    session_.set_watch(variables_.get());
+    run_.trace = ScenarioTrace(variables_->names());
+  }
+
+  // All of them are given to the chip at once: it knows their instants better.
+  void break_chip() {
+    std::vector<std::string> problems;
+    for (const ScenarioStep& step : scenario_.steps) {
+      if (step.kind != StepKind::kChip) continue;
+      FirmwareChip* const chip = session_.firmware_chip(0);
+      const std::string problem =
+          chip != nullptr ? chip->schedule(step.chip) : "needed: an image on an emulated ARM board";
+      if (!problem.empty())
+        problems.push_back(fmt::format("{}:{}: {}: {}", scenario_.file, step.line,
+                                       chip_fault_word(step.chip.kind), problem));
+    }
+    throw_problems(problems);
+  }
+
   void note_failure() {
     const std::string_view failure = session_.firmware(0).failure();
     if (failure.empty()) return;
-    run_.failure = failure;
+    if (!scenario_.goes_on) run_.failure = failure;
     run_.firmware_failed = true;
   }
 
@@ -108,7 +160,8 @@ class Bench : public SessionObserver {
 
   static bool at_an_instant(StepKind kind) {
     return kind == StepKind::kCommand || kind == StepKind::kBall || kind == StepKind::kRobotAt ||
-           kind == StepKind::kOpponentAt || kind == StepKind::kMark || kind == StepKind::kRewind;
+           kind == StepKind::kOpponentAt || kind == StepKind::kMark || kind == StepKind::kRewind ||
+           kind == StepKind::kSet || kind == StepKind::kChip;
   }
 
   void begin(const ScenarioStep& step) {
@@ -132,6 +185,9 @@ class Bench : public SessionObserver {
         break;
       case StepKind::kRewind:
         session_.set_world(marked_);
+        break;
+      case StepKind::kSet:
+        variables_->set(0, step.variable, step.value);
         break;
       default:
         break;
@@ -224,14 +280,15 @@ class Bench : public SessionObserver {
   std::uint64_t stale_periods_ = 0;
   std::vector<std::uint8_t> packet_, answer_;
   ScenarioRun run_;
-  std::vector<std::uint8_t> marked_;  // the world at the last mark
+  std::vector<std::uint8_t> marked_;          // the world at the last mark
+  std::unique_ptr<VariableWatch> variables_;  // null: nothing of the firmware is looked at
 };
 
 }  // namespace
 
 ScenarioRun run_scenario(const Scenario& scenario, const SessionConfig& config,
-                         const Session::FirmwareMaker& make_firmware) {
-  return Bench(scenario, config, make_firmware).run();
+                         const Session::FirmwareMaker& make_firmware, const ScenarioVariables& variables) {
+  return Bench(scenario, config, make_firmware, variables).run();
 }
 
 }  // namespace omnihil

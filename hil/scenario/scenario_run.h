@@ -7,6 +7,7 @@
 // A pure function of its arguments: the same bits every time, at any load of this computer.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "hil/loop/session.h"
 #include "hil/scenario/scenario.h"
@@ -21,11 +22,22 @@ struct ScenarioRun {
   std::string
       failure;  // the firmware answers no more, or a state is not finite: when and why; empty: neither
   bool firmware_failed = false;
+  // Of an emulated chip: what of it was in use.
+  std::vector<ChipMemoryRange> ram_in_use, flash_in_use;
+  std::vector<int> interrupts_in_use;
+};
+
+// Variables of the firmware by name (hil/variables/), besides those that the scenario itself names.
+struct ScenarioVariables {
+  std::string file;                // that the firmware comes from
+  std::vector<std::string> watch;  // for the trace
+  std::vector<std::string> set;    // "NAME=VALUE", at the start
 };
 
 // `config` has one robot. std::invalid_argument: the configuration, or a command that the path of the
-// scenario cannot carry.
+// scenario cannot carry, or variables that are not there.
 ScenarioRun run_scenario(const Scenario& scenario, const SessionConfig& config,
-                         const Session::FirmwareMaker& make_firmware);
+                         const Session::FirmwareMaker& make_firmware,
+                         const ScenarioVariables& variables = {});
 
 }  // namespace omnihil

@@ -18,6 +18,8 @@ constexpr ScenarioSignal kSignals[] = {
      "wheel speed that the firmware reports", [](S s, W w) { return s.robot.feedback.omega_wheel_rad_s[w]; }},
     {"duty_ratio", "ratio", "", true, "", "duty that the firmware asks for",
      [](S s, W w) { return s.robot.drive.duty_ratio[w]; }},
+    {"driven_count", "count", "", true, "", "1 while the wheel's bridge is on",
+     [](S s, W w) { return s.robot.drive.mode[w] == OMNIHIL_DRIVE_COAST ? 0.0 : 1.0; }},
     {"motor_current_A", "A", "A", true, "", "true motor current at the control period's start",
      [](S s, W w) { return s.robot.truth.motor_current_A[w]; }},
     {"slip_ratio", "ratio", "", true, "", "true slip of the wheel",
@@ -64,16 +66,21 @@ constexpr ScenarioSignal kSignals[] = {
      [](S s, W) { return s.tips; }},
 };
 
+constexpr ScenarioSignal kVariable = {
+    kVariablePrefix, "value", "", false, "", "a variable of the firmware", [](S, W) { return 0.0; }};
+
 }  // namespace
 
 std::span<const ScenarioSignal> scenario_signals() { return kSignals; }
 
 const ScenarioSignal* find_scenario_signal(std::string_view name) {
+  if (name.starts_with(kVariablePrefix)) return &kVariable;
   const auto found = std::ranges::find(kSignals, name, &ScenarioSignal::name);
   return found == std::end(kSignals) ? nullptr : found;
 }
 
-ScenarioTrace::ScenarioTrace() : columns_(std::size(kSignals) * kWheels) {}
+ScenarioTrace::ScenarioTrace(std::vector<std::string> variables)
+    : columns_(std::size(kSignals) * kWheels + variables.size()), variables_(std::move(variables)) {}
 
 void ScenarioTrace::add(double now_s, const ScenarioSample& sample) {
   time_s_.push_back(now_s);
@@ -83,11 +90,19 @@ void ScenarioTrace::add(double now_s, const ScenarioSample& sample) {
       columns_[n * kWheels + w].push_back(kSignals[n].value(sample, w));
     }
   }
+  const std::size_t first = std::size(kSignals) * kWheels;
+  for (std::size_t i = 0; i < std::min(variables_.size(), sample.robot.watched.size()); ++i)
+    columns_[first + i].push_back(sample.robot.watched[i]);
 }
 
 std::span<const double> ScenarioTrace::column(std::string_view signal, std::size_t wheel) const {
   const ScenarioSignal* row = find_scenario_signal(signal);
   if (row == nullptr) return {};
+  if (row == &kVariable) {
+    const auto found = std::ranges::find(variables_, signal.substr(kVariablePrefix.size()));
+    if (found == variables_.end()) return {};
+    return columns_[std::size(kSignals) * kWheels + static_cast<std::size_t>(found - variables_.begin())];
+  }
   const auto n = static_cast<std::size_t>(row - kSignals);
   return columns_[n * kWheels + (row->of_wheels ? wheel : 0)];
 }

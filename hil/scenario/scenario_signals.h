@@ -36,19 +36,25 @@ struct ScenarioSignal {
   double (*value)(const ScenarioSample& sample, std::size_t wheel);
 };
 
+// "var:wheel[2].integral": a variable of the firmware, by name (hil/variables/); its row is the same for all.
+inline constexpr std::string_view kVariablePrefix = "var:";
+
 std::span<const ScenarioSignal> scenario_signals();
 const ScenarioSignal* find_scenario_signal(std::string_view name);
 
 class ScenarioTrace {
  public:
-  ScenarioTrace();
+  // `variables`: names of what RobotSample::watched holds.
+  explicit ScenarioTrace(std::vector<std::string> variables = {});
   void add(double now_s, const ScenarioSample& sample);
   std::span<const double> time_s() const { return time_s_; }
   std::span<const double> column(std::string_view signal, std::size_t wheel = 0) const;
+  const std::vector<std::string>& variables() const { return variables_; }
 
  private:
   std::vector<double> time_s_;
-  std::vector<std::vector<double>> columns_;  // signal by signal, four each
+  std::vector<std::vector<double>> columns_;  // signal by signal, four each; then a variable each
+  std::vector<std::string> variables_;
 };
 
 }  // namespace omnihil

@@ -14,6 +14,7 @@
 #include "hil/loop/session_checks.h"
 #include "hil/recording/session_setup.h"
 #include "hil/scenario/scenario_plot.h"
+#include "hil/scenario/trace_csv.h"
 #include "hil/text/text_file.h"
 
 namespace omnihil {
@@ -119,15 +120,22 @@ SuiteReading read_suite(const std::vector<std::string>& paths, const std::string
   return suite;
 }
 
-ScenarioOutcome run_one(const Scenario& scenario, const SuiteOptions& options) {
+ScenarioRun run_of(const Scenario& scenario, const SuiteOptions& options) {
   const SessionConfig config = config_of(scenario, options);
   const Session::FirmwareMaker maker = open_firmware(options.firmware, config);
-  const ScenarioRun run = run_scenario(scenario, config, [&](const RobotConfig& robot) {
+  const auto make = [&](const RobotConfig& robot) {
     std::unique_ptr<Firmware> firmware = maker(robot);
     if (options.gdb != nullptr && !options.gdb->problem().empty())
       throw std::invalid_argument("--gdb: " + options.gdb->problem());
     return firmware;
-  });
+  };
+  return run_scenario(scenario, config, make, {options.firmware.file, options.watch, options.set});
+}
+
+ScenarioOutcome run_one(const Scenario& scenario, const SuiteOptions& options) {
+  const ScenarioRun run = run_of(scenario, options);
+  if (!options.csv.empty())
+    write(fs::path(options.csv) / (fs::path(scenario.file).stem().string() + ".csv"), trace_csv(run.trace));
   ScenarioOutcome outcome;
   outcome.scenario = scenario;
   outcome.firmware = run.firmware;

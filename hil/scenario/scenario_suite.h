@@ -30,10 +30,14 @@ struct SuiteOptions {
   std::vector<std::string> model_folders;
   Physics physics = Physics::kPlanar;
   std::uint64_t seed = 0;
-  GdbServer* gdb = nullptr;  // not owned; firmware.listeners adds to it
-  std::string plots;         // folder for the plots of failed checks; empty: none
+  GdbServer* gdb = nullptr;             // not owned; firmware.listeners adds to it
+  std::string plots;                    // folder for the plots of failed checks; empty: none
+  std::vector<std::string> watch, set;  // variables of the firmware, and "NAME=VALUE" at the start
+  std::string csv;                      // folder for one table of all signals per scenario; empty: none
 };
 
+// The run alone, with robot, firmware and the rest as they are asked for.
+ScenarioRun run_of(const Scenario& scenario, const SuiteOptions& options);
 // std::invalid_argument: robot, effects, radio or firmware cannot be used. std::system_error: a plot cannot
 // be written.
 ScenarioOutcome run_one(const Scenario& scenario, const SuiteOptions& options);
