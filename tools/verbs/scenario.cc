@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -17,6 +18,9 @@
 #include "tools/options/console_options.h"
 #include "tools/options/firmware_options.h"
 #include "tools/options/gdb_options.h"
+#include "tools/options/observe_options.h"
+#include "tools/options/scenario_fuzz.h"
+#include "tools/options/variable_options.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -30,6 +34,7 @@ struct Arguments {
   SuiteOptions suite;
   GdbWords gdb;
   std::string console;
+  ObserveWords observe;
 };
 
 void print_rows() {
@@ -50,6 +55,10 @@ void print_rows() {
   for (const ScenarioSignal& row : scenario_signals()) {
     fmt::print("  {:<28} {}{}\n", row.name, row.what, row.of_wheels ? ", per wheel" : "");
   }
+  fmt::print(
+      "  {:<28} a variable of the firmware by name (omnihil variables); its limits: at_most_value, "
+      "at_least_value\n",
+      "var:NAME");
 }
 
 int list(const Arguments& a) {
@@ -86,6 +95,8 @@ int run(Arguments& a) {
   a.suite.gdb = gdb.get();
   a.suite.firmware.listeners.on_line = console_listener(a.console);
   a.suite.firmware.listeners.on_board = gdb_listener(gdb.get());
+  ImageReports reports(a.observe, a.suite.firmware.file);
+  a.suite.firmware.observer = reports.observer();
   std::vector<ScenarioOutcome> outcomes;
   bool passed = true, firmware_failed = false;
   for (const Scenario& scenario : suite.scenarios) {
@@ -93,11 +104,14 @@ int run(Arguments& a) {
     const ScenarioOutcome& o = outcomes.back();
     if (outcomes.size() == 1) fmt::print("firmware \"{}\"\n", o.firmware);
     fmt::print("{}", scenario_text(o, a.all));
+    const std::string stem = std::filesystem::path(scenario.file).stem().string();
+    fmt::print("{}", reports.write_trace(suite.scenarios.size() > 1 ? stem : "", !o.passed()));
     std::fflush(stdout);
     passed = passed && o.passed();
     firmware_failed = firmware_failed || o.firmware_failed;
   }
   fmt::print("{}", summary_line(outcomes));
+  fmt::print("{}", reports.write_profile());
   if (!a.junit.empty()) write_junit(a.junit, outcomes);
   const int code = firmware_failed ? kExitFirmware : passed ? kExitOk : kExitDiffers;
   if (gdb) gdb->end(code);
@@ -115,6 +129,11 @@ void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result
   add_firmware_options(sub, a->suite.firmware);
   add_gdb_options(sub, a->gdb);
   add_console_option(sub, a->console);
+  add_variable_options(sub, a->suite.watch, a->suite.set);
+  add_observe_options(sub, a->observe);
+  sub.add_option(
+      "--csv", a->suite.csv,
+      "folder for a table per scenario: every signal and watched variable at every control period");
   sub.add_option("--level", a->level,
                  "wheel: what a firmware of one wheel can do, too; robot; without it: all")
       .one_of({"wheel", "robot", "field"});
@@ -147,6 +166,7 @@ void add_verb_scenario(Verb& program, VerbResult& result) {
   verb.require_subcommand(1);
   auto a = std::make_shared<Arguments>();
   add_run(verb, a, result);
+  add_scenario_fuzz(verb, result);
   auto b = std::make_shared<Arguments>();
   Verb sub =
       verb.add_subcommand("list", "what can stand in a scenario; or the scenarios in files and folders");

@@ -1,0 +1,58 @@
+// The reference image on its board, run by itself for a while: standing shafts, a full battery, no radio.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware_iface/mcu/board/board_spec.h"
+#include "firmware_iface/mcu/board/mcu_firmware.h"
+#include "hil/loop/model_store.h"
+#include "hil/loop/session_checks.h"
+
+namespace omnihil {
+
+inline std::string bytes_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class ObservedImage {
+ public:
+  explicit ObservedImage(const std::string& image = OMNIHIL_BUILD_DIR "/images/omni_reference_f405.elf") {
+    const std::string board_file = OMNIHIL_SOURCE_DIR "/boards/omni_reference_f405.toml";
+    const std::string text = bytes_text(image);
+    std::vector<std::string> problems;
+    mcu::read_elf({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, elf, problems);
+    EXPECT_EQ(problems, std::vector<std::string>{});
+    std::vector<mcu::BoardProblem> board_problems;
+    const auto board = mcu::read_board(bytes_text(board_file), board_file, board_problems, {});
+    EXPECT_TRUE(board.has_value());
+    const StoredModel stored = load_robot_model("omni_default", {OMNIHIL_SOURCE_DIR "/models"});
+    firmware = std::make_unique<mcu::McuFirmware>(*board, elf, robot_config(*stored.model->robot, 0));
+  }
+
+  void run_ms(int ms) {
+    const std::int64_t end_ns = now_ns_ + std::int64_t{ms} * 1'000'000;
+    for (; now_ns_ < end_ns; now_ns_ += firmware->control_period_ns()) {
+      RobotSensors sensors{};
+      sensors.now_us = static_cast<std::uint64_t>(now_ns_ / 1000);
+      sensors.bus_voltage_V = 24.0;
+      firmware->shafts({});
+      firmware->tick(sensors);
+    }
+  }
+  mcu::Machine& machine() { return firmware->board(0).machine(); }
+
+  mcu::ElfImage elf;
+  std::unique_ptr<mcu::McuFirmware> firmware;
+
+ private:
+  std::int64_t now_ns_ = 0;
+};
+
+}  // namespace omnihil

@@ -1,0 +1,89 @@
+#include "tools/options/observe_options.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+#include "hil/observe/profile_text.h"
+#include "hil/text/text_file.h"
+
+namespace omnihil {
+namespace {
+
+void write_file(const std::string& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.flush();
+  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), path);
+}
+
+}  // namespace
+
+void add_observe_options(Verb& verb, ObserveWords& words) {
+  verb.add_option("--trace", words.trace,
+                  "write what the image does to this .json: interrupts, functions, stack, control period "
+                  "(ui.perfetto.dev, chrome://tracing; docs/observe.md)");
+  verb.add_option("--trace-last", words.last_s,
+                  "keep the last so many seconds only, and write them when a check fails")
+      .not_negative();
+  verb.add_option("--trace-filter", words.filter, "only functions whose name has this in it");
+  verb.add_option("--coverage", words.coverage,
+                  "write which lines of the image ran, over all runs (lcov .info)");
+  verb.add_option(
+      "--profile", words.profile,
+      "write cycles by function and caller, over all runs (callgrind), and print a table of them");
+}
+
+ImageReports::ImageReports(const ObserveWords& words, const std::string& image_file)
+    : words_(words), image_file_(image_file) {
+  const bool profile = !words.coverage.empty() || !words.profile.empty();
+  if (!words.trace.empty() && profile)
+    throw std::invalid_argument("--trace beside --coverage or --profile: one at a time");
+  if (words.trace.empty() && (words.last_s > 0.0 || !words.filter.empty()))
+    throw std::invalid_argument("--trace-last, --trace-filter: needed: --trace FILE.json");
+  if (!words.trace.empty() && !words.trace.ends_with(".json"))
+    throw std::invalid_argument("--trace " + words.trace + ": allowed: a name that ends in .json");
+  if (!words.trace.empty())
+    trace_ = std::make_shared<ImageTrace>(ImageTraceOptions{words.last_s, words.filter});
+  if (profile) profile_ = std::make_shared<ImageProfile>();
+}
+
+std::shared_ptr<ImageObserver> ImageReports::observer() const {
+  if (trace_) return trace_;
+  return profile_;
+}
+
+std::string ImageReports::write_trace(const std::string& name, bool failed) {
+  if (!trace_) return {};
+  std::string said;
+  if (trace_->events() == 0) {
+    said = "trace: nothing was seen: needed: an image on an emulated ARM board\n";
+  } else if (words_.last_s <= 0.0 || failed) {
+    std::filesystem::path path(words_.trace);
+    if (!name.empty()) path.replace_filename(path.stem().string() + "-" + name + ".json");
+    write_file(path.string(), trace_->json());
+    said = fmt::format("  trace {} ({} events)\n", path.string(), trace_->events());
+  }
+  trace_->clear();
+  return said;
+}
+
+std::string ImageReports::write_profile() {
+  if (!profile_) return {};
+  if (profile_->functions().empty())
+    return "profile: nothing was seen: needed: an image on an emulated ARM board\n";
+  std::string error;
+  const std::string text = read_text_file(image_file_, error);
+  const std::vector<DebugLine> lines = read_lines({text.begin(), text.end()});
+  if (!words_.coverage.empty() && lines.empty())
+    throw std::invalid_argument("--coverage: " + image_file_ + " has no lines: compile and link it with -g");
+  if (!words_.coverage.empty()) write_file(words_.coverage, lcov_text(*profile_, lines));
+  if (words_.profile.empty()) return {};
+  write_file(words_.profile, callgrind_text(*profile_, lines));
+  return profile_table(*profile_);
+}
+
+}  // namespace omnihil
