@@ -20,8 +20,15 @@ std::string roff(const std::string& text) {
   return out;
 }
 
+// A line may break behind each comma: a list of words that are allowed is longer than one.
+std::string breakable(const std::string& head) {
+  std::string out;
+  for (const char c : head) out += c == ',' ? std::string(",\\:") : std::string(1, c);
+  return out;
+}
+
 std::string item(const std::string& head, const std::string& text) {
-  return fmt::format(".TP\n.B {}\n{}\n", roff(head), roff(text));
+  return fmt::format(".TP\n.B {}\n{}\n", breakable(roff(head)), roff(text));
 }
 
 std::string usage_text(const Command& command) {

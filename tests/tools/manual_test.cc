@@ -41,6 +41,11 @@ std::vector<std::string> help_rows(const std::string& help, const std::string& t
 }
 
 // The rows of a page below a heading (".SH OPTIONS", ".SS OPTIONS"), the first time after `from`.
+// What roff makes of "\-" and of "\:", where a line may break.
+std::string unescaped(const std::string& line) {
+  return std::regex_replace(std::regex_replace(line, std::regex("\\\\-"), "-"), std::regex("\\\\:"), "");
+}
+
 std::vector<std::string> page_rows(const std::string& page, const std::string& heading,
                                    std::size_t from = 0) {
   std::vector<std::string> rows;
@@ -50,7 +55,7 @@ std::vector<std::string> page_rows(const std::string& page, const std::string& h
   std::string line;
   std::getline(lines, line);
   while (std::getline(lines, line) && !line.starts_with(".SH") && !line.starts_with(".SS")) {
-    if (line.starts_with(".B ")) rows.push_back(std::regex_replace(line.substr(3), std::regex("\\\\-"), "-"));
+    if (line.starts_with(".B ")) rows.push_back(unescaped(line.substr(3)));
   }
   return rows;
 }
@@ -125,7 +130,7 @@ TEST_F(ManualTest, EachPageListsTheOptionsAndArgumentsOfHelp) {
 
 TEST_F(ManualTest, AVerbsOwnVerbsAreSectionsOfItsPage) {
   const std::string whole = page("scenario");
-  for (const std::string sub : {"run", "list"}) {
+  for (const std::string sub : {"run", "fuzz", "list"}) {
     const std::size_t section = whole.find(".SH omnihil scenario " + sub + "\n");
     ASSERT_NE(section, std::string::npos) << sub;
     EXPECT_EQ(page_rows(whole, ".SS OPTIONS", section),
@@ -157,7 +162,7 @@ TEST_F(ManualTest, BashCompletesVerbsOptionsAndTheirValues) {
   EXPECT_EQ(completed("omnihil se"), "serve");
   EXPECT_EQ(completed("omnihil serve --tea"), "--team");
   EXPECT_EQ(completed("omnihil serve --robots 0 --team ''"), "blue yellow");
-  EXPECT_EQ(completed("omnihil scenario ''"), "run list");
+  EXPECT_EQ(completed("omnihil scenario ''"), "run fuzz list");
   EXPECT_EQ(completed("omnihil scenario run --level w"), "wheel");
   EXPECT_EQ(completed("omnihil serve --record x"), "");  // a file: bash's own
 }
