@@ -144,16 +144,12 @@ void PacketReader::fields(const toml::table& t, const std::string& path, Message
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].check == nullptr) continue;
     const int end = all[i].check->until > 0 ? all[i].check->until : message.size_bytes + all[i].check->until;
-    // A sum that covers its own bytes would have to be known before it is made.
-    const int own = all[i].bit / 8, behind = (all[i].bit + all[i].bits + 7) / 8;
-    const bool covers_itself = own < end && behind > all[i].check->from;
-    if (all[i].check->from < end && end <= message.size_bytes && !covers_itself) continue;
+    if (all[i].check->from < end && end <= message.size_bytes) continue;
     const toml::table& row = *node->as_array()->get(i)->as_table();
     keys_.wrong(
         row, fmt::format("{}.fields[{}]", path, i),
         fmt::format("is the sum of bytes {} to {} of {}", all[i].check->from, end - 1, message.size_bytes),
-        covers_itself ? "needed: bytes that are not its own (until = -1 ends before the last byte)"
-                      : "needed: from < until, inside the packet (0 and less are counted from its end)");
+        "needed: from < until, inside the packet (0 and less are counted from its end)");
   }
 }
 

@@ -64,7 +64,6 @@ constexpr Fault kFaults[] = {
     {"sum = \"sum8\"", "sum = \"sum9\"", 17, "sum = \"sum9\": is no sum that is known here", "sum8"},
     {"sum = \"sum8\"", "sum = \"crc32\"", 17, "bits = 8: does not go with this sum", "allowed: 32"},
     {"until = -1", "until = -9", 17, "is the sum of bytes 0 to -6 of 4", "inside the packet"},
-    {", until = -1", "", 17, "is the sum of bytes 0 to 3 of 4", "bytes that are not its own"},
     {"name = \"sum\", bits = 8, kind = \"checksum\", sum",
      "name = \"sum\", bits = 8, kind = \"integer\", sum", 17, "sum: unknown key", "allowed: name, bits"},
     {"title = \"X\"", "title = \"X\"\nrobots = \"rocos\"", 4, "robots = \"rocos\": is no built-in format",
