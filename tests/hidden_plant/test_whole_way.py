@@ -28,6 +28,9 @@ def free_port():
         s.bind(("127.0.0.1", 0))
         return s.getsockname()[1]
 
+# What a computer that is late does to a record: packets, samples and frames behind their time.
+LATE = {"actuator_delay", "sampling_delay", "sample_jitter", "vision_delay"}
+
 
 class WholeWay(unittest.TestCase):
     def setUp(self):
@@ -74,10 +77,12 @@ class WholeWay(unittest.TestCase):
                 said[verb] = said.get(verb, "") + self.type(line)
         self.assertIn("extrapolation", said["acquire"])
         verdict = next(line for line in said["diagnose"].splitlines() if line.startswith("Verdict"))
-        # "found, but more remains" too: a loaded computer is late, and no model has that.
-        self.assertRegex(verdict, r"^Verdict: found.*: wheel_radius_mismatch$", said["diagnose"])
+        # "found, but more remains" too: a loaded computer is late, and no model has that. Its lateness is in the
+        # record, so a delay may be named as well, behind what is hidden.
+        self.assertRegex(verdict, r"^Verdict: found.*: wheel_radius_mismatch", said["diagnose"])
         found = json.loads((self.folder / "found.json").read_text(encoding="utf-8"))
-        self.assertEqual(found["effects"], ["wheel_radius_mismatch"])
+        self.assertEqual(found["effects"][0], "wheel_radius_mismatch")
+        self.assertLessEqual(set(found["effects"][1:]), LATE, said["diagnose"])
         self.assertIn("wheel_radius_mismatch", (self.folder / "bench" / "model.toml").read_text(encoding="utf-8"))
         self.assertTrue((self.folder / "bench" / "packets" / "fit.txt").exists())
         self.assertTrue((self.folder / "cards" / "model.card.html").exists())
