@@ -28,8 +28,10 @@ def free_port():
         s.bind(("127.0.0.1", 0))
         return s.getsockname()[1]
 
-# What a computer that is late does to a record: packets, samples and frames behind their time.
-LATE = {"actuator_delay", "sampling_delay", "sample_jitter", "vision_delay"}
+# What a computer that is late does to a record: packets, samples and frames behind their time. Late is a packet that
+# leaves more than a frame of the cameras (60 Hz) behind its time, as `acquire` writes into the dataset's README.
+LATE_MS = 1000.0 / 60.0
+LATE_EFFECTS = {"actuator_delay", "sampling_delay", "sample_jitter", "vision_delay"}
 
 
 class WholeWay(unittest.TestCase):
@@ -67,6 +69,13 @@ class WholeWay(unittest.TestCase):
         self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}{done.stderr}")
         return done.stdout
 
+    def was_late(self):
+        text = (self.folder / "bench" / "README.md").read_text(encoding="utf-8")
+        latest = [float(ms) for ms in re.findall(r"\| ([\d.]+) ms \|$", text, re.M)]
+        self.assertEqual(len(latest), 3, text)
+        print(f"latest packets: {latest} ms", file=sys.stderr)
+        return max(latest) > LATE_MS
+
     def test_the_page_leads_from_the_dongle_to_the_effect(self):
         if not PROGRAM:
             self.skipTest("OMNIHIL_PROGRAM is not set")
@@ -77,12 +86,12 @@ class WholeWay(unittest.TestCase):
                 said[verb] = said.get(verb, "") + self.type(line)
         self.assertIn("extrapolation", said["acquire"])
         verdict = next(line for line in said["diagnose"].splitlines() if line.startswith("Verdict"))
-        # "found, but more remains" too: a loaded computer is late, and no model has that. Its lateness is in the
-        # record, so a delay may be named as well, behind what is hidden.
+        # "found, but more remains" too: a loaded computer is late, and no model has that.
         self.assertRegex(verdict, r"^Verdict: found.*: wheel_radius_mismatch", said["diagnose"])
         found = json.loads((self.folder / "found.json").read_text(encoding="utf-8"))
         self.assertEqual(found["effects"][0], "wheel_radius_mismatch")
-        self.assertLessEqual(set(found["effects"][1:]), LATE, said["diagnose"])
+        # Nothing else is hidden. A delay is in the record all the same where this computer was late.
+        self.assertLessEqual(set(found["effects"][1:]), LATE_EFFECTS if self.was_late() else set(), said["diagnose"])
         self.assertIn("wheel_radius_mismatch", (self.folder / "bench" / "model.toml").read_text(encoding="utf-8"))
         self.assertTrue((self.folder / "bench" / "packets" / "fit.txt").exists())
         self.assertTrue((self.folder / "cards" / "model.card.html").exists())
