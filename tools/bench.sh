@@ -1,14 +1,20 @@
 #!/usr/bin/env bash
-# Runs every benchmark program of a build, then counts instructions. Called by `./dev bench [NAME…]`.
+# Runs every benchmark program of a build, then counts instructions. Called by `./dev bench [NAME…] [--OPTION…]`; the options
+# go to each program that runs.
 set -uo pipefail
 build=$1
 shift
+names=()
+while [ $# -gt 0 ] && [[ $1 != -* ]]; do
+  names+=("$1")
+  shift
+done
 status=0
 for program in "$build"/bench/bench_*; do
   name=${program##*/bench_}
-  [ $# -eq 0 ] || [[ " $* " == *" $name "* ]] || continue
+  [ ${#names[@]} -eq 0 ] || [[ " ${names[*]} " == *" $name "* ]] || continue
   [ -x "$program" ] || continue
   printf '== %s\n' "$name"
-  "$program" || status=$?
+  "$program" "$@" || status=$?
 done
 exit $status

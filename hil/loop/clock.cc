@@ -38,19 +38,21 @@ void DeadlineKeeper::begin_step(std::int64_t now_ns) {
 }
 
 RealClock::RealClock(const RealClockOptions& options)
-    : keeper_(options, options.start_ns != 0 ? options.start_ns : monotonic_now_ns()) {
+    : keeper_(options, options.start_ns != 0 ? options.start_ns : monotonic_now_ns()),
+      spin_ns_(options.spin_ns) {
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
 }
 
 bool RealClock::wait() {
   const std::int64_t deadline_ns = keeper_.deadline_ns();
   std::int64_t now_ns = monotonic_now_ns();
-  if (now_ns < deadline_ns) {
-    const timespec until{static_cast<time_t>(deadline_ns / kNsPerS),
-                         static_cast<long>(deadline_ns % kNsPerS)};
+  const std::int64_t wake_ns = deadline_ns - spin_ns_;
+  if (now_ns < wake_ns) {
+    const timespec until{static_cast<time_t>(wake_ns / kNsPerS), static_cast<long>(wake_ns % kNsPerS)};
     if (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) return false;
     now_ns = monotonic_now_ns();
   }
+  while (now_ns < deadline_ns) now_ns = monotonic_now_ns();
   keeper_.begin_step(now_ns);
   return true;
 }

@@ -343,8 +343,8 @@ ServeEnd Bench::run(RecordingHeader header) {
   if (!open(std::move(header))) return ServeEnd::kIo;
   start_ns_ = monotonic_now_ns();
   if (options_.real_time) {
-    clock_ = std::make_unique<RealClock>(
-        RealClockOptions{.step_ns = session_.config().step_ns, .start_ns = options_.start_ns});
+    clock_ = std::make_unique<RealClock>(RealClockOptions{
+        .step_ns = session_.config().step_ns, .start_ns = options_.start_ns, .spin_ns = options_.spin_ns});
   } else {
     clock_ = std::make_unique<FreeClock>();
   }

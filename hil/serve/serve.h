@@ -38,6 +38,7 @@ struct ServeOptions {
   bool quiet = false;                   // the ready line and errors only
   bool strict = false;                  // real time: the first slip ends the run
   bool fifo = false;                    // SCHED_FIFO, memory locked
+  std::int64_t spin_ns = 0;             // awake so long before each step is due
   std::string record;                   // file; empty: none
   std::string capture;                  // Unix socket that gives passing packets as pcap; empty: none
   std::optional<LeagueOptions> league;  // the league's ports, beside the device

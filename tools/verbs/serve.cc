@@ -50,6 +50,7 @@ struct Words {  // as the user gave them
   std::string clock = "real";
   double duration_s = 0.0;
   double step_ms = 1.0;
+  double spin_us = 0.0;
   bool no_pacing = false;
   std::int64_t baud = 0;
   int sample_every = 10;
@@ -97,6 +98,9 @@ std::string understand(Words& words) {
   words.options.duration_ns = static_cast<std::int64_t>(words.duration_s * 1e9 + 0.5);
   words.options.pacing = !words.no_pacing;
   if (words.baud > 0) words.options.baud = words.baud;
+  words.options.spin_ns = static_cast<std::int64_t>(words.spin_us * 1e3 + 0.5);
+  if (words.options.spin_ns > 0 && !words.options.real_time)
+    problems.push_back("--spin: of no meaning with --clock free");
   if (words.options.strict && !words.options.real_time) {
     problems.push_back("--strict: of no meaning with --clock free");
   }
@@ -287,6 +291,11 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   verb.add_flag("--strict", w.options.strict,
                 "end with exit code 5 when this computer cannot keep up with real time");
   verb.add_flag("--fifo", w.options.fifo, "real-time scheduling (SCHED_FIFO) and locked memory");
+  verb.add_option("--spin", w.spin_us,
+                  "microseconds before each step is due in which the loop waits awake: less late, for that "
+                  "share of a core")
+      .range(0.0, 1000.0)
+      .capture_default_str();
   verb.add_flag("--quiet", w.options.quiet, "only the ready line and errors");
   verb.callback([words, verb, &result] {
     words->bench_text = bench_text(verb.settings());

@@ -1,6 +1,7 @@
 #include "hil/loop/clock.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -110,6 +111,34 @@ TEST(RealClockTest, StepZeroIsDueWhenItWasTold) {
     ASSERT_TRUE(clock.wait());
     EXPECT_GE(monotonic_now_ns(), start + k * kMs);
   }
+}
+
+// Voluntary context switches of this thread since it began.
+long times_slept() {
+  rusage usage{};
+  ::getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_nvcsw;
+}
+
+long times_slept_in(RealClock& clock, int steps) {
+  const long before = times_slept();
+  for (int k = 0; k < steps; ++k) EXPECT_TRUE(clock.wait());
+  return times_slept() - before;
+}
+
+TEST(RealClockTest, ThatSpinsThroughTheWholeStepNeverSleepsAndIsNeverEarly) {
+  const std::int64_t start = monotonic_now_ns() + kMs / 2;
+  RealClock awake({.step_ns = kMs, .start_ns = start, .spin_ns = kMs});
+  EXPECT_EQ(times_slept_in(awake, 20), 0);
+  EXPECT_GE(monotonic_now_ns(), start + 19 * kMs);
+  // The same without: steps of 50 ms, so that no load of the machine leaves none to sleep for.
+  RealClock asleep({.step_ns = 50 * kMs, .start_ns = monotonic_now_ns() + 50 * kMs});
+  EXPECT_GE(times_slept_in(asleep, 3), 1);
+}
+
+TEST(RealClockTest, ThatSpinsForAPartSleepsForTheRest) {
+  RealClock clock({.step_ns = 50 * kMs, .start_ns = monotonic_now_ns() + 50 * kMs, .spin_ns = kMs});
+  EXPECT_GE(times_slept_in(clock, 3), 1);
 }
 
 TEST(FreeClockTest, NeverWaitsAndReportsNoLateness) {
