@@ -46,11 +46,12 @@ RobotCommand to_command(const Values& values) {
 }
 
 bool encode_command(std::span<const Message> messages, const RobotCommand& wanted,
-                    std::vector<std::uint8_t>& out) {
+                    std::vector<std::uint8_t>& out, int robot_id) {
   const bool stop = wanted.mode == OMNIHIL_MODE_COAST;
   if (!stop && wanted.mode != OMNIHIL_MODE_BODY_VELOCITY) return false;
   Values values;
   values.message = message_of_type(messages, kVelocityXy);
+  if (robot_id >= 0) values.set("robot_id", robot_id);
   values.set("stop_emergency", stop ? 1.0 : 0.0);
   if (!stop) {
     const bool stands = wanted.v_forward_m_s == 0.0 && wanted.v_left_m_s == 0.0;

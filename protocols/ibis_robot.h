@@ -14,7 +14,8 @@ namespace omnihil::ibis {
 RobotCommand to_command(const Values& values);
 bool answer(std::span<const Message> messages, const Values& to_robot, const RobotFeedback& feedback,
             Values& out);
+// `robot_id`: of a table that names the robot.
 bool encode_command(std::span<const Message> messages, const RobotCommand& wanted,
-                    std::vector<std::uint8_t>& out);
+                    std::vector<std::uint8_t>& out, int robot_id = -1);
 
 }  // namespace omnihil::ibis

@@ -162,12 +162,20 @@ const ScaleRule kHundredths{
                 double number) { return static_cast<std::int64_t>(static_cast<float>(number) * 100.0F); },
     .beyond = Beyond::kClamped,
 };
+const ScaleRule kThousandths{
+    .name = "thousandths",
+    .says = "count = trunc(1000 x) in float32",
+    .number = [](const Field&, std::int64_t count) -> double { return static_cast<float>(count) / 1000.0F; },
+    .count = [](const Field&,
+                double number) { return static_cast<std::int64_t>(static_cast<float>(number) * 1000.0F); },
+    .beyond = Beyond::kClamped,
+};
 
 std::span<const ScaleRule* const> scale_rules() {
   static constexpr const ScaleRule* kRules[] = {
-      &kNearest,   &kWhole,           &kThirds,    &kAroundHalf,      &kTwentieths,
-      &kEvenSteps, &kEvenStepsAround, &kTruncated, &kTruncatedOrNone, &kTruncatedAroundOrNone,
-      &kHundredths};
+      &kNearest,    &kWhole,           &kThirds,    &kAroundHalf,      &kTwentieths,
+      &kEvenSteps,  &kEvenStepsAround, &kTruncated, &kTruncatedOrNone, &kTruncatedAroundOrNone,
+      &kHundredths, &kThousandths};
   return kRules;
 }
 

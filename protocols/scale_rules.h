@@ -23,6 +23,7 @@ extern const ScaleRule kTruncated;
 extern const ScaleRule kTruncatedOrNone;
 extern const ScaleRule kTruncatedAroundOrNone;  // wrapped: angles
 extern const ScaleRule kHundredths;             // count = trunc(100 x) in float32, clamped
+extern const ScaleRule kThousandths;            // RoboJackets: count = trunc(1000 x) in float32, clamped
 
 std::span<const ScaleRule* const> scale_rules();
 const ScaleRule* find_scale_rule(std::string_view name);

@@ -205,43 +205,37 @@ std::string value_text(const Field& field, const Value& value) {
   return std::to_string(value.raw);
 }
 
-// JSON text of values that stand in structs and arrays by their names, in the order of the fields.
+// JSON text of values that stand in structs and arrays by their names, in the order in which these first appear: fields of
+// one struct may stand apart in the packet.
 class Nested {
  public:
-  void add(std::string_view name, const std::string& value) {
-    const std::vector<std::string_view> steps = steps_of(name);
-    std::size_t same = 0;
-    while (same < open_.size() && same + 1 < steps.size() && open_[same] == steps[same]) ++same;
-    close_down_to(same);
-    for (std::size_t i = same; i < steps.size(); ++i) {
-      if (!first_) out_ += ",";
-      first_ = false;
-      if (!is_element(steps[i])) out_ += "\"" + std::string(steps[i]) + "\":";
-      if (i + 1 == steps.size()) break;
-      out_ += is_element(steps[i + 1]) ? "[" : "{";
-      ends_ += is_element(steps[i + 1]) ? ']' : '}';
-      open_.push_back(steps[i]);
-      first_ = true;
-    }
-    out_ += value;
+  void add(std::string_view name, std::string value) {
+    Nested* at = this;
+    for (const std::string_view step : steps_of(name)) at = &at->below(step);
+    at->value_ = std::move(value);
   }
-  std::string text() {
-    close_down_to(0);
-    return "{" + out_ + "}";
+  std::string text() const {
+    if (below_.empty() && !step_.empty()) return value_;
+    std::string out;
+    for (const Nested& each : below_) {
+      out += out.empty() ? "" : ",";
+      if (!is_element(each.step_)) out += "\"" + std::string(each.step_) + "\":";
+      out += each.text();
+    }
+    return !below_.empty() && is_element(below_.front().step_) ? "[" + out + "]" : "{" + out + "}";
   }
 
  private:
-  void close_down_to(std::size_t depth) {
-    for (; open_.size() > depth; open_.pop_back(), ends_.pop_back()) {
-      out_ += ends_.back();
-      first_ = false;
-    }
+  Nested& below(std::string_view step) {
+    const auto known = std::ranges::find(below_, step, &Nested::step_);
+    if (known != below_.end()) return *known;
+    below_.emplace_back().step_ = step;
+    return below_.back();
   }
 
-  std::string out_;
-  std::vector<std::string_view> open_;
-  std::string ends_;
-  bool first_ = true;
+  std::string_view step_;  // empty: the packet
+  std::string value_;
+  std::vector<Nested> below_;
 };
 
 }  // namespace

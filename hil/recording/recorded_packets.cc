@@ -48,7 +48,9 @@ int packet_robot(const Values& values) {
   for (const std::string_view name : {"fromRobotId", "robot", "robot_id"}) {
     if (values.message->field_index(name) >= 0) return static_cast<int>(values.number(name));
   }
-  return -1;
+  // REM's role is whom a packet is for; where one field says it both ways it is the robot.
+  const int named = values.message->field_index(FieldRole::kRobot);
+  return named < 0 ? -1 : static_cast<int>(values.fields[static_cast<std::size_t>(named)].number);
 }
 
 }  // namespace omnihil

@@ -59,7 +59,17 @@ std::string text_of(const std::string& scheme, int socket) {
 
 }  // namespace
 
-bool open_socket_end(const WireUrl& url, int type, bool listen, SocketEnd& end, WireProblem& problem) {
+void SocketAddress::set_port(int port) {
+  const in_port_t in_order = htons(static_cast<std::uint16_t>(port));
+  if (storage.ss_family == AF_INET6) {
+    reinterpret_cast<sockaddr_in6*>(&storage)->sin6_port = in_order;
+  } else {
+    reinterpret_cast<sockaddr_in*>(&storage)->sin_port = in_order;
+  }
+}
+
+bool open_socket_end(const WireUrl& url, int type, bool listen, SocketEnd& end, WireProblem& problem,
+                     int own_port) {
   SocketAddress address;
   if (!resolve(url, type, address, problem)) return false;
   const auto refuse = [&](const char* step) {
@@ -75,6 +85,11 @@ bool open_socket_end(const WireUrl& url, int type, bool listen, SocketEnd& end, 
     if (::bind(fd, address.get(), address.size) != 0) return refuse("bind");
     if (type == SOCK_STREAM && ::listen(fd, 1) != 0) return refuse("listen");
   } else {
+    SocketAddress own;
+    own.storage.ss_family = address.storage.ss_family;
+    own.size = address.size;
+    own.set_port(own_port);
+    if (own_port != 0 && ::bind(fd, own.get(), own.size) != 0) return refuse("bind");
     ::setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
     if (::connect(fd, address.get(), address.size) != 0) return refuse("connect");
   }

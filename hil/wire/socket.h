@@ -18,6 +18,7 @@ struct SocketAddress {
   socklen_t size = sizeof(sockaddr_storage);
   sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
   const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
+  void set_port(int port);  // of an IPv4 or IPv6 address
 };
 
 // Where a socket wire begins: the address of its URL, and its socket, listening on it or connected to it.
@@ -25,7 +26,9 @@ struct SocketEnd {
   std::string name;  // "tcp:127.0.0.1:5000", with the port that the system gave where the URL says 0
   Descriptor socket;
 };
-// `type`: SOCK_STREAM or SOCK_DGRAM. A listening one is bound, a SOCK_STREAM one takes connections.
-bool open_socket_end(const WireUrl& url, int type, bool listen, SocketEnd& end, WireProblem& problem);
+// `type`: SOCK_STREAM or SOCK_DGRAM. A listening one is bound, a SOCK_STREAM one takes connections. `own_port`: of one
+// that does not listen; 0: the system's choice.
+bool open_socket_end(const WireUrl& url, int type, bool listen, SocketEnd& end, WireProblem& problem,
+                     int own_port = 0);
 
 }  // namespace omnihil

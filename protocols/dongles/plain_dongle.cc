@@ -29,6 +29,7 @@ struct Robot {
   std::optional<RobotFeedback> feedback;   // none: it is still starting, and silent
   std::uint32_t kick = OMNIHIL_KICK_NONE;  // that the latest command asked for
   std::uint32_t kept = 0;                  // by PlainDongle::remember
+  std::int64_t tells_ns = 0;               // when it next says something by itself
 };
 
 class PlainLink final : public Dongle {
@@ -70,8 +71,16 @@ class PlainLink final : public Dongle {
     if (error != PacketError::kNone) from_robots_.count(error);
   }
 
-  void robot_feedback(int robot_id, const RobotFeedback& feedback, const RobotGains&, std::int64_t) override {
-    if (Robot* robot = robots_.find(robot_id)) robot->feedback = feedback;
+  void robot_feedback(int robot_id, const RobotFeedback& feedback, const RobotGains&,
+                      std::int64_t now_ns) override {
+    Robot* robot = robots_.find(robot_id);
+    if (robot == nullptr) return;
+    robot->feedback = feedback;
+    if (plain_.tell == nullptr || config_.firmware_decodes || now_ns < robot->tells_ns) return;
+    robot->tells_ns = now_ns + plain_.tell_every_ns;
+    Values out;
+    plain_.tell(robot_id, feedback, out);
+    say(robot_id, out, now_ns);
   }
 
   void take_host_bytes(std::int64_t now_ns, std::vector<std::uint8_t>& out) override {
@@ -93,6 +102,7 @@ class PlainLink final : public Dongle {
   PacketError send_to(int id, std::span<const std::uint8_t> frame, std::int64_t at_ns, bool ends_list);
   void end_list(std::int64_t at_ns);
   PacketError send_back(int robot, std::span<const std::uint8_t> frame, std::int64_t now_ns);
+  void say(int robot, const Values& values, std::int64_t now_ns);
   void leave_dongle(const InFlight& at, RadioSink& sink);
   void arrive(std::int64_t now_ns, RadioSink& sink);
   void reach_robot(InFlight at, RadioSink& sink);
@@ -121,7 +131,7 @@ class PlainLink final : public Dongle {
 PacketError PlainLink::send_to(int id, std::span<const std::uint8_t> frame, std::int64_t at_ns,
                                bool ends_list) {
   const bool is_there = robots_.find(id) != nullptr;
-  if (!is_there && !ends_list) return PacketError::kAddress;
+  if (!is_there && !ends_list) return plain_.to_everybody ? PacketError::kNone : PacketError::kAddress;
   const bool room = to_robots_.push({.packet = KeptPacket<255>::of(frame),
                                      .robot = is_there ? id : -1,
                                      .arrives_ns = at_ns,
@@ -262,9 +272,13 @@ void PlainLink::act(const Values& values, const InFlight& at, RadioSink& sink) {
   if (!feedback || !answer(values, at.robot, *feedback, out)) return;
   if (plain_.remember != nullptr) plain_.remember(values, robots_.find(at.robot)->kept, out);
   if (format_.list != nullptr) return list_answer(at.robot, out, at.arrives_ns);
+  say(at.robot, out, at.arrives_ns);
+}
+
+void PlainLink::say(int robot, const Values& values, std::int64_t now_ns) {
   answer_.clear();
-  encode(out, answer_);
-  const PacketError error = send_back(at.robot, answer_, at.arrives_ns);
+  encode(values, answer_);
+  const PacketError error = send_back(robot, answer_, now_ns);
   if (error != PacketError::kNone) from_robots_.count(error);
 }
 

@@ -33,6 +33,8 @@ struct PlainDongle {
   bool kicks_once = false;  // a kick acts when the packet before asked for none; one that stays does not
   // The robots that a packet is for, where roles of fields do not say it: their number, and their ids. Null: roles.
   std::size_t (*robots)(const Values& values, std::span<int, 16> ids) = nullptr;
+  bool to_everybody =
+      false;  // hosts write to every robot that there may be: one that is not there is no fault
   // A frame that lists packets gives each robot its turn, this long after the one before, and is answered after
   // the last by one frame that lists the answers.
   std::int64_t turn_ns = 0;
@@ -44,6 +46,9 @@ struct PlainDongle {
   bool (*answer)(const Values& to_robot, int id, const RobotFeedback& feedback, Values& out) = nullptr;
   // Puts into each answer what the robot remembers of earlier packets, and remembers this one. `kept` begins as 0.
   void (*remember)(const Values& to_robot, std::uint32_t& kept, Values& answer) = nullptr;
+  // What each robot says by itself, this often; 0: nothing. `tell` fills `out`, its message included.
+  std::int64_t tell_every_ns = 0;
+  void (*tell)(int id, const RobotFeedback& feedback, Values& out) = nullptr;
 };
 
 // `format` outlives the link.

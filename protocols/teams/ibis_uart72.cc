@@ -54,8 +54,9 @@ constinit const RadioFormat kFormat{
         "the "
         "last command of the host, 1 s after the last of the CM4; the board starts anew after 6 s.\n"
         "- FEh may stand inside a packet: after a lost byte the board finds back into step when a sum fits.\n"
-        "- No packets of the team's own program were at hand: those of the tests were made from its "
-        "document.\n",
+        "- Packets of the tests were made from the team's document, one by its CM4 program, which was built "
+        "and given a "
+        "datagram of `ibis-broadcast-715`.\n",
     .carrier = {.kind = Carrier::Kind::kUart, .baud = 1'000'000},
     .max_frame_bytes = 128,
     .messages = Tables::kMessages,

@@ -20,7 +20,7 @@ namespace omnihil {
 namespace {
 
 constexpr Field speed(std::string_view name, std::string_view unit, std::string_view what) {
-  return scaled(name, 16, Sign::kTwosComplement, kTruncated, -32.768, 32.767, unit, what);
+  return scaled(name, 16, Sign::kTwosComplement, kThousandths, -32.768, 32.767, unit, what);
 }
 constexpr std::array kWhom{
     with_role(FieldRole::kRobot, number("robot_id", 4, "", "the robot")),

@@ -232,7 +232,7 @@ constinit const RadioFormat kFormat{
         "least 3 ms "
         "apart (25 bytes take 2.2 ms). 20h and 10h in the answer (kicked) stay 0 here.\n"
         "- What the transmitter answers to a start packet is not in the sources: here the packet itself.\n"
-        "- An older form over UDP (port 1030) with battery and wheel speeds in the answer is not spoken.\n",
+        "- The older form over UDP, with battery and wheel speeds in the answer, is `rocos-udp`.\n",
     .carrier = {.kind = Carrier::Kind::kUart, .baud = 115'200},
     .max_frame_bytes = kBytes,
     .messages = kMessages,

@@ -83,6 +83,21 @@ inline std::vector<TeamRow> ibis_uart_rows(const std::function<nlohmann::json(co
   return rows;
 }
 
+// The network's commands with a robot's number before them, as its CM4 finds them in the datagram for all.
+inline std::vector<TeamRow> ibis_broadcast_rows(const std::function<nlohmann::json(const char*)>& file) {
+  constexpr int kRobots[] = {0, 1, 10, 155};
+  std::vector<TeamRow> rows;
+  for (TeamRow row : ibis_rows(file)) {
+    if (row.packets[0].name == "FEEDBACK" || row.packets[0].given.at("header") != 0) continue;
+    row.packets[0].given.erase("header");
+    const int robot = kRobots[rows.size() % std::size(kRobots)];
+    row.packets[0].given["robot_id"] = row.packets[0].decoded["robot_id"] = robot;
+    row.hex = to_hex(Bytes{static_cast<std::uint8_t>(robot)}) + row.hex;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
 inline std::vector<TeamRow> ateam_rows(const std::function<nlohmann::json(const char*)>& file) {
   using nlohmann::json;
   std::vector<TeamRow> rows;
@@ -399,6 +414,7 @@ inline const std::vector<TeamFile>& team_files() {
       {"erforce-proto2025-bridge", 30 + 20 + 5 + 10 + 1,
        [](const auto& file) { return erforce_rows(file, true); }},
       {"ibis-uart72", 12, ibis_uart_rows},
+      {"ibis-broadcast-715", 23 + 23, ibis_broadcast_rows},
       {"erforce-usb-pasta-2014", 20 + 15 + 3 + 4 + 20, erforce_usb_rows},
   };
   return files;

@@ -1,8 +1,8 @@
 // UDP datagrams to a port; with listen=1 to whoever sent the last one that came; with seek=1 to a port (of a
 // multicast group, say) until somebody answers, then to whoever sends, and to the port again after a second of
-// silence. Their boundaries mean
-// nothing here: what one write() takes is one datagram, what read() gives are the bytes of all that came.
-// Datagrams that the network loses are lost.
+// silence. from=PORT: of ours that they leave from; to=PORT: of whoever sent, instead of the one that it sent from.
+// Their boundaries mean nothing here: what one write() takes is one datagram, what read() gives are the bytes of all
+// that came. Datagrams that the network loses are lost.
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -19,7 +19,8 @@ constexpr std::chrono::seconds kSilence{1};
 
 class UdpWire final : public ByteWire {
  public:
-  UdpWire(SocketEnd end, bool listens) : end_(std::move(end)), listens_(listens) {}
+  UdpWire(SocketEnd end, bool listens, int answers_to_port)
+      : end_(std::move(end)), listens_(listens), answers_to_port_(answers_to_port) {}
 
   // A connected socket no longer takes datagrams of its peer alone.
   std::error_code seek() {
@@ -44,6 +45,7 @@ class UdpWire final : public ByteWire {
                                    sender.get(), &sender.size);
       if (n < 0) return errno == EINTR || nobody_there(errno) ? std::error_code{} : last_error();
       if (listens_) peer_ = sender;
+      if (listens_ && answers_to_port_ != 0) peer_.set_port(answers_to_port_);
       known_ = true;
       heard_ = std::chrono::steady_clock::now();
       const auto size = static_cast<std::size_t>(n);
@@ -77,6 +79,7 @@ class UdpWire final : public ByteWire {
 
   SocketEnd end_;
   bool listens_;
+  int answers_to_port_;
   SocketAddress peer_;
   bool seeks_ = false;
   SocketAddress sought_;
@@ -90,8 +93,8 @@ std::unique_ptr<ByteWire> open(const WireUrl& url, WireProblem& problem) {
   const bool listens = url.number("listen") == 1;
   SocketEnd end;
   const bool seeks = url.number("seek") == 1;
-  if (!open_socket_end(url, SOCK_DGRAM, listens && !seeks, end, problem)) return nullptr;
-  auto wire = std::make_unique<UdpWire>(std::move(end), listens);
+  if (!open_socket_end(url, SOCK_DGRAM, listens && !seeks, end, problem, url.number("from"))) return nullptr;
+  auto wire = std::make_unique<UdpWire>(std::move(end), listens, url.number("to"));
   if (!seeks) return wire;
   const std::error_code refused = wire->seek();
   if (!refused) return wire;
@@ -108,6 +111,11 @@ const WireKind& wire_udp() {
        .says = "send to the address, then answer to whoever sends",
        .usual = "0",
        .words = kWireNoYes},
+      {.name = "from", .says = "own port where it does not listen; 0: any", .usual = "0", .high = 65'535},
+      {.name = "to",
+       .says = "port of whoever sends to answer to; 0: the one it sent from",
+       .usual = "0",
+       .high = 65'535},
   };
   static constexpr WireKind kKind{.scheme = "udp",
                                   .says = "UDP datagrams; without a host: this computer (127.0.0.1)",

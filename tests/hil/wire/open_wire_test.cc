@@ -135,6 +135,35 @@ TEST(UdpWireTest, WithSeekItSendsToTheAddressAndThenToWhoeverAnswers) {
   EXPECT_EQ(read_all(*robot, 1), Bytes{4});
 }
 
+int port_of(const ByteWire& wire) {
+  const std::string name(wire.name());
+  return std::stoi(name.substr(name.rfind(':') + 1));
+}
+
+TEST(UdpWireTest, WithFromItSendsFromAPortOfItsOwnChoice) {
+  const auto host = opened("udp:0?listen=1");
+  const int own = port_of(*opened("udp:0?listen=1"));  // free again
+  for (const char* seek : {"0", "1"}) {
+    const auto robot = opened(std::string(host->name()) + "?from=" + std::to_string(own) + "&seek=" + seek);
+    write_all(*robot, Bytes{1, 2, 3});
+    EXPECT_EQ(read_all(*host, 3), (Bytes{1, 2, 3}));
+    const auto by_port = opened("udp:" + std::to_string(own));  // knows the port alone
+    if (*seek == '0') continue;                                 // it hears its host alone
+    write_all(*by_port, Bytes{4});
+    EXPECT_EQ(read_all(*robot, 1), Bytes{4});
+  }
+}
+
+TEST(UdpWireTest, WithToItAnswersAtThatPortOfWhoeverSent) {
+  const auto hears = opened("udp:0?listen=1");
+  const auto dongle = opened("udp:0?listen=1&to=" + std::to_string(port_of(*hears)));
+  const auto writes = opened(std::string(dongle->name()));  // from a port where nobody listens
+  write_all(*writes, Bytes{7});
+  EXPECT_EQ(read_all(*dongle, 1), Bytes{7});
+  write_all(*dongle, Bytes{8, 9});
+  EXPECT_EQ(read_all(*hears, 2), (Bytes{8, 9}));
+}
+
 TEST(TcpWireTest, TheNextClientComesWhenTheOneBeforeHasLeft) {
   const auto bench = opened("tcp:0?listen=1");
   auto first = opened(std::string(bench->name()));
