@@ -401,6 +401,27 @@ TEST_F(TimerTest, NothingIsScheduledThatNobodyWaitsFor) {
   EXPECT_EQ(system.events, 0u);
 }
 
+// An ADC that is set up after its timer has been started: the timer has nothing else to do.
+TEST_F(TimerTest, WhoBeginsToListenToARunningTimerHearsItsNextEdges) {
+  struct Ear final : TriggerSink {
+    void triggered(int, bool rising) override { (rising ? rises : falls)++; }
+    int rises = 0, falls = 0;
+  } ear;
+  set(kArr, 999);
+  set(kCcr1, 250);
+  set(kCcmr1, 6u << 4);
+  set(kCr1, 1);
+  system.run_for(1500);
+  const int source = context.triggers.source("TIM1_CC1");
+  context.triggers.listen(source, ear, true);
+  system.run_for(10'000);
+  EXPECT_EQ(ear.rises, 10);
+  EXPECT_EQ(ear.falls, 10);
+  context.triggers.listen(source, ear, false);
+  system.run_for(10'000);
+  EXPECT_EQ(ear.rises, 10);
+}
+
 TEST_F(TimerTest, ApbPrescalerChangeKeepsTheCount) {
   set(kArr, 0xFFFF);
   set(kCr1, 1);

@@ -68,13 +68,13 @@ Timer::Timer(TimerSpec spec, ChipContext& context)
       irq_break_(context.irqs, or_update(spec_.irq_break, spec_)),
       irq_trigger_(context.irqs, or_update(spec_.irq_trigger, spec_)) {
   next_event_is(next_);
-  trgo_ = context.triggers.source(name() + "_TRGO");
+  trgo_ = context.triggers.source(name() + "_TRGO", this);
   dma_update_ = context.dma.line(name() + "_UP");
   dma_trigger_ = context.dma.line(name() + "_TRIG");
   dma_com_ = context.dma.line(name() + "_COM");
   for (unsigned c = 0; c < kChannels; ++c) {
     const std::string number = std::to_string(c + 1);
-    compare_[c] = context.triggers.source(name() + "_CC" + number);
+    compare_[c] = context.triggers.source(name() + "_CC" + number, this);
     dma_channel_[c] = context.dma.line(name() + "_CH" + number);
   }
   for (const std::string& from : spec_.internal_triggers) internal_.push_back(context.triggers.source(from));

@@ -49,7 +49,7 @@ struct TimerOutput {
   double period_s = 0.0;  // of the PWM
 };
 
-class Timer final : public RegisterBlock, public TriggerSink {
+class Timer final : public RegisterBlock, public TriggerSink, public TriggerSender {
  public:
   using ShaftCount = std::function<std::int64_t(std::int64_t at_ns)>;
   Timer(TimerSpec spec, ChipContext& context);
@@ -58,6 +58,7 @@ class Timer final : public RegisterBlock, public TriggerSink {
   void run_events() override;
   void clock_changed() override;
   void triggered(int source, bool rising) override;
+  void heard_changed() override;
   Cycles stable_until(std::uint32_t offset) const override;
 
   const TimerSpec& spec() const { return spec_; }

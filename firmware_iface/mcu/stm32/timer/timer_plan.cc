@@ -29,6 +29,16 @@ std::uint32_t Timer::heard_edges() const {
   return heard_;
 }
 
+// Who begins to listen hears of edges from now on, not of one that nobody asked for before.
+void Timer::heard_changed() {
+  const std::uint32_t before = heard_, fresh = find_heard_edges() & ~before;
+  if (fresh != 0 && running_ && now() >= anchor_) {
+    const std::uint32_t levels = references_at((start_ + ticks_at(now())) % law_.period());
+    seen_references_ = (seen_references_ & ~fresh) | (levels & fresh);
+  }
+  plan();
+}
+
 std::uint32_t Timer::find_heard_edges() const {
   std::uint32_t wanted = 0;
   for (unsigned c = 0; c < kChannels; ++c) {

@@ -1,6 +1,6 @@
 // Signals from block to block within a chip: what a timer sends to ADCs and to other timers.
 //
-//   const int source = bus.source("TIM1_TRGO");
+//   const int source = bus.source("TIM1_TRGO");              // its sender names itself: source(name, this)
 //   bus.listen(source, adc, true);       // only what is listened to is scheduled by its sender
 //   bus.fire(source, true);              // rising edge, at system.now()
 #pragma once
@@ -20,16 +20,24 @@ class TriggerSink {
   virtual void triggered(int source, bool rising) = 0;
 };
 
+class TriggerSender {
+ public:
+  virtual ~TriggerSender() = default;
+  virtual void heard_changed() = 0;  // somebody has begun or ceased to listen to one of its signals
+};
+
 class TriggerBus {
  public:
   explicit TriggerBus(System& system) : system_(system) {}
-  int source(std::string_view name) {
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      if (lines_[i].name == name) return static_cast<int>(i);
+  int source(std::string_view name, TriggerSender* sender = nullptr) {
+    std::size_t i = 0;
+    while (i < lines_.size() && lines_[i].name != name) ++i;
+    if (i == lines_.size()) {
+      lines_.push_back({std::string(name), {}});
+      heard_.push_back(0);
     }
-    lines_.push_back({std::string(name), {}});
-    heard_.push_back(0);
-    return static_cast<int>(lines_.size() - 1);
+    if (sender != nullptr) lines_[i].sender = sender;
+    return static_cast<int>(i);
   }
   void listen(int source, TriggerSink& sink, bool on) {
     auto& sinks = lines_[static_cast<std::size_t>(source)].sinks;
@@ -42,6 +50,7 @@ class TriggerBus {
     }
     heard_[static_cast<std::size_t>(source)] = sinks.empty() ? 0 : 1;
     ++version_;
+    if (TriggerSender* sender = lines_[static_cast<std::size_t>(source)].sender) sender->heard_changed();
     system_.reschedule();
   }
   std::uint32_t version() const { return version_; }  // another one: somebody began or ceased to listen
@@ -55,6 +64,7 @@ class TriggerBus {
   struct Line {
     std::string name;
     std::vector<TriggerSink*> sinks;
+    TriggerSender* sender = nullptr;
   };
   System& system_;
   std::vector<Line> lines_;
