@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <nlohmann/json.hpp>
 
 #include "firmware_iface/mcu/stm32/timer/timer.h"
 #include "hil/observe/call_tracker.h"
+#include "hil/observe/exception_names.h"
 #include "hil/text/json_text.h"
 
 namespace omnihil {
@@ -29,7 +31,7 @@ std::string quoted(const std::string& text) { return json_text(nlohmann::ordered
 
 class ImageTrace::Board final {
  public:
-  Board(const ImageTraceOptions& options, mcu::McuFirmware& firmware, mcu::McuBoard& board,
+  Board(const TraceOptions& options, mcu::McuFirmware& firmware, mcu::McuBoard& board,
         const mcu::ElfImage& image, std::uint32_t robot_id, int number)
       : options_(options),
         firmware_(&firmware),
@@ -51,14 +53,13 @@ class ImageTrace::Board final {
     firmware_ = nullptr;
   }
   std::size_t events() const { return events_.size(); }
+  bool dropped() const { return dropped_; }
   void write(std::string& out) const;
 
  private:
   std::string name(const Event& event) const {
     if (event.kind == CallEvent::Kind::kExceptionBegins || event.kind == CallEvent::Kind::kExceptionEnds) {
-      if (event.which == 15) return "SysTick";
-      return event.which >= 16 ? fmt::format("IRQ {}", event.which - 16)
-                               : fmt::format("exception {}", event.which);
+      return exception_name(event.which);
     }
     return tracker_.functions()[static_cast<std::size_t>(event.which)];
   }
@@ -66,16 +67,15 @@ class ImageTrace::Board final {
   void take(const CallEvent& event) {
     if (machine_ == nullptr) return;  // what was open when the run was over ends with it
     const bool function = event.kind == CallEvent::Kind::kEnter || event.kind == CallEvent::Kind::kLeave;
-    if (function && !options_.filter.empty()) {
-      const std::string& of = tracker_.functions()[static_cast<std::size_t>(event.which)];
-      if (of.find(options_.filter) == std::string::npos) return;
-    }
+    if (function &&
+        !passes_filter(options_.filter, tracker_.functions()[static_cast<std::size_t>(event.which)]))
+      return;
     const std::int64_t at_ns = machine_->to_ns(static_cast<mcu::Cycles>(event.at / mcu::kSubcycles));
     highest_sp_ = std::max(highest_sp_, event.sp);
     events_.push_back({at_ns, event.kind, event.which, event.sp});
     const auto keep_ns = static_cast<std::int64_t>(options_.last_s * 1e9);
-    while (events_.size() > options_.most || (keep_ns > 0 && events_.front().at_ns < at_ns - keep_ns))
-      forget();
+    while (keep_ns > 0 && events_.front().at_ns < at_ns - keep_ns) forget();
+    for (; events_.size() > options_.most; dropped_ = true) forget();
   }
 
   // What is open where the rest begins.
@@ -89,7 +89,8 @@ class ImageTrace::Board final {
     events_.pop_front();
   }
 
-  ImageTraceOptions options_;
+  TraceOptions options_;
+  bool dropped_ = false;
   mcu::McuFirmware* firmware_;
   mcu::Machine* machine_;  // null: its run is over
   CallTracker tracker_;
@@ -134,7 +135,7 @@ void ImageTrace::Board::write(std::string& out) const {
   for (; !open.empty(); open.pop_back()) line("E", std::max(end_ns, from_ns), "");
 }
 
-ImageTrace::ImageTrace(ImageTraceOptions options) : options_(std::move(options)) {}
+ImageTrace::ImageTrace(TraceOptions options) : options_(std::move(options)) {}
 ImageTrace::~ImageTrace() = default;
 
 void ImageTrace::begins(mcu::McuFirmware& firmware, const mcu::ElfImage& image, std::uint32_t robot_id) {
@@ -158,7 +159,11 @@ std::size_t ImageTrace::events() const {
   return count;
 }
 
-std::string ImageTrace::json() const {
+bool ImageTrace::dropped() const {
+  return std::ranges::any_of(boards_, [](const auto& board) { return board->dropped(); });
+}
+
+std::string ImageTrace::text() const {
   std::string text;
   for (const auto& board : boards_) board->write(text);
   return "{\"displayTimeUnit\":\"ns\",\"traceEvents\":[" + (text.empty() ? "" : text.substr(1)) + "\n]}\n";

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "hil/observe/exception_names.h"
+
 namespace omnihil {
 namespace {
 
@@ -22,15 +24,6 @@ struct SourceFile {
   std::map<int, std::uint64_t> lines;                              // how often
   std::map<std::string, std::pair<int, std::uint64_t>> functions;  // line, how often
 };
-
-// "SysTick", "IRQ 54", as in the reference manual's table of vectors.
-std::string exception_name(int exception) {
-  constexpr const char* kNames[] = {"",           "reset", "NMI",    "HardFault", "MemManage", "BusFault",
-                                    "UsageFault", "",      "",       "",          "",          "SVCall",
-                                    "",           "",      "PendSV", "SysTick"};
-  if (exception >= 16) return fmt::format("IRQ {}", exception - 16);
-  return exception >= 0 ? kNames[exception] : "";
-}
 
 }  // namespace
 

@@ -47,6 +47,7 @@ std::vector<OfRobots> read_of(const TeamFirmwareWords& words, bool opponents,
 FirmwareChoice opponents_choice(const TeamFirmwareWords& words) {
   FirmwareChoice choice = words.all;
   choice.listeners = {};  // who listens knows robots of the first team
+  choice.observer = nullptr;
   if (words.opponents.empty()) return choice;
   choice.file = words.opponents;
   choice.board = words.opponents_board;

@@ -7,7 +7,9 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "hil/observe/image_trace.h"
 #include "hil/observe/profile_text.h"
+#include "hil/observe/wave_trace.h"
 #include "hil/text/text_file.h"
 
 namespace omnihil {
@@ -22,14 +24,24 @@ void write_file(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-void add_observe_options(Verb& verb, ObserveWords& words) {
+void add_trace_options(Verb& verb, ObserveWords& words, const std::string& when) {
   verb.add_option("--trace", words.trace,
-                  "write what the image does to this .json: interrupts, functions, stack, control period "
-                  "(ui.perfetto.dev, chrome://tracing; docs/observe.md)");
+                  "write what the image does: to a .json interrupts, functions, stack, control period "
+                  "(ui.perfetto.dev, chrome://tracing), to a .vcd pins, PWM, encoders, buses, interrupts "
+                  "(GTKWave, PulseView; docs/observe.md)");
   verb.add_option("--trace-last", words.last_s,
-                  "keep the last so many seconds only, and write them when a check fails")
+                  "keep the last so many seconds only, and write them when " + when)
       .not_negative();
-  verb.add_option("--trace-filter", words.filter, "only functions whose name has this in it");
+  verb.add_option("--trace-filter", words.filter,
+                  "only functions (.json) or signals (.vcd) whose name has one of these texts in it, such as "
+                  "USART2,wheel0");
+  verb.add_flag(
+      "--trace-levels", words.levels,
+      "of a .vcd the signals of one bit only, for PulseView and sigrok-cli (libsigrok up to 0.5.2), "
+      "which stop at the first number");
+}
+
+void add_profile_options(Verb& verb, ObserveWords& words) {
   verb.add_option("--coverage", words.coverage,
                   "write which lines of the image ran, over all runs (lcov .info)");
   verb.add_option(
@@ -42,12 +54,14 @@ ImageReports::ImageReports(const ObserveWords& words, const std::string& image_f
   const bool profile = !words.coverage.empty() || !words.profile.empty();
   if (!words.trace.empty() && profile)
     throw std::invalid_argument("--trace beside --coverage or --profile: one at a time");
-  if (words.trace.empty() && (words.last_s > 0.0 || !words.filter.empty()))
-    throw std::invalid_argument("--trace-last, --trace-filter: needed: --trace FILE.json");
-  if (!words.trace.empty() && !words.trace.ends_with(".json"))
-    throw std::invalid_argument("--trace " + words.trace + ": allowed: a name that ends in .json");
-  if (!words.trace.empty())
-    trace_ = std::make_shared<ImageTrace>(ImageTraceOptions{words.last_s, words.filter});
+  if (words.trace.empty() && (words.last_s > 0.0 || !words.filter.empty() || words.levels))
+    throw std::invalid_argument(
+        "--trace-last, --trace-filter, --trace-levels: needed: --trace FILE.json or FILE.vcd");
+  const TraceOptions options{words.last_s, words.filter, words.levels};
+  if (words.trace.ends_with(".json")) trace_ = std::make_shared<ImageTrace>(options);
+  if (words.trace.ends_with(".vcd")) trace_ = std::make_shared<WaveTrace>(options);
+  if (!words.trace.empty() && !trace_)
+    throw std::invalid_argument("--trace " + words.trace + ": allowed: a name that ends in .json or .vcd");
   if (profile) profile_ = std::make_shared<ImageProfile>();
 }
 
@@ -63,9 +77,10 @@ std::string ImageReports::write_trace(const std::string& name, bool failed) {
     said = "trace: nothing was seen: needed: an image on an emulated ARM board\n";
   } else if (words_.last_s <= 0.0 || failed) {
     std::filesystem::path path(words_.trace);
-    if (!name.empty()) path.replace_filename(path.stem().string() + "-" + name + ".json");
-    write_file(path.string(), trace_->json());
-    said = fmt::format("  trace {} ({} events)\n", path.string(), trace_->events());
+    if (!name.empty()) path.replace_filename(path.stem().string() + "-" + name + path.extension().string());
+    write_file(path.string(), trace_->text());
+    said = fmt::format("  trace {} ({} events{})\n", path.string(), trace_->events(),
+                       trace_->dropped() ? ", older ones are gone: there were too many" : "");
   }
   trace_->clear();
   return said;

@@ -1,6 +1,7 @@
 // The options with which a verb lets its user look at what an image does: traces, coverage, profile.
 //
-//   add_observe_options(verb, words);                // --trace, --trace-last, --trace-filter, --coverage, --profile
+//   add_trace_options(verb, words, "a check fails");  // --trace, --trace-last, --trace-filter
+//   add_profile_options(verb, words);                // --coverage, --profile
 //   ImageReports reports(words, firmware.file);      // std::invalid_argument
 //   firmware.observer = reports.observer();
 //   …  reports.write_trace("step", failed);  reports.write_profile();
@@ -9,17 +10,20 @@
 #include <string>
 
 #include "hil/observe/image_profile.h"
-#include "hil/observe/image_trace.h"
+#include "hil/observe/trace_observer.h"
 #include "tools/command_line.h"
 
 namespace omnihil {
 
 struct ObserveWords {
   std::string trace, filter, coverage, profile;
+  bool levels = false;
   double last_s = 0.0;
 };
 
-void add_observe_options(Verb& verb, ObserveWords& words);
+// `when`: the last stretch is written.
+void add_trace_options(Verb& verb, ObserveWords& words, const std::string& when);
+void add_profile_options(Verb& verb, ObserveWords& words);
 
 class ImageReports {
  public:
@@ -34,7 +38,7 @@ class ImageReports {
  private:
   ObserveWords words_;
   std::string image_file_;
-  std::shared_ptr<ImageTrace> trace_;
+  std::shared_ptr<TraceObserver> trace_;
   std::shared_ptr<ImageProfile> profile_;
 };
 

@@ -130,7 +130,8 @@ void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result
   add_gdb_options(sub, a->gdb);
   add_console_option(sub, a->console);
   add_variable_options(sub, a->suite.watch, a->suite.set);
-  add_observe_options(sub, a->observe);
+  add_trace_options(sub, a->observe, "a check fails");
+  add_profile_options(sub, a->observe);
   sub.add_option(
       "--csv", a->suite.csv,
       "folder for a table per scenario: every signal and watched variable at every control period");

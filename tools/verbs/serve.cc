@@ -28,6 +28,7 @@
 #include "tools/options/firmware_options.h"
 #include "tools/options/gdb_options.h"
 #include "tools/options/league_options.h"
+#include "tools/options/observe_options.h"
 #include "tools/options/variable_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
@@ -59,6 +60,7 @@ struct Words {  // as the user gave them
   ServeOptions options;
   TeamFirmwareWords firmware;
   GdbWords gdb;
+  ObserveWords observe;
   std::string console;
   MotorBusChoice motor_bus;
   LeagueWords league;
@@ -178,6 +180,8 @@ int run(Words& words) {
     words.options.gdb = gdb.get();
     words.firmware.all.listeners.on_line = console_listener(words.console);
     words.firmware.all.listeners.on_board = gdb_listener(gdb.get());
+    ImageReports reports(words.observe, words.firmware.all.file);
+    words.firmware.all.observer = reports.observer();
     const TeamFirmware makers = words.motor_bus.bus.empty()
                                     ? open_team_firmware(words.firmware, config)
                                     : TeamFirmware{bus_firmware(words.motor_bus, config), {}};
@@ -189,6 +193,8 @@ int run(Words& words) {
     if (words.options.real_time && !words.options.quiet)
       words.options.load = load_words(measured_load(config));
     const ServeEnd end = serve(config, makers.first, std::move(header), words.options, makers.opponents);
+    const std::string said = reports.write_trace("", true);
+    if (!words.options.quiet) std::fputs(said.c_str(), stdout);
     switch (end) {
       case ServeEnd::kDone:
         return kExitOk;
@@ -255,6 +261,7 @@ void add_verb_serve(Verb& program, VerbResult& result) {
   add_team_firmware_options(verb, w.firmware);
   add_gdb_options(verb, w.gdb);
   add_console_option(verb, w.console);
+  add_trace_options(verb, w.observe, "the run ends");
   add_bus_options(verb, w.motor_bus);
   add_variable_options(verb, w.options.watch, w.options.set);
   add_field_options(verb, w.field);

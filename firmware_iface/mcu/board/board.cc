@@ -168,6 +168,7 @@ void McuBoard::run_to_due(std::int64_t end_ns) {
 }
 
 void McuBoard::set_world(const WorldState& world) {
+  if (watcher_) watcher_(world);
   world_ = world;
   for (const auto& hall : halls_) hall->world_changed();
 }

@@ -40,6 +40,9 @@ class McuBoard {
   const Chip& chip() const { return chip_; }
   std::int64_t now_ns() const { return machine_.to_ns(machine_.now()); }
   void set_world(const WorldState& world);
+  const WorldState& world() const { return world_; }
+  // Hears of each world before it is set: world() is then the one that held until now.
+  void watch_world(std::function<void(const WorldState& next)> watcher) { watcher_ = std::move(watcher); }
   void run_until_ns(std::int64_t end_ns) {
     if (!due_.empty()) run_to_due(end_ns);
     machine_.run_until_ns(end_ns);
@@ -79,6 +82,7 @@ class McuBoard {
   std::vector<std::uint8_t> sent_;  // bytes of a serial radio, not yet a frame
   std::int64_t sent_last_ns_ = 0;
   std::multimap<std::int64_t, std::function<void()>> due_;
+  std::function<void(const WorldState&)> watcher_;
 };
 
 }  // namespace omnihil::mcu

@@ -60,6 +60,7 @@ struct MachineConfig {
 // Sees what the core does: every instruction, and every change of what it handles.
 class MachineObserver : public CpuObserver {
  public:
+  void instruction(std::uint32_t, const Op&, bool, std::int64_t) override {}
   virtual void exception_begins(int /*exception*/, Cycles /*at*/) {
   }  // after stacking, before its first instruction
   virtual void exception_ends(int /*exception*/, Cycles /*at*/) {}  // at its last one
@@ -110,10 +111,11 @@ class Machine final : public System, private CpuBus {
     return faulted_at_ != kNever && fault_handler_active() ? faulted_at_ : kNever;
   }
 
-  // Not owned; null: nobody. Slower while somebody looks, with the same results.
-  void observe(MachineObserver* observer) {
+  // Not owned; null: nobody. Slower while somebody looks at instructions, with the same results; without them it hears
+  // of exceptions and resets alone, at no cost.
+  void observe(MachineObserver* observer, bool instructions = true) {
     observer_ = observer;
-    cpu_.observe(observer);
+    cpu_.observe(instructions ? observer : nullptr);
   }
   // The oscillators run at this part of their rate from now on, and with them all that counts core cycles.
   void set_clock_error(double ratio);

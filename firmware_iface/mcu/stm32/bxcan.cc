@@ -122,12 +122,20 @@ void BxCan::transmit_next() {
     if (sending_ < 0 || before(m, static_cast<unsigned>(sending_))) sending_ = static_cast<int>(m);
   }
   if (sending_ < 0) return;
-  // Bit time: (BRP + 1)(3 + TS1 + TS2) clocks of APB1
-  const std::uint32_t btr = value(kBtr);
-  const Cycles quanta = Cycles{field(btr, 0, 10) + 1} * (3 + field(btr, 16, 4) + field(btr, 20, 3));
   const ClockRatio clock = context_.clocks.bus(Bus::kApb1);
   sent_at_ =
-      now() + quanta * can_frame_bits(mailbox(static_cast<unsigned>(sending_))) * clock.div / clock.mul;
+      now() + bit_clocks() * can_frame_bits(mailbox(static_cast<unsigned>(sending_))) * clock.div / clock.mul;
+}
+
+// Bit time: (BRP + 1)(3 + TS1 + TS2) clocks of APB1
+Cycles BxCan::bit_clocks() const {
+  const std::uint32_t btr = value(kBtr);
+  return Cycles{field(btr, 0, 10) + 1} * (3 + field(btr, 16, 4) + field(btr, 20, 3));
+}
+
+double BxCan::bit_cycles() const {
+  const ClockRatio clock = context_.clocks.bus(Bus::kApb1);
+  return static_cast<double>(bit_clocks() * clock.div) / static_cast<double>(clock.mul);
 }
 
 void BxCan::complete(unsigned m, bool ok) {
@@ -145,7 +153,7 @@ void BxCan::run_events() {
   sent_at_ = kNever;
   complete(m, true);
   transmit_next();
-  if (bit(value(kBtr), 30)) receive(frame);  // LBKM
+  if (bit(value(kBtr), 30)) take(frame);  // LBKM
   if (!bit(value(kBtr), 31)) sent(frame, end);
   update();
 }
@@ -195,7 +203,7 @@ int BxCan::match(const CanFrame& frame, unsigned first, unsigned last, unsigned&
   return found;
 }
 
-void BxCan::receive(const CanFrame& frame) {
+void BxCan::take(const CanFrame& frame) {
   if (!running() || frame.fd) return off_bus(now());
   const bool second = filters_ != this;
   const unsigned split = filters_->banks_ > 14 ? field(filters_->value(kFmr), 8, 6) : 28;

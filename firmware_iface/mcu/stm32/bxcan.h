@@ -22,9 +22,11 @@ class BxCan final : public RegisterBlock, public CanPort {
         ChipContext& context);
   void reset() override;
   void run_events() override;
-  void receive(const CanFrame& frame) override;
 
  protected:
+  void take(const CanFrame& frame) override;
+  double bit_cycles() const override;
+  Cycles present() const override { return now(); }
   std::uint32_t load(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
@@ -35,6 +37,7 @@ class BxCan final : public RegisterBlock, public CanPort {
   };
   bool running() const { return (value(0x04) & 3u) == 0; }
   CanFrame mailbox(unsigned m) const;
+  Cycles bit_clocks() const;
   void transmit_next();
   void complete(unsigned m, bool ok);
   // The FIFO and filter number that take a frame; -1: none.

@@ -28,6 +28,10 @@ unsigned can_frame_bits(const CanFrame& frame) {
     const unsigned slow = frame.fast ? 0 : 1 + 4 + 8u * frame.bytes + 4 + (frame.bytes > 16 ? 27 : 22) + 1;
     return head + head / 10 + slow + 2 + 7 + 3;  // ACK with delimiter, end of frame, interframe space
   }
+  return static_cast<unsigned>(can_line_bits(frame).size());
+}
+
+std::vector<bool> can_line_bits(const CanFrame& frame) {
   std::vector<bool> bits;
   const auto put = [&bits](std::uint32_t value, unsigned n) {
     for (unsigned i = n; i-- > 0;) bits.push_back((value >> i & 1u) != 0);
@@ -52,19 +56,23 @@ unsigned can_frame_bits(const CanFrame& frame) {
     crc = (crc << 1 & 0x7FFFu) ^ (feedback ? 0x4599u : 0u);
   }
   put(crc, 15);
-  unsigned stuffed = 0, run = 0;
+  std::vector<bool> line;
+  unsigned run = 0;
   bool last = true;
   for (const bool b : bits) {
+    line.push_back(b);
     run = b == last && run > 0 ? run + 1 : 1;
     last = b;
     if (run == 5) {  // a bit of the other kind follows, and counts for the next run
-      ++stuffed;
+      line.push_back(!b);
       last = !b;
       run = 1;
     }
   }
-  // CRC delimiter, ACK slot and delimiter, 7 bits of end of frame, 3 of interframe space
-  return static_cast<unsigned>(bits.size()) + stuffed + 1 + 2 + 7 + 3;
+  line.push_back(true);                      // CRC delimiter
+  line.push_back(false);                     // ACK slot
+  line.insert(line.end(), 1 + 7 + 3, true);  // its delimiter, end of frame, interframe space
+  return line;
 }
 
 }  // namespace omnihil::mcu

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "firmware_iface/mcu/peripheral.h"
 #include "firmware_iface/mcu/stm32/bus_ledger.h"
@@ -30,20 +31,40 @@ struct CanFrame {
 
 // Bits on the wire at the nominal rate, with the three of the interframe space.
 unsigned can_frame_bits(const CanFrame& frame);
+// These bits of a classic frame as they stand on the wire, true: recessive; the slot for the acknowledgement is dominant.
+std::vector<bool> can_line_bits(const CanFrame& frame);
 // Of these, FD only: bits at the data rate.
 unsigned can_fast_bits(const CanFrame& frame);
 unsigned can_dlc(unsigned bytes);
 unsigned can_bytes(unsigned dlc, bool fd);
 
+// What passed: sent by this end, or come from another.
+struct CanPass {
+  CanFrame frame;
+  bool sent = false;
+  double bit = 0.0;  // core cycles of one at the nominal rate
+  Cycles end = 0;    // of the interframe space where sent, of the last bit where come
+};
+
 class CanPort : public BusEnd {
  public:
-  virtual void receive(const CanFrame& frame) = 0;
+  void receive(const CanFrame& frame) {
+    if (watcher_) watcher_({frame, false, bit_cycles(), present()});
+    take(frame);
+  }
   void on_transmit(std::function<void(const CanFrame&, Cycles end)> listener) {
     on_transmit_ = std::move(listener);
   }
 
+  // For whoever draws the wire.
+  void watch_frames(std::function<void(const CanPass&)> watcher) { watcher_ = std::move(watcher); }
+
  protected:
+  virtual void take(const CanFrame& frame) = 0;
+  virtual double bit_cycles() const = 0;
+  virtual Cycles present() const = 0;
   void sent(const CanFrame& frame, Cycles end) {
+    if (watcher_) watcher_({frame, true, bit_cycles(), end});
     if (on_transmit_) return on_transmit_(frame, end);
     ledger_.lost("frame", "sent, nobody is there to acknowledge (taken as acknowledged)", end);
   }
@@ -53,6 +74,7 @@ class CanPort : public BusEnd {
 
  private:
   std::function<void(const CanFrame&, Cycles)> on_transmit_;
+  std::function<void(const CanPass&)> watcher_;
 };
 
 }  // namespace omnihil::mcu

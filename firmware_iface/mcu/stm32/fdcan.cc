@@ -69,6 +69,12 @@ constexpr RegisterInfo kRegisters[] = {{0x00, "CREL", 0x32141218, 0},
 constexpr unsigned kPlaces = 3;
 // IR: new message, full, lost per FIFO; transmission completed, cancelled; transmit FIFO empty
 constexpr std::uint32_t kTc = 1u << 7, kTcf = 1u << 8, kTfe = 1u << 9;
+
+// Of the kernel clock, by CKDIV.PDIV.
+double divider(std::uint32_t ckdiv) {
+  constexpr unsigned kDividers[] = {1, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
+  return kDividers[ckdiv & 15u];
+}
 }  // namespace
 
 std::uint32_t FdcanRam::read(std::uint32_t offset, unsigned bytes) {
@@ -116,6 +122,16 @@ CanFrame Fdcan::buffer(unsigned place) const {
   return frame;
 }
 
+// Of the nominal rate, in clocks behind the divider.
+double Fdcan::bit_clocks() const {
+  const std::uint32_t n = value(kNbtp);
+  return (field(n, 16, 9) + 1.0) * (3.0 + field(n, 8, 8) + field(n, 0, 7));
+}
+
+double Fdcan::bit_cycles() const {
+  return bit_clocks() * divider(value(0x100)) * system().core_hz() / context_.clocks.bus_hz(Bus::kApb1);
+}
+
 void Fdcan::transmit_next() {
   if (sent_at_ != kNever || asked_.empty() || !running()) return;
   if (bit(value(kTxbc), 24)) {  // queue: lowest identifier first; FIFO: in order
@@ -127,12 +143,10 @@ void Fdcan::transmit_next() {
                      [&key](unsigned a, unsigned b) { return key(a) < key(b); });
   }
   const CanFrame frame = buffer(asked_.front());
-  const std::uint32_t n = value(kNbtp), d = value(kDbtp);
-  constexpr unsigned kDividers[] = {1, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
-  const double slow = (field(n, 16, 9) + 1.0) * (3.0 + field(n, 8, 8) + field(n, 0, 7));
+  const std::uint32_t d = value(kDbtp);
   const double fast = (field(d, 16, 5) + 1.0) * (3.0 + field(d, 8, 5) + field(d, 4, 4));
   const double clocks =
-      (can_frame_bits(frame) * slow + can_fast_bits(frame) * fast) * kDividers[value(0x100) & 15u];
+      (can_frame_bits(frame) * bit_clocks() + can_fast_bits(frame) * fast) * divider(value(0x100));
   const double cycles = clocks * system().core_hz() / context_.clocks.bus_hz(Bus::kApb1);
   sent_at_ = now() + std::max<Cycles>(1, static_cast<Cycles>(std::llround(cycles)));
 }
@@ -150,7 +164,7 @@ void Fdcan::run_events() {
   if (asked_.empty()) value(kIr) |= kTfe;
   transmit_next();
   const bool loop = bit(value(kCccr), 7) && bit(value(kTest), 4), silent = loop && bit(value(kCccr), 5);
-  if (loop) receive(frame);
+  if (loop) take(frame);
   if (!silent) sent(frame, end);
   update();
 }
@@ -184,7 +198,7 @@ int Fdcan::filter(const CanFrame& frame, unsigned& index) const {
   return rest < 2 ? static_cast<int>(rest) : -1;
 }
 
-void Fdcan::receive(const CanFrame& frame) {
+void Fdcan::take(const CanFrame& frame) {
   if (!running() || (frame.fd && !bit(value(kCccr), 8))) return off_bus(now());
   unsigned index = 0;
   const int to = filter(frame, index);

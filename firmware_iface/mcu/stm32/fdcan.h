@@ -37,9 +37,11 @@ class Fdcan final : public RegisterBlock, public CanPort {
   Fdcan(int number, std::pair<int, int> irqs, FdcanRam& ram, ChipContext& context);
   void reset() override;
   void run_events() override;
-  void receive(const CanFrame& frame) override;
 
  protected:
+  void take(const CanFrame& frame) override;
+  double bit_cycles() const override;
+  Cycles present() const override { return now(); }
   std::uint32_t load(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
@@ -53,6 +55,7 @@ class Fdcan final : public RegisterBlock, public CanPort {
     return base_ + (fifo == 0 ? 0xB0u : 0x188u) + 72 * place;
   }
   CanFrame buffer(unsigned place) const;
+  double bit_clocks() const;
   int filter(const CanFrame& frame, unsigned& index) const;  // FIFO, or -1
   void transmit_next();
   void update();

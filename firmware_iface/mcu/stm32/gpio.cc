@@ -63,6 +63,7 @@ void GpioPort::changed() {
   const std::uint32_t moved = levels_now ^ seen_levels_, given = outputs ^ seen_outputs_;
   seen_levels_ = levels_now;
   seen_outputs_ = outputs;
+  if (moved != 0 && watcher_) watcher_(levels_now);
   for (unsigned pin = 0; pin < 16 && on_level_ && moved != 0; ++pin) {
     if ((moved >> pin & 1u) != 0) on_level_(port_, pin, (levels_now >> pin & 1u) != 0);
   }

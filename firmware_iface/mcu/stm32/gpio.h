@@ -39,6 +39,8 @@ class GpioPort final : public RegisterBlock {
   void on_level(std::function<void(unsigned port, unsigned pin, bool level)> listener) {
     on_level_ = std::move(listener);
   }
+  // The same for whoever draws them: levels after a change, a bit per pin.
+  void watch_levels(std::function<void(std::uint32_t levels)> watcher) { watcher_ = std::move(watcher); }
   // Modes, outputs, alternate functions may have changed (boards that look at pin modes).
   void on_modes(std::function<void()> listener) { on_modes_.push_back(std::move(listener)); }
 
@@ -57,6 +59,7 @@ class GpioPort final : public RegisterBlock {
   std::uint32_t seen_levels_ = 0, seen_outputs_ = 0;
   std::vector<std::pair<unsigned, std::function<void(bool)>>> listeners_;
   std::function<void(unsigned, unsigned, bool)> on_level_;
+  std::function<void(std::uint32_t)> watcher_;
   std::vector<std::function<void()>> on_modes_;
 };
 

@@ -89,8 +89,12 @@ void Spi::begin() {
 
 void Spi::run_events() {
   if (frame_end_ > now()) return;
-  frame_end_ = kNever;
+  const Cycles end = std::exchange(frame_end_, kNever);
   const std::uint32_t answer = exchange(shifting_);
+  if (watcher_) {
+    const std::uint32_t cr1 = value(kCr1);
+    watcher_({shifting_, answer, frame_bits(), end - frame_cycles(), end, bit(cr1, 1), bit(cr1, 0)});
+  }
   if (receive_.size() < capacity()) {
     receive_.push_back(answer);
   } else {

@@ -12,7 +12,9 @@
 #pragma once
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware_iface/mcu/stm32/bus_ledger.h"
@@ -29,6 +31,14 @@ struct SpiSpec {
   int irq = -1;
 };
 
+// What passed on its lines, the highest bit first.
+struct SpiFrame {
+  std::uint32_t out = 0, in = 0;  // of master and device
+  unsigned bits = 0;
+  Cycles begin = 0, end = 0;
+  bool idle_high = false, second_edge = false;  // CPOL, CPHA
+};
+
 class Spi final : public RegisterBlock, public BusEnd {
  public:
   Spi(SpiSpec spec, ChipContext& context);
@@ -38,6 +48,8 @@ class Spi final : public RegisterBlock, public BusEnd {
 
   void connect(SpiDevice& device) { devices_.push_back({&device, false}); }
   void select(SpiDevice& device, bool selected);
+  // For whoever draws the lines: each frame at its end.
+  void watch_frames(std::function<void(const SpiFrame&)> watcher) { watcher_ = std::move(watcher); }
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
@@ -69,6 +81,7 @@ class Spi final : public RegisterBlock, public BusEnd {
   std::uint32_t shifting_ = 0;
   bool overrun_ = false;
   Cycles frame_end_ = kNever;
+  std::function<void(const SpiFrame&)> watcher_;
 };
 
 }  // namespace omnihil::mcu

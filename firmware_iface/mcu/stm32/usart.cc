@@ -90,6 +90,7 @@ void Usart::run_events() {
   if (transmit_end_ <= now()) {
     const Cycles end = transmit_end_;
     const auto byte = static_cast<std::uint8_t>(shifting_);
+    if (watcher_) show_frame(true, shifting_, end);
     schedule(transmit_end_, kNever);
     if (holding_full_) {
       shifting_ = holding_;
@@ -109,6 +110,7 @@ void Usart::run_events() {
     const std::uint8_t byte = waiting_.front().byte;
     waiting_.pop_front();
     clock_changed();
+    if (watcher_) show_frame(false, byte, now());
     receive(byte);
   }
   if (idle_at_ <= now()) {
@@ -116,6 +118,18 @@ void Usart::run_events() {
     status_ |= kIdle;
   }
   update();
+}
+
+void Usart::show_frame(bool sent, std::uint32_t data, Cycles end) const {
+  const unsigned bits = frame_bits(), stop = field(cr2(), 12, 2) == 2 ? 2 : 1, of_data = bits - 1 - stop;
+  std::uint32_t levels = data & ((1u << of_data) - 1u);
+  if ((cr1() & kPce) != 0) {  // the last of them is made
+    levels &= (1u << (of_data - 1)) - 1u;
+    const bool odd = (__builtin_popcount(levels) & 1) != 0;
+    if (odd != bit(cr1(), 9)) levels |= 1u << (of_data - 1);
+  }
+  levels = levels << 1 | ((1u << stop) - 1u) << (1 + of_data);
+  watcher_({sent, static_cast<std::uint8_t>(data), levels, bits, bit_cycles(), end});
 }
 
 void Usart::receive(std::uint8_t byte) {

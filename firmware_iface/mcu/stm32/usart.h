@@ -30,6 +30,15 @@ struct UsartSpec {
   int irq = -1;
 };
 
+// What passed on one of its lines: levels from the start bit on, the first of them in bit 0.
+struct SerialFrame {
+  bool sent = false;  // else received
+  std::uint8_t byte = 0;
+  std::uint32_t levels = 0;
+  unsigned bits = 0;
+  Cycles bit = 0, end = 0;  // of one bit, of the last one
+};
+
 class Usart final : public RegisterBlock, public BusEnd {
  public:
   Usart(UsartSpec spec, ChipContext& context);
@@ -43,6 +52,8 @@ class Usart final : public RegisterBlock, public BusEnd {
   void on_transmit(std::function<void(std::uint8_t byte, Cycles end)> listener) {
     on_transmit_ = std::move(listener);
   }
+  // For whoever draws the lines: each frame at its end.
+  void watch_frames(std::function<void(const SerialFrame&)> watcher) { watcher_ = std::move(watcher); }
   // `bit_ns` 0: what this end is set to.
   void feed(std::span<const std::uint8_t> bytes, std::int64_t at_ns, double bit_ns = 0.0);
   double baud() const;
@@ -69,6 +80,7 @@ class Usart final : public RegisterBlock, public BusEnd {
     which = at;
     next_ = std::min({transmit_end_, receive_at_, idle_at_});
   }
+  void show_frame(bool sent, std::uint32_t data, Cycles end) const;
   void transmit(std::uint32_t data);
   void receive(std::uint8_t byte);
   void control_changed();
@@ -87,6 +99,7 @@ class Usart final : public RegisterBlock, public BusEnd {
   Cycles next_ = kNever;  // the first of them
   std::deque<Waiting> waiting_;
   std::function<void(std::uint8_t, Cycles)> on_transmit_;
+  std::function<void(const SerialFrame&)> watcher_;
   std::uint64_t overruns_ = 0;
 };
 

@@ -186,7 +186,7 @@ TEST_F(Observe, ATraceNestsAndHasEveryInterrupt) {
   trace.begins(*run.firmware, run.elf, 3);
   run.run_ms(100);
   trace.ends(*run.firmware);
-  const Nesting seen = nesting_of(trace.json());
+  const Nesting seen = nesting_of(trace.text());
   EXPECT_TRUE(seen.balanced);
   EXPECT_TRUE(seen.in_order);
   EXPECT_EQ(seen.open, 0);
@@ -204,7 +204,7 @@ TEST_F(Observe, OnlyTheLastStretchIsKept) {
   trace.begins(*run.firmware, run.elf, 0);
   run.run_ms(200);
   trace.ends(*run.firmware);
-  const Nesting seen = nesting_of(trace.json());
+  const Nesting seen = nesting_of(trace.text());
   EXPECT_TRUE(seen.balanced);
   EXPECT_EQ(seen.open, 0);
   EXPECT_NEAR(seen.last_us - seen.first_us, 20'000, 1'500);
@@ -217,7 +217,7 @@ TEST_F(Observe, AFilterKeepsItsFunctionsAndAllInterrupts) {
   trace.begins(*run.firmware, run.elf, 0);
   run.run_ms(50);
   trace.ends(*run.firmware);
-  const std::string json = trace.json();
+  const std::string json = trace.text();
   EXPECT_TRUE(nesting_of(json).balanced);
   EXPECT_NE(json.find("board_tick"), std::string::npos);
   EXPECT_EQ(json.find("board_encoders_read"), std::string::npos);

@@ -37,13 +37,26 @@ class ObservedImage {
   }
 
   void run_ms(int ms) {
+    double theta_rad = 0.0;
+    turn_ms(ms, 0.0, theta_rad);
+  }
+  // All shafts turn evenly, from `theta_rad` on, which follows.
+  void turn_ms(int ms, double omega_rad_s, double& theta_rad) {
     const std::int64_t end_ns = now_ns_ + std::int64_t{ms} * 1'000'000;
     for (; now_ns_ < end_ns; now_ns_ += firmware->control_period_ns()) {
       RobotSensors sensors{};
+      RobotShafts shafts{};
+      mcu::WorldState world{};
+      for (std::size_t w = 0; w < kWheels; ++w) {
+        world.theta_rotor_rad[w] = shafts.theta_rotor_rad[w] = theta_rad;
+        shafts.omega_rotor_rad_s[w] = omega_rad_s;
+        sensors.encoder_counts[w] = world.encoder_counts(static_cast<int>(w), 0);
+      }
       sensors.now_us = static_cast<std::uint64_t>(now_ns_ / 1000);
       sensors.bus_voltage_V = 24.0;
-      firmware->shafts({});
+      firmware->shafts(shafts);
       firmware->tick(sensors);
+      theta_rad += omega_rad_s * 1e-9 * static_cast<double>(firmware->control_period_ns());
     }
   }
   mcu::Machine& machine() { return firmware->board(0).machine(); }

@@ -75,6 +75,11 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
     return (pins_known_ >> i & 1u) != 0 ? pins_[i] : find_pin(channel, complement);
   }
   TimerOutput output(unsigned channel) const;
+  // Of a pin that is driven: its level at this instant, as if there were no dead time.
+  bool level(unsigned channel, bool complement) const;
+  bool paired(unsigned channel) const {  // both of its pins are on: dead time lies between them
+    return (enable_bits() >> 4 * channel & 5u) == 5u;
+  }
   bool reference(unsigned channel) const;  // OCxREF now
   double period_s() const;                 // (PSC + 1) periods of the count
   // Update events, software's own aside, that found the flag of the one before still set.

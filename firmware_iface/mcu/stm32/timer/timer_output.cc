@@ -190,6 +190,13 @@ TimerPin Timer::work_out_pin(unsigned c, bool complement) const {
   return {TimerPin::Drive::kPwm, inverted ? 1.0 - active : active};
 }
 
+bool Timer::level(unsigned channel, bool complement) const {
+  const TimerPin is = pin(channel, complement);
+  if (is.drive != TimerPin::Drive::kPwm) return is.high_ratio > 0.5;
+  const bool inverted = bit(enable_bits(), 4 * channel + (complement ? 3 : 1));
+  return (reference(channel) != (complement && paired(channel))) != inverted;
+}
+
 TimerOutput Timer::output(unsigned channel) const {
   const double tick_s = static_cast<double>(clock_.div) / clock_.mul / system().core_hz();
   return {pin(channel, false), pin(channel, true), dead_ticks() * tick_s, period_s()};
