@@ -1,7 +1,7 @@
 // Signals over time, as a trace keeps them: levels, words and numbers, all of them or the last stretch.
 //
 //   WaveLog log({.last_s = 0.5});
-//   const int tx = log.add("robot0", "USART2_TX", WaveKind::kLevel, 1, 1);      // below 0: filtered out
+//   const int tx = log.add("robot0", "USART2_TX", WaveKind::kLevel, 1, {1, false});      // below 0: filtered out
 //   log.put(tx, at_ns, 0);
 //   log.put_none(tx, at_ns);                                                   // nobody drives it
 //
