@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "firmware_iface/mcu/board/boards_chip.h"
+#include "firmware_iface/mcu/stm32/usart.h"
 #include "hil/scenario/chip_fuzz.h"
 #include "hil/variables/variable_watch.h"
 #include "tests/hil/observe/observed_image.h"
@@ -127,6 +128,51 @@ TEST_F(ChipFaults, ABitOfTheFlashStaysTurned) {
   run.run_ms(5);
   run.machine().memory().read(address, {&after, 1});
   EXPECT_EQ(after, before ^ 0x40);
+}
+
+// A hundred bytes to a serial port at 115,200 baud: 86.8 us each. The fault leaves those that had not been fetched, the
+// stream's error flag and its enable bit off; what is in the port still leaves.
+TEST_F(ChipFaults, ADmaErrorEndsTheTransferThatIsOn) {
+  constexpr std::uint32_t kUsart3 = 0x40004800, kDma1 = 0x40026000, kStream3 = kDma1 + 0x10 + 3 * 0x18;
+  struct Outcome {
+    int sent = 0;
+    std::uint32_t left = 0, flags = 0, control = 0;
+  };
+  const auto run_one_transfer = [&](bool fails) {
+    ObservedImage run;
+    mcu::BoardsChip chip(*run.firmware, run.elf);
+    Outcome outcome;
+    run.firmware->board(0).chip().find<mcu::Usart>("USART3")->on_transmit(
+        [&outcome](std::uint8_t, mcu::Cycles) { ++outcome.sent; });
+    if (fails) {
+      EXPECT_EQ(chip.schedule({.kind = ChipFaultKind::kDmaError, .at_ns = 14'000'000}), "");
+    }
+    run.run_ms(10);
+    const auto set = [&run](std::uint32_t address, std::uint32_t value) {
+      run.machine().bus_write(address, 4, value);
+    };
+    set(kUsart3 + 0x08, 365);                           // 42 MHz / 115,200
+    set(kUsart3 + 0x14, 1u << 7);                       // DMAT
+    set(kUsart3 + 0x0C, 1u << 13 | 1u << 3);            // UE, TE
+    set(kStream3 + 0x04, 100);                          // NDTR
+    set(kStream3 + 0x08, kUsart3 + 0x04);               // to DR
+    set(kStream3 + 0x0C, 0x08000000);                   // from flash
+    set(kStream3, 4u << 25 | 1u << 10 | 1u << 6 | 1u);  // channel 4, MINC, memory to peripheral, EN
+    run.run_ms(20);
+    outcome.left = run.machine().bus_read(kStream3 + 0x04, 4);
+    outcome.flags = run.machine().bus_read(kDma1, 4);  // LISR
+    outcome.control = run.machine().bus_read(kStream3, 4);
+    return outcome;
+  };
+  constexpr std::uint32_t kComplete = 1u << 27, kError = 1u << 25;
+  const Outcome whole = run_one_transfer(false), cut = run_one_transfer(true);
+  EXPECT_EQ(whole.sent, 100);
+  EXPECT_EQ(whole.left, 0u);
+  EXPECT_EQ(whole.flags & (kComplete | kError), kComplete);
+  EXPECT_NEAR(cut.sent, 4.0e-3 / 86.9e-6, 2.5);  // in 4 ms, and what had been fetched
+  EXPECT_EQ(cut.left, 100u - static_cast<std::uint32_t>(cut.sent));
+  EXPECT_EQ(cut.flags & (kComplete | kError), kError);
+  EXPECT_EQ(cut.control & 1u, 0u);
 }
 
 TEST_F(ChipFaults, WhatCannotBeBrokenIsRefused) {
