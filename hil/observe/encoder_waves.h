@@ -3,8 +3,9 @@
 //   EncoderWaves waves(board, log, "robot0");      // before it runs
 //   waves.finish(at_ns);                           // up to the end
 //
-// wheel0_A, wheel0_B: the quadrature lines that the timer counts, in the order in which it counts upwards (A first), with edges at their instants on
-// the shaft as it turns between two looks at the plant (world_state.h). wheel0_counts: the count at each look.
+// wheel0_A, wheel0_B: the quadrature lines that the timer counts, in the order in which it counts upwards (A first), with
+// edges at their instants on the shaft as it turns between two looks at the plant (world_state.h). wheel0_counts: the count at
+// each look.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,13 +1,14 @@
-// A trace of what an image's board does outside of its core, as signals over time (VCD): pins, timers' outputs, bridges, encoders, buses,
-// interrupts.
+// A trace of what an image's board does outside of its core, as signals over time (VCD): pins, timers' outputs, bridges, encoders,
+// buses, interrupts.
 //
 //   auto trace = std::make_shared<WaveTrace>(TraceOptions{.last_s = 0.5, .filter = "USART2,wheel0"});
 //   FirmwareChoice choice{.file = "fw.elf", .board = "mine.toml", .observer = trace};
 //   …
 //   write(trace->text());                          // for GTKWave, PulseView, sigrok-cli
 //
-// A module per robot, within it one per board where it has several. Interrupts: IRQ54, SysTick and so on are high from their first instruction to
-// their last, those that preempt them included. What a filter leaves out is not worked out. The core runs at its usual speed.
+// A module per robot, within it one per board where it has several. Interrupts: IRQ54, SysTick and so on are high from their first
+// instruction to their last, those that preempt them included. What a filter leaves out is not worked out. The core runs at its
+// usual speed.
 #pragma once
 #include <memory>
 #include <string>
