@@ -74,6 +74,13 @@ void add_differences(const RunRows& rows, const std::vector<std::string>& drive,
 
 }  // namespace
 
+std::string signal_of_column(std::string_view column) {
+  for (const Signal& s : kSignals) {
+    if (column == s.column) return s.signal;
+  }
+  return "";
+}
+
 std::map<std::string, double> steady_noise(const AcquirePlan& plan, const std::vector<AcquiredRun>& runs,
                                            double wheel_speed_step_rad_s) {
   const std::vector<std::string> drive = drive_columns(plan.drive);

@@ -19,6 +19,9 @@ struct AcquiredRun {
   RunRows rows;
 };
 
+// The signal of a dataset that a column of run_rows is: "wheel_1" is "wheel_speed_1"; empty: none.
+std::string signal_of_column(std::string_view column);
+
 // By column; a column that is not there has none.
 std::map<std::string, double> steady_noise(const AcquirePlan& plan, const std::vector<AcquiredRun>& runs,
                                            double wheel_speed_step_rad_s);

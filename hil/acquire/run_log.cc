@@ -151,12 +151,16 @@ const std::vector<double>* RunRows::column(const std::string& name) const {
 }
 
 RunRows run_rows(const RunLog& log, PlanDrive drive) {
+  return rows_between(log, drive, seconds(log.driving_from_ns) - kLead_s, seconds(log.end_ns));
+}
+
+RunRows rows_between(const RunLog& log, PlanDrive drive, double from_s, double to_s) {
   std::vector<Row> rows = sorted_rows(log);
   turn_back(log, rows);
   rows = merged(std::move(rows));
-  const double from_s = seconds(log.driving_from_ns) - kLead_s, to_s = seconds(log.end_ns);
   std::erase_if(rows, [&](const Row& r) { return r.time_s < from_s || r.time_s > to_s; });
   RunRows out;
+  if (!rows.empty()) out.start_s = rows.front().time_s;
   out.columns = drive_columns(drive);
   for (std::size_t a = 0; a < out.columns.size(); ++a) {
     out.values.emplace_back();

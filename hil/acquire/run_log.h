@@ -48,6 +48,7 @@ struct RunLog {
 struct RunRows {
   std::vector<std::string> columns;         // beside time_s
   std::vector<double> time_s;               // from the first row's time on
+  double start_s = 0.0;                     // that time, on the log's clock
   std::vector<std::vector<double>> values;  // [column][row]
 
   const std::vector<double>* column(const std::string& name) const;
@@ -56,6 +57,8 @@ struct RunRows {
 inline constexpr double kLead_s = 0.2;  // the robot stands: what telemetry shows of that is worth a few rows
 
 RunRows run_rows(const RunLog& log, PlanDrive drive);
+// The same of any stretch of the log's clock, both ends included.
+RunRows rows_between(const RunLog& log, PlanDrive drive, double from_s, double to_s);
 std::string rows_csv(const RunRows& rows);
 
 // The columns of a plan's drive: "cmd_vx" …, "wheel_cmd_1" …, "duty_1" …

@@ -12,9 +12,7 @@
 #include "hil/recording/recorded_packets.h"
 
 namespace omnihil {
-namespace {
 
-// What a dataset can say of a command; none: it cannot.
 std::optional<std::pair<PlanDrive, SentCommand>> told_by_dataset(const HeardCommand& heard) {
   const RobotCommand& c = heard.command;
   SentCommand sent{.now_ns = heard.now_ns, .value = {}, .in_field = false};
@@ -28,6 +26,8 @@ std::optional<std::pair<PlanDrive, SentCommand>> told_by_dataset(const HeardComm
   sent.in_field = (c.flags & OMNIHIL_COMMAND_FIELD_FRAME) != 0;
   return std::pair(PlanDrive::kBodyVelocity, sent);
 }
+
+namespace {
 
 void read_vision(const std::string& csv, Team team, int robot, RunLog& log) {
   std::istringstream lines(csv);

@@ -8,8 +8,10 @@
 // Throws std::invalid_argument when no command of the robot can be told by a dataset. Cannot: leave out what is no driving
 // (the robot carried, or in a scrum): cut the recording before.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "hil/acquire/run_log.h"
 #include "hil/dataset/dataset_export.h"
@@ -23,6 +25,9 @@ struct TappedOptions {
   std::string vision_csv{};
   double holdout_ratio = 1.0 / 3.0;
 };
+
+// A command as a dataset tells it; none: it cannot (to a heading, of duties).
+std::optional<std::pair<PlanDrive, SentCommand>> told_by_dataset(const HeardCommand& heard);
 
 // False: a bench's recording, with samples of its own.
 bool is_tapped(const Recording& recording);

@@ -61,10 +61,12 @@ std::array<T, kMaxEffectStates> initial_states(const EffectSet<T>& effects) {
 template <typename T>
 class Runner {
  public:
-  Runner(const RobotModelValues<T>& model, const RobotRecord& record, const RobotMotionOptions& options)
+  Runner(const RobotModelValues<T>& model, const RobotRecord& record, const RobotMotionOptions& options,
+         RobotCarry<T>* carry)
       : model_(model),
         record_(record),
         options_(options),
+        carry_(carry),
         robot_(model.params, model.uses, model.values),
         timing_states_(initial_states(robot_.effects())) {
     if (record.radio) {
@@ -136,17 +138,43 @@ class Runner {
     return omega;
   }
 
-  void simulate() {
-    const std::size_t n = record_.size();
+  RollingState<T> begin(T& own_heading) {
+    if (carry_ != nullptr && carry_->begun) {
+      controller_ = carry_->controller;
+      duty_ = carry_->duty;
+      turned_rad_ = carry_->turned_rad;
+      last_control_s_ = carry_->last_control_s;
+      next_control_s_ = carry_->next_control_s;
+      own_heading = carry_->heading;
+      return carry_->state;
+    }
     RollingState<T> x = robot_.start(record_.start_velocity, record_.theta_rotor_rad[0]);
-    T own_heading = T(0);
-    double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
     if (controller_) {
-      step_s = std::min(step_s, controller_->period_s());
       last_control_s_ = next_control_s_ = record_.time_s[0];
       controller_->begin(record_.start_velocity, speeds(x), model_.params.drive.torque_constant_Nm_per_A,
                          record_.radio->frame);
     }
+    return x;
+  }
+  void leave(const RollingState<T>& x, const T& own_heading) {
+    if (carry_ == nullptr) return;
+    carry_->begun = out_.finite;
+    if (!out_.finite) return;
+    carry_->state = x;
+    carry_->controller = controller_;
+    carry_->duty = duty_;
+    carry_->turned_rad = turned_rad_;
+    carry_->last_control_s = last_control_s_;
+    carry_->next_control_s = next_control_s_;
+    carry_->heading = own_heading;
+  }
+
+  void simulate() {
+    const std::size_t n = record_.size();
+    T own_heading = T(0);
+    RollingState<T> x = begin(own_heading);
+    double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
+    if (controller_) step_s = std::min(step_s, controller_->period_s());
     std::array<double, kWheels> between;
     for (std::size_t k = 0;; ++k) {
       keep(x);
@@ -180,6 +208,7 @@ class Runner {
         break;
       }
     }
+    leave(x, own_heading);
     if (out_.finite) return;
     // samples after a divergence repeat the last state; `finite` marks the run as diverged
     const std::size_t known = truth_.bus.size();
@@ -361,6 +390,7 @@ class Runner {
   const RobotModelValues<T>& model_;
   const RobotRecord& record_;
   const RobotMotionOptions& options_;
+  RobotCarry<T>* carry_;
   RollingRobot<T> robot_;
   std::array<T, kMaxEffectStates> timing_states_;
   std::optional<RadioController<T>> controller_;
@@ -400,15 +430,15 @@ RobotModelValues<T> robot_values(const Candidate& candidate, std::span<const Unk
 
 template <typename T>
 RobotMotion<T> run_robot(const RobotModelValues<T>& model, const RobotRecord& record,
-                         const RobotMotionOptions& options) {
-  return Runner<T>(model, record, options).run();
+                         const RobotMotionOptions& options, RobotCarry<T>* carry) {
+  return Runner<T>(model, record, options, carry).run();
 }
 
 template RobotModelValues<double> robot_values(const Candidate&, std::span<const Unknown>, std::size_t);
 template RobotModelValues<Jet> robot_values(const Candidate&, std::span<const Unknown>, std::size_t);
 template RobotMotion<double> run_robot(const RobotModelValues<double>&, const RobotRecord&,
-                                       const RobotMotionOptions&);
+                                       const RobotMotionOptions&, RobotCarry<double>*);
 template RobotMotion<Jet> run_robot(const RobotModelValues<Jet>&, const RobotRecord&,
-                                    const RobotMotionOptions&);
+                                    const RobotMotionOptions&, RobotCarry<Jet>*);
 
 }  // namespace omnihil

@@ -5,6 +5,10 @@
 //   RobotMotion<Jet> y = run_robot(m, record, {});
 //   y.encoder_rad[k][i], y.current_A[k][i], y.gyro_rad_s[k], y.x_m[k] …
 //
+// A record that goes on where another ended is run from where that one's motion was, by a RobotCarry: its first row is the
+// last row of the one before, on the same clock. Cut anywhere, the motion is the whole record's (but for states of
+// sensors' and timing's effects, which begin anew).
+//
 // Sensors as in robot_sensing.h: effects of Place::kSensor on the encoders, of Place::kTiming on the age of
 // drive sensors and of camera frames; looked up on straight lines between samples.
 #pragma once
@@ -36,6 +40,17 @@ struct RobotMotionOptions {
   std::optional<std::uint64_t> noise_seed;  // for effects that draw random numbers; none: expected values
 };
 
+// Where a motion was at its record's last row.
+template <typename T>
+struct RobotCarry {
+  bool begun = false;
+  RollingState<T> state;
+  std::optional<RadioController<T>> controller;
+  std::array<T, kWheels> duty{}, turned_rad{};
+  double last_control_s = 0.0, next_control_s = 0.0;
+  T heading = T(0);
+};
+
 // n samples of the record each.
 template <typename T>
 struct RobotMotion {
@@ -52,8 +67,10 @@ struct RobotMotion {
   bool finite = true;
 };
 
+// `carry`: gone on from and left at the end; not owned; null: from the record's own start. A motion that is not finite
+// leaves none.
 template <typename T>
 RobotMotion<T> run_robot(const RobotModelValues<T>& model, const RobotRecord& record,
-                         const RobotMotionOptions& options);
+                         const RobotMotionOptions& options, RobotCarry<T>* carry = nullptr);
 
 }  // namespace omnihil

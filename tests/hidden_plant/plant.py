@@ -120,11 +120,14 @@ def raw_columns(raw):
     return Columns.split(raw, RAW)
 
 
-def run_robot(params, asked):
-    """`asked`: rows of four duties and the dribbler's speed. Returns the columns of BOT; NaN where a camera cell is empty."""
+def run_robot(params, asked, change=None):
+    """`asked`: rows of four duties and the dribbler's speed. Returns the columns of BOT; NaN where a camera cell is empty.
+
+    `change`: (row, parameters) from which on it is another robot in the same state."""
     n = len(asked)
     flat, out = array.array("d", [x for row in asked for x in row]), _doubles(n * len(BOT))
-    if _lib.robot_run(ROBOT.pack(params), _pointer(flat), n, _pointer(out)):
+    row, then = (change[0], ROBOT.pack(change[1])) if change else (0, None)
+    if _lib.robot_run_changed(ROBOT.pack(params), then, row, _pointer(flat), n, _pointer(out)):
         raise ArithmeticError("the hidden robot stopped being finite")
     return Columns.split(out, BOT)
 
@@ -143,6 +146,9 @@ class LiveRobot:
         if _lib.robot_row(self._robot, _pointer(self._heard), _pointer(self._out)):
             raise ArithmeticError("the hidden robot stopped being finite")
         return dict(zip(BOT, self._out))
+
+    def change(self, params):
+        _lib.robot_change(self._robot, ROBOT.pack(params))
 
     def close(self):
         _lib.robot_close(self._robot)

@@ -4,7 +4,8 @@
     radio_bench.py --device ./real --robot 3 --vision 224.5.23.2:10006 --hide '{"radius_1": 1.03}' --model my_robot.toml
 
 Shares nothing with the program but the packets' public table and the league's messages. Lives in real time: rows of 1 ms up to now,
-whenever the loop comes round; a command acts late_radio_s after it came. Prints "ready" when the device can be opened; ends on SIGTERM.
+whenever the loop comes round; a command acts late_radio_s after it came. With --break it is another robot (or the same, broken)
+from --break-after seconds after the first command on. Prints "ready" when the device can be opened; ends on SIGTERM.
 """
 import argparse
 import json
@@ -139,13 +140,22 @@ class Bench:
         self.udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton("127.0.0.1"))
         self.buffer, self.waiting, self.heard = bytearray(), [], (0.0, 0.0, 0.0)
         self.rows, self.frames = 0, 0
+        self.broken = json.loads(words.break_)
+        self.breaks_s = None if self.broken else math.inf  # None: after the first command
         self.row = self.robot.row((0.0, 0.0, 0.0))
         self.start_s, self.clock_s = time.monotonic(), 1000.0 + time.time()  # the cameras' clock is not ours
+
+    def break_it(self):
+        self.robot.change({**self.params, **self.broken})
+        self.breaks_s = math.inf
+        print(f"broken {self.rows * 1e-3:.3f}", flush=True)
 
     def advance(self, now_s):
         late_s = self.params["late_radio_s"]
         while self.rows * 1e-3 < now_s:
             at_s = self.rows * 1e-3
+            if self.breaks_s is not None and at_s >= self.breaks_s:
+                self.break_it()
             while self.waiting and self.waiting[0][0] + late_s <= at_s:
                 self.heard = self.waiting.pop(0)[1]
             x, y, spin = self.heard
@@ -169,6 +179,8 @@ class Bench:
         except BlockingIOError:
             return
         for message_id, *velocity in commands_in(self.buffer, self.words.robot):
+            if self.breaks_s is None:
+                self.breaks_s = now_s + self.words.break_after
             self.waiting.append((now_s, tuple(velocity)))
             try:
                 os.write(self.master, answers(self.words.robot, message_id, self.row))
@@ -194,6 +206,8 @@ def main():
     parser.add_argument("--vision", default="224.5.23.2:10006")
     parser.add_argument("--hide", default="{}")
     parser.add_argument("--model", default="")
+    parser.add_argument("--break", dest="break_", default="{}")
+    parser.add_argument("--break-after", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
     Bench(parser.parse_args()).run()
 

@@ -23,6 +23,9 @@
   X(battery_ohm, 0) X(battery_rc_ohm, 0) X(battery_rc_s, 0.5) X(edge_V, 0) X(edge_A, 0.2) X(cog_Nm, 0)     \
   X(cog_order, 48) X(cog_phase, 0) X(cog2_Nm, 0) X(drag_Nm, 0) X(current_cap_A, 0) X(late_command_s, 0)    \
   X(loaded_ratio, 0) X(contact_ohm, 0) X(contact_s, 0.4)                                                 \
+  /* broken: share of a motor's torque that reaches its wheel, friction added there, an encoder that tells nothing new */ \
+  X(push_1, 1) X(push_2, 1) X(push_3, 1) X(push_4, 1) X(rub_1_Nm, 0) X(rub_2_Nm, 0) X(rub_3_Nm, 0)          \
+  X(rub_4_Nm, 0) X(dead_1, 0) X(dead_2, 0) X(dead_3, 0) X(dead_4, 0)                                        \
   /* firmware: with radio = 1 rows ask for vx, vy, w instead of duties */                                \
   X(radio, 0) X(loop_kp, 0.03) X(loop_ki, 0.3) X(loop_ff, 0.0335) X(loop_filter_s, 0.003) X(late_radio_s, 0.02) \
   X(loop_accel_m_s2, 6) X(loop_alpha_rad_s2, 60) X(loop_wheel_m, 0.027) X(loop_base_m, 0.0805)               \

@@ -17,6 +17,8 @@ typedef struct {
   double x, y, turn, vx, vy, w;    // centre of mass in the field; body's angle and turning speed
   double rim[4], phi[4], amps[4];  // wheels' turning speed and angle, windings' currents
   double sin_a[4], cos_a[4], radius[4], flux[4];
+  double push[4], rub[4], counts[4];
+  int dead[4];
   double load[4], inverse[3][3];  // wheel loads; inverse of the load's equations
   double mass, yaw, keep[2];  // keep: share of a winding's current left after a step, contact closed and open
   double bus, rc_V;
@@ -50,6 +52,9 @@ static void prepare(Robot *r) {
   const double angle[4] = {p->angle_1, p->angle_2, p->angle_3, p->angle_4};
   const double radius[4] = {p->radius_1, p->radius_2, p->radius_3, p->radius_4};
   const double flux[4] = {p->flux_1, p->flux_2, p->flux_3, p->flux_4};
+  const double push[4] = {p->push_1, p->push_2, p->push_3, p->push_4};
+  const double rub[4] = {p->rub_1_Nm, p->rub_2_Nm, p->rub_3_Nm, p->rub_4_Nm};
+  const double dead[4] = {p->dead_1, p->dead_2, p->dead_3, p->dead_4};
   double m[3][3] = {{0}};
   for (int k = 0; k < 4; k++) {
     const double a = angle[k] * M_PI / 180;
@@ -57,6 +62,7 @@ static void prepare(Robot *r) {
     r->cos_a[k] = cos(a);
     r->radius[k] = p->wheel_m * radius[k];
     r->flux[k] = p->flux_Vs * flux[k];
+    r->push[k] = push[k], r->rub[k] = rub[k], r->dead[k] = dead[k] != 0;
     const double row[3] = {1, p->base_m * r->cos_a[k], p->base_m * r->sin_a[k]};
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) m[i][j] += row[i] * row[j];
@@ -110,7 +116,7 @@ static double winding(Robot *r, int k, double duty) {
 static double motor_torque(const Robot *r, int k, double amps) {  // at the wheel, dry friction left out
   const RobotParams *p = r->p;
   const double rotor = r->rim[k] * p->gear, theta = r->phi[k] * p->gear;
-  double t = r->flux[k] * amps - p->viscous_Nms * rotor;
+  double t = r->push[k] * r->flux[k] * amps - p->viscous_Nms * rotor;
   if (p->cog_Nm != 0)
     t +=
         p->cog_Nm * sin(p->cog_order * theta + p->cog_phase) + p->cog2_Nm * sin(2 * p->cog_order * theta + 1);
@@ -146,8 +152,8 @@ static void step(Robot *r, const double *duty, double dribbler, double h) {
     moment += p->base_m * f;
     const double amps = winding(r, k, duty[k]), motor = motor_torque(r, k, amps);
     bus_A += duty[k] * amps;
-    double dry =
-        p->gear * (p->dry_Nm + p->loaded_ratio * fabs(r->flux[k] * amps)) + p->rolling * load * r->radius[k];
+    double dry = p->gear * (p->dry_Nm + p->loaded_ratio * fabs(r->flux[k] * amps)) +
+                 p->rolling * load * r->radius[k] + r->rub[k];
     const double free_speed = r->rim[k] + h / wheel_kgm2 * (motor - r->radius[k] * f);
     const double most = h / wheel_kgm2 * dry;
     const double after = fabs(free_speed) <= most ? 0 : free_speed - sign(free_speed) * most;
@@ -198,7 +204,8 @@ static void write_row(Robot *r, const double *charge, double *row) {
   for (int k = 0; k < 4; k++) {
     row[BOT_CURRENT + k] =
         round((charge[k] / p->sample_s + p->current_noise_A * gauss(&r->noise)) / 0.01) * 0.01;
-    row[BOT_COUNTS + k] = floor(r->phi[k] * p->gear * p->encoder_cpr / (2 * M_PI));
+    if (!r->dead[k]) r->counts[k] = floor(r->phi[k] * p->gear * p->encoder_cpr / (2 * M_PI));
+    row[BOT_COUNTS + k] = r->counts[k];
   }
   row[BOT_GYRO] = r->w + p->gyro_noise_rad_s * gauss(&r->noise);
   row[BOT_AX] = r->ax + p->accel_noise_m_s2 * gauss(&r->noise);
@@ -226,7 +233,9 @@ static void add_camera(Robot *r, int n, double *out) {
 
 // Runs n samples. `asked`: n x 5, four duties (or vx, vy, w and nothing) and the dribbler's speed. `out`: n x BOT_COLUMNS. 1 when not
 // finite.
-int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
+// From row `change` on it is the robot of `q` (null: never).
+int robot_run_changed(const RobotParams *p, const RobotParams *q, int change, const double *asked, int n,
+                      double *out) {
   Robot r = {.p = p, .noise = {(unsigned long long)p->seed * 7919 + 31}};
   prepare(&r);
   share_load(&r, 0, 0);
@@ -239,6 +248,10 @@ int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
   memset(&firmware, 0, sizeof firmware);
   for (int k = 0; k < n; k++) {
     const double t = k * p->sample_s;
+    if (q && k == change) {
+      r.p = p = q;
+      prepare(&r);
+    }
     const double source = p->supply_V + p->supply_drift_V * sin(2 * M_PI * p->supply_drift_Hz * t + 1);
     if (p->contact_ohm > 0 && t >= r.contact_next_s) {
       r.contact_open = !r.contact_open;
@@ -271,6 +284,10 @@ int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
   return 0;
 }
 
+int robot_run(const RobotParams *p, const double *asked, int n, double *out) {
+  return robot_run_changed(p, 0, 0, asked, n, out);
+}
+
 // The same robot row by row, for a bench that lives: it is driven by radio commands as they come.
 typedef struct {
   RobotParams p;
@@ -287,6 +304,13 @@ void *robot_open(const RobotParams *p) {
   share_load(&l->r, 0, 0);
   l->r.x = p->offset_x_m, l->r.y = p->offset_y_m;
   return l;
+}
+
+// From the next row on it is another robot in the same state.
+void robot_change(void *live, const RobotParams *p) {
+  Live *l = live;
+  l->p = *p;
+  prepare(&l->r);
 }
 
 void robot_close(void *live) { free(live); }

@@ -14,11 +14,13 @@
 #include "hil/serve/serve_signals.h"
 #include "hil/tap/tap_loop.h"
 #include "hil/text/program_files.h"
+#include "hil/twin/twin_thread.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
 #include "tools/options/open_end.h"
+#include "tools/options/twin_options.h"
 #include "tools/options/vision_options.h"
 #include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
@@ -30,6 +32,47 @@ struct TapWords {
   std::string dongle, device = "./dongle", robot = "omni_default", radio, format_file, robots = "0-5",
                       team = "blue", out;
   VisionWords vision;
+  TwinWords twin;
+};
+
+// The model beside the robot, and what it says: alarms on stderr, whatever the status line does on stdout.
+class TapTwin {
+ public:
+  TapTwin(const TapWords& words, const SessionSetup& setup)
+      : log_(words.twin),
+        runner_(twin_model(words.twin), card_errors(words.twin.model), twin_options(words.twin),
+                [this](const TwinEvent& event) { tell(event); }),
+        feed_(*find_radio_format(setup.radio_format), {.robot_ids = setup.robot_ids,
+                                                       .team = setup.team,
+                                                       .robot = twin_robot(words.twin, setup.robot_ids),
+                                                       .step_ns = setup.step_ns}) {}
+  void start() { thread_.emplace(feed_, runner_, stdout); }
+  SessionObserver* observer() { return &*thread_; }
+  // Exit code; what was seen is said.
+  int finish(std::int64_t end_ns) {
+    thread_->finish(end_ns);
+    const std::string learning = runner_.watch().learning() ? ", still learning" : "";
+    fmt::print("twin: {} commands, {} answers, watched {:.1f} s{}: {} alarm{}\n", feed_.commands(),
+               feed_.told(), runner_.watched_s(), learning, runner_.alarms(),
+               runner_.alarms() == 1 ? "" : "s");
+    if (feed_.left_out() > 0)
+      fmt::print(
+          "twin: {} commands are left out: to a heading, of duties, or of another kind than the first\n",
+          feed_.left_out());
+    if (thread_->left_out() > 0)
+      fmt::print("twin: this computer could not keep up, {} bytes were not watched\n", thread_->left_out());
+    return runner_.alarms() == 0 ? kExitOk : kExitDiffers;
+  }
+
+ private:
+  void tell(const TwinEvent& event) {
+    fmt::print(stderr, "{}\n", twin_text(event));
+    log_.write(event);
+  }
+  TwinLog log_;
+  TwinRunner runner_;
+  TwinFeed feed_;
+  std::optional<TwinThread> thread_;
 };
 
 SessionSetup tap_setup(const TapWords& words) {
@@ -54,6 +97,8 @@ int run_tap_verb(TapWords words) {
     words.radio = format->id;
   }
   const SessionSetup setup = tap_setup(words);
+  std::optional<TapTwin> twin;
+  if (!words.twin.model.empty()) twin.emplace(words, setup);
   if (!words.out.empty() && std::filesystem::exists(words.out))
     throw FileExists(words.out + ": is there already");
   std::unique_ptr<ByteWire> dongle = open_end(words.dongle, "serial", "DEVICE");
@@ -76,13 +121,16 @@ int run_tap_verb(TapWords words) {
   fmt::print("{} ready, passed on to {}\n", host->name(), dongle->name());
   std::fflush(stdout);
   const StopSignals stop;
-  Tap tap(std::move(host), std::move(dongle), writer.get(), setup.step_ns);
+  if (twin) twin->start();
+  ObserverPair both(writer.get(), twin ? twin->observer() : nullptr);
+  Tap tap(std::move(host), std::move(dongle), &both, setup.step_ns);
   const TapRun run = run_tap(
       tap, [] { return StopSignals::requested(); }, vision ? &*vision : nullptr);
   if (writer)
     writer->finish({.now_ns = (run.end_ns / setup.step_ns + 2) * setup.step_ns,
                     .wall_s = 1e-9 * static_cast<double>(run.end_ns),
                     .counters = {}});
+  const int seen = twin ? twin->finish(run.end_ns) : kExitOk;
   const TapCounts& c = tap.counts();
   fmt::print("{:.3f} s: {} bytes to the dongle, {} to the host, {} with no host there; host left {} times\n",
              1e-9 * static_cast<double>(run.end_ns), c.to_dongle, c.to_host, c.without_host, c.host_left);
@@ -94,7 +142,7 @@ int run_tap_verb(TapWords words) {
     fmt::print("vision: {} frames, in {}.vision.csv on the recording's clock\n{}", vision->frames(),
                words.out, vision->finish(run.unix_start_s));
   if (writer && writer->error()) throw std::system_error(writer->error(), words.out);
-  if (!run.lost) return kExitOk;
+  if (!run.lost) return seen;
   fmt::print(stderr, "omnihil tap: {}\n", tap.problem());
   return kExitIo;
 }
@@ -116,10 +164,14 @@ void add_verb_tap(Verb& program, VerbResult& result) {
   verb.add_option("--robots", words->robots, "robot ids on the field: 0-5 or 0,2,7").capture_default_str();
   verb.add_option("--team", words->team, "team colour").one_of({"blue", "yellow"}).capture_default_str();
   add_vision_options(verb, words->vision);
+  verb.add_option("--twin", words->twin.model,
+                  "model of the robot, with [controller]: runs beside it, alarms where they part");
+  add_twin_options(verb, words->twin);
   verb.footer(
       "Ctrl-C ends it; the recording is whole. `check FILE --explain` has the model answer the same "
       "commands, `dump FILE`\n"
-      "prints the packets. Exit codes: 2 bad words; 3 a device that cannot be opened, or that went away.");
+      "prints the packets. Exit codes: 1 --twin raised an alarm; 2 bad\n"
+      "words; 3 a device that cannot be opened, or that went away.");
   verb.callback(
       [words, &result] { result.exit_code = guarded("tap", [&] { return run_tap_verb(*words); }); });
 }

@@ -4,70 +4,12 @@
 #include "hil/dataset/dataset_reader.h"
 #include "identify/estimate/fit.h"
 #include "identify/predict/predictor_robot.h"
-#include "tests/identify/simulated_robot.h"
+#include "identify/predict/robot_motion.h"
+#include "sim/model/rolling_model.h"
+#include "tests/identify/simulated_radio.h"
 
 namespace omnihil::test {
 namespace {
-
-Candidate radio_candidate() {
-  const std::string text = std::string(kRobotModel) + R"(
-[controller]
-kp_V_s_per_rad = { value = 0.03, tolerance = 0.2 }
-ki_V_per_rad = { value = 0.3, tolerance = 0.2 }
-feedforward_V_s_per_rad = 0.0335
-speed_filter_s = 0.002
-latency_s = { value = 0.02, tolerance = 0.5 }
-acceleration_limit_m_s2 = 6.0
-yaw_acceleration_limit_rad_s2 = 60.0
-wheel_radius_m = 0.027
-wheel_center_radius_m = 0.0805
-)";
-  const ModelReading reading = read_model(text, "model.toml", nullptr);
-  for (const ModelProblem& p : reading.problems) ADD_FAILURE() << p.text();
-  return candidate_of(*reading.model);
-}
-
-// Rows at 60 Hz: a command, four wheel speeds, gyro and camera in each.
-Dataset blank_radio(double duration_s, bool wheels_commanded = false) {
-  Dataset d;
-  d.rig = Rig::kRobot;
-  Run run;
-  run.file = "drive.csv";
-  const auto channel = [&](const std::string& signal, const char* unit, double sigma) {
-    d.channels.push_back({.signal = signal, .column = signal, .unit = unit, .sigma = sigma});
-  };
-  const auto n = static_cast<std::size_t>(duration_s * 60.0);
-  for (std::size_t k = 0; k < n; ++k) run.time_s.push_back(static_cast<double>(k) / 60.0);
-  const auto asked = [&](const std::string& name, const char* unit, double size, double rate) {
-    channel(name, unit, 0.0);
-    for (const double t : run.time_s)
-      run.signals[name].push_back(
-          t < 0.3 ? 0.0 : size * std::copysign(1.0, std::sin(rate * t)) * (std::sin(0.7 * rate * t) > -0.5));
-  };
-  if (wheels_commanded) {
-    for (int i = 1; i <= kWheels; ++i)
-      asked("command_wheel_" + std::to_string(i), "rad/s", 20.0, 1.7 + 0.4 * i);
-  } else {
-    asked("command_vx", "m/s", 0.8, 2.1);
-    asked("command_vy", "m/s", 0.6, 2.9);
-    asked("command_w", "rad/s", 3.0, 1.3);
-  }
-  for (int i = 1; i <= kWheels; ++i) {
-    channel("wheel_speed_" + std::to_string(i), "rad/s", 0.3);
-    run.signals["wheel_speed_" + std::to_string(i)].assign(n, 0.0);
-  }
-  channel("gyro_z", "rad/s", 0.02);
-  run.signals["gyro_z"].assign(n, 0.0);
-  for (const char* name : {"vision_x", "vision_y", "vision_theta"}) {
-    channel(name, name == std::string("vision_theta") ? "rad" : "m",
-            name == std::string("vision_theta") ? 0.004 : 0.001);
-    run.signals[name].assign(n, 0.0);
-  }
-  d.runs.push_back(run);
-  d.runs.push_back(run);
-  d.runs[1].split = Split::kValidation;
-  return d;
-}
 
 TEST(RadioDriven, TheRobotGoesWhereItIsTold) {
   Dataset d = blank_radio(4.0);
@@ -103,6 +45,38 @@ TEST(RadioDriven, TheModelThatMadeTheDataLeavesTheNoise) {
       }
       EXPECT_NEAR(std::sqrt(square / count) / c.noise_sigma, 1.0, 0.15) << c.name << wheels;
     }
+  }
+}
+
+// A motion that is cut anywhere and gone on with is the whole one, derivatives too.
+TEST(RadioDriven, AMotionInPiecesIsTheWholeOne) {
+  const Candidate model = radio_candidate();
+  const Dataset d = blank_radio(6.0);
+  const std::vector<Unknown> unknowns = unknowns_of(model);
+  const auto values = robot_values<Jet>(model, unknowns, 0);
+  const auto nominal = rolling_params(model.file.parameters);
+  const RobotMotionOptions options{.slave_angle = false, .follow_camera = false, .noise_seed = {}};
+  const RobotMotion<Jet> whole = run_robot(values, robot_record(d, d.runs[0], nominal), options);
+  RobotCarry<Jet> carry;
+  std::size_t first = 0;
+  for (const std::size_t last : {40u, 41u, 133u, 250u, 359u}) {
+    omnihil::Run piece = d.runs[0];
+    const auto cut = [&](std::vector<double>& v) {
+      v = std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(first),
+                              v.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    };
+    cut(piece.time_s);
+    for (auto& [name, signal] : piece.signals) cut(signal);
+    const RobotMotion<Jet> part = run_robot(values, robot_record(d, piece, nominal), options, &carry);
+    ASSERT_TRUE(part.finite);
+    for (std::size_t k = first; k <= last; ++k) {
+      for (std::size_t i = 0; i < kWheels; ++i) {
+        const Jet &a = whole.wheel_rad_s[k][i], &b = part.wheel_rad_s[k - first][i];
+        ASSERT_NEAR(a.a, b.a, 1e-9) << k;
+        ASSERT_LT((a.v - b.v).norm(), 1e-9 * (1.0 + a.v.norm())) << k;
+      }
+    }
+    first = last;
   }
 }
 
