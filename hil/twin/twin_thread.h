@@ -1,6 +1,6 @@
 // The twin beside a tap, in a thread of its own: the tap's loop leaves a copy of the bytes and goes on.
 //
-//   TwinThread twin(std::move(feed), std::move(runner), {.out = stdout});
+//   TwinThread twin(feed, runner, stdout);
 //   Tap tap(std::move(host), std::move(dongle), &twin, step_ns);             // or through ObserverPair with a recorder
 //   twin.finish(end_ns);                                                     // what was left is watched too
 //

@@ -4,7 +4,7 @@
 //   TwinModel twin(twin_bank(model));
 //   TwinWindow w = twin.advance(piece);                   // a Run: rows of commands and telemetry; first row = last one's last
 //   w.signals[0].measured[k] - w.signals[0].expected[k];
-//   w.signals[0].gains(k, f)                              // d expected / d size of fault f, exact, through the closed loop
+//   w.signals[0].gains(k, f);                             // d expected / d size of fault f, exact, through the closed loop
 //
 // The motion goes on from piece to piece (RobotCarry): a loop under commands forgets its start and does not drift, so it is
 // never put right by what it is compared with, which would hide a fault. Compared: wheel speeds, currents, gyro, bus voltage,

@@ -1,8 +1,8 @@
 // What the difference between a healthy robot and its model is like: learned from a stretch of driving, held against a card.
 //
 //   TwinPromise promise = learned_promise(windows, bank);
-//   TwinScore s = twin_score(window, promise);
-//   s.faults[f].size, s.faults[f].information            // size of fault f by this window alone; of variance 1 / information
+//   TwinScore s = twin_score(window, promise, bank.faults.size());
+//   s.faults[f].size, s.faults[f].information;           // size of fault f by this window alone; of variance 1 / information
 //
 // Noise of a told sample: v = sigma^2 + (late expected')^2 + sum_f (0.2 least_f d_f)^2, d the gains. What comes a little late is off
 // by as much as it changes meanwhile: a busy computer and a filter that no model has look like this. By window and fault, with r =

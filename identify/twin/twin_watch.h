@@ -1,7 +1,7 @@
 // Watches a robot beside its model: learns what healthy is, then raises an alarm with a named suspect.
 //
 //   TwinWatch watch(bank, {.learn_s = 60.0, .false_alarms_per_hour = 0.01});
-//   for (const TwinWindow& w : …) if (const std::optional<TwinAlarm> alarm = watch.take(w)) tell(alarm->sentence);
+//   for (const TwinWindow& w : windows) if (const std::optional<TwinAlarm> alarm = watch.take(w); alarm) tell(alarm->sentence);
 //
 // A statistic per hypothesis, the cumulative sum of E. S. Page (Biometrika 41, 1954) over windows:
 //   S = max(0, S + l),  l = ln mean_j exp((size - bias) s_j - s_j^2 / 2) / var),  s_j = 1, 2, 4 times the least size of a fault
