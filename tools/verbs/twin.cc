@@ -102,7 +102,8 @@ void add_verb_twin(Verb& program, VerbResult& result) {
   verb.add_option("--model", words->twin.model, "model of the robot, with [controller]").required();
   add_twin_options(verb, words->twin);
   verb.footer(
-      "Live, beside a robot that plays: `omnihil tap DEVICE --twin MODEL`. Exit codes: 1 an alarm was raised; 2 "
+      "Live, beside a robot that plays: `omnihil tap DEVICE --twin MODEL`. Exit codes: 1 an alarm was "
+      "raised; 2 "
       "bad words, too\n"
       "little driving to learn from.");
   verb.callback([words, &result] { result.exit_code = guarded("twin", [&] { return run_twin(*words); }); });
