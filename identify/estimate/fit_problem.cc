@@ -59,18 +59,36 @@ Candidate FitProblem::candidate_at(const Eigen::VectorXd& x) const {
 
 std::vector<std::vector<Eigen::VectorXd>> FitProblem::residuals(const Eigen::VectorXd& x,
                                                                 bool& finite) const {
-  const Candidate c = candidate_at(x);
+  const std::vector<Prediction>& all_predicted = predicted(x);
   std::vector<std::vector<Eigen::VectorXd>> all(runs_.size());
-  std::vector<char> good(runs_.size(), 1);
   parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int n) {
     const auto i = static_cast<std::size_t>(n);
-    const Prediction p = predictor_.predict(c, runs_[i]);
-    good[i] = p.finite ? 1 : 0;
     const std::vector<ComparedSignal>& compared = predictor_.compared(runs_[i]);
-    for (std::size_t s = 0; s < compared.size(); ++s) all[i].push_back(residual_of(compared[s], p.values[s]));
+    for (std::size_t s = 0; s < compared.size(); ++s)
+      all[i].push_back(residual_of(compared[s], all_predicted[i].values[s]));
   });
-  finite = std::find(good.begin(), good.end(), 0) == good.end();
+  finite =
+      std::all_of(all_predicted.begin(), all_predicted.end(), [](const Prediction& p) { return p.finite; });
   return all;
+}
+
+const std::vector<Prediction>& FitProblem::predicted(const Eigen::VectorXd& x) const {
+  // The start, the best point so far, the end of the last step and one trial: more are not asked for again.
+  constexpr std::size_t kKept = 4;
+  const auto same = [&](const Predicted& p) { return p.x == x; };
+  const auto found = std::find_if(predicted_.begin(), predicted_.end(), same);
+  if (found != predicted_.end()) {
+    std::rotate(predicted_.begin(), found, found + 1);
+    return predicted_.front().runs;
+  }
+  const Candidate c = candidate_at(x);
+  Predicted made{.x = x, .runs = std::vector<Prediction>(runs_.size())};
+  parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int n) {
+    made.runs[static_cast<std::size_t>(n)] = predictor_.predict(c, runs_[static_cast<std::size_t>(n)]);
+  });
+  predicted_.push_front(std::move(made));
+  if (predicted_.size() > kKept) predicted_.pop_back();
+  return predicted_.front().runs;
 }
 
 bool FitProblem::reweigh(const Eigen::VectorXd& x) {
@@ -121,9 +139,8 @@ bool FitProblem::reweigh(const Eigen::VectorXd& x) {
 }
 
 FitProblem::RunPart FitProblem::part(int run, const Prediction& values,
-                                     const std::vector<const Prediction*>& strides) const {
+                                     const std::vector<const Prediction*>& strides, Eigen::Index n) const {
   RunPart out;
-  const auto n = static_cast<Eigen::Index>(unknowns_.size());
   out.finite = values.finite;
   if (!strides.empty()) {
     out.gradient = Eigen::VectorXd::Zero(n);
@@ -164,27 +181,34 @@ FitProblem::RunPart FitProblem::part(int run, const Prediction& values,
 }
 
 FitPoint FitProblem::at(const Eigen::VectorXd& x, bool derivatives) const {
+  return evaluated(x, derivatives ? std::span<const Unknown>(unknowns_) : std::span<const Unknown>(), 0);
+}
+
+FitPoint FitProblem::along(const Eigen::VectorXd& x, Eigen::Index unknown) const {
+  return evaluated(x, std::span(unknowns_).subspan(static_cast<std::size_t>(unknown), 1), unknown);
+}
+
+// Derivatives by the unknowns `by`, which begin at `first` of all.
+FitPoint FitProblem::evaluated(const Eigen::VectorXd& x, std::span<const Unknown> by,
+                               Eigen::Index first) const {
   const Candidate c = candidate_at(x);
-  const std::size_t n = unknowns_.size();
-  const std::size_t strides = derivatives ? (n + kJetWidth - 1) / kJetWidth : 1;
-  std::vector<Prediction> predicted(runs_.size() * strides);
-  parallel_for(jobs_, static_cast<int>(predicted.size()), [&](int task) {
+  const std::size_t n = by.size();
+  const std::size_t strides = (n + kJetWidth - 1) / kJetWidth;
+  std::vector<Prediction> derived(runs_.size() * strides);
+  parallel_for(jobs_, static_cast<int>(derived.size()), [&](int task) {
     const auto t = static_cast<std::size_t>(task);
-    const int run = runs_[t / strides];
-    const std::size_t first = t % strides * kJetWidth;
-    if (!derivatives) {
-      predicted[t] = predictor_.predict(c, run);
-    } else {
-      const auto some = std::span(unknowns_).subspan(first, std::min<std::size_t>(kJetWidth, n - first));
-      predicted[t] = predictor_.predict_with_derivatives(c, some, run);
-    }
+    const std::size_t begin = t % strides * kJetWidth;
+    const auto some = by.subspan(begin, std::min<std::size_t>(kJetWidth, n - begin));
+    derived[t] = predictor_.predict_with_derivatives(c, some, runs_[t / strides]);
   });
+  const std::vector<Prediction>* plain = strides == 0 ? &predicted(x) : nullptr;
   std::vector<RunPart> parts(runs_.size());
   parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int r) {
     const auto i = static_cast<std::size_t>(r);
     std::vector<const Prediction*> own;
-    for (std::size_t s = 0; s < strides && derivatives; ++s) own.push_back(&predicted[i * strides + s]);
-    parts[i] = part(runs_[i], predicted[i * strides], own);
+    for (std::size_t s = 0; s < strides; ++s) own.push_back(&derived[i * strides + s]);
+    parts[i] = part(runs_[i], plain != nullptr ? (*plain)[i] : derived[i * strides], own,
+                    static_cast<Eigen::Index>(n));
   });
   FitPoint out;
   out.finite = true;
@@ -193,16 +217,17 @@ FitPoint FitProblem::at(const Eigen::VectorXd& x, bool derivatives) const {
   for (const RunPart& p : parts) {
     out.finite = out.finite && p.finite;
     out.data_cost += p.cost;
-    if (!derivatives || !p.finite) continue;
+    if (strides == 0 || !p.finite) continue;
     out.gradient += p.gradient;
     out.information += p.information;
   }
-  for (std::size_t u = 0; u < n; ++u) {
+  for (std::size_t u = 0; u < unknowns_.size(); ++u) {
     if (unknowns_[u].prior_sigma <= 0.0) continue;
     const auto i = static_cast<Eigen::Index>(u);
     const double z = prior_z(unknowns_[u], x[i]);
     out.prior_cost += 0.5 * z * z;
-    out.gradient[i] += z * prior_dz(unknowns_[u], x[i]);
+    const Eigen::Index at = i - first;
+    if (at >= 0 && at < out.gradient.size()) out.gradient[at] += z * prior_dz(unknowns_[u], x[i]);
   }
   out.finite = out.finite && out.gradient.allFinite() && out.information.allFinite();
   return out;

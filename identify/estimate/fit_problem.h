@@ -16,6 +16,7 @@
 // Sources: Huber 1964; Holland, Welsch 1977 (1.345); Sokal 1997 (autocorrelation time).
 #pragma once
 #include <Eigen/Core>
+#include <deque>
 #include <map>
 #include <string>
 
@@ -52,6 +53,8 @@ class FitProblem {
   const std::map<std::string, SignalWeight>& weights() const { return weights_; }
 
   FitPoint at(const Eigen::VectorXd& x, bool derivatives) const;
+  // With the derivatives by one unknown alone: gradient and information are of size 1.
+  FitPoint along(const Eigen::VectorXd& x, Eigen::Index unknown) const;
   // Sum of squares over the noise alone, as FitResult::data_cost has it.
   double noise_cost(const Eigen::VectorXd& x) const;
 
@@ -63,7 +66,10 @@ class FitProblem {
     Eigen::MatrixXd information;
   };
   std::vector<std::vector<Eigen::VectorXd>> residuals(const Eigen::VectorXd& x, bool& finite) const;
-  RunPart part(int run, const Prediction& values, const std::vector<const Prediction*>& strides) const;
+  const std::vector<Prediction>& predicted(const Eigen::VectorXd& x) const;
+  FitPoint evaluated(const Eigen::VectorXd& x, std::span<const Unknown> by, Eigen::Index first) const;
+  RunPart part(int run, const Prediction& values, const std::vector<const Prediction*>& strides,
+               Eigen::Index n) const;
 
   const Predictor& predictor_;
   Candidate candidate_;
@@ -72,6 +78,13 @@ class FitProblem {
   bool robust_ = false;
   std::vector<int> runs_;
   std::map<std::string, SignalWeight> weights_;
+  // The last predictions without derivatives, newest first: a fit asks for its start, its best point and the point before a
+  // step several times, with other weights. One thread at a time may ask.
+  struct Predicted {
+    Eigen::VectorXd x;
+    std::vector<Prediction> runs;  // as runs_
+  };
+  mutable std::deque<Predicted> predicted_;
 };
 
 }  // namespace omnihil

@@ -55,12 +55,12 @@ struct Slope {
   double gradient = 0.0;
 };
 Slope slope_at(const FitProblem& problem, const Eigen::VectorXd& x, Eigen::Index strength) {
-  const FitPoint p = problem.at(x, true);
+  const FitPoint p = problem.along(x, strength);
   Slope s;
   if (!p.finite) return s;
   const Unknown& u = problem.unknowns()[static_cast<std::size_t>(strength)];
-  const double curvature = p.information(strength, strength) + std::pow(prior_dz(u, x[strength]), 2);
-  s.gradient = p.gradient[strength];
+  const double curvature = p.information(0, 0) + std::pow(prior_dz(u, x[strength]), 2);
+  s.gradient = p.gradient[0];
   if (!(curvature > 0.0)) return s;
   s.step = -s.gradient / curvature;
   const double end = std::clamp(x[strength] + s.step, u.lower, u.upper) - x[strength];

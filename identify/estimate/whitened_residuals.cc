@@ -161,23 +161,41 @@ Eigen::VectorXd WhitenedResiduals::predicted(const Candidate& candidate, int job
 
 Eigen::VectorXd WhitenedResiduals::predicted_by(const Predictor& predictor, const Candidate& candidate,
                                                 int jobs) const {
-  std::vector<std::vector<std::vector<double>>> values(runs_.size());
-  std::vector<char> finite(runs_.size(), 1);
+  return gathered_if_finite(runs_by(predictor, candidate, jobs));
+}
+
+std::vector<Prediction> WhitenedResiduals::runs_by(const Predictor& predictor, const Candidate& candidate,
+                                                   int jobs) const {
+  std::vector<Prediction> out(runs_.size());
   parallel_for(jobs, static_cast<int>(runs_.size()), [&](int r) {
-    Prediction p = predictor.predict(candidate, runs_[static_cast<std::size_t>(r)]);
-    finite[static_cast<std::size_t>(r)] = p.finite ? 1 : 0;
-    values[static_cast<std::size_t>(r)] = std::move(p.values);
+    out[static_cast<std::size_t>(r)] = predictor.predict(candidate, runs_[static_cast<std::size_t>(r)]);
   });
-  if (std::find(finite.begin(), finite.end(), 0) != finite.end()) return {};
+  return out;
+}
+
+Eigen::VectorXd WhitenedResiduals::gathered_if_finite(const std::vector<Prediction>& runs) const {
+  std::vector<std::vector<std::vector<double>>> values;
+  for (const Prediction& p : runs) {
+    if (!p.finite) return {};
+    values.push_back(p.values);
+  }
   Eigen::VectorXd out = gathered(values);
   if (!out.allFinite()) return {};
   return out;
 }
 
-Eigen::VectorXd WhitenedResiduals::residual(const Candidate& candidate, int jobs) const {
-  const Eigen::VectorXd model = predicted(candidate, jobs);
+std::vector<Prediction> WhitenedResiduals::predicted_runs(const Candidate& candidate, int jobs) const {
+  return runs_by(*predictor_, candidate, jobs);
+}
+
+Eigen::VectorXd WhitenedResiduals::residual(const std::vector<Prediction>& runs) const {
+  const Eigen::VectorXd model = gathered_if_finite(runs);
   if (model.size() != size_) return {};
   return measured_ - model;
+}
+
+Eigen::VectorXd WhitenedResiduals::residual(const Candidate& candidate, int jobs) const {
+  return residual(predicted_runs(candidate, jobs));
 }
 
 Eigen::MatrixXd WhitenedResiduals::derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,

@@ -60,6 +60,9 @@ class WhitenedResiduals {
   // Size n: the candidate's prediction, whitened like the measurement; empty when a run of it diverged.
   Eigen::VectorXd predicted(const Candidate& candidate, int jobs = 1) const;
   Eigen::VectorXd residual(const Candidate& candidate, int jobs = 1) const;
+  // The same of predictions that were made before, one a run of predicted_runs(): for a second weighing of the same split.
+  std::vector<Prediction> predicted_runs(const Candidate& candidate, int jobs = 1) const;
+  Eigen::VectorXd residual(const std::vector<Prediction>& runs) const;
   Eigen::VectorXd residual_of(const Eigen::VectorXd& predicted) const { return measured_ - predicted; }
   // n x p: of the prediction, after the unknowns in their own units; not finite: 0.
   Eigen::MatrixXd derivatives(const Candidate& candidate, std::span<const Unknown> unknowns, int jobs) const;
@@ -88,6 +91,8 @@ class WhitenedResiduals {
   void weigh(const ComparedSignal& signal, Eigen::MatrixXd& columns) const;  // whitens or averages, in place
   // Whitened, size n; `values`: [run of this split][signal][row].
   Eigen::VectorXd gathered(const std::vector<std::vector<std::vector<double>>>& values) const;
+  std::vector<Prediction> runs_by(const Predictor& predictor, const Candidate& candidate, int jobs) const;
+  Eigen::VectorXd gathered_if_finite(const std::vector<Prediction>& runs) const;  // empty: one is not
   // [part.rows.size() x c]: the part's rows of [rows of the run x c], whitened.
   Eigen::MatrixXd whitened_rows(const Part& part, const Eigen::MatrixXd& rows) const;
 

@@ -184,12 +184,13 @@ Fitted fitted(const Splits& splits, const Splits& unweighted, FitResult fit, int
   Fitted out{.fit = std::move(fit), .residual = {}, .finite = true};
   for (std::size_t u = 0; u < kSplits; ++u) {
     if (splits[u].empty()) continue;
-    out.residual[u] = splits[u].residual(out.fit.model, jobs);
+    const std::vector<Prediction> runs = splits[u].predicted_runs(out.fit.model, jobs);
+    out.residual[u] = splits[u].residual(runs);
     if (out.residual[u].size() != splits[u].size()) {
       out.finite = false;
       continue;
     }
-    const Eigen::VectorXd residual = unweighted[u].residual(out.fit.model, jobs);
+    const Eigen::VectorXd residual = unweighted[u].residual(runs);
     if (residual.size() == unweighted[u].size()) out.unweighted[u] = unweighted[u].mean_square(residual);
   }
   return out;

@@ -1,0 +1,100 @@
+// The cost at a point: predicted once however often it is asked for, and its derivative by one unknown.
+#include "identify/estimate/fit_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/law/effect_registry.h"
+#include "tests/identify/fake_predictor.h"
+
+namespace omnihil {
+namespace {
+
+// One run of four samples; sample k of the prediction is the sum over unknowns u of (k + 1)^u x_u. Counts its predictions.
+class Polynomial : public FakePredictor {
+ public:
+  explicit Polynomial(std::vector<Unknown> unknowns) : unknowns_(std::move(unknowns)) {
+    add(Split::kTraining, {0.3, -1.0, 2.0, 0.5}, {0.0, 0.0, 0.0, 0.0});
+  }
+  Prediction predict(const Candidate& c, int) const override {
+    ++predicted;
+    return made(c, {});
+  }
+  Prediction predict_with_derivatives(const Candidate& c, std::span<const Unknown> by, int) const override {
+    return made(c, by);
+  }
+
+  mutable int predicted = 0;
+
+ private:
+  static double power(int sample, std::size_t unknown) {
+    return std::pow(sample + 1.0, static_cast<double>(unknown));
+  }
+  Prediction made(const Candidate& c, std::span<const Unknown> by) const {
+    Prediction out;
+    out.values.emplace_back(4, 0.0);
+    if (!by.empty())
+      out.derivatives.push_back(Eigen::MatrixXd::Zero(4, static_cast<Eigen::Index>(by.size())));
+    for (std::size_t u = 0; u < unknowns_.size(); ++u) {
+      for (int k = 0; k < 4; ++k) {
+        out.values[0][static_cast<std::size_t>(k)] += power(k, u) * *value_at(c, unknowns_[u].path);
+        for (std::size_t j = 0; j < by.size(); ++j) {
+          if (by[j].path == unknowns_[u].path)
+            out.derivatives[0](k, static_cast<Eigen::Index>(j)) = power(k, u);
+        }
+      }
+    }
+    return out;
+  }
+  std::vector<Unknown> unknowns_;
+};
+
+struct Problem {
+  Problem() {
+    candidate.effects.push_back(typical_use(*find_effect("cogging")));
+    unknowns = unknowns_of(candidate);
+    x.resize(static_cast<Eigen::Index>(unknowns.size()));
+    for (std::size_t u = 0; u < unknowns.size(); ++u) x[static_cast<Eigen::Index>(u)] = unknowns[u].start;
+  }
+  Candidate candidate;
+  std::vector<Unknown> unknowns;
+  Eigen::VectorXd x;
+};
+
+TEST(FitProblem, PredictsAPointOnceHoweverOftenItIsAskedFor) {
+  Problem given;
+  const Polynomial predictor(given.unknowns);
+  FitProblem problem(predictor, given.candidate, given.unknowns, 1);
+  ASSERT_TRUE(problem.reweigh(given.x));
+  const double cost = problem.at(given.x, false).cost();
+  const double noise_cost = problem.noise_cost(given.x);
+  EXPECT_EQ(predictor.predicted, 1);
+  Eigen::VectorXd other = given.x;
+  other[0] *= 1.01;
+  EXPECT_NE(problem.at(other, false).cost(), cost);
+  EXPECT_EQ(predictor.predicted, 2);
+  EXPECT_EQ(problem.at(given.x, false).cost(), cost);  // neither forgotten nor taken for the other
+  EXPECT_EQ(problem.noise_cost(given.x), noise_cost);
+  EXPECT_EQ(predictor.predicted, 2);
+}
+
+TEST(FitProblem, AlongOneUnknownIsItsPartOfAll) {
+  Problem given;
+  ASSERT_GE(given.unknowns.size(), 2u);
+  const Polynomial predictor(given.unknowns);
+  FitProblem problem(predictor, given.candidate, given.unknowns, 1);
+  ASSERT_TRUE(problem.reweigh(given.x));
+  const FitPoint all = problem.at(given.x, true);
+  ASSERT_TRUE(all.finite);
+  for (Eigen::Index u = 0; u < given.x.size(); ++u) {
+    const FitPoint one = problem.along(given.x, u);
+    ASSERT_EQ(one.gradient.size(), 1);
+    EXPECT_EQ(one.gradient[0], all.gradient[u]) << u;
+    EXPECT_DOUBLE_EQ(one.information(0, 0), all.information(u, u)) << u;
+    EXPECT_EQ(one.cost(), all.cost());
+  }
+}
+
+}  // namespace
+}  // namespace omnihil
