@@ -43,7 +43,7 @@ struct Crc {
     for (const std::uint8_t byte : bytes) {
       for (int i = 0; i < 8; ++i) {
         const std::uint32_t bit = (byte >> (reflected ? i : 7 - i)) & 1u;
-        const bool out = ((rest & top) != 0) != (bit != 0);
+        const bool out = ((rest >> (bits - 1)) & 1u) != bit;
         rest = (rest << 1) & all;
         if (out) rest ^= polynomial;
       }
