@@ -23,6 +23,11 @@ __attribute__((noinline)) void* counted_memory(std::size_t size) {
 
 __attribute__((noinline)) void* operator new(std::size_t size) { return omnihil::counted_memory(size); }
 __attribute__((noinline)) void* operator new[](std::size_t size) { return omnihil::counted_memory(size); }
+// As std::stable_sort asks for its buffer: without this one it would come from elsewhere and be given back here.
+__attribute__((noinline)) void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  ++omnihil::allocations;
+  return std::malloc(size == 0 ? 1 : size);
+}
 __attribute__((noinline)) void operator delete(void* memory) noexcept { std::free(memory); }
 __attribute__((noinline)) void operator delete[](void* memory) noexcept { std::free(memory); }
 __attribute__((noinline)) void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
