@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::int64_t kWarm_ns = 20'000'000, kMeasured_ns = 100'000'000;
 constexpr double kLongest_s = 0.3;  // of processor time: a start is not held up longer
-// From here on other work on the same core makes it late: measured benches slip from 0.8 on (docs/serve.md).
+// A choice, not a measurement: the least round number that leaves a fifth of the core to the kernel's side of the wires, the
+// host and whatever else the computer does. Where a bench really begins to slip depends on those; only from 1 on it must.
 constexpr double kTooMuch = 0.8;
 
 double processor_s() {
