@@ -9,6 +9,7 @@
 #include "hil/check/explain_candidates.h"
 #include "hil/check/explain_pair.h"
 #include "hil/check/explain_search.h"
+#include "hil/check/explain_size.h"
 #include "hil/recording/session_setup.h"
 
 namespace omnihil {
@@ -21,67 +22,22 @@ constexpr std::size_t kRefined = 6;   // candidates of the screening that are ru
 constexpr int kSteps = 8;             // of Gauss-Newton at most; it ends when the error no longer falls
 constexpr double kMoreRemains = 2.0;  // left over noise: 1 is nothing, below 2 no eye sees structure
 
-// Standard error of <z, r> / <z, j> by leaving out one block at a time.
-double jackknife(const Weighted& z, const Weighted& j, const Weighted& r) {
-  std::vector<double> jj(kExplainBlocks), jr(kExplainBlocks), estimate;
-  for (std::size_t i = 0; i < j.r.size(); ++i) {
-    jj[j.block[i]] += z.r[i] * j.r[i];
-    jr[j.block[i]] += z.r[i] * r.r[i];
-  }
-  const double all_jj = sum_of(jj), all_jr = sum_of(jr);
-  for (std::size_t k = 0; k < kExplainBlocks; ++k) {
-    if (all_jj - jj[k] != 0.0) estimate.push_back((all_jr - jr[k]) / (all_jj - jj[k]));
-  }
-  const double n = static_cast<double>(estimate.size()), mean = sum_of(estimate) / n;
-  double square = 0.0;
-  for (const double e : estimate) square += (e - mean) * (e - mean);
-  return std::sqrt(square * (n - 1.0) / n);
-}
-
 struct Screened {
   const CandidateSlope* slope = nullptr;
   double share = 0.0;  // predicted by the linear model
 };
 
-// Sizes by the instrument of a second sensitivity, from a step twice as large: counted encoders make of any change of
-// the model another sequence of roundings, which is noise in j and would pull <j, r> / <j, j> to zero (errors in
-// variables; Söderström, Errors-in-Variables Methods in System Identification, 2018, section 4.3).
-std::optional<ExplainedBy> refined(const ExplainSearch& search, const Screened& screened,
-                                   const Weighted& r0) {
-  const ExplainCandidate& c = *screened.slope->candidate;
-  const Weighted& j = screened.slope->j;
-  const double from = c.is_effect ? c.from : c.from + (c.from - c.value), to = c.to + (c.to - c.value);
-  const auto wide_from = c.model(std::clamp(from, c.lower, c.upper)),
-             wide_to = c.model(std::clamp(to, c.lower, c.upper));
-  if (!wide_from || !wide_to) return std::nullopt;
-  const Weighted instrument =
-      search.sensitivity(search.run(*wide_to), search.run(*wide_from),
-                         std::clamp(to, c.lower, c.upper) - std::clamp(from, c.lower, c.upper));
-  const double slope = dot(instrument.r, j.r);
-  double value = c.value;
-  Weighted r = r0;
-  for (int step = 0; step < kSteps && slope > 0.0; ++step) {
-    const double next = std::clamp(value + dot(instrument.r, r.r) / slope, c.lower, c.upper);
-    if (next == value) break;
-    const auto model = c.model(next);
-    if (!model) break;
-    Weighted after = search.residual(search.run(*model));
-    if (dot(after.r, after.r) >= dot(r.r, r.r)) break;
-    value = next;
-    r = std::move(after);
-  }
-  if (value == c.value) return std::nullopt;
-  ExplainedBy by{c.name, c.unit,         c.is_effect, c.value, value, jackknife(instrument, j, r0),
-                 0.0,    block_errors(r)};
-  by.share = 1.0 - dot(r.r, r.r) / dot(r0.r, r0.r);
-  return by;
+// Two digits; none where it is not known.
+std::string error_text(double half_width) {
+  return std::isfinite(half_width) ? fmt::format("{:.2g}", half_width) : "?";
 }
 
 std::string change_text(const ExplainedBy& by) {
+  const double half_width = kExplainT * by.sigma;
   if (by.is_effect || by.was == 0.0)
-    return fmt::format("{} = {:.4g} +- {:.2g} {}", by.name, by.is, by.sigma, by.unit);
-  return fmt::format("{} {:.4g} -> {:.4g} {} ({:+.1f} % +- {:.1f} %)", by.name, by.was, by.is, by.unit,
-                     100.0 * (by.is / by.was - 1.0), 100.0 * std::abs(by.sigma / by.was));
+    return fmt::format("{} = {:.4g} +- {} {}", by.name, by.is, error_text(half_width), by.unit);
+  return fmt::format("{} {:.4g} -> {:.4g} {} ({:+.2f} % +- {} %)", by.name, by.was, by.is, by.unit,
+                     100.0 * (by.is / by.was - 1.0), error_text(100.0 * std::abs(half_width / by.was)));
 }
 
 // Its size is beyond chance, of as many candidates as there are.
@@ -150,6 +106,53 @@ void decide_pair(DifferenceExplained& out, ExplainSearch& search, const std::vec
 
 }  // namespace
 
+// Sizes by the instrument of a second sensitivity, from a step twice as large: counted encoders make of any change of
+// the model another sequence of roundings, which is noise in j and would pull <j, r> / <j, j> to zero (errors in
+// variables; Söderström, Errors-in-Variables Methods in System Identification, 2018, section 4.3).
+std::optional<ExplainedBy> explained_by(const ExplainSearch& search, const ExplainCandidate& c,
+                                        const Weighted& j, const Weighted& r0) {
+  const double from = c.is_effect ? c.from : c.from + (c.from - c.value), to = c.to + (c.to - c.value);
+  const auto wide_from = c.model(std::clamp(from, c.lower, c.upper)),
+             wide_to = c.model(std::clamp(to, c.lower, c.upper));
+  if (!wide_from || !wide_to) return std::nullopt;
+  const Weighted instrument =
+      search.sensitivity(search.run(*wide_to), search.run(*wide_from),
+                         std::clamp(to, c.lower, c.upper) - std::clamp(from, c.lower, c.upper));
+  const double slope = dot(instrument.r, j.r);
+  double value = c.value;
+  Weighted r = r0;
+  for (int step = 0; step < kSteps && slope > 0.0; ++step) {
+    const double next = std::clamp(value + dot(instrument.r, r.r) / slope, c.lower, c.upper);
+    if (next == value) break;
+    const auto model = c.model(next);
+    if (!model) break;
+    Weighted after = search.residual(search.run(*model));
+    if (dot(after.r, after.r) >= dot(r.r, r.r)) break;
+    value = next;
+    r = std::move(after);
+  }
+  if (value == c.value) return std::nullopt;
+  ExplainedBy by{c.name, c.unit, c.is_effect, c.value, value, INFINITY, 0.0, {}};
+  // The steps end where chance does: the size itself, and its error, are taken from runs round there.
+  const bool counts = 1.0 - dot(r.r, r.r) / dot(r0.r, r0.r) >= kLeastShare;
+  const auto fit = counts
+                       ? fitted_sizes(search, {.model = [&c](const auto& at) { return c.model(at.front()); },
+                                               .z = {&instrument},
+                                               .start = {value},
+                                               .half = {0.5 * kSizeStep * (c.to - c.from)},
+                                               .lower = {c.lower},
+                                               .upper = {c.upper}})
+                       : std::nullopt;
+  const auto fitted = fit ? c.model(fit->value.front()) : std::nullopt;
+  if (fitted) {
+    by.is = fit->value.front(), by.sigma = fit->sigma.front();
+    r = search.residual(search.run(*fitted));
+  }
+  by.block_error = block_errors(r);
+  by.share = 1.0 - dot(r.r, r.r) / dot(r0.r, r0.r);
+  return by;
+}
+
 DifferenceExplained explain_difference(const Recording& recording, const RadioFormat& format,
                                        const ReplayOptions& options,
                                        const std::function<void(std::size_t, std::size_t)>& progress) {
@@ -194,7 +197,7 @@ DifferenceExplained explain_difference(const Recording& recording, const RadioFo
   if (screened.size() > kRefined) screened.resize(kRefined);
   std::vector<ExplainedBy> tried;
   for (const Screened& s : screened) {
-    if (auto by = refined(search, s, r0)) tried.push_back(std::move(*by));
+    if (auto by = explained_by(search, *s.slope->candidate, s.slope->j, r0)) tried.push_back(std::move(*by));
   }
   decide(out, tried, r0);
   decide_pair(out, search, slopes, tried);

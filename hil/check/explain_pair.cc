@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hil/check/explain_size.h"
+
 namespace omnihil {
 namespace {
 
@@ -55,36 +57,14 @@ struct PairSlopes {
   Weighted j1, j2, z1, z2;
 };
 
-// Solves [<z1,j1> <z1,j2>; <z2,j1> <z2,j2>] d = [<z1,r>; <z2,r>], but for the terms of one block of time.
-std::optional<Two> solve(const PairSlopes& s, const Weighted& r, std::size_t without_block) {
-  double m11 = 0, m12 = 0, m21 = 0, m22 = 0, v1 = 0, v2 = 0;
-  for (std::size_t i = 0; i < r.r.size(); ++i) {
-    if (r.block[i] == without_block) continue;
-    m11 += s.z1.r[i] * s.j1.r[i];
-    m12 += s.z1.r[i] * s.j2.r[i];
-    m21 += s.z2.r[i] * s.j1.r[i];
-    m22 += s.z2.r[i] * s.j2.r[i];
-    v1 += s.z1.r[i] * r.r[i];
-    v2 += s.z2.r[i] * r.r[i];
-  }
+// Solves [<z1,j1> <z1,j2>; <z2,j1> <z2,j2>] d = [<z1,r>; <z2,r>].
+std::optional<Two> solve(const PairSlopes& s, const Weighted& r) {
+  const double m11 = dot(s.z1.r, s.j1.r), m12 = dot(s.z1.r, s.j2.r), m21 = dot(s.z2.r, s.j1.r),
+               m22 = dot(s.z2.r, s.j2.r), v1 = dot(s.z1.r, r.r), v2 = dot(s.z2.r, r.r);
   const double det = m11 * m22 - m12 * m21;
   constexpr double kAlike = 1e-6;  // of the product of the diagonal: the two cannot be told apart at all
   if (!(std::abs(det) > kAlike * std::abs(m11 * m22))) return std::nullopt;
   return Two{(v1 * m22 - v2 * m12) / det, (m11 * v2 - m21 * v1) / det};
-}
-
-Two jackknife(const PairSlopes& s, const Weighted& r) {
-  std::vector<Two> estimates;
-  Two mean{}, square{};
-  for (std::size_t k = 0; k < kExplainBlocks; ++k)
-    if (const auto d = solve(s, r, k)) estimates.push_back(*d);
-  const auto n = static_cast<double>(estimates.size());
-  for (const Two& e : estimates)
-    for (std::size_t i = 0; i < 2; ++i) mean[i] += e[i] / n;
-  for (const Two& e : estimates)
-    for (std::size_t i = 0; i < 2; ++i) square[i] += (e[i] - mean[i]) * (e[i] - mean[i]);
-  if (estimates.size() < kExplainBlocks) return {INFINITY, INFINITY};  // a block alone tells them apart
-  return {std::sqrt(square[0] * (n - 1.0) / n), std::sqrt(square[1] * (n - 1.0) / n)};
 }
 
 struct Start {
@@ -108,7 +88,7 @@ std::optional<ExplainedPair> fitted_pair(const ExplainSearch& search, const Star
   Two at{start.first->value, c2.value};
   Weighted r = alone;
   for (int step = 0; step < kSteps; ++step) {
-    const auto d = solve(s, r, kExplainBlocks);
+    const auto d = solve(s, r);
     if (!d) break;
     const Two next{std::clamp(at[0] + (*d)[0], c1.lower, c1.upper),
                    std::clamp(at[1] + (*d)[1], c2.lower, c2.upper)};
@@ -125,7 +105,25 @@ std::optional<ExplainedPair> fitted_pair(const ExplainSearch& search, const Star
     r = std::move(after);
   }
   if (at[1] == c2.value) return std::nullopt;
-  const Two sigma = jackknife(s, alone);
+  // As of one (explain_size.h): the steps end where chance does.
+  const auto half = [](const ExplainCandidate& c, double value) {
+    const Span span = span_at(c, value, 1.0);
+    return 0.5 * kSizeStep * (span.to - span.from);
+  };
+  const auto fit =
+      fitted_sizes(search, {.model = [&](const auto& a) { return pair_model(c1, a[0], c2.name, a[1]); },
+                            .z = {&s.z1, &s.z2},
+                            .start = {at[0], at[1]},
+                            .half = {half(c1, at[0]), half(c2, at[1])},
+                            .lower = {c1.lower, c2.lower},
+                            .upper = {c1.upper, c2.upper}});
+  const auto fitted = fit ? pair_model(c1, fit->value[0], c2.name, fit->value[1]) : std::nullopt;
+  Two sigma{INFINITY, INFINITY};
+  if (fitted) {
+    at = {fit->value[0], fit->value[1]};
+    sigma = {fit->sigma[0], fit->sigma[1]};
+    r = search.residual(search.run(*fitted));
+  }
   ExplainedPair pair;
   pair.first = {c1.name, c1.unit, c1.is_effect, c1.value, at[0], sigma[0], 0.0, block_errors(r)};
   pair.second = {c2.name, c2.unit, c2.is_effect, c2.value, at[1], sigma[1], 0.0, block_errors(r)};

@@ -7,7 +7,6 @@
 namespace omnihil {
 namespace {
 
-constexpr double kT9 = 2.262;         // two-sided 5 % of Student's t with nine degrees of freedom
 constexpr double kLeastNoise = 1e-4;  // of a series' RMS: 13 bits of a converter; less is no sensor
 
 // White noise from second differences: the variance of x[i-1] - 2 x[i] + x[i+1] is 6 sigma^2. Steps of a slow signal
@@ -40,9 +39,10 @@ ExplainSearch::ExplainSearch(const Recording& recording, const RadioFormat& form
   for (const MeasuredSeries& series : measured_) end_s_ = std::max(end_s_, series.time_s.back());
 }
 
-Trajectories ExplainSearch::run(const ModelBundle& model) const {
+Trajectories ExplainSearch::run(const ModelBundle& model, std::uint64_t chance) const {
   ReplayOptions options = options_;
   options.model = model;
+  if (chance != 0) options.seed = options.seed.value_or(recording_.header.seed) + chance;
   const ReplayRun run = run_again(recording_, options);
   if (!run.firmware_failure.empty()) throw std::runtime_error(run.firmware_failure);
   const std::vector<MeasuredSeries> answer = measured_series(run.answer, format_, by_);
@@ -118,7 +118,7 @@ bool better(const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t k = 0; k < kExplainBlocks; ++k) mean += (b[k] - a[k]) / kExplainBlocks;
   for (std::size_t k = 0; k < kExplainBlocks; ++k) square += std::pow(b[k] - a[k] - mean, 2);
   const double error = std::sqrt(square / (kExplainBlocks - 1) / kExplainBlocks);
-  return mean > kT9 * error;
+  return mean > kExplainT * error;
 }
 
 double rms(const std::vector<double>& x) {

@@ -16,6 +16,8 @@ namespace omnihil {
 
 inline constexpr std::size_t kExplainBlocks =
     10;  // Künsch 1989: few long blocks, each longer than the loop's memory
+// Two-sided 5 % of Student's t with one degree of freedom less: a size +- this many standard errors is its 95 %.
+inline constexpr double kExplainT = 2.262;
 
 // The differences of all series in one vector, already by their noise, with each one's block of time.
 struct Weighted {
@@ -31,8 +33,8 @@ class ExplainSearch {
   ExplainSearch(const Recording& recording, const RadioFormat& format, const ReplayOptions& options);
 
   const std::vector<MeasuredSeries>& measured() const { return measured_; }
-  // The model's values of every series at the measured times.
-  Trajectories run(const ModelBundle& model) const;
+  // The model's values of every series at the measured times; `chance` 0: with the seed of the options, else another.
+  Trajectories run(const ModelBundle& model, std::uint64_t chance = 0) const;
   // The noise of each series, from its difference to the model as it stands.
   void weigh_by(const Trajectories& base);
   // measured - values, by the noise.
