@@ -1,8 +1,8 @@
 // The sizes of one or two candidates, and how sure they are: by the equations of their instruments, solved among runs near
 // the answer.
 //
-//   const SizeFit fit = fitted_sizes(search, {.model = model, .z = {z}, .start = {v}, .half = {h}, .lower = …, .upper = …});
-//   fit.value[0] +- kExplainT * fit.sigma[0]      // 95 %
+//   const auto fit = fitted_sizes(search, {.z = {&z}, .start = {value}, .half = {step}, …});
+//   const double half_width = kExplainT * fit->sigma[0];   // of fit->value[0]: 95 %
 //
 // Method. g(a) = <z, r(a)>, z the instrument, r = measured - model by the noise; the size is where g is 0. g is taken at
 // kAround places round the start, each run with a seed of its own, and a line (for two candidates a plane) is laid through
