@@ -24,9 +24,9 @@ namespace omnihil {
 inline constexpr double kSizeStep = 0.2;
 
 struct SizeQuestion {
-  std::function<std::optional<ModelBundle>(const std::vector<double>& at)> model;
-  std::vector<const Weighted*> z;  // one or two instruments
-  std::vector<double> start, half, lower, upper;
+  std::function<std::optional<ModelBundle>(const std::vector<double>& at)> model{};
+  std::vector<const Weighted*> z{};  // one or two instruments
+  std::vector<double> start{}, half{}, lower{}, upper{};
 };
 
 struct SizeFit {
