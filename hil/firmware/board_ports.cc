@@ -11,6 +11,7 @@
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/usart.h"
 #include "hil/firmware/console_text.h"
+#include "hil/firmware/rtt_console.h"
 #include "hil/wire/buffered_wire.h"
 #include "hil/wire/open_wire.h"
 
@@ -143,6 +144,33 @@ struct BoardPorts::TextSource final : Port {
   ConsoleText text;
 };
 
+struct BoardPorts::RttSource final : Port {
+  RttSource(const mcu::PortEntry& entry, mcu::McuBoard& board, ConsoleText console)
+      : Port(entry), rtt(board.machine()), text(std::move(console)) {}
+  void pump() override {
+    rtt.pump([this](std::string_view said) { text.add(said); });
+  }
+  void add_report(std::vector<std::string>& lines) const override {
+    if (!rtt.found()) lines.push_back("RTT: no control block is in RAM");
+    SerialPort::add_text(lines, is, text);
+  }
+  RttConsole rtt;
+  ConsoleText text;
+};
+
+struct BoardPorts::BusLine final : Port {
+  BusLine(const mcu::PortEntry& entry, mcu::McuBoard& board, BoardBuses& of)
+      : Port(entry),
+        buses(of),
+        counts(buses.join(entry.bus, board, *board.chip().find<mcu::CanPort>(entry.of))) {}
+  void add_report(std::vector<std::string>& lines) const override {
+    lines.push_back(fmt::format("{} on bus {} of {} boards: {} frames out, {} in", is.of, is.bus,
+                                buses.ends_of(is.bus), counts->out, counts->in));
+  }
+  BoardBuses& buses;
+  std::shared_ptr<const BoardBuses::Counts> counts;
+};
+
 std::vector<mcu::BoardProblem> port_problems(const mcu::BoardSpec& spec, const std::string& board_file) {
   std::vector<mcu::BoardProblem> problems;
   for (const mcu::PortEntry& port : spec.ports) {
@@ -160,7 +188,11 @@ BoardPorts::BoardPorts(mcu::McuBoard& board, const BoardPortsOptions& options) {
       if (on_line) on_line(id, number, of, line);
     });
     WireProblem problem;
-    if (entry.source == mcu::PortSource::kSemihosting || entry.source == mcu::PortSource::kItm) {
+    if (entry.source == mcu::PortSource::kRtt) {
+      ports_.push_back(std::make_unique<RttSource>(entry, board, std::move(text)));
+    } else if (!entry.bus.empty()) {
+      ports_.push_back(std::make_unique<BusLine>(entry, board, *options.buses));
+    } else if (entry.source == mcu::PortSource::kSemihosting || entry.source == mcu::PortSource::kItm) {
       ports_.push_back(std::make_unique<TextSource>(entry, board, std::move(text)));
     } else if (entry.source == mcu::PortSource::kCan) {
       std::unique_ptr<FrameWire> wire = open_frame_wire(url_of(entry, options), kUsual, problem);

@@ -7,7 +7,7 @@
 // Both ways: what the board has sent since the last pump goes out, what has come in is given to it at its own rate
 // (bytes one frame time after the other, at most kFramesAtOnce CAN frames a pump, so that its FIFO holds them). What
 // nobody takes is counted. Bytes of a console are kept as lines of text, whole ones told to a listener at once. A run
-// with a wire from outside is as repeatable as what comes in by it. Cannot: noise, flow control, RTT.
+// with a wire from outside is as repeatable as what comes in by it. Cannot: noise, flow control.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -18,6 +18,7 @@
 
 #include "firmware_iface/mcu/board/board.h"
 #include "firmware_iface/mcu/board/board_problem.h"
+#include "hil/firmware/board_bus.h"
 
 namespace omnihil {
 
@@ -29,6 +30,7 @@ struct BoardPortsOptions {
   int board = 0;           // of the robot
   std::string board_file;  // in messages
   ConsoleListener on_line = {};
+  BoardBuses* buses = nullptr;  // of the robot; needed where a port is on one
 };
 
 // What is wrong with the wires that a board file names, as far as words tell.
@@ -48,6 +50,8 @@ class BoardPorts {
   struct SerialPort;
   struct CanLine;
   struct TextSource;
+  struct RttSource;
+  struct BusLine;
   std::vector<std::unique_ptr<Port>> ports_;
 };
 

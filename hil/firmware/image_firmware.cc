@@ -32,7 +32,8 @@ class ImageFirmware final : public Firmware {
     for (int b = 0; b < mcu_.boards(); ++b) {
       if (!image_->board.ports.empty()) {
         ports_.push_back(std::make_unique<BoardPorts>(
-            mcu_.board(b), BoardPortsOptions{config.robot_id, b, image_->board_file, listeners.on_line}));
+            mcu_.board(b),
+            BoardPortsOptions{config.robot_id, b, image_->board_file, listeners.on_line, &buses_}));
       }
       if (listeners.on_board)
         listeners.on_board({config.robot_id, b, mcu_.boards(), mcu_.board(b), image_->elf});
@@ -93,6 +94,7 @@ class ImageFirmware final : public Firmware {
   mcu::McuFirmware mcu_;
   mcu::BoardsMemory memory_;
   mcu::BoardsChip chip_;
+  BoardBuses buses_;
   std::vector<std::unique_ptr<BoardPorts>> ports_;  // of each board; none: it has no ports
   mutable std::string failure_;                     // once it has failed
 };

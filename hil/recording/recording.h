@@ -12,6 +12,7 @@
 //   m TIME_NS x y yaw vx vy w radius front height …    real robots among ours, nine numbers of each; none: they are gone
 //   } TIME_NS HEX            bytes that the opponents' host wrote
 //   w TIME_NS x y z vx vy vz    where the ball was, every 10 ms: for pictures
+//   t TIME_NS ID BOARD PORT TEXT    a line that a robot's board said on a console; to the end of the line, may be empty
 //   s TIME_NS ID v1 v2 …     one robot at one control tick; column names and units are in the header
 //   # {"end":…}              counters, wall time; absent when the run was cut off
 //
@@ -94,12 +95,15 @@ struct RecordedChunk {
     kBallPlaced,
     kOpponentsBytes,
     kBallSeen,
-    kMovers
+    kMovers,
+    kConsole
   } kind = Kind::kHostBytes;
   std::int64_t now_ns = 0;
   std::vector<std::uint8_t> bytes;  // kHostBytes, kDongleBytes
-  int robot_id = 0;            // kSample, kCommand, kPlaced, kPushed, kPresent; opponents: kOpponentKey + id
+  int robot_id = 0;  // kSample, kCommand, kPlaced, kPushed, kPresent, kConsole; opponents: kOpponentKey + id
   std::vector<double> sample;  // the line's numbers; kSample: in the order of header.columns
+  int board = 0;               // kConsole: of the robot
+  std::string port, text;      // kConsole
 };
 
 // What the writer of a complete run counted.

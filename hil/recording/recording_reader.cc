@@ -122,6 +122,7 @@ bool RecordingReader::parse_line(RecordedChunk& chunk) {
   }
   if (tag == "!") return parse_closed(rest, chunk);
   if (tag == "s") return parse_sample(rest, chunk);
+  if (tag == "t") return parse_console(rest, chunk);
   for (const InputLine& line : kInputLines) {
     if (tag != line.tag) continue;
     chunk.kind = line.kind;
@@ -133,7 +134,7 @@ bool RecordingReader::parse_line(RecordedChunk& chunk) {
     parse_end(rest);
   } else {
     problem("line tag: found " + in_quotes(tag) +
-            ", allowed: '>', '<', '}', '!', 's', 'c', 'p', 'v', 'a', 'b', 'w', 'm', '#'");
+            ", allowed: '>', '<', '}', '!', 's', 't', 'c', 'p', 'v', 'a', 'b', 'w', 'm', '#'");
   }
   return false;
 }
@@ -226,6 +227,24 @@ bool RecordingReader::parse_sample(std::string_view rest, RecordedChunk& chunk) 
     chunk.sample.push_back(value);
   }
   return true;
+}
+
+bool RecordingReader::parse_console(std::string_view rest, RecordedChunk& chunk) {
+  constexpr std::int64_t kMostBoards = 16;
+  chunk.kind = RecordedChunk::Kind::kConsole;
+  if (!parse_robot(rest, chunk)) return false;
+  const std::string_view board_text = next_word(rest);
+  std::int64_t board = -1;
+  if (!parse_integer(board_text, board) || board < 0 || board >= kMostBoards) {
+    problem("board: found " + in_quotes(board_text) + ", allowed: 0 to " + std::to_string(kMostBoards - 1));
+    return false;
+  }
+  chunk.board = static_cast<int>(board);
+  chunk.port = next_word(rest);
+  chunk.text = rest;
+  if (!chunk.port.empty()) return true;
+  problem("port: found nothing, allowed: a name such as USART2");
+  return false;
 }
 
 void RecordingReader::parse_end(std::string_view text) {

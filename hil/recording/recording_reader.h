@@ -55,6 +55,7 @@ class RecordingReader {
                      RecordedChunk& chunk);
   bool parse_time_alone(std::string_view& rest, RecordedChunk& chunk);
   bool parse_sample(std::string_view rest, RecordedChunk& chunk);
+  bool parse_console(std::string_view rest, RecordedChunk& chunk);
   void parse_end(std::string_view json);
   bool parse_time(std::string_view& rest, RecordedChunk& chunk);
   void problem(const std::string& what);

@@ -156,6 +156,20 @@ void RecordingWriter::robot_tick(std::int64_t now_ns, const RobotSample& sample)
   end_line(now_ns);
 }
 
+void RecordingWriter::console_line(std::int64_t now_ns, int robot_id, int board, std::string_view port,
+                                   std::string_view line) {
+  if (error_) return;
+  buffer_ += "t ";
+  for (const std::int64_t number : {now_ns, std::int64_t{robot_id}, std::int64_t{board}}) {
+    append_integer(buffer_, number);
+    buffer_ += ' ';
+  }
+  buffer_ += port;
+  buffer_ += ' ';
+  buffer_ += line;
+  end_line(now_ns);
+}
+
 void RecordingWriter::finish(const RecordingEnd& end) {
   if (error_) return;
   nlohmann::ordered_json counters = nlohmann::ordered_json::object();

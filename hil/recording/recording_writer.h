@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -43,6 +44,10 @@ class RecordingWriter : public SessionObserver {
                    std::span<const double> values) override;
   void opponents_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override;
   void world(std::int64_t now_ns, const World& world) override;
+
+  // A line that a robot's board said, at the instant that the session is at. `port` is one word, `line` printable.
+  void console_line(std::int64_t now_ns, int robot_id, int board, std::string_view port,
+                    std::string_view line);
 
   // Writes what is buffered.
   void flush();

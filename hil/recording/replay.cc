@@ -46,7 +46,8 @@ namespace {
 
 bool is_input(const RecordedChunk& chunk) {
   using Kind = RecordedChunk::Kind;
-  return chunk.kind != Kind::kSample && chunk.kind != Kind::kDongleBytes && chunk.kind != Kind::kBallSeen;
+  return chunk.kind != Kind::kSample && chunk.kind != Kind::kDongleBytes && chunk.kind != Kind::kBallSeen &&
+         chunk.kind != Kind::kConsole;
 }
 
 // What went past the radio; the ids were checked when it was read.

@@ -203,6 +203,10 @@ bool Bench::open_recording(RecordingHeader header) {
     return false;
   }
   observers_.add(writer_.get());
+  *options_.record_console = [this](std::uint32_t robot, int board, const std::string& port,
+                                    const std::string& line) {
+    writer_->console_line(session_.now_ns(), static_cast<int>(robot), board, port, line);
+  };
   return true;
 }
 
@@ -320,6 +324,7 @@ ServeEnd Bench::loop() {
 
 void Bench::finish_recording() {
   if (!writer_) return;
+  *options_.record_console = {};
   session_.set_observer(nullptr);
   const ServeStatus s = status();
   RecordingEnd end{.now_ns = s.now_ns, .wall_s = static_cast<double>(s.wall_ns) * 1e-9, .counters = {}};

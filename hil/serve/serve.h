@@ -8,6 +8,8 @@
 // of the device is removed, the recording is closed. For people: docs/serve.md.
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +28,10 @@ struct StartPose {
   int key = 0;  // the robot's id; an opponent's: kOpponentKey + id
   double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
 };
+
+// A line that a robot's board said at a port.
+using ConsoleRecorder =
+    std::function<void(std::uint32_t robot_id, int board, const std::string& port, const std::string& line)>;
 
 struct ServeOptions {
   std::string device = "./dongle";  // a wire's URL for bytes; a bare path is a pty's name
@@ -47,7 +53,9 @@ struct ServeOptions {
   GdbServer* gdb = nullptr;             // not owned; the boards of `make_firmware` have been added to it
   std::string firmware_file;            // that `watch` and `set` mean variables of
   std::vector<std::string> watch, set;  // variables by name; "NAME=VALUE" at the start
-  int league_sync_port = 0;             // TCP; time then goes on by the client's requests alone; 0: no
+  // Filled in by serve() while it runs: whoever hears boards on their consoles tells it, for the recording.
+  std::shared_ptr<ConsoleRecorder> record_console = std::make_shared<ConsoleRecorder>();
+  int league_sync_port = 0;  // TCP; time then goes on by the client's requests alone; 0: no
 };
 
 enum class ServeEnd {

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hil/capture/decimal_time.h"
 #include "hil/recording/capture_import.h"
@@ -44,6 +46,12 @@ std::string line_of(const PassedPacket& passed, const RadioFormat& format, bool 
   return text;
 }
 
+// "    1.250000 | robot 3 board 1 USART2: boot"
+std::string console_text(const RecordedChunk& chunk) {
+  return fmt::format("{:12.6f} | robot {}{} {}: {}", static_cast<double>(chunk.now_ns) / 1e9, chunk.robot_id,
+                     chunk.board == 0 ? "" : fmt::format(" board {}", chunk.board), chunk.port, chunk.text);
+}
+
 // Of a capture without a radio format: its pieces in hex, with what carried them.
 int dump_pieces(const DumpWords& words, const Capture& capture) {
   const std::int64_t start_ns = capture.pieces.empty() ? 0 : capture.pieces.front().at_ns;
@@ -63,7 +71,21 @@ int dump_pieces(const DumpWords& words, const Capture& capture) {
 
 int dump_packets(const DumpWords& words, const Recording& recording, const RadioFormat& format) {
   if (!words.message.empty() && message_or_complain(format, words.message) == nullptr) return kExitBadInput;
+  std::vector<const RecordedChunk*>
+      said;  // what boards said, between the packets; with --packet it is left out
+  for (const RecordedChunk& chunk : recording.chunks) {
+    const double at_s = static_cast<double>(chunk.now_ns) / 1e9;
+    if (chunk.kind == RecordedChunk::Kind::kConsole && words.message.empty() && at_s >= words.from_s &&
+        at_s <= words.to_s && (words.robot < 0 || chunk.robot_id == words.robot))
+      said.push_back(&chunk);
+  }
+  auto next_said = said.begin();
+  const auto say_until = [&](std::int64_t now_ns) {
+    for (; next_said != said.end() && (*next_said)->now_ns <= now_ns; ++next_said)
+      fmt::print("{}\n", console_text(**next_said));
+  };
   for (const PassedPacket& passed : all_packets(recording, format)) {
+    say_until(passed.packet.now_ns);
     const double at_s = static_cast<double>(passed.packet.now_ns) / 1e9;
     if (at_s < words.from_s || at_s > words.to_s) continue;
     const bool asks = words.robot >= 0 || !words.message.empty();
@@ -75,6 +97,7 @@ int dump_packets(const DumpWords& words, const Recording& recording, const Radio
     }
     fmt::print("{}\n", line_of(passed, format, words.hex));
   }
+  say_until(std::numeric_limits<std::int64_t>::max());
   return kExitOk;
 }
 

@@ -178,7 +178,12 @@ int run(Words& words) {
     words.firmware.all.virtual_time = !words.options.real_time;
     const std::unique_ptr<GdbServer> gdb = open_gdb(words.gdb, [] { return StopSignals::requested(); });
     words.options.gdb = gdb.get();
-    words.firmware.all.listeners.on_line = console_listener(words.console);
+    words.firmware.all.listeners.on_line =
+        [print = console_listener(words.console), record = words.options.record_console](
+            std::uint32_t robot, int board, const std::string& port, const std::string& line) {
+          if (print) print(robot, board, port, line);
+          if (*record) (*record)(robot, board, port, line);
+        };
     words.firmware.all.listeners.on_board = gdb_listener(gdb.get());
     ImageReports reports(words.observe, words.firmware.all.file);
     words.firmware.all.observer = reports.observer();

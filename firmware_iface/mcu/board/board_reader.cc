@@ -425,23 +425,35 @@ void Reader::read_port(const toml::table& t, const std::string& path) {
   port.key = path;
   port.of = keys_.text(t, path, "of").value_or("");
   port.as = keys_.text(t, path, "as").value_or("");
-  const bool text_only = port.of == "semihosting" || port.of == "ITM";
+  const bool text_only = port.of == "semihosting" || port.of == "ITM" || port.of == "RTT";
   port.console = keys_.flag(t, path, "console").value_or(text_only);
   if (const toml::node* node = t.get("as")) port.line = node->source().begin.line;
   if (port.of == "semihosting") port.source = PortSource::kSemihosting;
   if (port.of == "ITM") port.source = PortSource::kItm;
+  if (port.of == "RTT") port.source = PortSource::kRtt;
   if (names_ && names_->has_can(port.of)) port.source = PortSource::kCan;
   if (!names_ || text_only || names_->has_serial(port.of) || names_->has_can(port.of)) {
     claim(t, path, "of", port.of + " as a port");
   } else {
     keys_.wrong(t, path, "of", t.contains("of") ? "no such port" : "missing",
-                names_->serials() + ", " + names_->cans() + ", semihosting, ITM");
+                names_->serials() + ", " + names_->cans() + ", semihosting, ITM, RTT");
   }
   if (!port.of.empty() && (port.of == spec_.radio_via || port.of == spec_.wheel_commands.via))
     keys_.wrong(t, path, "of", "the robot's commands come in by it", "another port");
   if (port.source == PortSource::kCan && port.console)
     keys_.wrong(t, path, "console", "a CAN has no text", "false");
-  if (port.as.empty() && !port.console)
+  constexpr std::string_view kBus = "bus:";
+  if (port.as.starts_with(kBus)) {
+    port.bus = port.as.substr(kBus.size());
+    port.as.clear();
+    if (port.bus.empty()) keys_.wrong(t, path, "as", "a bus without a name", "bus:wheels");
+    if (names_ && port.source != PortSource::kCan)
+      keys_.wrong(t, path, "as", "a bus between boards is a CAN", names_->cans());
+    if (spec_.boards_per_robot < 2)
+      keys_.wrong(t, path, "as", "a bus between boards of a robot that has one",
+                  "boards_per_robot = 2 or more");
+  }
+  if (port.as.empty() && port.bus.empty() && !port.console)
     keys_.missing(t, path, "as", "a wire such as pty:./console (omnihil wires), or console = true");
   spec_.ports.push_back(std::move(port));
 }

@@ -88,11 +88,12 @@ struct FlashEntry {
 };
 
 // A serial port or a CAN that leads out of the bench, or a console whose text is kept.
-enum class PortSource : std::uint8_t { kSerial, kCan, kSemihosting, kItm };
+enum class PortSource : std::uint8_t { kSerial, kCan, kSemihosting, kItm, kRtt };
 struct PortEntry {
   PortSource source = PortSource::kSerial;
-  std::string of;        // "USART2", "CAN1", "semihosting", "ITM"
+  std::string of;        // "USART2", "CAN1", "semihosting", "ITM", "RTT"
   std::string as;        // a wire's URL; empty: none
+  std::string bus;       // instead: of "bus:NAME" the name; of a CAN that the robot's boards share
   bool console = false;  // what it says is text, kept line by line
   std::string key;       // "port[0]", in messages
   unsigned line = 0;

@@ -2,7 +2,9 @@
 import os
 import socket
 import struct
+import subprocess
 import sys
+import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "serve"))
 import bench as benches  # noqa: E402
@@ -160,13 +162,39 @@ def a_motor_turns_as_its_can_is_told():
 
 
 def what_it_says_is_in_the_report_and_on_the_terminal():
-    ports = ''.join(f'\n[[port]]\nof = "{of}"\nconsole = true\n' for of in ("USART2", "semihosting", "ITM"))
+    ports = ''.join(f'\n[[port]]\nof = "{of}"\nconsole = true\n' for of in ("USART2", "semihosting", "ITM", "RTT"))
     with served(ports, "--robots", "2", "--console", "2", "--clock", "free", "--duration", "0.1") as bench:
         report = bench.finish()
     assert report.code == 0, report.text
-    for of, line in (("USART2", "boot"), ("semihosting", "by semihosting"), ("ITM", "by trace")):
+    for of, line in (("USART2", "boot"), ("semihosting", "by semihosting"), ("ITM", "by trace"),
+                     ("RTT", "by rtt, and it is longer than the buffer")):
         assert f"robot 2 {of} | {line}" in report.text, report.text
         assert f"{of} said 1 lines:" in report.text, report.text
+
+
+def what_it_says_is_in_the_recording():
+    ports = '\n[[port]]\nof = "USART2"\nconsole = true\n[[port]]\nof = "RTT"\n'
+    with tempfile.TemporaryDirectory() as folder:
+        recording = os.path.join(folder, "said.omnirec")
+        with served(ports, "--robots", "2", "--clock", "free", "--duration", "0.1", "--record", recording) as bench:
+            report = bench.finish()
+        assert report.code == 0, report.text
+        with open(recording, encoding="utf-8") as lines:
+            said = [line.split(" ", 5) for line in lines if line.startswith("t ") and "semihosting" not in line]
+        assert [(words[2], words[3], words[4], words[5].strip()) for words in said] == [
+            ("2", "0", "USART2", "boot"), ("2", "0", "RTT", "by rtt, and it is longer than the buffer")], said
+        # "boot" and its line end: six frames of ten bits at 115200
+        assert 0.0005 <= int(said[0][1]) * 1e-9 <= 0.002, said
+        program = os.environ["OMNIHIL_PROGRAM"]
+        dumped = subprocess.run([program, "dump", recording], capture_output=True, text=True, check=True).stdout
+        assert "| robot 2 USART2: boot" in dumped, dumped
+        assert "| robot 2 RTT: by rtt" in dumped, dumped
+        # What a program that does not know these lines reads is the rest.
+        plain = os.path.join(folder, "plain.omnirec")
+        with open(recording, encoding="utf-8") as lines, open(plain, "w", encoding="utf-8") as rest:
+            rest.writelines(line for line in lines if not line.startswith("t "))
+        assert subprocess.run([program, "dump", plain], capture_output=True, text=True, check=True).stdout == "".join(
+            line + "\n" for line in dumped.splitlines() if " | robot" not in line)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 /* What the ports of a board are tested with. Serial port 2 says "boot" and gives back every letter as a capital. CAN 1
  * takes frame 0x100, a duty in 1/8400 for wheel 0, and answers 0x101 with the wheel's encoder count; any other frame
- * comes back with the next id and its bytes plus one. Words go out by semihosting and by ITM. */
+ * comes back with the next id and its bytes plus one. Words go out by semihosting, by ITM and through a buffer in RAM (RTT). */
 #include "image.h"
 
 #define USART2 0x40004400u
@@ -31,6 +31,38 @@ static void trace(const char *text) {
     }
     REG8(ITM) = (uint8_t)*text;
   }
+}
+
+/* The control block of SEGGER RTT: identifier, numbers of channels, channels. */
+static struct {
+  char identifier[16];
+  uint32_t up, down;
+  struct {
+    const char *name;
+    char *buffer;
+    uint32_t size;
+    volatile uint32_t written, read;
+    uint32_t flags;
+  } channel[1];
+} terminal;
+static char terminal_buffer[16];
+static const char *left_to_say = "by rtt, and it is longer than the buffer\n";
+
+static void open_terminal(void) {
+  terminal.channel[0].name = "Terminal";
+  terminal.channel[0].buffer = terminal_buffer;
+  terminal.channel[0].size = sizeof terminal_buffer;
+  terminal.up = 1;
+  const char identifier[] = "SEGGER RTT";
+  for (unsigned i = 0; i < sizeof identifier; ++i) terminal.identifier[i] = identifier[i];
+}
+
+/* As much as there is room for: nobody may read. */
+static void say_more(void) {
+  const uint32_t next = (terminal.channel[0].written + 1) % sizeof terminal_buffer;
+  if (!*left_to_say || next == terminal.channel[0].read) return;
+  terminal_buffer[terminal.channel[0].written] = *left_to_say++;
+  terminal.channel[0].written = next;
 }
 
 static void start(void) {
@@ -83,7 +115,9 @@ int main(void) {
   say("boot\r\n");
   semihost(4, "by semihosting\n");
   trace("by trace\n");
+  open_terminal();
   for (;;) {
+    say_more();
     if (REG(USART2) & 1u << 5) {
       const uint8_t c = (uint8_t)REG(USART2 + 4);
       const char capital[2] = {(char)(c >= 'a' && c <= 'z' ? c - 32 : c), 0};
