@@ -50,6 +50,7 @@ void CallTracker::leave(std::int64_t at) {
   frames_.pop_back();
   const std::int64_t own = at - frame.entered - frame.stolen;
   if (frame.exception != 0) {
+    --exceptions_open_;
     if (!frames_.empty()) frames_.back().stolen += at - frame.entered;
     listener_({CallEvent::Kind::kExceptionEnds, frame.exception, -1, at, own, sp_});
     return;
@@ -64,7 +65,24 @@ void CallTracker::leave_level(std::int64_t at) {
   while (!frames_.empty() && frames_.back().exception == 0) leave(at);
 }
 
+// Of the thread level; the new task goes on where it was left.
+bool CallTracker::task_changed(std::int64_t at) {
+  if (!running_ || in_exception()) return false;
+  const std::uint32_t next = running_();
+  if (next == task_) return false;
+  Suspended& old = suspended_[task_];
+  old = {frames_, expected_, call_};
+  while (!frames_.empty()) leave(at);
+  task_ = next;
+  const Suspended again = std::exchange(suspended_[next], {});
+  for (const Frame& frame : again.frames) enter(frame.function, frame.returns_to, at);
+  expected_ = again.expected;
+  call_ = again.call;
+  return true;
+}
+
 void CallTracker::jumped(std::uint32_t pc, std::int64_t at) {
+  if (task_changed(at) && !frames_.empty() && pc == expected_ && !call_) return;
   bool begins = false;
   const int function = function_at(pc, begins);
   if (call_) return enter(function, expected_, at);
@@ -105,6 +123,7 @@ void CallTracker::exception_begins(int exception, mcu::Cycles at) {
   charge(now);
   sp_ = machine_.cpu().reg.r[13];
   frames_.push_back({-1, exception, 0, now, 0, expected_, call_});
+  ++exceptions_open_;
   listener_({CallEvent::Kind::kExceptionBegins, exception, -1, now, 0, sp_});
   call_ = branch_ = sleeps_ = false;
   fresh_ = true;

@@ -10,7 +10,9 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware_iface/mcu/machine/machine.h"
@@ -37,6 +39,12 @@ class CallTracker : public mcu::MachineObserver {
   void was_reset(mcu::Cycles at) override;
   void finish(std::int64_t at);  // leaves everything that is open
 
+  // From now on each task of an RTOS has a stack of its own: when another one runs, what is open is left, and what was open in
+  // it when it ran last is entered again. `running` names the one that runs by a number.
+  void follow_tasks(std::function<std::uint32_t()> running) { running_ = std::move(running); }
+  std::uint32_t task() const { return task_; }
+  bool in_exception() const { return exceptions_open_ > 0; }
+
   // Functions that have run, by their number; "?" is code without a symbol.
   const std::vector<std::string>& functions() const { return names_; }
   // Time spent in the function itself (not its callees, no interrupts), and in sleep, in 16ths of a cycle.
@@ -53,6 +61,11 @@ class CallTracker : public mcu::MachineObserver {
     std::uint32_t expected = 0;    // of an exception: what was to run next, and whether it was called
     bool call = false;
   };
+  struct Suspended {  // a task that does not run
+    std::vector<Frame> frames;
+    std::uint32_t expected = 0;
+    bool call = false;
+  };
   struct Symbol {
     std::uint32_t begin;
     int function;  // -1: not met yet
@@ -64,6 +77,7 @@ class CallTracker : public mcu::MachineObserver {
   void enter(int function, std::uint32_t returns_to, std::int64_t at);
   void leave(std::int64_t at);
   void leave_level(std::int64_t at);
+  bool task_changed(std::int64_t at);
 
   mcu::Machine& machine_;
   Listener listener_;
@@ -75,6 +89,10 @@ class CallTracker : public mcu::MachineObserver {
   std::int64_t last_ = 0, asleep_ = 0;
   bool call_ = false, branch_ = false, sleeps_ = false, fresh_ = true;
   int unknown_ = -1;
+  std::function<std::uint32_t()> running_;
+  std::map<std::uint32_t, Suspended> suspended_;
+  std::uint32_t task_ = 0;
+  int exceptions_open_ = 0;
 };
 
 }  // namespace omnihil

@@ -8,8 +8,8 @@
 //
 // Chrome's trace event format: a process per robot, a thread per board, B and E events that nest; counters "stack" (bytes
 // below the image's initial stack pointer) and "control period" (us, between two begins of the control timer's interrupt).
-// Instants are those of virtual time. With last_s only that much is kept, up to the end or to freeze(). Cannot: tasks of
-// an RTOS as threads of their own.
+// Instants are those of virtual time. With last_s only that much is kept, up to the end. Of an RTOS that is known
+// (rtos_task.h) each task is a thread with a stack counter of its own; an interrupt stands in the thread that it interrupts.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,8 @@
 // What an image does, told from outside: coverage, profile and traces, each held to what the machine or the image itself counts.
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "hil/observe/image_profile.h"
 #include "hil/observe/image_trace.h"
@@ -222,6 +224,51 @@ TEST_F(Observe, AFilterKeepsItsFunctionsAndAllInterrupts) {
   EXPECT_NE(json.find("board_tick"), std::string::npos);
   EXPECT_EQ(json.find("board_encoders_read"), std::string::npos);
   EXPECT_EQ(nesting_of(json).control, run.machine().report().exceptions.at(kControl).count);
+}
+
+// Each task has a thread of its own, in which only its own functions stand; when it runs again it is where it was.
+TEST_F(Observe, TasksOfAnRtosAreThreads) {
+  ObservedImage run(OMNIHIL_BUILD_DIR "/images/tasks.elf");
+  ImageTrace trace({});
+  trace.begins(*run.firmware, run.elf, 3);
+  run.run_ms(100);
+  trace.ends(*run.firmware);
+  const auto number = [&run](const char* variable) {
+    return run.machine().bus_read(run.elf.address_of(variable).value(), 4);
+  };
+  struct Thread {
+    int open = 0;
+    bool balanced = true;
+    std::map<std::string, std::uint32_t> begun;
+  };
+  std::map<int, std::string> names;
+  std::map<std::string, Thread> threads;
+  std::set<std::string> stacks;
+  const nlohmann::json read = nlohmann::json::parse(trace.text());
+  for (const auto& event : read["traceEvents"])
+    if (event["name"] == "thread_name") names[event["tid"]] = event["args"]["name"];
+  for (const auto& event : read["traceEvents"]) {
+    Thread& thread = threads[names.at(event["tid"])];
+    if (event["ph"] == "B") ++thread.begun[event["name"]];
+    if (event["ph"] == "C") stacks.insert(event["name"]);
+    thread.open += event["ph"] == "B" ? 1 : event["ph"] == "E" ? -1 : 0;
+    thread.balanced = thread.balanced && thread.open >= 0;
+  }
+  EXPECT_EQ(threads.size(), 3u);  // and what came before the first of them
+  const Thread &control = threads["board 0 control"], &blink = threads["board 0 blink"];
+  EXPECT_TRUE(control.balanced && blink.balanced);
+  EXPECT_EQ(control.open + blink.open, 0);
+  EXPECT_NEAR(control.begun.at("control_step"), number("controls"), 1);
+  EXPECT_NEAR(control.begun.at("give_way"), 2.0 * number("controls"), 3);  // and again when it is back in it
+  EXPECT_EQ(control.begun.count("blink_step"), 0u);
+  EXPECT_EQ(blink.begun.count("control_step"), 0u);
+  EXPECT_GE(blink.begun.at("blink_step"), number("blinks"));
+  // It is preempted in blink_step, which blink has called: it is back in both.
+  EXPECT_NEAR(blink.begun.at("blink"), number("switches") / 2.0, 2.0);
+  EXPECT_NEAR(blink.begun.at("SysTick"), 99, 2);
+  EXPECT_EQ(control.begun.at("PendSV") + blink.begun.at("PendSV"), number("switches"));
+  for (const char* stack : {"stack control", "stack blink", "stack interrupts"})
+    EXPECT_TRUE(stacks.contains(stack)) << stack;
 }
 
 class ObserveProgram : public CliTest {
