@@ -103,7 +103,7 @@ struct RecordedChunk {
   int robot_id = 0;  // kSample, kCommand, kPlaced, kPushed, kPresent, kConsole; opponents: kOpponentKey + id
   std::vector<double> sample;  // the line's numbers; kSample: in the order of header.columns
   int board = 0;               // kConsole: of the robot
-  std::string port, text;      // kConsole
+  std::string port{}, text{};  // kConsole
 };
 
 // What the writer of a complete run counted.

@@ -88,6 +88,29 @@ TEST(RecordingRoundTrip, EveryChunkComesBackBitForBit) {
   EXPECT_EQ(read.end.counters[0].second, 2U);
 }
 
+// With blanks at its ends, a comment's sign, or nothing.
+TEST(RecordingRoundTrip, LinesOfConsolesComeBackToTheLetter) {
+  const fake::TempFolder folder;
+  std::error_code error;
+  const RecordingHeader header = fake::header();
+  const std::vector<std::string> lines{"boot", "", " 3.7 V  ", "# {\"end\":{}}"};
+  {
+    const auto writer = RecordingWriter::open(folder / "said.omnirec", header, error);
+    for (const std::string& line : lines)
+      writer->console_line(1'000'000, header.robot_ids.back(), 2, "USART2", line);
+    writer->finish({.now_ns = 1'000'000, .wall_s = 0.0, .counters = {}});
+  }
+  const Recording read = load_recording(folder / "said.omnirec");
+  ASSERT_EQ(read.chunks.size(), lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(read.chunks[i].kind, RecordedChunk::Kind::kConsole);
+    EXPECT_EQ(read.chunks[i].robot_id, header.robot_ids.back());
+    EXPECT_EQ(read.chunks[i].board, 2);
+    EXPECT_EQ(read.chunks[i].port, "USART2");
+    EXPECT_EQ(read.chunks[i].text, lines[i]);
+  }
+}
+
 TEST(RecordingRoundTrip, NumbersAtTheEdgesOfDoubleComeBackBitForBit) {
   using Limits = std::numeric_limits<double>;
   for (const double number : {0.0, -0.0, 0.1, 1.0 / 3.0, Limits::max(), Limits::lowest(), Limits::min(),
