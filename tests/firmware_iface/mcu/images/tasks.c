@@ -69,10 +69,10 @@ void SysTick_Handler(void) { ICSR = 1u << 28; }
 
 static void make(Task *task, uint32_t *stack, void (*body)(void)) {
   uint32_t *top = stack + 128;
-  *--top = 1u << 24;                   /* xPSR */
+  *--top = 1u << 24;                        /* xPSR */
   *--top = (uint32_t)(uintptr_t)body & ~1u; /* pc */
   for (int i = 0; i < 6; ++i) *--top = 0;
-  *--top = 0xFFFFFFFDu;                /* to thread mode on the process stack */
+  *--top = 0xFFFFFFFDu; /* to thread mode on the process stack */
   for (int i = 0; i < 8; ++i) *--top = 0;
   task->stack = stack;
   task->top_of_stack = top;
