@@ -18,6 +18,7 @@ void append(std::vector<std::uint8_t>& out, const T* items, std::size_t count) {
 
 template <typename T>
 void take(std::span<const std::uint8_t>& in, T* items, std::size_t count) {
+  if (count == 0) return;  // memcpy takes no null pointer, not even for nothing (C17 7.24.1)
   std::memcpy(static_cast<void*>(items), in.data(), count * sizeof(T));
   in = in.subspan(count * sizeof(T));
 }
