@@ -163,8 +163,8 @@ pid_t only_child() {
 }
 
 TEST(GuardedFirmware, ADebuggerMayHoldItBeyondTheDeadline) {
-  constexpr double kDeadline_s = 0.1;
-  constexpr int kHeld_ms = 1000;
+  constexpr double kDeadline_s = 0.5;  // more than a loaded computer keeps a process from its core
+  constexpr int kHeld_ms = 1500;
   GuardedFirmware firmware(
       {std::string(OMNIHIL_BUILD_DIR) + "/firmware_iface/libomnihil_reference_firmware.so", kDeadline_s},
       config());
