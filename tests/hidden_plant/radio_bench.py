@@ -28,6 +28,7 @@ import radio_case
 COMMAND, FEEDBACK, STATE = (0x22, 28), (0x27, 28), (0x28, 99)
 VERSION, PI = 8, math.pi
 BLUE = 1
+PROCESSING_S = 0.005  # from a frame's capture to its sending, as its packet says: or the cameras' clock is 5 ms off the host's
 
 
 class Bits:
@@ -139,7 +140,7 @@ class Bench:
         self.udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton("127.0.0.1"))
         self.buffer, self.waiting, self.heard = bytearray(), [], (0.0, 0.0, 0.0)
-        self.rows, self.frames = 0, 0
+        self.rows, self.frames, self.taken = 0, 0, []
         self.broken = json.loads(words.break_)
         self.breaks_s = None if self.broken else math.inf  # None: after the first command
         self.row = self.robot.row((0.0, 0.0, 0.0))
@@ -170,8 +171,13 @@ class Bench:
         x, y = (self.row[n] + self.rng.gauss(0, p["vision_noise_m"]) for n in ("x", "y"))
         turn = wrapped(self.row["turn"] + self.rng.gauss(0, p["vision_noise_rad"]))
         captured = self.clock_s + at_s
-        self.udp.sendto(vision_packet(self.frames, captured, captured + 0.005, self.words.robot, x, y, turn), self.group)
+        self.taken.append((at_s + PROCESSING_S,
+                           vision_packet(self.frames, captured, captured + PROCESSING_S, self.words.robot, x, y, turn)))
         self.frames += 1
+
+    def send_frames(self, now_s):
+        while self.taken and self.taken[0][0] <= now_s:
+            self.udp.sendto(self.taken.pop(0)[1], self.group)
 
     def take(self, now_s):
         try:
@@ -195,6 +201,7 @@ class Bench:
             select.select([self.master], [], [], 0.002)
             now_s = time.monotonic() - self.start_s
             self.advance(now_s)
+            self.send_frames(now_s)
             self.take(now_s)
         os.unlink(self.words.device)
 
