@@ -80,12 +80,16 @@ void FirmwareProcess::start() {
 }
 
 // True once the socket is ready; false when the firmware took too long, which ends it. While a debugger is attached,
-// its time is not its own.
+// its time is not its own: a whole deadline without one has to pass, since it may have let go just before this one ended.
 bool FirmwareProcess::wait_for(short what) {
+  bool was_traced = false;
   while (!socket_ready(socket_, what, deadline_s_)) {
-    if (is_traced(child_)) continue;
-    note_end(true);
-    return false;
+    const bool traced = is_traced(child_);
+    if (!traced && !was_traced) {
+      note_end(true);
+      return false;
+    }
+    was_traced = traced;
   }
   return true;
 }

@@ -164,7 +164,7 @@ pid_t only_child() {
 
 TEST(GuardedFirmware, ADebuggerMayHoldItBeyondTheDeadline) {
   constexpr double kDeadline_s = 0.5;  // more than a loaded computer keeps a process from its core
-  constexpr int kHeld_ms = 1500;
+  constexpr int kHeld_ms = 1500;       // it lets go just as a deadline ends
   GuardedFirmware firmware(
       {std::string(OMNIHIL_BUILD_DIR) + "/firmware_iface/libomnihil_reference_firmware.so", kDeadline_s},
       config());
