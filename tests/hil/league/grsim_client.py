@@ -1,4 +1,4 @@
-"""An old client of grSim, as league_client.py: python3-protobuf's own classes, here by the published field numbers.
+"""An old client of grSim, as those of league_bench.py: python3-protobuf's own classes, here by the published field numbers.
 
 Run by league_test.cc: grsim_client.py PROGRAM PROTO_FOLDER WORK_FOLDER TEST. Prints nothing when all is well.
 """
@@ -7,11 +7,10 @@ import socket
 import subprocess
 import time
 
-import league_client
-from league_client import free_port
+from league_bench import LeagueBench, free_port, run_one
 
 
-class Grsim(league_client.League):
+class Grsim(LeagueBench):
     def grsim_classes(self):
         """grSim's messages by their published field numbers, not by our .proto."""
         from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
@@ -150,4 +149,4 @@ class Grsim(league_client.League):
 
 
 if __name__ == "__main__":
-    league_client.run_one(Grsim)
+    run_one(Grsim)

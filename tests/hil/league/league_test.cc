@@ -274,11 +274,15 @@ TEST_P(LeagueClient, IsServed) {
           "command -v protoc > /dev/null && /usr/bin/python3 -c 'import google.protobuf' 2> /dev/null") != 0)
     GTEST_SKIP() << "needs protoc and python3-protobuf";
   fake::TempFolder folder;
-  const bool grsim = std::string_view(GetParam()).find("grsim") != std::string_view::npos;
+  const std::string_view test = GetParam();
+  const auto is_of = [&](std::string_view kind) { return test.find(kind) != std::string_view::npos; };
   const std::string command =
       std::string("/usr/bin/python3 -W ignore '" OMNIHIL_SOURCE_DIR "/tests/hil/league/") +
-      (grsim ? "grsim" : "league") + "_client.py' '" OMNIHIL_PROGRAM "' '" OMNIHIL_SOURCE_DIR "' '" +
-      std::string(folder / "work") + "' " + GetParam() + " > '" + std::string(folder / "log") + "' 2>&1";
+      (is_of("grsim")   ? "grsim"
+       : is_of("match") ? "match"
+                        : "league") +
+      "_client.py' '" OMNIHIL_PROGRAM "' '" OMNIHIL_SOURCE_DIR "' '" + std::string(folder / "work") + "' " +
+      GetParam() + " > '" + std::string(folder / "log") + "' 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << fake::read_text(folder / "log");
 }
 INSTANTIATE_TEST_SUITE_P(PythonProtobuf, LeagueClient,
