@@ -3,10 +3,9 @@
 //
 //   host -> SizedStream -> (after to_robot_ns) robot -> answer -> (after to_host_ns) host
 //
-//   static const PlainDongle kDongle{.frame_bytes = frame_bytes, .to_robot_ns = 500'000, .to_host_ns = 500'000,
+//   static constexpr PlainDongle kDongle{.frame_bytes = frame_bytes, .to_robot_ns = 500'000, .to_host_ns = 500'000,
 //                                    .to_command = to_command, .answer = answer};
-//   RadioFormat format{.dongle = [](const RadioFormat& self, const RadioLinkConfig& config) {
-//                        return make_plain_dongle(self, config, kDongle); }, …};
+//   RadioFormat format{.dongle = plain_dongle<kDongle>, …};
 //
 // A frame goes to the robot that its table's fields of role kRobot, kTeam, kAllRobots name, or to the only robot
 // there is where they name none; packets of role
@@ -54,5 +53,11 @@ struct PlainDongle {
 // `format` outlives the link.
 std::unique_ptr<RadioLink> make_plain_dongle(const RadioFormat& format, const RadioLinkConfig& config,
                                              const PlainDongle& plain);
+
+// The same as RadioFormat::dongle has it.
+template <const PlainDongle& kPlain>
+std::unique_ptr<RadioLink> plain_dongle(const RadioFormat& format, const RadioLinkConfig& config) {
+  return make_plain_dongle(format, config, kPlain);
+}
 
 }  // namespace omnihil

@@ -62,8 +62,7 @@ constinit const RadioFormat kFormat{
           return erforce::encode_command(radio_format_erforce_proto2025_bridge(), command, out);
         },
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_COAST),
-    .dongle = [](const RadioFormat& self,
-                 const RadioLinkConfig& config) { return make_plain_dongle(self, config, kDongle); },
+    .dongle = plain_dongle<kDongle>,
 };
 
 }  // namespace

@@ -199,8 +199,7 @@ constinit const RadioFormat kFormat{
     .list = &kList,
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_COAST),
-    .dongle = [](const RadioFormat& self,
-                 const RadioLinkConfig& config) { return make_plain_dongle(self, config, kDongle); },
+    .dongle = plain_dongle<kDongle>,
 };
 
 }  // namespace

@@ -192,8 +192,7 @@ constinit const RadioFormat kFormat{
     .messages = kMessages,
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY),
-    .dongle = [](const RadioFormat& self,
-                 const RadioLinkConfig& config) { return make_plain_dongle(self, config, kDongle); },
+    .dongle = plain_dongle<kDongle>,
 };
 
 }  // namespace

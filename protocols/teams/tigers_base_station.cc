@@ -293,8 +293,7 @@ constinit const RadioFormat kFormat{
     .encode_command = encode_command,
     .command_drives =
         drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_WHEEL_SPEED) | drives(OMNIHIL_MODE_COAST),
-    .dongle = [](const RadioFormat& self,
-                 const RadioLinkConfig& config) { return make_plain_dongle(self, config, kDongle); },
+    .dongle = plain_dongle<kDongle>,
 };
 
 }  // namespace

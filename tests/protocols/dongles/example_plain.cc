@@ -154,8 +154,7 @@ constinit const RadioFormat kFormat{
     .own_codec = "the sum leaves itself out",
     .encode_command = encode_command,
     .command_drives = drives(OMNIHIL_MODE_BODY_VELOCITY) | drives(OMNIHIL_MODE_WHEEL_DUTY),
-    .dongle = [](const RadioFormat& self,
-                 const RadioLinkConfig& config) { return make_plain_dongle(self, config, kDongle); },
+    .dongle = plain_dongle<kDongle>,
 };
 
 }  // namespace
