@@ -9,7 +9,7 @@ import zlib
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/soak"))
 import rnp_host  # noqa: E402
 from stall_watch import StallWatch  # noqa: E402
-from verdict import FLAT_KB, flat_faults, packet_faults, slip_of_stalls_s  # noqa: E402
+from verdict import FLAT_KB, flat_faults, packet_faults  # noqa: E402
 
 
 def robot(sent=61, telemetry=100, hellos=1):
@@ -65,15 +65,8 @@ class Flat(unittest.TestCase):
 
 
 class Stalls(unittest.TestCase):
-    def test_what_a_bench_makes_up_for_excuses_nothing(self):
-        self.assertEqual(slip_of_stalls_s([]), 0.0)
-        self.assertEqual(slip_of_stalls_s([0.012, 0.018]), 0.0)
-
-    def test_a_stall_excuses_what_is_beyond_it_and_no_more(self):
-        self.assertAlmostEqual(slip_of_stalls_s([0.059, 0.012, 0.030]), 0.040 + 0.011)
-
     def test_the_watch_ends_with_what_it_saw(self):
-        watch = StallWatch()
+        watch = StallWatch(min(os.sched_getaffinity(0)))
         self.assertTrue(watch.refused or all(stall > 0.01 for stall in watch.stalls_s()))
 
 

@@ -1,8 +1,8 @@
-"""When does the computer itself stand still? A process with the highest real-time priority that does nothing but sleep a millisecond
+"""When does a core of the computer stand still? A process on it with the highest real-time priority that does nothing but sleep a millisecond
 at a time: what it oversleeps, every other process stood as well (a virtual machine whose host gave its cores to others, an
 interrupt that took long). No program of ours can be the cause: none has a priority as high.
 
-    watch = StallWatch()          # watch.refused: why no such priority could be had; then stalls_s() is empty
+    watch = StallWatch(cpu)       # watch.refused: why no such priority could be had; then stalls_s() is empty
     ...
     watch.stalls_s()              # ends the process: every time it overslept by more than LEAST_S
 """
@@ -16,7 +16,8 @@ LEAST_S = 0.010  # half of what a bench makes up for (docs/serve.md, "Time"): sh
 PRIORITY = 99
 
 
-def watch():
+def watch(cpu):
+    os.sched_setaffinity(0, {cpu})
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     except OSError as error:
@@ -42,9 +43,9 @@ def ended():
 
 
 class StallWatch:
-    def __init__(self):
-        self.process = subprocess.Popen([sys.executable, "-B", os.path.abspath(__file__)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                        text=True)
+    def __init__(self, cpu):
+        self.process = subprocess.Popen([sys.executable, "-B", os.path.abspath(__file__), str(cpu)], stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, text=True)
         first = self.process.stdout.readline().strip()
         self.refused = first.removeprefix("refused ") if first.startswith("refused") else ""
 
@@ -54,4 +55,4 @@ class StallWatch:
 
 
 if __name__ == "__main__":
-    watch()
+    watch(int(sys.argv[1]))

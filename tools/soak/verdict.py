@@ -2,7 +2,6 @@
 
     faults = packet_faults(7, robot, bench_good, bench_refused, bench_out)
     faults += flat_faults("robot 7", samples)
-    explained = slip_s <= slip_of_stalls_s(stalls_s)
 """
 
 # What may still be touched after the first quarter: the heap grows by 132 kB at a time, and twice is no leak (a leak of one byte
@@ -41,14 +40,3 @@ def flat_faults(who, samples):
     if max(descriptors) != min(descriptors):
         faults.append(f"{who}: from {descriptors[0]} to {descriptors[-1]} descriptors, at most {max(descriptors)}")
     return faults
-
-
-# A bench makes up for so much (RealClockOptions::backlog_ns); what is beyond it is a slip.
-BACKLOG_S = 0.020
-# A stall is seen from the watch's last wake-up on, which may be a period after the bench's deadline.
-WATCH_PERIOD_S = 0.001
-
-
-def slip_of_stalls_s(stalls_s):
-    """What a bench that does nothing wrong slips, at most, when the computer stands still so often and so long."""
-    return sum(max(0.0, stall_s + WATCH_PERIOD_S - BACKLOG_S) for stall_s in stalls_s)
