@@ -1,7 +1,7 @@
 // The twin beside a tap, in a thread of its own: the tap's loop leaves a copy of the bytes and goes on.
 //
 //   TwinThread twin(feed, runner, stdout);
-//   Tap tap(std::move(host), std::move(dongle), &twin, step_ns);             // or through ObserverPair with a recorder
+//   Tap tap(std::move(host), std::move(dongle), &twin, step_ns);             // or in an ObserverList with a recorder
 //   twin.finish(end_ns);                                                     // what was left is watched too
 //
 // A status line twice a second on a terminal, every ten seconds elsewhere. The thread may fall behind (a terminal that is held, a
@@ -56,30 +56,6 @@ class TwinThread : public SessionObserver {
   bool ending_ = false;
   double printed_s_ = -1e9, now_s_ = 0.0;
   std::thread thread_;
-};
-
-// Two observers of one stream. Not owned; null: none.
-class ObserverPair : public SessionObserver {
- public:
-  ObserverPair(SessionObserver* first, SessionObserver* second) : each_{first, second} {}
-  void host_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override {
-    for (SessionObserver* o : each_) {
-      if (o != nullptr) o->host_bytes(now_ns, bytes);
-    }
-  }
-  void dongle_bytes(std::int64_t now_ns, std::span<const std::uint8_t> bytes) override {
-    for (SessionObserver* o : each_) {
-      if (o != nullptr) o->dongle_bytes(now_ns, bytes);
-    }
-  }
-  void host_closed(std::int64_t now_ns) override {
-    for (SessionObserver* o : each_) {
-      if (o != nullptr) o->host_closed(now_ns);
-    }
-  }
-
- private:
-  SessionObserver* each_[2];
 };
 
 }  // namespace omnihil

@@ -10,6 +10,7 @@
 #include "hil/loop/effect_overrides.h"
 #include "hil/loop/session_checks.h"
 #include "hil/recording/recording_writer.h"
+#include "hil/recording/replay.h"
 #include "hil/recording/session_setup.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/tap/tap_loop.h"
@@ -122,8 +123,10 @@ int run_tap_verb(TapWords words) {
   std::fflush(stdout);
   const StopSignals stop;
   if (twin) twin->start();
-  ObserverPair both(writer.get(), twin ? twin->observer() : nullptr);
-  Tap tap(std::move(host), std::move(dongle), &both, setup.step_ns);
+  ObserverList observers({});
+  if (writer) observers.add(writer.get());
+  if (twin) observers.add(twin->observer());
+  Tap tap(std::move(host), std::move(dongle), &observers, setup.step_ns);
   const TapRun run = run_tap(
       tap, [] { return StopSignals::requested(); }, vision ? &*vision : nullptr);
   if (writer)

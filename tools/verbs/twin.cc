@@ -82,7 +82,7 @@ int run_twin(const Words& words) {
   if (runner.watch().learning()) {
     fmt::print(stderr,
                "omnihil twin: only {:.0f} s of driving with telemetry, {:.0f} s are asked for to learn from "
-               "(--learn)\n",
+               "(--twin-learn)\n",
                runner.watch().learned_s(), words.twin.learn_s);
     return kExitBadInput;
   }
