@@ -7,26 +7,24 @@
 #include "hil/observe/image_profile.h"
 #include "hil/observe/image_trace.h"
 #include "hil/observe/profile_text.h"
-#include "tests/hil/observe/observed_image.h"
-#include "tests/tools/cli.h"
+#include "tests/hil/observe/image_program.h"
 
 namespace omnihil {
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kImage = OMNIHIL_BUILD_DIR "/images/omni_reference_f405.elf";
 constexpr int kControl = 16 + 54;  // TIM6 of the STM32F405 (RM0090, table 61)
 
 class Observe : public testing::Test {
  protected:
   void SetUp() override {
-    if (!fs::exists(kImage)) GTEST_SKIP() << "arm-none-eabi-gcc is not installed";
+    if (!fs::exists(kReferenceImage)) GTEST_SKIP() << "arm-none-eabi-gcc is not installed";
   }
 };
 
 std::vector<DebugLine> lines_of_image() {
-  const std::string text = bytes_text(kImage);
+  const std::string text = bytes_text(kReferenceImage);
   return read_lines({text.begin(), text.end()});
 }
 
@@ -271,25 +269,12 @@ TEST_F(Observe, TasksOfAnRtosAreThreads) {
     EXPECT_TRUE(stacks.contains(stack)) << stack;
 }
 
-class ObserveProgram : public CliTest {
- protected:
-  void SetUp() override {
-    CliTest::SetUp();
-    if (!fs::exists(kImage)) GTEST_SKIP() << "arm-none-eabi-gcc is not installed";
-    folder_ = fs::temp_directory_path() / ("omnihil_observed_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string image() const {
-    return " --no-plots --firmware '" + kImage +
-           "' --board '" OMNIHIL_SOURCE_DIR "/boards/omni_reference_f405.toml' ";
-  }
-  fs::path folder_;
-};
+class ObserveProgram : public ImageProgram {};
 
 TEST_F(ObserveProgram, ASuiteGivesCoverageAndProfile) {
-  const Ran ran = run_omnihil("scenario run wheel/direction wheel/control_period" + image() + "--coverage" +
-                              shell(folder_ / "a.info") + "--profile" + shell(folder_ / "a.callgrind"));
+  const Ran ran =
+      run_omnihil("scenario run wheel/direction wheel/control_period --no-plots" + image() + "--coverage" +
+                  shell(folder_ / "a.info") + "--profile" + shell(folder_ / "a.callgrind"));
   EXPECT_EQ(ran.exit_code, 0) << ran.text;
   EXPECT_TRUE(ran.says("reference_tick")) << ran.text;  // of the twenty that cost most
   EXPECT_TRUE(ran.says("IRQ 54")) << ran.text;
@@ -301,14 +286,15 @@ TEST_F(ObserveProgram, ASuiteGivesCoverageAndProfile) {
 // The last stretch is written when a check fails, and only then.
 TEST_F(ObserveProgram, TheLastStretchIsWrittenWhenACheckFails) {
   const std::string last = "--trace" + shell(folder_ / "t.json") + "--trace-last 0.05 ";
-  const Ran good = run_omnihil("scenario run wheel/direction" + image() + last);
+  const Ran good = run_omnihil("scenario run wheel/direction --no-plots" + image() + last);
   EXPECT_EQ(good.exit_code, 0) << good.text;
   EXPECT_FALSE(fs::exists(folder_ / "t.json"));
   std::ofstream(folder_ / "fails.toml")
       << "format = \"omnihil-scenario/1\"\ntitle = \"fails\"\nduration_s = 0.3\n"
          "[[step]]\nat_s = 0.1\ndo = \"command\"\nv_forward_m_s = 1.0\n"
          "[[check]]\nis = \"signal\"\nsignal = \"v_forward_m_s\"\nat_most_m_s = -1\n";
-  const Ran bad = run_omnihil("scenario run" + shell(folder_ / "fails.toml") + image() + last);
+  const Ran bad =
+      run_omnihil("scenario run" + shell(folder_ / "fails.toml") + " --no-plots" + image() + last);
   EXPECT_EQ(bad.exit_code, 1) << bad.text;
   const Nesting seen = nesting_of(text_of(folder_ / "t.json"));
   EXPECT_TRUE(seen.balanced);

@@ -21,9 +21,11 @@ inline std::string bytes_text(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+inline const std::string kReferenceImage = OMNIHIL_BUILD_DIR "/images/omni_reference_f405.elf";
+
 class ObservedImage {
  public:
-  explicit ObservedImage(const std::string& image = OMNIHIL_BUILD_DIR "/images/omni_reference_f405.elf") {
+  explicit ObservedImage(const std::string& image = kReferenceImage) {
     const std::string board_file = OMNIHIL_SOURCE_DIR "/boards/omni_reference_f405.toml";
     const std::string text = bytes_text(image);
     std::vector<std::string> problems;

@@ -12,15 +12,13 @@
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/usart.h"
 #include "hil/observe/vcd_text.h"
-#include "tests/hil/observe/observed_image.h"
+#include "tests/hil/observe/image_program.h"
 #include "tests/hil/observe/sigrok.h"
 
 namespace omnihil {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string kImage = OMNIHIL_BUILD_DIR "/images/omni_reference_f405.elf";
 
 // Changes of each signal by name, in order; of a word its bits.
 struct ReadBack {
@@ -78,7 +76,7 @@ class ImageWaves : public WaveTraces {
  protected:
   void SetUp() override {
     WaveTraces::SetUp();
-    if (!fs::exists(kImage)) GTEST_SKIP() << "arm-none-eabi-gcc is not installed";
+    if (!fs::exists(kReferenceImage)) GTEST_SKIP() << "arm-none-eabi-gcc is not installed";
   }
 };
 
@@ -333,20 +331,7 @@ TEST_F(ImageWaves, TheEncoderLinesCountWhatTheTimerCounts) {
         << i;
 }
 
-class WaveProgram : public CliTest {
- protected:
-  void SetUp() override {
-    CliTest::SetUp();
-    if (!fs::exists(kImage)) GTEST_SKIP() << "arm-none-eabi-gcc is not installed";
-    folder_ = fs::temp_directory_path() / ("omnihil_wave_program_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string image() const {
-    return " --firmware '" + kImage + "' --board '" OMNIHIL_SOURCE_DIR "/boards/omni_reference_f405.toml' ";
-  }
-  fs::path folder_;
-};
+class WaveProgram : public ImageProgram {};
 
 // The last stretch of a failed scenario: what the bridge was told is what its pin does.
 TEST_F(WaveProgram, AFailedScenarioLeavesTheLastStretchAsSignals) {

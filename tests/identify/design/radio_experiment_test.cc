@@ -3,26 +3,10 @@
 
 #include "identify/design/experiment_menu.h"
 #include "identify/design/experiment_truth.h"
-#include "tests/identify/simulated_robot.h"
+#include "tests/identify/simulated_radio.h"
 
 namespace omnihil::test {
 namespace {
-
-Candidate radio_candidate() {
-  const std::string text = std::string(kRobotModel) + R"(
-[controller]
-kp_V_s_per_rad = 0.03
-ki_V_per_rad = 0.3
-feedforward_V_s_per_rad = 0.0335
-latency_s = { value = 0.02, tolerance = 0.5 }
-acceleration_limit_m_s2 = 6.0
-wheel_radius_m = 0.027
-wheel_center_radius_m = 0.0805
-)";
-  const ModelReading reading = read_model(text, "model.toml", nullptr);
-  for (const ModelProblem& p : reading.problems) ADD_FAILURE() << p.text();
-  return candidate_of(*reading.model);
-}
 
 // Two seconds at 60 Hz of 0.8 m/s ahead; or of 20 rad/s of each wheel.
 Dataset given(bool wheels) {
