@@ -9,7 +9,7 @@
 namespace omnihil {
 namespace {
 
-constexpr int kTries = 20;
+constexpr int kTries = 20;  // by cost
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
 struct Place {

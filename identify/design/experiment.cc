@@ -21,7 +21,7 @@ namespace {
 // Levels are steps of a factor of two to three down to where stiction holds a drive.
 constexpr double kLevels[] = {1.0, 0.5, 0.2, 0.08, 0.03, 0.01};  // shares of the largest input allowed
 constexpr int kRefitIterations = 3;        // Gauss-Newton; a choice, convergence is not checked
-constexpr std::size_t kRefined = 3;        // best of the linear ranking, refitted in full
+constexpr std::size_t kRefined = 3;        // best of the linear ranking, refitted in full; by cost
 constexpr double kCoarseLongest_s = 10.0;  // within a diagnosis, whose time it costs
 
 struct Trial {

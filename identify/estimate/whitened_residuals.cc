@@ -134,13 +134,12 @@ void WhitenedResiduals::whiten_part(const Part& part, Eigen::MatrixXd& columns) 
     columns.row(static_cast<Eigen::Index>(i)) = all.row(part.rows[i]);
 }
 
-Eigen::VectorXd WhitenedResiduals::gathered(
-    const std::vector<std::vector<std::vector<double>>>& values) const {
+Eigen::VectorXd WhitenedResiduals::gathered(const std::vector<Prediction>& runs) const {
   Eigen::VectorXd out(size_);
   for (const Part& part : parts_) {
     const std::size_t run =
         static_cast<std::size_t>(std::find(runs_.begin(), runs_.end(), part.run) - runs_.begin());
-    const std::vector<double>& from = values[run][static_cast<std::size_t>(part.signal)];
+    const std::vector<double>& from = runs[run].values[static_cast<std::size_t>(part.signal)];
     const Eigen::Map<const Eigen::MatrixXd> column(from.data(), static_cast<Eigen::Index>(from.size()), 1);
     out.segment(part.first, static_cast<Eigen::Index>(part.rows.size())) = whitened_rows(part, column);
   }
@@ -148,11 +147,11 @@ Eigen::VectorXd WhitenedResiduals::gathered(
 }
 
 Eigen::VectorXd WhitenedResiduals::measured_by(const Predictor& other) const {
-  std::vector<std::vector<std::vector<double>>> values(runs_.size());
+  std::vector<Prediction> measured(runs_.size());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    for (const ComparedSignal& s : other.compared(runs_[r])) values[r].push_back(s.measured);
+    for (const ComparedSignal& s : other.compared(runs_[r])) measured[r].values.push_back(s.measured);
   }
-  return gathered(values);
+  return gathered(measured);
 }
 
 Eigen::VectorXd WhitenedResiduals::predicted(const Candidate& candidate, int jobs) const {
@@ -174,12 +173,8 @@ std::vector<Prediction> WhitenedResiduals::runs_by(const Predictor& predictor, c
 }
 
 Eigen::VectorXd WhitenedResiduals::gathered_if_finite(const std::vector<Prediction>& runs) const {
-  std::vector<std::vector<std::vector<double>>> values;
-  for (const Prediction& p : runs) {
-    if (!p.finite) return {};
-    values.push_back(p.values);
-  }
-  Eigen::VectorXd out = gathered(values);
+  if (!std::all_of(runs.begin(), runs.end(), [](const Prediction& p) { return p.finite; })) return {};
+  Eigen::VectorXd out = gathered(runs);
   if (!out.allFinite()) return {};
   return out;
 }

@@ -89,8 +89,8 @@ class WhitenedResiduals {
  private:
   void add_run(int run, const ComparedChannels& channels);
   void weigh(const ComparedSignal& signal, Eigen::MatrixXd& columns) const;  // whitens or averages, in place
-  // Whitened, size n; `values`: [run of this split][signal][row].
-  Eigen::VectorXd gathered(const std::vector<std::vector<std::vector<double>>>& values) const;
+  // Whitened, size n, of one prediction a run of this split.
+  Eigen::VectorXd gathered(const std::vector<Prediction>& runs) const;
   std::vector<Prediction> runs_by(const Predictor& predictor, const Candidate& candidate, int jobs) const;
   Eigen::VectorXd gathered_if_finite(const std::vector<Prediction>& runs) const;  // empty: one is not
   // [part.rows.size() x c]: the part's rows of [rows of the run x c], whitened.

@@ -12,7 +12,7 @@ namespace {
 
 // For what is printed; no verdict depends on them. Residual fraction (1 - R^2) of an effect's signal below
 // which the base parameter is named beside it, and fraction of a residual's variance that is worth a line: as
-// the smallest gain of interest (acceptance.cc). Lines: a screenful.
+// the smallest gain of interest (acceptance.cc). Lines: a screenful. Choices.
 constexpr double kNearlyAliased = 0.03;
 constexpr double kLeastExplained = 0.03;
 constexpr std::size_t kMostWhere = 6;

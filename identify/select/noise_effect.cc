@@ -19,7 +19,7 @@ constexpr int kPasses = 3;           // of the estimate of the strength; by cost
 constexpr double kExplained = 0.75;  // least fraction of the bins' excess variance, held out; tuned
 constexpr double kExcess = 0.05;     // least excess over the sensors' variance; tuned
 constexpr double kCorrelation =
-    0.1;  // largest difference of the autocorrelations at any lag, beside its own error
+    0.1;  // largest difference of the autocorrelations at any lag, beside its own error; a choice
 // Samples over which an autocorrelation is compared; a choice, sensitivity not measured.
 constexpr int kLags = 10;  // a choice
 

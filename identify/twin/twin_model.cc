@@ -116,7 +116,7 @@ TwinWindow TwinModel::advance(const Run& piece) {
 
 // Each stage takes off the mean over the last kLevel_s, at first over all so far.
 void TwinModel::take_level(TwinSignal& bus) {
-  constexpr std::size_t kStages = 2;
+  constexpr std::size_t kStages = 2;  // derived: a level that falls evenly leaves nothing behind the second
   for (std::size_t n = 0; n < bus.time_s.size(); ++n) {
     const auto row = static_cast<Eigen::Index>(n);
     Level now{bus.measured[n] - bus.expected[n], bus.gains.row(row).transpose()};

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastShare =
     1e-3;                       // of the mean square: no sample is that much better than the rest; a choice
 constexpr double kHuber = 4.0;  // sigmas from which on a difference counts linearly; a choice
-constexpr int kLags = 4;        // windows over which differences may hang together: two seconds
+constexpr int kLags = 4;        // windows over which differences may hang together: two seconds; a choice
 
 double mean(const std::vector<double>& x) {
   double sum = 0.0;
@@ -166,7 +166,7 @@ double FaultPromise::variance(double information) const {
 
 std::array<double, 2> two_terms(const std::vector<double>& x, const std::vector<double>& z) {
   double a = mean(z), b = 0.0;
-  constexpr int kRounds = 8;  // of reweighting
+  constexpr int kRounds = 8;  // of reweighting; a choice
   for (int round = 0; round < kRounds && a > 0.0; ++round) {
     double w0 = 0.0, w1 = 0.0, w2 = 0.0, z0 = 0.0, z1 = 0.0;
     for (std::size_t k = 0; k < x.size(); ++k) {

@@ -19,8 +19,9 @@ constexpr double kLeastWindows =
 constexpr double kExplained = 0.6, kExplainedOfLittle = 0.3;
 constexpr double kWorthIt = 0.75;  // of its least size: a suspect that is smaller is none; a choice
 constexpr double kNearly = 0.8;    // of what the suspect explains: a rival that is named with it; a choice
-constexpr int kPatience = 2;       // windows that an alarm waits for a name
-constexpr int kCalm = 20;          // windows without a crossing after which a fault counts as gone
+constexpr int kPatience = 2;       // windows that an alarm waits for a name: a second; a choice
+constexpr int kCalm =
+    20;  // windows without a crossing after which a fault counts as gone: ten seconds; a choice
 constexpr double kMoving_rad_s = 1.0;  // rms of the wheels: 3 cm/s of rim; a choice
 constexpr double kTimes2 = 9.0;  // squared growth of differences that is looked for: three times; a choice
 constexpr double kIndependent =
@@ -29,7 +30,8 @@ constexpr double kDeadShare = 0.25;  // of the threshold: an alarm is there alre
 constexpr std::size_t kStandingWindows = 4;  // two seconds; a choice
 constexpr double kStandsStill =
     4.0;  // mean square in sigmas of a line that tells nothing: two sigmas; a choice
-constexpr std::size_t kRecent = 24;  // windows kept
+constexpr std::size_t kRecent =
+    24;  // windows kept: 12 s, longer than the evidence of any alarm of the tests (8.6 s); a choice
 
 }  // namespace
 

@@ -9,9 +9,9 @@
 namespace omnihil {
 namespace {
 
-constexpr double kHuber = 2.0;      // sigmas
-constexpr double kLawShare = 0.02;  // of the largest ratio: see the header
-constexpr int kRounds = 40;
+constexpr double kHuber = 2.0;                               // sigmas; a choice
+constexpr double kLawShare = 0.02;                           // of the largest ratio: see the header
+constexpr int kRounds = 40;                                  // by cost
 constexpr double kStarts[] = {0.003, 0.01, 0.03, 0.1, 0.3};  // of the extremum's slip
 constexpr double kSticks = 0.02;  // of slip, beside three sigmas: see sticking_grip()
 

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<const char*, 4> kPaths{
     "tyre.longitudinal.extremum_slip", "tyre.longitudinal.extremum_value", "tyre.longitudinal.asymptote_slip",
     "tyre.longitudinal.asymptote_value"};
-constexpr double k90 = 1.645;
+constexpr double k90 = 1.645;          // two-sided 90 % of a normal
 constexpr double kFree = 1.0;          // tolerance where the model gives none: hardly a belief
 constexpr double kNear = 0.9;          // of the curve's largest grip, that some point must have carried
 constexpr double kGood_sigmas = 1.5;   // pooled: no further start is tried

@@ -36,7 +36,7 @@ struct TyreNumber {
 
 struct TyreIdentification {
   static constexpr double kWorst_sigmas =
-      2.0;  // rms over the motion's signals, each by its noise: 1 is perfect
+      2.0;  // a choice: rms over the motion's signals, each by its noise: 1 is perfect
   TyreOutcome outcome = TyreOutcome::kNothing;
   std::vector<std::string> faults;  // why nothing, each with what would help
   TyrePoints points;
