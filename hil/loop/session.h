@@ -157,7 +157,7 @@ class Session {
   void put_ball(const Vector3& position, const Vector3& velocity, const Vector3& spin = {0, 0, 0});
   void take_ball_away();
   void set_movers(std::span<const Mover> movers);
-  // All of the world back to what World::save() gave in this session; time, radio and firmware go on. False: not of it.
+  // All of the world back to what World::save() gave of the same Session; time, radio and firmware go on. False: not of it.
   // Encoder counts and shafts, as firmware sees them, go on from where they were. Not seen by observers.
   bool set_world(std::span<const std::uint8_t> saved);
   // Gain sets that came over the air and that a robot's firmware refused.
