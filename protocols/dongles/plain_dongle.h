@@ -3,8 +3,7 @@
 //
 //   host -> SizedStream -> (after to_robot_ns) robot -> answer -> (after to_host_ns) host
 //
-//   static constexpr PlainDongle kDongle{.frame_bytes = frame_bytes, .to_robot_ns = 500'000, .to_host_ns = 500'000,
-//                                    .to_command = to_command, .answer = answer};
+//   static constexpr PlainDongle kDongle{.to_robot_ns = 500'000, .to_host_ns = 500'000, .kicks_once = true};
 //   RadioFormat format{.dongle = plain_dongle<kDongle>, …};
 //
 // A frame goes to the robot that its table's fields of role kRobot, kTeam, kAllRobots name, or to the only robot
