@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   printf("moved %.9g %.9g\nspeed %.9g %.9g %.9g\nheight %.9g\nwheels", d->qpos[0] - x0, d->qpos[1] - y0,
          d->qvel[0], d->qvel[1], d->qvel[5], d->qpos[2]);
   for (int i = 1; i <= 4; ++i) {
-    char name[16];
+    char name[sizeof "wheel_" + 11];  // an int has at most eleven characters
     snprintf(name, sizeof name, "wheel_%d", i);
     printf(" %.9g", d->qvel[m->jnt_dofadr[mj_name2id(m, mjOBJ_JOINT, name)]]);
   }
