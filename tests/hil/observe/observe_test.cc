@@ -244,7 +244,7 @@ TEST_F(Observe, TasksOfAnRtosAreThreads) {
   std::set<std::string> stacks;
   const nlohmann::json read = nlohmann::json::parse(trace.text());
   for (const auto& event : read["traceEvents"])
-    if (event["name"] == "thread_name") names[event["tid"]] = event["args"]["name"];
+    if (event.value("name", "") == "thread_name") names[event["tid"]] = event["args"]["name"];
   for (const auto& event : read["traceEvents"]) {
     Thread& thread = threads[names.at(event["tid"])];
     if (event["ph"] == "B") ++thread.begun[event["name"]];
