@@ -10,6 +10,9 @@ namespace {
 constexpr std::uint32_t kDevices = 0x40000000, kDevicesSize = 0x20000000;  // peripherals (B3.1)
 constexpr std::uint32_t kFpscrWritable = 0xF7C0009F, kRoundingMode = 3u << 22;
 
+// In bytes of code: a guess. What is longer, or calls functions, is found by looking now and then.
+constexpr std::uint32_t kLongestWait = 64;
+
 int host_rounding(std::uint32_t fpscr) {
   constexpr int kModes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
   return kModes[fpscr >> 22 & 3];
@@ -67,6 +70,7 @@ Stop Cpu::run(std::int64_t now, std::int64_t deadline) {
   fp_changed();
   watching_ = false;
   watch_.rest = watch_.rest < 2 ? 2 : watch_.rest;
+  if (watch_.idle_pc - reg.r[15] < kLongestWait) watch_.rest = 1;  // back in the loop that it waited in
   if ((reg.fpscr & kRoundingMode) != 0) return run_rounded(now, deadline);
   const Stop stop = observer_ == nullptr ? execute(now, deadline) : execute_observed(now, deadline);
   if ((reg.fpscr & kRoundingMode) != 0) std::fesetround(FE_TONEAREST);
@@ -442,6 +446,7 @@ Cpu::Pace Cpu::watch_loop(const Op* at, Pace pace, std::int64_t end) {
     return pace;
   }
   watch_.rest = watch_.pause = 64;
+  watch_.idle_pc = address_of(at);
   const std::int64_t turn = watch_.pace.left - pace.left, now = end - pace.left;
   std::int64_t room = pace.left - 1;
   if (watch_.limit - now < room) room = watch_.limit - now;

@@ -158,6 +158,7 @@ class Cpu {
     Pace pace;
     std::int64_t limit = 0;
     int patience = 0, rest = 64, pause = 64;
+    std::uint32_t idle_pc = 1;  // of the jump that closes the loop that was skipped last; 1: none
   };
 
   Stop execute(std::int64_t now, std::int64_t deadline);

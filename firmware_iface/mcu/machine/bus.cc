@@ -9,7 +9,7 @@
 namespace omnihil::mcu {
 namespace {
 
-constexpr std::uint32_t kSystemControl = 0xE000E000, kDebug = 0xE000EDF0;
+constexpr std::uint32_t kSystemControl = 0xE000E000, kDebug = 0xE000EDF0, kSysTickBlock = 0xE000E010;
 
 bool in(std::uint32_t address, std::uint32_t base, std::uint32_t size) { return address - base < size; }
 bool is_private(std::uint32_t address) { return in(address, 0xE0000000, 0x100000); }
@@ -53,16 +53,15 @@ bool Machine::read(std::uint32_t address, unsigned bytes, std::uint32_t& value) 
   const Slot* slot = slot_at(address);
   if (slot == nullptr) return read_elsewhere(address, bytes, value);
   const std::uint32_t offset = address - slot->base;
-  if (cpu_.watching()) {
-    const Cycles until = slot->peripheral->stable_until(offset);
-    if (until > now()) {
-      if (until != kNever) cpu_.limit_fast_forward(static_cast<std::int64_t>(until) * kSubcycles);
-    } else {
-      cpu_.spoil_fast_forward();
-    }
-  }
+  if (cpu_.watching()) was_polled(slot->peripheral->stable_until(offset));
   value = slot->peripheral->read(offset, bytes);
   return true;
+}
+
+// By the loop that is being watched, what it read being steady until then.
+void Machine::was_polled(Cycles steady_until) {
+  if (steady_until <= now()) return cpu_.spoil_fast_forward();
+  if (steady_until != kNever) cpu_.limit_fast_forward(static_cast<std::int64_t>(steady_until) * kSubcycles);
 }
 
 bool Machine::read_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t& value) {
@@ -80,7 +79,8 @@ bool Machine::read_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_
     value = word & 1;
     return true;
   }
-  cpu_.spoil_fast_forward();
+  const bool counter = in(address, kSysTickBlock, 16);
+  was_polled(counter ? systick_.stable_until((address - kSysTickBlock) & ~3u, now()) : 0);
   return read_unknown(address, bytes, value);
 }
 
@@ -162,12 +162,11 @@ bool Machine::write_unknown(std::uint32_t address, unsigned bytes, std::uint32_t
 }
 
 bool Machine::peek_word(std::uint32_t address, std::uint32_t& word) {
-  constexpr std::uint32_t kSysTick = kSystemControl + 0x10;
   if (const Slot* slot = slot_at(address)) {
     word = slot->peripheral->peek(address - slot->base);
-  } else if (in(address, kSysTick, 16)) {
+  } else if (in(address, kSysTickBlock, 16)) {
     SysTick copy = systick_;  // reading clears COUNTFLAG
-    word = copy.read(address - kSysTick, now());
+    word = copy.read(address - kSysTickBlock, now());
   } else if (is_private(address)) {
     const auto told = report_.unmodelled;  // a debugger's look is no use of the image
     const bool system = in(address, kSystemControl, 0x1000) && !in(address, kDebug, 16);

@@ -81,6 +81,8 @@ class Machine final : public System, private CpuBus {
   // Does `work` when the program first comes to this address, before the instruction there runs; once. Until then a
   // BKPT stands in its place. False: no code is there.
   bool when_at(std::uint32_t address, std::function<void()> work);
+  bool awaits_visit() const { return !visits_.empty(); }  // work of when_at() that has not been done yet
+  bool debugged() const { return debug_ != nullptr; }
   // Whom a debugger halts it by; made when it is first asked for. The listener must outlive the machine.
   DebugUnit& debug(DebugListener& listener);
   // Memory and registers as they are, without what reading them would do; false: nothing is there.
@@ -174,6 +176,7 @@ class Machine final : public System, private CpuBus {
   bool peek_word(std::uint32_t address, std::uint32_t& word);
   const Slot* slot_at(std::uint32_t address);
   const Slot* find_slot(std::uint32_t address);
+  void was_polled(Cycles steady_until);
   bool read_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t& value);
   bool write_elsewhere(std::uint32_t address, unsigned bytes, std::uint32_t value);
   // True where the chip has registers, or may have; what is done with them is reported.

@@ -23,6 +23,16 @@ bool SysTick::advance(Cycles now) {
   return control_ & kInterrupt;
 }
 
+Cycles SysTick::stable_until(std::uint32_t offset, Cycles now) const {
+  const bool runs = (control_ & kEnable) != 0;
+  if (offset == kValue) return runs ? 0 : kNever;
+  if (offset != kControl) return kNever;
+  if (reached_) return 0;  // reading takes COUNTFLAG away
+  if (!runs || load_ == 0) return kNever;
+  const Cycles zero = zero_at_ + period();
+  return now < zero ? zero : 0;
+}
+
 std::uint32_t SysTick::read(std::uint32_t offset, Cycles now) {
   advance(now);
   switch (offset) {

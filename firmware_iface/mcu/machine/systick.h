@@ -13,6 +13,8 @@ class SysTick {
   void write(std::uint32_t offset, std::uint32_t value, Cycles now);
   // When it reaches 0 next, if that raises the exception.
   Cycles next_event() const { return (control_ & 3) == 3 && load_ != 0 ? zero_at_ + period() : kNever; }
+  // Until when reading `offset` gives what it gives now and changes nothing; 0: not even now.
+  Cycles stable_until(std::uint32_t offset, Cycles now) const;
   // Brings the state to `now`; true if the counter has reached 0 since with its exception enabled.
   bool advance(Cycles now);
 

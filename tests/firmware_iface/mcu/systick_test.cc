@@ -57,5 +57,26 @@ TEST(SysTickTest, AnEighthOfTheClock) {
   EXPECT_EQ(tick.next_event(), 80u);
 }
 
+TEST(SysTickTest, AFlagThatWillBeSetIsSteadyUntilThen) {
+  SysTick tick = running(9, 5, 0);  // zero at 10, 20, …
+  EXPECT_EQ(tick.stable_until(kControl, 3), 10u);
+  EXPECT_EQ(tick.stable_until(kControl, 9), 10u);
+  EXPECT_EQ(tick.stable_until(kControl, 10), 0u);  // set, though nobody has looked
+  tick.read(kControl, 12);                         // takes it away
+  EXPECT_EQ(tick.stable_until(kControl, 12), 20u);
+  tick.read(kLoad, 25);  // brings the counter on: the flag waits
+  EXPECT_EQ(tick.stable_until(kControl, 26), 0u);
+  EXPECT_EQ(tick.stable_until(kValue, 26), 0u);
+  EXPECT_EQ(tick.stable_until(kLoad, 26), kNever);
+}
+
+TEST(SysTickTest, AFlagThatNothingSetsIsSteadyForEver) {
+  EXPECT_EQ(running(0, 5, 0).stable_until(kControl, 100), kNever);
+  SysTick stopped = running(9, 5, 0);
+  stopped.write(kControl, 0, 3);
+  EXPECT_EQ(stopped.stable_until(kControl, 100), kNever);
+  EXPECT_EQ(stopped.stable_until(kValue, 100), kNever);
+}
+
 }  // namespace
 }  // namespace omnihil::mcu
