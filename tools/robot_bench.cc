@@ -31,7 +31,7 @@ constexpr std::int64_t kStep_ns = 500'000;   // of the mechanics
 constexpr double kBus_V = 0.02, kCurrent_A = 0.03, kGyro_rad_s = 0.01, kAccel_m_s2 = 0.1, kVision_m = 0.001,
                  kVision_rad = 0.005;
 
-using Duties = std::array<double, kWheels>;
+using Duties = PerWheel<double>;
 
 struct Run {
   std::string name, use, excitation;
@@ -41,9 +41,9 @@ struct Run {
 
 // Duties of a body motion, scaled so that no wheel exceeds 1: rim speeds of eq. (5) with R_b = 1.
 Duties duties_of(const RobotModel& m, double forward, double left, double turn) {
-  Duties d;
+  Duties d{};
   double most = 1.0;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < m.wheels; ++i) {
     const double a = m.wheel_angle_rad[i];
     d[i] = -std::sin(a) * forward + std::cos(a) * left + turn;
     most = std::max(most, std::abs(d[i]));
@@ -77,7 +77,7 @@ std::vector<Duties> excited(Excitation kind, const RobotModel& m, const BenchOpt
     const double x = seeded ? 0.6 * one(0) : one(0) * part(0), y = seeded ? 0.6 * one(1) : one(0) * part(1);
     const double w = seeded ? 0.4 * one(2) : one(0) * part(2);
     Duties d = duties_of(m, x, y, w);
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < m.wheels; ++i) {
       const double before = out.empty() ? 0.0 : out.back()[i];
       d[i] = before + std::clamp(d[i] * o.amplitude * scale - before, -most, most);
     }
@@ -106,14 +106,17 @@ std::vector<Duties> read_file(const std::string& path, const RobotModel& m, cons
     }
     if (!good && number == 1) continue;
     if (values.empty()) continue;
-    if (!good || (values.size() != 2 && values.size() != 5) || values[0] <= last_s) {
-      faults.push_back(fmt::format("{}:{}: \"{}\": needed are a time that increases and one or four duties",
-                                   path, number, line));
+    if (!good || (values.size() != 2 && values.size() != m.wheels + 1) || values[0] <= last_s) {
+      faults.push_back(fmt::format("{}:{}: \"{}\": needed are a time that increases and one or {} duties",
+                                   path, number, line, m.wheels == 4 ? "four" : std::to_string(m.wheels)));
       continue;
     }
     last_s = values[0];
-    const Duties now = values.size() == 2 ? duties_of(m, values[1], 0, 0)
-                                          : Duties{values[1], values[2], values[3], values[4]};
+    Duties now{};
+    if (values.size() == 2)
+      now = duties_of(m, values[1], 0, 0);
+    else
+      std::copy(values.begin() + 1, values.end(), now.begin());
     const auto upto = static_cast<std::size_t>(std::max(0.0, last_s) * o.rate_Hz + 0.5);
     while (out.size() < upto && !out.empty()) out.push_back(out.back());
     out.push_back(now);
@@ -162,9 +165,10 @@ std::string dataset_text(const BenchOptions& o, const RobotModel& m, const std::
       "format = \"omnihil-dataset/1\"\ntitle = {}\nrig = \"robot\"\nmodel = \"model.toml\"\n\n[channels]\n",
       toml_text("simulated: " + o.model));
   text += channel("time", "time_s", 0);
-  for (int i = 1; i <= kWheels; ++i) text += channel(fmt::format("duty_{}", i), fmt::format("duty_{}", i), 0);
+  for (std::size_t i = 1; i <= m.wheels; ++i)
+    text += channel(fmt::format("duty_{}", i), fmt::format("duty_{}", i), 0);
   text += channel("bus_voltage", "bus_V", kBus_V);
-  for (int i = 1; i <= kWheels; ++i) {
+  for (std::size_t i = 1; i <= m.wheels; ++i) {
     text += channel(fmt::format("motor_current_{}", i), fmt::format("current_{}", i), kCurrent_A);
     text +=
         fmt::format("encoder_{} = {{ column = \"ticks_{}\", counts_per_rev = {}, shaft = \"rotor\"{} }}\n", i,
@@ -189,23 +193,26 @@ std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, 
   options.seed = run.seed;
   Plant plant(std::vector<RobotModel>{m}, options);
   const std::int64_t period_ns = std::llround(1e9 / o.rate_Hz);
-  std::string text =
-      "time_s,duty_1,duty_2,duty_3,duty_4,bus_V,current_1,ticks_1,current_2,ticks_2,current_3,"
-      "ticks_3,current_4,ticks_4,gyro_z,accel_x,accel_y,vision_x,vision_y,vision_theta\n";
+  std::string text = "time_s";
+  for (std::size_t i = 1; i <= m.wheels; ++i) text += fmt::format(",duty_{}", i);
+  text += ",bus_V";
+  for (std::size_t i = 1; i <= m.wheels; ++i) text += fmt::format(",current_{0},ticks_{0}", i);
+  text += ",gyro_z,accel_x,accel_y,vision_x,vision_y,vision_theta\n";
   std::int64_t last_frame = -1;
   for (std::size_t k = 0; k < run.duty.size(); ++k) {
-    const RobotSensors s = plant.sample_sensors(0);
+    const PlantSensors all = plant.sample_all(0);
+    const RobotSensors& s = all.board;
     const auto measured = [&](double value, double sigma, std::string_view stream) {
       return noisy(value, sigma * o.noise_scale, run.seed, stream, k);
     };
     const double time_s = static_cast<double>(plant.now_ns()) * 1e-9;
     text += fmt::format("{:.6f}", time_s);
-    for (const double d : run.duty[k]) text += fmt::format(",{:.9g}", d);
+    for (std::size_t i = 0; i < m.wheels; ++i) text += fmt::format(",{:.9g}", run.duty[k][i]);
     text += fmt::format(",{:.4f}", measured(s.bus_voltage_V, kBus_V, "bus_voltage"));
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < m.wheels; ++i) {
       const std::string stream = fmt::format("motor_current_{}", i);
-      text +=
-          fmt::format(",{:.5f},{}", measured(s.motor_current_A[i], kCurrent_A, stream), s.encoder_counts[i]);
+      text += fmt::format(",{:.5f},{}", measured(all.motor_current_A[i], kCurrent_A, stream),
+                          all.encoder_counts[i]);
     }
     text += fmt::format(",{:.5f},{:.5f},{:.5f}", measured(s.gyro_z_rad_s, kGyro_rad_s, "gyro_z"),
                         measured(s.accel_x_m_s2, kAccel_m_s2, "accel_x"),
@@ -221,12 +228,7 @@ std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, 
       text += ",,,\n";
     }
     last_frame = frame;
-    RobotDrive drive{};
-    for (std::size_t i = 0; i < kWheels; ++i) {
-      drive.mode[i] = OMNIHIL_DRIVE_DUTY;
-      drive.duty_ratio[i] = run.duty[k][i];
-    }
-    plant.write(0, drive);
+    plant.write_duties(0, run.duty[k]);
     if (k + 1 < run.duty.size()) plant.advance(period_ns);
     if (plant.fault()) {
       diverged = fmt::format("run {}: {} {} is not finite at {:.6f} s", run.name, plant.fault()->signal,

@@ -6,7 +6,7 @@
 //
 // Duties of an excitation by name change no faster than half of the tyre's grip lets the robot follow; a file's are taken as they are.
 // An excitation by name drives forward, sideways and turn at once, each by a pattern of its own; the held-out
-// run has other patterns and 0.8 of the amplitude. A CSV file gives time and four duties, or time and one
+// run has other patterns and 0.8 of the amplitude. A CSV file gives time and a duty per wheel, or time and one
 // duty that is driven straight ahead; its last third is held out.
 // Sensors are those of the plant with white noise of a known size on top; a camera frame comes 60 times a
 // second. The model that goes with the data is the nominal one: effects added for this run are what the data

@@ -11,13 +11,15 @@ std::array<double, 3> asked_of_body(PlanDrive drive, const std::array<double, kW
                                     const RollingParams<double>& robot) {
   if (drive == PlanDrive::kBodyVelocity) return {value[0], value[1], value[2]};
   WheelGeometry<double> g;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  g.wheels = robot.wheels;
+  for (std::size_t i = 0; i < g.wheels; ++i) {
     g.cos_angle[i] = std::cos(robot.wheel_angle_rad[i]);
     g.sin_angle[i] = std::sin(robot.wheel_angle_rad[i]);
   }
   g.wheel_center_radius_m = robot.wheel_center_radius_m;
   g.wheel_radius_m = robot.wheel_radius_m;
-  std::array<double, kWheels> omega = value;
+  PerWheel<double> omega{};
+  std::copy(value.begin(), value.end(), omega.begin());
   if (drive == PlanDrive::kWheelDuty) {
     const double free_rad_s =
         robot.drive.supply_voltage_V / robot.drive.torque_constant_Nm_per_A / robot.drive.gear_ratio;

@@ -11,6 +11,7 @@
 #include "identify/record/signal_list.h"
 #include "sim/model/axis_model.h"
 #include "sim/model/model_rows.h"
+#include "sim/model/rolling_model.h"
 
 namespace omnihil {
 namespace {
@@ -175,6 +176,28 @@ class DatasetReader {
     }
   }
 
+  // As many of each signal per wheel as the model has wheels.
+  void check_wheels() {
+    const std::size_t wheels = wheel_count(out_.nominal->file.parameters);
+    for (const char* const signal : {"duty", "command_wheel"}) {
+      std::size_t given = 0;
+      for (const std::string& name : per_wheel(signal, kMaxWheels))
+        given += dataset_.channel(name) != nullptr ? 1u : 0u;
+      need(given == 0 || given == wheels, "robot.wheel_angle_deg",
+           fmt::format("the model has {} wheels, and the dataset {} channels {}_1, {}_2 …", wheels, given,
+                       signal, signal));
+    }
+    for (const Channel& channel : dataset_.channels) {
+      const std::size_t at = channel.signal.size() - 1;
+      const bool numbered =
+          at > 0 && channel.signal[at - 1] == '_' && channel.signal[at] >= '1' && channel.signal[at] <= '9';
+      if (!numbered) continue;
+      const auto wheel = static_cast<std::size_t>(channel.signal[at] - '0');
+      need(wheel <= wheels, "robot.wheel_angle_deg",
+           fmt::format("the model has {} wheels, and the dataset a channel {}", wheels, channel.signal));
+    }
+  }
+
   // Duties of radio commands are made by the model's [controller].
   void check_robot_drive() {
     const ParameterTable& table = out_.nominal->file.parameters;
@@ -184,6 +207,7 @@ class DatasetReader {
       by_radio = by_radio || run.signal("duty_1") == nullptr;
       by_body = by_body || (run.signal("duty_1") == nullptr && run.signal("command_vx") != nullptr);
     }
+    check_wheels();
     need(!by_radio || given("controller.kp_V_s_per_rad") || given("controller.feedforward_V_s_per_rad"),
          "controller.kp_V_s_per_rad",
          "the robot is driven by radio commands: [controller] says what the firmware makes of them, or log "

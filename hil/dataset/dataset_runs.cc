@@ -11,6 +11,7 @@
 #include "hil/text/csv_table.h"
 #include "hil/text/toml_keys.h"
 #include "identify/record/signal_list.h"
+#include "sim/model/rolling_model.h"
 
 namespace omnihil {
 namespace {
@@ -197,12 +198,18 @@ class RunsReader {
                                         ? "one of duty, motor_voltage, motor_torque, position_target, or "
                                           "motor_current with role = \"imposed\" is needed"
                                         : "duty_1 to duty_4, or command_vx, command_vy and command_w, or "
-                                          "command_wheel_1 to command_wheel_4 are needed"});
+                                          "command_wheel_1 to command_wheel_4 are needed (one per wheel)"});
   }
 
   std::vector<std::string_view> group_of(std::string_view group) const {
     if (group == "motor_current") return {group};
-    return drive_group_signals(dataset_.rig, group);
+    std::vector<std::string_view> names = drive_group_signals(dataset_.rig, group);
+    // Of signals per wheel, up to the last that the dataset has: how many wheels there are is the model's to say.
+    const auto wanted = [&](std::string_view name) { return dataset_.channel(name) != nullptr; };
+    while (names.size() > kMinWheels && names.back().back() > '0' + static_cast<int>(kMinWheels) &&
+           names.back().back() <= '9' && !wanted(names.back()))
+      names.pop_back();
+    return names;
   }
   bool complete(std::string_view group, const Run& run) const {
     const auto names = group_of(group);

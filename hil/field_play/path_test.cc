@@ -62,6 +62,10 @@ std::vector<PathLeg> legs_of(const PathTest& t) {
 
 PathTest path_test(const Run& run, const RobotModel& model, std::vector<std::string>& faults) {
   PathTest t;
+  if (model.wheels != kWheels)
+    faults.push_back(fmt::format("model \"{}\": the test of the path is of robots with four wheels, not {}",
+                                 model.name, model.wheels));
+  if (!faults.empty()) return t;
   std::array<const std::vector<double>*, kWheels> duty{};
   for (std::size_t i = 0; i < kWheels; ++i) {
     duty[i] = run.signal("duty_" + std::to_string(i + 1));

@@ -82,6 +82,23 @@ std::vector<std::string> radio_format_ids() {
   return ids;
 }
 
+namespace {
+
+// Radio formats, firmware and recordings have tables of four.
+void wheel_problems(const char* who, const std::vector<RobotModel>& robots,
+                    std::vector<std::string>& problems) {
+  for (const RobotModel& m : robots) {
+    if (m.wheels == kWheels) continue;
+    problems.push_back(
+        fmt::format("{}: \"{}\" has {} wheels; radio, firmware and recordings know four. Without them it "
+                    "drives by sim, fit and "
+                    "diagnose",
+                    who, m.name, m.wheels));
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> session_problems(const SessionConfig& config) {
   std::vector<std::string> problems = air_problems(config.air);
   radio_problems(config.radio_format, config.robot_ids.size(), problems);
@@ -90,6 +107,8 @@ std::vector<std::string> session_problems(const SessionConfig& config) {
   if (config.robot_ids.empty()) problems.push_back("robots: none; a session needs at least one");
   id_problems("robots", config.robots.size(), config.robot_ids, problems);
   id_problems("opponents", config.opponents.robots.size(), config.opponents.robot_ids, problems);
+  wheel_problems("robots", config.robots, problems);
+  wheel_problems("opponents", config.opponents.robots, problems);
   std::vector<int> keys = config.robot_ids;
   for (const int id : config.opponents.robot_ids) keys.push_back(kOpponentKey + id);
   for (std::string& problem : fault_problems(config.faults, keys)) problems.push_back(std::move(problem));

@@ -18,7 +18,7 @@ constexpr NumberKey kNumbers[] = {{"force_forward_N", &RobotFaults::force_forwar
                                   {"supply_ratio", &RobotFaults::supply_ratio}};
 struct WheelKey {
   const char* name;
-  std::array<bool, kWheels> RobotFaults::*place;
+  PerWheel<bool> RobotFaults::*place;
 };
 constexpr WheelKey kWheelSets[] = {{"lifted", &RobotFaults::lifted},
                                    {"blocked", &RobotFaults::blocked},
@@ -26,8 +26,16 @@ constexpr WheelKey kWheelSets[] = {{"lifted", &RobotFaults::lifted},
                                    {"phase_lost", &RobotFaults::phase_lost}};
 constexpr const char* kHeat = "winding_rise_K";
 
+// A bench's robots have four wheels.
 template <class T>
-bool take_four(const Json& value, std::array<T, kWheels>& out, bool (Json::*is_kind)() const noexcept) {
+std::array<T, kWheels> four(const PerWheel<T>& all) {
+  std::array<T, kWheels> out;
+  std::copy_n(all.begin(), kWheels, out.begin());
+  return out;
+}
+
+template <class T>
+bool take_four(const Json& value, PerWheel<T>& out, bool (Json::*is_kind)() const noexcept) {
   if (!value.is_array() || value.size() != kWheels) return false;
   for (std::size_t w = 0; w < kWheels; ++w) {
     if (!(value[w].*is_kind)()) return false;
@@ -65,8 +73,9 @@ Json faults_json(const std::vector<TimedFault>& faults) {
     for (const NumberKey& key : kNumbers)
       if (fault.faults.*(key.place) != healthy.*(key.place)) json[key.name] = fault.faults.*(key.place);
     for (const WheelKey& key : kWheelSets)
-      if (fault.faults.*(key.place) != healthy.*(key.place)) json[key.name] = fault.faults.*(key.place);
-    if (fault.faults.winding_rise_K != healthy.winding_rise_K) json[kHeat] = fault.faults.winding_rise_K;
+      if (fault.faults.*(key.place) != healthy.*(key.place)) json[key.name] = four(fault.faults.*(key.place));
+    if (fault.faults.winding_rise_K != healthy.winding_rise_K)
+      json[kHeat] = four(fault.faults.winding_rise_K);
     list.push_back(std::move(json));
   }
   return list;

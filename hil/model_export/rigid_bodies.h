@@ -1,4 +1,4 @@
-// A robot taken apart into rigid bodies, as multibody programs want it: a base and four wheels.
+// A robot taken apart into rigid bodies, as multibody programs want it: a base and its wheels.
 //
 //   const RigidBodies b = rigid_bodies(*model.robot);
 //   b.base_mass_kg;  b.base_com_m;  b.wheel_position_m[2];
@@ -10,7 +10,6 @@
 // Axes: x forward, y left, z up, origin on the floor below the geometric centre.
 #pragma once
 #include <Eigen/Core>
-#include <array>
 #include <string>
 
 #include "sim/robot/robot_model.h"
@@ -24,10 +23,9 @@ struct RigidBodies {
   Eigen::Vector3d base_com_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d base_inertia_kg_m2 = Eigen::Vector3d::Zero();  // xx, yy, zz about its centre of mass
   double wheel_inertia_axle_kg_m2 = 0.0, wheel_inertia_across_kg_m2 = 0.0;
-  std::array<Eigen::Vector3d, kWheels> wheel_position_m;
-  std::array<Eigen::Vector3d, kWheels>
-      wheel_axis;       // positive turns drive the rim along the counter-clockwise tangent
-  std::string problem;  // not empty: nothing is left for the base
+  PerWheel<Eigen::Vector3d> wheel_position_m;
+  PerWheel<Eigen::Vector3d> wheel_axis;  // positive turns drive the rim along the counter-clockwise tangent
+  std::string problem;                   // not empty: nothing is left for the base
 };
 
 RigidBodies rigid_bodies(const RobotModel& model);

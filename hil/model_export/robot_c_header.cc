@@ -73,7 +73,7 @@ std::string effect_lines(const RobotModel& m) {
 std::string matrix(const RobotModel& m) {
   const WheelGeometry<double> g = wheel_geometry(m);
   std::string out = "#define OMNIHIL_WHEEL_SPEEDS_OF_BODY {";
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < m.wheels; ++i) {
     out += fmt::format("{}{{{}, {}, {}}}", i == 0 ? "" : ", ", constant(-g.sin_angle[i] / g.wheel_radius_m),
                        constant(g.cos_angle[i] / g.wheel_radius_m),
                        constant(g.wheel_center_radius_m / g.wheel_radius_m));

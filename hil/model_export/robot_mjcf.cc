@@ -78,7 +78,8 @@ Rollers rollers_of(const RobotModel& m) {
   const double room_kg = 0.25 * m.wheel_inertia_kg_m2 / (m.wheel_radius_m * m.wheel_radius_m);
   r.mass_kg = std::min(kMostRollerMass_ratio * m.wheel_mass_kg, room_kg) / r.count;
   // Drag of the lateral curve at the wheel's share of the weight, at the roller's radius.
-  r.drag_Nm = m.tyre_lateral.extremum_value * m.mass_kg * kGravity_m_s2 / kWheels * r.radius_m;
+  r.drag_Nm =
+      m.tyre_lateral.extremum_value * m.mass_kg * kGravity_m_s2 / static_cast<double>(m.wheels) * r.radius_m;
   return r;
 }
 
@@ -169,7 +170,7 @@ ModelExport robot_mjcf(const ModelFile& file, const std::string& name) {
   const Rollers r = rollers_of(m);
   mjcf_say_what_is_lost(file, r, made);
   std::string wheels, drives, sensors;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < m.wheels; ++i) {
     wheels += mjcf_wheel_xml(m, b, r, i);
     drives += drive_xml(m, i);
     sensors +=

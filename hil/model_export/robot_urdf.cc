@@ -123,7 +123,7 @@ ModelExport robot_urdf(const ModelFile& file, const std::string& name) {
       fmt::format("<origin xyz=\"0 0 {}\"/><geometry><cylinder radius=\"{}\" length=\"{}\"/></geometry>",
                   exact(0.5 * height + 0.2 * m.wheel_radius_m), exact(m.wheel_center_radius_m),
                   exact(height)));
-  for (std::size_t i = 0; i < kWheels; ++i) made.text += urdf_wheel_xml(m, b, i);
+  for (std::size_t i = 0; i < m.wheels; ++i) made.text += urdf_wheel_xml(m, b, i);
   made.text += "</robot>\n";
   return made;
 }

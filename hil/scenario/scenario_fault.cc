@@ -30,10 +30,10 @@ RobotFaults faults_of(const ScenarioStep& step) {
         if (step.wheels[w]) faults.winding_rise_K[w] = step.rise_K;
       break;
     case StepKind::kWheelLifted:
-      faults.lifted = step.wheels;
+      std::ranges::copy(step.wheels, faults.lifted.begin());
       break;
     case StepKind::kWheelBlocked:
-      faults.blocked = step.wheels;
+      std::ranges::copy(step.wheels, faults.blocked.begin());
       break;
     default:
       break;

@@ -146,7 +146,7 @@ class Bench : public SessionObserver {
   void begin_and_end_steps() {
     const std::int64_t now_ns = session_.now_ns();
     RobotFaults faults;
-    if (scenario_.stand) faults.lifted.fill(true);
+    if (scenario_.stand) std::fill_n(faults.lifted.begin(), kWheels, true);
     silent_ = false;
     for (const ScenarioStep& step : scenario_.steps) {
       if (at_an_instant(step.kind)) {
@@ -234,7 +234,7 @@ class Bench : public SessionObserver {
   RobotCommand as_body_velocity(const RobotCommand& command) const {
     if (command.mode != OMNIHIL_MODE_WHEEL_SPEED) return command;
     constexpr double kSame_rad_s = 1e-6;
-    const std::array<double, kWheels> back = wheel_speeds(geometry_, sample_.wanted_body);
+    const PerWheel<double> back = wheel_speeds(geometry_, sample_.wanted_body);
     for (std::size_t w = 0; w < kWheels; ++w) {
       if (std::abs(back[w] - command.omega_wheel_rad_s[w]) > kSame_rad_s) return command;
     }

@@ -20,7 +20,7 @@ struct ScenarioSample {
   RobotSample robot;
   bool commanded = false;  // a command was sent already
   BodyVelocity<double> wanted_body;
-  std::array<double, kWheels> wanted_wheel_rad_s{};
+  PerWheel<double> wanted_wheel_rad_s{};
   double missed_periods = 0, refused_requests = 0;                             // so far
   Vector3 ball_m{0, 0, 0}, ball_m_s{0, 0, 0};                                  // without a ball: zero
   double goals = 0, kicks = 0, ball_touches = 0, robot_touches = 0, tips = 0;  // so far

@@ -247,7 +247,7 @@ ServeStatus Bench::status() const {
   const RobotTruth truth = session_.plant().truth(0);
   if (variables_) s.variables = variables_->text(0);
   s.robot_id = session_.config().robot_ids[0];
-  s.omega_wheel_rad_s = truth.omega_wheel_rad_s;
+  std::copy_n(truth.omega_wheel_rad_s.begin(), kWheels, s.omega_wheel_rad_s.begin());
   s.x_m = truth.x_m;
   s.y_m = truth.y_m;
   s.yaw_rad = truth.yaw_rad;

@@ -7,6 +7,7 @@
 #include "identify/record/quantum.h"
 #include "identify/record/statistics.h"
 #include "sim/law/symmetric.h"
+#include "sim/model/rolling_model.h"
 
 namespace omnihil {
 namespace {
@@ -32,7 +33,7 @@ void add_position(const Dataset& dataset, const Candidate& nominal, const Run& r
 std::vector<DriveView> drives_of(const Dataset& dataset, const Candidate& nominal, const Run& run) {
   std::vector<DriveView> views;
   const std::vector<std::string> suffixes = dataset.rig == Rig::kRobot
-                                                ? std::vector<std::string>{"_1", "_2", "_3", "_4"}
+                                                ? per_wheel("", wheel_count(nominal.file.parameters))
                                                 : std::vector<std::string>{""};
   for (const std::string& suffix : suffixes) {
     DriveView view{.suffix = suffix, .drive_name = "", .position_name = ""};

@@ -21,7 +21,7 @@ namespace omnihil {
 
 // One drive in one run: its input and its sensors' signals, n samples each. Null: not measured.
 struct DriveView {
-  std::string suffix;      // "": an axis; "_1" … "_4": a robot's wheels
+  std::string suffix;      // "": an axis; "_1", "_2" …: a robot's wheels
   std::string drive_name;  // "duty_1", "motor_torque"; empty: not driven by a signal of its own
   const std::vector<double>* drive = nullptr;
   std::string position_name;  // "encoder_1", "position"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "identify/design/experiment_distance.h"
 #include "identify/design/experiment_menu.h"
@@ -145,10 +146,12 @@ void Planner::prepare_menu() {
   const double rate_Hz = std::min(options_.rate_Hz, own_Hz);
   const auto count = static_cast<std::size_t>(std::llround(duration_s * rate_Hz));
   for (std::size_t k = 0; k <= count; ++k) time_s_.push_back(static_cast<double>(k) / rate_Hz);
+  const RollingParams<double> wheels = dataset_.rig == Rig::kRobot
+                                           ? rolling_params(rivals_.front().model.file.parameters)
+                                           : RollingParams<double>();
   menu_ = bench_.inputs.front() == "command_vx" ? body_menu(time_s_, options_.seed)
           : dataset_.rig == Rig::kRobot
-              ? robot_menu(time_s_, rolling_params(rivals_.front().model.file.parameters).wheel_angle_rad,
-                           options_.seed)
+              ? robot_menu(time_s_, std::span(wheels.wheel_angle_rad).first(wheels.wheels), options_.seed)
               : axis_menu(time_s_, options_.seed);
 }
 

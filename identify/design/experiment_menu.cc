@@ -1,6 +1,9 @@
 #include "identify/design/experiment_menu.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -93,25 +96,25 @@ std::vector<Shape> shapes(std::uint64_t seed) {
   };
 }
 
-// Duties that roll a robot along (x, y, turn), the largest at most 1 (geometry.h).
-std::array<double, kWheels> duties(const std::array<double, kWheels>& angle, double x, double y,
-                                   double turn) {
-  std::array<double, kWheels> d;
-  for (std::size_t i = 0; i < kWheels; ++i) d[i] = -std::sin(angle[i]) * x + std::cos(angle[i]) * y + turn;
+// Duties that roll a robot along (x, y, turn), the largest at most 1 (geometry.h); of no wheels: the twist itself.
+std::vector<double> duties(std::span<const double> angle, double x, double y, double turn) {
+  if (angle.empty()) return {x, y, turn};
+  std::vector<double> d;
+  for (const double a : angle) d.push_back(-std::sin(a) * x + std::cos(a) * y + turn);
   return d;
 }
 
 using Twist = std::function<std::array<double, 3>(double time_s)>;
 
-// `angle` null: the twist itself, of the body.
+// No angles: the twist itself, of the body.
 MenuRun robot_run(std::string name, std::string words, const std::vector<double>& time_s,
-                  const std::array<double, kWheels>* angle, const Twist& twist) {
-  const std::size_t drives = angle != nullptr ? kWheels : 3;
+                  std::span<const double> angle, const Twist& twist) {
+  const std::size_t drives = angle.empty() ? 3 : angle.size();
   MenuRun run{std::move(name), std::move(words), std::vector<std::vector<double>>(drives)};
   double largest = 1e-12;
   for (const double t : time_s) {
     const auto [x, y, w] = twist(t - time_s.front());
-    const auto d = angle != nullptr ? duties(*angle, x, y, w) : std::array<double, kWheels>{x, y, w, 0.0};
+    const std::vector<double> d = duties(angle, x, y, w);
     for (std::size_t i = 0; i < drives; ++i) {
       run.drive[i].push_back(d[i]);
       largest = std::max(largest, std::abs(d[i]));
@@ -139,7 +142,7 @@ std::vector<MenuRun> axis_menu(const std::vector<double>& time_s, std::uint64_t 
 namespace {
 
 // Along x, y and the turn; of the wheels at these angles, or of the body.
-std::vector<MenuRun> twist_menu(const std::vector<double>& time_s, const std::array<double, kWheels>* angle,
+std::vector<MenuRun> twist_menu(const std::vector<double>& time_s, std::span<const double> angle,
                                 std::uint64_t seed) {
   std::vector<MenuRun> menu;
   const double duration_s = time_s.back() - time_s.front();
@@ -188,21 +191,25 @@ std::vector<MenuRun> twist_menu(const std::vector<double>& time_s, const std::ar
 }  // namespace
 
 std::vector<MenuRun> body_menu(const std::vector<double>& time_s, std::uint64_t seed) {
-  return twist_menu(time_s, nullptr, seed);
+  return twist_menu(time_s, {}, seed);
 }
 
-std::vector<MenuRun> robot_menu(const std::vector<double>& time_s, const std::array<double, kWheels>& angle,
+std::vector<MenuRun> robot_menu(const std::vector<double>& time_s, std::span<const double> angle,
                                 std::uint64_t seed) {
-  std::vector<MenuRun> menu = twist_menu(time_s, &angle, seed);
-  // One wheel against all four: the difference is due to what they share, the supply.
-  MenuRun single{"one_and_all", "each wheel alone, then all four together, again and again",
-                 std::vector<std::vector<double>>(kWheels)};
+  std::vector<MenuRun> menu = twist_menu(time_s, angle, seed);
+  // One wheel against all: the difference is due to what they share, the supply.
+  const int wheels = static_cast<int>(angle.size());
+  MenuRun single{"one_and_all",
+                 fmt::format("each wheel alone, then all {} together, again and again",
+                             wheels == 4 ? "four" : std::to_string(wheels)),
+                 std::vector<std::vector<double>>(angle.size())};
   for (const double now_s : time_s) {
     const double t = now_s - time_s.front();
-    const int turn = static_cast<int>(t / 0.5) % 10;
-    const double sign = static_cast<int>(t / 5.0) % 2 == 0 ? 1.0 : -1.0;
-    for (int i = 0; i < kWheels; ++i) {
-      const bool on = turn % 2 == 0 && (turn == 8 || turn / 2 == i);
+    const double round = 2.0 * wheels + 2.0;  // half seconds
+    const int turn = static_cast<int>(t / 0.5) % (2 * wheels + 2);
+    const double sign = static_cast<int>(t / (0.5 * round)) % 2 == 0 ? 1.0 : -1.0;
+    for (int i = 0; i < wheels; ++i) {
+      const bool on = turn % 2 == 0 && (turn == 2 * wheels || turn / 2 == i);
       single.drive[static_cast<std::size_t>(i)].push_back(on ? sign : 0.0);
     }
   }

@@ -1,4 +1,4 @@
-// Menu of excitations: values of -1 … 1 over time, for one drive, for a robot's four, or for its body.
+// Menu of excitations: values of -1 … 1 over time, for one drive, for each of a robot's, or for its body.
 //
 //   for (const MenuRun& run : axis_menu(time_s, seed)) run.drive[0][k];
 //   for (const MenuRun& run : body_menu(time_s, seed)) run.drive[0][k];      // ahead, to the left, turn
@@ -10,12 +10,10 @@
 // is the generic run that others are held against. Source: Schroeder 1970 (phases of a flat multisine);
 // Pintelon and Schoukens 2012, ch. 2 (periodic inputs).
 #pragma once
-#include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
-
-#include "firmware_iface/robot_io.h"
 
 namespace omnihil {
 
@@ -26,8 +24,8 @@ struct MenuRun {
 };
 
 std::vector<MenuRun> axis_menu(const std::vector<double>& time_s, std::uint64_t seed);
-std::vector<MenuRun> robot_menu(const std::vector<double>& time_s,
-                                const std::array<double, kWheels>& wheel_angle_rad, std::uint64_t seed);
+std::vector<MenuRun> robot_menu(const std::vector<double>& time_s, std::span<const double> wheel_angle_rad,
+                                std::uint64_t seed);
 std::vector<MenuRun> body_menu(const std::vector<double>& time_s, std::uint64_t seed);
 
 }  // namespace omnihil

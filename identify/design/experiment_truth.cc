@@ -208,12 +208,12 @@ PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const
     const double radius_m = rolling_params(nominal.file.parameters).wheel_center_radius_m;
     bench.input_scale = {1.0, 1.0, 1.0 / std::max(radius_m, 1e-3)};
   } else if (robot && !by_duty && bench.example.signal("command_wheel_1") != nullptr) {
-    bench.inputs = {"command_wheel_1", "command_wheel_2", "command_wheel_3", "command_wheel_4"};
+    bench.inputs = per_wheel("command_wheel", wheel_count(nominal.file.parameters));
     bench.full_input = 0.0;
     for (const std::string& input : bench.inputs)
       bench.full_input = std::max(bench.full_input, largest_of(given, input));
   } else if (robot) {
-    bench.inputs = {"duty_1", "duty_2", "duty_3", "duty_4"};
+    bench.inputs = per_wheel("duty", wheel_count(nominal.file.parameters));
   } else {
     for (const char* name : {"duty", "motor_voltage", "position_target"}) {
       if (bench.example.signal(name) != nullptr) bench.inputs = {name};
@@ -270,7 +270,7 @@ MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& 
     for (std::size_t k = 1; k < record.size(); ++k) {
       out.travel = std::max(out.travel, std::hypot(m.x_m[k], m.y_m[k]));
       const double dt_s = record.time_s[k] - record.time_s[k - 1];
-      for (std::size_t i = 0; i < kWheels; ++i) {
+      for (std::size_t i = 0; i < record.wheels; ++i) {
         out.current_A = std::max(out.current_A, std::abs(m.current_A[k][i]));
         const double speed = std::abs(m.encoder_rad[k][i] - m.encoder_rad[k - 1][i]) / dt_s;
         out.rotor_speed_rad_s = std::max(out.rotor_speed_rad_s, speed);

@@ -159,7 +159,7 @@ std::unique_ptr<Predictor> RobotPredictor::simulated(const Candidate& truth, std
 Capabilities RobotPredictor::capabilities() const {
   const bool camera = has_channel("vision");
   const bool body = camera || has_channel("gyro") || has_channel("accel");
-  // Four drives by duty from one bus, simulated as a whole. Base parameters exclude no effect: what a tolerance
+  // Several drives by duty from one bus, simulated as a whole. Base parameters exclude no effect: what a tolerance
   // of an inductance trades with is for the fit to say.
   constexpr std::uint32_t kAlways = kNeedsFloor | kNeedsSeveralMotors | kNeedsSupply | kNeedsWinding |
                                     kNeedsDuty | kNeedsVoltage | kNeedsSimulation;

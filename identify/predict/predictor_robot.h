@@ -1,4 +1,4 @@
-// The predictor of rig "robot": four wheels on the floor, driven by what the bridges were asked for.
+// The predictor of rig "robot": two to six wheels on the floor, driven by what the bridges were asked for.
 //
 //   std::unique_ptr<Predictor> p = make_robot_predictor(dataset, nominal, options);   // by make_predictor
 //
@@ -9,7 +9,7 @@
 //             measured heading: the gyro's integral, corrected to the camera's over a second
 //   pose      the model's path is compared after a slow correction towards the camera (0.5 s), so that an
 //             error of speed dv appears as 0.5 s dv and does not grow
-// Compared: "velocity_1" … "velocity_4" (rotor, differences of counts on both sides), "motor_current_1" …,
+// Compared: "velocity_1" … (rotor, differences of counts on both sides), "motor_current_1" …,
 // "gyro_z", "accel_x", "accel_y", "vision_x", "vision_y", "vision_theta" (where there is a frame).
 // bus_voltage, where measured, is an input of the bridges, smoothed; and its drop is compared with that of
 // the model's supply. Without it the model's supply is the input. Where the record has radio commands and no

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "sim/law/random.h"
 #include "sim/model/rolling_model.h"
@@ -18,7 +19,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // Everything true, at the samples.
 template <typename T>
 struct Truth {
-  std::vector<std::array<T, kWheels>> theta_rotor_rad, omega_rotor_rad_s, reported_rad_s, charge_C;
+  std::vector<PerWheel<T>> theta_rotor_rad, omega_rotor_rad_s, reported_rad_s, charge_C;
   std::vector<std::array<T, 3>> velocity;
   std::vector<T> accel_x, accel_y, bus, supply;
 };
@@ -70,7 +71,8 @@ class Runner {
         robot_(model.params, model.uses, model.values),
         timing_states_(initial_states(robot_.effects())) {
     if (record.radio) {
-      controller_.emplace(model.params.controller, model.params.wheel_angle_rad,
+      controller_.emplace(model.params.controller,
+                          std::span(model.params.wheel_angle_rad).first(model.params.wheels),
                           value_of(model.params.drive.gear_ratio));
     }
   }
@@ -108,7 +110,7 @@ class Runner {
   void hear(std::size_t k) {
     const RadioCommands& radio = *record_.radio;
     const auto& value = radio.value[k];
-    const std::size_t count = radio.frame == CommandFrame::kBodyVelocity ? 3 : kWheels;
+    const std::size_t count = radio.frame == CommandFrame::kBodyVelocity ? 3 : record_.wheels;
     if (std::all_of(value.begin(), value.begin() + static_cast<std::ptrdiff_t>(count),
                     [](double v) { return std::isfinite(v); }))
       controller_->hear(record_.time_s[k], value, radio.frame);
@@ -116,8 +118,8 @@ class Runner {
   void control(const RollingState<T>& x, const RollingInput<T>& in, double now_s, double step_s) {
     if (now_s < next_control_s_ - 0.5 * step_s) return;
     const double span_s = now_s - last_control_s_;
-    std::array<T, kWheels> omega;
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    PerWheel<T> omega{};
+    for (std::size_t i = 0; i < record_.wheels; ++i) {
       omega[i] = span_s > 0.0 ? T(turned_rad_[i] * (1.0 / span_s)) : x.omega_rotor_rad_s(i);
       turned_rad_[i] = T(0);
     }
@@ -128,13 +130,13 @@ class Runner {
     last_control_s_ = now_s;
     next_control_s_ += controller_->period_s();
   }
-  void count_turns(const std::array<T, kWheels>& before, const RollingState<T>& x, double h) {
-    for (std::size_t i = 0; i < kWheels; ++i)
+  void count_turns(const PerWheel<T>& before, const RollingState<T>& x, double h) {
+    for (std::size_t i = 0; i < record_.wheels; ++i)
       turned_rad_[i] += (before[i] + x.omega_rotor_rad_s(i)) * (0.5 * h);
   }
-  std::array<T, kWheels> speeds(const RollingState<T>& x) const {
-    std::array<T, kWheels> omega;
-    for (std::size_t i = 0; i < kWheels; ++i) omega[i] = x.omega_rotor_rad_s(i);
+  PerWheel<T> speeds(const RollingState<T>& x) const {
+    PerWheel<T> omega{};
+    for (std::size_t i = 0; i < record_.wheels; ++i) omega[i] = x.omega_rotor_rad_s(i);
     return omega;
   }
 
@@ -175,7 +177,7 @@ class Runner {
     RollingState<T> x = begin(own_heading);
     double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
     if (controller_) step_s = std::min(step_s, controller_->period_s());
-    std::array<double, kWheels> between;
+    PerWheel<double> between;
     for (std::size_t k = 0;; ++k) {
       keep(x);
       if (k + 1 >= n) break;
@@ -186,7 +188,7 @@ class Runner {
       const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - 1e-6)));
       for (int j = 0; j < steps; ++j) {
         if (in.theta_rotor_rad != nullptr && steps > 1) {
-          for (std::size_t i = 0; i < kWheels; ++i) {
+          for (std::size_t i = 0; i < record_.wheels; ++i) {
             const double from = record_.theta_rotor_rad[k][i], to = record_.theta_rotor_rad[k + 1][i];
             between[i] = from + (to - from) * j / steps;
           }
@@ -194,7 +196,7 @@ class Runner {
         }
         x.yaw_rad = heading_.empty() ? own_heading : heading_[k];
         const T before = x.velocity[2];
-        const std::array<T, kWheels> omega_before = controller_ ? speeds(x) : std::array<T, kWheels>{};
+        const PerWheel<T> omega_before = controller_ ? speeds(x) : PerWheel<T>{};
         if (controller_) {
           control(x, in, record_.time_s[k] + dt_s * j / steps, dt_s / steps);
           in.duty_ratio = duty_;
@@ -223,15 +225,15 @@ class Runner {
 
   void keep(const RollingState<T>& x) {
     truth_.theta_rotor_rad.push_back(x.theta_rotor_rad);
-    std::array<T, kWheels> omega;
+    PerWheel<T> omega{};
     T rise = T(0);
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < record_.wheels; ++i) {
       omega[i] = x.omega_rotor_rad_s(i);
-      rise += 0.25 * x.drive[i].temperature_rise_K;
+      rise += (1.0 / static_cast<double>(record_.wheels)) * x.drive[i].temperature_rise_K;
     }
     truth_.omega_rotor_rad_s.push_back(omega);
     if (controller_) {
-      for (std::size_t i = 0; i < kWheels; ++i) omega[i] = controller_->reported_rad_s(i);
+      for (std::size_t i = 0; i < record_.wheels; ++i) omega[i] = controller_->reported_rad_s(i);
     }
     truth_.reported_rad_s.push_back(omega);
     truth_.charge_C.push_back(x.charge_C);
@@ -252,9 +254,9 @@ class Runner {
     out_.gyro_rad_s.resize(n);
     out_.accel_x_m_s2.resize(n);
     out_.accel_y_m_s2.resize(n);
-    std::array<std::array<T, kMaxEffectStates>, kWheels> states;
+    PerWheel<std::array<T, kMaxEffectStates>> states;
     states.fill(initial_states(robot_.effects()));
-    std::array<T, kWheels> last_theta = truth_.theta_rotor_rad[0], last_charge{};
+    PerWheel<T> last_theta = truth_.theta_rotor_rad[0], last_charge{};
     T last_s = T(record_.time_s[0]);
     for (std::size_t k = 0; k < n; ++k) {
       T seen_s = T(record_.time_s[k]);
@@ -263,7 +265,7 @@ class Runner {
       const Instant<T> at = now ? Instant<T>{} : instant(record_.time_s, seen_s);
       const auto seen = [&](const auto& values) { return now ? values(k) : at.of(values); };
       const T span_s = seen_s - last_s;
-      for (std::size_t i = 0; i < kWheels; ++i) {
+      for (std::size_t i = 0; i < record_.wheels; ++i) {
         const T theta = seen([&](std::size_t j) { return truth_.theta_rotor_rad[j][i]; });
         const T omega = seen([&](std::size_t j) { return truth_.omega_rotor_rad_s[j][i]; });
         const T charge = seen([&](std::size_t j) { return truth_.charge_C[j][i]; });
@@ -394,7 +396,7 @@ class Runner {
   RollingRobot<T> robot_;
   std::array<T, kMaxEffectStates> timing_states_;
   std::optional<RadioController<T>> controller_;
-  std::array<T, kWheels> duty_{}, turned_rad_{};
+  PerWheel<T> duty_{}, turned_rad_{};
   double last_control_s_ = 0.0, next_control_s_ = 0.0;
   T camera_age_s_ = T(0);
   std::vector<T> heading_;

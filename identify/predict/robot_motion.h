@@ -46,7 +46,7 @@ struct RobotCarry {
   bool begun = false;
   RollingState<T> state;
   std::optional<RadioController<T>> controller;
-  std::array<T, kWheels> duty{}, turned_rad{};
+  PerWheel<T> duty{}, turned_rad{};
   double last_control_s = 0.0, next_control_s = 0.0;
   T heading = T(0);
 };
@@ -54,12 +54,12 @@ struct RobotCarry {
 // n samples of the record each.
 template <typename T>
 struct RobotMotion {
-  std::vector<std::array<T, kWheels>> encoder_rad;  // unrounded, at the rotor
-  std::vector<std::array<T, kWheels>> wheel_rad_s;  // at the wheel; of a controller: as it measures them
-  std::vector<std::array<T, kWheels>> current_A;    // mean over the period that ends at the sample
+  std::vector<PerWheel<T>> encoder_rad;  // unrounded, at the rotor
+  std::vector<PerWheel<T>> wheel_rad_s;  // at the wheel; of a controller: as it measures them
+  std::vector<PerWheel<T>> current_A;    // mean over the period that ends at the sample
   std::vector<T> gyro_rad_s, accel_x_m_s2, accel_y_m_s2;
   std::vector<T> bus_voltage_V, supply_voltage_V;  // RollingState
-  std::vector<T> temperature_rise_K;               // mean of the four windings
+  std::vector<T> temperature_rise_K;               // mean of the windings
   std::vector<std::array<T, 3>> velocity;          // body frame, true: without sensor; m/s, m/s, rad/s
   // Pose as the camera reports it, the corrections of follow_camera included; NaN between frames
   // (follow_camera) or where the record has none.

@@ -72,17 +72,18 @@ std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
 // A command is new where its cells are filled; all of a group together.
 void read_radio(const Run& run, RobotRecord& r) {
   const bool body = run.signal("command_vx") != nullptr;
-  std::array<const std::vector<double>*, kWheels> said{};
+  PerWheel<const std::vector<double>*> said{};
   if (body) {
-    said = {run.signal("command_vx"), run.signal("command_vy"), run.signal("command_w"), nullptr};
+    said = {run.signal("command_vx"), run.signal("command_vy"), run.signal("command_w")};
   } else {
-    for (std::size_t i = 0; i < kWheels; ++i) said[i] = run.signal(numbered("command_wheel", i));
+    for (std::size_t i = 0; i < r.wheels; ++i) said[i] = run.signal(numbered("command_wheel", i));
   }
   RadioCommands radio{.frame = body ? CommandFrame::kBodyVelocity : CommandFrame::kWheelSpeeds, .value = {}};
   radio.value.resize(r.size());
   const std::vector<double>* enable = run.signal("enable");
   for (std::size_t k = 0; k < r.size(); ++k) {
-    for (std::size_t a = 0; a < kWheels; ++a) radio.value[k][a] = said[a] != nullptr ? (*said[a])[k] : 0.0;
+    for (std::size_t a = 0; a < said.size(); ++a)
+      radio.value[k][a] = said[a] != nullptr ? (*said[a])[k] : 0.0;
     r.enabled[k].fill(enable == nullptr || !((*enable)[k] == 0.0));
   }
   r.radio = std::move(radio);
@@ -90,7 +91,7 @@ void read_radio(const Run& run, RobotRecord& r) {
 
 void read_drive(const Run& run, RobotRecord& r) {
   if (run.signal("duty_1") == nullptr) return read_radio(run, r);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < r.wheels; ++i) {
     const std::vector<double>* duty = run.signal(numbered("duty", i));
     const std::vector<double>* enable = run.signal("enable");
     for (std::size_t k = 0; k < r.size(); ++k) {
@@ -102,9 +103,10 @@ void read_drive(const Run& run, RobotRecord& r) {
 }
 
 // Step that duties are rounded to by the decimals of their record; 0: full precision.
-double rounding_of(const std::vector<std::array<double, kWheels>>& duties) {
+double rounding_of(const std::vector<PerWheel<double>>& duties, std::size_t wheels) {
   std::vector<double> all;
-  for (const auto& duty : duties) all.insert(all.end(), duty.begin(), duty.end());
+  for (const auto& duty : duties)
+    all.insert(all.end(), duty.begin(), duty.begin() + static_cast<std::ptrdiff_t>(wheels));
   std::sort(all.begin(), all.end());
   constexpr std::ptrdiff_t kEnough = 20;  // different values; fewer may be round set points; a choice
   std::vector<double> different = all;
@@ -140,7 +142,7 @@ std::vector<double> without_gaps(const std::vector<double>& time_s, const std::v
 
 void read_encoders(const Dataset& dataset, const Run& run, double gear_ratio, RobotRecord& r) {
   r.has_all_encoders = true;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < r.wheels; ++i) {
     const std::string name = numbered("encoder", i);
     const Channel* channel = dataset.channel(name);
     const std::vector<double>* counts = run.signal(name);
@@ -206,10 +208,10 @@ double speed_at_start(const RobotRecord& r, std::size_t wheel, std::size_t last)
 
 // Where there are no counts: the first speeds that were reported, unless all are slow; rad/s at the wheels.
 constexpr double kStanding_rad_s = 1.0;  // 3 cm/s of rim: a choice
-std::optional<std::array<double, kWheels>> reported_at_start(const Run& run) {
-  std::array<double, kWheels> omega{};
+std::optional<PerWheel<double>> reported_at_start(const Run& run, std::size_t wheels) {
+  PerWheel<double> omega{};
   bool moves = false;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels; ++i) {
     const std::vector<double>* reported = run.signal(numbered("wheel_speed", i));
     if (reported == nullptr) return std::nullopt;
     omega[i] = first_of(*reported, 0.0);
@@ -223,18 +225,19 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const Run& run,
   std::size_t last = 0;
   while (last + 1 < r.size() && r.time_s[last] - r.time_s[0] < kStartSpan_s) ++last;
   WheelGeometry<double> g;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  g.wheels = r.wheels;
+  for (std::size_t i = 0; i < r.wheels; ++i) {
     g.cos_angle[i] = std::cos(nominal.wheel_angle_rad[i]);
     g.sin_angle[i] = std::sin(nominal.wheel_angle_rad[i]);
   }
   g.wheel_center_radius_m = nominal.wheel_center_radius_m;
   g.wheel_radius_m = nominal.wheel_radius_m;
   if (!r.has_all_encoders || last < 3) {
-    const auto reported = reported_at_start(run);
+    const auto reported = reported_at_start(run, r.wheels);
     return reported ? body_velocity(g, *reported) : BodyVelocity<double>{};
   }
-  std::array<double, kWheels> omega_wheel;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  PerWheel<double> omega_wheel{};
+  for (std::size_t i = 0; i < r.wheels; ++i) {
     omega_wheel[i] = speed_at_start(r, i, last) / nominal.drive.gear_ratio;
     // a displacement of up to two counts is no motion
     const double count_rad = kTurn / r.counts_per_rotor_turn[i];
@@ -249,7 +252,7 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const Run& run,
 template <typename T>
 RollingInput<T> RobotRecord::input(std::size_t k) const {
   RollingInput<T> in;
-  for (std::size_t i = 0; i < kWheels; ++i) in.duty_ratio[i] = T(duty_ratio[k][i]);
+  for (std::size_t i = 0; i < wheels; ++i) in.duty_ratio[i] = T(duty_ratio[k][i]);
   in.enabled = enabled[k];
   in.bus_is_measured = !bus_voltage_V.empty();
   if (in.bus_is_measured) in.bus_voltage_V = bus_voltage_V[k];
@@ -263,13 +266,14 @@ template RollingInput<Jet> RobotRecord::input(std::size_t) const;
 
 RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal) {
   RobotRecord r;
+  r.wheels = nominal.wheels;
   r.time_s = run.time_s;
   r.duty_ratio.resize(r.size());
   r.enabled.resize(r.size());
   r.encoder_rotor_rad.resize(r.size());
   r.theta_rotor_rad.resize(r.size());
   read_drive(run, r);
-  r.duty_quantum = rounding_of(r.duty_ratio);
+  r.duty_quantum = rounding_of(r.duty_ratio, r.wheels);
   read_encoders(dataset, run, nominal.drive.gear_ratio, r);
   r.dribbler_rad_s = held(run.signal("dribbler"), r.size(), 0.0);
   if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {
@@ -296,7 +300,7 @@ RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {
   RobotRecord r = record;
   const std::uint64_t bus_stream = stream_of("bus_voltage"), duty_stream = stream_of("duty");
   for (std::size_t k = 0; k < r.size(); ++k) {
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < r.wheels; ++i) {
       r.duty_ratio[k][i] += r.duty_quantum * (uniform(seed, duty_stream + i, k) - 0.5);
     }
     if (!r.bus_voltage_V.empty()) r.bus_voltage_V[k] += r.bus_sigma_V * gaussian(seed, bus_stream, k);

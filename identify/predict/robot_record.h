@@ -7,7 +7,6 @@
 //
 // An empty duty is a bridge that is off. A missing sample of an input holds the one before.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -25,22 +24,22 @@ struct CameraFrame {
 // What the radio said, where the record has no duties: NaN where nothing new was said.
 struct RadioCommands {
   CommandFrame frame = CommandFrame::kBodyVelocity;
-  std::vector<std::array<double, kWheels>>
-      value;  // n samples; of a body three: m/s, m/s, rad/s; of wheels rad/s
+  std::vector<PerWheel<double>> value;  // n samples; of a body three: m/s, m/s, rad/s; of wheels rad/s
 };
 
 struct RobotRecord {
+  std::size_t wheels = kWheels;  // of lists per wheel the first so many count
   std::vector<double> time_s;
-  std::vector<std::array<double, kWheels>> duty_ratio;  // 0 where `radio` drives
+  std::vector<PerWheel<double>> duty_ratio;  // 0 where `radio` drives
   std::optional<RadioCommands> radio;
-  std::vector<std::array<bool, kWheels>> enabled;
+  std::vector<PerWheel<bool>> enabled;
   std::vector<double> bus_voltage_V;  // less its sensor's noise; empty: not measured
   double bus_sigma_V = 0.0;           // of the sensor; 0: not stated
   double duty_quantum = 0.0;          // step that the record's duties are rounded to; 0: none found
   std::vector<double> dribbler_rad_s;
-  std::array<double, kWheels> counts_per_rotor_turn{};         // 0: no encoder there
-  std::vector<std::array<double, kWheels>> encoder_rotor_rad;  // as counted
-  std::vector<std::array<double, kWheels>> theta_rotor_rad;    // the same without gaps
+  PerWheel<double> counts_per_rotor_turn{};         // 0: no encoder there
+  std::vector<PerWheel<double>> encoder_rotor_rad;  // as counted
+  std::vector<PerWheel<double>> theta_rotor_rad;    // the same without gaps
   bool has_all_encoders = false;
   std::vector<double> turned_rad;  // integral of the gyro; empty: none
   std::vector<CameraFrame> frames;

@@ -119,7 +119,7 @@ void take(const Channel& channel, const Run& run, const RobotRecord& r, RobotSig
 std::vector<RobotSignal> robot_signals(const Dataset& dataset, const Run& run, const RobotRecord& r) {
   std::vector<RobotSignal> signals;
   for (const Source& source : kSources) {
-    for (std::size_t i = 0; i < (source.per_wheel ? kWheels : 1u); ++i) {
+    for (std::size_t i = 0; i < (source.per_wheel ? r.wheels : 1u); ++i) {
       const std::string suffix = source.per_wheel ? "_" + std::to_string(i + 1) : "";
       RobotSignal s;
       s.output = source.output;
@@ -232,12 +232,13 @@ constexpr double kStep_command = 0.1;  // a choice
 std::vector<double> time_since_step(const RobotRecord& r) {
   std::vector<double> out(r.size(), 0.0);
   double last_s = r.time_s.empty() ? 0.0 : r.time_s.front();
-  std::array<double, kWheels> said{};
+  PerWheel<double> said{};
+  const std::size_t axes = r.radio && r.radio->frame == CommandFrame::kBodyVelocity ? 3 : r.wheels;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    for (std::size_t i = 0; i < kWheels && k > 0 && !r.radio; ++i) {
+    for (std::size_t i = 0; i < r.wheels && k > 0 && !r.radio; ++i) {
       if (std::abs(r.duty_ratio[k][i] - r.duty_ratio[k - 1][i]) > kStep_duty) last_s = r.time_s[k];
     }
-    for (std::size_t i = 0; i < kWheels && r.radio; ++i) {
+    for (std::size_t i = 0; i < axes && r.radio; ++i) {
       const double command = r.radio->value[k][i];
       if (!std::isfinite(command)) continue;
       if (k > 0 && std::abs(command - said[i]) > kStep_command) last_s = r.time_s[k];
@@ -268,7 +269,8 @@ std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, con
                          [&](std::size_t k) { return std::hypot(m.accel_x_m_s2[k], m.accel_y_m_s2[k]); }));
   tracks.push_back(track("abs_current", "A", [&](std::size_t k) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < kWheels; ++i) sum += 0.25 * std::abs(m.current_A[k][i]);
+    for (std::size_t i = 0; i < r.wheels; ++i)
+      sum += (1.0 / static_cast<double>(r.wheels)) * std::abs(m.current_A[k][i]);
     return sum;
   }));
   tracks.push_back(track("time", "s", [&](std::size_t k) { return r.time_s[k]; }));
@@ -288,7 +290,7 @@ std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, con
       }));
     }
   }
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < r.wheels; ++i) {
     const std::string wheel = "_" + std::to_string(i + 1);
     tracks.push_back(track("wheel_speed" + wheel, "rad/s", [&](std::size_t k) {
       return k > 0 ? (m.encoder_rad[k][i] - m.encoder_rad[k - 1][i]) / (r.time_s[k] - r.time_s[k - 1]) : kNaN;

@@ -3,7 +3,7 @@
 //   const SignalRow* row = find_signal(Rig::kAxis, "velocity");
 //   signal_unit(*row, linear);                     // "rad/s"; on a linear axis "m/s"
 //
-// A run is driven by one group of drive signals: "duty" alone, or "duty_1" … "duty_4" together.
+// A run is driven by one group of drive signals: "duty" alone, or "duty_1", "duty_2" … together, one per wheel.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -6,6 +6,7 @@
 
 #include "sim/law/effect_entry.h"
 #include "sim/law/effect_registry.h"
+#include "sim/model/rolling_model.h"
 #include "sim/robot/geometry.h"
 
 namespace omnihil {
@@ -125,8 +126,9 @@ std::vector<Unknown> TwinBank::unknowns() const {
 TwinBank twin_bank(const Candidate& model) {
   TwinBank bank{.model = model, .faults = {}};
   Maker make(bank);
+  const std::size_t wheels = wheel_count(model.file.parameters);
   for (const bool magnets : {false, true}) {
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < wheels; ++i) {
       make.row(magnets ? *find_effect("motor_mismatch") : effect_wheel_torque(), i,
                {.id = fmt::format("wheel_{}_{}", magnets ? "magnets" : "torque", i + 1),
                 .suspect = fmt::format("torque of wheel {}", i + 1),
@@ -136,7 +138,7 @@ TwinBank twin_bank(const Candidate& model) {
                 .unit = {}});
     }
   }
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels; ++i) {
     make.row(effect_wheel_drag(), i,
              {.id = fmt::format("wheel_drag_{}", i + 1),
               .suspect = fmt::format("drag on wheel {}", i + 1),

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/model/rolling_model.h"
 #include "sim/robot/geometry.h"
 
 namespace omnihil {
@@ -84,7 +85,8 @@ std::optional<TwinAlarm> TwinWatch::take(const TwinWindow& window) {
     if (window.moved_rad_s > kMoving_rad_s) healthy_.push_back(window);
     if (learned_s() < options_.learn_s) return std::nullopt;
     promise_ = learned_promise(healthy_, bank_);
-    const auto hypotheses = static_cast<double>(bank_.faults.size() + promise_->signals.size() + kWheels);
+    const auto hypotheses = static_cast<double>(bank_.faults.size() + promise_->signals.size() +
+                                                wheel_count(bank_.model.file.parameters));
     threshold_ = std::log(hypotheses * 3600.0 / options_.window_s / options_.false_alarms_per_hour);
     healthy_.clear();
     return std::nullopt;
@@ -140,7 +142,7 @@ std::optional<TwinAlarm> TwinWatch::dead_line(double now_s) const {
   a.time_s = now_s;
   a.since_s = since_s;
   a.explained_ratio = 1.0;
-  if (dead.size() == kWheels) {
+  if (dead.size() == wheel_count(bank_.model.file.parameters)) {
     a.fault = a.suspect = "robot stands";
     return a;
   }

@@ -84,7 +84,7 @@ std::vector<char> near_jumps(const RobotRecord& record) {
   std::vector<char> near(n, 0);
   for (std::size_t k = 1; k < n; ++k) {
     double most = 0.0;
-    for (std::size_t i = 0; i < kWheels; ++i)
+    for (std::size_t i = 0; i < record.wheels; ++i)
       most = std::max(most, std::abs(record.duty_ratio[k][i] - record.duty_ratio[k - 1][i]));
     if (most < kJump) continue;
     for (std::size_t j = k; j-- > 0 && record.time_s[k] - record.time_s[j] < kJumpMemory_s;) near[j] = 1;
@@ -103,7 +103,8 @@ class Reader {
  public:
   Reader(const Dataset& dataset, const Candidate& nominal)
       : dataset_(dataset), p_(rolling_params(nominal.file.parameters)), coulomb_Nm_(coulomb_Nm(nominal)) {
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    g_.wheels = p_.wheels;
+    for (std::size_t i = 0; i < p_.wheels; ++i) {
       g_.cos_angle[i] = std::cos(p_.wheel_angle_rad[i]);
       g_.sin_angle[i] = std::sin(p_.wheel_angle_rad[i]);
     }
@@ -117,9 +118,9 @@ class Reader {
     const RobotRecord record = robot_record(dataset_, run, p_);
     const std::size_t n = record.size();
     const Body body = body_of(dataset_, run, record);
-    std::array<SmoothedMotion, kWheels> wheel;
-    std::array<const std::vector<double>*, kWheels> current{};
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    PerWheel<SmoothedMotion> wheel;
+    PerWheel<const std::vector<double>*> current{};
+    for (std::size_t i = 0; i < p_.wheels; ++i) {
       std::vector<MotionSample> samples(n);
       const double quantum_rad =
           2.0 * std::numbers::pi / record.counts_per_rotor_turn[i] / p_.drive.gear_ratio;
@@ -140,9 +141,9 @@ class Reader {
       if (record.time_s[k] < next_s || jumps[k]) continue;
       next_s += kEvery_s;
       const BodyVelocity<double> v{body.v_forward_m_s[k], body.v_left_m_s[k], body.omega_rad_s[k]};
-      std::array<Raw, kWheels> raw;
+      PerWheel<Raw> raw;
       double sum_x_N = 0.0, sum_y_N = 0.0;
-      for (std::size_t i = 0; i < kWheels; ++i) {
+      for (std::size_t i = 0; i < p_.wheels; ++i) {
         const MotionState& w = wheel[i].at[k];
         const double rotor_rad_s = p_.drive.gear_ratio * w.speed;
         double current_A = 0.0, current_sigma_A = 0.0;
@@ -183,7 +184,7 @@ class Reader {
         sum_x_N += -g_.sin_angle[i] * r.force_N;
         sum_y_N += g_.cos_angle[i] * r.force_N;
       }
-      for (std::size_t i = 0; i < kWheels; ++i) {
+      for (std::size_t i = 0; i < p_.wheels; ++i) {
         raw[i].load_N = load_.at_rest_N[i] + load_.transfer(i, sum_x_N, sum_y_N);
         if (raw[i].load_N > 0.2 * load_.at_rest_N[i] && std::isfinite(raw[i].force_N)) out.push_back(raw[i]);
       }
@@ -276,14 +277,15 @@ TyrePoints tyre_points(const Dataset& dataset, const Candidate& nominal, std::ve
     if (run.split != Split::kTraining) continue;
     camera = run.signal("vision_x") != nullptr && run.signal("vision_y") != nullptr;
     bool encoders = true;
-    for (int i = 1; i <= static_cast<int>(kWheels); ++i)
+    for (std::size_t i = 1; i <= reader.params().wheels; ++i)
       encoders = encoders && run.signal("encoder_" + std::to_string(i)) != nullptr;
     if (!camera) {
       faults.push_back(run.file +
                        ": no channels vision_x and vision_y: without a speed of the body a wheel's slip "
                        "cannot be told from its rolling; record the camera beside");
     }
-    if (!encoders) faults.push_back(run.file + ": needs encoder_1 to encoder_4");
+    if (!encoders)
+      faults.push_back(run.file + ": needs encoder_1 to encoder_" + std::to_string(reader.params().wheels));
     if (faults.empty()) reader.read(run, raw);
   }
   if (!faults.empty()) return points;

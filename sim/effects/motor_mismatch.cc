@@ -1,5 +1,6 @@
 // Motors that are not alike: each wheel's torque constant apart from the model's.
 #include <cmath>
+#include <iterator>
 
 #include "sim/law/effect_entry.h"
 
@@ -24,7 +25,7 @@ struct MotorMismatch {
       .source =
           "production spread of data sheets, +-3 to 8 %; 4 to 9 % between two motors measured on a "
           "micromouse",
-      .cannot = "friction or resistance that differ between motors",
+      .cannot = "friction or resistance that differ between motors, a fifth and sixth wheel",
       .place = Place::kWinding,
       .twins = {"wheel_radius_mismatch"},
       .reveals =
@@ -43,6 +44,7 @@ struct MotorMismatch {
 
   template <typename T>
   static void apply(const T* p, T*, WindingPort<T>& port) {
+    if (port.wheel >= static_cast<int>(std::size(kParams))) return;
     // k = ratio_k k_model
     port.torque_constant_Nm_per_A *= p[port.wheel];
     port.back_emf_V_s_per_rad *= p[port.wheel];

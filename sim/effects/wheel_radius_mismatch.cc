@@ -1,5 +1,6 @@
 // Wheels of unequal radius: worn rings, another batch.
 #include <cmath>
+#include <iterator>
 
 #include "sim/law/effect_entry.h"
 
@@ -25,7 +26,7 @@ struct WheelRadiusMismatch {
           "Borenstein and Feng, IEEE Trans. Robotics and Automation 12(6), 1996 (systematic odometry errors)",
       .cannot =
           "wheels that are not round, a robot that leans on its smaller wheels (loads are those of equal "
-          "wheels)",
+          "wheels), a fifth and sixth wheel",
       .place = Place::kContact,
       .twins = {"motor_mismatch"},
       .reveals =
@@ -43,6 +44,7 @@ struct WheelRadiusMismatch {
 
   template <typename T>
   static void apply(const T* p, T*, ContactPort<T>& port) {
+    if (port.wheel >= static_cast<int>(std::size(kParams))) return;
     // r_k = ratio_k r
     port.wheel_radius_m *= p[port.wheel];
   }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "sim/field/world_impl.h"
 
@@ -10,13 +11,14 @@ namespace {
 
 // The nearest edge of the wheels' polygon to the centre of mass, from above.
 double distance_to_edge_m(const RobotModel& model) {
-  std::array<double, kWheels> angle = model.wheel_angle_rad;
+  std::vector<double> angle(model.wheel_angle_rad.begin(),
+                            model.wheel_angle_rad.begin() + static_cast<std::ptrdiff_t>(model.wheels));
   for (double& a : angle) a = std::remainder(a, 2.0 * std::numbers::pi);
   std::ranges::sort(angle);
   double least_m = model.wheel_center_radius_m;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < angle.size(); ++i) {
     const double from = angle[i];
-    const double to = i + 1 < kWheels ? angle[i + 1] : angle[0] + 2.0 * std::numbers::pi;
+    const double to = i + 1 < angle.size() ? angle[i + 1] : angle[0] + 2.0 * std::numbers::pi;
     const double middle = 0.5 * (from + to);
     // The edge's outward normal points along `middle`, r cos(half the gap) from the wheels' centre.
     const double out_m = model.wheel_center_radius_m * std::cos(0.5 * (to - from));

@@ -65,6 +65,8 @@ class Held : public SimTK::Force::Custom::Implementation {
 struct FullWheelRobot::Impl {
   Impl(const RobotModel& m, const RollerParams& p)
       : matter(system), forces(system), model(m), rollers(p), law(contact_law(m)) {
+    if (m.wheels != kWheels)
+      throw std::invalid_argument("wheels with all their rollers are simulated of robots with four of them");
     system.setUseUniformBackground(true);
     const double count = p.count, R = m.wheel_radius_m, a = R - p.radius_m;
     spin_kg_m2 = 0.5 * p.mass_kg * p.radius_m * p.radius_m;

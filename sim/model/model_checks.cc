@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/robot/ball_handling.h"
@@ -56,6 +57,20 @@ void check_wheels(Checks& c, const std::vector<double>& angle_deg) {
   }
 }
 
+// A differential drive stands on wheels without rollers: what holds them sideways is not the usual roller's drag.
+void check_sideways(Checks& c, const ParameterTable& table) {
+  const std::vector<double>& angle_deg = table.find("robot.wheel_angle_deg")->values;
+  // of 180 degrees, as in geometry.h
+  constexpr double kParallel_deg = 0.05;
+  const bool parallel = std::all_of(angle_deg.begin(), angle_deg.end(), [&](double a) {
+    return std::abs(std::remainder(a - angle_deg.front(), 180.0)) < kParallel_deg;
+  });
+  const Parameter* grip = table.find("tyre.lateral.extremum_value");
+  c.need(!parallel || grip->origin != Origin::kDefault, "tyre.lateral.extremum_value",
+         "is not given, and all axles are parallel: only the wheels' own grip holds the robot sideways",
+         "needed: a [tyre.lateral] of wheels without rollers, as large as [tyre.longitudinal]");
+}
+
 // "motor.pole_pairs = 0: a three-phase drive needs 1 or more", each at the number it names.
 void check_electrics(const ParameterTable& table, std::vector<ModelConflict>& out) {
   for (const std::string& problem : electric_problems(robot_model_of(table))) {
@@ -66,11 +81,12 @@ void check_electrics(const ParameterTable& table, std::vector<ModelConflict>& ou
   }
 }
 
-void check_masses(Checks& c) {
+void check_masses(Checks& c, std::size_t wheels) {
   const double mass_kg = c["robot.mass_kg"];
-  c.need(4.0 * c["robot.wheel_mass_kg"] < mass_kg, "robot.wheel_mass_kg",
-         "four wheels weigh more than the robot",
-         fmt::format("allowed: less than {:g} kg, a quarter of robot.mass_kg", mass_kg / 4.0));
+  c.need(static_cast<double>(wheels) * c["robot.wheel_mass_kg"] < mass_kg, "robot.wheel_mass_kg",
+         fmt::format("{} wheels weigh more than the robot", wheels == 4 ? "four" : std::to_string(wheels)),
+         fmt::format("allowed: less than {:g} kg, {} of robot.mass_kg", mass_kg / static_cast<double>(wheels),
+                     wheels == 4 ? "a quarter" : fmt::format("1/{}", wheels)));
   const double radius_m = c["robot.wheel_center_radius_m"];
   const double offset_m = std::hypot(c["robot.center_of_mass_x_m"], c["robot.center_of_mass_y_m"]);
   const char* larger = std::abs(c["robot.center_of_mass_x_m"]) >= std::abs(c["robot.center_of_mass_y_m"])
@@ -95,7 +111,8 @@ std::vector<ModelConflict> model_conflicts(const ParameterTable& table, std::uin
     check_tyre(c, "tyre.longitudinal");
     check_tyre(c, "tyre.lateral");
     check_wheels(c, table.find("robot.wheel_angle_deg")->values);
-    check_masses(c);
+    check_sideways(c, table);
+    check_masses(c, table.find("robot.wheel_angle_deg")->values.size());
     if (const Parameter* const chip = table.find("kicker.chip_network");
         chip != nullptr && !chip->text.empty())
       c.need(chip_of_text(chip->text).has_value(), "kicker.chip_network", "is no network",

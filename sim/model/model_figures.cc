@@ -26,25 +26,28 @@ double stall_current_A(const MotorParams& m, double voltage_V) {
   return m.current_limit_A > 0.0 ? std::min(current_A, m.current_limit_A) : current_A;
 }
 
+// A wheel with less of a direction than rounding leaves has nothing of it.
+constexpr double kAcross = 1e-9;
+
 // Longest push along a direction with every wheel at most `force_N`: the wheels share by the transpose of
 // eq. (5), so the one that lies best decides.
 double push_N(const WheelGeometry<double>& g, double force_N, bool forward) {
   double sum = 0.0, largest = 0.0;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < g.wheels; ++i) {
     const double share = forward ? g.sin_angle[i] : g.cos_angle[i];
     sum += share * share;
     largest = std::max(largest, std::abs(share));
   }
-  return largest > 0.0 ? force_N * sum / largest : 0.0;
+  return largest > kAcross ? force_N * sum / largest : 0.0;
 }
 
 // Top speed along a direction: the wheel that must turn fastest decides.
 double top_speed_m_s(const WheelGeometry<double>& g, double omega_wheel_rad_s, bool forward) {
   double largest = 0.0;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < g.wheels; ++i) {
     largest = std::max(largest, std::abs(forward ? g.sin_angle[i] : g.cos_angle[i]));
   }
-  return largest > 0.0 ? omega_wheel_rad_s * g.wheel_radius_m / largest : 0.0;
+  return largest > kAcross ? omega_wheel_rad_s * g.wheel_radius_m / largest : 0.0;
 }
 
 }  // namespace
@@ -100,7 +103,7 @@ std::vector<ModelFigure> robot_figures(const RobotModel& m) {
       {"way per encoder count",
        1e3 * 2.0 * std::numbers::pi * m.wheel_radius_m / (m.encoder.counts_per_turn * m.gear_ratio), "mm",
        ""}};
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < m.wheels; ++i) {
     out.push_back({fmt::format("load on wheel {}", i + 1), loads.at_rest_N[i], "N", "at rest"});
   }
   return out;

@@ -35,7 +35,7 @@ std::string range_of(const ParameterRow& row) {
     case ParameterKind::kTruth:
       return "true, false";
     case ParameterKind::kWheelNumbers:
-      return fmt::format("{} numbers, {}", kWheels, allowed_range(row));
+      return fmt::format("{} to {} numbers, {}", kMinWheels, kMaxWheels, allowed_range(row));
     default:
       return allowed_range(row);
   }

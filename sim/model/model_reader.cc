@@ -239,11 +239,12 @@ bool ModelReader::read_numbers(const ParameterRow& row, const toml::node& node, 
     return true;
   }
   const toml::array* list = node.as_array();
-  if (list == nullptr || list->size() != static_cast<std::size_t>(kWheels)) {
+  if (list == nullptr || list->size() < kMinWheels || list->size() > kMaxWheels) {
     const std::string found =
         list == nullptr ? std::string(kind_of(node)) : fmt::format("a list of {}", list->size());
     wrong(node, parameter_path(row), "is " + found,
-          fmt::format("a list of {} numbers is needed, each {}", kWheels, allowed_range(row)));
+          fmt::format("a list of {} to {} numbers is needed, one per wheel, each {}", kMinWheels, kMaxWheels,
+                      allowed_range(row)));
     return false;
   }
   bool good = true;

@@ -33,7 +33,7 @@ constexpr TyreCurve kLongDefault = kDefaultTyreLongitudinal, kLatDefault = kDefa
 constexpr ParameterRow kRows[] = {
     {"", "format", kText, "", kNone, 0, 0, false, R | A | L | M, R | A | L | M, "\"omnihil-model/1\"", ""},
     {"", "rig", kText, "", kNone, 0, 0, false, R | A | L | M, R | A | L | M,
-     "\"robot\" (four wheels on the floor), \"axis\" (one drive) or \"motor\" (a motor's own file)", ""},
+     "\"robot\" (wheels on the floor), \"axis\" (one drive) or \"motor\" (a motor's own file)", ""},
     {"", "linear", kTruth, "", 0, 0, 1, false, A | L, 0, "the axis moves along a line: N, m and kg", ""},
     {"", "name", kText, "", kNone, 0, 0, false, R | A | L | M, 0, "what it is, for people", ""},
     {"", "source", kText, "", kNone, 0, 0, false, R | A | L | M, 0, "where the numbers are from", ""},

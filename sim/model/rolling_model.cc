@@ -16,6 +16,17 @@ bool given(const ParameterTable& table, std::string_view section) {
 
 }  // namespace
 
+std::size_t wheel_count(const ParameterTable& table) {
+  const Parameter* angles = table.find("robot.wheel_angle_deg");
+  return angles != nullptr && !angles->values.empty() ? angles->values.size() : std::size_t{kWheels};
+}
+
+std::vector<std::string> per_wheel(std::string_view signal, std::size_t wheels) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i <= wheels; ++i) names.push_back(std::string(signal) + "_" + std::to_string(i));
+  return names;
+}
+
 RollingParams<double> rolling_params(const ParameterTable& table) {
   RollingParams<double> p;
   p.drive = drive_params_of(table);
@@ -25,7 +36,8 @@ RollingParams<double> rolling_params(const ParameterTable& table) {
     *number = table.value_or(path, *number);
   }
   if (const Parameter* angles = table.find("robot.wheel_angle_deg"); angles != nullptr) {
-    for (std::size_t i = 0; i < kWheels && i < angles->values.size(); ++i) {
+    p.wheels = angles->values.size();
+    for (std::size_t i = 0; i < p.wheels; ++i) {
       p.wheel_angle_rad[i] = angles->values[i] * std::numbers::pi / 180.0;
     }
   }

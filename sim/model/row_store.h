@@ -88,7 +88,8 @@ inline void motor_loop(RobotModel& m, std::span<const double> v) {
   m.motor_loop = static_cast<MotorLoop>(static_cast<int>(v.front()));
 }
 inline void wheel_angles(RobotModel& m, std::span<const double> v) {
-  for (std::size_t i = 0; i < m.wheel_angle_rad.size(); ++i) {
+  m.wheels = v.size();
+  for (std::size_t i = 0; i < v.size(); ++i) {
     m.wheel_angle_rad[i] = v[i] * std::numbers::pi / 180.0;
   }
 }

@@ -24,7 +24,7 @@ using SimTK::Vec3;
 struct Robot {
   ContactLaw<double> law;
   MobilizedBody chassis;
-  std::array<MobilizedBody, kWheels> wheel;
+  PerWheel<MobilizedBody> wheel;
   SimTK::UIndex first_u;
   double gear_ratio = 1.0;
   double wheel_viscous_Nm_s_per_rad = 0.0;
@@ -33,12 +33,12 @@ struct Robot {
   double floor_N_per_m = 0.0, floor_N_s_per_m = 0.0;
   // at the current state
   WheelContacts<double> contacts;
-  std::array<Vec3, kWheels> f_wheel_W;
+  PerWheel<Vec3> f_wheel_W;
   WheelTorques torques;
   const FloorEffects* effects = nullptr;
   FloorForces more;
   Vec3 f_body_W;  // of effects, level
-  std::array<bool, kWheels> lifted{};
+  PerWheel<bool> lifted{};
 
   double radius_m(std::size_t i) const {
     return effects != nullptr ? more.wheel_radius_m[i] : law.geometry.wheel_radius_m;
@@ -57,17 +57,18 @@ Masses split_masses(const RobotModel& m, const WheelGeometry<double>& g, Chassis
   const double axial = spin_inertia_kg_m2(m), diametral = 0.5 * axial;
   Masses s;
   s.i_wheel = SimTK::Inertia(diametral, diametral, axial);
-  s.chassis_kg = m.mass_kg - kWheels * m.wheel_mass_kg;
+  const auto wheels = static_cast<double>(m.wheels);
+  s.chassis_kg = m.mass_kg - wheels * m.wheel_mass_kg;
   double moment_x = m.mass_kg * m.center_of_mass_x_m, moment_y = m.mass_kg * m.center_of_mass_y_m;
   double yaw = m.yaw_inertia_kg_m2;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < m.wheels; ++i) {
     moment_x -= m.wheel_mass_kg * m.wheel_center_radius_m * g.cos_angle[i];
     moment_y -= m.wheel_mass_kg * m.wheel_center_radius_m * g.sin_angle[i];
     yaw -= diametral + m.wheel_mass_kg * m.wheel_center_radius_m * m.wheel_center_radius_m;
   }
   // the body's origin lies in the plane of the axles
   const double height =
-      (m.mass_kg * m.center_of_mass_height_m - kWheels * m.wheel_mass_kg * m.wheel_radius_m) / s.chassis_kg;
+      (m.mass_kg * m.center_of_mass_height_m - wheels * m.wheel_mass_kg * m.wheel_radius_m) / s.chassis_kg;
   if (joint == Chassis::Joint::kPlanar) {
     s.p_BoCm_B = Vec3(moment_x / s.chassis_kg, moment_y / s.chassis_kg, 0);
     s.i_Bo_B = SimTK::Inertia(yaw, yaw, yaw);  // only the yaw entry acts
@@ -97,7 +98,7 @@ class FloorAndMotors : public SimTK::Force::Custom::Implementation {
         const Vec3 moment(0, 0, r.more.body_moment_z_Nm);
         body_forces[r.chassis.getMobilizedBodyIndex()] += SpatialVec(moment, r.f_body_W);
       }
-      for (std::size_t i = 0; i < kWheels; ++i) {
+      for (std::size_t i = 0; i < r.law.geometry.wheels; ++i) {
         const Vec3 p_WheelContact(0, 0, -r.radius_m(i));
         const MobilizedBody& wheel = r.wheel[i];
         Vec3 f_W = r.f_wheel_W[i];
@@ -126,7 +127,11 @@ class FloorAndMotors : public SimTK::Force::Custom::Implementation {
 
 struct Chassis::Impl {
   Impl(const std::vector<RobotModel>& models, Joint joint_, const std::vector<const FloorEffects*>& effects)
-      : matter(system), forces(system), joint(joint_) {
+      : matter(system),
+        forces(system),
+        joint(joint_),
+        layout(joint_ == Joint::kPlanar ? planar_layout(most_wheels(models))
+                                        : free_layout(most_wheels(models))) {
     system.setUseUniformBackground(true);
     robots.reserve(models.size());
     for (const RobotModel& m : models) add(m);
@@ -147,8 +152,9 @@ struct Chassis::Impl {
     r.p_BoCm_B = s.p_BoCm_B;
     r.weight_chassis_N = s.chassis_kg * kGravity_m_s2;
     r.weight_wheel_N = m.wheel_mass_kg * kGravity_m_s2;
-    r.floor_N_per_m = m.mass_kg * kGravity_m_s2 / kWheels / kFloorSink_m;
-    r.floor_N_s_per_m = kFloorDamping * 2.0 * std::sqrt(r.floor_N_per_m * m.mass_kg / kWheels);
+    r.floor_N_per_m = m.mass_kg * kGravity_m_s2 / static_cast<double>(m.wheels) / kFloorSink_m;
+    r.floor_N_s_per_m =
+        kFloorDamping * 2.0 * std::sqrt(r.floor_N_per_m * m.mass_kg / static_cast<double>(m.wheels));
     const SimTK::Body::Rigid body(SimTK::MassProperties(s.chassis_kg, s.p_BoCm_B, s.i_Bo_B));
     const SimTK::Body::Rigid wheel(SimTK::MassProperties(m.wheel_mass_kg, Vec3(0), s.i_wheel));
     const SimTK::Transform x_WB(Vec3(0, 0, joint == Joint::kPlanar ? m.wheel_radius_m : 0.0));
@@ -157,7 +163,7 @@ struct Chassis::Impl {
     } else {
       r.chassis = MobilizedBody::Free(matter.Ground(), x_WB, body, SimTK::Transform());
     }
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < m.wheels; ++i) {
       // Positive spin drives along t = axle x z with the axle pointing inward.
       const Vec3 outward(r.law.geometry.cos_angle[i], r.law.geometry.sin_angle[i], 0);
       const Rotation r_BAxle(SimTK::UnitVec3(-outward), SimTK::ZAxis, Vec3(0, 0, 1), SimTK::XAxis);
@@ -173,9 +179,9 @@ struct Chassis::Impl {
     const Vec3 p_WheelContact(0, 0, -radius);
     const Vec3& w_WB = r.chassis.getBodyAngularVelocity(state);
     WheelMotion<double> motion;
-    std::array<Vec3, kWheels> drive_W, outward_W;
-    std::array<double, kWheels> load_N{};
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    PerWheel<Vec3> drive_W, outward_W;
+    PerWheel<double> load_N{};
+    for (std::size_t i = 0; i < r.law.geometry.wheels; ++i) {
       const Vec3 axle = r.wheel[i].getBodyRotation(state).z();
       const double level = 1.0 / std::sqrt(axle[0] * axle[0] + axle[1] * axle[1]);
       outward_W[i] = Vec3(-axle[0] * level, -axle[1] * level, 0);
@@ -197,7 +203,7 @@ struct Chassis::Impl {
           joint == Joint::kPlanar ? contact_forces(r.law, motion) : contact_forces_at(r.law, motion, load_N);
     }
     lift_wheels(r.law, r.lifted, r.contacts);
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < r.law.geometry.wheels; ++i) {
       r.f_wheel_W[i] =
           r.contacts.force_longitudinal_N[i] * drive_W[i] + r.contacts.force_lateral_N[i] * outward_W[i];
       if (joint == Joint::kFree) r.f_wheel_W[i][2] = load_N[i];
@@ -205,8 +211,7 @@ struct Chassis::Impl {
   }
 
   // The same with effects, in the level body frame.
-  void find_effects(Robot& r, const WheelMotion<double>& motion,
-                    const std::array<double, kWheels>* load_N) const {
+  void find_effects(Robot& r, const WheelMotion<double>& motion, const PerWheel<double>* load_N) const {
     FloorState at;
     const Vec3& v_W = r.chassis.getBodyOriginVelocity(state);
     const Rotation& r_WB = r.chassis.getBodyRotation(state);
@@ -214,7 +219,7 @@ struct Chassis::Impl {
     const double c = std::cos(at.yaw_rad), s = std::sin(at.yaw_rad);
     at.velocity = {c * v_W[0] + s * v_W[1], -s * v_W[0] + c * v_W[1],
                    r.chassis.getBodyAngularVelocity(state)[2]};
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < r.law.geometry.wheels; ++i) {
       at.omega_wheel_rad_s[i] = r.wheel[i].getOneU(state, 0);
       at.theta_wheel_rad[i] = r.wheel[i].getOneQ(state, 0);
     }
@@ -227,6 +232,7 @@ struct Chassis::Impl {
   SimTK::SimbodyMatterSubsystem matter;
   SimTK::GeneralForceSubsystem forces;
   Joint joint;
+  StateLayout layout;
   std::vector<Robot> robots;
   StepPart part_of_step = StepPart::kHeld;
   SimTK::State state;
@@ -239,13 +245,9 @@ Chassis::~Chassis() = default;
 Chassis::Chassis(Chassis&&) noexcept = default;
 Chassis& Chassis::operator=(Chassis&&) noexcept = default;
 
-const StateLayout& Chassis::layout() const {
-  return impl_->joint == Joint::kPlanar ? kPlanarLayout : kFreeLayout;
-}
+const StateLayout& Chassis::layout() const { return impl_->layout; }
 
-void Chassis::lift(std::size_t robot, const std::array<bool, kWheels>& lifted) {
-  impl_->robots[robot].lifted = lifted;
-}
+void Chassis::lift(std::size_t robot, const PerWheel<bool>& lifted) { impl_->robots[robot].lifted = lifted; }
 
 void Chassis::set_state(const std::vector<double>& q, const std::vector<double>& u) {
   Impl& c = *impl_;
@@ -272,7 +274,7 @@ void Chassis::accelerations(const std::vector<WheelTorques>& torques, StepPart p
   std::copy_n(&result[0], udot.size(), udot.begin());
   const StateLayout& l = layout();
   for (std::size_t n = 0; n < c.robots.size(); ++n) {
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < c.robots[n].law.geometry.wheels; ++i) {
       if (torques[n][i].locked) udot[n * l.u_per_robot + l.wheel_u + i] = 0.0;  // rounding would creep
     }
   }
@@ -284,23 +286,24 @@ void Chassis::position_rates(const std::vector<double>& q, const std::vector<dou
     std::copy(u.begin(), u.end(), qdot.begin());
     return;
   }
+  const StateLayout& l = layout();
   for (std::size_t n = 0; n < impl_->robots.size(); ++n) {
-    const double* e = q.data() + n * kFreeLayout.q_per_robot;
-    const double* w = u.data() + n * kFreeLayout.u_per_robot;
-    double* out = qdot.data() + n * kFreeLayout.q_per_robot;
+    const double* e = q.data() + n * l.q_per_robot;
+    const double* w = u.data() + n * l.u_per_robot;
+    double* out = qdot.data() + n * l.q_per_robot;
     // de/dt = 1/2 (0, omega_W) e
     out[0] = 0.5 * (-w[0] * e[1] - w[1] * e[2] - w[2] * e[3]);
     out[1] = 0.5 * (w[0] * e[0] + w[1] * e[3] - w[2] * e[2]);
     out[2] = 0.5 * (w[1] * e[0] + w[2] * e[1] - w[0] * e[3]);
     out[3] = 0.5 * (w[2] * e[0] + w[0] * e[2] - w[1] * e[1]);
-    std::copy_n(w + 3, 3 + kWheels, out + 4);
+    std::copy_n(w + 3, l.u_per_robot - 3, out + 4);
   }
 }
 
 void Chassis::normalise(std::vector<double>& q) const {
   if (impl_->joint == Joint::kPlanar) return;
   for (std::size_t n = 0; n < impl_->robots.size(); ++n) {
-    double* e = q.data() + n * kFreeLayout.q_per_robot;
+    double* e = q.data() + n * layout().q_per_robot;
     const double scale = 1.0 / std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
     for (int i = 0; i < 4; ++i) e[i] *= scale;
   }
@@ -334,15 +337,20 @@ void Chassis::place(std::vector<double>& q, std::vector<double>& u, std::size_t 
   // Sunk and tilted so that the springs carry the loads at rest: depth_i = N_i / k = A + B x_i + C y_i.
   const Robot& r = impl_->robots[robot];
   const WheelGeometry<double>& g = r.law.geometry;
-  Eigen::Matrix<double, kWheels, 3> place;
-  Eigen::Matrix<double, kWheels, 1> depth_m;
-  for (std::size_t i = 0; i < kWheels; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    place.row(row) << 1.0, g.wheel_center_radius_m * g.cos_angle[i], g.wheel_center_radius_m * g.sin_angle[i];
-    depth_m(row) = r.law.load.at_rest_N[i] / r.floor_N_per_m;
-  }
-  const Eigen::Matrix3d normal = place.transpose() * place;
-  const Eigen::Vector3d plane = normal.inverse() * (place.transpose() * depth_m);
+  Eigen::Vector3d plane;
+  with_wheel_rows(g.wheels, [&](auto rows) {
+    WheelRows<double, rows()> place(static_cast<Eigen::Index>(g.wheels), 3);
+    Eigen::Matrix<double, rows(), 1, 0, rows() == Eigen::Dynamic ? static_cast<int>(kMaxWheels) : rows(), 1>
+        depth_m(place.rows());
+    for (std::size_t i = 0; i < r.law.geometry.wheels; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      place.row(row) << 1.0, g.wheel_center_radius_m * g.cos_angle[i],
+          g.wheel_center_radius_m * g.sin_angle[i];
+      depth_m(row) = r.law.load.at_rest_N[i] / r.floor_N_per_m;
+    }
+    const Eigen::Matrix3d normal = place.transpose() * place;
+    plane = normal.inverse() * (place.transpose() * depth_m);
+  });
   const Rotation yaw(yaw_rad, SimTK::ZAxis);
   const Rotation pitch(std::asin(plane(1)), SimTK::YAxis), roll(std::asin(-plane(2)), SimTK::XAxis);
   const SimTK::Quaternion e = (yaw * pitch * roll).convertRotationToQuaternion();

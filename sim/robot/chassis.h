@@ -1,10 +1,10 @@
-// Mechanics back end on Simbody: all robots in one multibody system, each a chassis and four wheels on pins.
+// Mechanics back end on Simbody: all robots in one multibody system, each a chassis and its wheels on pins.
 //
 //   Chassis back(robots, Chassis::Joint::kPlanar);   // see mechanics.h for the calls
 //
 // kPlanar: the chassis slides on the floor's plane; loads by the law of wheel_load.h. The reference that
 //   PlanarMechanics is held to.
-// kFree: the chassis has all six freedoms (quaternion) and stands on four springs and dampers, one under each
+// kFree: the chassis has all six freedoms (quaternion) and stands on springs and dampers, one under each
 //   wheel's middle: N = max(0, k depth + c rate). k lets the robot sink kFloorSink_m under its weight, c is
 //   kFloorDamping of critical (floor and tyre together: guess, +-50 %). Wheels can lift, the robot can tip.
 //   Roll and pitch inertia are those of a cylinder as high as twice the centre of mass (guess, +-30 %):
@@ -16,6 +16,7 @@
 //   as gear^2 J instead of gear J, which inflates gyroscopic pitch and roll moments: about 1 % of m a h.
 // A locked wheel gets the torque that answers the floor, with its reaction on the chassis, and exactly no
 //   acceleration against it. In kFree that leaves out the wheel's own inertia against pitch: J times its rate.
+// All robots of one system have the same number of wheels (validate.h).
 // Cannot represent: contact between robots, walls, a ball; contact off the wheel's middle. Simbody itself
 // allocates per evaluation; nothing here does.
 #pragma once
@@ -42,7 +43,7 @@ class Chassis {
 
   const StateLayout& layout() const;
   // Wheels that the floor does not reach, from the next set_state on.
-  void lift(std::size_t robot, const std::array<bool, kWheels>& lifted);
+  void lift(std::size_t robot, const PerWheel<bool>& lifted);
   void set_state(const std::vector<double>& q, const std::vector<double>& u);
   const WheelContacts<double>& contacts(std::size_t robot) const;
   const FloorForces& floor_forces(std::size_t robot) const;  // of a robot with effects only

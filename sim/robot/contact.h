@@ -1,4 +1,4 @@
-// Forces of the floor on the four wheels of one robot, for given speeds: slip, tyre curves, wheel loads.
+// Forces of the floor on the wheels of one robot, for given speeds: slip, tyre curves, wheel loads.
 //
 //   ContactLaw<double> law = contact_law(model);
 //   WheelContacts<double> c = contact_forces(law, wheel_motion(law, velocity, omega_wheel_rad_s));
@@ -33,17 +33,17 @@ struct ContactLaw {
 
 template <typename T>
 struct WheelMotion {
-  std::array<T, kWheels> drive_speed_m_s{};   // wheel centre over the floor, along t_i
-  std::array<T, kWheels> roller_speed_m_s{};  // along rho_i
-  std::array<T, kWheels> rim_speed_m_s{};     // R omega_wheel
+  PerWheel<T> drive_speed_m_s{};   // wheel centre over the floor, along t_i
+  PerWheel<T> roller_speed_m_s{};  // along rho_i
+  PerWheel<T> rim_speed_m_s{};     // R omega_wheel
 };
 
 template <typename T>
 struct WheelContacts {
-  std::array<T, kWheels> slip_longitudinal_ratio{};
-  std::array<T, kWheels> force_longitudinal_N{};
-  std::array<T, kWheels> force_lateral_N{};
-  std::array<T, kWheels> load_N{};
+  PerWheel<T> slip_longitudinal_ratio{};
+  PerWheel<T> force_longitudinal_N{};
+  PerWheel<T> force_lateral_N{};
+  PerWheel<T> load_N{};
   T force_x_N{}, force_y_N{};  // sum, body frame
   T moment_z_Nm{};             // about the geometric centre
 };
@@ -62,62 +62,68 @@ inline ContactLaw<double> contact_law(const RobotModel& model) {
 // On the level floor.
 template <typename T>
 WheelMotion<T> wheel_motion(const ContactLaw<T>& law, const BodyVelocity<T>& v,
-                            const std::array<T, kWheels>& omega_wheel_rad_s) {
+                            const PerWheel<T>& omega_wheel_rad_s) {
   WheelMotion<T> m;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  each_wheel(law.geometry.wheels, [&](std::size_t i) {
     m.drive_speed_m_s[i] = rim_speed_m_s(law.geometry, i, v);
     m.roller_speed_m_s[i] = roller_speed_m_s(law.geometry, i, v);
     m.rim_speed_m_s[i] = law.geometry.wheel_radius_m * omega_wheel_rad_s[i];
-  }
+  });
   return m;
 }
 
-// Of four wheels at once. Divisions take most of a contact's time; in pairs they cost half, with the same bits.
+// Of all wheels at once. Divisions take most of a contact's time; in pairs they cost half, with the same bits. Where the
+// count is odd, the divisor behind the last wheel's is 1.
 template <typename T>
-std::array<T, kWheels> quotients(const std::array<T, kWheels>& a, const std::array<T, kWheels>& b) {
-  std::array<T, kWheels> out;
+[[gnu::always_inline]] inline PerWheel<T> quotients(std::size_t wheels, const PerWheel<T>& a, PerWheel<T> b) {
+  PerWheel<T> out;
   if constexpr (std::is_same_v<T, double>) {
     using Pair [[gnu::vector_size(16)]] = double;
-    for (std::size_t i = 0; i < kWheels; i += 2) {
+    if (wheels % 2 != 0) b[wheels] = 1.0;
+    each_wheel((wheels + 1) / 2 * 2, [&](std::size_t i) {
+      if (i % 2 != 0) return;
       const Pair q = Pair{a[i], a[i + 1]} / Pair{b[i], b[i + 1]};
       out[i] = q[0];
       out[i + 1] = q[1];
-    }
+    });
   } else {
-    for (std::size_t i = 0; i < kWheels; ++i) out[i] = a[i] / b[i];
+    each_wheel(wheels, [&](std::size_t i) { out[i] = a[i] / b[i]; });
   }
   return out;
 }
 template <typename T>
-std::array<T, kWheels> quotients(const std::array<T, kWheels>& a, const T& b) {
-  return quotients(a, std::array<T, kWheels>{b, b, b, b});
+[[gnu::always_inline]] inline PerWheel<T> quotients(std::size_t wheels, const PerWheel<T>& a, const T& b) {
+  PerWheel<T> all;
+  all.fill(b);
+  return quotients(wheels, a, all);
 }
 
 // Force over load, signed, per wheel; fills the slips.
 template <typename T>
 struct WheelGrip {
-  std::array<T, kWheels> longitudinal_ratio{};
-  std::array<T, kWheels> lateral_ratio{};
+  PerWheel<T> longitudinal_ratio{};
+  PerWheel<T> lateral_ratio{};
 };
 
 template <typename T>
 WheelGrip<T> wheel_grip(const ContactLaw<T>& law, const WheelMotion<T>& m, WheelContacts<T>& out) {
-  std::array<T, kWheels> slides, scale_along, scale_across;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  const std::size_t wheels = law.geometry.wheels;
+  PerWheel<T> slides{}, scale_along, scale_across;
+  each_wheel(wheels, [&](std::size_t i) {
     slides[i] = m.drive_speed_m_s[i] - m.rim_speed_m_s[i];
     scale_along[i] = slip_scale_m_s(m.drive_speed_m_s[i], m.rim_speed_m_s[i], law.slip_speed_floor_m_s);
     scale_across[i] = slip_scale_m_s(m.roller_speed_m_s[i], T(0), law.slip_speed_floor_m_s);
-  }
-  const std::array<T, kWheels> along = quotients(slides, scale_along),
-                               across = quotients(m.roller_speed_m_s, scale_across),
-                               x_along = quotients(along, T(law.longitudinal.extremum_slip)),
-                               x_across = quotients(across, T(law.lateral.extremum_slip));
+  });
+  const PerWheel<T> along = quotients(wheels, slides, scale_along),
+                    across = quotients(wheels, m.roller_speed_m_s, scale_across),
+                    x_along = quotients(wheels, along, T(law.longitudinal.extremum_slip)),
+                    x_across = quotients(wheels, across, T(law.lateral.extremum_slip));
   WheelGrip<T> g;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  each_wheel(wheels, [&](std::size_t i) {
     out.slip_longitudinal_ratio[i] = along[i];
     g.longitudinal_ratio[i] = -grip_at(law.longitudinal, along[i], x_along[i]);
     g.lateral_ratio[i] = -grip_at(law.lateral, across[i], x_across[i]);
-  }
+  });
   return g;
 }
 
@@ -125,7 +131,7 @@ WheelGrip<T> wheel_grip(const ContactLaw<T>& law, const WheelMotion<T>& m, Wheel
 template <typename T>
 void apply_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T>& out) {
   out.force_x_N = out.force_y_N = out.moment_z_Nm = T(0);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  each_wheel(law.geometry.wheels, [&](std::size_t i) {
     const T f = g.longitudinal_ratio[i] * out.load_N[i];
     const T s = g.lateral_ratio[i] * out.load_N[i];
     out.force_longitudinal_N[i] = f;
@@ -133,7 +139,7 @@ void apply_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<
     out.force_x_N += -law.geometry.sin_angle[i] * f + law.geometry.cos_angle[i] * s;
     out.force_y_N += law.geometry.cos_angle[i] * f + law.geometry.sin_angle[i] * s;
     out.moment_z_Nm += law.geometry.wheel_center_radius_m * f;
-  }
+  });
 }
 
 // Loads by the law of wheel_load.h, transfer included; with a further horizontal force of the floor, if any.
@@ -142,7 +148,8 @@ void find_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T
                 const T& added_x_N = T(0), const T& added_y_N = T(0)) {
   // (1 - G K) F = G N_rest + F_added
   T a = T(1), b = T(0), c = T(0), d = T(1), right_x = added_x_N, right_y = added_y_N;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  const std::size_t wheels = law.geometry.wheels;
+  each_wheel(wheels, [&](std::size_t i) {
     const T gx =
         -law.geometry.sin_angle[i] * g.longitudinal_ratio[i] + law.geometry.cos_angle[i] * g.lateral_ratio[i];
     const T gy =
@@ -153,17 +160,17 @@ void find_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T
     d -= gy * law.load.per_force_y_ratio[i];
     right_x += gx * law.load.at_rest_N[i];
     right_y += gy * law.load.at_rest_N[i];
-  }
+  });
   const T determinant = a * d - b * c;
   const T force_x_N = (d * right_x - b * right_y) / determinant;
   const T force_y_N = (a * right_y - c * right_x) / determinant;
   T part = T(1);  // of the transfer that the lightest wheel allows
-  std::array<T, kWheels> change_N;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  PerWheel<T> change_N;
+  each_wheel(wheels, [&](std::size_t i) {
     change_N[i] = law.load.transfer(i, force_x_N, force_y_N);
     if (law.load.at_rest_N[i] + part * change_N[i] < T(0)) part = -law.load.at_rest_N[i] / change_N[i];
-  }
-  for (std::size_t i = 0; i < kWheels; ++i) out.load_N[i] = law.load.at_rest_N[i] + part * change_N[i];
+  });
+  each_wheel(wheels, [&](std::size_t i) { out.load_N[i] = law.load.at_rest_N[i] + part * change_N[i]; });
 }
 
 template <typename T>
@@ -176,11 +183,11 @@ WheelContacts<T> contact_forces(const ContactLaw<T>& law, const WheelMotion<T>& 
 }
 
 // Wheels in the air: nothing acts on them; the sums are those of the others.
-inline void lift_wheels(const ContactLaw<double>& law, const std::array<bool, kWheels>& lifted,
+inline void lift_wheels(const ContactLaw<double>& law, const PerWheel<bool>& lifted,
                         WheelContacts<double>& c) {
-  if (!(lifted[0] || lifted[1] || lifted[2] || lifted[3])) return;
+  if (lifted == PerWheel<bool>{}) return;
   c.force_x_N = c.force_y_N = c.moment_z_Nm = 0.0;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < law.geometry.wheels; ++i) {
     double& f = c.force_longitudinal_N[i];
     double& s = c.force_lateral_N[i];
     if (lifted[i]) f = s = c.load_N[i] = 0.0;
@@ -193,7 +200,7 @@ inline void lift_wheels(const ContactLaw<double>& law, const std::array<bool, kW
 // Same with loads that something else knows (springs of the free body).
 template <typename T>
 WheelContacts<T> contact_forces_at(const ContactLaw<T>& law, const WheelMotion<T>& motion,
-                                   const std::array<T, kWheels>& load_N) {
+                                   const PerWheel<T>& load_N) {
   WheelContacts<T> out;
   const WheelGrip<T> g = wheel_grip(law, motion, out);
   out.load_N = load_N;

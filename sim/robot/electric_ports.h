@@ -6,6 +6,7 @@
 #include <array>
 
 #include "firmware_iface/robot_io.h"
+#include "sim/robot/per_wheel.h"
 
 namespace omnihil {
 
@@ -25,8 +26,8 @@ struct EnergyBook {
 
 // What no sensor of the robot shows. All zero for a robot without electrics of its own.
 struct ElectricTruth {
-  std::array<std::array<double, kLegs>, kWheels> phase_current_A{};
-  std::array<double, kWheels> winding_K{}, housing_K{};  // over ambient
+  PerWheel<std::array<double, kLegs>> phase_current_A{};
+  PerWheel<double> winding_K{}, housing_K{};  // over ambient
   double bus_voltage_V = 0.0;
   double battery_charge_C = 0.0;
   double in_inductances_J = 0.0;

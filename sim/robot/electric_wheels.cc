@@ -33,7 +33,7 @@ ElectricWheels::ElectricWheels(const RobotModel& model, double electrical_step_s
                                std::uint64_t seed, std::size_t robot)
     : model_(model),
       electric_(electrics_of(model)),
-      wheels_(kWheels, WheelElectrics(model, electrical_step_s)),
+      wheels_(model.wheels, WheelElectrics(model, electrical_step_s)),
       step_s_(step_s),
       seed_(seed),
       robot_(robot) {
@@ -60,7 +60,7 @@ void ElectricWheels::set_faults(const RobotFaults& faults, const RobotFaults& be
                                 ElectricMemory& memory) const {
   memory.supply_ratio = faults.supply_ratio;
   memory.encoder_stuck = faults.encoder_stuck;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
     if (faults.winding_rise_K[i] == before.winding_rise_K[i]) continue;
     memory.wheel[i].rise.winding_K = faults.winding_rise_K[i];
   }
@@ -72,7 +72,7 @@ double ElectricWheels::motor_current_A(const ElectricMemory& memory, std::size_t
 
 ElectricTruth ElectricWheels::truth(const ElectricMemory& memory) const {
   ElectricTruth t;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const WheelElectricState& x = memory.wheel[i];
     t.phase_current_A[i] = wheels_[i].phase_current_A(x);
     t.winding_K[i] = x.rise.winding_K;
@@ -153,12 +153,12 @@ double ElectricWheels::measured_A(const PeriodSample& sample, std::size_t wheel,
   return input_V / (s.shunt_ohm * s.amplifier_gain);
 }
 
-void ElectricWheels::see(ElectricMemory& memory, const std::array<PeriodSample, kWheels>& samples,
+void ElectricWheels::see(ElectricMemory& memory, const PerWheel<PeriodSample>& samples,
                          std::int64_t at_ns) const {
   MotorSensors& seen = memory.seen;
   seen.now_ns = static_cast<std::uint64_t>(at_ns);
   seen.bus_voltage_V = memory.at_bridges_V();
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const PeriodSample& sample = samples[i];
     for (std::size_t x = 0; x < kLegs; ++x) seen.phase_current_A[i][x] = measured_A(sample, i, x, at_ns);
     seen.hall_code[i] = static_cast<std::uint32_t>(hall(i, sample.theta_rotor_rad, at_ns));
@@ -171,11 +171,10 @@ void ElectricWheels::see(ElectricMemory& memory, const std::array<PeriodSample, 
   }
 }
 
-void ElectricWheels::begin_step(ElectricMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
-                                std::int64_t now_ns, MotorControl* control,
-                                std::array<WheelStep, kWheels>& steps) {
-  std::array<StepIntegrals, kWheels> integrals;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+void ElectricWheels::begin_step(ElectricMemory& memory, const PerWheel<WheelDriveInput>& inputs,
+                                std::int64_t now_ns, MotorControl* control, PerWheel<WheelStep>& steps) {
+  PerWheel<StepIntegrals> integrals;
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
     WheelElectricState& x = memory.wheel[i];
     x.omega_rotor_rad_s = integrals[i].start_rad_s = model_.gear_ratio * inputs[i].omega_wheel_rad_s;
     x.theta_rotor_rad = model_.gear_ratio * inputs[i].theta_wheel_rad;
@@ -183,12 +182,12 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const std::array<WheelDr
     wheels_[i].keep_warm(x);
   }
   const double period_s = wheels_.front().period_s();
-  std::array<PeriodSample, kWheels> samples;
+  PerWheel<PeriodSample> samples;
   for (int n = 0; n < periods_; ++n) {
     const std::int64_t begin_ns = now_ns + whole_ns(n * period_s);
     double bus_charge_C = memory.other_current_A * period_s;
     memory.book.bus_J += bus_charge_C * memory.at_bridges_V();
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < wheels_.size(); ++i) {
       const PeriodFlow f = advance_wheel(memory, i, inputs[i], begin_ns, integrals[i]);
       samples[i] = f.sample;
       bus_charge_C += f.bus_charge_C;
@@ -202,7 +201,7 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const std::array<WheelDr
     see(memory, samples, begin_ns + whole_ns(electric_.current_sample_ratio * period_s));
     if (control != nullptr) memory.legs = control->motor_tick(memory.seen);
   }
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
     WheelElectricState& x = memory.wheel[i];
     WheelStep step;
     step.drive.mean_torque_Nm = integrals[i].impulse_Nm_s / step_s_;

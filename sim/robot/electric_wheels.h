@@ -1,4 +1,4 @@
-// Four wheels of one robot whose electrics are more than a DC-equivalent motor on a constant bus: three-phase
+// The wheels of one robot whose electrics are more than a DC-equivalent motor on a constant bus: three-phase
 // drives, a battery, warm windings. Period by period of the drive, all wheels on one bus.
 //
 //   ElectricWheels wheels(model, electrical_step_s, step_s, seed, robot);
@@ -9,7 +9,7 @@
 //
 // Law: within a mechanical step the floor's torque of its start is held. Per period (PWM period with three
 //   phases, electrical sub-step without): each winding by wheel_electrics.h at the bus voltage of the
-//   period's start; then the bus by supply.h with the current of all four. Dry friction acts per period: a
+//   period's start; then the bus by supply.h with the current of all wheels. Dry friction acts per period: a
 //   rotor at rest is held while |motor + floor| <= level (motor: mean of the period before); one that passes
 //   zero stops there. The mechanics gets, as constant torque of the step, the one that gives the rotor the
 //   change of speed it had:  T = J (omega_end - omega_start) / h + floor + b mean omega.
@@ -33,13 +33,13 @@ namespace omnihil {
 
 // Plain bytes.
 struct ElectricMemory {
-  std::array<WheelElectricState, kWheels> wheel{};
+  PerWheel<WheelElectricState> wheel{};
   SupplyState<double> supply{};
   MotorSensors seen{};  // in the last period
   MotorDrive legs{};    // in force
   EnergyBook book{};
   double supply_ratio = 1.0;  // robot_faults.h
-  std::array<bool, kWheels> encoder_stuck{};
+  PerWheel<bool> encoder_stuck{};
   double other_current_A = 0.0;  // on the bus beside the wheels: dribbler, the kicker's charger
 
   double at_bridges_V() const { return supply_ratio * supply.bus_voltage_V; }
@@ -55,8 +55,8 @@ class ElectricWheels {
   // `before` is left to the heat model.
   void set_faults(const RobotFaults& faults, const RobotFaults& before, ElectricMemory& memory) const;
   // `control` may be null: the legs of memory stay in force.
-  void begin_step(ElectricMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
-                  std::int64_t now_ns, MotorControl* control, std::array<WheelStep, kWheels>& steps);
+  void begin_step(ElectricMemory& memory, const PerWheel<WheelDriveInput>& inputs, std::int64_t now_ns,
+                  MotorControl* control, PerWheel<WheelStep>& steps);
   double end_wheel(std::size_t wheel, const WheelStep& step, double omega_wheel_before_rad_s,
                    double omega_wheel_after_rad_s) const;
   ElectricTruth truth(const ElectricMemory& memory) const;
@@ -67,8 +67,7 @@ class ElectricWheels {
   PeriodFlow advance_wheel(ElectricMemory& memory, std::size_t wheel, const WheelDriveInput& in,
                            std::int64_t now_ns, StepIntegrals& integrals) const;
   void advance_bus(ElectricMemory& memory, double bus_charge_C) const;
-  void see(ElectricMemory& memory, const std::array<PeriodSample, kWheels>& samples,
-           std::int64_t at_ns) const;
+  void see(ElectricMemory& memory, const PerWheel<PeriodSample>& samples, std::int64_t at_ns) const;
   double measured_A(const PeriodSample& sample, std::size_t wheel, std::size_t phase,
                     std::int64_t at_ns) const;
   int hall(std::size_t wheel, double theta_rotor_rad, std::int64_t at_ns) const;
@@ -81,7 +80,7 @@ class ElectricWheels {
   double step_s_ = 0.0;
   std::uint64_t seed_ = 0;
   std::size_t robot_ = 0;
-  std::array<double, kWheels> friction_Nm_{};  // level of the last step
+  PerWheel<double> friction_Nm_{};  // level of the last step
 };
 
 }  // namespace omnihil

@@ -105,8 +105,7 @@ void FloorEffects::ask_body(const FloorState& state, FloorForces& more) const {
 }
 
 WheelContacts<double> FloorEffects::contacts(const ContactLaw<double>& law, const WheelMotion<double>& motion,
-                                             const FloorState& state,
-                                             const std::array<double, kWheels>* load_N,
+                                             const FloorState& state, const PerWheel<double>* load_N,
                                              FloorForces& more) const {
   ask_body(state, more);
   if (effects_->contact.empty()) {
@@ -117,7 +116,7 @@ WheelContacts<double> FloorEffects::contacts(const ContactLaw<double>& law, cons
   WheelContacts<double> out;
   WheelGrip<double> g;
   WheelMotion<double> m = motion;
-  std::array<Wheel, kWheels> wheels;
+  PerWheel<Wheel> wheels{};
   const auto drive_force = [&](std::size_t i, double& x_N, double& y_N) {
     const Wheel& w = wheels[i];
     x_N +=
@@ -125,7 +124,7 @@ WheelContacts<double> FloorEffects::contacts(const ContactLaw<double>& law, cons
     y_N += law.geometry.cos_angle[i] * w.force_longitudinal_N + law.geometry.sin_angle[i] * w.force_lateral_N;
   };
   double added_x_N = 0.0, added_y_N = 0.0;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < law.geometry.wheels; ++i) {
     const Wheel& w = wheels[i] =
         ask(i, motion, state, load_N != nullptr ? (*load_N)[i] : law.load.at_rest_N[i]);
     m.rim_speed_m_s[i] = w.radius_m * state.omega_wheel_rad_s[i];
@@ -141,10 +140,10 @@ WheelContacts<double> FloorEffects::contacts(const ContactLaw<double>& law, cons
     out.load_N = *load_N;
   } else {
     find_loads(law, g, out, added_x_N, added_y_N);
-    for (std::size_t i = 0; i < kWheels; ++i) wheels[i] = ask(i, motion, state, out.load_N[i]);
+    for (std::size_t i = 0; i < law.geometry.wheels; ++i) wheels[i] = ask(i, motion, state, out.load_N[i]);
   }
   apply_loads(law, g, out);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < law.geometry.wheels; ++i) {
     const Wheel& w = wheels[i];
     more.wheel_radius_m[i] = w.radius_m;
     more.friction_wheel_Nm[i] = w.friction_Nm;

@@ -29,14 +29,14 @@ class EffectSet;
 struct FloorState {
   double yaw_rad = 0.0;
   BodyVelocity<double> velocity;
-  std::array<double, kWheels> omega_wheel_rad_s{};
-  std::array<double, kWheels> theta_wheel_rad{};
+  PerWheel<double> omega_wheel_rad_s{};
+  PerWheel<double> theta_wheel_rad{};
 };
 
 // What comes besides the forces of WheelContacts.
 struct FloorForces {
-  std::array<double, kWheels> wheel_radius_m{};
-  std::array<double, kWheels> friction_wheel_Nm{};  // level that opposes rolling; the drive takes it
+  PerWheel<double> wheel_radius_m{};
+  PerWheel<double> friction_wheel_Nm{};  // level that opposes rolling; the drive takes it
   double body_force_x_N = 0.0, body_force_y_N = 0.0, body_moment_z_Nm = 0.0;  // at the geometric centre
 };
 
@@ -49,7 +49,7 @@ class FloorEffects {
 
   // load_N: known loads, or null for those of wheel_load.h.
   WheelContacts<double> contacts(const ContactLaw<double>& law, const WheelMotion<double>& motion,
-                                 const FloorState& state, const std::array<double, kWheels>* load_N,
+                                 const FloorState& state, const PerWheel<double>* load_N,
                                  FloorForces& more) const;
 
   double dribbler_rad_s = 0.0;  // held over a mechanical step

@@ -1,4 +1,4 @@
-// Eq. (5): wheel speeds of a body velocity and back, for any four wheel angles.
+// Eq. (5): wheel speeds of a body velocity and back, for any two to six wheel angles.
 //
 //   WheelGeometry<double> g = wheel_geometry(model);
 //   auto omega_wheel_rad_s = wheel_speeds(g, {.v_forward_m_s = 1, .v_left_m_s = 0, .omega_body_rad_s = 0});
@@ -15,17 +15,31 @@
 // centre.
 #pragma once
 #include <Eigen/LU>
-#include <array>
 #include <cmath>
+#include <type_traits>
 
+#include "sim/law/scalar.h"
 #include "sim/robot/robot_model.h"
 
 namespace omnihil {
 
+// A row of three per wheel. Rows: four, or Eigen::Dynamic for any other number.
+template <typename T, int Rows>
+using WheelRows = Eigen::Matrix<T, Rows, 3, Eigen::ColMajor,
+                                Rows == Eigen::Dynamic ? static_cast<int>(kMaxWheels) : Rows, 3>;
+
+// f(std::integral_constant<int, Rows>()): of four wheels with their number known.
+template <typename F>
+decltype(auto) with_wheel_rows(std::size_t count, F&& f) {
+  if (count == 4) return f(std::integral_constant<int, 4>());
+  return f(std::integral_constant<int, Eigen::Dynamic>());
+}
+
 template <typename T>
 struct WheelGeometry {
-  std::array<T, kWheels> cos_angle{};
-  std::array<T, kWheels> sin_angle{};
+  std::size_t wheels = kWheels;
+  PerWheel<T> cos_angle{};
+  PerWheel<T> sin_angle{};
   T wheel_center_radius_m{};  // R_b
   T wheel_radius_m{};         // r
 };
@@ -40,7 +54,8 @@ struct BodyVelocity {
 
 inline WheelGeometry<double> wheel_geometry(const RobotModel& model) {
   WheelGeometry<double> g;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  g.wheels = model.wheels;
+  for (std::size_t i = 0; i < g.wheels; ++i) {
     g.cos_angle[i] = std::cos(model.wheel_angle_rad[i]);
     g.sin_angle[i] = std::sin(model.wheel_angle_rad[i]);
   }
@@ -64,18 +79,18 @@ T roller_speed_m_s(const WheelGeometry<T>& g, std::size_t i, const BodyVelocity<
 
 // Eq. (5), corrected.
 template <typename T>
-std::array<T, kWheels> wheel_speeds(const WheelGeometry<T>& g, const BodyVelocity<T>& v) {
-  std::array<T, kWheels> omega_wheel_rad_s;
-  for (std::size_t i = 0; i < kWheels; ++i) omega_wheel_rad_s[i] = rim_speed_m_s(g, i, v) / g.wheel_radius_m;
+PerWheel<T> wheel_speeds(const WheelGeometry<T>& g, const BodyVelocity<T>& v) {
+  PerWheel<T> omega_wheel_rad_s{};
+  for (std::size_t i = 0; i < g.wheels; ++i) omega_wheel_rad_s[i] = rim_speed_m_s(g, i, v) / g.wheel_radius_m;
   return omega_wheel_rad_s;
 }
 
-// Rows (-sin a_i, cos a_i, R_b): rim speeds of a body velocity. Rank 3 unless all four axles are parallel
-// or R_b is zero.
-template <typename T>
-Eigen::Matrix<T, kWheels, 3> rim_matrix(const WheelGeometry<T>& g) {
-  Eigen::Matrix<T, kWheels, 3> m;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+// Rows (-sin a_i, cos a_i, R_b): rim speeds of a body velocity. Rank 3 unless all axles are parallel (rank 2: a
+// differential drive) or R_b is zero. Rows: four, or Eigen::Dynamic for any number.
+template <int Rows, typename T>
+WheelRows<T, Rows> rim_matrix_of(const WheelGeometry<T>& g) {
+  WheelRows<T, Rows> m(static_cast<Eigen::Index>(g.wheels), 3);
+  for (std::size_t i = 0; i < g.wheels; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     m(row, 0) = -g.sin_angle[i];
     m(row, 1) = g.cos_angle[i];
@@ -83,19 +98,56 @@ Eigen::Matrix<T, kWheels, 3> rim_matrix(const WheelGeometry<T>& g) {
   }
   return m;
 }
-
-// The body velocity whose rim speeds come closest to the wheels' (least squares; four equations for three).
 template <typename T>
-BodyVelocity<T> body_velocity(const WheelGeometry<T>& g, const std::array<T, kWheels>& omega_wheel_rad_s) {
-  const Eigen::Matrix<T, kWheels, 3> m = rim_matrix(g);
-  Eigen::Matrix<T, kWheels, 1> rim;
-  for (std::size_t i = 0; i < kWheels; ++i) {
-    rim(static_cast<Eigen::Index>(i)) = g.wheel_radius_m * omega_wheel_rad_s[i];
+WheelRows<T, Eigen::Dynamic> rim_matrix(const WheelGeometry<T>& g) {
+  return rim_matrix_of<Eigen::Dynamic>(g);
+}
+
+// All axles lie on one line through the centre: these wheels ask for nothing along it, and carry nothing across it.
+template <typename T>
+bool axles_are_parallel(const WheelGeometry<T>& g) {
+  // sine of 1/20 degree: no wheel is mounted truer
+  constexpr double kParallel = 1e-3;
+  for (std::size_t i = 1; i < g.wheels; ++i) {
+    const double across = value_of(g.sin_angle[i]) * value_of(g.cos_angle[0]) -
+                          value_of(g.cos_angle[i]) * value_of(g.sin_angle[0]);
+    if (std::abs(across) > kParallel) return false;
   }
-  const Eigen::Matrix<T, 3, 3> normal = m.transpose() * m;
-  const Eigen::Matrix<T, 3, 1> right = m.transpose() * rim;
-  const Eigen::Matrix<T, 3, 1> v = normal.inverse() * right;
-  return {v(0), v(1), v(2)};
+  return true;
+}
+
+// The inverse of `normal`; where the unit vector (x, y) of its rows `first` and on lies in its kernel, the pseudo-inverse:
+// A+ = (A + n n')^-1 - n n'.
+template <typename T>
+Eigen::Matrix<T, 3, 3> inverse_without(const Eigen::Matrix<T, 3, 3>& normal, Eigen::Index first, const T& x,
+                                       const T& y) {
+  Eigen::Matrix<T, 3, 1> n = Eigen::Matrix<T, 3, 1>::Zero();
+  n(first) = x;
+  n(first + 1) = y;
+  const Eigen::Matrix<T, 3, 3> kernel = n * n.transpose();
+  const Eigen::Matrix<T, 3, 3> full = normal + kernel;
+  return full.inverse() - kernel;
+}
+
+// The body velocity whose rim speeds come closest to the wheels' (least squares); nothing along axles that are all
+// parallel.
+template <typename T>
+BodyVelocity<T> body_velocity(const WheelGeometry<T>& g, const PerWheel<T>& omega_wheel_rad_s) {
+  return with_wheel_rows(g.wheels, [&](auto rows) {
+    const auto m = rim_matrix_of<rows()>(g);
+    Eigen::Matrix<T, decltype(m)::RowsAtCompileTime, 1, 0, decltype(m)::MaxRowsAtCompileTime, 1> rim(
+        m.rows());
+    for (std::size_t i = 0; i < g.wheels; ++i) {
+      rim(static_cast<Eigen::Index>(i)) = g.wheel_radius_m * omega_wheel_rad_s[i];
+    }
+    const Eigen::Matrix<T, 3, 3> normal = m.transpose() * m;
+    const Eigen::Matrix<T, 3, 1> right = m.transpose() * rim;
+    const Eigen::Matrix<T, 3, 3> inverse = axles_are_parallel(g)
+                                               ? inverse_without<T>(normal, 0, g.cos_angle[0], g.sin_angle[0])
+                                               : Eigen::Matrix<T, 3, 3>(normal.inverse());
+    const Eigen::Matrix<T, 3, 1> v = inverse * right;
+    return BodyVelocity<T>{v(0), v(1), v(2)};
+  });
 }
 
 }  // namespace omnihil

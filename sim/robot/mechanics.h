@@ -7,12 +7,14 @@
 //   back.accelerations(torques, part, udot); // at that state, with these torques at that part of the step
 //   back.position_rates(q, u, qdot);         // dq/dt = N(q) u, for any q and u
 //
-// State of one robot: q = (pose, wheel angles 0..3), u = (body speeds, wheel speeds 0..3).
+// State of one robot: q = (pose, wheel angles), u = (body speeds, wheel speeds); as many wheels as the robot with the
+// most has, so that all robots take the same room.
 //   planar joint:  pose yaw, x, y;                     speeds yaw rate, v_x, v_y in the field frame W
 //   free body:     pose quaternion (w, x, y, z), x, y, z; speeds omega_W, v_W
 #pragma once
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "sim/robot/contact.h"
 
@@ -25,8 +27,14 @@ struct StateLayout {
   std::size_t wheel_u = 0;
 };
 
-inline constexpr StateLayout kPlanarLayout{7, 7, 3, 3};
-inline constexpr StateLayout kFreeLayout{11, 10, 7, 6};
+constexpr StateLayout planar_layout(std::size_t wheels) { return {3 + wheels, 3 + wheels, 3, 3}; }
+constexpr StateLayout free_layout(std::size_t wheels) { return {7 + wheels, 6 + wheels, 7, 6}; }
+
+inline std::size_t most_wheels(const std::vector<RobotModel>& robots) {
+  std::size_t most = 0;
+  for (const RobotModel& m : robots) most = m.wheels > most ? m.wheels : most;
+  return most;
+}
 
 // Where in a mechanical step a torque is wanted. kHeld: its mean, for integrators that look once per step.
 enum class StepPart : std::size_t { kStart = 0, kMiddle = 1, kEnd = 2, kHeld = 3 };
@@ -46,7 +54,7 @@ struct WheelTorque {
     return torque_Nm[n] - slope_Nm_s_per_rad * (omega_rotor_rad_s - omega_rad_s[n]);
   }
 };
-using WheelTorques = std::array<WheelTorque, kWheels>;  // of one robot
+using WheelTorques = PerWheel<WheelTorque>;  // of one robot
 
 struct BodyMotion {
   double x_m = 0, y_m = 0, yaw_rad = 0;

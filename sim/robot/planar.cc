@@ -19,7 +19,7 @@ BodyVelocity<double> in_body(const double* u, double cos_yaw, double sin_yaw) {
 
 PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots,
                                  const std::vector<const FloorEffects*>& effects)
-    : u_(robots.size() * kPlanarLayout.u_per_robot) {
+    : layout_(planar_layout(most_wheels(robots))), u_(robots.size() * layout_.u_per_robot) {
   for (const RobotModel& m : robots) {
     Robot r;
     r.law = contact_law(m);
@@ -31,12 +31,18 @@ PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots,
   }
 }
 
+PerWheel<double> PlanarMechanics::wheels_of(const Robot& r, const double* first) {
+  PerWheel<double> out{};
+  each_wheel(r.law.geometry.wheels, [&](std::size_t i) { out[i] = first[i]; });
+  return out;
+}
+
 [[gnu::flatten]] void PlanarMechanics::set_state(const std::vector<double>& q, const std::vector<double>& u) {
   std::ranges::copy(u, u_.begin());
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     Robot& r = robots_[n];
-    const double* qr = q.data() + n * kPlanarLayout.q_per_robot;
-    const double* ur = u.data() + n * kPlanarLayout.u_per_robot;
+    const double* qr = q.data() + n * layout_.q_per_robot;
+    const double* ur = u.data() + n * layout_.u_per_robot;
     if (std::bit_cast<std::uint64_t>(qr[0]) !=
         std::bit_cast<std::uint64_t>(r.yaw_rad)) {  // a step begins where the one before was looked at
       r.yaw_rad = qr[0];
@@ -44,12 +50,12 @@ PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots,
     }
     r.omega_body_rad_s = ur[0];
     const BodyVelocity<double> velocity = in_body(ur, r.cos_yaw, r.sin_yaw);
-    const std::array<double, kWheels> omega_wheel{ur[3], ur[4], ur[5], ur[6]};
+    const PerWheel<double> omega_wheel = wheels_of(r, ur + layout_.wheel_u);
     const WheelMotion<double> motion = wheel_motion(r.law, velocity, omega_wheel);
     if (r.effects == nullptr) {
       r.contacts = contact_forces(r.law, motion);
     } else {
-      const FloorState state{qr[0], velocity, omega_wheel, {qr[3], qr[4], qr[5], qr[6]}};
+      const FloorState state{qr[0], velocity, omega_wheel, wheels_of(r, qr + layout_.wheel_q)};
       r.contacts = r.effects->contacts(r.law, motion, state, nullptr, r.more);
     }
     lift_wheels(r.law, r.lifted, r.contacts);
@@ -67,19 +73,19 @@ void PlanarMechanics::accelerations(const std::vector<WheelTorques>& torques, St
                                  c.force_y_N + r.more.body_force_y_N, c.moment_z_Nm + r.more.body_moment_z_Nm,
                                  r.omega_body_rad_s)
              : body_acceleration(r.body, c.force_x_N, c.force_y_N, c.moment_z_Nm, r.omega_body_rad_s);
-    double* out = udot.data() + n * kPlanarLayout.u_per_robot;
+    double* out = udot.data() + n * layout_.u_per_robot;
     out[0] = a.yaw_rad_s2;
     out[1] = r.cos_yaw * a.x_m_s2 - r.sin_yaw * a.y_m_s2;
     out[2] = r.sin_yaw * a.x_m_s2 + r.cos_yaw * a.y_m_s2;
-    const double* omega_wheel = u_.data() + n * kPlanarLayout.u_per_robot + kPlanarLayout.wheel_u;
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    const double* omega_wheel = u_.data() + n * layout_.u_per_robot + layout_.wheel_u;
+    each_wheel(r.law.geometry.wheels, [&](std::size_t i) {
       const double radius_m = more ? r.more.wheel_radius_m[i] : r.law.geometry.wheel_radius_m;
       // J domega/dt = gear tau_rotor - gear^2 b omega - r F
       const double torque_Nm = r.gear_ratio * torques[n][i].at(part, r.gear_ratio * omega_wheel[i]) -
                                r.wheel_viscous_Nm_s_per_rad * omega_wheel[i] -
                                radius_m * c.force_longitudinal_N[i];
-      out[kPlanarLayout.wheel_u + i] = torques[n][i].locked ? 0.0 : torque_Nm * r.body.inverse_spin_inertia;
-    }
+      out[layout_.wheel_u + i] = torques[n][i].locked ? 0.0 : torque_Nm * r.body.inverse_spin_inertia;
+    });
   }
 }
 
@@ -90,8 +96,8 @@ void PlanarMechanics::position_rates(const std::vector<double>&, const std::vect
 
 BodyMotion PlanarMechanics::motion(const std::vector<double>& q, const std::vector<double>& u,
                                    std::size_t robot) const {
-  const double* qr = q.data() + robot * kPlanarLayout.q_per_robot;
-  const double* ur = u.data() + robot * kPlanarLayout.u_per_robot;
+  const double* qr = q.data() + robot * layout_.q_per_robot;
+  const double* ur = u.data() + robot * layout_.u_per_robot;
   return {.x_m = qr[1],
           .y_m = qr[2],
           .yaw_rad = qr[0],
@@ -100,9 +106,9 @@ BodyMotion PlanarMechanics::motion(const std::vector<double>& q, const std::vect
 
 void PlanarMechanics::place(std::vector<double>& q, std::vector<double>& u, std::size_t robot, double x_m,
                             double y_m, double yaw_rad) const {
-  double* qr = q.data() + robot * kPlanarLayout.q_per_robot;
-  std::fill_n(qr, kPlanarLayout.q_per_robot, 0.0);
-  std::fill_n(u.data() + robot * kPlanarLayout.u_per_robot, kPlanarLayout.u_per_robot, 0.0);
+  double* qr = q.data() + robot * layout_.q_per_robot;
+  std::fill_n(qr, layout_.q_per_robot, 0.0);
+  std::fill_n(u.data() + robot * layout_.u_per_robot, layout_.u_per_robot, 0.0);
   qr[0] = yaw_rad;
   qr[1] = x_m;
   qr[2] = y_m;

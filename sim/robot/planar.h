@@ -18,9 +18,9 @@ class PlanarMechanics {
   explicit PlanarMechanics(const std::vector<RobotModel>& robots,
                            const std::vector<const FloorEffects*>& effects = {});
 
-  const StateLayout& layout() const { return kPlanarLayout; }
+  const StateLayout& layout() const { return layout_; }
   // Wheels that the floor does not reach, from the next set_state on.
-  void lift(std::size_t robot, const std::array<bool, kWheels>& lifted) { robots_[robot].lifted = lifted; }
+  void lift(std::size_t robot, const PerWheel<bool>& lifted) { robots_[robot].lifted = lifted; }
   void set_state(const std::vector<double>& q, const std::vector<double>& u);
   const WheelContacts<double>& contacts(std::size_t robot) const { return robots_[robot].contacts; }
   // Of a robot with effects only.
@@ -46,8 +46,11 @@ class PlanarMechanics {
     WheelContacts<double> contacts;
     const FloorEffects* effects = nullptr;
     FloorForces more;
-    std::array<bool, kWheels> lifted{};
+    PerWheel<bool> lifted{};
   };
+  static PerWheel<double> wheels_of(const Robot& r, const double* first);
+
+  StateLayout layout_;
   std::vector<Robot> robots_;
   std::vector<double> u_;  // current state
 };

@@ -1,5 +1,6 @@
 #include "sim/robot/plant.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "sim/drive/encoder.h"
@@ -10,13 +11,17 @@
 namespace omnihil {
 namespace {
 
-constexpr std::uint64_t kStateMark = 0x33544e414c504853;  // layout of save(), version 3
+constexpr std::uint64_t kStateMark = 0x34544e414c504853;  // layout of save(), version 4
 
-void keep_stuck_counts(RobotMemory& mem, RobotSensors& s) {
-  for (std::size_t i = 0; i < kWheels; ++i) {
+// The board's four are the first of all.
+PlantSensors with_stuck_counts(RobotMemory& mem, PlantSensors s) {
+  for (std::size_t i = 0; i < kMaxWheels; ++i) {
     if (mem.faults.encoder_stuck[i]) s.encoder_counts[i] = mem.counts_read[i];
     mem.counts_read[i] = s.encoder_counts[i];
   }
+  std::copy_n(s.encoder_counts.begin(), kWheels, s.board.encoder_counts);
+  std::copy_n(s.motor_current_A.begin(), kWheels, s.board.motor_current_A);
+  return s;
 }
 
 }  // namespace
@@ -40,7 +45,17 @@ void Plant::set_pose(int robot, double x_m, double y_m, double yaw_rad) {
 }
 
 void Plant::write(int robot, const RobotDrive& drive) {
-  impl_->memory[static_cast<std::size_t>(robot)].drive = drive;
+  RobotMemory& mem = impl_->memory[static_cast<std::size_t>(robot)];
+  mem.drive = drive;
+  std::copy_n(drive.mode, kWheels, mem.mode.begin());
+  std::copy_n(drive.duty_ratio, kWheels, mem.duty_ratio.begin());
+}
+
+void Plant::write_duties(int robot, const PerWheel<double>& duty_ratio) {
+  write(robot, {});
+  RobotMemory& mem = impl_->memory[static_cast<std::size_t>(robot)];
+  mem.mode.fill(OMNIHIL_DRIVE_DUTY);
+  mem.duty_ratio = duty_ratio;
 }
 
 void Plant::set_faults(int robot, const RobotFaults& faults) {
@@ -127,19 +142,18 @@ void Plant::set_other_current(int robot, double current_A) {
   impl_->electric_memory[static_cast<std::size_t>(robot)].other_current_A = current_A;
 }
 
-RobotSensors Plant::sample_sensors(int robot) {
+PlantSensors Plant::sample_all(int robot) {
   Impl& p = *impl_;
   const auto n = static_cast<std::size_t>(robot);
   const RobotModel& model = p.models[n];
   RobotMemory& mem = p.memory[n];
   if (p.effects[n]) {
-    RobotSensors s = read_sensors(*p.effects[n], p.effect_memory[n], p.histories[n], model, p.sensing(n));
-    keep_stuck_counts(mem, s);
-    return s;
+    return with_stuck_counts(
+        mem, read_sensors(*p.effects[n], p.effect_memory[n], p.histories[n], model, p.sensing(n)));
   }
-  RobotSensors s{};
-  s.now_us = static_cast<std::uint64_t>(p.now_ns / 1000);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  PlantSensors s;
+  s.board.now_us = static_cast<std::uint64_t>(p.now_ns / 1000);
+  for (std::size_t i = 0; i < model.wheels; ++i) {
     const double theta_rotor_rad = model.gear_ratio * p.wheel_angles(n)[i];
     if (std::isfinite(theta_rotor_rad)) s.encoder_counts[i] = encoder_counts(model.encoder, theta_rotor_rad);
     s.motor_current_A[i] = mem.current_steps > 0
@@ -147,15 +161,14 @@ RobotSensors Plant::sample_sensors(int robot) {
                                : mem.winding[i].current_A;
     mem.current_sum_A[i] = 0.0;
   }
-  keep_stuck_counts(mem, s);
   mem.current_steps = 0;
-  s.bus_voltage_V =
+  s.board.bus_voltage_V =
       p.electrics[n] ? p.electric_memory[n].at_bridges_V() : mem.faults.supply_ratio * model.bus_voltage_V;
-  s.gyro_z_rad_s =
+  s.board.gyro_z_rad_s =
       std::visit([&](const auto& m) { return m.motion(p.q, p.u, n).velocity.omega_body_rad_s; }, p.mechanics);
-  s.accel_x_m_s2 = mem.accel_x_m_s2;
-  s.accel_y_m_s2 = mem.accel_y_m_s2;
-  return s;
+  s.board.accel_x_m_s2 = mem.accel_x_m_s2;
+  s.board.accel_y_m_s2 = mem.accel_y_m_s2;
+  return with_stuck_counts(mem, s);
 }
 
 RobotTruth Plant::truth(int robot) const {
@@ -177,7 +190,7 @@ RobotTruth Plant::truth(int robot) const {
         t.load_N = c.load_N;
       },
       p.mechanics);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < p.wheels(n); ++i) {
     t.theta_wheel_rad[i] = p.wheel_angles(n)[i];
     t.omega_wheel_rad_s[i] = p.wheel_speeds_of(n)[i];
     t.omega_rotor_rad_s[i] = p.omega_rotor_rad_s(n, i);

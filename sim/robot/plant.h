@@ -58,16 +58,23 @@ struct PlantOptions {
 struct RobotTruth {
   double x_m = 0, y_m = 0, yaw_rad = 0;                            // geometric centre in W
   double v_forward_m_s = 0, v_left_m_s = 0, omega_body_rad_s = 0;  // of the geometric centre, in B
-  std::array<double, kWheels> theta_rotor_rad{};
-  std::array<double, kWheels> omega_rotor_rad_s{};
-  std::array<double, kWheels> theta_wheel_rad{};  // the rotor's over the gear, but for play and compliance
-  std::array<double, kWheels> omega_wheel_rad_s{};
-  std::array<double, kWheels> motor_current_A{};
-  std::array<double, kWheels> motor_torque_Nm{};          // at the rotor
-  std::array<double, kWheels> slip_longitudinal_ratio{};  // eq. (6), completed
-  std::array<double, kWheels> force_longitudinal_N{};     // floor on wheel, along the drive direction
-  std::array<double, kWheels> force_lateral_N{};
-  std::array<double, kWheels> load_N{};  // wheel load
+  PerWheel<double> theta_rotor_rad{};
+  PerWheel<double> omega_rotor_rad_s{};
+  PerWheel<double> theta_wheel_rad{};  // the rotor's over the gear, but for play and compliance
+  PerWheel<double> omega_wheel_rad_s{};
+  PerWheel<double> motor_current_A{};
+  PerWheel<double> motor_torque_Nm{};          // at the rotor
+  PerWheel<double> slip_longitudinal_ratio{};  // eq. (6), completed
+  PerWheel<double> force_longitudinal_N{};     // floor on wheel, along the drive direction
+  PerWheel<double> force_lateral_N{};
+  PerWheel<double> load_N{};  // wheel load
+};
+
+// What the sensors of one robot show, of all its wheels: `board` is what firmware knows of, the first four.
+struct PlantSensors {
+  RobotSensors board{};
+  PerWheel<std::int64_t> encoder_counts{};
+  PerWheel<double> motor_current_A{};
 };
 
 // What a camera sees of one robot: pose of the geometric centre in W, as old as effects of timing make it.
@@ -105,6 +112,8 @@ class Plant {
 
   void set_pose(int robot, double x_m, double y_m, double yaw_rad);  // at rest there
   void write(int robot, const RobotDrive& drive);
+  // All wheels of a robot of any number by duty, dribbler and kicker off.
+  void write_duties(int robot, const PerWheel<double>& duty_ratio);
   // Three-phase robots, wheels in mode PHASES: whoever sets the legs within advance() (not owned, null:
   // nobody), or legs that stay until written again. What the board's sensors saw in the last PWM period.
   void set_motor_control(int robot, MotorControl* control);
@@ -124,7 +133,8 @@ class Plant {
   // What else draws on the robot's bus beside its wheels, until set again; matters where the model has a battery.
   void set_other_current(int robot, double current_A);
   // What the sensors show now. Changes state: ends the motor currents' averaging interval and begins the next.
-  RobotSensors sample_sensors(int robot);
+  RobotSensors sample_sensors(int robot) { return sample_all(robot).board; }
+  PlantSensors sample_all(int robot);
   RobotTruth truth(int robot) const;
   VisionPose vision(int robot) const;
 

@@ -27,13 +27,15 @@ inline constexpr double kStandstill_m_s = 1e-12;       // below it a robot with 
 // What one robot remembers besides positions and speeds; plain bytes, saved as they are.
 struct RobotMemory {
   RobotDrive drive{};
-  std::array<DcDriveState, kWheels> winding{};
-  std::array<double, kWheels> motor_torque_Nm{};  // mean of the last step
-  std::array<double, kWheels> current_sum_A{};    // of the steps since the last sample
+  PerWheel<std::uint32_t> mode{};  // of `drive`, of all wheels
+  PerWheel<double> duty_ratio{};
+  PerWheel<DcDriveState> winding{};
+  PerWheel<double> motor_torque_Nm{};  // mean of the last step
+  PerWheel<double> current_sum_A{};    // of the steps since the last sample
   std::int64_t current_steps = 0;
   double accel_x_m_s2 = 0.0, accel_y_m_s2 = 0.0;
   RobotFaults faults{};
-  std::array<std::int64_t, kWheels> counts_read{};  // at the last sample
+  PerWheel<std::int64_t> counts_read{};  // at the last sample
 };
 static_assert(std::is_trivially_copyable_v<RobotMemory>);
 
@@ -94,7 +96,7 @@ struct Plant::Impl {
   // Brings laws and mechanics to memory[n].faults; `before`: those in force so far.
   void apply_faults(std::size_t n, const RobotFaults& before) {
     const RobotFaults& faults = memory[n].faults;
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < wheels(n); ++i) {
       drives[n][i] = healthy[n];
       if (faults.winding_rise_K[i] != 0.0) {
         RobotModel warm = models_of_mechanics({&models[n], 1}).front();
@@ -137,6 +139,7 @@ struct Plant::Impl {
     u[n * layout.u_per_robot + (free() ? 2 : 0)] += step_s * a.yaw_rad_s2;
   }
 
+  std::size_t wheels(std::size_t robot) const { return models[robot].wheels; }
   const double* wheel_angles(std::size_t robot) const {
     return &q[robot * layout.q_per_robot + layout.wheel_q];
   }
@@ -152,25 +155,27 @@ struct Plant::Impl {
   bool free() const { return options.physics == Physics::kSimbodyFree; }
 
   void place(std::size_t robot, double x_m, double y_m, double yaw_rad) {
-    std::array<double, kWheels> angles;
-    std::copy_n(wheel_angles(robot), kWheels, angles.begin());
+    PerWheel<double> angles;
+    std::copy_n(wheel_angles(robot), wheels(robot), angles.begin());
     std::visit([&](const auto& m) { m.place(q, u, robot, x_m, y_m, yaw_rad); }, mechanics);
-    std::copy_n(angles.begin(), kWheels, wheel_angles(robot));  // turning a robot by hand turns no rotor
-    const RobotDrive kept = memory[robot].drive;
-    const RobotFaults faults = memory[robot].faults;
+    std::copy_n(angles.begin(), wheels(robot),
+                wheel_angles(robot));  // turning a robot by hand turns no rotor
+    const RobotMemory kept = memory[robot];
     memory[robot] = RobotMemory{};
-    memory[robot].drive = kept;
-    memory[robot].faults = faults;
+    memory[robot].drive = kept.drive;
+    memory[robot].mode = kept.mode;
+    memory[robot].duty_ratio = kept.duty_ratio;
+    memory[robot].faults = kept.faults;
     state_known = false;
     if (electrics[robot]) electric_memory[robot] = electrics[robot]->initial_memory();
     if (effects[robot]) {
-      std::array<double, kWheels> rotors{};
-      for (std::size_t i = 0; i < kWheels; ++i) rotors[i] = theta_rotor_rad(robot, i);
+      PerWheel<double> rotors{};
+      for (std::size_t i = 0; i < wheels(robot); ++i) rotors[i] = theta_rotor_rad(robot, i);
       effect_memory[robot] = effects[robot]->initial_memory();
       RobotEffectMemory& mem = effect_memory[robot];
-      for (std::size_t i = 0; i < kWheels; ++i) mem.drive[i].theta_rotor_rad = rotors[i];
+      for (std::size_t i = 0; i < wheels(robot); ++i) mem.drive[i].theta_rotor_rad = rotors[i];
       mem.seen_s = mem.read_s = now_s();
-      for (std::size_t i = 0; i < kWheels; ++i) mem.seen_theta_rotor_rad[i] = theta_rotor_rad(robot, i);
+      for (std::size_t i = 0; i < wheels(robot); ++i) mem.seen_theta_rotor_rad[i] = theta_rotor_rad(robot, i);
       histories[robot].clear();
       remember(robot);
     }
@@ -198,7 +203,7 @@ struct Plant::Impl {
     p.accel_x_m_s2 = memory[n].accel_x_m_s2;
     p.accel_y_m_s2 = memory[n].accel_y_m_s2;
     p.bus_voltage_V = effect_memory[n].bus_voltage_V;
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < wheels(n); ++i) {
       p.theta_rotor_rad[i] = theta_rotor_rad(n, i);
       p.omega_rotor_rad_s[i] = omega_rotor_rad_s(n, i);
     }
@@ -211,7 +216,7 @@ struct Plant::Impl {
 
   Sensing sensing(std::size_t n) const {
     Sensing at{instant(n), now_ns, options.seed, n, {}};
-    for (std::size_t i = 0; i < kWheels; ++i) at.current_A[i] = memory[n].winding[i].current_A;
+    for (std::size_t i = 0; i < wheels(n); ++i) at.current_A[i] = memory[n].winding[i].current_A;
     return at;
   }
 
@@ -225,15 +230,15 @@ struct Plant::Impl {
   BridgeInput bridge_input(std::size_t n, std::size_t i) const {
     const RobotMemory& mem = memory[n];
     const bool open = mem.faults.phase_lost[i] && !electrics[n];
-    const std::uint32_t mode = open ? std::uint32_t{OMNIHIL_DRIVE_COAST} : mem.drive.mode[i];
-    return {mode, mem.drive.duty_ratio[i], mem.faults.supply_ratio * models[n].bus_voltage_V};
+    const std::uint32_t mode = open ? std::uint32_t{OMNIHIL_DRIVE_COAST} : mem.mode[i];
+    return {mode, mem.duty_ratio[i], mem.faults.supply_ratio * models[n].bus_voltage_V};
   }
 
   void begin_wheels(std::size_t n, const WheelContacts<double>& contacts) {
     const RobotModel& model = models[n];
     RobotMemory& mem = memory[n];
     const double* omega_wheel = wheel_speeds_of(n);
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < wheels(n); ++i) {
       const double contact_Nm = model.wheel_radius_m * contacts.force_longitudinal_N[i] / model.gear_ratio;
       const BridgeInput bridge = bridge_input(n, i);
       const WheelStep step = begin_wheel_step(drives[n][i], mem.winding[i], bridge,
@@ -243,19 +248,19 @@ struct Plant::Impl {
     }
   }
 
-  void begin_electric_wheels(std::size_t n, const std::array<WheelDriveInput, kWheels>& inputs) {
+  void begin_electric_wheels(std::size_t n, const PerWheel<WheelDriveInput>& inputs) {
     electrics[n]->begin_step(electric_memory[n], inputs, now_ns, controls[n], wheel_steps[n]);
     if (effects[n]) effect_memory[n].bus_voltage_V = electric_memory[n].at_bridges_V();
-    for (std::size_t i = 0; i < kWheels; ++i) torques[n][i] = wheel_steps[n][i].torque;
+    for (std::size_t i = 0; i < wheels(n); ++i) torques[n][i] = wheel_steps[n][i].torque;
   }
 
   // `more`: of floor effects; null: none.
-  std::array<WheelDriveInput, kWheels> wheel_inputs(std::size_t n, const WheelContacts<double>& contacts,
-                                                    const FloorForces* more) const {
+  PerWheel<WheelDriveInput> wheel_inputs(std::size_t n, const WheelContacts<double>& contacts,
+                                         const FloorForces* more) const {
     const RobotModel& model = models[n];
     const double* omega_wheel = wheel_speeds_of(n);
-    std::array<WheelDriveInput, kWheels> inputs;
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    PerWheel<WheelDriveInput> inputs;
+    for (std::size_t i = 0; i < wheels(n); ++i) {
       WheelDriveInput& in = inputs[i];
       in.bridge = bridge_input(n, i);
       in.phase_lost = memory[n].faults.phase_lost[i];
@@ -269,9 +274,9 @@ struct Plant::Impl {
     return inputs;
   }
 
-  void begin_wheels_with_effects(std::size_t n, const std::array<WheelDriveInput, kWheels>& inputs) {
+  void begin_wheels_with_effects(std::size_t n, const PerWheel<WheelDriveInput>& inputs) {
     effects[n]->begin_step(healthy[n], effect_memory[n], inputs, wheel_steps[n]);
-    for (std::size_t i = 0; i < kWheels; ++i) torques[n][i] = wheel_steps[n][i].torque;
+    for (std::size_t i = 0; i < wheels(n); ++i) torques[n][i] = wheel_steps[n][i].torque;
   }
 
   template <typename Back>
@@ -305,7 +310,7 @@ struct Plant::Impl {
     const double* before = &u_before[n * layout.u_per_robot + layout.wheel_u];
     double* after = wheel_speeds_of(n);
     bool held = true;
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < wheels(n); ++i) {
       WheelStep& step = wheel_steps[n][i];
       if (electrics[n]) {
         after[i] = electrics[n]->end_wheel(i, step, before[i], after[i]);
@@ -335,14 +340,15 @@ struct Plant::Impl {
   // The floor's viscous hold would let the speed fade for ever, into numbers that cost time to compute with.
   void come_to_rest(std::size_t n) {
     double* body = &u[n * layout.u_per_robot];
-    double* wheels = wheel_speeds_of(n);
+    double* omega_wheel = wheel_speeds_of(n);
     const auto stands = [](double v_m_s) { return std::abs(v_m_s) < kStandstill_m_s; };
-    const bool rims_stand = std::all_of(
-        wheels, wheels + kWheels, [&](double omega) { return stands(omega * models[n].wheel_radius_m); });
+    const bool rims_stand = std::all_of(omega_wheel, omega_wheel + wheels(n), [&](double omega) {
+      return stands(omega * models[n].wheel_radius_m);
+    });
     if (stands(body[0] * models[n].wheel_center_radius_m) && stands(body[1]) && stands(body[2]) &&
         rims_stand) {
       body[0] = body[1] = body[2] = 0.0;
-      std::fill_n(wheels, kWheels, 0.0);
+      std::fill_n(omega_wheel, wheels(n), 0.0);
     }
   }
 
@@ -358,12 +364,12 @@ struct Plant::Impl {
         }
       };
       for (const auto& legs : electric_memory[n].legs.leg_duty_ratio) scan(legs, kLegs, "leg_duty_ratio");
-      for (std::size_t i = 0; i < kWheels; ++i) {
-        if (!std::isfinite(memory[n].drive.duty_ratio[i])) report(n, "duty_ratio", i);
+      for (std::size_t i = 0; i < wheels(n); ++i) {
+        if (!std::isfinite(memory[n].duty_ratio[i])) report(n, "duty_ratio", i);
         if (!std::isfinite(memory[n].winding[i].current_A)) report(n, "motor_current_A", i);
       }
-      scan(wheel_speeds_of(n), kWheels, "omega_wheel_rad_s");
-      scan(wheel_angles(n), kWheels, "theta_wheel_rad");
+      scan(wheel_speeds_of(n), wheels(n), "omega_wheel_rad_s");
+      scan(wheel_angles(n), wheels(n), "theta_wheel_rad");
       scan(&u[n * layout.u_per_robot], layout.wheel_u, "body_velocity");
       scan(&q[n * layout.q_per_robot], layout.wheel_q, "pose");
     }
@@ -386,11 +392,11 @@ struct Plant::Impl {
   std::vector<std::unique_ptr<ElectricWheels>> electrics;  // null: DC-equivalent on a constant bus
   std::vector<ElectricMemory> electric_memory;
   std::vector<MotorControl*> controls;
-  std::vector<WheelDriveLaw> healthy;                      // per robot
-  std::vector<std::array<WheelDriveLaw, kWheels>> drives;  // with the faults in force
+  std::vector<WheelDriveLaw> healthy;           // per robot
+  std::vector<PerWheel<WheelDriveLaw>> drives;  // with the faults in force
   std::vector<PlanarBody<double>> bodies;
   std::vector<WheelTorques> torques;
-  std::vector<std::array<WheelStep, kWheels>> wheel_steps;
+  std::vector<PerWheel<WheelStep>> wheel_steps;
   bool state_known = false;
   std::optional<PlantFault> fault;
 };

@@ -35,7 +35,7 @@ struct RobotEffects::Link {
   mutable double inverse_limit_per_A = 0.0;  // learnt: of the current
 };
 struct RobotEffects::Links {
-  std::array<Link, kWheels> wheel;
+  PerWheel<Link> wheel;
 };
 
 // Last in the chains of bridge and torque, by its name. It changes nothing but the friction.
@@ -60,7 +60,7 @@ RobotEffects::RobotEffects(const RobotModel& model, double electrical_step_s, in
       substeps_(substeps),
       bus_voltage_V_(model.bus_voltage_V) {
   floor = FloorEffects(set_, model, step_s);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < model.wheels; ++i) {
     auto entry = std::make_shared<EffectEntry>();
     entry->info = &LinkEffect::kInfo;
     entry->simulate.bridge = LinkEffect::bridge;
@@ -123,7 +123,7 @@ std::vector<const FloorEffects*> floors_of(const AllEffects& all) {
 
 RobotEffectMemory RobotEffects::initial_memory() const {
   RobotEffectMemory memory;
-  for (std::size_t i = 0; i < kWheels; ++i) memory.drive[i] = drives_[i].initial_state();
+  for (std::size_t i = 0; i < drives_.size(); ++i) memory.drive[i] = drives_[i].initial_state();
   memory.timing = memory.drive[0].effects;
   memory.bus_voltage_V = bus_voltage_V_;
   return memory;
@@ -131,7 +131,7 @@ RobotEffectMemory RobotEffects::initial_memory() const {
 
 void RobotEffects::set_faults(const RobotFaults& faults) {
   supply_ratio_ = faults.supply_ratio;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
     if (faults.winding_rise_K[i] == built_.winding_rise_K[i]) continue;
     DriveParams<double> p = drives_[i].params();
     p.resistance_ohm *= warm_resistance_ohm(1.0, kCopperPerK, faults.winding_rise_K[i]) /
@@ -141,12 +141,12 @@ void RobotEffects::set_faults(const RobotFaults& faults) {
   built_ = faults;
 }
 
-// ------------------------------------------------------------------------------------------ four drives
+// ------------------------------------------------------------------------------------------ the drives
 
-void RobotEffects::advance(RobotEffectMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
-                           std::array<DriveResult<double>, kWheels>& results) const {
-  std::array<DriveInput<double>, kWheels> in;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+void RobotEffects::advance(RobotEffectMemory& memory, const PerWheel<WheelDriveInput>& inputs,
+                           PerWheel<DriveResult<double>>& results) const {
+  PerWheel<DriveInput<double>> in;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
     in[i].kind = CommandKind::kDuty;
     in[i].enabled = inputs[i].bridge.mode == OMNIHIL_DRIVE_DUTY;
     in[i].setpoint = inputs[i].bridge.duty_ratio;
@@ -156,21 +156,21 @@ void RobotEffects::advance(RobotEffectMemory& memory, const std::array<WheelDriv
     in[i].bus_voltage_V = supply_ratio_ * bus_voltage_V_;
   }
   if (set_->supply.empty()) {
-    for (std::size_t i = 0; i < kWheels; ++i)
+    for (std::size_t i = 0; i < drives_.size(); ++i)
       results[i] = drives_[i].advance(memory.drive[i], in[i], substeps_);
     return;
   }
-  std::array<double, kWheels> bus_A{};
+  PerWheel<double> bus_A{};
   const double share = 1.0 / substeps_;
   for (int n = 0; n < substeps_; ++n) {
     // what each takes from the bus at the sub-step's start: duty times current
     double sum_A = 0.0;
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
       const double limit = drives_[i].params().duty_limit_ratio;
       bus_A[i] = in[i].enabled ? std::clamp(in[i].setpoint, -limit, limit) * memory.drive[i].current_A : 0.0;
       sum_A += bus_A[i];
     }
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
       in[i].other_bus_current_A = sum_A - bus_A[i];
       const DriveResult<double> r = drives_[i].advance(memory.drive[i], in[i], 1);
       DriveResult<double>& sum = results[i];
@@ -226,8 +226,8 @@ void push_wheel(double shaft_Nm, double contact_Nm, double friction_Nm, WheelSte
 
 // Where rotor and wheel are one, the mechanics' wheel says where the rotor is; else it is the drive's output.
 void RobotEffects::set_motion(const WheelDriveLaw& law, RobotEffectMemory& memory,
-                              const std::array<WheelDriveInput, kWheels>& inputs) {
-  for (std::size_t i = 0; i < kWheels; ++i) {
+                              const PerWheel<WheelDriveInput>& inputs) {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
     DriveState<double>& state = memory.drive[i];
     Link& link = links_->wheel[i];
     if (two_masses()) {
@@ -244,14 +244,13 @@ void RobotEffects::set_motion(const WheelDriveLaw& law, RobotEffectMemory& memor
 }
 
 void RobotEffects::begin_step(const WheelDriveLaw& law, RobotEffectMemory& memory,
-                              const std::array<WheelDriveInput, kWheels>& inputs,
-                              std::array<WheelStep, kWheels>& steps) {
-  std::array<double, kWheels> start_A;
-  for (std::size_t i = 0; i < kWheels; ++i) start_A[i] = memory.drive[i].current_A;
+                              const PerWheel<WheelDriveInput>& inputs, PerWheel<WheelStep>& steps) {
+  PerWheel<double> start_A;
+  for (std::size_t i = 0; i < drives_.size(); ++i) start_A[i] = memory.drive[i].current_A;
   set_motion(law, memory, inputs);
-  std::array<DriveResult<double>, kWheels> results{};
+  PerWheel<DriveResult<double>> results{};
   advance(memory, inputs, results);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveState<double>& end = memory.drive[i];
     const DriveResult<double>& r = results[i];
     WheelStep step;

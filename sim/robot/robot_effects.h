@@ -1,7 +1,7 @@
-// Effects of one robot: its four drives through one mechanical step, its floor and body, its sensors.
+// Effects of one robot: its drives through one mechanical step, its floor and body, its sensors.
 //
 //   RobotEffects effects(model, electrical_step_s, substeps, step_s);   // model.effects not null
-//   effects.begin_step(law, memory, inputs, steps);      // four drives on one bus; steps[i] to the mechanics
+//   effects.begin_step(law, memory, inputs, steps);      // all drives on one bus; steps[i] to the mechanics
 //   // … mechanics advances one step …
 //   double omega_wheel_rad_s = effects.end_wheel(law, memory, i, steps[i], omega_before_rad_s, omega_after_rad_s);
 //
@@ -10,8 +10,8 @@
 //   inside the drive; of its profile within the step only the winding current's part is given (Simpson's rule
 //   through start, mean and end), the rest as its mean. The winding's sensitivity to a departure from the
 //   predicted speed is that of wheel_drive.h, with the base model's winding.
-//   Supply: where an effect acts on it, the four drives advance one electrical sub-step at a time and each is
-//   told what the other three take from the bus; all see the same dip at the same time.
+//   Supply: where an effect acts on it, the drives advance one electrical sub-step at a time and each is
+//   told what the others take from the bus; all see the same dip at the same time.
 //   Rolling resistance is a level of dry friction on its wheel and joins the friction of the drive, so that a
 //   wheel is held by both together. A wheel that friction stopped within a step stands at its end; one that
 //   passed zero against the forecast gets the settlement of wheel_drive.h with the friction in force.
@@ -21,7 +21,7 @@
 //   its rotor settles on the floor several times faster. Wheel and floor correct the drive's forecast of the
 //   wheel after every step; shaft and wheel get the same impulse, so no momentum is lost. Rolling resistance
 //   then holds the wheel, all friction of the drive the rotor.
-// Cannot represent: one stage of play that all four wheels share; flexing of the wheel's suspension.
+// Cannot represent: one stage of play that all wheels share; flexing of the wheel's suspension.
 #pragma once
 #include <array>
 #include <memory>
@@ -36,11 +36,11 @@ namespace omnihil {
 
 // What effects remember of one robot; plain bytes.
 struct RobotEffectMemory {
-  std::array<DriveState<double>, kWheels> drive{};
-  std::array<double, kMaxEffectStates> timing{};       // states of timing effects; all others are the drives'
-  std::array<double, kWheels> seen_theta_rotor_rad{};  // at the last read
-  std::array<double, kWheels> charge_C{};              // integral of the motor current
-  std::array<double, kWheels> seen_charge_C{};
+  PerWheel<DriveState<double>> drive{};
+  std::array<double, kMaxEffectStates> timing{};  // states of timing effects; all others are the drives'
+  PerWheel<double> seen_theta_rotor_rad{};        // at the last read
+  PerWheel<double> charge_C{};                    // integral of the motor current
+  PerWheel<double> seen_charge_C{};
   double seen_s = 0.0, read_s = 0.0;  // instant that the last read showed; instant of the last read
   double bus_voltage_V = 0.0;
 };
@@ -65,7 +65,7 @@ class RobotEffects {
   // Supply and warm windings (robot_faults.h); the others reach it through its inputs.
   void set_faults(const RobotFaults& faults);
   void begin_step(const WheelDriveLaw& law, RobotEffectMemory& memory,
-                  const std::array<WheelDriveInput, kWheels>& inputs, std::array<WheelStep, kWheels>& steps);
+                  const PerWheel<WheelDriveInput>& inputs, PerWheel<WheelStep>& steps);
   double end_wheel(const WheelDriveLaw& law, RobotEffectMemory& memory, std::size_t wheel, WheelStep& step,
                    double omega_wheel_before_rad_s, double omega_wheel_after_rad_s) const;
 
@@ -81,9 +81,9 @@ class RobotEffects {
   struct LinkEffect;
   struct Links;
   void set_motion(const WheelDriveLaw& law, RobotEffectMemory& memory,
-                  const std::array<WheelDriveInput, kWheels>& inputs);
-  void advance(RobotEffectMemory& memory, const std::array<WheelDriveInput, kWheels>& inputs,
-               std::array<DriveResult<double>, kWheels>& results) const;
+                  const PerWheel<WheelDriveInput>& inputs);
+  void advance(RobotEffectMemory& memory, const PerWheel<WheelDriveInput>& inputs,
+               PerWheel<DriveResult<double>>& results) const;
 
   std::shared_ptr<const EffectSet<double>> set_;
   std::shared_ptr<Links> links_;  // before the drives, which point into it

@@ -26,14 +26,15 @@
 #include <array>
 
 #include "firmware_iface/robot_io.h"
+#include "sim/robot/per_wheel.h"
 
 namespace omnihil {
 
 struct RobotFaults {
   double force_forward_N = 0.0, force_left_N = 0.0, moment_Nm = 0.0;
   double supply_ratio = 1.0;
-  std::array<double, kWheels> winding_rise_K{};
-  std::array<bool, kWheels> lifted{}, blocked{}, encoder_stuck{}, phase_lost{};
+  PerWheel<double> winding_rise_K{};
+  PerWheel<bool> lifted{}, blocked{}, encoder_stuck{}, phase_lost{};
 
   bool operator==(const RobotFaults&) const = default;
 };

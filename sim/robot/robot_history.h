@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "firmware_iface/robot_io.h"
+#include "sim/robot/per_wheel.h"
 
 namespace omnihil {
 
@@ -21,7 +22,7 @@ struct RobotInstant {
   double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
   double gyro_rad_s = 0.0, accel_x_m_s2 = 0.0, accel_y_m_s2 = 0.0;
   double bus_voltage_V = 0.0;
-  std::array<double, kWheels> theta_rotor_rad{}, omega_rotor_rad_s{}, charge_C{};
+  PerWheel<double> theta_rotor_rad{}, omega_rotor_rad_s{}, charge_C{};
 };
 
 inline RobotInstant between(const RobotInstant& a, const RobotInstant& b, double time_s) {
@@ -36,7 +37,7 @@ inline RobotInstant between(const RobotInstant& a, const RobotInstant& b, double
   p.accel_x_m_s2 = line(a.accel_x_m_s2, b.accel_x_m_s2);
   p.accel_y_m_s2 = line(a.accel_y_m_s2, b.accel_y_m_s2);
   p.bus_voltage_V = line(a.bus_voltage_V, b.bus_voltage_V);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < kMaxWheels; ++i) {
     p.theta_rotor_rad[i] = line(a.theta_rotor_rad[i], b.theta_rotor_rad[i]);
     p.omega_rotor_rad_s[i] = line(a.omega_rotor_rad_s[i], b.omega_rotor_rad_s[i]);
     p.charge_C[i] = line(a.charge_C[i], b.charge_C[i]);

@@ -3,13 +3,13 @@
 // Wheel i sits at wheel_angle_rad[i] from body x (forward) towards y (left); positive drive direction is
 // the body's counter-clockwise tangent. Drawn in docs/frames-and-wheels.md.
 #pragma once
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "firmware_iface/robot_io.h"
 #include "sim/drive/motor_params.h"
+#include "sim/robot/per_wheel.h"
 #include "sim/robot/tyre.h"
 
 namespace omnihil {
@@ -32,7 +32,8 @@ struct RobotModel {
   double wheel_radius_m = 0.0;
   double wheel_mass_kg = 0.0;        // one wheel
   double wheel_inertia_kg_m2 = 0.0;  // one wheel about its axle, without the rotor
-  std::array<double, kWheels> wheel_angle_rad{};
+  std::size_t wheels = kWheels;  // kMinWheels to kMaxWheels; of all lists per wheel the first so many count
+  PerWheel<double> wheel_angle_rad{};
   int rollers_per_wheel = 0;
   double gear_ratio = 1.0;  // rotor turns per wheel turn
   TyreCurve tyre_longitudinal;

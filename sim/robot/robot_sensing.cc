@@ -12,6 +12,12 @@ NoiseKey noise_key(std::string_view stream, std::size_t which, const Sensing& at
   return {at.seed, stream_of(stream) + which, static_cast<std::uint64_t>(at.now_ns)};
 }
 
+// Four to a robot; a fifth and sixth wheel have theirs far behind all robots' (2^20: no bench has so many).
+std::size_t wheel_stream(std::size_t robot, std::size_t wheel) {
+  constexpr std::size_t kFar = 1u << 20;
+  return wheel < kWheels ? kWheels * robot + wheel : kFar + kWheels * robot + wheel - kWheels;
+}
+
 // How much older than its stamp a measurement of now is.
 double age_s(const RobotEffects& effects, RobotEffectMemory& memory, Stamped what, const Sensing& at) {
   TimingPort<double> port;
@@ -28,7 +34,7 @@ double encoder_angle_rad(const RobotEffects& effects, RobotEffectMemory& memory,
                          std::size_t i, const RobotInstant& seen, const Sensing& at) {
   const EffectSet<double>& set = effects.set();
   SensorPort<double> port;
-  const NoiseKey key = noise_key("sensor", kWheels * at.robot + i, at);
+  const NoiseKey key = noise_key("sensor", wheel_stream(at.robot, i), at);
   port.theta_rotor_rad = port.encoder_angle_rad = seen.theta_rotor_rad[i];
   port.omega_rotor_rad_s = port.measured_speed_rad_s = seen.omega_rotor_rad_s[i];
   port.travel_rad = std::abs(seen.theta_rotor_rad[i] - memory.seen_theta_rotor_rad[i]);
@@ -42,16 +48,16 @@ double encoder_angle_rad(const RobotEffects& effects, RobotEffectMemory& memory,
 
 }  // namespace
 
-RobotSensors read_sensors(const RobotEffects& effects, RobotEffectMemory& memory, const RobotHistory& history,
+PlantSensors read_sensors(const RobotEffects& effects, RobotEffectMemory& memory, const RobotHistory& history,
                           const RobotModel& model, const Sensing& at) {
   RobotInstant seen = at.now;
   if (effects.looks_back()) {
     seen = history.at(at.now.time_s - age_s(effects, memory, Stamped::kDriveSensors, at));
   }
-  RobotSensors s{};
-  s.now_us = static_cast<std::uint64_t>(at.now_ns / 1000);
+  PlantSensors s;
+  s.board.now_us = static_cast<std::uint64_t>(at.now_ns / 1000);
   const double span_s = seen.time_s - memory.seen_s;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < model.wheels; ++i) {
     const double theta_rad = encoder_angle_rad(effects, memory, model, i, seen, at);
     if (std::isfinite(theta_rad)) s.encoder_counts[i] = encoder_counts(model.encoder, theta_rad);
     // mean since what the last read showed
@@ -62,10 +68,10 @@ RobotSensors read_sensors(const RobotEffects& effects, RobotEffectMemory& memory
   }
   memory.seen_s = seen.time_s;
   memory.read_s = at.now.time_s;
-  s.bus_voltage_V = seen.bus_voltage_V;
-  s.gyro_z_rad_s = seen.gyro_rad_s;
-  s.accel_x_m_s2 = seen.accel_x_m_s2;
-  s.accel_y_m_s2 = seen.accel_y_m_s2;
+  s.board.bus_voltage_V = seen.bus_voltage_V;
+  s.board.gyro_z_rad_s = seen.gyro_rad_s;
+  s.board.accel_x_m_s2 = seen.accel_x_m_s2;
+  s.board.accel_y_m_s2 = seen.accel_y_m_s2;
   return s;
 }
 

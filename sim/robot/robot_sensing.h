@@ -1,7 +1,7 @@
 // What the sensors of a robot with effects show: encoders through the effects of Place::kSensor, everything
 // as old as the effects of Place::kTiming make it.
 //
-//   RobotSensors s = read_sensors(effects, memory, history, model, {now, now_ns, seed, robot});
+//   PlantSensors s = read_sensors(effects, memory, history, model, {now, now_ns, seed, robot});
 //   RobotInstant seen = seen_by_camera(effects, memory, history, {now, now_ns, seed, robot});
 //
 // Random numbers are a function of seed, robot, wheel and time, not of how often one asks.
@@ -19,10 +19,10 @@ struct Sensing {
   std::int64_t now_ns = 0;
   std::uint64_t seed = 0;
   std::size_t robot = 0;
-  std::array<double, kWheels> current_A{};  // at this instant
+  PerWheel<double> current_A{};  // at this instant
 };
 
-RobotSensors read_sensors(const RobotEffects& effects, RobotEffectMemory& memory, const RobotHistory& history,
+PlantSensors read_sensors(const RobotEffects& effects, RobotEffectMemory& memory, const RobotHistory& history,
                           const RobotModel& model, const Sensing& at);
 RobotInstant seen_by_camera(const RobotEffects& effects, RobotEffectMemory& memory,
                             const RobotHistory& history, const Sensing& at);

@@ -1,12 +1,11 @@
 // One step of a robot that rolls (rolling_robot.h): the slips on which floor, rotors and body agree.
 //
-//   RollingBalance<double> b;          // filled by rolling_robot.cc
+//   RollingBalance<double, 4> b;           // filled by rolling_robot.cc
 //   if (!b.newton(slip)) b.sweep(slip);
 #pragma once
 #include <Eigen/LU>
 #include <array>
 
-#include "firmware_iface/robot_io.h"
 #include "sim/robot/rolling_grip.h"
 
 namespace omnihil {
@@ -15,38 +14,40 @@ namespace omnihil {
 //   s - (hub + A F) + lever omega+ = 0,  F = -f(s)
 // A is symmetric but for the step's turn and positive, f and the rotors' response are increasing: one solution, but for
 // the falling part of a tyre's curve.
-template <typename T>
+// Size: room for so many wheels; those beyond the robot's own have no lever, no mobility and no grip, so that their slip is 0.
+template <typename T, int Size>
 struct RollingBalance {
-  using Vector4 = Eigen::Vector4d;
+  using Vector = Eigen::Matrix<double, Size, 1>;
+  using Square = Eigen::Matrix<double, Size, Size>;
   static constexpr double kSolved_m_s = 1e-13;
   static constexpr double kFastest_m_s = 1e3;  // no slip is faster
   static constexpr int kBisections = 60;
   static constexpr int kHalvings = 8;
   static constexpr int kIterations = 12;
-  std::array<const Grip<T>*, kWheels> grips{};
-  Eigen::Matrix4d mobility;  // A: rim speed per floor force
+  std::array<const Grip<T>*, Size> grips{};
+  Square mobility;  // A: rim speed per floor force
   // per rotor: speed without floor force and friction, speed per torque, radius over gear, what friction
   // takes
-  Vector4 hub, rotor, speed_per_torque, lever, up, down;
+  Vector hub, rotor, speed_per_torque, lever, up, down;
 
   const Grip<T>& grip(Eigen::Index i) const { return *grips[static_cast<std::size_t>(i)]; }
   double omega(Eigen::Index i, double force_N) const {
     return shrunk(rotor(i) - speed_per_torque(i) * lever(i) * force_N, up(i), down(i));
   }
-  Vector4 forces(const Vector4& slip) const {
-    Vector4 force;
-    for (Eigen::Index i = 0; i < kWheels; ++i) force(i) = -grip(i).force(slip(i));
+  Vector forces(const Vector& slip) const {
+    Vector force;
+    for (Eigen::Index i = 0; i < Size; ++i) force(i) = -grip(i).force(slip(i));
     return force;
   }
-  Vector4 residual(const Vector4& slip) const {
-    const Vector4 force = forces(slip);
-    Vector4 r = slip - hub - mobility * force;
-    for (Eigen::Index i = 0; i < kWheels; ++i) r(i) += lever(i) * omega(i, force(i));
+  Vector residual(const Vector& slip) const {
+    const Vector force = forces(slip);
+    Vector r = slip - hub - mobility * force;
+    for (Eigen::Index i = 0; i < Size; ++i) r(i) += lever(i) * omega(i, force(i));
     return r;
   }
-  Eigen::Matrix4d slopes(const Vector4& slip) const {
-    Eigen::Matrix4d out;
-    for (Eigen::Index i = 0; i < kWheels; ++i) {
+  Square slopes(const Vector& slip) const {
+    Square out;
+    for (Eigen::Index i = 0; i < Size; ++i) {
       const double slope = grip(i).slope(slip(i));
       const double turns = omega(i, -grip(i).force(slip(i))) != 0.0 ? 1.0 : 0.0;
       out.col(i) = mobility.col(i) * slope;
@@ -55,12 +56,12 @@ struct RollingBalance {
     return out;
   }
   // Newton, no further than what is left shrinks.
-  bool newton(Vector4& slip) const {
-    Vector4 left = residual(slip);
+  bool newton(Vector& slip) const {
+    Vector left = residual(slip);
     for (int round = 0; round < kIterations; ++round) {
-      Vector4 change = slopes(slip).partialPivLu().solve(left);
+      Vector change = slopes(slip).partialPivLu().solve(left);
       if (change.cwiseAbs().maxCoeff() <= kSolved_m_s) return true;
-      Vector4 next = residual(slip - change);
+      Vector next = residual(slip - change);
       for (int part = 0; part < kHalvings && next.squaredNorm() > left.squaredNorm(); ++part) {
         change *= 0.5;
         next = residual(slip - change);
@@ -71,9 +72,9 @@ struct RollingBalance {
     return false;
   }
   // Wheel by wheel, each by bisection: slow, and nothing can go wrong.
-  void sweep(Vector4& slip) const {
-    for (Eigen::Index i = 0; i < kWheels; ++i) {
-      const Vector4 force = forces(slip);
+  void sweep(Vector& slip) const {
+    for (Eigen::Index i = 0; i < Size; ++i) {
+      const Vector force = forces(slip);
       const double others = hub(i) + mobility.row(i).dot(force) - mobility(i, i) * force(i);
       const auto left = [&](double at) {
         const double own_N = -grip(i).force(at);

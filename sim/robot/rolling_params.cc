@@ -84,6 +84,7 @@ template <typename T>
 RollingParams<T> rolling_params_as(const RollingParams<double>& p) {
   RollingParams<T> q;
   q.drive = drive_params_as<T>(p.drive);
+  q.wheels = p.wheels;
   q.wheel_angle_rad = p.wheel_angle_rad;
   q.has_tyre = p.has_tyre;
   q.has_lateral_tyre = p.has_lateral_tyre;

@@ -31,7 +31,8 @@ struct RollingParams {
   T center_of_mass_x_m = T(0), center_of_mass_y_m = T(0), center_of_mass_height_m = T(0);
   T wheel_center_radius_m = T(0);
   T wheel_radius_m = T(0);
-  std::array<double, kWheels> wheel_angle_rad{};
+  std::size_t wheels = kWheels;
+  PerWheel<double> wheel_angle_rad{};
   bool has_tyre = false;          // false: rolls
   bool has_lateral_tyre = false;  // false: rollers turn freely
   RollingTyre<T> longitudinal, lateral;

@@ -53,12 +53,12 @@ struct RollingRobot<T>::Wheel {
 template <typename T>
 struct RollingRobot<T>::Step {
   double h = 0.0;
-  std::array<Wheel, kWheels> wheel;
+  PerWheel<Wheel> wheel;
   Vector3 force;  // of effects and of turning, on the body
   T cos_half = T(1), sin_half = T(0);
   Vector3 turned, free;  // velocity carried into the end's frame; the same with `force`
-  Eigen::Matrix<T, kWheels, kWheels> mobility;  // h G M^-1 G': rim speeds per floor force
-  std::array<T, kWheels> force_N, omega_end, friction_Nm;
+  Eigen::Matrix<T, kMaxWheels, kMaxWheels> mobility;  // h G M^-1 G': rim speeds per floor force
+  PerWheel<T> force_N, omega_end, friction_Nm;
 
   // By half a step's turn, into the frame of the step's end.
   Vector3 half_turned(const Vector3& v) const {
@@ -69,12 +69,14 @@ struct RollingRobot<T>::Step {
 template <typename T>
 RollingRobot<T>::RollingRobot(const RollingParams<T>& params, std::span<const EffectUse> uses,
                               std::span<const T> values)
-    : p_(params), effects_(uses, values) {
+    : p_(params), effects_(uses, values), wheels_(params.wheels) {
+  absent_.rolls = false;
+  absent_.full_grip_m_s = T(1);
   make_body();
-  link_entries_.resize(kWheels);
+  link_entries_.resize(wheels_);
   std::vector<T> with_link(values.begin(), values.end());
   with_link.push_back(T(1));
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     links_.push_back(std::make_unique<Link>());
     EffectEntry& entry = link_entries_[i];
     entry.info = &LinkEffect::kInfo;
@@ -113,7 +115,8 @@ void RollingRobot<T>::make_body() {
     p_.center_of_mass_y_m = port.center_of_mass_y_m;
   }
   WheelGeometry<T> g;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  g.wheels = wheels_;
+  for (std::size_t i = 0; i < wheels_; ++i) {
     g.cos_angle[i] = T(std::cos(p_.wheel_angle_rad[i]));
     g.sin_angle[i] = T(std::sin(p_.wheel_angle_rad[i]));
   }
@@ -125,7 +128,7 @@ void RollingRobot<T>::make_body() {
   Eigen::Matrix<T, 3, 3> mass;  // planar_law.h
   mass << p_.mass_kg, T(0), -sy, T(0), p_.mass_kg, sx, -sy, sx, p_.yaw_inertia_kg_m2;
   inverse_mass_ = mass.inverse();
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     rim_[i] = Vector3(-g.sin_angle[i], g.cos_angle[i], p_.wheel_center_radius_m);
     rim_mobility_[i] = inverse_mass_ * rim_[i];
   }
@@ -133,12 +136,12 @@ void RollingRobot<T>::make_body() {
 
 template <typename T>
 RollingState<T> RollingRobot<T>::start(const BodyVelocity<double>& v,
-                                       const std::array<double, kWheels>& theta_rotor_rad) const {
+                                       const PerWheel<double>& theta_rotor_rad) const {
   RollingState<T> x;
   x.velocity = {T(v.v_forward_m_s), T(v.v_left_m_s), T(v.omega_body_rad_s)};
   x.bus_voltage_V = x.supply_voltage_V = p_.drive.supply_voltage_V;
   x.supply_states = drives_[0].initial_state().effects;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     x.drive[i] = drives_[i].initial_state();
     x.theta_rotor_rad[i] = T(theta_rotor_rad[i]);
     x.drive[i].theta_rotor_rad = x.theta_rotor_rad[i];
@@ -160,7 +163,7 @@ void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput<T>& in, dou
   ask_body(x, in, s);
   drives(x, in, s);
   predict(x, s);
-  solve(x, s);
+  wheels_ <= 4 ? solve<4>(x, s) : solve<kMaxWheels>(x, s);
   finish(x, in, s);
 }
 
@@ -171,7 +174,7 @@ void RollingRobot<T>::ask_floor(const RollingState<T>& x, const RollingInput<T>&
   std::array<T, kMaxEffectStates> states;
   const T gear = p_.drive.gear_ratio;
   s.force = Vector3(T(0), T(0), T(0));
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     Wheel& w = s.wheel[i];
     const T lateral_m_s = rim_[i](1) * x.velocity[0] - rim_[i](0) * x.velocity[1];
     const T hub_m_s = rim_[i](0) * x.velocity[0] + rim_[i](1) * x.velocity[1] + rim_[i](2) * x.velocity[2];
@@ -279,20 +282,20 @@ void RollingRobot<T>::winding_speed_sensitivity(bool enabled, const Link& link, 
   w.slope += p_.drive.torque_constant_Nm_per_A * w.mean_sensitivity;
 }
 
-// Four drives, each against the floor's force and the friction of the step before.
+// The drives, each against the floor's force and the friction of the step before.
 template <typename T>
 void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput<T>& in, Step& s) {
-  std::array<T, kWheels> bus_A;
+  PerWheel<T> bus_A;
   T all_A = T(0);
   const bool shared = !in.bus_is_measured && !effects_.supply.empty();
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     const T& limit = p_.drive.duty_limit_ratio;
     T duty = in.duty_ratio[i];
     if (value_of(absolute(duty)) > value_of(limit)) duty = value_of(duty) < 0.0 ? T(-limit) : limit;
     bus_A[i] = shared && in.enabled[i] ? T(duty * x.drive[i].current_A) : T(0);
     all_A += bus_A[i];
   }
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     Wheel& w = s.wheel[i];
     DriveState<T>& state = x.drive[i];
     if (in.theta_rotor_rad != nullptr) {
@@ -330,13 +333,13 @@ void RollingRobot<T>::predict(const RollingState<T>& x, Step& s) const {
   s.sin_half = sin(half);
   s.turned = s.half_turned(s.half_turned(Vector3(x.velocity[0], x.velocity[1], x.velocity[2])));
   s.free = s.turned + s.half_turned(inverse_mass_ * s.force) * T(s.h);
-  for (std::size_t j = 0; j < kWheels; ++j) {
+  for (std::size_t j = 0; j < wheels_; ++j) {
     const Vector3 moved = s.half_turned(rim_mobility_[j]) * T(s.h);
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < wheels_; ++i) {
       s.mobility(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rim_[i].dot(moved);
     }
   }
-  for (std::size_t i = 0; i < kWheels; ++i) s.wheel[i].hub_free_m_s = rim_[i].dot(s.free);
+  for (std::size_t i = 0; i < wheels_; ++i) s.wheel[i].hub_free_m_s = rim_[i].dot(s.free);
 }
 
 // One rotor's end speed under a floor force, and the friction that comes with it.
@@ -354,11 +357,21 @@ T RollingRobot<T>::rotor_end(const RollingState<T>& x, const Step& s, std::size_
 
 // The slips of this step, as values; `jacobian` at the solution.
 template <typename T>
-Eigen::Vector4d RollingRobot<T>::solve_values(const RollingState<T>& x, const Step& s,
-                                              Eigen::Matrix4d& jacobian) {
-  RollingBalance<T> balance;
-  for (Eigen::Index i = 0; i < kWheels; ++i) {
+template <int Size>
+Eigen::Matrix<double, Size, 1> RollingRobot<T>::solve_values(const RollingState<T>& x, const Step& s,
+                                                             Eigen::Matrix<double, Size, Size>& jacobian) {
+  RollingBalance<T, Size> balance;
+  Eigen::Matrix<double, Size, 1> before;
+  for (Eigen::Index i = 0; i < Size; ++i) {
     const auto n = static_cast<std::size_t>(i);
+    before(i) = x.slip_m_s[n];
+    if (n >= wheels_) {
+      balance.grips[n] = &absent_;
+      balance.lever(i) = balance.speed_per_torque(i) = balance.up(i) = balance.down(i) = 0.0;
+      balance.hub(i) = balance.rotor(i) = 0.0;
+      balance.mobility.row(i).setZero();
+      continue;
+    }
     const Wheel& w = s.wheel[n];
     balance.grips[n] = &w.grip;
     balance.lever(i) = value_of(w.lever_m);
@@ -368,11 +381,13 @@ Eigen::Vector4d RollingRobot<T>::solve_values(const RollingState<T>& x, const St
     balance.hub(i) = value_of(w.hub_free_m_s);
     const double held_Nm = balance.lever(i) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]);
     balance.rotor(i) = value_of(w.omega_predicted) + balance.speed_per_torque(i) * held_Nm;
-    for (Eigen::Index j = 0; j < kWheels; ++j) balance.mobility(i, j) = value_of(s.mobility(i, j));
+    for (Eigen::Index j = 0; j < Size; ++j) {
+      balance.mobility(i, j) = static_cast<std::size_t>(j) < wheels_ ? value_of(s.mobility(i, j)) : 0.0;
+    }
   }
-  Eigen::Vector4d slip(x.slip_m_s[0], x.slip_m_s[1], x.slip_m_s[2], x.slip_m_s[3]);
+  Eigen::Matrix<double, Size, 1> slip = before;
   if (!balance.newton(slip)) {
-    slip = Eigen::Vector4d(x.slip_m_s[0], x.slip_m_s[1], x.slip_m_s[2], x.slip_m_s[3]);
+    slip = before;
     for (int n = 0; n < kSweeps; ++n) balance.sweep(slip);
     if (!balance.newton(slip)) unsolved_ += 1.0;
   }
@@ -381,27 +396,28 @@ Eigen::Vector4d RollingRobot<T>::solve_values(const RollingState<T>& x, const St
 }
 
 template <typename T>
+template <int Size>
 void RollingRobot<T>::solve(RollingState<T>& x, Step& s) {
-  Eigen::Matrix4d jacobian;
-  const Eigen::Vector4d slip = solve_values(x, s, jacobian);
+  Eigen::Matrix<double, Size, Size> jacobian;
+  const Eigen::Matrix<double, Size, 1> slip = solve_values<Size>(x, s, jacobian);
   // Newton once more on T, from the solution: exact derivatives.
-  const Eigen::Matrix4d inverse = jacobian.inverse();
-  std::array<T, kWheels> force, residual;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  const Eigen::Matrix<double, Size, Size> inverse = jacobian.inverse();
+  PerWheel<T> force, residual;
+  for (std::size_t i = 0; i < wheels_; ++i) {
     force[i] = -s.wheel[i].grip.force_of(T(slip(static_cast<Eigen::Index>(i))));
   }
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     residual[i] =
         slip(row) - s.wheel[i].hub_free_m_s + s.wheel[i].lever_m * rotor_end(x, s, i, force[i], nullptr);
-    for (std::size_t j = 0; j < kWheels; ++j) {
+    for (std::size_t j = 0; j < wheels_; ++j) {
       residual[i] -= s.mobility(row, static_cast<Eigen::Index>(j)) * force[j];
     }
   }
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     T exact = T(slip(row));
-    for (std::size_t j = 0; j < kWheels; ++j)
+    for (std::size_t j = 0; j < wheels_; ++j)
       exact -= inverse(row, static_cast<Eigen::Index>(j)) * residual[j];
     x.slip_m_s[i] = value_of(exact);
     s.force_N[i] = -s.wheel[i].grip.force_of(exact);
@@ -413,7 +429,7 @@ template <typename T>
 void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput<T>& in, Step& s) const {
   Vector3 pushed(T(0), T(0), T(0));
   T floor_x = T(0), floor_y = T(0);
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
     const Wheel& w = s.wheel[i];
     DriveState<T>& state = x.drive[i];
     pushed += rim_mobility_[i] * s.force_N[i];
@@ -451,7 +467,7 @@ void RollingRobot<T>::supply(RollingState<T>& x, const RollingInput<T>& in, cons
   if (effects_.supply.empty()) return;
   SupplyPort<T> port;
   port.bus_current_A = T(0);
-  for (const Wheel& w : s.wheel) port.bus_current_A += w.drive.mean_bus_current_A;
+  for (std::size_t i = 0; i < wheels_; ++i) port.bus_current_A += s.wheel[i].drive.mean_bus_current_A;
   port.dt_s = s.h;
   port.bus_voltage_V = p_.drive.supply_voltage_V;
   effects_.supply.apply(effects_.values(), x.supply_states.data(), port);

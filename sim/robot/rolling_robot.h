@@ -14,8 +14,8 @@
 //     body    v+     = v_f + h M^-1 G' F          in the turning frame, by its mean direction over the step
 //     floor   F_i    = -f(s_i),  s_i = (G v+)_i - lever omega+_i
 //   omega_f: the rotor's end speed by DriveSim with the step before's floor force and friction; J_e: inertia
-//   plus half a step of the winding's speed sensitivity (wheel_drive.h); c: friction level; four
-//   unknown slips, Newton's method on the values, and one more Newton step on the scalar with derivatives,
+//   plus half a step of the winding's speed sensitivity (wheel_drive.h); c: friction level; a
+//   slip per wheel unknown, Newton's method on the values, and one more Newton step on the scalar with derivatives,
 //   which makes them exact (implicit function theorem).
 //   Without a tyre f is a line so steep that 1 N slides 1 um/s: rolling. With wheel_slip, or a tyre, f is the
 //   tyre's curve over s / (scale + v_c), scale = extremum slip times max(|v|, |rim|, floor) for a tyre, 0 without.
@@ -30,6 +30,7 @@
 
 #include "sim/drive/drive_sim.h"
 #include "sim/robot/geometry.h"
+#include "sim/robot/rolling_grip.h"
 #include "sim/robot/rolling_params.h"
 #include "sim/robot/wheel_load.h"
 
@@ -42,28 +43,28 @@ inline constexpr double kSlippingStep_s = 0.25e-3;  // with one: the floor's for
 // Held over one call. T: duties that a controller made of simulated speeds carry derivatives.
 template <typename T = double>
 struct RollingInput {
-  std::array<T, kWheels> duty_ratio{};
-  std::array<bool, kWheels> enabled{true, true, true, true};
+  PerWheel<T> duty_ratio{};
+  PerWheel<bool> enabled{true, true, true, true, true, true};
   double bus_voltage_V = 0.0;    // used when bus_is_measured
   bool bus_is_measured = false;  // at the bridge: then nothing sags it again
   double dribbler_rad_s = 0.0;
   // Angles that the laws of the angle shall see instead of the model's own; null: its own.
-  const std::array<double, kWheels>* theta_rotor_rad = nullptr;
+  const PerWheel<double>* theta_rotor_rad = nullptr;
 };
 
 template <typename T>
 struct RollingState {
   T yaw_rad = T(0);             // for forces that know the field's directions; the caller's to move
   std::array<T, 3> velocity{};  // v_forward, v_left, omega_body of the geometric centre, body frame
-  std::array<DriveState<T>, kWheels> drive{};
-  std::array<T, kWheels> theta_rotor_rad{};    // turned since the start, plus where it started
-  std::array<T, kWheels> charge_C{};           // integral of the motor current
+  PerWheel<DriveState<T>> drive{};
+  PerWheel<T> theta_rotor_rad{};               // turned since the start, plus where it started
+  PerWheel<T> charge_C{};                      // integral of the motor current
   T accel_x_m_s2 = T(0), accel_y_m_s2 = T(0);  // of the geometric centre, mean over the last step
   T bus_voltage_V = T(0);                      // that the bridges had
   T supply_voltage_V = T(0);  // that the supply would give by its effects, where the bus is measured
   // of the step before, where the next one's solution begins
-  std::array<T, kWheels> force_N{}, friction_Nm{};
-  std::array<double, kWheels> slip_m_s{};
+  PerWheel<T> force_N{}, friction_Nm{};
+  PerWheel<double> slip_m_s{};
   T floor_x_N = T(0), floor_y_N = T(0);
   T turn_change_rad_s = T(0);
   std::array<T, kMaxEffectStates> supply_states{};
@@ -81,8 +82,7 @@ class RollingRobot {
   RollingRobot& operator=(const RollingRobot&) = delete;
 
   // Wheels roll with the body.
-  RollingState<T> start(const BodyVelocity<double>& velocity,
-                        const std::array<double, kWheels>& theta_rotor_rad) const;
+  RollingState<T> start(const BodyVelocity<double>& velocity, const PerWheel<double>& theta_rotor_rad) const;
   void advance(RollingState<T>& state, const RollingInput<T>& input, double step_s);
 
   const EffectSet<T>& effects() const { return effects_; }
@@ -106,7 +106,10 @@ class RollingRobot {
                                  Wheel& w) const;
   T rotor_end(const RollingState<T>& x, const Step& s, std::size_t wheel, const T& force_N,
               T* friction_Nm) const;
-  Eigen::Vector4d solve_values(const RollingState<T>& x, const Step& s, Eigen::Matrix4d& jacobian);
+  template <int Size>
+  Eigen::Matrix<double, Size, 1> solve_values(const RollingState<T>& x, const Step& s,
+                                              Eigen::Matrix<double, Size, Size>& jacobian);
+  template <int Size>
   void solve(RollingState<T>& x, Step& s);
   void finish(RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
   void supply(RollingState<T>& x, const RollingInput<T>& in, const Step& s) const;
@@ -116,9 +119,11 @@ class RollingRobot {
   std::vector<std::unique_ptr<Link>> links_;
   std::vector<EffectEntry> link_entries_;
   std::vector<DriveSim<T>> drives_;
+  std::size_t wheels_ = 0;
+  Grip<T> absent_;  // of a wheel that is not there
   WheelLoadLaw<T> load_;
-  std::array<Vector3, kWheels> rim_;           // rows of G
-  std::array<Vector3, kWheels> rim_mobility_;  // M^-1 G'
+  PerWheel<Vector3> rim_;           // rows of G
+  PerWheel<Vector3> rim_mobility_;  // M^-1 G'
   Eigen::Matrix<T, 3, 3> inverse_mass_;
   double step_s_ = 0.0;
   double unsolved_ = 0.0;

@@ -63,7 +63,8 @@ std::vector<Field> fields_of(const RobotModel& m) {
       {"bus_voltage_V", "V", m.bus_voltage_V, 0, true},
       {"control_timeout_s", "s", m.control_timeout_s, 0, false},
   };
-  for (double angle : m.wheel_angle_rad) f.push_back({"wheel_angle_rad", "rad", angle, -kInfinity, false});
+  for (std::size_t i = 0; i < m.wheels; ++i)
+    f.push_back({"wheel_angle_rad", "rad", m.wheel_angle_rad[i], -kInfinity, false});
   return f;
 }
 
@@ -90,11 +91,12 @@ Eigen::Matrix3d body_mass_matrix(const RobotModel& m) {
 // What each number may be and still not fit the others. Only for models whose numbers are in range.
 void check_together(const RobotModel& m, std::vector<std::string>& out) {
   const WheelGeometry<double> g = wheel_geometry(m);
-  const double wheels_kg = kWheels * m.wheel_mass_kg;
+  const auto wheels = static_cast<double>(m.wheels);
+  const double wheels_kg = wheels * m.wheel_mass_kg;
   if (wheels_kg >= m.mass_kg) {
     out.push_back(fmt::format(
-        "wheel_mass_kg = {} kg: four wheels weigh {} kg, as much as the whole robot's mass_kg = {} kg",
-        m.wheel_mass_kg, wheels_kg, m.mass_kg));
+        "wheel_mass_kg = {} kg: {} wheels weigh {} kg, as much as the whole robot's mass_kg = {} kg",
+        m.wheel_mass_kg, m.wheels == 4 ? "four" : std::to_string(m.wheels), wheels_kg, m.mass_kg));
   }
   const double spin = spin_inertia_kg_m2(m);
   if (spin <= 0)
@@ -102,23 +104,31 @@ void check_together(const RobotModel& m, std::vector<std::string>& out) {
   const double offset2 =
       m.center_of_mass_x_m * m.center_of_mass_x_m + m.center_of_mass_y_m * m.center_of_mass_y_m;
   const double wheels_yaw =
-      kWheels * (0.5 * spin + m.wheel_mass_kg * m.wheel_center_radius_m * m.wheel_center_radius_m);
+      wheels * (0.5 * spin + m.wheel_mass_kg * m.wheel_center_radius_m * m.wheel_center_radius_m);
   const double needed = std::max(wheels_yaw, m.mass_kg * offset2);
   if (m.yaw_inertia_kg_m2 <= needed) {
     out.push_back(fmt::format(
         "yaw_inertia_kg_m2 = {} kg m^2: wheels and centre of mass alone make {:.6g} kg m^2; must be more",
         m.yaw_inertia_kg_m2, needed));
   }
-  const Eigen::Matrix<double, kWheels, 3> rim = rim_matrix(g);
+  const auto rim = rim_matrix(g);
   const Eigen::Vector3d scale(1, 1, 1 / g.wheel_center_radius_m);
   const Eigen::Matrix3d spread = scale.asDiagonal() * (rim.transpose() * rim) * scale.asDiagonal();
-  if (symmetric_eigen(spread).values(0) < 1e-6) {
-    out.push_back("wheel_angle_rad: these wheels cannot drive in every direction (rank of eq. 5 below 3)");
+  const Eigen::VectorXd spreads = symmetric_eigen(spread).values;
+  constexpr double kNone = 1e-6;  // of rows of length about 1: rounding
+  // Along parallel axles wheels without rollers are held by their own grip, about as large aside as ahead (half: a choice).
+  constexpr double kNoRollers = 0.5;
+  const bool differential = axles_are_parallel(g) && spreads(1) >= kNone &&
+                            m.tyre_lateral.extremum_value >= kNoRollers * m.tyre_longitudinal.extremum_value;
+  if (spreads(0) < kNone && !differential) {
+    out.push_back(
+        "wheel_angle_rad: these wheels cannot drive in every direction (rank of eq. 5 below 3), and "
+        "tyre_lateral holds none of them sideways");
     return;
   }
   const ContactLaw<double> law = contact_law(m);
   double sum_N = 0;
-  for (std::size_t i = 0; i < kWheels; ++i) {
+  for (std::size_t i = 0; i < m.wheels; ++i) {
     sum_N += law.load.at_rest_N[i];
     if (!(law.load.at_rest_N[i] >= 0)) {
       out.push_back(
@@ -138,9 +148,9 @@ void check_together(const RobotModel& m, std::vector<std::string>& out) {
 void check_height(const RobotModel& m, std::vector<std::string>& out) {
   const ContactLaw<double> law = contact_law(m);
   double worst = 0;
-  for (unsigned pattern = 0; pattern < 1u << kWheels; ++pattern) {
+  for (unsigned pattern = 0; pattern < 1u << m.wheels; ++pattern) {
     Eigen::Matrix2d gk = Eigen::Matrix2d::Zero();
-    for (std::size_t i = 0; i < kWheels; ++i) {
+    for (std::size_t i = 0; i < m.wheels; ++i) {
       const double f = (pattern >> i & 1u ? 1.0 : -1.0) * m.tyre_longitudinal.extremum_value;
       const Eigen::Vector2d force(-law.geometry.sin_angle[i] * f, law.geometry.cos_angle[i] * f);
       gk += force * Eigen::RowVector2d(law.load.per_force_x_ratio[i], law.load.per_force_y_ratio[i]);
@@ -183,11 +193,19 @@ void check_periods(const ElectricModel& electric, std::int64_t step_ns, std::vec
 
 std::vector<std::string> robot_problems(const RobotModel& model) {
   std::vector<std::string> out;
+  if (model.wheels < kMinWheels || model.wheels > kMaxWheels) {
+    out.push_back(fmt::format("wheels = {}: must be {} to {}", model.wheels, kMinWheels, kMaxWheels));
+    return out;
+  }
   for (const Field& f : fields_of(model)) {
     if (!in_range(f)) out.push_back(fmt::format("{} = {} {}: {}", f.name, f.value, f.unit, range_of(f)));
   }
   if (model.encoder.direction != 1 && model.encoder.direction != -1) {
     out.push_back(fmt::format("encoder.direction = {}: must be 1 or -1", model.encoder.direction));
+  }
+  if (model.wheels > std::size_t{kWheels} && electrics_of(model).three_phase()) {
+    out.push_back(fmt::format("drive.kind: three phases are simulated for up to {} wheels; these are {}",
+                              kWheels, model.wheels));
   }
   for (std::string& problem : electric_problems(model)) out.push_back(std::move(problem));
   if (!out.empty()) return out;
@@ -200,11 +218,19 @@ double stiffest_contact_rate(const RobotModel& model) {
   const double load_N = *std::max_element(law.load.at_rest_N.begin(), law.load.at_rest_N.end());
   const double slope = std::max(steepest_grip(model.tyre_longitudinal), steepest_grip(model.tyre_lateral));
   const double damping_N_s_per_m = slope * load_N / model.slip_speed_floor_m_s;
-  const Eigen::Matrix<double, kWheels, 3> rim = rim_matrix(law.geometry);
   const double r = model.wheel_radius_m;
-  Eigen::Matrix4d mobility = rim * body_mass_matrix(model).inverse() * rim.transpose();
-  mobility += Eigen::Matrix4d::Identity() * (r * r / spin_inertia_kg_m2(model));
-  return damping_N_s_per_m * symmetric_eigen(mobility).values(kWheels - 1);
+  const double along_1_kg = with_wheel_rows(model.wheels, [&](auto rows) {
+    const auto rim = rim_matrix_of<rows()>(law.geometry);
+    Eigen::MatrixXd mobility = rim * body_mass_matrix(model).inverse() * rim.transpose();
+    mobility +=
+        Eigen::MatrixXd::Identity(mobility.rows(), mobility.cols()) * (r * r / spin_inertia_kg_m2(model));
+    return symmetric_eigen(mobility).values(mobility.rows() - 1);
+  });
+  const double rolling = damping_N_s_per_m * along_1_kg;
+  if (!axles_are_parallel(law.geometry)) return rolling;
+  // sideways all wheels act alike on the whole mass
+  const double across = steepest_grip(model.tyre_lateral) * kGravity_m_s2 / model.slip_speed_floor_m_s;
+  return std::max(rolling, across);
 }
 
 double explicit_limit(Integrator integrator) {
@@ -218,6 +244,16 @@ std::vector<std::string> plant_problems(std::span<const RobotModel> robots, cons
   for (std::size_t n = 0; n < robots.size(); ++n) {
     std::vector<std::string> of_robot = robot_problems(robots[n]);
     if (of_robot.empty() && options.physics != Physics::kSimbodyFree) check_height(robots[n], of_robot);
+    if (options.physics != Physics::kPlanar && robots[n].wheels != robots.front().wheels) {
+      of_robot.push_back(
+          fmt::format("{} wheels, and robot 0 has {}: in one plant of Simbody's all have as many; "
+                      "Physics::kPlanar takes any",
+                      robots[n].wheels, robots.front().wheels));
+    }
+    if (of_robot.empty() && options.physics == Physics::kSimbodyFree &&
+        axles_are_parallel(wheel_geometry(robots[n]))) {
+      of_robot.push_back("wheel_angle_rad: on wheels along one line a free body tips over; it has no caster");
+    }
     if (has_shaft(robots[n]) &&
         !(robots[n].wheel_inertia_kg_m2 > 0 && robots[n].motor.rotor_inertia_kg_m2 > 0)) {
       of_robot.push_back(

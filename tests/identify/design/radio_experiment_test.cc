@@ -83,7 +83,7 @@ TEST(RadioExperiment, TheBodysMenuIsTheWheelsBeforeTheyAreMixed) {
   std::vector<double> time_s;
   for (int k = 0; k < 600; ++k) time_s.push_back(k / 60.0);
   const auto body = body_menu(time_s, 1);
-  const auto wheels = robot_menu(time_s, {0.96, 2.36, 3.93, 5.32}, 1);
+  const auto wheels = robot_menu(time_s, std::vector<double>{0.96, 2.36, 3.93, 5.32}, 1);
   ASSERT_EQ(wheels.size(), body.size() + 1);  // one wheel against all four has no twist
   for (std::size_t n = 0; n < body.size(); ++n) {
     EXPECT_EQ(body[n].excitation, wheels[n].excitation);

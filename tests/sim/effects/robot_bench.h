@@ -31,12 +31,12 @@ inline Plant floor_with(const RobotModel& model, const std::vector<std::string>&
 
 // Duties that roll a mirror-symmetric robot straight ahead: eq. (5) for v_forward alone.
 inline RobotDrive forward(const RobotModel& m, double duty) {
-  std::array<double, kWheels> d;
+  PerWheel<double> d{};
   for (std::size_t i = 0; i < kWheels; ++i) d[i] = -duty * std::sin(m.wheel_angle_rad[i]);
   return duty_drive(d);
 }
 inline RobotDrive sideways(const RobotModel& m, double duty) {
-  std::array<double, kWheels> d;
+  PerWheel<double> d{};
   for (std::size_t i = 0; i < kWheels; ++i) d[i] = duty * std::cos(m.wheel_angle_rad[i]);
   return duty_drive(d);
 }

@@ -48,7 +48,7 @@ ContactLaw<Dual> dual_law(const ContactLaw<double>& d) {
   return law;
 }
 
-double sum(const std::array<double, kWheels>& x) { return std::accumulate(x.begin(), x.end(), 0.0); }
+double sum(const PerWheel<double>& x) { return std::accumulate(x.begin(), x.end(), 0.0); }
 
 WheelContacts<double> skidding(const RobotModel& m) {  // wheels spun up, robot at rest
   const ContactLaw<double> law = contact_law(m);
@@ -65,7 +65,8 @@ TEST(WheelLoad, SumsToTheWeightAtRest) {
 TEST(WheelLoad, IsAQuarterEachForASquareRobot) {
   RobotModel m = symmetric_robot();
   m.wheel_angle_rad = {45 * kDegree, 135 * kDegree, 225 * kDegree, 315 * kDegree};
-  for (double load_N : contact_law(m).load.at_rest_N) EXPECT_NEAR(load_N, 2.4 * 9.80665 / 4, 1e-12);
+  const ContactLaw<double> law = contact_law(m);
+  for (std::size_t i = 0; i < kWheels; ++i) EXPECT_NEAR(law.load.at_rest_N[i], 2.4 * 9.80665 / 4, 1e-12);
 }
 
 TEST(WheelLoad, BalancesTheMomentsOfAnOffsetCentreOfMass) {
@@ -151,7 +152,7 @@ TEST(Contact, DerivativesOfTheLawAreItsDifferences) {
     return contact_forces(law, wheel_motion<double>(law, {v_forward, 0.2, 0.5}, omega)).force_x_N;
   };
   const BodyVelocity<Dual> v_dual{Dual(1.0, 1.0), 0.2, 0.5};
-  std::array<Dual, kWheels> omega_dual;
+  PerWheel<Dual> omega_dual{};
   for (std::size_t i = 0; i < kWheels; ++i) omega_dual[i] = omega[i];
   const auto c = contact_forces(dual, wheel_motion(dual, v_dual, omega_dual));
   EXPECT_NEAR(c.force_x_N.value, force_at(1.0), 1e-12);

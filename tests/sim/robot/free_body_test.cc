@@ -29,8 +29,8 @@ RobotModel square_robot() {
 struct BareChassis {
   explicit BareChassis(const RobotModel& m)
       : back({m}, Chassis::Joint::kFree),
-        q(kFreeLayout.q_per_robot),
-        u(kFreeLayout.u_per_robot),
+        q(free_layout(kWheels).q_per_robot),
+        u(free_layout(kWheels).u_per_robot),
         scratch(q.size(), u.size()) {
     back.place(q, u, 0, 0.0, 0.0, 0.0);
   }

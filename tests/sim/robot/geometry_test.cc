@@ -58,7 +58,7 @@ TEST(Geometry, BodyVelocityUndoesWheelSpeedsForAnyAngles) {
 
 TEST(Geometry, WheelsThatContradictEachOtherLeaveTheLeastSquaresResidual) {
   const auto g = wheel_geometry(sample_robot());
-  const std::array<double, kWheels> omega{10.0, -3.0, 4.0, 20.0};
+  const PerWheel<double> omega{10.0, -3.0, 4.0, 20.0};
   const auto v = body_velocity(g, omega);
   const auto fitted = wheel_speeds(g, v);
   const auto m = rim_matrix(g);

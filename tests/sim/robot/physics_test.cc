@@ -13,7 +13,7 @@ namespace {
 // Duties whose no-load wheel speeds are eq. (5) of a body velocity: u = k gear omega_wheel.
 RobotDrive no_load_drive(const RobotModel& m, const BodyVelocity<double>& v) {
   const auto omega = wheel_speeds(wheel_geometry(m), v);
-  std::array<double, kWheels> duty;
+  PerWheel<double> duty{};
   for (std::size_t i = 0; i < kWheels; ++i) {
     duty[i] = m.motor.torque_constant_Nm_per_A * m.gear_ratio * omega[i] / m.bus_voltage_V;
   }
@@ -95,10 +95,10 @@ TEST(Physics, OneMetrePerSecondForwardSlipsLessThanOnePercent) {
   for (const RobotModel& m : {sample_robot(), symmetric_robot()}) {
     Plant plant = one_robot(m, planar_options(250'000));
     const auto target = wheel_speeds<double>(wheel_geometry(m), {1.0, 0.0, 0.0});
-    std::array<double, kWheels> integral{};
+    PerWheel<double> integral{};
     for (int ms = 0; ms < 3000; ++ms) {  // a plain PI loop on the wheels' speed
       const RobotTruth t = plant.truth(0);
-      std::array<double, kWheels> duty;
+      PerWheel<double> duty{};
       for (std::size_t i = 0; i < kWheels; ++i) {
         const double error = target[i] - t.omega_wheel_rad_s[i];
         integral[i] += error * 1e-3;

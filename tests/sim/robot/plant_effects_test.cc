@@ -88,7 +88,7 @@ TEST(PlantEffects, OfAnotherModelDoNotRestore) {
 // Signature of sag: the bus dips by R times what all four take, at once; three idle motors see it too.
 TEST(PlantEffects, BatterySagIsOneDipForAllMotorsTogether) {
   const RobotModel m = symmetric_robot();
-  const auto bus = [&](const std::array<double, kWheels>& duty) {
+  const auto bus = [&](const PerWheel<double>& duty) {
     Plant plant = floor_with(m, {"battery_sag.resistance_ohm=0.05"});
     drive_for(plant, duty_drive(duty), 0.004);
     const RobotTruth t = plant.truth(0);

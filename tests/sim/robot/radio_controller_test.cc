@@ -25,7 +25,7 @@ template <typename T>
 std::vector<T> drive_motor(const RadioControllerParams<T>& p, double command_rad_s, double seconds,
                            double bus_V = 24.0) {
   RadioController<T> controller(p, kAngle, kGear);
-  std::array<T, kWheels> omega{}, mean{};
+  PerWheel<T> omega{}, mean{};
   std::vector<T> out;
   const double keep = std::exp(-p.period_s * kK * kK / (kR_ohm * kJ_kg_m2));
   for (double t = 0.0; t < seconds; t += p.period_s) {
@@ -109,7 +109,7 @@ TEST(RadioController, TheBodysAccelerationIsLimitedInItsDirection) {
   p.yaw_acceleration_limit_rad_s2 = 30.0;
   RadioController<double> controller(p, kAngle, kGear);
   controller.hear(0.0, {0.6, 0.8, 3.0, 0.0}, CommandFrame::kBodyVelocity);
-  std::array<double, kWheels> duty{};
+  PerWheel<double> duty{};
   for (int n = 0; n < 50; ++n) duty = controller.update(1e-3 * n, {}, 1e6, 1.0);
   for (std::size_t i = 0; i < kWheels; ++i) {
     const double v = 4.0 * 0.05, w = 30.0 * 0.05;

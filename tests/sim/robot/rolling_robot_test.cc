@@ -28,6 +28,7 @@ RollingParams<double> rolling(const RobotModel& m, bool tyre) {
   p.center_of_mass_height_m = m.center_of_mass_height_m;
   p.wheel_center_radius_m = m.wheel_center_radius_m;
   p.wheel_radius_m = m.wheel_radius_m;
+  p.wheels = m.wheels;
   p.wheel_angle_rad = m.wheel_angle_rad;
   p.has_tyre = p.has_lateral_tyre = tyre;
   const auto curve = [](const TyreCurve& c) {
@@ -52,9 +53,9 @@ std::vector<double> values_of(const std::vector<EffectUse>& uses) {
 }
 
 // Duties that change every 50 ms, in all directions, and stop at times.
-std::array<double, kWheels> lively(int ms) {
+PerWheel<double> lively(int ms) {
   const int k = ms / 50;
-  std::array<double, kWheels> duty;
+  PerWheel<double> duty{};
   for (std::size_t i = 0; i < kWheels; ++i) {
     duty[i] = k % 7 == 6 ? 0.0 : 0.05 * std::sin(1.3 * k + 1.7 * static_cast<double>(i) * (1 + k % 3));
   }
@@ -221,7 +222,7 @@ FromPlant from_plant(RobotModel m, const std::vector<std::string>& more) {
     const RobotTruth t = plant.truth(0);
     for (int n = 0; n < 20; ++n) {
       // the same places on the floor: a ripple is not to be compared at another phase
-      std::array<double, kWheels> theta;
+      PerWheel<double> theta{};
       for (std::size_t i = 0; i < kWheels; ++i) {
         const double from = before.theta_rotor_rad[i], to = t.theta_rotor_rad[i];
         theta[i] = from + (to - from) * n / 20.0;
@@ -265,11 +266,11 @@ TEST(RollingRobot, StepsAsLongAsAllowedAreExactEnough) {
     RollingRobot<double> coarse(p, uses, values_of(uses)), fine(p, uses, values_of(uses));
     RollingState<double> x = coarse.start({}, {}), y = fine.start({}, {});
     double square = 0.0;
-    std::vector<std::array<double, kWheels>> fine_rad(3001);
+    std::vector<PerWheel<double>> fine_rad(3001);
     const int steps = static_cast<int>(std::lround(1e-3 / (tyre ? kSlippingStep_s : kRollingStep_s)));
     drive(fine, y, 3000, 10 * steps,
           [&](int ms) { fine_rad[static_cast<std::size_t>(ms)] = y.theta_rotor_rad; });
-    std::array<double, kWheels> before{};
+    PerWheel<double> before{};
     drive(coarse, x, 3000, steps, [&](int ms) {
       const auto n = static_cast<std::size_t>(ms);
       for (std::size_t i = 0; i < kWheels; ++i) {

@@ -59,7 +59,7 @@ inline RobotModel frictionless_motor(RobotModel m) {
   return m;
 }
 
-inline RobotDrive duty_drive(const std::array<double, kWheels>& duty_ratio) {
+inline RobotDrive duty_drive(const PerWheel<double>& duty_ratio) {
   RobotDrive d{};
   for (std::size_t i = 0; i < kWheels; ++i) {
     d.mode[i] = OMNIHIL_DRIVE_DUTY;
@@ -70,7 +70,7 @@ inline RobotDrive duty_drive(const std::array<double, kWheels>& duty_ratio) {
 
 // Hard driving: every wheel goes through both directions, through zero and into slip.
 inline RobotDrive excitation_drive(int robot, double t_s) {
-  std::array<double, kWheels> duty;
+  PerWheel<double> duty{};
   for (std::size_t i = 0; i < kWheels; ++i) {
     const auto wheel = static_cast<double>(i);
     duty[i] =

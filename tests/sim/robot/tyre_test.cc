@@ -41,7 +41,7 @@ RobotModel table_i_coefficients() {
 // A sliding perturbation of 1 nm/s at standstill after some explicit steps: below 1e-9 it decays.
 double perturbation_after(const RobotModel& m, double step_s, int steps) {
   PlanarMechanics back({m});
-  std::vector<double> q(kPlanarLayout.q_per_robot), u(kPlanarLayout.u_per_robot);
+  std::vector<double> q(planar_layout(kWheels).q_per_robot), u(planar_layout(kWheels).u_per_robot);
   u = {0.0, 1e-9, 0.7e-9, 1e-8, -2e-8, 3e-8, 0.5e-8};
   IntegratorScratch scratch(q.size(), u.size());
   const std::vector<WheelTorques> free_wheels(1);
