@@ -20,10 +20,10 @@ RobotFaults faults_of(const ScenarioStep& step) {
       faults.supply_ratio = step.supply_ratio;
       break;
     case StepKind::kEncoderStuck:
-      faults.encoder_stuck = step.wheels;
+      std::ranges::copy(step.wheels, faults.encoder_stuck.begin());
       break;
     case StepKind::kPhaseLost:
-      faults.phase_lost = step.wheels;
+      std::ranges::copy(step.wheels, faults.phase_lost.begin());
       break;
     case StepKind::kWindingHot:
       for (std::size_t w = 0; w < kWheels; ++w)
