@@ -34,8 +34,8 @@ TEST(TimedFaults, ThoseOfOneRobotActTogether) {
   const RobotFaults all = faults_at(plan, 0, 0);
   EXPECT_EQ(all.force_left_N, 3.5);
   EXPECT_EQ(all.supply_ratio, 0.4);
-  EXPECT_EQ(all.blocked, (std::array{false, true, false, false}));
-  EXPECT_EQ(all.lifted, (std::array{false, false, true, false}));
+  EXPECT_EQ(all.blocked, (PerWheel<bool>{false, true}));
+  EXPECT_EQ(all.lifted, (PerWheel<bool>{false, false, true}));
   EXPECT_EQ(all.winding_rise_K[1], 20.0);
   EXPECT_TRUE(silent_at(plan, 0, 0));
   EXPECT_FALSE(silent_at(plan, 1, 0));

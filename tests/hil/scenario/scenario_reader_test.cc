@@ -136,7 +136,7 @@ TEST(ScenarioFault, IsOneStepThatLasts) {
   ASSERT_TRUE(step) << problems.at(0);
   EXPECT_EQ(step->at_s, 1.5);
   EXPECT_EQ(step->until_s, 1.75);
-  EXPECT_EQ(faults_of(*step).blocked, (std::array{true, false, true, false}));
+  EXPECT_EQ(faults_of(*step).blocked, (PerWheel<bool>{true, false, true}));
   const auto forever = read_fault("at_s = 0, do = \"brown_out\", supply_ratio = 0.5", problems);
   ASSERT_TRUE(forever) << problems.at(0);
   EXPECT_TRUE(std::isinf(forever->until_s));
