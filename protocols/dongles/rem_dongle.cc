@@ -80,7 +80,16 @@ class RemDongle final : public Dongle {
     if (heartbeat_.due(now_ns)) log_status(now_ns);
   }
 
+  // A robot stitches the packets of its answer together, too.
   void robot_frame(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
+    do {
+      const std::size_t n = stream_.first_packet_bytes(frame);
+      robot_packet(robot_id, frame.first(n), now_ns);
+      frame = frame.subspan(n);
+    } while (!frame.empty());
+  }
+
+  void robot_packet(int robot_id, std::span<const std::uint8_t> frame, std::int64_t now_ns) {
     PacketError error = fault_from_robot(frame);
     if (error == PacketError::kNone && robots_.find(robot_id) == nullptr) error = PacketError::kAddress;
     if (error != PacketError::kNone) return from_robots_.count(error);

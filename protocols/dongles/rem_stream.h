@@ -52,6 +52,12 @@ class RemStream {
   // Length of the good packet at the front: its header's last byte.
   std::size_t packet_bytes(std::span<const std::uint8_t> packet) const { return packet[header_bytes_ - 1]; }
 
+  // The same of bytes that nobody has looked at: all of them, where the front says no length that they have.
+  std::size_t first_packet_bytes(std::span<const std::uint8_t> bytes) const {
+    const std::size_t said = bytes.size() < header_bytes_ ? 0 : packet_bytes(bytes);
+    return said == 0 || said > bytes.size() ? bytes.size() : said;
+  }
+
   void expire(std::int64_t now_ns);  // gives up a half packet whose rest did not come in time
   void close();                      // the host is gone: a half packet is dropped and counted
 

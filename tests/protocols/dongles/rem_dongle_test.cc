@@ -137,6 +137,24 @@ TEST_P(RemDongleTest, RobotAnswersWithinAMillisecondWithItsHeaderRight) {
   }
 }
 
+// What a firmware's own radio sends is one frame, however many packets are in it.
+TEST_P(RemDongleTest, PacketsThatARobotStitchesTogetherAllReachTheHost) {
+  Bench bench = make_bench({7}, Team::kYellow, true);
+  const Bytes feedback = bench.encode("REM_RobotFeedback", {{"fromRobotId", 7}, {"toPC", 1}, {"rho", 1.5}});
+  const Bytes state = bench.encode("REM_RobotStateInfo", {{"fromRobotId", 7}, {"toPC", 1}});
+  Bytes both = feedback;
+  both.insert(both.end(), state.begin(), state.end());
+  bench.link->robot_frame(7, both, bench.now_ns);
+  Bytes out;
+  bench.link->take_host_bytes(bench.now_ns, out);
+  EXPECT_EQ(out, both);
+  Bytes cut(both.begin(), both.end() - 5);  // the second is short: it alone is refused
+  bench.link->robot_frame(7, cut, bench.now_ns);
+  out.clear();
+  bench.link->take_host_bytes(bench.now_ns, out);
+  EXPECT_EQ(out, feedback);
+}
+
 TEST_P(RemDongleTest, RobotThatIsNotSpokenToIsSilent) {
   Bench bench = make_bench({0, 1});
   bench.boot_robots();
