@@ -31,8 +31,18 @@ void Adc::set_source(unsigned channel, AnalogSource source) {
   sources_[channel % sources_.size()] = std::move(source);
 }
 
+void Adc::follow(bool injected, double delay_clocks) {
+  if (!enabled()) return;
+  late_clocks_ = delay_clocks;
+  start(injected ? Group::kInjected : Group::kRegular);
+  late_clocks_ = 0.0;
+  system().reschedule();
+}
+
 void Adc::start(Group group) {
   if (length(group) == 0) return;
+  const bool injected = group == Group::kInjected;
+  if (in_group() && group_->passes_on(*this, injected)) return;
   if (group == Group::kRegular) {
     if (busy(Group::kRegular)) return;
     if (active_ == Group::kInjected) {
@@ -50,6 +60,7 @@ void Adc::start(Group group) {
   }
   active_ = group;
   begin();
+  if (in_group()) group_->started(*this, injected);
 }
 
 void Adc::stop(Group group) {
@@ -70,7 +81,7 @@ void Adc::stop(Group group) {
 
 // Starts sampling the channel at place_.
 void Adc::begin() {
-  const double clocks = sample_clocks(channel(active_, place_));
+  const double clocks = sample_clocks(channel(active_, place_)) + late_clocks_;
   sampling_ = true;
   phase_end_ = now() + std::max<Cycles>(
                            1, static_cast<Cycles>(std::llround(clocks * system().core_hz() / clock_hz())));
@@ -113,12 +124,14 @@ void Adc::finish() {
     }
   } else if (one_per_trigger()) {
     regular_place_ = last ? 0 : place + 1;
-  } else if (!last || continues()) {
+  } else if (!last || goes_on()) {
     active_ = group;
     place_ = last ? 0 : place + 1;
   }
   if (active_ != Group::kNone) begin();
-  result(group, place, code_, last);
+  const std::uint32_t code = code_;
+  result(group, place, code, last);
+  if (group == Group::kRegular && in_group()) group_->regular_result(*this, code);
   if (group == Group::kRegular && last && injected_follow()) start(Group::kInjected);
 }
 

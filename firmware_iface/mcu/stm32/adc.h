@@ -6,7 +6,7 @@
 // Law: a conversion samples for the time of its channel, then takes 12 (v1) or 12.5 clocks; the value is that
 // of the instant at which sampling ends: code = volts * 2^n / Vref, rounded, clipped at both ends. Injected
 // conversions interrupt regular ones, which then start anew. Inputs without a source read 0 V, and are
-// reported once. Cannot represent: dual and triple modes, analogue watchdogs, offsets, oversampling,
+// reported once. Dual and triple modes: adc_together.h. Cannot represent: analogue watchdogs, offsets, oversampling,
 // differential inputs, source impedance, noise (a source may bring its own).
 #pragma once
 #include <array>
@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware_iface/mcu/stm32/adc_together.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
 
@@ -36,6 +37,11 @@ class Adc : public RegisterBlock, public TriggerSink {
 
   void set_source(unsigned channel, AnalogSource source);
   double reference_V = 3.3;
+  // For the group that it belongs to.
+  void join(AdcTogether& group) { group_ = &group; }
+  void follow(bool injected, double delay_clocks);  // a slave's start, by the master's
+  // How long after this one's begin another may sample: its own sampling and two clocks.
+  double sampling_clocks() const { return sample_clocks(channel(Group::kRegular, place_)) + 2.0; }
 
  protected:
   enum class Group : std::uint8_t { kNone, kRegular, kInjected };
@@ -56,6 +62,7 @@ class Adc : public RegisterBlock, public TriggerSink {
   // both.
   virtual std::pair<int, unsigned> trigger(Group group) const = 0;
   virtual bool armed(Group group) const = 0;  // waits for its trigger
+  virtual bool enabled() const = 0;           // switched on
 
   void start(Group group);
   void stop(Group group);
@@ -66,10 +73,16 @@ class Adc : public RegisterBlock, public TriggerSink {
  private:
   void begin();
   void finish();
+  bool goes_on() const {
+    return in_group() && group_->is_slave(*this) ? group_->master().continues() : continues();
+  }
+  bool in_group() const { return group_ != nullptr && group_->members() > 1; }
 
   ChipContext& context_;
   std::array<AnalogSource, 32> sources_;
   std::vector<int> regular_lines_, injected_lines_;
+  AdcTogether* group_ = nullptr;
+  double late_clocks_ = 0.0;  // of the next begin() alone
   Group active_ = Group::kNone;
   bool suspended_ = false;  // a regular sequence waits for injected ones
   bool sampling_ = false;

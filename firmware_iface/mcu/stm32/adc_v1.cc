@@ -36,12 +36,48 @@ constexpr RegisterInfo kAdc[] = {{kSr, "SR", 0, 0},
                                  {0x44, "JDR3", 0, 0},
                                  {0x48, "JDR4", 0, 0},
                                  {kDr, "DR", 0, 0}};
-constexpr RegisterInfo kCommon[] = {
-    {0x00, "CSR", 0, 0}, {0x04, "CCR", 0, 0x00C3EF1F, 0x0000EF1F}, {0x08, "CDR", 0, 0}};
+enum : std::uint16_t { kCcr = 0x04, kCdr = 0x08 };
+constexpr RegisterInfo kCommon[] = {{0x00, "CSR", 0, 0}, {kCcr, "CCR", 0, 0x00C3EF1F}, {kCdr, "CDR", 0, 0}};
 }  // namespace
 
 AdcV1Common::AdcV1Common(ChipContext& context)
-    : RegisterBlock("ADC", context.system, kCommon), context_(context) {}
+    : RegisterBlock("ADC", context.system, kCommon),
+      context_(context),
+      group_([this](std::span<const std::uint32_t> results) { return deliver(results); }),
+      dma_(context.dma.line("ADC1")) {}
+
+void AdcV1Common::add(AdcV1& adc) {
+  adcs_.push_back(&adc);
+  group_.add(adc);
+}
+
+void AdcV1Common::reset() {
+  RegisterBlock::reset();
+  group_.reset();
+}
+
+// CCR's DMA field: 1 asks for every result, 2 for pairs as words, 3 for pairs as bytes in a half-word. Without it the
+// register has the master's and the first slave's.
+std::size_t AdcV1Common::deliver(std::span<const std::uint32_t> results) {
+  const unsigned dma = field(value(kCcr), 14, 2);
+  std::size_t taken = 0;
+  const std::size_t unit = dma == 1 ? 1 : 2;
+  while (taken + unit <= results.size()) {
+    const std::uint32_t first = results[taken], second = unit == 2 ? results[taken + 1] : 0u;
+    value(kCdr) = dma == 3 ? (second & 0xFFu) << 8 | (first & 0xFFu) : second << 16 | first;
+    if (dma == 0) return results.size();
+    taken += unit;
+    context_.dma.pulse(dma_);
+  }
+  return taken;
+}
+
+std::uint32_t AdcV1Common::load(std::uint32_t offset) {
+  if (offset == kCdr) {
+    for (unsigned i = 0; group_.members() > 1 && i < group_.members(); ++i) adcs_[i]->data_was_read();
+  }
+  return value(offset);
+}
 
 double AdcV1Common::clock_hz() const {
   return context_.clocks.bus_hz(Bus::kApb2) / (2.0 * (field(value(0x04), 16, 2) + 1));
@@ -54,6 +90,9 @@ void AdcV1Common::set_status(unsigned adc, std::uint32_t status) {
 
 void AdcV1Common::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
   keep(offset, written, lanes);
+  if (offset != kCcr) return;
+  group_.set(field(value(kCcr), 0, 5), field(value(kCcr), 8, 4) + 5);
+  if (!group_.known()) system().report_unmodelled(name(), "CCR: a MULTI that is reserved");
 }
 
 AdcV1::AdcV1(int number, int irq, AdcV1Common& common, const AdcTriggers& triggers, ChipContext& context)
@@ -61,7 +100,14 @@ AdcV1::AdcV1(int number, int irq, AdcV1Common& common, const AdcTriggers& trigge
       common_(common),
       number_(static_cast<unsigned>(number - 1)),
       irq_(context.irqs, irq),
-      dma_(context.dma.line("ADC" + std::to_string(number))) {}
+      dma_(context.dma.line("ADC" + std::to_string(number))) {
+  common.add(*this);
+}
+
+void AdcV1::data_was_read() {
+  value(kSr) &= ~kEoc;
+  update();
+}
 
 void AdcV1::reset() {
   Adc::reset();
@@ -124,10 +170,7 @@ void AdcV1::update() {
 }
 
 std::uint32_t AdcV1::load(std::uint32_t offset) {
-  if (offset == kDr) {
-    value(kSr) &= ~kEoc;
-    update();
-  }
+  if (offset == kDr) data_was_read();
   return value(offset);
 }
 

@@ -7,17 +7,28 @@
 
 namespace omnihil::mcu {
 
+class AdcV1;
+
 class AdcV1Common final : public RegisterBlock {
  public:
   explicit AdcV1Common(ChipContext& context);
+  void reset() override;
+  Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x08 ? 0 : kNever; }
   double clock_hz() const;
+  void add(AdcV1& adc);
   void set_status(unsigned adc, std::uint32_t status);  // from 0
 
  protected:
+  std::uint32_t load(std::uint32_t offset) override;
+  std::uint32_t shown(std::uint32_t offset) override { return value(offset); }
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:
+  std::size_t deliver(std::span<const std::uint32_t> results);
   ChipContext& context_;
+  AdcTogether group_;
+  std::vector<AdcV1*> adcs_;
+  int dma_;
 };
 
 class AdcV1 final : public Adc {
@@ -25,6 +36,7 @@ class AdcV1 final : public Adc {
   AdcV1(int number, int irq, AdcV1Common& common, const AdcTriggers& triggers, ChipContext& context);
   void reset() override;
   Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x4C ? 0 : kNever; }
+  void data_was_read();  // by the common data register
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
@@ -43,6 +55,7 @@ class AdcV1 final : public Adc {
   bool injected_follow() const override;
   std::pair<int, unsigned> trigger(Group group) const override;
   bool armed(Group group) const override;
+  bool enabled() const override { return bit(value(0x08), 0); }
 
  private:
   void update();

@@ -61,8 +61,7 @@ constexpr RegisterInfo kF0[] = {{kIsr, "ISR", 0, 0},
                                 {0x20, "TR", 0x0FFF0000},
                                 {kChselr, "CHSELR", 0, 0x7FFFF},
                                 {kDr, "DR", 0, 0}};
-constexpr RegisterInfo kCommon[] = {
-    {0x00, "CSR", 0, 0}, {0x08, "CCR", 0, 0x01FFEF1F, 0x0000EF1F}, {0x0C, "CDR", 0, 0}};
+constexpr RegisterInfo kCommon[] = {{0x00, "CSR", 0, 0}, {0x08, "CCR", 0, 0x01FFEF1F}, {0x0C, "CDR", 0, 0}};
 }  // namespace
 
 AdcV2::AdcV2(const std::string& name, AdcFamily family, int irq, const AdcTriggers& triggers,
@@ -163,11 +162,13 @@ void AdcV2::result(Group group, unsigned place, std::uint32_t code, bool last) {
 void AdcV2::update() { irq_.set((value(kIsr) & value(kIer) & 0x7Fu) != 0); }
 
 std::uint32_t AdcV2::load(std::uint32_t offset) {
-  if (offset == kDr) {
-    value(kIsr) &= ~kEoc;
-    update();
-  }
+  if (offset == kDr) data_was_read();
   return value(offset);
+}
+
+void AdcV2::data_was_read() {
+  value(kIsr) &= ~kEoc;
+  update();
 }
 
 // CR: bits are set by software and cleared by the hardware.
@@ -216,14 +217,40 @@ void AdcV2::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
 }
 
 AdcV2Common::AdcV2Common(const std::string& name, std::vector<AdcV2*> adcs, ChipContext& context)
-    : RegisterBlock(name, context.system, kCommon), adcs_(std::move(adcs)) {}
+    : RegisterBlock(name, context.system, kCommon),
+      context_(context),
+      adcs_(std::move(adcs)),
+      group_([this](std::span<const std::uint32_t> results) { return deliver(results); }),
+      dma_(context.dma.line(adcs_.front()->name())) {
+  for (std::size_t i = 0; i < adcs_.size() && i < 2; ++i) group_.add(*adcs_[i]);  // a pair
+}
+
+// MDMA of CCR: 2 asks for pairs as words, 3 for pairs as bytes in a half-word.
+std::size_t AdcV2Common::deliver(std::span<const std::uint32_t> results) {
+  const unsigned dma = field(value(0x08), 14, 2);
+  std::size_t taken = 0;
+  for (; taken + 2 <= results.size(); taken += 2) {
+    const std::uint32_t first = results[taken], second = results[taken + 1];
+    value(0x0C) = dma == 3 ? (second & 0xFFu) << 8 | (first & 0xFFu) : second << 16 | first;
+    if (dma >= 2) context_.dma.pulse(dma_);
+  }
+  return taken;
+}
 
 void AdcV2Common::reset() {
   RegisterBlock::reset();
+  group_.reset();
   for (AdcV2* adc : adcs_) adc->set_common(0);
 }
 
 std::uint32_t AdcV2Common::load(std::uint32_t offset) {
+  if (offset == 0x0C) {
+    for (unsigned i = 0; group_.members() > 1 && i < group_.members(); ++i) adcs_[i]->data_was_read();
+  }
+  return shown(offset);
+}
+
+std::uint32_t AdcV2Common::shown(std::uint32_t offset) {
   if (offset != 0) return value(offset);
   std::uint32_t status = 0;
   for (std::size_t i = 0; i < adcs_.size() && i < 2; ++i) status |= (adcs_[i]->status() & 0x7FFu) << (16 * i);
@@ -233,6 +260,9 @@ std::uint32_t AdcV2Common::load(std::uint32_t offset) {
 void AdcV2Common::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
   keep(offset, written, lanes);
   for (AdcV2* adc : adcs_) adc->set_common(value(0x08));
+  if (offset != 0x08) return;
+  group_.set(field(value(0x08), 0, 5), field(value(0x08), 8, 4) + 1);
+  if (!group_.known()) system().report_unmodelled(name(), "CCR: a DUAL that is reserved");
 }
 
 }  // namespace omnihil::mcu

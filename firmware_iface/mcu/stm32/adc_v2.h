@@ -21,6 +21,7 @@ class AdcV2 final : public Adc {
   std::uint32_t status() const { return value(0); }
   // CKMODE and PRESC of the common block.
   void set_common(std::uint32_t ccr) { ccr_ = ccr; }
+  void data_was_read();  // by the common data register
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
@@ -39,6 +40,7 @@ class AdcV2 final : public Adc {
   bool injected_follow() const override { return family_ != AdcFamily::kF0 && bit(value(0x0C), 25); }
   std::pair<int, unsigned> trigger(Group group) const override;
   bool armed(Group group) const override;
+  bool enabled() const override { return bit(value(0x08), 0); }
 
  private:
   void control(std::uint32_t written);
@@ -53,13 +55,19 @@ class AdcV2Common final : public RegisterBlock {
  public:
   AdcV2Common(const std::string& name, std::vector<AdcV2*> adcs, ChipContext& context);
   void reset() override;
+  Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x0C ? 0 : kNever; }
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
+  std::uint32_t shown(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:
+  std::size_t deliver(std::span<const std::uint32_t> results);
+  ChipContext& context_;
   std::vector<AdcV2*> adcs_;
+  AdcTogether group_;
+  int dma_;
 };
 
 }  // namespace omnihil::mcu
