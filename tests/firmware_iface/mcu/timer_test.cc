@@ -278,6 +278,61 @@ TEST_F(TimerTest, NoDriveWithoutMainOutputEnable) {
   EXPECT_EQ(get(kSr) >> 7 & 1, 1u);
 }
 
+// The break input works without the clock: at the instant of its edge, in the middle of a period as well.
+TEST_F(TimerTest, ABreakSwitchesTheOutputsOffAtItsInstant) {
+  set(kArr, 999);
+  set(kCcmr1, 0x0060);
+  set(kCcr1, 400);
+  set(kCcer, 0x5);
+  set(kDier, 1u << 7);
+  set(kBdtr, 1u << 15 | 1u << 12);  // active low
+  set(kCr1, 1);
+  timer.break_input(true);
+  system.run_for(537);
+  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kPwm);
+  timer.break_input(false);
+  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff);
+  EXPECT_EQ(timer.output(0).complement.drive, TimerPin::Drive::kOff);
+  EXPECT_EQ(last_output_at, system.now()) << "no cycle later";
+  EXPECT_EQ(get(kBdtr) >> 15 & 1, 0u);
+  set(kSr, 0);
+  EXPECT_EQ(get(kSr) >> 7 & 1, 1u) << "the flag stays while the input is active";
+  set(kBdtr, 1u << 15 | 1u << 12);
+  EXPECT_EQ(get(kBdtr) >> 15 & 1, 0u) << "and so does MOE";
+  timer.break_input(true);
+  set(kSr, 0);
+  EXPECT_EQ(get(kSr) >> 7 & 1, 0u);
+  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff) << "until software switches on again";
+  set(kBdtr, 1u << 15 | 1u << 12);
+  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kPwm);
+}
+
+TEST_F(TimerTest, OutputsComeBackByThemselvesWithTheNextUpdateWhereAoeSaysSo) {
+  set(kArr, 999);
+  set(kCcmr1, 0x0060);
+  set(kCcr1, 400);
+  set(kCcer, 0x1);
+  set(kBdtr, 1u << 15 | 1u << 14 | 1u << 13 | 1u << 12);
+  set(kCr1, 1);
+  system.run_for(300);
+  timer.break_input(true);
+  system.run_for(1000);
+  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff) << "still active at the update";
+  timer.break_input(false);
+  system.run_for(699);
+  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff);
+  system.run_for(1);
+  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kPwm);
+}
+
+TEST_F(TimerTest, ABreakThatIsThereBeforeItIsEnabledActsThen) {
+  timer.break_input(true);
+  set(kBdtr, 1u << 15 | 1u << 13);
+  EXPECT_EQ(get(kBdtr) >> 15 & 1, 1u) << "not enabled";
+  set(kBdtr, 1u << 15 | 1u << 13 | 1u << 12);
+  EXPECT_EQ(get(kBdtr) >> 15 & 1, 0u);
+}
+
 TEST_F(TimerTest, DeadTimeShortensBothSidesOfAPair) {
   set(kArr, 999);
   set(kEgr, 1);

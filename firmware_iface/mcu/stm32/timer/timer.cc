@@ -87,7 +87,7 @@ void Timer::reset() {
   if (!spec_.bits32) value(kArr) = 0xFFFF;
   clock_ = spec_.fast_clock && context_.clocks.state().fast_timers_on ? context_.clocks.state().fast_timers
                                                                       : context_.clocks.timers(spec_.bus);
-  running_ = false;
+  running_ = break_high_ = false;
   anchor_ = now();
   start_ = done_ = repeat_left_ = 0;
   ccr_.fill(0);
@@ -422,6 +422,7 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
   switch (offset) {
     case kSr:  // flags are cleared by writing 0
       value(kSr) &= written | ~lanes;
+      if (break_high_) value(kSr) |= kBreak;
       update_irqs();
       break;
     case kEgr:
@@ -458,6 +459,7 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
       break;
     default:
       keep(offset, written, lanes);
+      if (offset == kBdtr && spec_.advanced) look_at_break();
       break;
   }
   if (offset == kCr2 || offset == kCcmr1 || offset == kCcmr2 || offset == kDier) note_settings();

@@ -13,6 +13,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,6 +65,7 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
   const TimerSpec& spec() const { return spec_; }
   void set_shaft(ShaftCount shaft);
   void set_input(unsigned channel, bool level);
+  // The break input's pin: outputs follow at once, whatever the clock does (its filter is off).
   void break_input(bool level);
   void on_output(std::function<void(std::int64_t now_ns)> listener) {
     listeners_.push_back(std::move(listener));
@@ -165,6 +167,7 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
   bool selected_edge(unsigned channel, bool level) const;
   void capture(unsigned channel);
   void trigger_edge();
+  bool look_at_break();  // whether it has switched the outputs off
   void listen_to_triggers();
   bool timer_input(unsigned input) const;
 
@@ -201,7 +204,8 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
   bool shaft_falling_ = false;
   std::array<char, kChannels> inputs_{};
   std::array<unsigned, kChannels> edges_left_{};  // of the input prescalers
-  bool break_high_ = false;
+  bool break_high_ = false;                       // active: enabled, and the pin at its active level
+  std::optional<bool> break_level_ = {};          // the pin's; nobody drives it: never active
   unsigned burst_ = 0;
   std::vector<std::function<void(std::int64_t)>> listeners_;
   int trgo_ = 0;

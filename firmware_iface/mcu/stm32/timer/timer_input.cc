@@ -152,15 +152,24 @@ void Timer::listen_to_triggers() {
   }
 }
 
-void Timer::break_input(bool level) {
-  sync();
+// While it is active, MOE cannot be set and its flag not be cleared.
+bool Timer::look_at_break() {
   const std::uint32_t bdtr = value(kBdtr);
-  break_high_ = (bdtr & kBke) != 0 && level == ((bdtr & kBkp) != 0);
-  if (!break_high_) return;
+  break_high_ = (bdtr & kBke) != 0 && break_level_ == ((bdtr & kBkp) != 0);
+  if (!break_high_) return false;
   value(kBdtr) &= ~kMoe;
   forget_pins();
   raise(kBreak);
+  return true;
+}
+
+void Timer::break_input(bool level) {
+  sync();
+  break_level_ = level;
+  if (!look_at_break()) return;
+  plan();
   outputs_changed();
+  system().reschedule();
 }
 
 }  // namespace omnihil::mcu
