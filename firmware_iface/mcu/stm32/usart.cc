@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware_iface/mcu/stm32/register_rows.h"
+
 namespace omnihil::mcu {
 namespace {
 constexpr RegisterInfo kV1[] = {{0x00, "SR", 0xC0, 0},
@@ -12,18 +14,21 @@ constexpr RegisterInfo kV1[] = {{0x00, "SR", 0xC0, 0},
                                 {0x10, "CR2", 0, 0x7F7F, 0x4800},
                                 {0x14, "CR3", 0, 0x0FFF, 0x0326},
                                 {0x18, "GTPR", 0, 0xFFFF}};
-constexpr RegisterInfo kV2[] = {{0x00, "CR1", 0, 0xFFFFFFFF, 0xEC006002},
-                                {0x04, "CR2", 0, 0xFFFFFFFF, 0x00FFC800},
-                                {0x08, "CR3", 0, 0xFFFFFFFF, 0xFF008326},
-                                {0x0C, "BRR", 0, 0xFFFF},
-                                {0x10, "GTPR", 0, 0xFFFF},
-                                {0x14, "RTOR", 0},
-                                {0x18, "RQR", 0, 0},
-                                {0x1C, "ISR", 0xC0, 0},
-                                {0x20, "ICR", 0, 0},
-                                {0x24, "RDR", 0, 0},
-                                {0x28, "TDR", 0, 0},
-                                {0x2C, "PRESC", 0, 0xF, 0xF}};
+constexpr RegisterInfo kControlOfV2[] = {{0x00, "CR1", 0, 0xFFFFFFFF, 0xEC006002},
+                                         {0x04, "CR2", 0, 0xFFFFFFFF, 0x00FFC800},
+                                         {0x08, "CR3", 0, 0xFFFFFFFF, 0xFF008326}};
+constexpr RegisterInfo kRateOfV2[] = {{0x0C, "BRR", 0, 0xFFFF}, {0x10, "GTPR", 0, 0xFFFF}, {0x14, "RTOR", 0}};
+constexpr RegisterInfo kRateOfLowPower[] = {{0x0C, "BRR", 0, 0xFFFFF}};
+constexpr RegisterInfo kDataOfV2[] = {{0x18, "RQR", 0, 0}, {0x1C, "ISR", 0xC0, 0},
+                                      {0x20, "ICR", 0, 0}, {0x24, "RDR", 0, 0},
+                                      {0x28, "TDR", 0, 0}, {0x2C, "PRESC", 0, 0xF, 0xF}};
+constexpr auto kV2 = joined(kControlOfV2, kRateOfV2, kDataOfV2);
+constexpr auto kLowPower = joined(kControlOfV2, kRateOfLowPower, kDataOfV2);
+
+std::span<const RegisterInfo> rows_of(const UsartSpec& spec) {
+  if (spec.low_power) return kLowPower;
+  return spec.v2 ? std::span<const RegisterInfo>(kV2) : kV1;
+}
 // Status: the same places in SR and ISR.
 constexpr std::uint32_t kOre = 1u << 3, kIdle = 1u << 4, kRxne = 1u << 5, kTc = 1u << 6, kTxe = 1u << 7;
 constexpr std::uint32_t kErrors = 0x1F;
@@ -33,8 +38,7 @@ constexpr std::uint32_t kDmar = 1u << 6, kDmat = 1u << 7;  // CR3
 }  // namespace
 
 Usart::Usart(UsartSpec spec, ChipContext& context)
-    : RegisterBlock(spec.name, context.system,
-                    spec.v2 ? std::span<const RegisterInfo>(kV2) : std::span<const RegisterInfo>(kV1)),
+    : RegisterBlock(spec.name, context.system, rows_of(spec)),
       spec_(std::move(spec)),
       context_(context),
       irq_(context.irqs, spec_.irq),
@@ -61,6 +65,7 @@ Cycles Usart::bit_cycles() const {
   const std::uint32_t brr = value(spec_.v2 ? 0x0C : 0x08);
   const std::uint32_t periods = (cr1() & kOver8) != 0 ? ((brr & 0xFFF0u) | (brr & 0x7u) << 1) / 2 : brr;
   const ClockRatio clock = context_.clocks.bus(spec_.bus);
+  if (spec_.low_power) return std::max<Cycles>(1, Cycles{brr} * clock.div / (Cycles{256} * clock.mul));
   return std::max<Cycles>(1, Cycles{periods} * clock.div / clock.mul);
 }
 

@@ -4,7 +4,7 @@
 //   usart.on_transmit([](std::uint8_t byte, Cycles end) { … });   // when its stop bit has left
 //   usart.feed(bytes, at_ns);                        // from the other end, one frame after the other
 //
-// Law: RM0090 §30, RM0316 §29. A frame takes start + data + stop bits of BRR clock periods each; a received
+// Law: RM0090 §30, RM0316 §29; LPUART: RM0440 §38. A frame takes start + data + stop bits of BRR clock periods each; a received
 // byte is there at the end of its frame; the line is idle one frame after the last. Both ends are assumed to
 // agree on the baud rate unless `feed` says what the other end's bit takes. Parity is made and stripped, not
 // checked. Cannot represent: framing errors, noise, break, LIN, smart card, IrDA, synchronous mode, flow
@@ -28,6 +28,7 @@ struct UsartSpec {
   bool v2 = false;
   Bus bus = Bus::kApb2;
   int irq = -1;
+  bool low_power = false;  // LPUART: BRR counts 256ths of a clock period
 };
 
 // What passed on one of its lines: levels from the start bit on, the first of them in bit 0.

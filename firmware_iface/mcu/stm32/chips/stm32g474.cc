@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "firmware_iface/mcu/stm32/chip_parts.h"
+#include "firmware_iface/mcu/stm32/cordic.h"
 #include "firmware_iface/mcu/stm32/fdcan.h"
 
 namespace omnihil::mcu {
@@ -17,6 +18,7 @@ std::vector<std::pair<unsigned, std::string>> requests() {
   run(16, {"I2C1_RX", "I2C1_TX", "I2C2_RX", "I2C2_TX", "I2C3_RX", "I2C3_TX", "I2C4_RX", "I2C4_TX"});
   run(24, {"USART1_RX", "USART1_TX", "USART2_RX", "USART2_TX", "USART3_RX", "USART3_TX", "UART4_RX",
            "UART4_TX", "UART5_RX", "UART5_TX"});
+  run(34, {"LPUART1_RX", "LPUART1_TX"});
   run(36, {"ADC2", "ADC3", "ADC4", "ADC5"});
   run(42, {"TIM1_CH1", "TIM1_CH2", "TIM1_CH3", "TIM1_CH4", "TIM1_UP", "TIM1_TRIG", "TIM1_COM"});
   run(49, {"TIM8_CH1", "TIM8_CH2", "TIM8_CH3", "TIM8_CH4", "TIM8_UP", "TIM8_TRIG", "TIM8_COM"});
@@ -27,6 +29,7 @@ std::vector<std::pair<unsigned, std::string>> requests() {
   run(78,
       {"TIM15_CH1", "TIM15_UP", "TIM15_TRIG", "TIM15_COM", "TIM16_CH1", "TIM16_UP", "TIM17_CH1", "TIM17_UP"});
   run(86, {"TIM20_CH1", "TIM20_CH2", "TIM20_CH3", "TIM20_CH4", "TIM20_UP"});
+  run(112, {"CORDIC_RD", "CORDIC_WR"});
   return all;
 }
 
@@ -129,6 +132,8 @@ void build(Chip& chip) {
   add_usart(chip, 0x40004800, {.number = 3, .name = "USART3", .v2 = true, .bus = one, .irq = 39});
   add_usart(chip, 0x40004C00, {.number = 4, .name = "UART4", .v2 = true, .bus = one, .irq = 52});
   add_usart(chip, 0x40005000, {.number = 5, .name = "UART5", .v2 = true, .bus = one, .irq = 53});
+  add_usart(chip, 0x40008000,
+            {.number = 0, .name = "LPUART1", .v2 = true, .bus = one, .irq = 91, .low_power = true});
   add_spi(chip, 0x40013000, {.name = "SPI1", .v2 = true, .bus = two, .irq = 35});
   add_spi(chip, 0x40003800, {.name = "SPI2", .v2 = true, .bus = one, .irq = 36});
   add_spi(chip, 0x40003C00, {.name = "SPI3", .v2 = true, .bus = one, .irq = 51});
@@ -147,12 +152,11 @@ void build(Chip& chip) {
   add_stored(chip, 0x40005C00, 0x400, "USB");
   add_stored(chip, 0x40006000, 0x400, "USB packet memory");
   add_stored(chip, 0x40007C00, 0x400, "LPTIM1");
-  add_stored(chip, 0x40008000, 0x400, "LPUART1", {{0x1C, 0x006000C0}});
   add_stored(chip, 0x40010030, 0x1D0, "VREFBUF", {{0, 8}});
   add_stored(chip, 0x40010200, 0x100, "COMP");
   add_stored(chip, 0x40010300, 0x100, "OPAMP");
   add_stored(chip, 0x40016800, 0x1000, "HRTIM");
-  add_stored(chip, 0x40020C00, 0x400, "CORDIC", {{0, 0x80000000}});
+  chip.add(0x40020C00, 0x400, std::make_unique<Cordic>(context, 100));
   add_stored(chip, 0x40021400, 0x400, "FMAC");
   chip.add(0x40023000, 0x400, std::make_unique<Crc>(CrcFamily::kV2, chip.context().system));
   add_stored(chip, 0x50000800, 0x400, "DAC1");
