@@ -12,7 +12,8 @@
 
 namespace omnihil::mcu {
 namespace {
-constexpr std::uint32_t kWiresBase = 0x5FFF0000;  // no chip has anything here; wires only have events
+// No chip has anything here; wires and alarms only have events.
+constexpr std::uint32_t kWiresBase = 0x5FFF0000, kAlarmsBase = 0x5FFE0000;
 
 MachineConfig configuration(const BoardSpec& spec) {
   MachineConfig config = machine_config(*spec.chip);
@@ -88,6 +89,9 @@ DeviceWorld McuBoard::device_world(const DeviceEntry& entry) {
     }
     return sum_A;
   };
+  world.motor_current_A = [this, entry](std::int64_t) {
+    return world_.motor_current_A[static_cast<std::size_t>(entry.wheel)];
+  };
   world.gyro_z_rad_s = [this](std::int64_t) { return world_.gyro_z_rad_s; };
   world.accel_x_m_s2 = [this](std::int64_t) { return world_.accel_x_m_s2; };
   world.accel_y_m_s2 = [this](std::int64_t) { return world_.accel_y_m_s2; };
@@ -96,7 +100,15 @@ DeviceWorld McuBoard::device_world(const DeviceEntry& entry) {
 }
 
 void McuBoard::wire_device(const DeviceEntry& entry) {
-  devices_.push_back({entry.kind->make(device_world(entry)), entry});
+  Wired wired{nullptr, nullptr, entry};
+  const std::size_t place = devices_.size();
+  wired.alarm =
+      std::make_unique<DeviceAlarm>(entry.name, machine_, [this, place] { devices_[place].device->woken(); });
+  machine_.attach(kAlarmsBase + 16 * static_cast<std::uint32_t>(place), 4, *wired.alarm);
+  DeviceWorld world = device_world(entry);
+  world.wake_at = [alarm = wired.alarm.get()](std::int64_t at_ns) { alarm->set(at_ns); };
+  wired.device = entry.kind->make(world);
+  devices_.push_back(std::move(wired));
   Device* device = devices_.back().device.get();
   if (SpiDevice* slave = device->spi()) {
     Spi* bus = chip_.find<Spi>(entry.bus);
@@ -111,18 +123,57 @@ void McuBoard::wire_device(const DeviceEntry& entry) {
     port->on_modes(follow);
   }
   if (I2cDevice* slave = device->i2c()) chip_.find<I2c>(entry.bus)->connect(*slave);
-  for (const std::string_view name : device->inputs()) {
+  wire_device_pins(*device, entry);
+}
+
+void McuBoard::wire_device_pins(Device& device, const DeviceEntry& entry) {
+  for (const std::string_view name : device.inputs()) {
     const auto at = entry.pins.find(name);
     if (at == entry.pins.end()) continue;
-    chip_.port(at->second.port)->on_output(at->second.pin, [device, name](bool level) {
-      device->input(name, level);
+    chip_.port(at->second.port)->on_output(at->second.pin, [&device, name](bool level) {
+      device.input(name, level);
     });
+    device.input(name, false);  // as the pin is before the image makes anything of it
   }
   std::map<std::string, PinName, std::less<>> pins = entry.pins;
-  device->on_output([this, pins](std::string_view name, bool level) {
+  if (MotorWire* motor = wire(entry.wheel); motor != nullptr && device.gates_bridge()) motor->gate_by(device);
+  Timer* broken = entry.breaks.empty() ? nullptr : chip_.find<Timer>(entry.breaks);
+  device.on_output([this, pins, broken](std::string_view name, bool level) {
+    if (broken != nullptr && name == "fault") broken->break_input(level);
     const auto at = pins.find(name);
     if (at != pins.end()) chip_.port(at->second.port)->drive(at->second.pin, level);
   });
+}
+
+double McuBoard::analog_value(const AnalogEntry& entry) const {
+  const auto wheel = static_cast<std::size_t>(entry.wheel), phase = static_cast<std::size_t>(entry.phase);
+  switch (entry.signal) {
+    case AnalogSignal::kBusVoltage:
+      return world_.bus_voltage_V;
+    case AnalogSignal::kMotorCurrent:
+      return world_.motor_current_A[wheel];
+    case AnalogSignal::kPhaseCurrent:
+      return world_.phase_current_A[wheel][phase];
+    case AnalogSignal::kPhaseVoltage:
+      return phase_voltage_V(entry.wheel, phase);
+    case AnalogSignal::kConstant:
+      break;
+  }
+  return 0.0;
+}
+
+// On the mean of the PWM period, against the bus's minus, as its RC filter shows it. A leg that is off floats with the
+// motor's star point: half of the bus, its own back-EMF left out.
+double McuBoard::phase_voltage_V(int wheel, std::size_t phase) const {
+  const MotorWire* motor = this->wire(wheel);
+  if (motor == nullptr || !motor->phases()) return 0.0;
+  std::uint32_t leg[kLegs];
+  double duty[kLegs];
+  motor->legs(leg, duty);
+  double high_ratio = 0.5;
+  if (leg[phase] == OMNIHIL_LEG_PWM || leg[phase] == OMNIHIL_LEG_HIGH) high_ratio = duty[phase];
+  if (leg[phase] == OMNIHIL_LEG_LOW) high_ratio = 0.0;
+  return high_ratio * world_.bus_voltage_V;
 }
 
 void McuBoard::wire_analog() {
@@ -130,12 +181,7 @@ void McuBoard::wire_analog() {
     chip_.find<Adc>(name)->reference_V = spec_.adc_reference_V;
   for (const AnalogEntry& entry : spec_.analog) {
     chip_.find<Adc>(entry.adc)->set_source(entry.channel, [this, entry](std::int64_t) {
-      double value = 0.0;
-      if (entry.signal == AnalogSignal::kBusVoltage) value = world_.bus_voltage_V;
-      if (entry.signal == AnalogSignal::kMotorCurrent) {
-        value = world_.motor_current_A[static_cast<std::size_t>(entry.wheel)];
-      }
-      return entry.offset_V + entry.volts_per_unit * value;
+      return entry.offset_V + entry.volts_per_unit * analog_value(entry);
     });
   }
 }
@@ -171,6 +217,7 @@ void McuBoard::set_world(const WorldState& world) {
   if (watcher_) watcher_(world);
   world_ = world;
   for (const auto& hall : halls_) hall->world_changed();
+  for (const Wired& wired : devices_) wired.device->world_changed();
 }
 
 MotorWire* McuBoard::wire(int wheel) const {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/board/board_spec.h"
+#include "firmware_iface/mcu/board/device_alarm.h"
 #include "firmware_iface/mcu/board/hall_lines.h"
 #include "firmware_iface/mcu/board/motor_wire.h"
 #include "firmware_iface/mcu/board/world_state.h"
@@ -59,13 +60,17 @@ class McuBoard {
 
  private:
   struct Wired {
+    std::unique_ptr<DeviceAlarm> alarm;
     std::unique_ptr<Device> device;
     DeviceEntry entry;
   };
   void run_to_due(std::int64_t end_ns);
   void wire_motors();
   void wire_device(const DeviceEntry& entry);
+  void wire_device_pins(Device& device, const DeviceEntry& entry);
   void wire_analog();
+  double analog_value(const AnalogEntry& entry) const;
+  double phase_voltage_V(int wheel, std::size_t phase) const;
   void wire_radio();
   void wire_commands();
   DeviceWorld device_world(const DeviceEntry& entry);

@@ -147,8 +147,8 @@ std::vector<ChannelName> Reader::channels(const toml::table& t, const std::strin
 
 void Reader::read_motor(const toml::table& t, const std::string& path) {
   keys_.only(t, path,
-             {"wheel", "pwm", "pwm_low", "inverted", "direction", "forward", "reversed", "enable", "encoder",
-              "encoder_reversed", "hall", "hall_pins", "hall_inverted", "pole_pairs"});
+             {"wheel", "pwm", "pwm_low", "inverted", "direction", "forward", "reversed", "enable", "brake",
+              "encoder", "encoder_reversed", "hall", "hall_pins", "hall_inverted", "pole_pairs"});
   MotorEntry motor;
   if (const auto wheel = keys_.whole(t, path, "wheel", 0, kWheels - 1)) {
     motor.wheel = static_cast<int>(*wheel);
@@ -173,6 +173,7 @@ void Reader::read_motor(const toml::table& t, const std::string& path) {
   }
   motor.sign = keys_.flag(t, path, "reversed").value_or(false) ? -1.0 : 1.0;
   motor.enable = pin(t, path, "enable");
+  motor.brake = pin(t, path, "brake");
   read_sensors(t, path, motor);
   spec_.motors.push_back(std::move(motor));
 }
@@ -208,7 +209,7 @@ void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEn
 }
 
 void Reader::read_device(const toml::table& t, const std::string& path) {
-  keys_.only(t, path, {"kind", "name", "bus", "select", "pins", "settings", "wheel", "shaft"});
+  keys_.only(t, path, {"kind", "name", "bus", "select", "pins", "settings", "breaks", "wheel", "shaft"});
   DeviceEntry device;
   std::string kinds;
   for (const DeviceKind* kind : all_devices()) kinds += (kinds.empty() ? "" : ", ") + std::string(kind->name);
@@ -256,6 +257,12 @@ void Reader::read_device_wires(const toml::table& t, const std::string& path, De
       }
     }
   }
+  device.breaks = keys_.text(t, path, "breaks").value_or("");
+  const auto outs = sample->outputs();
+  if (!device.breaks.empty() && std::find(outs.begin(), outs.end(), "fault") == outs.end())
+    keys_.wrong(t, path, "breaks", "the device has no fault pin", "");
+  if (!device.breaks.empty() && names_ && !names_->has_channel({device.breaks, 0, true}))
+    keys_.wrong(t, path, "breaks", "no timer with a break input", names_->timers_with_complements());
   if (const toml::node* node = t.get("settings")) {
     const toml::table* settings = node->as_table();
     if (settings == nullptr) keys_.wrong(t, path, "settings", "not a table", "{ shunt_ohm = 0.01 }");
@@ -273,7 +280,7 @@ void Reader::read_device_wires(const toml::table& t, const std::string& path, De
 }
 
 void Reader::read_analog(const toml::table& t, const std::string& path) {
-  keys_.only(t, path, {"adc", "channel", "signal", "wheel", "volts_per_unit", "offset_V"});
+  keys_.only(t, path, {"adc", "channel", "signal", "wheel", "phase", "volts_per_unit", "offset_V"});
   AnalogEntry analog;
   analog.adc = keys_.text(t, path, "adc").value_or("");
   if (names_ && !names_->has_adc(analog.adc)) {
@@ -281,14 +288,17 @@ void Reader::read_analog(const toml::table& t, const std::string& path) {
   }
   analog.channel = static_cast<unsigned>(keys_.whole(t, path, "channel", 0, 31).value_or(0));
   if (!t.contains("channel")) keys_.missing(t, path, "channel", "0 to 31");
+  // In the order of AnalogSignal.
+  constexpr std::string_view kSignals[] = {"constant", "bus_voltage", "motor_current", "phase_current",
+                                           "phase_voltage"};
   const std::string signal = keys_.text(t, path, "signal").value_or("constant");
-  if (signal == "bus_voltage") {
-    analog.signal = AnalogSignal::kBusVoltage;
-  } else if (signal == "motor_current") {
-    analog.signal = AnalogSignal::kMotorCurrent;
-  } else if (signal != "constant") {
-    keys_.wrong(t, path, "signal", "unknown", "bus_voltage, motor_current, constant");
+  const auto* found = std::find(std::begin(kSignals), std::end(kSignals), signal);
+  if (found == std::end(kSignals)) {
+    keys_.wrong(t, path, "signal", "unknown", fmt::format("{}", fmt::join(kSignals, ", ")));
+  } else {
+    analog.signal = static_cast<AnalogSignal>(found - kSignals);
   }
+  analog.phase = static_cast<int>(keys_.whole(t, path, "phase", 0, kLegs - 1).value_or(0));
   analog.wheel = static_cast<int>(keys_.whole(t, path, "wheel", 0, kWheels - 1).value_or(0));
   analog.volts_per_unit = keys_.number(t, path, "volts_per_unit", -1e3, 1e3).value_or(0.0);
   analog.offset_V = keys_.number(t, path, "offset_V", -100.0, 100.0).value_or(0.0);
@@ -397,7 +407,7 @@ void Reader::read_wheel_commands() {
 
 // An input that never changes: a level, or a bit of the robot's number.
 void Reader::read_pin(const toml::table& t, const std::string& path) {
-  keys_.only(t, path, {"pin", "level", "robot_id_bit", "break_beam"});
+  keys_.only(t, path, {"pin", "level", "robot_id_bit", "break_beam", "inverted"});
   const auto p = pin(t, path, "pin");
   if (!t.contains("pin")) keys_.missing(t, path, "pin", "a pin, such as PC13");
   const bool has_level = t.contains("level"), has_bit = t.contains("robot_id_bit"),
@@ -410,12 +420,14 @@ void Reader::read_pin(const toml::table& t, const std::string& path) {
   const auto level = keys_.flag(t, path, "level");
   const auto id_bit = keys_.whole(t, path, "robot_id_bit", 0, 7);
   const auto beam = keys_.text(t, path, "break_beam");
+  const bool inverted = keys_.flag(t, path, "inverted").value_or(false);
+  if (inverted && !has_bit) keys_.wrong(t, path, "inverted", "without a robot_id_bit", "beside one");
   if (beam && *beam != "high" && *beam != "low")
     keys_.wrong(t, path, "break_beam", "is neither",
                 "\"high\" or \"low\": the level while the ball is in the beam");
   if (p)
     spec_.pins.push_back({*p, beam ? *beam == "high" : level.value_or(false),
-                          static_cast<int>(id_bit.value_or(-1)), beam.has_value()});
+                          static_cast<int>(id_bit.value_or(-1)), beam.has_value(), inverted});
 }
 
 // What the radio or the main board hangs on leads nowhere else.

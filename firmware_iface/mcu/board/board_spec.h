@@ -43,9 +43,10 @@ struct MotorEntry {
   bool inverted = false;                  // the driver's input is active low
   std::optional<PinName> direction;
   bool direction_high_is_forward = true;
-  double sign = 1.0;              // -1: the motor's leads are swapped
-  std::optional<PinName> enable;  // low: the bridge is off
-  std::string encoder_timer;      // empty: none
+  double sign = 1.0;                  // -1: the motor's leads are swapped
+  std::optional<PinName> enable;      // low: the bridge is off
+  std::optional<PinName> brake = {};  // low: all lower switches are closed
+  std::string encoder_timer;          // empty: none
   double encoder_sign = 1.0;
   std::string hall_timer;          // empty: none; its channels 1 to 3
   std::vector<PinName> hall_pins;  // the same lines as pins
@@ -59,18 +60,26 @@ struct DeviceEntry {
   std::string bus;   // "SPI1", "I2C2"
   std::optional<PinName> select;
   std::map<std::string, PinName, std::less<>> pins;
+  std::string breaks = {};  // a timer whose break input its fault pin is at; empty: none
   std::map<std::string, double, std::less<>> settings;
   int wheel = 0;  // of an angle sensor
   bool on_wheel_shaft = false;
 };
 
-enum class AnalogSignal : std::uint8_t { kConstant, kBusVoltage, kMotorCurrent };
+enum class AnalogSignal : std::uint8_t {
+  kConstant,
+  kBusVoltage,
+  kMotorCurrent,
+  kPhaseCurrent,
+  kPhaseVoltage
+};
 
 struct AnalogEntry {
   std::string adc;
   unsigned channel = 0;
   AnalogSignal signal = AnalogSignal::kConstant;
   int wheel = 0;
+  int phase = 0;
   double volts_per_unit = 0.0, offset_V = 0.0;
 };
 
@@ -79,6 +88,7 @@ struct PinEntry {
   bool level = false;
   int robot_id_bit = -1;    // not negative: this bit of the robot's number instead
   bool break_beam = false;  // the break beam's receiver instead: at `level` while the ball is in the beam
+  bool inverted = false;    // of robot_id_bit: a one is low
 };
 
 struct FlashEntry {

@@ -32,7 +32,7 @@ McuFirmware::McuFirmware(const BoardSpec& spec, const ElfImage& image, const Rob
     boards_.push_back(std::make_unique<McuBoard>(numbered(spec, b), image));
     for (const PinEntry& entry : spec.pins) {  // the switches that say which robot this is
       if (entry.robot_id_bit < 0) continue;
-      const bool level = (config.robot_id >> entry.robot_id_bit & 1u) != 0;
+      const bool level = ((config.robot_id >> entry.robot_id_bit & 1u) != 0) != entry.inverted;
       boards_.back()->chip().port(entry.pin.port)->drive(entry.pin.pin, level);
     }
   }
@@ -115,6 +115,7 @@ void McuFirmware::show_world() {
       seen.theta_rotor_rad[i] = world_.theta_rotor_rad[w];
       seen.omega_rotor_rad_s[i] = world_.omega_rotor_rad_s[w];
       seen.motor_current_A[i] = world_.motor_current_A[w];
+      seen.phase_current_A[i] = world_.phase_current_A[w];
     }
     boards_[b]->set_world(seen);
   }
@@ -179,6 +180,9 @@ MotorDrive McuFirmware::motor_tick(const MotorSensors& sensors) {
   const auto now_ns = static_cast<std::int64_t>(sensors.now_ns);
   for (const auto& board : boards_) board->run_until_ns(now_ns);
   world_.bus_voltage_V = sensors.bus_voltage_V;
+  for (std::size_t w = 0; w < kWheels; ++w) {
+    std::copy_n(sensors.phase_current_A[w], kLegs, world_.phase_current_A[w].begin());
+  }
   show_world();
   MotorDrive drive{};
   for (int w = 0; w < kWheels; ++w) {

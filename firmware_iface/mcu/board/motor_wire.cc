@@ -20,6 +20,15 @@ MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int
     enable_ = chip.port(entry_.enable->port);
     enable_->on_output(entry_.enable->pin, pin_changed);
   }
+  if (entry_.brake) {
+    brake_ = chip.port(entry_.brake->port);
+    brake_->on_output(entry_.brake->pin, pin_changed);
+  }
+}
+
+void MotorWire::gate_by(Device& driver) {
+  driver_ = &driver;
+  driver.on_bridge([this] { changed(now_ns_()); });
 }
 
 TimerPin MotorWire::pin(Timer& timer, const ChannelName& channel) const {
@@ -31,6 +40,7 @@ TimerPin MotorWire::pin(Timer& timer, const ChannelName& channel) const {
 BridgeDrive MotorWire::work_out(bool& pwm) const {
   pwm = false;
   if (!enabled() || timers_.empty()) return {};
+  if (braked()) return {true, 0.0};
   const TimerPin first = pin(0);
   if (first.drive == TimerPin::Drive::kOff) return {};
   pwm = first.drive == TimerPin::Drive::kPwm;
@@ -55,7 +65,8 @@ void MotorWire::pass(std::int64_t at_ns) {
 
 // What now() would give is held_: nothing that it is made of has moved since.
 inline bool MotorWire::still() const {
-  return held_pwm_ && held_version_ == pins_version() && held_directed_ == directed() && enabled();
+  return held_pwm_ && held_version_ == pins_version() && held_directed_ == directed() && enabled() &&
+         !braked();
 }
 
 void MotorWire::hold() {
@@ -91,6 +102,11 @@ void MotorWire::legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) c
     leg[x] = OMNIHIL_LEG_OFF;
     duty_ratio[x] = 0.0;
     if (!enabled()) continue;
+    if (braked()) {
+      leg[x] = OMNIHIL_LEG_LOW;
+      duty_ratio[x] = 1.0;
+      continue;
+    }
     const TimerPin high = pin(x);
     if (low_timers_.empty()) {
       if (high.drive == TimerPin::Drive::kOff) continue;

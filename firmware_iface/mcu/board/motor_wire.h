@@ -8,8 +8,10 @@
 // channels: the difference of the halves. Three: phases. With gates of the lower switches on pins of their
 // own (pwm_low) a leg is what both pins say, a pin that is off being held low by its resistor; without, the
 // driver makes the lower switch's signal of the one input. The dead time that the timer cuts off both is left
-// to the model's bridge, which has its own. A channel that is off (no MOE, not enabled) leaves the motor to
-// coast; so does the enable pin when low. Cannot represent: pins that are not set to their timer (their mode
+// to the model's bridge, which has its own. The brake pin, low, closes all lower switches: both ends at the bus's
+// minus. A channel that is off (no MOE, not enabled) leaves the motor to
+// coast; so does the enable pin when low,
+// and a gate driver that has switched off. Cannot represent: pins that are not set to their timer (their mode
 // is not looked at), both gates of a leg high at once.
 #pragma once
 #include <array>
@@ -18,6 +20,7 @@
 
 #include "firmware_iface/mcu/board/board_spec.h"
 #include "firmware_iface/mcu/stm32/chip.h"
+#include "firmware_iface/mcu/stm32/device.h"
 #include "firmware_iface/mcu/stm32/timer/timer.h"
 #include "firmware_iface/robot_io.h"
 
@@ -41,6 +44,8 @@ class MotorWire {
     bool pwm;
     return work_out(pwm);
   }
+  // The bridge's gate driver; until it lets the switches go, the motor coasts.
+  void gate_by(Device& driver);
   // The legs of a three-phase bridge, as omnihil_motor_drive has them.
   void legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) const;
 
@@ -52,7 +57,10 @@ class MotorWire {
   void pass(std::int64_t at_ns);
   TimerPin pin(Timer& timer, const ChannelName& channel) const;
   TimerPin pin(std::size_t i) const { return pin(*timers_[i], entry_.pwm[i]); }
-  bool enabled() const { return !enable_ || enable_->output(entry_.enable->pin); }
+  bool enabled() const {
+    return (!enable_ || enable_->output(entry_.enable->pin)) && (!driver_ || driver_->drives_bridge());
+  }
+  bool braked() const { return brake_ != nullptr && !brake_->output(entry_.brake->pin); }
   bool directed() const { return direction_ != nullptr && direction_->output(entry_.direction->pin); }
   std::uint32_t pins_version() const {
     return timers_.size() < 2 ? timers_[0]->pins_version()
@@ -62,7 +70,8 @@ class MotorWire {
   MotorEntry entry_;
   std::function<std::int64_t()> now_ns_;
   std::vector<Timer*> timers_, low_timers_;
-  GpioPort *direction_ = nullptr, *enable_ = nullptr;
+  GpioPort *direction_ = nullptr, *enable_ = nullptr, *brake_ = nullptr;
+  const Device* driver_ = nullptr;
   bool phases_ = false;
   BridgeDrive held_;
   bool held_pwm_ = false, held_directed_ = false;  // held_ is of PWM pins alone; of this direction ...

@@ -34,14 +34,19 @@ class I2cDevice {
   virtual std::uint8_t read() = 0;
 };
 
+inline constexpr std::int64_t kNoWake = -1;
+
 // What a device may ask of the world: all as functions of time, answered for the instant asked for.
 struct DeviceWorld {
   std::function<std::int64_t()> now_ns = [] { return std::int64_t{0}; };
   std::function<double(std::int64_t at_ns)> angle_rad;      // of the shaft that it sits on
   std::function<double(std::int64_t at_ns)> bus_voltage_V;  // of the battery
   std::function<double(std::int64_t at_ns)> bus_current_A;
+  std::function<double(std::int64_t at_ns)> motor_current_A;  // of the wheel that it is for
   std::function<double(std::int64_t at_ns)> gyro_z_rad_s;
   std::function<double(std::int64_t at_ns)> accel_x_m_s2, accel_y_m_s2;
+  // Calls the device's woken() at that instant; the last call counts, and kNoWake takes it back.
+  std::function<void(std::int64_t at_ns)> wake_at = [](std::int64_t) {};
   std::map<std::string, double, std::less<>> settings;  // from the board file: address, shunt_ohm, …
 
   double setting(std::string_view name, double otherwise) const {
@@ -63,6 +68,14 @@ class Device {
   void on_output(std::function<void(std::string_view pin, bool level)> listener) {
     on_output_ = std::move(listener);
   }
+  // The instant that it had asked for has come.
+  virtual void woken() {}
+  // A step of the plant has begun: currents and voltage are new ones.
+  virtual void world_changed() {}
+  // Gate drivers: whether they let their bridge's switches follow the timer.
+  virtual bool gates_bridge() const { return false; }
+  virtual bool drives_bridge() const { return true; }
+  void on_bridge(std::function<void()> listener) { on_bridge_ = std::move(listener); }
   // Radios: packets from and to the air.
   virtual bool is_radio() const { return false; }
   virtual void air(std::span<const std::uint8_t>) {}
@@ -72,9 +85,13 @@ class Device {
   void output(std::string_view pin, bool level) const {
     if (on_output_) on_output_(pin, level);
   }
+  void bridge_changed() const {
+    if (on_bridge_) on_bridge_();
+  }
 
  private:
   std::function<void(std::string_view, bool)> on_output_;
+  std::function<void()> on_bridge_;
 };
 
 struct DeviceKind {

@@ -89,6 +89,77 @@ TEST(MotorWire, LegsFollowTheGatesOfBothSwitches) {
   EXPECT_EQ(leg[2], static_cast<std::uint32_t>(OMNIHIL_LEG_OFF));
 }
 
+TEST(MotorWire, TheBrakePinClosesTheLowerSwitchesWhateverTheTimerSays) {
+  WireBench b;
+  MotorEntry entry;
+  entry.pwm = {{"TIM1", 0, false}};
+  entry.direction = PinName{'E', 0};
+  entry.brake = PinName{'E', 1};
+  const auto wire = b.wire(entry);
+  b.set("GPIOE", 0x00, 5);
+  b.set("GPIOE", 0x18, 1);
+  b.set("TIM1", 0x20, 1);
+  b.set("TIM1", 0x34, 400);
+  EXPECT_TRUE(wire->now().driven);
+  EXPECT_EQ(wire->now().duty_ratio, 0.0) << "low: braked";
+  wire->begin(b.now_ns());
+  b.system.run_for(16 * 50);
+  b.set("GPIOE", 0x18, 2);
+  EXPECT_NEAR(wire->now().duty_ratio, 0.4, 1e-9);
+  b.system.run_for(16 * 50);
+  const BridgeDrive mean = wire->end(b.now_ns());
+  EXPECT_TRUE(mean.driven);
+  EXPECT_NEAR(mean.duty_ratio, 0.2, 1e-9) << "half of the time braked";
+}
+
+TEST(MotorWire, ABrakedPhaseIsLow) {
+  WireBench b;
+  MotorEntry entry;
+  entry.pwm = {{"TIM1", 0, false}, {"TIM1", 1, false}, {"TIM1", 2, false}};
+  entry.brake = PinName{'E', 1};
+  const auto wire = b.wire(entry);
+  b.set("TIM1", 0x20, 0x111);
+  std::uint32_t leg[kLegs];
+  double duty[kLegs];
+  wire->legs(leg, duty);
+  for (int x = 0; x < kLegs; ++x) {
+    EXPECT_EQ(leg[x], std::uint32_t{OMNIHIL_LEG_LOW});
+    EXPECT_EQ(duty[x], 1.0);
+  }
+}
+
+struct Gate final : Device {
+  void reset() override {}
+  bool gates_bridge() const override { return true; }
+  bool drives_bridge() const override { return drives; }
+  void set(bool level) {
+    drives = level;
+    bridge_changed();
+  }
+  bool drives = true;
+};
+
+TEST(MotorWire, AGateDriverThatIsOffLetsTheMotorCoast) {
+  WireBench b;
+  MotorEntry entry;
+  entry.pwm = {{"TIM1", 0, false}};
+  const auto wire = b.wire(entry);
+  Gate gate;
+  wire->gate_by(gate);
+  b.set("TIM1", 0x20, 1);
+  b.set("TIM1", 0x34, 900);
+  wire->begin(b.now_ns());
+  b.system.run_for(16 * 30);
+  gate.set(false);
+  EXPECT_FALSE(wire->now().driven);
+  b.system.run_for(16 * 70);
+  gate.set(true);
+  b.system.run_for(16 * 10);
+  const BridgeDrive mean = wire->end(b.now_ns());
+  EXPECT_TRUE(mean.driven);
+  EXPECT_NEAR(mean.duty_ratio, 0.8, 1e-9) << "of the time that it drove";
+}
+
 TEST(MotorWire, DeadTimeIsLeftToTheBridge) {
   WireBench b;
   const auto wire = b.wire(three_half_bridges());
