@@ -87,6 +87,7 @@ BxCan::BxCan(const std::string& name, std::array<int, 4> irqs, unsigned banks, B
       irq_rx1_(context.irqs, irqs[2]),
       irq_sce_(context.irqs, irqs[3]) {
   next_event_is(sent_at_);
+  if (filters != nullptr) filters->second_ = this;
 }
 
 void BxCan::reset() {
@@ -206,7 +207,10 @@ int BxCan::match(const CanFrame& frame, unsigned first, unsigned last, unsigned&
 void BxCan::take(const CanFrame& frame) {
   if (!running() || frame.fd) return off_bus(now());
   const bool second = filters_ != this;
-  const unsigned split = filters_->banks_ > 14 ? field(filters_->value(kFmr), 8, 6) : 28;
+  unsigned split = filters_->banks_ > 14 ? field(filters_->value(kFmr), 8, 6) : 28;
+  // With all of them given to a second controller that is off, the first one's still work (RM0090 says that none do; HAL
+  // users who leave the field at 0 receive all the same: ST community, "CAN2 start bank ignored", 2016).
+  if (!second && split == 0 && (second_ == nullptr || !second_->running())) split = 28;
   unsigned number = 0;
   const int fifo = second ? filters_->match(frame, split, 28, number) : match(frame, 0, split, number);
   if (fifo < 0) return unwanted(now());

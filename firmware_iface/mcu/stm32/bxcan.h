@@ -47,6 +47,7 @@ class BxCan final : public RegisterBlock, public CanPort {
   void update();
 
   ChipContext& context_;
+  const BxCan* second_ = nullptr;  // that shares its filters
   BxCan* filters_;
   unsigned banks_;
   std::array<std::deque<Received>, 2> fifos_;

@@ -184,6 +184,30 @@ TEST(BxCan, FiltersChooseTheFifoAndTheFourthFrameOverruns) {
   EXPECT_FALSE(b.system.irq_high[21]);
 }
 
+// HAL's field for it left at 0 gives all filters to the second controller; while that is off the first still uses them.
+TEST(BxCan, FiltersOfASecondControllerThatIsOffWorkForTheFirst) {
+  ChipBench b("stm32f446");
+  b.set("CAN1", 0x00, 1);
+  b.set("CAN1", 0x200, 0x2A1C0001);  // CAN2SB 0
+  b.set("CAN1", 0x20C, 1);
+  b.set("CAN1", 0x240, 1u << 21);
+  b.set("CAN1", 0x244, 0x0FFF0000);
+  b.set("CAN1", 0x21C, 1);
+  b.set("CAN1", 0x200, 0x2A1C0000);
+  b.set("CAN1", 0x00, 0);
+  CanFrame frame;
+  frame.id = 1;
+  frame.bytes = 8;
+  b.chip.find<BxCan>("CAN1")->receive(frame);
+  EXPECT_EQ(b.get("CAN1", 0x0C) & 3, 1u);
+  b.set("CAN2", 0x00, 1);
+  b.set("CAN2", 0x00, 0);
+  b.chip.find<BxCan>("CAN1")->receive(frame);
+  EXPECT_EQ(b.get("CAN1", 0x0C) & 3, 1u) << "now they are the second's";
+  b.chip.find<BxCan>("CAN2")->receive(frame);
+  EXPECT_EQ(b.get("CAN2", 0x0C) & 3, 1u);
+}
+
 TEST(Fdcan, SendsFromMessageRamAndReceivesIntoIt) {
   ChipBench b("stm32g474");
   Fdcan& can = *b.chip.find<Fdcan>("FDCAN1");
