@@ -1,13 +1,15 @@
 // The CORDIC unit against closed forms, to the precision that RM0440 states after so many iterations.
-#include "firmware_iface/mcu/stm32/cordic.h"
+#include "firmware_iface/mcu/stm32/math/cordic.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <vector>
 
+#include "firmware_iface/mcu/stm32/usart.h"
 #include "tests/firmware_iface/mcu/chip_bench.h"
 
 namespace omnihil::mcu {

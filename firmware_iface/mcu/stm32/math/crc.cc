@@ -1,4 +1,4 @@
-#include "firmware_iface/mcu/stm32/crc.h"
+#include "firmware_iface/mcu/stm32/math/crc.h"
 
 #include <algorithm>
 #include <bit>

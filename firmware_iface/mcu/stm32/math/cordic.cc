@@ -1,4 +1,4 @@
-#include "firmware_iface/mcu/stm32/cordic.h"
+#include "firmware_iface/mcu/stm32/math/cordic.h"
 
 #include <algorithm>
 #include <cmath>
