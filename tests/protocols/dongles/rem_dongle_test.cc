@@ -140,7 +140,8 @@ TEST_P(RemDongleTest, RobotAnswersWithinAMillisecondWithItsHeaderRight) {
 // What a firmware's own radio sends is one frame, however many packets are in it.
 TEST_P(RemDongleTest, PacketsThatARobotStitchesTogetherAllReachTheHost) {
   Bench bench = make_bench({7}, Team::kYellow, true);
-  const Bytes feedback = bench.encode("REM_RobotFeedback", {{"fromRobotId", 7}, {"toPC", 1}, {"rho", 1.5}});
+  const Bytes feedback =
+      bench.encode("REM_RobotFeedback", {{"fromRobotId", 7}, {"toPC", 1}, {"batteryLevel", 15}});
   const Bytes state = bench.encode("REM_RobotStateInfo", {{"fromRobotId", 7}, {"toPC", 1}});
   Bytes both = feedback;
   both.insert(both.end(), state.begin(), state.end());
