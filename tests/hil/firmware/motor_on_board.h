@@ -7,6 +7,7 @@
 // All bridges have one PWM period. Nothing else is between board and motors: no robot, no battery.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct MotorOnBoard {
   SwitchedState x = {};
   PhaseFlow flow = {};
   double shunt_A = 0.0;
+  std::array<double, kLegs> phase_A = {};  // at the middle of the period
   BridgeCommand command = {};
 
   double omega_rad_s() const { return x.motor.omega_rotor_rad_s; }
@@ -47,6 +49,7 @@ class MotorsOnBoard {
       world_.theta_rotor_rad[w] = motor.theta_rad();
       world_.omega_rotor_rad_s[w] = motor.omega_rad_s();
       world_.motor_current_A[w] = motor.shunt_A;
+      world_.phase_current_A[w] = motor.phase_A;
     }
     board_.set_world(world_);
     for (MotorOnBoard& motor : motors) turn(motor);
@@ -72,6 +75,7 @@ class MotorsOnBoard {
     const PeriodSample sample =
         advance_period(motor.drive, motor.x, motor.command,
                        {.bus_voltage_V = world_.bus_voltage_V, .tau_load_Nm = load_Nm}, 0.5, motor.flow);
+    std::copy_n(sample.current_A.begin(), kLegs, motor.phase_A.begin());
     motor.shunt_A = motor.shunt == Shunt::kBus
                         ? (motor.flow.bus_charge_C - charge_C) / motor.drive.period_s
                         : *std::max_element(sample.current_A.begin(), sample.current_A.end());
