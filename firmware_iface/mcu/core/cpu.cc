@@ -8,6 +8,7 @@ namespace omnihil::mcu {
 namespace {
 
 constexpr std::uint32_t kDevices = 0x40000000, kDevicesSize = 0x20000000;  // peripherals (B3.1)
+constexpr std::uint32_t kPrivate = 0xE0000000, kPrivateSize = 0x100000;    // where no memory is
 constexpr std::uint32_t kFpscrWritable = 0xF7C0009F, kRoundingMode = 3u << 22;
 
 // In bytes of code: a guess. What is longer, or calls functions, is found by looking now and then.
@@ -359,7 +360,9 @@ bool Cpu::bus_fault(std::uint32_t address) {
 }
 
 bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align) {
-  if (!is_device(address, bytes)) return far_load(address, bytes, value, must_align);
+  const bool own =
+      address - kPrivate < kPrivateSize && (address & (bytes - 1)) == 0 && watches_.empty();  // of the core
+  if (!own && !is_device(address, bytes)) return far_load(address, bytes, value, must_align);
   return bus_.read(address, bytes, value) || bus_fault(address);
 }
 

@@ -150,10 +150,15 @@ F fuse(F x, F y, F z) {
     if (s32(cur->imm) <= 0) goto near_backward; \
     ENTER_ROW(NEAR_TARGET());                   \
   } while (0)
-// Before a jump backwards, which closes a loop.
+// Before a jump backwards, which closes a loop. Who observes sees every turn of it.
+#ifdef OMNIHIL_OBSERVED
+#define MAY_SKIP false
+#else
+#define MAY_SKIP fast_forward
+#endif
 #define WATCH()                                                  \
   do {                                                           \
-    if (fast_forward && --watch_.rest <= 0) {                    \
+    if (MAY_SKIP && --watch_.rest <= 0) {                        \
       const Pace pace = watch_loop(cur, {left + 1, count}, end); \
       left = pace.left - 1;                                      \
       count = pace.count;                                        \

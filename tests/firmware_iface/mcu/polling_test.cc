@@ -27,9 +27,11 @@ struct PollingWheel : testing::Test {
   }
 
   // With a command on the way, and a shaft that turns.
-  std::unique_ptr<McuBoard> run(bool fast_forward, std::int64_t step_ns) {
+  std::unique_ptr<McuBoard> run(bool fast_forward, std::int64_t step_ns,
+                                MachineObserver* observer = nullptr) {
     auto board = std::make_unique<McuBoard>(*spec_, image_);
     board->machine().cpu().fast_forward = fast_forward;
+    board->machine().observe(observer);
     WorldState world;
     world.bus_voltage_V = 24.0;
     world.encoder_counts_per_rotor_turn = 4000;
@@ -80,6 +82,20 @@ TEST_F(PollingWheel, SkippingItsWaitChangesNothing) {
     }
   }
   EXPECT_EQ(executed->machine().report().skipped_cycles, 0u);
+}
+
+struct Counter : MachineObserver {
+  std::uint64_t count = 0;
+  void instruction(std::uint32_t, const Op&, bool, std::int64_t) override { ++count; }
+};
+
+TEST_F(PollingWheel, WhoObservesSeesEveryTurnOfTheWait) {
+  Counter seen;
+  const auto observed = run(true, 500'000, &seen), alone = run(true, 500'000);
+  EXPECT_EQ(seen.count, observed->machine().report().instructions);
+  EXPECT_EQ(seen.count, alone->machine().report().instructions);
+  EXPECT_EQ(observed->machine().now(), alone->machine().now());
+  EXPECT_TRUE(observed->machine().cpu().reg == alone->machine().cpu().reg);
 }
 
 // Control takes a tenth of the period, the rest is waiting. What is left of it are the first turns between two events of

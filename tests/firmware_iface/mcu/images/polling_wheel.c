@@ -8,7 +8,7 @@
 #define TIM3(offset) REG(0x40000400 + (offset))
 #define ADC(offset) REG(0x40012400 + (offset))
 #define DMA(offset) REG(0x40020000 + (offset))
-#define DMA_CHANNEL(n, offset) DMA(0x08 + 20 * ((n) - 1) + (offset))
+#define DMA_CHANNEL(n, offset) DMA(0x08 + 20 * ((n)-1) + (offset))
 #define USART1(offset) REG(0x40013800 + (offset))
 #define IWDG(offset) REG(0x40003000 + (offset))
 #define SYST_CSR REG(0xE000E010)
@@ -24,15 +24,15 @@ volatile float speed_rad_s, setpoint_rad_s;
 static float integral;
 
 static void clock_48_MHz(void) {
-  REG(0x40022000) = 0x11;       /* one wait state, prefetch */
-  RCC(0x04) = 10u << 18;        /* PLL = 12 times half of HSI */
+  REG(0x40022000) = 0x11; /* one wait state, prefetch */
+  RCC(0x04) = 10u << 18;  /* PLL = 12 times half of HSI */
   RCC(0x00) |= 1u << 24;
   while ((RCC(0x00) & 1u << 25) == 0) {
   }
   RCC(0x04) |= 2;
   while ((RCC(0x04) & 0xC) != 8) {
   }
-  RCC(0x14) |= 1u | 1u << 17 | 1u << 18; /* DMA, ports A and B */
+  RCC(0x14) |= 1u | 1u << 17 | 1u << 18;      /* DMA, ports A and B */
   RCC(0x18) |= 1u << 9 | 1u << 11 | 1u << 14; /* ADC, TIM1, USART1 */
   RCC(0x1C) |= 1u << 1;                       /* TIM3 */
 }
@@ -74,8 +74,8 @@ static void listen(void) {
   DMA_CHANNEL(3, 12) = (uint32_t)command;
   DMA_CHANNEL(3, 4) = kCommandBytes;
   DMA_CHANNEL(3, 0) = 1u | 1u << 5 | 1u << 7;
-  USART1(0x0C) = 24;                              /* 2 Mbaud */
-  USART1(0x08) = 1u << 6;                         /* DMA of what comes in */
+  USART1(0x0C) = 24;                                 /* 2 Mbaud */
+  USART1(0x08) = 1u << 6;                            /* DMA of what comes in */
   USART1(0x00) = 1u | 1u << 2 | 1u << 10 | 1u << 12; /* 8 bits and even parity */
 }
 
@@ -99,7 +99,8 @@ static void commutate(int clockwise, uint32_t compare) {
 }
 
 static uint32_t word_of_command(int at) {
-  return command[at] | (uint32_t)command[at + 1] << 8 | (uint32_t)command[at + 2] << 16 | (uint32_t)command[at + 3] << 24;
+  return command[at] | (uint32_t)command[at + 1] << 8 | (uint32_t)command[at + 2] << 16 |
+         (uint32_t)command[at + 3] << 24;
 }
 
 int main(void) {
