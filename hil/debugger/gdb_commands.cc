@@ -60,7 +60,12 @@ GdbServer::Then GdbServer::command(std::string_view packet) {
   } else if (packet == "c" || packet == "s" || packet.starts_with("C") || packet.starts_with("S")) {
     const std::string step = fmt::format("s:{:x};c", stopped_ + 1);
     return resume((packet.front() | 0x20) == 's' ? std::string_view(step) : "c");
+  } else if (packet == "bs" || packet == "bc") {
+    const char how = packet == "bs" ? 's' : 'c';
+    if (past_) leave_past(how);
+    return go_back(how);
   } else if (take_word(rest, "D") || take_word(rest, "vKill") || packet == "k") {
+    if (past_) leave_past('d');
     if (packet != "k") send(kOk);
     detach();
     return Then::kGoOn;
@@ -124,7 +129,7 @@ std::string GdbServer::query(std::string_view packet) {
   if (packet.starts_with("Supported")) {
     return fmt::format(
         "PacketSize={:x};qXfer:features:read+;qXfer:memory-map:read+;qXfer:threads:read+;"
-        "QStartNoAckMode+;vContSupported+",
+        "QStartNoAckMode+;vContSupported+;ReverseStep+;ReverseContinue+",
         kPacketBytes);
   }
   if (take_word(rest, "Xfer:")) return transfer(rest);
@@ -177,7 +182,8 @@ std::string GdbServer::write_memory(std::string_view packet, bool binary) {
   if (!place || !take_word(packet, ":")) return std::string(kBad);
   std::vector<std::uint8_t> bytes(packet.begin(), packet.end());
   if (!binary && !parse_hex(packet, bytes)) return std::string(kBad);
-  if (bytes.size() != place->bytes) return std::string(kBad);
+  if (bytes.size() != place->bytes || past_) return std::string(kBad);
+  if (!bytes.empty()) changed();
   return std::string(bytes.empty() || chosen().poke(place->address, bytes) ? kOk : kNotThere);
 }
 
@@ -189,7 +195,8 @@ std::string GdbServer::all_registers() {
 
 std::string GdbServer::write_all_registers(std::string_view digits) {
   std::vector<std::uint8_t> bytes;
-  if (!parse_hex(digits, bytes)) return std::string(kBad);
+  if (!parse_hex(digits, bytes) || past_) return std::string(kBad);
+  changed();
   std::size_t at = 0;
   for (const GdbRegister& r : registers_) {
     if (at + r.bytes > bytes.size()) return std::string(kBad);
@@ -212,7 +219,8 @@ std::string GdbServer::write_register(std::string_view packet) {
   if (!n || *n >= registers_.size() || !take_word(packet, "=") || !parse_hex(packet, bytes))
     return std::string(kBad);
   const GdbRegister& r = registers_[*n];
-  if (r.write == nullptr || bytes.size() != r.bytes) return std::string(kBad);
+  if (r.write == nullptr || bytes.size() != r.bytes || past_) return std::string(kBad);
+  changed();
   r.write(chosen().cpu(), r.index, value_of(bytes));
   return std::string(kOk);
 }
@@ -237,8 +245,18 @@ std::string GdbServer::change_point(std::string_view packet, bool insert) {
 
 void GdbServer::monitor(const std::string& words) {
   bool reset = false;
-  const std::string said = gdb_monitor(words, boards_[chosen_].is, reset);
-  if (reset) chosen().reset("debugger");
+  std::string said;
+  if (words == "reverse on" || words == "reverse off") {
+    keeps_past_ = words == "reverse on";
+    said = fmt::format("{}\n", words);
+  } else {
+    said = gdb_monitor(words, boards_[chosen_].is, reset);
+  }
+  if (reset && past_) said = "the past is only looked at\n";
+  if (reset && !past_) {
+    changed();
+    chosen().reset("debugger");
+  }
   if (!said.empty()) send("O" + text_as_hex(said));
   send(kOk);
 }

@@ -13,6 +13,7 @@ constexpr std::string_view kHelp =
     "monitor reset            reset of the chosen board; it stands at its first instruction\n"
     "monitor where            simulated time, clock and function of the chosen board\n"
     "monitor registers TIM1   a block's registers by name; without a name: the blocks\n"
+    "monitor reverse off      keep no earlier states from now on (on: keep them)\n"
     "monitor help             this\n";
 
 std::string where(const DebuggedBoard& board) {
@@ -57,7 +58,8 @@ std::string gdb_monitor(std::string_view words, const DebuggedBoard& board, bool
     reset = true;
     return "reset\n";
   }
-  return fmt::format("monitor: found \"{}\", allowed: reset, where, registers, help\n", words);
+  return fmt::format(
+      "monitor: found \"{}\", allowed: reset, where, registers, reverse on, reverse off, help\n", words);
 }
 
 }  // namespace omnihil

@@ -67,6 +67,7 @@ void GdbServer::about_to_run(mcu::DebugUnit& unit) {
     if (!attached_) attach();
     if (command(event->data) == Then::kStay) unit.ask();  // GDB spoke while the bench ran
   }
+  keep_moment(unit);
 }
 
 // Takes in what has arrived; a client that left is gone before the next one is heard.
@@ -88,7 +89,8 @@ void GdbServer::detach() {
   apply();
   for (const Board& board : boards_) board.unit->set_catching(false);
   left_ = !waiting_for_first_ || attached_;
-  attached_ = owes_stop_ = false;
+  attached_ = owes_stop_ = stepped_ = false;
+  moments_.forget();
   input_.clear();
   wire_.clear();
 }
@@ -104,6 +106,7 @@ void GdbServer::send(std::string_view data) { wire_.write(gdb_packet(data)); }
 
 void GdbServer::halted(mcu::DebugUnit& unit, const mcu::Halt& halt) {
   if (ended_) return;
+  if (past_) return past_halted(halt);
   const auto at = std::ranges::find(boards_, &unit, &Board::unit);
   stopped_ = chosen_ = static_cast<std::size_t>(at - boards_.begin());
   halt_ = halt;
@@ -145,8 +148,8 @@ GdbServer::Then GdbServer::take_events() {
   return Then::kStay;
 }
 
-std::string GdbServer::stop_reply() const {
-  std::string reply = fmt::format("T{:02x}thread:{:x};", signal_of(halt_), stopped_ + 1);
+std::string GdbServer::stop_reply(std::string_view history) const {
+  std::string reply = fmt::format("T{:02x}thread:{:x};{}", signal_of(halt_), stopped_ + 1, history);
   if (halt_.cause == mcu::HaltCause::kWatchpoint) {
     const mcu::AccessWatch& watch = halt_.hit.watch;
     const char* kind = watch.kinds == mcu::kWrites  ? "watch"
@@ -160,6 +163,7 @@ std::string GdbServer::stop_reply() const {
 void GdbServer::end(int exit_code) {
   if (ended_) return;
   ended_ = true;
+  moments_.forget();
   const bool owed = owes_stop_;
   if (attached_ && owed) send(fmt::format("W{:02x}", exit_code & 0xFF));
   wire_.flush();
@@ -181,6 +185,11 @@ GdbServer::Then GdbServer::resume(std::string_view actions) {
       if (does[i] == 0 && (of == i || of == boards_.size())) does[i] = what;
     }
   }
+  if (past_) {
+    go_on_in_past(does[stopped_] == 's' ? 's' : 'c');
+    return Then::kGoOn;
+  }
+  stepped_ = std::ranges::find(does, 's') != does.end();
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     Board& board = boards_[i];
     // GDB takes breakpoints away to step over one. Boards that it has not named run all the same and keep theirs.

@@ -11,17 +11,20 @@
 // that halted are up to that much behind it. Without a client nothing is halted. A client that leaves takes its
 // breakpoints with it and the bench goes on; the next one may come.
 // Law: GDB manual, appendix "Remote Protocol", all-stop. Breakpoints of both kinds (Z0, Z1) are hardware's: nothing of the
-// image is changed. Cannot: reverse execution, flashing, tracepoints; boards whose cores have other registers at once.
+// image is changed. Back in time, within the last runs of the board that halted, GDB looks and changes nothing (gdb_past.cc).
+// Cannot: flashing, tracepoints; boards whose cores have other registers at once.
 #pragma once
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "firmware_iface/mcu/machine/machine.h"
 #include "firmware_iface/mcu/stm32/chip.h"
+#include "hil/debugger/gdb_moments.h"
 #include "hil/debugger/gdb_packet.h"
 #include "hil/debugger/gdb_target.h"
 #include "hil/wire/buffered_wire.h"
@@ -78,7 +81,7 @@ class GdbServer final : public mcu::DebugListener {
   Then command(std::string_view packet);
   Then resume(std::string_view actions);
   void apply();
-  std::string stop_reply() const;
+  std::string stop_reply(std::string_view history = "") const;
   std::string query(std::string_view packet);
   std::string transfer(std::string_view packet) const;
   std::string threads_xml() const;
@@ -92,6 +95,23 @@ class GdbServer final : public mcu::DebugListener {
   std::string choose_thread(std::string_view packet);
   void monitor(const std::string& words);
   std::size_t thread_of(std::string_view text) const;  // a board's place, or boards_.size()
+  // gdb_past.cc
+  struct PastRun;
+  struct KeepPast {
+    void operator()(PastRun* run) const;
+  };
+  GdbTalk talk() const;
+  void take_talk(const GdbTalk& talk);
+  void keep_moment(mcu::DebugUnit& unit);
+  Then go_back(char how);  // 's' an instruction, 'c' to the last halt
+  Then lose_past();
+  [[noreturn]] void be_past(mcu::DebugUnit& unit, PastOrder order);
+  [[noreturn]] void leave_past(char what);
+  void past_halted(const mcu::Halt& halt);
+  void stand_in_past(const std::string& reply);
+  void changed() { moments_.forget(); }  // what was before does not lead here any more
+  void go_on_in_past(char how);
+
   mcu::Machine& chosen() { return *boards_[chosen_].is.machine; }
 
   BufferedWire wire_;
@@ -106,6 +126,9 @@ class GdbServer final : public mcu::DebugListener {
   bool attached_ = false, waiting_for_first_ = false, acks_ = true, owes_stop_ = false, ended_ = false,
        left_ = false;
   std::int64_t stood_ns_ = 0;
+  GdbMoments moments_;
+  bool keeps_past_ = true, stepped_ = false;  // GDB's last wish was a step
+  std::unique_ptr<PastRun, KeepPast> past_;   // in a copy that shows the past; null: this is the present
 };
 
 // What `monitor` says and does with a board; GDB prints it.
