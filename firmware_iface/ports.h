@@ -3,6 +3,7 @@
 //   WheelBus  what the firmware's bridges and encoders hang on: a simulated robot, or a real one
 //   Firmware  what turns radio and sensors into bridge commands: host build, MCU image, board on the desk
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -55,6 +56,15 @@ class Firmware {
   // Right before each tick(), the same instant.
   virtual void shafts(const RobotShafts&) {}
   virtual RobotDrive tick(const RobotSensors& sensors) = 0;
+  // A tick in parts, for whoever runs those of several robots side by side: begin_tick(), then run_part() of each once, in
+  // any order or at once, then end_tick(), which gives what tick() would have given. Its motor_tick() may then run beside
+  // other robots', too. 0: it has no parts.
+  virtual std::size_t tick_parts() const { return 0; }
+  virtual void begin_tick(const RobotSensors&) {}
+  virtual void run_part(std::size_t) {}
+  virtual RobotDrive end_tick() { return {}; }
+  // What was said in parts and motor ticks is kept, and told to whoever listens here, robot by robot.
+  virtual void tell() {}
   virtual RobotFeedback feedback() const = 0;
   // Whether it sets the legs of three-phase bridges itself: motor_tick() is then called once per PWM period,
   // and what it gives acts from the next period on.

@@ -25,6 +25,7 @@ class BoardBuses {
   };
   // Both outlive it. What passes at this end, counted.
   std::shared_ptr<const Counts> join(const std::string& name, mcu::McuBoard& board, mcu::CanPort& can);
+  bool empty() const { return buses_.empty(); }
   std::size_t ends_of(const std::string& name) const;
 
  private:

@@ -24,16 +24,18 @@ class ImageFirmware final : public Firmware {
   ImageFirmware(std::shared_ptr<const Image> image, const RobotConfig& config,
                 const ImageListeners& listeners, std::shared_ptr<ImageObserver> observer)
       : image_(std::move(image)),
+        listeners_(listeners),
         observer_(std::move(observer)),
         mcu_(image_->board, image_->elf, config),
         memory_(mcu_, image_->elf),
         chip_(mcu_, image_->elf) {
     if (observer_) observer_->begins(mcu_, image_->elf, config.robot_id);
+    said_.resize(static_cast<std::size_t>(mcu_.boards()));
     for (int b = 0; b < mcu_.boards(); ++b) {
-      if (!image_->board.ports.empty()) {
+      if (!image_->board.ports.empty() && listeners.ports) {
         ports_.push_back(std::make_unique<BoardPorts>(
             mcu_.board(b),
-            BoardPortsOptions{config.robot_id, b, image_->board_file, listeners.on_line, &buses_}));
+            BoardPortsOptions{config.robot_id, b, image_->board_file, keeper_of_lines(), &buses_}));
       }
       if (listeners.on_board)
         listeners.on_board({config.robot_id, b, mcu_.boards(), mcu_.board(b), image_->elf});
@@ -57,8 +59,32 @@ class ImageFirmware final : public Firmware {
   RobotGains gains() const override { return mcu_.gains(); }
   void shafts(const RobotShafts& exact) override { mcu_.shafts(exact); }
   RobotDrive tick(const RobotSensors& sensors) override {
-    for (const auto& ports : ports_) ports->pump();
+    pump();
     return mcu_.tick(sensors);
+  }
+  // Boards on one bus are one part: what one sends may reach the next within the same period. None where somebody looks on
+  // or waits for a place of the program, whose doings are not this robot's alone.
+  std::size_t tick_parts() const override {
+    if (observer_) return 0;
+    for (int b = 0; b < mcu_.boards(); ++b) {
+      if (mcu_.board(b).machine().debugged() || mcu_.board(b).machine().awaits_visit()) return 0;
+    }
+    return buses_.empty() ? mcu_.tick_parts() : 1;
+  }
+  void begin_tick(const RobotSensors& sensors) override {
+    pump();
+    mcu_.begin_tick(sensors);
+  }
+  void run_part(std::size_t part) override {
+    if (buses_.empty()) return mcu_.run_part(part);
+    for (std::size_t each = 0; each < mcu_.tick_parts(); ++each) mcu_.run_part(each);
+  }
+  RobotDrive end_tick() override { return mcu_.end_tick(); }
+  void tell() override {
+    for (auto& lines : said_) {
+      for (const Said& line : lines) listeners_.on_line(line.robot_id, line.board, line.port, line.text);
+      lines.clear();
+    }
   }
   RobotFeedback feedback() const override { return mcu_.feedback(); }
   bool drives_phases() const override { return mcu_.drives_phases(); }
@@ -81,6 +107,26 @@ class ImageFirmware final : public Firmware {
   }
 
  private:
+  struct Said {
+    std::uint32_t robot_id;
+    int board;
+    std::string port, text;
+  };
+
+  void pump() {
+    for (const auto& ports : ports_) ports->pump();
+    tell();
+  }
+
+  // Lines wait for tell(), but under a debugger, who wants to see them as they are said.
+  ConsoleListener keeper_of_lines() {
+    if (!listeners_.on_line) return {};
+    return [this](std::uint32_t robot_id, int board, const std::string& port, const std::string& line) {
+      if (mcu_.board(board).machine().debugged()) return listeners_.on_line(robot_id, board, port, line);
+      said_[static_cast<std::size_t>(board)].push_back({robot_id, board, port, line});
+    };
+  }
+
   std::vector<std::string> with_ports(std::vector<std::string> lines) const {
     for (std::size_t b = 0; b < ports_.size(); ++b) {
       for (const std::string& line : ports_[b]->report())
@@ -90,7 +136,9 @@ class ImageFirmware final : public Firmware {
   }
 
   std::shared_ptr<const Image> image_;
+  ImageListeners listeners_;
   std::shared_ptr<ImageObserver> observer_;
+  std::vector<std::vector<Said>> said_;  // by board, since tell()
   mcu::McuFirmware mcu_;
   mcu::BoardsMemory memory_;
   mcu::BoardsChip chip_;

@@ -125,6 +125,14 @@ std::vector<HashedFile> firmware_files(const FirmwareChoice& choice) {
   return files;
 }
 
+Session::FirmwareMaker open_firmware_for_load(FirmwareChoice choice, const SessionConfig& session) {
+  const bool named = !is_reference(choice) && !looks_like_wire(choice.file);
+  if (!named || image_kind(choice.file) != ImageKind::kArm) return reference_firmware_for(session);
+  choice.listeners = {.ports = false};
+  choice.observer = nullptr;
+  return open_firmware(choice, session);
+}
+
 Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session) {
   if (is_reference(choice)) {
     if (!choice.board.empty()) {

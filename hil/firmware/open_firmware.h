@@ -33,6 +33,10 @@ struct FirmwareChoice {
 // Throws std::invalid_argument, all problems in one text; the maker does, too, when a robot is refused.
 Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session);
 
+// What stands in for it where a bench is measured before it runs: an ARM image as it is, its ports closed and nobody
+// listening; the reference firmware for all else, whose work is another process's or computer's.
+Session::FirmwareMaker open_firmware_for_load(FirmwareChoice choice, const SessionConfig& session);
+
 // The files it comes from; none of the reference firmware; a board on the desk has its wire's name and no hash.
 // Throws std::system_error when one cannot be read.
 std::vector<HashedFile> firmware_files(const FirmwareChoice& choice);

@@ -10,6 +10,7 @@
 
 #include "hil/loop/mover_values.h"
 #include "hil/loop/session_checks.h"
+#include "hil/loop/thread_pool.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
@@ -30,6 +31,7 @@ struct MotorPort : MotorControl {
     for (std::size_t w = 0; w < kWheels; ++w) seen.encoder_counts[w] += count_offsets[w];
     return firmware.motor_tick(seen);
   }
+  bool runs_aside() const override { return firmware.tick_parts() > 0; }
   Firmware& firmware;
   bool shifted = false;
   std::int64_t clock_offset_ns = 0;
@@ -107,6 +109,9 @@ struct Session::Impl {
     if (!config.from.empty() && !set_world(config.from))
       throw_problems({"the snapshot is of other robots, another physics or another program"});
     next_tick_ns.assign(firmware.size(), 0);
+    begun.assign(firmware.size(), 0);
+    if (config.threads > 1) pool = std::make_unique<ThreadPool>(config.threads);
+    world.plant().set_workers(pool.get());
     samples.resize(firmware.size());
     answer.reserve(4096);
   }
@@ -205,11 +210,8 @@ struct Session::Impl {
     }
   }
 
-  // One control tick of robot i at the plant's time.
-  void tick(std::size_t i) {
-    TeamPort& port = i < opponents.first ? own : opponents;
-    const int id = port.robot_ids[i - port.first];
-    Firmware& robot = *firmware[i];
+  // What robot i's sensors show at the plant's time.
+  void sense(std::size_t i) {
     RobotSample& sample = samples[i];
     sample.robot_id = keys[i];
     const auto counts_before = std::to_array(sample.sensors.encoder_counts);
@@ -220,8 +222,37 @@ struct Session::Impl {
     std::copy_n(sample.truth.theta_rotor_rad.begin(), kWheels, shafts.theta_rotor_rad);
     std::copy_n(sample.truth.omega_rotor_rad_s.begin(), kWheels, shafts.omega_rotor_rad_s);
     continue_shafts(i, counts_before, sample, shafts);
-    robot.shafts(shafts);
-    sample.drive = robot.tick(sample.sensors);
+    firmware[i]->shafts(shafts);
+  }
+
+  // The parts of all ticks that are due now and have any.
+  void run_parts() {
+    parts.clear();
+    for (std::size_t i = 0; i < firmware.size(); ++i) {
+      const std::size_t count = next_tick_ns[i] == now_ns ? firmware[i]->tick_parts() : 0;
+      begun[i] = count > 0;
+      if (count == 0) continue;
+      sense(i);
+      firmware[i]->begin_tick(samples[i].sensors);
+      for (std::size_t part = 0; part < count; ++part) parts.emplace_back(i, part);
+    }
+    pool->each(parts.size(), [this](std::size_t n) { firmware[parts[n].first]->run_part(parts[n].second); });
+  }
+
+  // One control tick of robot i at the plant's time, or the rest of it.
+  void tick(std::size_t i) {
+    TeamPort& port = i < opponents.first ? own : opponents;
+    const int id = port.robot_ids[i - port.first];
+    Firmware& robot = *firmware[i];
+    RobotSample& sample = samples[i];
+    if (begun[i] != 0) {
+      sample.drive = robot.end_tick();
+    } else {
+      sense(i);
+      sample.drive = robot.tick(sample.sensors);
+    }
+    begun[i] = 0;
+    robot.tell();
     sample.feedback = robot.feedback();
     sample.vision = world.plant().vision(static_cast<int>(i));
     if (watch) sample.watched = watch->read(static_cast<int>(i), robot);
@@ -257,6 +288,7 @@ struct Session::Impl {
   void run_until(std::int64_t end_ns) {
     while (now_ns < end_ns) {
       std::int64_t until_ns = end_ns;
+      if (pool) run_parts();
       for (std::size_t i = 0; i < firmware.size(); ++i) {
         if (next_tick_ns[i] == now_ns) {
           tick(i);
@@ -266,6 +298,7 @@ struct Session::Impl {
       }
       const std::int64_t world_ns = world.now_ns();
       world.advance(until_ns - now_ns);
+      for (const auto& robot : firmware) robot->tell();
       if (observer && config.field.contacts) observer->world(until_ns, world);
       if (const auto& fault = world.plant().fault()) {
         give_up(fault->now_ns + now_ns - world_ns, keys[static_cast<std::size_t>(fault->robot)],
@@ -286,6 +319,9 @@ struct Session::Impl {
   FirmwareWatch* watch = nullptr;
   std::int64_t now_ns = 0;
   std::vector<std::int64_t> next_tick_ns;
+  std::unique_ptr<ThreadPool> pool;                        // null: one thread
+  std::vector<std::pair<std::size_t, std::size_t>> parts;  // robot, part of its tick
+  std::vector<std::uint8_t> begun;  // by robot: its parts have run, the tick is not over
   std::vector<RobotSample> samples;
   std::vector<ShaftOffsets> shaft_offsets;
   std::vector<RobotShafts> shafts_before;

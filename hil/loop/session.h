@@ -17,6 +17,9 @@
 // the loop step, so a control period may be longer or shorter than a step.
 // Two teams: the opponents' robots follow the first team's in every index, each team has its own dongle; an opponent with
 // id n is robot kOpponentKey + n in observers and recordings.
+// With several threads the ticks that are due at one instant may be taken apart (ports.h, tick_parts()): first each such
+// robot's sensors are read, then the parts of all of them run side by side, then drives, frames and observers follow robot
+// by robot as ever. The same bits.
 // A firmware that drives phases gets its motor_tick() from the plant, once per PWM period, within its
 // advance. Robots start at rest in a row: robot i of the list at x = 0, y = i * 0.5 m, looking along x (yaw
 // 0).
@@ -70,7 +73,8 @@ struct SessionConfig {
   Opponents opponents;
   std::vector<TimedFault> faults;  // of both teams
   std::vector<std::uint8_t>
-      from;  // World::save() of the same robots: they begin there; empty: in a row, at rest
+      from;         // World::save() of the same robots: they begin there; empty: in a row, at rest
+  int threads = 1;  // that emulated boards may run on; no result depends on it
 };
 
 // The other team as if it were the only one: for what makes its firmware.

@@ -4,6 +4,8 @@
 //   plant.set_motor_control(0, &mine);     // called once per PWM period of robot 0, within advance()
 #pragma once
 #include <array>
+#include <cstddef>
+#include <type_traits>
 
 #include "firmware_iface/robot_io.h"
 #include "sim/robot/per_wheel.h"
@@ -15,6 +17,27 @@ class MotorControl {
  public:
   virtual ~MotorControl() = default;
   virtual MotorDrive motor_tick(const MotorSensors& sensors) = 0;
+  // It touches nothing that another robot's does: both may run at once.
+  virtual bool runs_aside() const { return false; }
+};
+
+// Who carries out pieces of work that touch nothing of each other's: one after the other, or on several cores. What comes of
+// it is the same. each() comes back when all are done; where several have thrown, what the first of them threw is thrown on.
+class Workers {
+ public:
+  virtual ~Workers() = default;
+
+  template <class Work>
+  void each(std::size_t count, Work&& work) {
+    const Piece piece = [](void* of, std::size_t n) {
+      (*static_cast<std::remove_reference_t<Work>*>(of))(n);
+    };
+    run(count, piece, &work);
+  }
+
+ protected:
+  using Piece = void (*)(void* of, std::size_t n);
+  virtual void run(std::size_t count, Piece piece, void* of) = 0;
 };
 
 // Where energy went since the robot was placed. source = battery heat + bus + gain of the bus capacitor;

@@ -73,6 +73,8 @@ void Plant::set_motor_control(int robot, MotorControl* control) {
   impl_->controls[static_cast<std::size_t>(robot)] = control;
 }
 
+void Plant::set_workers(Workers* workers) { impl_->workers = workers; }
+
 void Plant::write_legs(int robot, const MotorDrive& legs) {
   impl_->electric_memory[static_cast<std::size_t>(robot)].legs = legs;
 }

@@ -123,6 +123,9 @@ class Plant {
   // In force until set again; part of the state. A wheel that gets blocked stands at once.
   void set_faults(int robot, const RobotFaults& faults);
   const RobotFaults& faults(int robot) const;
+  // Robots whose legs are set from outside, by whoever runs aside, take their electrics' periods through these (not owned,
+  // null: one after the other). The same bits.
+  void set_workers(Workers* workers);
   // Duration: a multiple of the mechanical step (std::logic_error).
   void advance(std::int64_t duration_ns, StepListener* listener = nullptr);
   // What contacts do between two mechanical steps: speeds change at once, wheels keep theirs; places are mended.

@@ -279,21 +279,39 @@ struct Plant::Impl {
     for (std::size_t i = 0; i < wheels(n); ++i) torques[n][i] = wheel_steps[n][i].torque;
   }
 
+  // Touches nothing of another robot's.
+  template <typename Back>
+  void begin_robot(const Back& back, std::size_t n) {
+    if (electrics[n]) {
+      const FloorForces* more = effects[n] ? &back.floor_forces(n) : nullptr;
+      begin_electric_wheels(n, wheel_inputs(n, back.contacts(n), more));
+    } else if (effects[n]) {
+      begin_wheels_with_effects(n, wheel_inputs(n, back.contacts(n), &back.floor_forces(n)));
+    } else {
+      begin_wheels(n, back.contacts(n));
+    }
+  }
+
+  // Some control runs aside, and none that there is does not.
+  bool any_aside() const {
+    bool any = false;
+    for (const MotorControl* control : controls) {
+      if (control != nullptr && !control->runs_aside()) return false;
+      any = any || control != nullptr;
+    }
+    return any;
+  }
+
   template <typename Back>
   void step(Back& back) {
     for (std::size_t n = 0; n < models.size(); ++n) {
       if (effects[n]) effects[n]->floor.dribbler_rad_s = memory[n].drive.dribbler_ratio * kDribblerFull_rad_s;
     }
     set_state(back);
-    for (std::size_t n = 0; n < models.size(); ++n) {
-      if (electrics[n]) {
-        const FloorForces* more = effects[n] ? &back.floor_forces(n) : nullptr;
-        begin_electric_wheels(n, wheel_inputs(n, back.contacts(n), more));
-      } else if (effects[n]) {
-        begin_wheels_with_effects(n, wheel_inputs(n, back.contacts(n), &back.floor_forces(n)));
-      } else {
-        begin_wheels(n, back.contacts(n));
-      }
+    if (workers != nullptr && any_aside()) {
+      workers->each(models.size(), [&](std::size_t n) { begin_robot(back, n); });
+    } else {
+      for (std::size_t n = 0; n < models.size(); ++n) begin_robot(back, n);
     }
     u_before = u;
     integrate(options.integrator, back, torques, step_s, q, u, scratch);
@@ -392,6 +410,7 @@ struct Plant::Impl {
   std::vector<std::unique_ptr<ElectricWheels>> electrics;  // null: DC-equivalent on a constant bus
   std::vector<ElectricMemory> electric_memory;
   std::vector<MotorControl*> controls;
+  Workers* workers = nullptr;
   std::vector<WheelDriveLaw> healthy;           // per robot
   std::vector<PerWheel<WheelDriveLaw>> drives;  // with the faults in force
   std::vector<PlanarBody<double>> bodies;

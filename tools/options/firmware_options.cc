@@ -81,8 +81,14 @@ void add_team_firmware_options(Verb& verb, TeamFirmwareWords& words) {
 namespace {
 
 // `config` of one team, `choice` what its robots run that are not named.
+using Opener = Session::FirmwareMaker(const FirmwareChoice& choice, const SessionConfig& session);
+
+Session::FirmwareMaker for_load(const FirmwareChoice& choice, const SessionConfig& session) {
+  return open_firmware_for_load(choice, session);
+}
+
 Session::FirmwareMaker open_of(const TeamFirmwareWords& words, bool opponents, const FirmwareChoice& choice,
-                               const SessionConfig& config) {
+                               const SessionConfig& config, Opener* open = open_firmware) {
   std::vector<std::string> problems;
   const std::vector<OfRobots> others = read_of(words, opponents, problems);
   std::map<std::uint32_t, std::size_t> other_of;  // by id, place in others
@@ -95,9 +101,9 @@ Session::FirmwareMaker open_of(const TeamFirmwareWords& words, bool opponents, c
     }
   }
   throw_problems(problems);
-  const Session::FirmwareMaker usual = open_firmware(choice, config);
+  const Session::FirmwareMaker usual = open(choice, config);
   std::vector<Session::FirmwareMaker> makers;
-  for (const OfRobots& robots : others) makers.push_back(open_firmware(robots.choice, config));
+  for (const OfRobots& robots : others) makers.push_back(open(robots.choice, config));
   if (makers.empty()) return usual;
   return [usual, makers, other_of](const RobotConfig& robot) {
     const auto found = other_of.find(robot.robot_id);
@@ -126,6 +132,17 @@ TeamFirmware open_team_firmware(const TeamFirmwareWords& words, const SessionCon
     makers.opponents = open_opponents_firmware(words, opponents_alone(config));
   else if (!words.opponents.empty())
     throw_problems({"--opponents-firmware: needs --opponents"});
+  return makers;
+}
+
+TeamFirmware open_team_firmware_for_load(const TeamFirmwareWords& words, const SessionConfig& config) {
+  TeamFirmware makers;
+  SessionConfig first = config;
+  first.opponents = {};
+  makers.first = open_of(words, false, words.all, first, for_load);
+  if (config.opponents.robots.empty()) return makers;
+  const SessionConfig alone = opponents_alone(config);
+  makers.opponents = open_of(words, true, opponents_choice(words), alone, for_load);
   return makers;
 }
 

@@ -30,6 +30,8 @@ void add_team_firmware_options(Verb& verb, TeamFirmwareWords& words);
 Session::FirmwareMaker open_first_firmware(const TeamFirmwareWords& words, const SessionConfig& config);
 Session::FirmwareMaker open_opponents_firmware(const TeamFirmwareWords& words, const SessionConfig& alone);
 TeamFirmware open_team_firmware(const TeamFirmwareWords& words, const SessionConfig& config);
+// Of the same words, to measure a bench by (open_firmware_for_load()).
+TeamFirmware open_team_firmware_for_load(const TeamFirmwareWords& words, const SessionConfig& config);
 
 // Of all of them, each once.
 std::vector<HashedFile> team_firmware_files(const TeamFirmwareWords& words);

@@ -11,6 +11,7 @@
 #include "hil/firmware/bus_firmware.h"
 #include "hil/loop/effect_overrides.h"
 #include "hil/loop/model_store.h"
+#include "hil/loop/thread_pool.h"
 #include "hil/radio_file/radio_file.h"
 #include "hil/recording/recording_header.h"
 #include "hil/recording/session_setup.h"
@@ -55,6 +56,7 @@ struct Words {  // as the user gave them
   bool no_pacing = false;
   std::int64_t baud = 0;
   int sample_every = 10;
+  int threads = 0;
   std::vector<std::string> with;
   SessionSetup setup;
   ServeOptions options;
@@ -174,7 +176,8 @@ int run(Words& words) {
     RecordingHeader header = recording_header(words.setup, program_commit());
     header.sample_every = words.sample_every;
     if (!words.bench.empty()) header.bench = words.bench_text;
-    const SessionConfig config = session_config(words.setup);
+    SessionConfig config = session_config(words.setup);
+    config.threads = words.threads > 0 ? words.threads : host_cores();
     words.firmware.all.virtual_time = !words.options.real_time;
     const std::unique_ptr<GdbServer> gdb = open_gdb(words.gdb, [] { return StopSignals::requested(); });
     words.options.gdb = gdb.get();
@@ -195,8 +198,11 @@ int run(Words& words) {
     } else {
       header.firmware_files = {{words.motor_bus.bus + " on " + words.motor_bus.port, ""}};
     }
-    if (words.options.real_time && !words.options.quiet)
-      words.options.load = load_words(measured_load(config));
+    if (words.options.real_time && !words.options.quiet) {
+      const TeamFirmware measured =
+          words.motor_bus.bus.empty() ? open_team_firmware_for_load(words.firmware, config) : TeamFirmware{};
+      words.options.load = load_words(measured_load(config, {measured.first, measured.opponents}));
+    }
     const ServeEnd end = serve(config, makers.first, std::move(header), words.options, makers.opponents);
     const std::string said = reports.write_trace("", true);
     if (!words.options.quiet) std::fputs(said.c_str(), stdout);
@@ -288,6 +294,10 @@ void add_verb_serve(Verb& program, VerbResult& result) {
                   "simbody, planar (closed form, fast) or simbody-free (pitch, roll, lift)")
       .one_of({"simbody", "planar", "simbody-free"})
       .capture_default_str();
+  verb.add_option("--threads", w.threads,
+                  "threads that emulated boards are spread over (default: as many as there are cores); no "
+                  "result depends on it")
+      .range(1, 256);
   verb.add_option("--clock", w.clock, "real: real time; free: virtual time as fast as it goes")
       .one_of({"real", "free"})
       .capture_default_str();

@@ -149,26 +149,35 @@ void McuFirmware::look(const RobotSensors& sensors) {
 }
 
 RobotDrive McuFirmware::tick(const RobotSensors& sensors) {
+  begin_tick(sensors);
+  for (std::size_t part = 0; part < tick_parts(); ++part) run_part(part);
+  return end_tick();
+}
+
+void McuFirmware::begin_tick(const RobotSensors& sensors) {
   look(sensors);
   speak(world_.at_ns);
-  RobotDrive drive{};
   feedback_ = feedback_of(exact_, sensors, config_.gear_ratio);
-  if (phases_) {  // the image runs on from PWM period to PWM period
-    for (std::size_t w = 0; w < kWheels; ++w) {
-      if (wire(static_cast<int>(w)) != nullptr) drive.mode[w] = OMNIHIL_DRIVE_PHASES;
-    }
-    return drive;
+  for (int w = 0; w < kWheels && !phases_; ++w) {
+    if (MotorWire* motor = wire(w)) motor->begin(world_.at_ns);
   }
-  const std::int64_t from_ns = world_.at_ns, to_ns = from_ns + spec_.coupling_ns;
-  for (int w = 0; w < kWheels; ++w) {
-    if (MotorWire* motor = wire(w)) motor->begin(from_ns);
-  }
-  for (const auto& board : boards_) board->run_until_ns(to_ns);
+}
+
+void McuFirmware::run_part(std::size_t part) {
+  if (!phases_) boards_[part]->run_until_ns(world_.at_ns + spec_.coupling_ns);
+}
+
+RobotDrive McuFirmware::end_tick() {
+  RobotDrive drive{};
   for (int w = 0; w < kWheels; ++w) {
     MotorWire* motor = wire(w);
     if (motor == nullptr) continue;
-    const BridgeDrive mean = motor->end(to_ns);
     const auto i = static_cast<std::size_t>(w);
+    if (phases_) {  // the image runs on from PWM period to PWM period
+      drive.mode[i] = OMNIHIL_DRIVE_PHASES;
+      continue;
+    }
+    const BridgeDrive mean = motor->end(world_.at_ns + spec_.coupling_ns);
     drive.mode[i] = mean.driven ? OMNIHIL_DRIVE_DUTY : OMNIHIL_DRIVE_COAST;
     drive.duty_ratio[i] = mean.duty_ratio;
     feedback_.duty_ratio[i] = mean.duty_ratio;

@@ -42,6 +42,11 @@ class McuFirmware final : public Firmware {
   RobotGains gains() const override { return {}; }
   void shafts(const RobotShafts& exact) override { exact_ = exact; }
   RobotDrive tick(const RobotSensors& sensors) override;
+  // A part is a board; of three-phase boards, which run on in motor_tick(), one with nothing to do.
+  std::size_t tick_parts() const override { return phases_ ? 1 : boards_.size(); }
+  void begin_tick(const RobotSensors& sensors) override;
+  void run_part(std::size_t part) override;
+  RobotDrive end_tick() override;
   RobotFeedback feedback() const override { return feedback_; }
   bool drives_phases() const override { return phases_; }
   MotorDrive motor_tick(const MotorSensors& sensors) override;

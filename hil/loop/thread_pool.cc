@@ -1,0 +1,107 @@
+#include "hil/loop/thread_pool.h"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <utility>
+
+namespace omnihil {
+namespace {
+
+// A choice: what a thread needs to fall asleep and to be woken again is of this order.
+constexpr std::chrono::microseconds kAwake{30};
+constexpr std::uint64_t kClosed = 0xFFFFFFFF;  // a place that no count reaches
+
+// True as soon as `done` is; false when it has not become so in that time.
+template <class Done>
+bool comes_soon(Done done) {
+  const auto end = std::chrono::steady_clock::now() + kAwake;
+  while (!done()) {
+    if (std::chrono::steady_clock::now() >= end) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int host_cores() {
+  cpu_set_t cores;
+  if (sched_getaffinity(0, sizeof cores, &cores) == 0) return std::max(1, CPU_COUNT(&cores));
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+// Of the caller's scheduling, whatever it has become since.
+void ThreadPool::start() {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  for (int i = 1; i < wanted_; ++i) threads_.emplace_back([this] { wait_for_work(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+ThreadPool::~ThreadPool() {
+  ended_ = true;
+  ++turn_;
+  turn_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void ThreadPool::wait_for_work() {
+  for (std::uint32_t seen = 0;;) {
+    if (!comes_soon([&] { return turn_.load() != seen; })) turn_.wait(seen);
+    seen = turn_.load();
+    if (ended_) return;
+    take_pieces(seen);
+  }
+}
+
+void ThreadPool::take_pieces(std::uint32_t turn) {
+  for (;;) {
+    std::uint64_t next = next_.load();
+    const std::size_t n = next & 0xFFFFFFFFu;
+    if (next >> 32 != turn || n >= count_.load()) return;
+    const Piece piece = piece_.load();
+    void* const of = of_.load();
+    if (!next_.compare_exchange_strong(next, next + 1)) continue;
+    try {
+      piece(of, n);
+    } catch (...) {
+      note_error(n);
+    }
+    if (done_.fetch_add(1) + 1 == count_.load()) done_.notify_all();
+  }
+}
+
+void ThreadPool::note_error(std::size_t n) {
+  const std::lock_guard lock(errors_);
+  if (error_ && error_at_ < n) return;
+  error_ = std::current_exception();
+  error_at_ = n;
+}
+
+void ThreadPool::run(std::size_t count, Piece piece, void* of) {
+  if (count == 0) return;
+  if (count > 1 && threads_.empty()) start();
+  const std::uint32_t turn = turn_.load() + 1;
+  next_ = kClosed;  // whoever still looks for pieces of the last turn finds none, whatever count_ says
+  piece_ = piece;
+  of_ = of;
+  done_ = 0;
+  count_ = count;
+  next_ = std::uint64_t{turn} << 32;
+  turn_ = turn;
+  if (count > 1) turn_.notify_all();
+  take_pieces(turn);
+  const auto all_done = [&] { return done_.load() == count; };
+  while (!all_done() && !comes_soon(all_done)) {
+    const std::size_t so_far = done_.load();
+    if (so_far != count) done_.wait(so_far);
+  }
+  if (!error_) return;
+  std::rethrow_exception(std::exchange(error_, nullptr));
+}
+
+}  // namespace omnihil

@@ -1,0 +1,55 @@
+// Pieces of work on several cores: the caller's thread and a few that wait for it.
+//
+//   ThreadPool pool(4);                      // three threads beside the caller's
+//   pool.each(24, [&](std::size_t n) { boards[n]->run_until_ns(end_ns); });
+//
+// Whoever is free takes the next piece, so which thread does which differs from run to run: pieces share nothing that
+// changes. Between two calls threads stay awake for a moment, since a bench comes back within microseconds, then sleep.
+// Signals are left to the caller's thread. One call of each() at a time, and none from within a piece.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "sim/robot/electric_ports.h"
+
+namespace omnihil {
+
+// That this process may use.
+int host_cores();
+
+class ThreadPool final : public Workers {
+ public:
+  explicit ThreadPool(int threads) : wanted_(threads) {}  // they are made when there is work for them
+  ~ThreadPool() override;
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+ protected:
+  void run(std::size_t count, Piece piece, void* of) override;
+
+ private:
+  void start();
+  void wait_for_work();
+  void take_pieces(std::uint32_t turn);
+  void note_error(std::size_t n);
+
+  // A turn is one call of each(). `next_` is the turn and the piece that is to be taken next: a piece is taken by moving
+  // it on, which succeeds only while that turn lasts; and a turn lasts until all of its pieces are done.
+  const int wanted_;
+  std::atomic<std::uint32_t> turn_{0};
+  std::atomic<std::uint64_t> next_{0};
+  std::atomic<std::size_t> count_{0}, done_{0};
+  std::atomic<Piece> piece_{nullptr};
+  std::atomic<void*> of_{nullptr};
+  std::atomic<bool> ended_{false};
+  std::mutex errors_;
+  std::exception_ptr error_;
+  std::size_t error_at_ = 0;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace omnihil
