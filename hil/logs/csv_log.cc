@@ -72,6 +72,13 @@ bool is_remark(std::string_view line) {
   return line.starts_with("#") || line.starts_with("//") || line.starts_with("MOT:") || line.starts_with("%");
 }
 
+// "1,2,3;" as MATLAB ends its rows: behind a table of commas the semicolon separates nothing.
+std::string_view without_row_end(std::string_view line) {
+  const bool only = line.ends_with(';') && line.find(';') + 1 == line.size();
+  if (only && line.find(',') != std::string_view::npos) line.remove_suffix(1);
+  return line;
+}
+
 // Lines with their numbers, remarks and empty ones left out.
 struct Line {
   std::size_t number;
@@ -87,6 +94,7 @@ std::vector<Line> lines_of(std::string_view text, std::size_t& remarks) {
     ++number;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.find_first_not_of(" \t;,") == std::string_view::npos) continue;
+    line = without_row_end(line);
     if (is_remark(line)) {
       ++remarks;
     } else {

@@ -120,8 +120,10 @@ class Recogniser {
     m.signal = usual_signal(base, context_.rig);
     m.unit = !unit.empty() ? unit : log_.series[m.series].unit;
     if (m.signal.empty()) {
-      const std::vector<std::string> may = ambiguous_signals(base, context_.rig);
-      if (!may.empty()) ambiguous_.emplace_back(m.series, may);
+      std::vector<std::string> may = ambiguous_signals(base, context_.rig);
+      std::erase_if(may, [&](const std::string& signal) { return !has_unit(signal, m.unit); });
+      if (may.size() == 1) m.signal = may.front();  // volts are no duty
+      if (may.size() > 1) ambiguous_.emplace_back(m.series, may);
     }
     if (m.signal == "velocity" && m.unit.empty() && (base == "rpm" || base == "RPM")) m.unit = "rpm";
     m.because = m.signal.empty()                  ? "its name says nothing to me"
@@ -132,6 +134,13 @@ class Recogniser {
       m.signal.clear();
       m.because = "each topic has its own time";
     }
+  }
+
+  // Whether a column in this unit may be of the signal; of no unit: it may.
+  bool has_unit(const std::string& signal, const std::string& unit) const {
+    if (unit.empty()) return true;
+    std::string fault;
+    return unit_scale(unit, unit_of_signal(signal, context_), {context_.pole_pairs}, fault).has_value();
   }
 
   // Of several columns for one signal the lowest rank is taken; equals are in doubt.

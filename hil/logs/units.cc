@@ -52,6 +52,9 @@ constexpr Unit kUnits[] = {{"s", "time"},
                            {"%", "ratio", 0.01},
                            {"percent", "ratio", 0.01},
                            {"pct", "ratio", 0.01},
+                           {"/255", "ratio", 1.0 / 255.0},    // a timer's compare value, 8 bits: analogWrite
+                           {"/1023", "ratio", 1.0 / 1023.0},  // 10 bits
+                           {"/4095", "ratio", 1.0 / 4095.0},  // 12 bits
                            {"N m", "torque"},
                            {"Nm", "torque"},
                            {"N*m", "torque"},

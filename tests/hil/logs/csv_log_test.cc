@@ -35,6 +35,16 @@ TEST(CsvLog, SeparatorsAndDecimalCommasAreTold) {
   }
 }
 
+// Rows as MATLAB ends them; a semicolon inside the row still separates.
+TEST(CsvLog, ASemicolonThatEndsARowSeparatesNothing) {
+  const LogTable log = parse_csv_log("% made by hand\n0.0,1.5,2;\n0.1,3,4;\nnan,nan,nan;\n", "log.csv",
+                                     {{"t_s", "duty", "rpm"}});
+  ASSERT_EQ(log.series.size(), 3u);
+  EXPECT_EQ(log.series[1].value[1], 3.0);
+  EXPECT_EQ(log.series[2].value[0], 2.0);
+  EXPECT_TRUE(std::isnan(log.series[0].value[2]));
+}
+
 TEST(CsvLog, WhatIsNotMeasuredIsMissingAndSaid) {
   const LogTable log = parse_csv_log("t,v,word\n0,1,on\n1,,off\n2,nan,on\n3,x,on\n4,2", "log.csv", {});
   ASSERT_EQ(log.series.size(), 2u);
@@ -128,6 +138,24 @@ TEST(Meaning, ADutyBeyondOneIsInDoubt) {
   const LogMeaning m = meaning("time_s,duty,speed_rpm\n0,10,60\n0.01,20,120\n");
   ASSERT_EQ(m.doubts.size(), 1u);
   EXPECT_NE(m.doubts[0].find("duty=duty:%"), std::string::npos) << m.doubts[0];
+}
+
+// analogWrite takes 0 to 255, and that is what such logs hold.
+TEST(Meaning, ATimersCompareValueIsAShareOfItsRange) {
+  const char* text = "time_ms,MotorPWM,Encoder\n0,255,0\n10,51,4\n20,0,8\n";
+  ASSERT_EQ(meaning(text).doubts.size(), 1u);
+  EXPECT_NE(meaning(text).doubts[0].find("MotorPWM=duty:/255"), std::string::npos) << meaning(text).doubts[0];
+  const LogMeaning m = meaning(text, {{"MotorPWM", "duty", "/255"}});
+  EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
+  EXPECT_DOUBLE_EQ(51.0 * m.of("duty")->scale.scale, 0.2);
+}
+
+TEST(Meaning, AUnitDecidesBetweenTwoSignalsOfOneName) {
+  const LogMeaning m = meaning("time_s,u [V],angular_velocity [rad/s]\n0,1,60\n0.01,2,120\n");
+  EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
+  ASSERT_NE(m.of("motor_voltage"), nullptr);  // volts are no duty
+  EXPECT_NE(m.of("velocity"), nullptr);
+  EXPECT_EQ(meaning("time_s,u,speed_rpm\n0,1,60\n0.01,2,120\n").doubts.size(), 1u);
 }
 
 TEST(Meaning, AClockInOddStepsIsInDoubt) {
