@@ -37,6 +37,37 @@ void drive_against_motion(const RunView& view, const DriveView& drive, std::vect
                    motion, drive.drive_name)});
 }
 
+// A log of a duty's size whose direction went to another pin: never below zero, the drive turns both ways, and the size
+// of the speed follows the duty where the speed does not. A load that pushes a drive back does not do so in proportion
+// to the duty.
+void drive_without_sign(const RunView& view, const DriveView& drive, std::vector<DataFinding>& findings) {
+  constexpr double kFollows = 0.5;    // share of the squares that a line through zero explains; tuned
+  constexpr double kBackwards = 0.1;  // share of the squares that is motion against the drive; tuned
+  const bool by_voltage =
+      drive.drive_name.starts_with("duty") || drive.drive_name.starts_with("motor_voltage");
+  if (!by_voltage || (drive.position == nullptr && drive.velocity == nullptr)) return;
+  const double least = quantile_of(*drive.drive, 0.0), most = quantile_of(*drive.drive, 1.0);
+  if (least < 0.0 && most > 0.0) return;
+  const WindowMeans w = window_means(view, drive, *drive.drive, kWindow_s);
+  std::vector<double> size;
+  double all = 0.0, against = 0.0;
+  for (std::size_t i = 0; i < w.speed.size(); ++i) {
+    size.push_back(std::abs(w.speed[i]));
+    all += w.speed[i] * w.speed[i];
+    if (w.speed[i] * (most > 0.0 ? 1.0 : -1.0) < 0.0) against += w.speed[i] * w.speed[i];
+  }
+  const LineFit of_size = fit_line({w.drive}, size), of_speed = fit_line({w.drive}, w.speed);
+  if (w.speed.size() < kLeastWindows || of_size.coefficient.empty() || of_speed.coefficient.empty()) return;
+  if (of_size.explained < kFollows || of_speed.explained > kFollows * of_size.explained) return;
+  if (against < kBackwards * all) return;
+  findings.push_back(
+      {Grade::kFault, "drive_without_sign", view.run->file, drive.drive_name, against / all,
+       fmt::format("{} is never {} zero, yet the drive turns both ways, as fast as {} is large: the "
+                   "direction was not "
+                   "logged (a pin of its own); give {} a sign",
+                   drive.drive_name, most > 0.0 ? "below" : "above", drive.drive_name, drive.drive_name)});
+}
+
 void position_against_velocity(const RunView& view, const DriveView& drive,
                                std::vector<DataFinding>& findings) {
   if (drive.position == nullptr || drive.velocity == nullptr) return;
@@ -130,6 +161,7 @@ void check_direction(const CheckContext& data, std::vector<DataFinding>& finding
     for (const DriveView& drive : view.drives) {
       if (drive.drive != nullptr) {
         drive_against_motion(view, drive, findings);
+        drive_without_sign(view, drive, findings);
         target_against_position(view, drive, findings);
         torque_against_acceleration(view, drive, findings);
       }

@@ -94,14 +94,65 @@ void check_signal(const RunView& view, const std::string& name, const std::vecto
                    name, count, count == 1 ? "" : "es", largest, s.t[first])});
 }
 
+// The highest speed that anything in the record speaks for: one that lasts, in any run, or what the highest voltage asked
+// gives without load. 0: nothing does.
+double highest_speed(const CheckContext& data) {
+  double highest = 0.0, voltage_V = 0.0;
+  for (const RunView& view : data.runs) {
+    for (const DriveView& drive : view.drives) {
+      if (drive.velocity == nullptr || view.run->steady) continue;
+      const Samples s = known_samples(*view.run, *drive.velocity, false);
+      std::vector<double> near;
+      for (std::size_t k = kSustained; k + kSustained < s.x.size(); ++k) {
+        near.clear();
+        for (std::size_t i = k - kSustained; i <= k + kSustained; ++i) near.push_back(std::abs(s.x[i]));
+        highest = std::max(highest, median_in_place(near));
+      }
+      for (const double v : asked_voltage(data, view, drive)) voltage_V = std::max(voltage_V, std::abs(v));
+    }
+  }
+  const double k = nominal_value(data.nominal, "motor.torque_constant_Nm_per_A").value_or(0.0);
+  const double gear = nominal_value(data.nominal, "gear.ratio").value_or(1.0);
+  return k > 0.0 ? std::max(highest, voltage_V / k / gear) : highest;
+}
+
+// A speed that stands alone: far above any that lasts, and gone in the rows before and after it.
+void check_speed(const RunView& view, const std::vector<double>& values, double highest,
+                 std::vector<DataFinding>& findings) {
+  const Samples s = known_samples(*view.run, values, false);
+  if (s.x.size() < 50 || !(highest > 0.0)) return;
+  std::size_t count = 0, first = 0;
+  double largest = 0.0, of_glitches = 0.0, of_all = 0.0;
+  for (std::size_t k = 0; k < s.x.size(); ++k) {
+    of_all += s.x[k] * s.x[k];
+    const double before = k > 0 ? std::abs(s.x[k - 1]) : 0.0;
+    const double after = k + 1 < s.x.size() ? std::abs(s.x[k + 1]) : 0.0;
+    if (std::abs(s.x[k]) <= kFarBeyond * std::max({highest, before, after})) continue;
+    if (count++ == 0) first = k;
+    of_glitches += s.x[k] * s.x[k];
+    if (std::abs(s.x[k]) > std::abs(largest)) largest = s.x[k];
+  }
+  if (count == 0) return;
+  const bool outweighs = of_glitches > 0.5 * of_all;  // any error of the run is then theirs
+  findings.push_back(
+      {outweighs ? DataFinding::Grade::kFault : DataFinding::Grade::kDoubt, "glitch", view.run->file,
+       "velocity", largest,
+       fmt::format("velocity reads {:.4g} in {} row{} (first at {:.4f} s), {:.3g} times what it ever "
+                   "reaches for longer: a counter that overflowed, or a fault of the transfer{}",
+                   largest, count, count == 1 ? "" : "s", s.t[first], std::abs(largest) / highest,
+                   outweighs ? "; it outweighs all other rows: empty the cell" : "")});
+}
+
 }  // namespace
 
 void check_glitches(const CheckContext& data, std::vector<DataFinding>& findings) {
+  const double highest = highest_speed(data);
   for (const RunView& view : data.runs) {
     if (view.run->steady) continue;
     for (const DriveView& drive : view.drives) {
       if (drive.position != nullptr)
         check_signal(view, drive.position_name, *drive.position, drive.quantum, findings);
+      if (drive.velocity != nullptr) check_speed(view, *drive.velocity, highest, findings);
     }
     for (const char* name : {"vision_x", "vision_y", "vision_theta"}) {
       if (const auto* values = view.run->signal(name)) check_signal(view, name, *values, 0.0, findings);

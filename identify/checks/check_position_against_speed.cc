@@ -2,6 +2,8 @@
 //
 // Over windows, displacement = s * integral of v dt. s far from 1 is a wrong scale (a unit, counts_per_rev, a
 // gear ratio); s near 1 with windows that do not fit is a speed that is old, filtered or made up in places.
+// What the speed did between two samples nobody knows: the trapezoid of a window is uncertain by as much as half of each
+// change of speed, times the period. A displacement that differs by less (a kick between two rows) says nothing of scales.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,20 +19,31 @@ using Grade = DataFinding::Grade;
 
 constexpr double kWindow_s = 0.1;      // many samples, so that noise and rounding average out; a choice
 constexpr double kScaleSaid = 0.05;    // departure of s from 1; tuned
+constexpr double kLeastMoments = 5.0;  // windows that carry the line, as in check_direction; fewer are chance
 constexpr double kMisfit = 0.25;       // of the range of the windows' displacements; tuned
 constexpr double kMisfitShare = 0.02;  // of the windows; tuned
 
 struct Windows {
   std::vector<double> displacement, integral, time_s;
+  double apart = 0.0;       // sum over the windows of |displacement - integral|
+  double unresolved = 0.0;  // ... of how far the integral may be off for what lies between the samples
 };
+
+// Half of each change of speed to the next sample: its integral is the largest error of the trapezoid where the speed
+// stays between its samples.
+std::vector<double> half_changes(const std::vector<double>& speed) {
+  std::vector<double> out(speed.size(), 0.0);
+  for (std::size_t k = 0; k + 1 < speed.size(); ++k) out[k] = 0.5 * std::abs(speed[k + 1] - speed[k]);
+  return out;
+}
 
 Windows windows_of(const RunView& view, const DriveView& drive) {
   DriveView by_position = drive, by_speed = drive;
   by_position.velocity = nullptr;
   by_speed.position = nullptr;
-  const std::vector<double> none(view.run->time_s.size(), 0.0);
-  const WindowMeans displacement = window_means(view, by_position, none, kWindow_s);
-  const WindowMeans integral = window_means(view, by_speed, none, kWindow_s);
+  const std::vector<double> changes = half_changes(*drive.velocity);
+  const WindowMeans displacement = window_means(view, by_position, changes, kWindow_s);
+  const WindowMeans integral = window_means(view, by_speed, changes, kWindow_s);
   Windows out;
   std::size_t j = 0;
   for (std::size_t i = 0; i < displacement.time_s.size(); ++i) {
@@ -39,8 +52,17 @@ Windows windows_of(const RunView& view, const DriveView& drive) {
     out.displacement.push_back(displacement.speed[i]);
     out.integral.push_back(integral.speed[j]);
     out.time_s.push_back(displacement.time_s[i]);
+    out.apart += std::abs(displacement.speed[i] - integral.speed[j]);
+    out.unresolved += integral.drive[j];
   }
   return out;
+}
+
+// How many windows carry the sum of squares: n of equal size count as n, one that outweighs all others as one.
+double moments_of(const std::vector<double>& x) {
+  double squares = 0.0, fourths = 0.0;
+  for (const double v : x) squares += v * v, fourths += v * v * v * v;
+  return fourths > 0.0 ? squares * squares / fourths : 0.0;
 }
 
 // What a factor between two measurements of one thing usually is.
@@ -79,7 +101,8 @@ void check_position_against_speed(const CheckContext& data, std::vector<DataFind
       const double s = line.coefficient[0],
                    highest = quantile_of(w.displacement, 1.0) - quantile_of(w.displacement, 0.0);
       if (s < 0.0) continue;  // said by check_direction
-      if (std::abs(s - 1.0) > std::max(kScaleSaid, 5.0 * line.sigma[0])) {
+      const bool resolved = w.apart > w.unresolved && moments_of(w.integral) >= kLeastMoments;
+      if (resolved && std::abs(s - 1.0) > std::max(kScaleSaid, 5.0 * line.sigma[0])) {
         findings.push_back(
             {std::abs(s - 1.0) > 0.15 ? Grade::kFault : Grade::kDoubt, "position_against_speed",
              view.run->file, drive.position_name, s,

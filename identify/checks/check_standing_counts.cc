@@ -2,7 +2,8 @@
 //
 // From one row to the next the position stops, stays exactly the same for at least three rows, and goes on as
 // fast as before: a drive cannot brake to nothing and start again within a period. Where it catches up at
-// once the rows repeated an old value; where it goes on from where it stood, counts were lost.
+// once the rows repeated an old value; where it goes on from where it stood, counts were lost. A drive that turns back
+// stands in between, as long as friction and play hold it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +40,9 @@ void check_drive(const RunView& view, const DriveView& drive, std::vector<DataFi
     const std::size_t stood = end - k;
     if (stood >= kLeastRows && stood <= kMostRows && end + kAround < x.size()) {
       const double before = mean_step(x, k - kAround, k), after = mean_step(x, end + 1, end + kAround);
-      const bool in_motion = std::min(before, after) > least && std::abs(x[k] - x[k - 1]) > 0.5 * least &&
+      const bool turns_back = (x[k] - x[k - kAround]) * (x[end + kAround] - x[end + 1]) < 0.0;
+      const bool in_motion = !turns_back && std::min(before, after) > least &&
+                             std::abs(x[k] - x[k - 1]) > 0.5 * least &&
                              std::max(before, after) < 2.0 * std::min(before, after);
       const double caught_up = std::abs(x[end + 1] - x[end]) / before;
       if (in_motion) {

@@ -80,6 +80,24 @@ class SpoiltData : public testing::Test {
   std::vector<double>& signal(std::size_t run, const char* name) {
     return bench.dataset.runs[run].signals.find(name)->second;
   }
+  double rad_per_count() const {  // of the output; kWheelModel's gear
+    const Channel& encoder = *bench.dataset.channel("encoder");
+    return 2.0 * 3.14159265358979 / encoder.counts_per_rev / (encoder.on_output ? 1.0 : 3.0);
+  }
+  // A channel `velocity` of the output, in rad/s, from the counts by central differences over 20 ms.
+  void add_true_speed() {
+    for (omnihil::Run& run : bench.dataset.runs) {
+      const std::vector<double>& ticks = *run.signal("encoder");
+      std::vector<double> speed(ticks.size(), 0.0);
+      for (std::size_t k = 10; k + 10 < ticks.size(); ++k) {
+        const double turned = rad_per_count() * (ticks[k + 10] - ticks[k - 10]);
+        speed[k] = turned / (run.time_s[k + 10] - run.time_s[k - 10]);
+      }
+      run.signals["velocity"] = speed;
+    }
+    bench.dataset.channels.push_back(*bench.dataset.channel("encoder"));
+    bench.dataset.channels.back().signal = bench.dataset.channels.back().column = "velocity";
+  }
   void expect(const char* kind, const char* words, Grade least = Grade::kFault) {
     const auto findings = check(bench);
     const DataFinding* f = find(findings, kind);
@@ -101,6 +119,62 @@ TEST_F(SpoiltData, AnEncoderThatCountsBackwards) {
     for (double& v : signal(r, "encoder")) v = -v;
   }
   expect("swapped_sign", "the sign of encoder or of duty is swapped");
+}
+
+// The duty of a board with a pin for the direction, logged without that pin.
+TEST_F(SpoiltData, ADutyWhoseDirectionWasNotLogged) {
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (double& v : signal(r, "duty")) v = std::abs(v);
+  }
+  expect("drive_without_sign", "the direction was not logged");
+}
+
+// One row of a speed whose 16-bit counter went through zero.
+TEST_F(SpoiltData, ASpeedFromACounterThatOverflowed) {
+  add_true_speed();
+  signal(0, "velocity")[1234] = -12854.4;
+  expect("glitch", "velocity reads -1.285e+04 in 1 row");
+}
+
+TEST_F(SpoiltData, ASpeedBesideItsPositionIsNoGlitchAndOfNoWrongScale) {
+  add_true_speed();
+  const auto findings = check(bench);
+  EXPECT_EQ(find(findings, "glitch"), nullptr) << text_of(findings);
+  EXPECT_EQ(find(findings, "position_against_speed"), nullptr) << text_of(findings);
+}
+
+TEST_F(SpoiltData, ASpeedInTurnsIsOfAWrongScale) {
+  add_true_speed();
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (double& v : signal(r, "velocity")) v /= 6.283185307179586;
+  }
+  expect("position_against_speed", "turns for radians");
+}
+
+// Kicks of 1 ms, each between two rows of 5 ms: the speed shows the tail of each, the position all of it. Many of them, of
+// which it shows more than half; one alone, of which it shows a quarter.
+TEST_F(SpoiltData, AKickBetweenTwoRowsSaysNothingOfScales) {
+  constexpr std::size_t kRows = 1600;
+  constexpr double kPeriod_s = 0.005, kCounts = 20.0;
+  struct {
+    std::size_t every;
+    double seen;  // of a kick's displacement, in the speed
+  } constexpr kKicks[] = {{160, 0.6}, {kRows, 0.25}};
+  omnihil::Run& run = bench.dataset.runs[0];
+  for (const auto& kicks : kKicks) {
+    for (auto& [name, values] : run.signals) values = std::vector<double>(kRows, 0.0);
+    run.signals["velocity"] = std::vector<double>(kRows, 0.0);
+    run.time_s = std::vector<double>(kRows, 0.0);
+    std::vector<double>&ticks = run.signals["encoder"], &speed = run.signals["velocity"];
+    for (std::size_t k = 1; k < kRows; ++k) {
+      run.time_s[k] = kPeriod_s * static_cast<double>(k);
+      const bool kicked = k % kicks.every == 70;
+      ticks[k] = ticks[k - 1] + (kicked ? kCounts : 0.0);
+      speed[k] = kicked ? kicks.seen * kCounts * rad_per_count() / kPeriod_s : 0.0;
+    }
+    const auto findings = check(bench);
+    EXPECT_EQ(find(findings, "position_against_speed"), nullptr) << kicks.every << "\n" << text_of(findings);
+  }
 }
 
 TEST_F(SpoiltData, ACurrentOfTheWrongSign) {
@@ -148,6 +222,18 @@ TEST_F(SpoiltData, RowsThatRepeatAnOldValueAreNoLostCounts) {
   const DataFinding* f = find(findings, "old_values");
   ASSERT_NE(f, nullptr) << text_of(findings);
   EXPECT_EQ(find(findings, "dropped_counts"), nullptr) << text_of(findings);
+}
+
+// To and fro at one speed, 20 ms at rest at every turn: play and friction do that.
+TEST_F(SpoiltData, ADriveThatTurnsBackMayStandInBetween) {
+  std::vector<double>& ticks = signal(0, "encoder");
+  for (std::size_t k = 1; k < ticks.size(); ++k) {
+    const double direction = k / 1000 % 2 == 0 ? 1.0 : -1.0;
+    ticks[k] = ticks[k - 1] + (k % 1000 < 20 ? 0.0 : 20.0 * direction);
+  }
+  const auto findings = check(bench);
+  EXPECT_EQ(find(findings, "dropped_counts"), nullptr) << text_of(findings);
+  EXPECT_EQ(find(findings, "old_values"), nullptr) << text_of(findings);
 }
 
 TEST_F(SpoiltData, ACounterThatWraps) {
@@ -215,6 +301,27 @@ TEST_F(SpoiltData, ADriveThatHardlyMoves) {
     for (std::size_t k = ticks.size() / 4; k < ticks.size(); ++k) ticks[k] = ticks[ticks.size() / 4];
   }
   expect("near_stall", "limit of friction", Grade::kDoubt);
+}
+
+// Noise that the firmware draws faster than it logs. At the controller's own ticks the same is no fault.
+TEST_F(SpoiltData, AnInputFasterThanItsRows) {
+  omnihil::Run& run = bench.dataset.runs[1];
+  for (std::size_t k = 0; k < run.time_s.size(); ++k) {
+    signal(1, "duty")[k] = uniform(5, 2, k) - 0.5;
+  }
+  EXPECT_EQ(find(check(bench), "fast_command"), nullptr);
+  for (std::size_t k = 0; k < run.time_s.size(); ++k) run.time_s[k] += 4e-4 * (uniform(5, 3, k) - 0.5);
+  expect("fast_command", "what the drive was asked between them is not known", Grade::kDoubt);
+}
+
+// One step in a run changes from one row to the next as far as it ever does.
+TEST_F(SpoiltData, AStepAtOddTimesIsNoInputFasterThanItsRows) {
+  omnihil::Run& run = bench.dataset.runs[1];
+  for (std::size_t k = 0; k < run.time_s.size(); ++k) {
+    run.time_s[k] += 4e-4 * (uniform(5, 3, k) - 0.5);
+    signal(1, "duty")[k] = run.time_s[k] < 2.0 ? 0.0 : 0.4;
+  }
+  EXPECT_EQ(find(check(bench), "fast_command"), nullptr);
 }
 
 TEST_F(SpoiltData, ADutyAtItsLimitMostOfTheTime) {
