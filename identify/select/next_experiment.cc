@@ -42,6 +42,33 @@ const ConfoundedSet& most_decisive(const std::vector<ConfoundedSet>& sets) {
   return names != sets.end() ? *names : sets.front();
 }
 
+// What a person can do to see more of a residual that depends on one thing. Not everything can be swept at leisure.
+struct Sweep {
+  std::string_view against, what;
+};
+constexpr Sweep kSweeps[] = {
+    {"time",
+     "Repeat one run from cold and, without a pause, from warm: what drifts with time differs between them"},
+    {"time_since_step",
+     "Record single steps of several heights, each until it has settled, from rest and from speed"},
+    {"acceleration",
+     "Record steps and chirps of several heights about the same speeds: accelerations differ, speeds do not"},
+    {"abs_current", "Record the same speeds with several loads: the current differs, the speed does not"},
+    {"abs_command", "Record a staircase of the drive's input, up and down, each step until it has settled"},
+    {"direction", "Record the same staircase of the drive's input in both directions"},
+    {"rotor_angle", "Turn slowly and steadily through several turns, in both directions"},
+    {"output_angle", "Turn slowly and steadily through several turns of the output, in both directions"},
+    {"temperature", "Repeat one run from cold and from warm"},
+    {"bus_voltage", "Repeat one run at two supply voltages"}};
+
+std::string sweep_over(std::string_view against) {
+  for (const Sweep& s : kSweeps) {
+    if (s.against == against) return std::string(s.what);
+  }
+  return fmt::format("Record slow and steady sweeps over {} in both directions, all else held constant",
+                     against);
+}
+
 // The rivals of `omnihil experiment`: effects, and "base" where the other one is a base parameter.
 std::string command_for(const Dataset& dataset, const std::vector<std::string>& members) {
   std::vector<std::string> rivals;
@@ -64,11 +91,8 @@ NextExperiment next_experiment(const Dataset& dataset, const Diagnosis& diagnosi
   }
   if (diagnosis.verdict == Verdict::kUnknown && !diagnosis.where.empty()) {
     const Where& w = diagnosis.where.front();
-    next.what = fmt::format(
-        "Record slow and steady sweeps over {} in both directions, all else held constant: it explains "
-        "{:.0f} % of the "
-        "residual of {}.",
-        w.against, 100.0 * w.explained_fraction, w.signal);
+    next.what = fmt::format("{} ({} explains {:.0f} % of the residual of {}).", sweep_over(w.against),
+                            w.against, 100.0 * w.explained_fraction, w.signal);
     return next;
   }
   // The first in the ranking that these data could not show.

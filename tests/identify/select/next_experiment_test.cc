@@ -37,6 +37,21 @@ TEST(NextExperimentTest, PlansTheRunThatShowsWhatTheseDataCouldNot) {
             "omnihil experiment run/bench --separate cogging,base --out next");
 }
 
+// Nobody sweeps time slowly in both directions.
+TEST(NextExperimentTest, SaysWhatAPersonCanDoAboutAResidual) {
+  Diagnosis d;
+  d.verdict = Verdict::kUnknown;
+  d.where = {{.signal = "velocity", .against = "time", .explained_fraction = 0.48}};
+  EXPECT_NE(next_experiment(bench(), d).what.find("from cold and, without a pause, from warm"),
+            std::string::npos);
+  EXPECT_NE(next_experiment(bench(), d).what.find("time explains 48 % of the residual of velocity"),
+            std::string::npos);
+  d.where.front().against = "acceleration";
+  EXPECT_EQ(next_experiment(bench(), d).what.find("sweeps over"), std::string::npos);
+  d.where.front().against = "velocity";
+  EXPECT_NE(next_experiment(bench(), d).what.find("sweeps over velocity"), std::string::npos);
+}
+
 TEST(NextExperimentTest, HasNoCommandWhereThereIsNothingToTellApart) {
   const NextExperiment next = next_experiment(bench(), Diagnosis());
   EXPECT_FALSE(next.what.empty());
