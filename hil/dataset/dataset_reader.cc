@@ -8,6 +8,7 @@
 #include "hil/dataset/dataset_runs.h"
 #include "hil/text/text_file.h"
 #include "hil/text/toml_keys.h"
+#include "identify/predict/torque_scale.h"
 #include "identify/record/signal_list.h"
 #include "sim/model/axis_model.h"
 #include "sim/model/model_rows.h"
@@ -54,6 +55,7 @@ class DatasetReader {
           "no run has use \"holdout\": errors on unseen data come from blocked cross-validation");
     }
     if (out_.problems.empty()) {
+      if (out_.nominal) out_.nominal->torque_scale = torque_scale_of(dataset_, *out_.nominal);
       out_.dataset = std::move(dataset_);
     } else {
       out_.nominal.reset();

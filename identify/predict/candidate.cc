@@ -136,7 +136,7 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
   const std::span<const EffectParam> rows = use.entry->info->params;
   constexpr double kNotGiven = -1.0;  // a marker: tolerances are not negative
   const double tolerance = i < use.tolerances.size() ? use.tolerances[i].value_or(kNotGiven) : kNotGiven;
-  const ParamRange range = param_range(row, linear);
+  const ParamRange range = param_range(row, linear, candidate.torque_scale);
   if (tolerance == 0.0 || is_stated(use, i) || is_known_shape(use, i)) return std::nullopt;
   if (!(range.upper > range.lower) || is_whole(row)) return std::nullopt;
   if (row.role == ParamRole::kDetail && use.values[i] == row.neutral) return std::nullopt;
@@ -253,7 +253,7 @@ std::string set_value(Candidate& candidate, std::string_view path, double value)
   if (effect >= 0) {
     EffectUse& use = candidate.effects[static_cast<std::size_t>(effect)];
     const EffectParam& param = use.entry->info->params[static_cast<std::size_t>(row)];
-    const ParamRange range = param_range(param, candidate.file.linear);
+    const ParamRange range = param_range(param, candidate.file.linear, kStrongestDrive);
     if (!(value >= range.lower && value <= range.upper)) {
       return fmt::format("{} = {:g}: allowed is {}", path, value,
                          allowed_range(param, candidate.file.linear));

@@ -29,6 +29,7 @@ namespace omnihil {
 struct Candidate {
   ModelFile file;                  // its parameter table holds the base parameters
   std::vector<EffectUse> effects;  // coulomb_friction among them, where the file has it
+  double torque_scale = 1.0;       // of the catalogue's torques: torque_scale.h
 };
 
 struct Unknown {

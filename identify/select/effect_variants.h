@@ -58,7 +58,8 @@ std::vector<EffectVariant> series_variants(const EffectEntry& entry, const Candi
 
 EffectUse setting(const EffectVariant& variant, const VariantColumn& column);
 // `coefficients`: multiples of the columns' sizes that fit best. Kept within the rows' bounds.
-EffectUse start_of(const EffectVariant& variant, const std::vector<double>& coefficients, bool linear);
+EffectUse start_of(const EffectVariant& variant, const std::vector<double>& coefficients, bool linear,
+                   double torque_scale = 1.0);
 
 // The candidate with this effect in the place that its id has; one of the same name is replaced.
 Candidate with_use(const Candidate& candidate, const EffectUse& use);

@@ -53,7 +53,7 @@ bool resize(const ScreeningTask& task, const Scored& scored, EffectVariant& vari
   for (std::size_t c = 0; c < variant.columns.size(); ++c) {
     VariantColumn& column = variant.columns[c];
     const EffectParam& row = info.params[static_cast<std::size_t>(column.row)];
-    const ParamRange range = param_range(row, task.model->file.linear);
+    const ParamRange range = param_range(row, task.model->file.linear, task.model->torque_scale);
     double factor = std::abs(scored.fit.coefficients[c]);
     if (column.phase_row >= 0) {
       const std::size_t other = column.phase == 0.0 ? c + 1 : c - 1;
@@ -134,7 +134,7 @@ class SizeSearch {
     EffectVariant sized = variant;
     VariantColumn& column = sized.columns.front();
     const EffectParam& row = variant.shape.entry->info->params[static_cast<std::size_t>(column.row)];
-    const ParamRange range = param_range(row, task_.model->file.linear);
+    const ParamRange range = param_range(row, task_.model->file.linear, task_.model->torque_scale);
     column.size *= factor;
     if (column.size <= 0.0 || row.neutral + column.size > range.upper) return true;
     Scored s = score(task_, std::move(sized));
@@ -198,7 +198,8 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
   }
   out.residual_fraction = best.columns.kept;
   out.closest_parameter = nearest_base(base, best);
-  out.start = start_of(best.variant, best.fit.coefficients, task.model->file.linear);
+  out.start =
+      start_of(best.variant, best.fit.coefficients, task.model->file.linear, task.model->torque_scale);
   out.base_unknowns = base.unknowns();
   for (std::size_t u = 0; u < base.unknowns().size(); ++u) {
     const Unknown& unknown = base.unknowns()[u];

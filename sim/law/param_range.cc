@@ -29,17 +29,18 @@ std::string param_key(const EffectParam& row, bool linear) {
   return with_word(with_word(std::string(row.name), "Nm", "N"), "rad", "m");
 }
 
-ParamRange param_range(const EffectParam& row, bool linear) {
+ParamRange param_range(const EffectParam& row, bool linear, double torque_scale) {
   const std::string key(row.name);
-  const bool force = linear && param_key(row, true) != key && key.find("per_Nm") == std::string::npos &&
-                     key.find("_Nm") != std::string::npos;
+  const bool torque = key.find("_Nm") != std::string::npos && key.find("per_Nm") == std::string::npos;
+  const bool force = linear && torque && param_key(row, true) != key;
   const bool speed = linear && row.unit == "rad/s";
-  const double scale = force ? kForceOverTorque_per_m : (speed ? kTravelOverAngle_m_per_rad : 1.0);
+  const double strong = torque && !linear ? torque_scale : 1.0;
+  const double scale = force ? kForceOverTorque_per_m : (speed ? kTravelOverAngle_m_per_rad : strong);
   return {row.lower * scale, row.upper * scale, row.prior_scale * scale, scale};
 }
 
 std::string allowed_range(const EffectParam& row, bool linear) {
-  const ParamRange range = param_range(row, linear);
+  const ParamRange range = param_range(row, linear, kStrongestDrive);
   const std::string key = param_key(row, linear);
   std::string unit(row.unit == "1" ? "" : row.unit);
   if (key != row.name) {

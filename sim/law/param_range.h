@@ -21,9 +21,14 @@ struct ParamRange {
   double prior_scale = 0.0;
   double scale = 1.0;  // over the row's own numbers (linear_scale.h)
 };
-ParamRange param_range(const EffectParam& row, bool linear);
+// torque_scale: how much stronger the drive is than those that the row's numbers are of; torques and what is a torque
+// per something grow with it.
+ParamRange param_range(const EffectParam& row, bool linear, double torque_scale = 1.0);
 
-// "0 to 10 N m"; "0 to 10000 N" where the axis is linear
+// The strongest drive that a model file may be of, over a robot's: 100 N m in place of 0.1. A choice.
+inline constexpr double kStrongestDrive = 1000.0;
+
+// What a model file may say: "0 to 10000 N m"; the same in N where the axis is linear
 std::string allowed_range(const EffectParam& row, bool linear);
 
 }  // namespace omnihil

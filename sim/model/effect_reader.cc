@@ -41,7 +41,7 @@ std::string unknown_effect_hint(std::string_view id) {
 }
 
 bool in_range(const EffectParam& row, double value, bool linear) {
-  const ParamRange range = param_range(row, linear);
+  const ParamRange range = param_range(row, linear, kStrongestDrive);
   return std::isfinite(value) && value >= range.lower && value <= range.upper;
 }
 
