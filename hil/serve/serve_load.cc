@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "hil/loop/clock.h"
 #include "hil/loop/reference_firmware.h"
 #include "hil/serve/timed_firmware.h"
 
@@ -45,7 +44,7 @@ double ratio_of(SessionConfig config, Physics physics, LoadFirmware firmware,
     if (!firmware.first) firmware.first = reference_firmware_for(config);
     if (!firmware.opponents && !config.opponents.robots.empty())
       firmware.opponents = reference_firmware_for(opponents_alone(config));
-    std::deque<std::int64_t> spent_ns;  // by robot, of wall time
+    std::deque<std::int64_t> spent_ns;  // by robot
     Session session(config, timed(firmware.first, spent_ns), timed(firmware.opponents, spent_ns));
     RobotCommand ahead{};
     ahead.mode = OMNIHIL_MODE_BODY_VELOCITY;
@@ -55,7 +54,7 @@ double ratio_of(SessionConfig config, Physics physics, LoadFirmware firmware,
     std::vector<std::uint8_t> answer;
     while (session.now_ns() < kWarm_ns) session.step({}, answer);
     std::ranges::fill(spent_ns, 0);
-    const std::int64_t from_ns = session.now_ns(), wall_from_ns = monotonic_now_ns();
+    const std::int64_t from_ns = session.now_ns();
     const double from_s = processor_s();
     double spent_s = 0.0;
     while (session.now_ns() < from_ns + kMeasured_ns && spent_s < kLongest_s) {
@@ -63,13 +62,11 @@ double ratio_of(SessionConfig config, Physics physics, LoadFirmware firmware,
       session.step({}, answer);
       spent_s = processor_s() - from_s;
     }
-    const auto wall_ns = static_cast<double>(monotonic_now_ns() - wall_from_ns);
     const double ratio = spent_s / (1e-9 * static_cast<double>(session.now_ns() - from_ns));
     for (std::size_t i = 0; boards != nullptr && i < spent_ns.size(); ++i) {
       const int index = static_cast<int>(i);
       const bool emulated = session.firmware_chip(index) != nullptr;
-      // Of the processor's time as much as of the wall's: other work that came between took from all alike.
-      const double share = static_cast<double>(spent_ns[i]) / wall_ns;
+      const double share = 1e-9 * static_cast<double>(spent_ns[i]) / spent_s;
       if (emulated) boards->push_back({session.robot_key(index), share * ratio});
     }
     return ratio;

@@ -1,18 +1,26 @@
-// A firmware whose time is taken: what it is, and how long its ticks last by the wall.
+// A firmware whose time is taken: what it is, and how much of the processor's time its ticks take.
 //
 //   std::int64_t spent_ns = 0;
 //   TimedFirmware timed(std::move(firmware), spent_ns);
 //
 // Its ticks are whole: they run one after the other, so that a time is one robot's.
 #pragma once
+#include <time.h>
+
 #include <cstdint>
 #include <memory>
 #include <utility>
 
-#include "hil/loop/clock.h"
 #include "hil/loop/session.h"
 
 namespace omnihil {
+
+// Of this thread, in processor time: what else the computer does is not in it.
+inline std::int64_t thread_now_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
 
 class TimedFirmware final : public Firmware {
  public:
@@ -46,11 +54,11 @@ class TimedFirmware final : public Firmware {
  private:
   struct Timed {
     explicit Timed(std::int64_t& spent_ns) : spent(spent_ns) {}
-    ~Timed() { spent += monotonic_now_ns() - since_ns; }
+    ~Timed() { spent += thread_now_ns() - since_ns; }
     Timed(const Timed&) = delete;
     Timed& operator=(const Timed&) = delete;
     std::int64_t& spent;
-    std::int64_t since_ns = monotonic_now_ns();
+    std::int64_t since_ns = thread_now_ns();
   };
 
   std::unique_ptr<Firmware> inner_;
