@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hil/recording/stream_file.h"
+#include "identify/design/experiment_menu.h"
 #include "protocols/meaning.h"
 
 namespace omnihil {
@@ -52,21 +53,59 @@ PlanRun body_run(std::string name, Split use, std::string words, const std::vect
 
 constexpr const char* kScanWords = "out and back in twelve directions, and turns";
 
+// Of an axis, as a plan has it; none: no such plan.
+std::optional<PlanDrive> axis_drive(const PlannedRun& run) {
+  if (run.duty.size() != 1) return std::nullopt;
+  for (const PlanDrive drive : {PlanDrive::kMotorVoltage, PlanDrive::kMotorTorque, PlanDrive::kDuty}) {
+    if (run.input == plan_drive_word(drive)) return drive;
+  }
+  return std::nullopt;
+}
+
+std::vector<double> even_times(double duration_s, double rate_Hz) {
+  std::vector<double> out;
+  for (std::size_t k = 0; static_cast<double>(k) <= duration_s * rate_Hz + 1e-9; ++k)
+    out.push_back(static_cast<double>(k) / rate_Hz);
+  return out;
+}
+
+// One after another, each at its share of the level.
+PlannedRun in_turn(const std::vector<std::string_view>& names, double level, double duration_s,
+                   double rate_Hz, std::uint64_t seed) {
+  PlannedRun run{.excitation = "usual", .words = "", .input = "", .time_s = {}, .duty = {{}}};
+  const std::vector<double> part_s = even_times(duration_s / static_cast<double>(names.size()), rate_Hz);
+  for (const std::string_view name : names) {
+    for (const MenuRun& one : axis_menu(part_s, seed)) {
+      if (one.excitation != name) continue;
+      run.words += (run.words.empty() ? "" : "; ") + one.words;
+      for (const double v : one.drive[0]) run.duty[0].push_back(level * v);
+    }
+  }
+  run.time_s = even_times(duration_s, rate_Hz);
+  run.duty[0].resize(run.time_s.size(), 0.0);
+  return run;
+}
+
 }  // namespace
 
 std::optional<AcquirePlan> acquire_plan_of(const ExperimentPlan& plan, const ExperimentLimits& limits,
-                                           double packets_Hz, const BodyDriveOptions& other) {
-  if (!plan.run || plan.run->duty.size() < 3) return std::nullopt;
+                                           double packets_Hz, const BodyDriveOptions& other,
+                                           double gear_ratio) {
+  if (!plan.run) return std::nullopt;
   const PlannedRun& run = *plan.run;
+  const std::optional<PlanDrive> axis = axis_drive(run);
+  if (run.duty.size() < 3 && !axis) return std::nullopt;
   AcquirePlan out;
   out.title = plan.next.separates.empty()
                   ? run.excitation
                   : fmt::format("to tell {} apart", fmt::join(plan.next.separates, ", "));
-  out.drive = by_body(run)          ? PlanDrive::kBodyVelocity
+  out.drive = axis                  ? *axis
+              : by_body(run)        ? PlanDrive::kBodyVelocity
               : by_wheel_speed(run) ? PlanDrive::kWheelSpeed
                                     : PlanDrive::kWheelDuty;
   out.packets_Hz = packets_Hz;
-  out.limits.travel_m = limits.travel;
+  (axis ? out.limits.travel_rad : out.limits.travel_m) = limits.travel;
+  if (axis) out.limits.speed_rad_s = limits.speed_rad_s / gear_ratio;
   out.limits.current_A = limits.current_A;
   out.runs.push_back(plan_run("fit", Split::kTraining, run, packets_Hz, 1.0));
   out.runs.push_back(plan_run("holdout", Split::kValidation, run, packets_Hz, -1.0));
@@ -89,6 +128,27 @@ AcquirePlan usual_plan(const BodyDriveOptions& drive, double packets_Hz) {
       body_run("fit", Split::kTraining, kWords, random_body_drive(drive), drive.duration_s),
       body_run("holdout", Split::kValidation, kWords, random_body_drive(second), drive.duration_s),
       body_run("extrapolation", Split::kExtrapolation, kScanWords, scan_body_drive(drive), drive.duration_s)};
+  return plan;
+}
+
+AcquirePlan usual_axis_plan(PlanDrive drive, double level, const ExperimentLimits& limits, double packets_Hz,
+                            std::uint64_t seed) {
+  AcquirePlan plan;
+  plan.title = "the usual drives of an axis";
+  plan.drive = drive;
+  plan.packets_Hz = packets_Hz;
+  plan.limits.travel_rad = limits.travel;
+  plan.limits.current_A = limits.current_A;
+  plan.limits.speed_rad_s = limits.speed_rad_s;
+  const double s = limits.duration_s;
+  plan.runs = {
+      plan_run("fit", Split::kTraining, in_turn({"steps", "ramp", "chirp"}, level, s, packets_Hz, seed),
+               packets_Hz, 1.0),
+      plan_run("holdout", Split::kValidation,
+               in_turn({"steps", "ramp", "chirp"}, 0.8 * level, s, packets_Hz, seed + 1), packets_Hz, 1.0),
+      plan_run("extrapolation", Split::kExtrapolation,
+               in_turn({"reversals_slow", "triangle_fast"}, 0.6 * level, s, packets_Hz, seed), packets_Hz,
+               1.0)};
   return plan;
 }
 

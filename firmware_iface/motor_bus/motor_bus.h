@@ -6,7 +6,8 @@
 //   auto bus = kind->make({axes, out, setup});
 //   BusVerdict verdict = bus->receive(frame, now_ns);      // anything but kOk changed nothing
 //   bus->tick(now_ns);                                     // timeouts, demands to the axes, cyclic frames
-//   kind->main_board.speak(0, speeds_rad_s, frames);       // the other end
+//   kind->main_board.speak(0, speeds_rad_s, frames);       // the other end, of a whole robot
+//   std::unique_ptr<AxisHost> host = kind->host(1);        // the other end, of one motor (axis_host.h)
 //
 // Motor m of the bus is wheel `order[m]` of the robot's model.
 #pragma once
@@ -17,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware_iface/motor_bus/axis_host.h"
 #include "firmware_iface/motor_bus/bus_frame.h"
 #include "firmware_iface/motor_bus/motor_axis.h"
 
@@ -82,6 +84,8 @@ struct MotorBusKind {
   double default_watchdog_s;  // 0: none
   bool even_parity = false;   // UART
   MainBoard main_board{};
+  std::unique_ptr<AxisHost> (*host)(int id) =
+      nullptr;  // of the motor with this id; null: nobody has needed it
   std::unique_ptr<MotorBus> (*make)(const MotorBusContext& context);
 };
 

@@ -85,25 +85,38 @@ std::int64_t MultiplexValue::whole() const {
   return std::isfinite(real) ? std::llround(std::clamp(real, -2e9F, 2e9F)) : -1;
 }
 
-MultiplexStatus read_multiplex(std::span<const std::uint8_t> data, std::vector<RegisterAccess>& out) {
+namespace {
+
+// Subframes of writes and reads, or of replies; a reply carries values as a write does.
+MultiplexStatus read_subframes(std::span<const std::uint8_t> data, bool replies,
+                               std::vector<RegisterAccess>& out) {
   Reader reader(data);
   while (!reader.done()) {
     const std::uint8_t head = reader.byte();
     if (head == kMultiplexNop) continue;
     const unsigned kind = head >> 4;
-    if (kind > 1) return MultiplexStatus::kUnknownSubframe;
+    if (replies ? kind != 2 : kind > 1) return MultiplexStatus::kUnknownSubframe;
     const auto type = static_cast<MultiplexType>(head >> 2 & 3U);
     const std::uint32_t count = (head & 3U) != 0 ? head & 3U : reader.varuint();
     const std::uint32_t first = reader.varuint();
     if (!reader.good() || count > kMaxRegisters) return MultiplexStatus::kTruncated;
     for (std::uint32_t i = 0; i < count; ++i) {
       RegisterAccess access{.write = kind == 0, .reg = first + i, .value = {.type = type}};
-      if (access.write) access.value = reader.value(type);
+      if (kind != 1) access.value = reader.value(type);
       out.push_back(access);
     }
     if (!reader.good()) return MultiplexStatus::kTruncated;
   }
   return MultiplexStatus::kOk;
+}
+
+}  // namespace
+
+MultiplexStatus read_multiplex(std::span<const std::uint8_t> data, std::vector<RegisterAccess>& out) {
+  return read_subframes(data, false, out);
+}
+MultiplexStatus read_multiplex_reply(std::span<const std::uint8_t> data, std::vector<RegisterAccess>& out) {
+  return read_subframes(data, true, out);
 }
 
 std::size_t MultiplexReply::varuint_bytes(std::uint32_t value) {
@@ -123,7 +136,7 @@ void MultiplexReply::put_varuint(std::uint32_t value) {
 // their own, so a subframe that grows past 3 moves up by one.
 bool MultiplexReply::open_subframe(std::uint32_t reg, MultiplexType type) {
   const std::size_t bytes = kBytes[static_cast<std::size_t>(type)];
-  const auto code = static_cast<std::uint8_t>(0x20U | static_cast<unsigned>(type) << 2);
+  const auto code = static_cast<std::uint8_t>(head_ | static_cast<unsigned>(type) << 2);
   if (open_ && reg == next_reg_ && type == type_) {
     const unsigned few = out_[subframe_at_] & 3U;
     const std::size_t extra = few == 3 ? 1 : 0;

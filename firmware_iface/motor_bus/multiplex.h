@@ -46,11 +46,16 @@ enum class MultiplexStatus : std::uint8_t { kOk, kTruncated, kUnknownSubframe };
 
 // Every access in order; on an error none of them may be used.
 MultiplexStatus read_multiplex(std::span<const std::uint8_t> data, std::vector<RegisterAccess>& out);
+// What a device answers: replies alone, each an access with its value. An error that it reports is kUnknownSubframe.
+MultiplexStatus read_multiplex_reply(std::span<const std::uint8_t> data, std::vector<RegisterAccess>& out);
 
-// Builds a reply: neighbouring registers of one type share a subframe. What no longer fits is left out.
+enum class MultiplexKind : std::uint8_t { kWrite = 0, kRead = 1, kReply = 2 };
+
+// Builds a reply, or what a host writes: neighbouring registers of one type share a subframe. What no longer fits is left out.
 class MultiplexReply {
  public:
-  explicit MultiplexReply(std::span<std::uint8_t> out) : out_(out) {}
+  explicit MultiplexReply(std::span<std::uint8_t> out, MultiplexKind kind = MultiplexKind::kReply)
+      : out_(out), head_(static_cast<std::uint8_t>(static_cast<unsigned>(kind) << 4)) {}
   void add(std::uint32_t reg, MultiplexType type, double value, const RegisterScale& scale);
   void add_whole(std::uint32_t reg, MultiplexType type, std::int64_t value);
   void add_error(bool write, std::uint32_t reg, std::uint32_t error);
@@ -64,6 +69,7 @@ class MultiplexReply {
   void put_varuint(std::uint32_t value);
 
   std::span<std::uint8_t> out_;
+  std::uint8_t head_;
   std::size_t size_ = 0, subframe_at_ = 0;
   std::uint32_t next_reg_ = 0;
   MultiplexType type_ = MultiplexType::kInt8;

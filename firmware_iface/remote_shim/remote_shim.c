@@ -5,6 +5,7 @@
 enum {
   kHelloBytes = 56,
   kSensorsBytes = 37,
+  kPlantSensorsBytes = 39, /* of a board with motors: and the number of the drive in force */
   kCommandBytes = 68,
   kDriveBytes = 18,
   kNameMax = 64,
@@ -68,7 +69,7 @@ static void take_hello(omnihil_remote* r, const omnihil_remote_frame* f) {
 static void take_sensors(omnihil_remote* r, const omnihil_remote_frame* f) {
   const uint8_t* p = f->payload;
   omnihil_remote_sensors* s = &r->sensors;
-  if (f->bytes != kSensorsBytes) return;
+  if (f->bytes != kSensorsBytes && f->bytes != kPlantSensorsBytes) return;
   s->now_us = omnihil_get_u32(p);
   for (int i = 0; i < OMNIHIL_REMOTE_WHEELS; ++i) {
     s->encoder_counts[i] = (int32_t)omnihil_get_u32(p + 4 + 4 * i);
@@ -79,6 +80,7 @@ static void take_sensors(omnihil_remote* r, const omnihil_remote_frame* f) {
   s->accel_x_mm_s2 = (int16_t)omnihil_get_u16(p + 32);
   s->accel_y_mm_s2 = (int16_t)omnihil_get_u16(p + 34);
   s->ball_seen = p[36];
+  s->drive_number = f->bytes == kPlantSensorsBytes ? omnihil_get_u16(p + kSensorsBytes) : 0;
   if (r->sensors_new) ++r->skipped_ticks;
   r->sequence = f->sequence;
   r->sensors_new = 1;

@@ -51,6 +51,8 @@ typedef struct omnihil_remote_sensors {
   uint16_t bus_voltage_mV;
   int16_t gyro_z_mrad_s, accel_x_mm_s2, accel_y_mm_s2;
   uint8_t ball_seen;
+  uint16_t
+      drive_number; /* of the DRIVE that is in force from now on, as a board with motors says it; 0: none, or not told */
 } omnihil_remote_sensors;
 
 typedef struct omnihil_remote {

@@ -12,7 +12,8 @@ namespace omnihil {
 namespace {
 
 constexpr std::string_view kFormat = "omnihil-plan/1";
-constexpr std::array<std::string_view, 3> kDrives{"body_velocity", "wheel_speed", "wheel_duty"};
+constexpr std::array<std::string_view, 6> kDrives{"body_velocity", "wheel_speed",  "wheel_duty",
+                                                  "motor_voltage", "motor_torque", "duty"};
 constexpr std::array<std::string_view, kSplits> kUses{"fit", "holdout", "extrapolation"};
 constexpr double kLongest_s = 3600.0;
 
@@ -50,12 +51,20 @@ class Reader {
   }
 
   void read_limits(const toml::table& t) {
-    static constexpr std::string_view kKeys[] = {"area_m",    "travel_m",  "speed_m_s",
-                                                 "battery_V", "current_A", "silence_s"};
-    keys_.only(t, "limits", kKeys);
+    static constexpr std::string_view kOfRobot[] = {"area_m",    "travel_m",  "speed_m_s",
+                                                    "battery_V", "current_A", "silence_s"};
+    static constexpr std::string_view kOfAxis[] = {"speed_rad_s", "travel_rad", "battery_V", "current_A",
+                                                   "silence_s"};
+    if (of_axis(plan_.drive)) {
+      keys_.only(t, "limits", kOfAxis);
+    } else {
+      keys_.only(t, "limits", kOfRobot);
+    }
     PlanLimits& l = plan_.limits;
     take(t, "limits", "travel_m", 0.0, 100.0, l.travel_m);
     take(t, "limits", "speed_m_s", 0.0, 20.0, l.speed_m_s);
+    take(t, "limits", "speed_rad_s", 0.0, 1e5, l.speed_rad_s);
+    take(t, "limits", "travel_rad", 0.0, 1e6, l.travel_rad);
     take(t, "limits", "battery_V", 0.0, 100.0, l.battery_V);
     take(t, "limits", "current_A", 0.0, 1000.0, l.current_A);
     take(t, "limits", "silence_s", 0.02, 10.0, l.silence_s);
@@ -138,7 +147,9 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 std::string_view plan_drive_word(PlanDrive drive) { return kDrives[static_cast<std::size_t>(drive)]; }
-int plan_drive_size(PlanDrive drive) { return drive == PlanDrive::kBodyVelocity ? 3 : kWheels; }
+int plan_drive_size(PlanDrive drive) {
+  return drive == PlanDrive::kBodyVelocity ? 3 : of_axis(drive) ? 1 : kWheels;
+}
 std::uint32_t plan_drive_mode(PlanDrive drive) {
   return drive == PlanDrive::kBodyVelocity ? OMNIHIL_MODE_BODY_VELOCITY
          : drive == PlanDrive::kWheelSpeed ? OMNIHIL_MODE_WHEEL_SPEED
@@ -155,23 +166,25 @@ PlanReading read_acquire_plan(std::string_view text, const std::string& shown_na
 }
 
 std::string plan_text(const AcquirePlan& plan) {
-  const bool body = plan.drive == PlanDrive::kBodyVelocity;
+  constexpr const char* kSteps[] = {"m/s forward, m/s left, rad/s",
+                                    "rad/s of wheels 1 to 4",
+                                    "duty of wheels 1 to 4",
+                                    "V",
+                                    "N m",
+                                    "-1 to 1"};
   std::string out = fmt::format(
       "format = \"{}\"\ntitle = {}\ndrive = \"{}\"   # steps: [s, {}]\npackets_Hz = {:g}\nrest_s = {:g}\n",
-      kFormat, quoted(plan.title), plan_drive_word(plan.drive),
-      body                                   ? "m/s forward, m/s left, rad/s"
-      : plan.drive == PlanDrive::kWheelSpeed ? "rad/s of wheels 1 to 4"
-                                             : "duty of wheels 1 to 4",
+      kFormat, quoted(plan.title), plan_drive_word(plan.drive), kSteps[static_cast<std::size_t>(plan.drive)],
       plan.packets_Hz, plan.rest_s);
   const PlanLimits& l = plan.limits;
-  out += "\n[limits]   # the robot is stopped where one is passed\n";
+  out += fmt::format("\n[limits]   # the {} is stopped where one is passed\n",
+                     of_axis(plan.drive) ? "axis" : "robot");
   if (l.area_m)
     out += fmt::format("area_m = [{:g}, {:g}, {:g}, {:g}]\n", (*l.area_m)[0], (*l.area_m)[1], (*l.area_m)[2],
                        (*l.area_m)[3]);
-  const std::pair<const char*, double> watched[] = {{"travel_m", l.travel_m},
-                                                    {"speed_m_s", l.speed_m_s},
-                                                    {"battery_V", l.battery_V},
-                                                    {"current_A", l.current_A}};
+  const std::pair<const char*, double> watched[] = {
+      {"travel_m", l.travel_m},     {"speed_m_s", l.speed_m_s}, {"speed_rad_s", l.speed_rad_s},
+      {"travel_rad", l.travel_rad}, {"battery_V", l.battery_V}, {"current_A", l.current_A}};
   for (const auto& [key, value] : watched) {
     if (value > 0.0) out += fmt::format("{} = {:g}\n", key, value);
   }

@@ -9,6 +9,7 @@
 //   drive = "body_velocity"        steps of [s, m/s forward, m/s left, rad/s]
 //         = "wheel_speed"          steps of [s, rad/s of wheel 1, 2, 3, 4]
 //         = "wheel_duty"           steps of [s, duty of wheel 1, 2, 3, 4]
+//         = "motor_voltage", "motor_torque", "duty"     of one axis on a bench: steps of [s, V], [s, N m], [s, 1]
 //   packets_Hz, rest_s             packets a second; zero is asked for that long behind each run
 //   [limits]                       of drive_limits.h
 //   [[run]] name, use, excitation, duration_s, steps
@@ -26,10 +27,18 @@
 
 namespace omnihil {
 
-enum class PlanDrive : std::uint8_t { kBodyVelocity, kWheelSpeed, kWheelDuty };
+enum class PlanDrive : std::uint8_t {
+  kBodyVelocity,
+  kWheelSpeed,
+  kWheelDuty,
+  kMotorVoltage,  // from here on: of one axis
+  kMotorTorque,
+  kDuty
+};
 std::string_view plan_drive_word(PlanDrive drive);
+constexpr bool of_axis(PlanDrive drive) { return drive >= PlanDrive::kMotorVoltage; }
 int plan_drive_size(PlanDrive drive);            // numbers of a step beside its time
-std::uint32_t plan_drive_mode(PlanDrive drive);  // OMNIHIL_MODE_*
+std::uint32_t plan_drive_mode(PlanDrive drive);  // OMNIHIL_MODE_*, of a robot
 
 struct PlanStep {
   double at_s = 0.0;
@@ -49,9 +58,11 @@ struct PlanLimits {
   std::optional<std::array<double, 4>> area_m;  // x from, y from, x to, y to: in the field, as vision has it
   double travel_m = 0.0;                        // from where a run began
   double speed_m_s = 0.0;
-  double battery_V = 0.0;  // at least
-  double current_A = 0.0;  // of a motor
-  double silence_s = 0.5;  // of the robot, or of vision
+  double speed_rad_s = 0.0;  // of an axis, at its output
+  double travel_rad = 0.0;   // of an axis, from where a run began
+  double battery_V = 0.0;    // at least
+  double current_A = 0.0;    // of a motor
+  double silence_s = 0.5;    // of the robot, or of vision
 };
 
 struct AcquirePlan {

@@ -24,7 +24,16 @@ struct WatchedBy {
   bool sees = false;   // vision
 };
 
-class LimitWatch {
+// Who may stop a run, by what it says: empty, or why not.
+class DriveWatch {
+ public:
+  virtual ~DriveWatch() = default;
+  virtual void begin(std::int64_t now_ns) = 0;
+  virtual std::string broken(std::int64_t now_ns) const = 0;
+  virtual std::string not_ready(std::int64_t now_ns) const = 0;
+};
+
+class LimitWatch final : public DriveWatch {
  public:
   static constexpr double kLasting_s = 0.2;  // a start of a robot takes that long: a choice
 
@@ -33,12 +42,12 @@ class LimitWatch {
   void heard(std::int64_t now_ns) { heard_ns_ = now_ns; }
   void told(std::int64_t now_ns, const TelemetryReading& reading);
   void seen(std::int64_t now_ns, const std::array<double, 3>& pose);
-  void begin(std::int64_t now_ns);
+  void begin(std::int64_t now_ns) override;
 
   // Empty, or which limit and by how much.
-  std::string broken(std::int64_t now_ns) const;
+  std::string broken(std::int64_t now_ns) const override;
   // Heard and seen of late, and at rest: a run may begin. Empty, or what is missing.
-  std::string not_ready(std::int64_t now_ns) const;
+  std::string not_ready(std::int64_t now_ns) const override;
 
   const std::optional<std::array<double, 3>>& pose() const { return pose_; }
   double speed_m_s() const;

@@ -5,7 +5,7 @@
 
 namespace omnihil {
 
-RunDriver::RunDriver(const AcquirePlan& plan, const PlanRun& run, LimitWatch& watch, std::int64_t now_ns)
+RunDriver::RunDriver(const AcquirePlan& plan, const PlanRun& run, DriveWatch& watch, std::int64_t now_ns)
     : plan_(plan),
       run_(run),
       watch_(watch),

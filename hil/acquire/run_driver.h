@@ -34,7 +34,7 @@ class RunDriver {
   static constexpr double kPatience_s = 10.0;
   static constexpr int kStopPackets = 5;  // all lost at 10 % of loss: once in 1e5
 
-  RunDriver(const AcquirePlan& plan, const PlanRun& run, LimitWatch& watch, std::int64_t now_ns);
+  RunDriver(const AcquirePlan& plan, const PlanRun& run, DriveWatch& watch, std::int64_t now_ns);
 
   void look(std::int64_t now_ns);
   void stop(std::string why);
@@ -49,7 +49,7 @@ class RunDriver {
  private:
   const AcquirePlan& plan_;
   const PlanRun& run_;
-  LimitWatch& watch_;
+  DriveWatch& watch_;
   std::int64_t period_ns_, begun_ns_, next_ns_, start_ns_ = 0, stop_ns_ = 0;
   RunState state_ = RunState::kWaiting;
   int stops_ = 0, left_out_ = 0;

@@ -141,6 +141,7 @@ std::vector<Row> merged(std::vector<Row> rows) {
 
 std::vector<std::string> drive_columns(PlanDrive drive) {
   if (drive == PlanDrive::kBodyVelocity) return {"cmd_vx", "cmd_vy", "cmd_w"};
+  if (of_axis(drive)) return {std::string(plan_drive_word(drive))};
   const std::string stem = drive == PlanDrive::kWheelSpeed ? "wheel_cmd_" : "duty_";
   return {stem + "1", stem + "2", stem + "3", stem + "4"};
 }

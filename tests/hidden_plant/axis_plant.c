@@ -381,6 +381,74 @@ int axis_run(const AxisParams *p, const double *asked, int n, double *raw, doubl
   return isfinite(y[WR] + y[I]) ? 0 : 1;
 }
 
+// The same axis row by row, for a bench that lives: it is asked as commands come. No delays of record (late_command_s,
+// late_sample_s, jitter), no notch.
+typedef struct {
+  AxisParams p;
+  Axis a;
+  double y[STATES], last_q;
+  long row;
+} LiveAxis;
+
+enum { LIVE_OFF, LIVE_DUTY, LIVE_VOLTAGE, LIVE_CURRENT };
+
+void *axis_open(const AxisParams *p) {
+  LiveAxis *l = calloc(1, sizeof *l);
+  l->p = *p;
+  l->a = (Axis){.p = &l->p, .stuck = 1, .noise = {(unsigned long long)p->seed * 7919 + 13}};
+  l->a.contact_next_s = p->contact_s;
+  hold_for_step(&l->a, 0);
+  return l;
+}
+
+void axis_close(void *live) { free(live); }
+
+// Duty of a step. Off: the winding sees its own back-EMF. Current: a loop of 1 kHz on the true winding, as fast as drives have.
+static double live_duty(LiveAxis *l, int how, double asked) {
+  Axis *a = &l->a;
+  const double emf = a->flux * l->y[WR], bus = bus_of(a, l->y);
+  switch (how) {
+    case LIVE_DUTY:
+      return firmware_duty(&l->p, asked);
+    case LIVE_VOLTAGE:
+      return clamp(asked / bus, 1);
+    case LIVE_CURRENT:
+      return clamp(
+          (l->p.resistance_ohm * asked + emf + 2 * M_PI * 1000 * l->p.inductance_H * (asked - l->y[I])) / bus,
+          1);
+    default:
+      l->y[I] = 0;
+      return clamp(emf / bus, 1);
+  }
+}
+
+// One row of sample_s: `out` is RAW_COLUMNS at its beginning.
+int axis_row(void *live, int how, double asked, double *out) {
+  LiveAxis *l = live;
+  Axis *a = &l->a;
+  double *y = l->y, before[STATES];
+  const double h = l->p.step_s;
+  const int substeps = (int)lround(l->p.sample_s / h);
+  fill_row(a, y, y, 0, out, &l->last_q, l->row > 0 ? l->p.sample_s : 0);
+  out[RAW_COMMAND] = asked;
+  for (int j = 0; j < substeps; j++) {
+    hold_for_step(a, l->row * l->p.sample_s + j * h);
+    a->duty = live_duty(l, how, asked);
+    memcpy(before, y, sizeof before);
+    if (l->p.bristles > 0) {
+      a->stuck = 0;
+      bend_bristles(a, y, 0.5 * h);
+      runge_kutta(a, y, h);
+      bend_bristles(a, y, 0.5 * h);
+    } else {
+      step_with_level(a, y, h);
+    }
+    slow_states(a, y, h);
+  }
+  l->row++;
+  return !isfinite(y[WR] + y[I]);
+}
+
 static const char *const kNames[] = {
 #define X(name, value) #name,
     AXIS_PARAMS(X)

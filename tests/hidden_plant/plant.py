@@ -132,6 +132,34 @@ def run_robot(params, asked, change=None):
     return Columns.split(out, BOT)
 
 
+class LiveAxis:
+    """The hidden axis row by row: `row(how, asked)` goes on by sample_s; `raw` is the table's row at its beginning."""
+
+    OFF, DUTY, VOLTAGE, CURRENT = range(4)
+
+    def __init__(self, params):
+        _lib.axis_open.restype = ctypes.c_void_p
+        self._packed = AXIS.pack(params)
+        self._axis = ctypes.c_void_p(_lib.axis_open(self._packed))
+        self.raw = _doubles(len(RAW))
+        self._out, self._seen = _pointer(self.raw), _doubles(len(SEEN))
+        self._seen_out = _pointer(self._seen)
+        self.rows = 0
+
+    def row(self, how, asked):
+        if _lib.axis_row(self._axis, how, ctypes.c_double(asked), self._out):
+            raise ArithmeticError("the hidden axis stopped being finite")
+        self.rows += 1
+
+    def seen(self):
+        """What the sensors make of the newest row."""
+        _lib.axis_sense(self._packed, self._out, 1, ctypes.c_double(self.rows), self._seen_out)
+        return dict(zip(SEEN, self._seen))
+
+    def close(self):
+        _lib.axis_close(self._axis)
+
+
 class LiveRobot:
     """The hidden robot row by row: `row(heard)` goes on by sample_s and gives the columns of BOT at its beginning."""
 

@@ -53,6 +53,38 @@ class AxisPlantTest(unittest.TestCase):
         self.assertAlmostEqual(columns["speed"][-1], (k * u / r - c) / (k * k / r + b), delta=1e-6)
         self.assertAlmostEqual(columns["current"][-1], (b * columns["speed"][-1] + c) / k, delta=1e-6)
 
+    def test_a_live_axis_is_the_recorded_one(self):
+        params = dict(BARE, viscous_Nms=2e-5, dry_Nm=3e-3, bristles=0)
+        asked = [0.5 if (k // 70) % 3 else -0.2 for k in range(400)]
+        columns, _ = speeds(params, asked)
+        live = plant.LiveAxis(params)
+        for k, duty in enumerate(asked):
+            live.row(plant.LiveAxis.DUTY, duty)
+            for name in ("speed", "angle", "current", "bus"):
+                self.assertAlmostEqual(live.raw[plant.RAW.index(name)], columns[name][k], delta=1e-11, msg=(name, k))
+        live.close()
+
+    def test_a_live_axis_takes_a_voltage_a_current_or_nothing(self):
+        b, c, k, r, j = 2e-5, 3e-3, BARE["flux_Vs"], BARE["resistance_ohm"], 5e-5
+        params = dict(BARE, viscous_Nms=b, dry_Nm=c, sample_s=0.25e-3)
+        speed, current = plant.RAW.index("speed"), plant.RAW.index("current")
+        live = plant.LiveAxis(params)
+        for _ in range(8000):
+            live.row(plant.LiveAxis.VOLTAGE, 10.0)
+        self.assertAlmostEqual(live.raw[speed], (k * 10.0 / r - c) / (k * k / r + b), delta=1e-6)
+        live = plant.LiveAxis(params)
+        for _ in range(801):
+            live.row(plant.LiveAxis.CURRENT, 1.0)
+        # J w' = k i - c - b w from rest: w = (k i - c) / b (1 - exp(-b t / J))
+        self.assertAlmostEqual(live.raw[current], 1.0, delta=1e-3)
+        self.assertAlmostEqual(live.raw[speed], (k - c) / b * -math.expm1(-b * 0.2 / j), delta=0.2)
+        before = live.raw[speed]
+        for _ in range(401):
+            live.row(plant.LiveAxis.OFF, 0.0)
+        self.assertAlmostEqual(live.raw[current], 0.0, delta=1e-3)
+        # c and b alone brake it: w = (w0 + c / b) exp(-b t / J) - c / b
+        self.assertAlmostEqual(live.raw[speed], (before + c / b) * math.exp(-b * 0.1 / j) - c / b, delta=0.2)
+
     def test_step_answer_has_the_two_poles_of_winding_and_rotor(self):
         # L J s^2 + R J s + k^2 = 0; the slow pole is left alone after a few milliseconds.
         j, r, ell, k = 5e-5, BARE["resistance_ohm"], BARE["inductance_H"], BARE["flux_Vs"]

@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,13 +19,13 @@
 #include "hil/loop/session_checks.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/text/program_files.h"
-#include "hil/text/sha256.h"
 #include "hil/text/text_file.h"
 #include "sim/model/rolling_model.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/format_argument.h"
 #include "tools/guarded.h"
+#include "tools/options/axis_acquire.h"
 #include "tools/options/open_end.h"
 #include "tools/options/vision_options.h"
 #include "tools/program_commit.h"
@@ -37,16 +36,11 @@ namespace {
 
 struct AcquireWords {
   std::string plan, device = "./dongle", radio, format_file, model = "omni_default", team = "blue", out;
+  AxisAcquireWords axis;
   VisionWords vision;
   int robot = 0, runs = 0;
   bool reference = false, dry_run = false, resume = false, confirm = false;
 };
-
-std::string hash_of(std::string_view text) {
-  Sha256 hash;
-  hash.add(text);
-  return hash.hex();
-}
 
 std::string all_of(const std::vector<ModelProblem>& problems) {
   std::string text;
@@ -69,13 +63,6 @@ std::vector<AcquiredRun> runs_there(const AcquirePlan& plan, const AcquireFolder
     if (folder.has(run.name)) runs.push_back({&run, rows_from_csv(folder.csv(run.name), run.name + ".csv")});
   }
   return runs;
-}
-
-bool confirmed(const PlanRun& run) {
-  fmt::print("{} ({:.1f} s): put the robot in its place and press Enter ", run.name, run.duration_s);
-  std::fflush(stdout);
-  std::string line;
-  return static_cast<bool>(std::getline(std::cin, line));
 }
 
 int finish(const AcquirePlan& plan, AcquireFolder& folder, const RadioFormat& format,
@@ -119,7 +106,7 @@ int drive(const AcquireWords& words, const AcquirePlan& plan, const RadioFormat&
       fmt::print("{} runs driven; --resume goes on with {}\n", driven, run.name);
       return kExitOk;
     }
-    if (words.confirm && !confirmed(run)) return kExitInterrupted;
+    if (words.confirm && !confirm_run(run, "put the robot in its place")) return kExitInterrupted;
     const std::string started = utc_now();
     const RunEnd end = acquirer.run(run, [] { return StopSignals::requested(); });
     if (!end.problem.empty()) return stopped(run, end, folder);
@@ -136,6 +123,16 @@ int drive(const AcquireWords& words, const AcquirePlan& plan, const RadioFormat&
   return finish(plan, folder, format, about);
 }
 
+int run_axis_plan(const AcquireWords& words, const AcquirePlan& plan, const std::string& text) {
+  AxisAcquireWords axis = words.axis;
+  axis.device = words.device;
+  axis.model = words.model;
+  axis.out = words.out;
+  axis.runs = words.runs;
+  axis.dry_run = words.dry_run, axis.resume = words.resume, axis.confirm = words.confirm;
+  return acquire_axis(axis, plan, text);
+}
+
 int run(const AcquireWords& words) {
   std::string error;
   const std::string text = read_text_file(words.plan, error);
@@ -143,6 +140,7 @@ int run(const AcquireWords& words) {
   const PlanReading reading = read_acquire_plan(text, words.plan);
   if (!reading.plan) throw std::invalid_argument(all_of(reading.problems));
   const AcquirePlan& plan = *reading.plan;
+  if (of_axis(plan.drive)) return run_axis_plan(words, plan, text);
   const StoredModel stored = load_robot_model(words.model, {data_folder("models")});
   if (!stored.model) throw std::invalid_argument(all_of(stored.problems));
   const RadioFormat* format = format_or_complain(
@@ -167,8 +165,8 @@ int run(const AcquireWords& words) {
                {.device = words.device,
                 .team = words.team,
                 .commit = program_commit(),
-                .plan_sha256 = hash_of(text),
-                .model_sha256 = hash_of(model),
+                .plan_sha256 = text_hash(text),
+                .model_sha256 = text_hash(model),
                 .format = format,
                 .robot = words.robot});
 }
@@ -178,8 +176,9 @@ int run(const AcquireWords& words) {
 void add_verb_acquire(Verb& program, VerbResult& result) {
   auto words = std::make_shared<AcquireWords>();
   AcquireWords& w = *words;
-  Verb verb = program.add_subcommand(
-      "acquire", "drives a robot by its own radio as a plan says; what came of it is a measurement");
+  Verb verb = program.add_subcommand("acquire",
+                                     "drives a robot by its own radio, or one axis by its motor bus, as a "
+                                     "plan says; what came of it is a measurement");
   verb.add_option("PLAN", w.plan, "what `experiment --write` wrote (docs/acquire.md)").required();
   verb.add_option("--device", w.device, "the dongle: a serial device, or a wire by URL")
       .capture_default_str();
@@ -192,6 +191,19 @@ void add_verb_acquire(Verb& program, VerbResult& result) {
   verb.add_flag("--reference-firmware", w.reference,
                 "the robot runs the bench's own firmware: its [controller] is written into the model");
   add_vision_options(verb, w.vision);
+  verb.add_option("--bus", w.axis.bus,
+                  "of one axis: its motor bus (odrive, moteus), or shim: a board with remote_plant.h");
+  verb.add_option("--id", w.axis.id,
+                  "of one axis: its node on the bus, its motor on the board (default: the first)")
+      .range(0, 126);
+  verb.add_option("--shaft", w.axis.shaft, "of one axis: what a turn on the bus is a turn of")
+      .one_of({"rotor", "output"})
+      .capture_default_str();
+  verb.add_option("--q-values", w.axis.q_values,
+                  "of one axis: currents and voltages on the bus are amplitudes of a phase, or as data "
+                  "sheets have them")
+      .one_of({"amplitude", "dc"})
+      .capture_default_str();
   verb.add_option("--out", w.out, "new folder of the measurement; OUT.part while it grows");
   verb.add_flag("--dry-run", w.dry_run, "say what would happen and how much floor it takes; nothing is sent");
   verb.add_option("--runs", w.runs, "this many runs, then end; --resume goes on").not_negative();

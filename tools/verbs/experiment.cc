@@ -40,6 +40,8 @@ struct Arguments {
   CommandTo robot;
   std::string team = "blue";
   double packets_Hz = 100.0;
+  std::string axis_drive;  // of --usual; empty: a robot
+  double level = 0.0;
 
   Arguments() { options.jobs = 2; }
 };
@@ -144,6 +146,14 @@ void write_acquire_plan(const std::string& path, const AcquirePlan& plan) {
 
 int run_usual(const Arguments& a) {
   if (a.write.empty()) throw std::invalid_argument("--usual: needs --write PLAN");
+  if (!a.axis_drive.empty() && !(a.level > 0.0))
+    throw std::invalid_argument("--drive: needs --level, the most that is asked for (V, N m, duty)");
+  for (const PlanDrive drive : {PlanDrive::kMotorVoltage, PlanDrive::kMotorTorque, PlanDrive::kDuty}) {
+    if (a.axis_drive != plan_drive_word(drive)) continue;
+    write_acquire_plan(a.write,
+                       usual_axis_plan(drive, a.level, a.options.limits, a.packets_Hz, a.options.seed));
+    return kExitOk;
+  }
   write_acquire_plan(a.write, usual_plan(a.body, a.packets_Hz));
   return kExitOk;
 }
@@ -204,9 +214,13 @@ int run(Arguments a) {
   if (plan.run && !a.out.empty()) write_plan(a, plan, format, text);
   std::fputs(text.c_str(), plan.run ? stdout : stderr);
   if (plan.run && !a.write.empty()) {
-    const auto acquire = acquire_plan_of(plan, a.options.limits, a.packets_Hz, a.body);
-    if (!acquire)
-      throw std::invalid_argument("--write: a plan for `acquire` is of a robot; --out has this run");
+    const auto acquire =
+        acquire_plan_of(plan, a.options.limits, a.packets_Hz, a.body, drive_of(*reading.nominal).gear_ratio);
+    if (!acquire || reading.dataset->linear)
+      throw std::invalid_argument(
+          "--write: a plan for `acquire` is of a robot, or of an axis by duty, voltage or torque; --out has "
+          "this "
+          "run");
     write_acquire_plan(a.write, *acquire);
   }
   if (StopSignals::requested()) return kExitInterrupted;
@@ -244,10 +258,14 @@ void add_verb_experiment(Verb& program, VerbResult& result) {
   verb.add_option("--packets", a->packets_Hz, "radio packets per second")
       .range(1.0, 1000.0)
       .capture_default_str();
-  verb.add_option("--write", a->write, "new plan file for `omnihil acquire` (robots)");
+  verb.add_option("--write", a->write, "new plan file for `omnihil acquire`");
   verb.add_flag("--usual", a->usual,
                 "no question: random drives by commanded velocity for a first measurement; needs --write");
   verb.add_option("--velocity", a->body.speed_m_s, "of --usual, m/s").positive().capture_default_str();
+  verb.add_option("--drive", a->axis_drive,
+                  "of --usual: one axis, asked for this; --max-speed is then at its output")
+      .one_of({"motor_voltage", "motor_torque", "duty"});
+  verb.add_option("--level", a->level, "of --drive: the most that is asked, V, N m or duty").positive();
   verb.add_option("--turn", a->body.turn_rad_s, "of --usual, rad/s").positive().capture_default_str();
   verb.add_option("--seed", a->options.seed, "of the random excitations").capture_default_str();
   verb.add_option("--jobs", a->options.jobs, "threads; the result does not depend on it")

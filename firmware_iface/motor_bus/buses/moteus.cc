@@ -19,67 +19,24 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "firmware_iface/motor_bus/buses/moteus_registers.h"
 #include "firmware_iface/motor_bus/motor_bus.h"
-#include "firmware_iface/motor_bus/multiplex.h"
 
 namespace omnihil {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using namespace moteus;
+
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kDefaultAccel_turns_s2 = 50.0;
 constexpr double kUnderVoltage_V = 4.0;
 constexpr double kTemperature_degC = 25.0;
 constexpr std::uint32_t kUnknownRegister = 1, kNotWritable = 2;
 
-enum Mode : std::int64_t {
-  kStopped = 0,
-  kFault = 1,
-  kVoltageDq = 8,
-  kCurrent = 9,
-  kPosition = 10,
-  kTimeout = 11,
-  kZeroVelocity = 12,
-  kBrake = 15,
-};
 constexpr int kFaultUnderVoltage = 40;
-
-constexpr RegisterScale kPositionScale{0.01, 1e-4, 1e-5}, kVelocityScale{0.1, 0.00025, 1e-5},
-    kTorqueScale{0.5, 0.01, 0.001}, kCurrentScale{1.0, 0.1, 0.001}, kVoltageScale{0.5, 0.1, 0.001},
-    kTemperatureScale{1.0, 0.1, 0.001}, kTimeScale{0.01, 0.001, 1e-6}, kAccelScale{0.05, 0.001, 1e-5},
-    kPowerScale{10.0, 0.05, 1e-4}, kRatioScale{1.0 / 127.0, 1.0 / 32767.0, 1.0 / 2147483647.0};
-
-// What the registers of one command hold; a written mode begins with these.
-struct Command {
-  Mode mode = kStopped;
-  double position = 0, velocity = 0, torque_ff = 0, kp_scale = 1, kd_scale = 1, max_torque = kNaN;
-  double timeout_s = 0, velocity_limit = kNaN, accel_limit = kNaN;
-  double q_voltage = 0, q_current = 0;
-};
-
-// A command register: where its value is kept, and how it is scaled.
-struct CommandRegister {
-  std::uint32_t reg;
-  double Command::*value;
-  RegisterScale scale;
-};
-constexpr CommandRegister kCommandRegisters[] = {
-    {0x01B, &Command::q_voltage, kVoltageScale}, {0x01C, &Command::q_current, kCurrentScale},
-    {0x020, &Command::position, kPositionScale}, {0x021, &Command::velocity, kVelocityScale},
-    {0x022, &Command::torque_ff, kTorqueScale},  {0x023, &Command::kp_scale, kRatioScale},
-    {0x024, &Command::kd_scale, kRatioScale},    {0x025, &Command::max_torque, kTorqueScale},
-    {0x027, &Command::timeout_s, kTimeScale},    {0x028, &Command::velocity_limit, kVelocityScale},
-    {0x029, &Command::accel_limit, kAccelScale},
-};
-
-const CommandRegister* find_command_register(std::uint32_t reg) {
-  for (const CommandRegister& each : kCommandRegisters) {
-    if (each.reg == reg) return &each;
-  }
-  return nullptr;
-}
 
 // The model knows it only as "not asked for": registers of functions that are not there, by their neutral
 // value.
@@ -411,6 +368,88 @@ std::unique_ptr<MotorBus> make(const MotorBusContext& context) {
   return std::make_unique<MoteusBus>(context);
 }
 
+// One device from the host's side: by Q voltage, or by torque as the feed-forward of position mode without its gains, which
+// the device lets go of by itself after its time-out. One frame asks and reads.
+class MoteusHost final : public AxisHost {
+ public:
+  explicit MoteusHost(int id) : id_(static_cast<std::uint32_t>(id)) {}
+  bool can(AxisDemand) const override { return true; }
+  bool answers_each() const override { return true; }
+
+  void ask(AxisDemand demand, double value, std::vector<BusFrame>& out) override {
+    const bool voltage = demand == AxisDemand::kVoltage;
+    say(voltage ? kVoltageDq : kPosition, out, [&](MultiplexReply& write) {
+      const auto put = [&](std::uint32_t reg, double v) {
+        write.add(reg, MultiplexType::kFloat, v, kRatioScale);  // floats have no scale
+      };
+      if (voltage) return put(kVoltageRegister, value);
+      std::uint32_t reg = kPositionRegister;
+      for (const double v : {kNaN, 0.0, value, 0.0, 0.0}) put(reg++, v);  // no gains: kp and kd scale
+    });
+    asked_ = true;
+  }
+
+  void stop(std::vector<BusFrame>& out) override {
+    asked_ = false;
+    say(kStopped, out, [](MultiplexReply&) {});
+  }
+
+  bool hear(const BusFrame& f) override {
+    if (f.id >> 8 != id_ || f.remote) return false;
+    accesses_.clear();
+    if (read_multiplex_reply(f.bytes(), accesses_) != MultiplexStatus::kOk) {
+      state_.trouble = "the moteus refuses what it is asked";
+      return false;
+    }
+    std::int64_t mode = kStopped, fault = 0;
+    double* const measured[] = {&state_.turns, &state_.turns_s, &state_.torque_Nm, &state_.q_current_A};
+    for (const RegisterAccess& a : accesses_) {
+      const std::uint32_t at = a.reg - kMeasuredRegisters;
+      if (a.reg == kModeRegister) {
+        mode = a.value.whole();
+      } else if (at < kMeasuredCount) {
+        *measured[at] = a.value.scaled(kRatioScale);
+      } else if (a.reg == kBusRegister) {
+        state_.bus_V = a.value.scaled(kRatioScale);
+      } else if (a.reg == kFaultRegister) {
+        fault = a.value.whole();
+      }
+    }
+    state_.trouble.clear();
+    if (mode == kFault || fault != 0) {
+      state_.trouble = "the moteus reports fault " + std::to_string(fault);
+    } else if (asked_ && mode == kTimeout) {
+      state_.trouble = "the moteus had no command within its time-out";
+    }
+    return true;
+  }
+
+ private:
+  template <class Write>
+  void say(Mode mode, std::vector<BusFrame>& out, const Write& write) const {
+    BusFrame f;
+    f.id = 0x8000U | id_;  // from 0, with an answer
+    f.extended = f.fd = f.bitrate_switch = true;
+    f.pad = kMultiplexNop;
+    MultiplexReply writes(std::span(f.data).first(64), MultiplexKind::kWrite);
+    writes.add_whole(kModeRegister, MultiplexType::kInt8, mode);
+    write(writes);
+    // read: the mode as int8, four measured values and the bus as floats, the fault as int8 (multiplex.h)
+    const std::uint8_t reads[] = {0x11, kModeRegister, 0x1C, kMeasuredCount, kMeasuredRegisters,
+                                  0x1D, kBusRegister,  0x11, kFaultRegister};
+    std::copy(std::begin(reads), std::end(reads),
+              f.data.begin() + static_cast<std::ptrdiff_t>(writes.size()));
+    f.size = static_cast<std::uint8_t>(writes.size() + sizeof reads);
+    out.push_back(f);
+  }
+
+  std::uint32_t id_;
+  bool asked_ = false;
+  std::vector<RegisterAccess> accesses_;
+};
+
+std::unique_ptr<AxisHost> host(int id) { return std::make_unique<MoteusHost>(id); }
+
 constexpr MotorBusKind kKind{
     .id = "moteus",
     .title = "mjbots moteus, registers over CAN FD",
@@ -420,6 +459,7 @@ constexpr MotorBusKind kKind{
     .default_first_id = 1,
     .max_first_id = 0x7E - kWheels,  // 127 is for all
     .default_watchdog_s = 0.1,
+    .host = host,
     .make = make,
 };
 

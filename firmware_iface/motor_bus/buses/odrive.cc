@@ -8,6 +8,7 @@
 // Like the device: idle after power-up, setpoints have no effect unless in closed loop; no watchdog unless it
 // is configured (setup.watchdog_s); an estop or an expired watchdog disarms until Clear_Errors. Configured
 // here: velocity control, pass-through, no velocity limit, since CANSimple cannot store a configuration.
+// The host's end (axis_host.h) drives a node by torque.
 // Cannot: calibration and other axis states, input filters and ramps, trajectories, anticogging, parameter
 // access (RxSdo), overspeed errors, CAN FD, 29-bit ids. Iq is the torque-equivalent DC current; temperatures
 // read 25 C.
@@ -302,6 +303,111 @@ std::unique_ptr<MotorBus> make(const MotorBusContext& context) {
   return std::make_unique<OdriveBus>(context);
 }
 
+// One node from the host's side, by torque. A sample is whole when estimates, current and bus have been answered since it was
+// asked for; estimates that the node sends of itself in between are passed over.
+class OdriveHost final : public AxisHost {
+ public:
+  explicit OdriveHost(int node) : node_(static_cast<std::uint32_t>(node)) {}
+  bool can(AxisDemand demand) const override { return demand == AxisDemand::kTorque; }
+  bool answers_each() const override { return false; }
+
+  void ask(AxisDemand, double value, std::vector<BusFrame>& out) override {
+    if (!armed_) {
+      say_two(kSetControllerMode, kTorqueControl, kPassThrough, out);
+      say_one(kSetAxisState, kClosedLoop, out);
+      heartbeats_ = 0;
+    }
+    armed_ = true;
+    BusFrame f = frame(kSetInputTorque, 4);
+    put_f32(f, 0, value);
+    out.push_back(f);
+    query(out);
+  }
+
+  void stop(std::vector<BusFrame>& out) override {
+    BusFrame f = frame(kSetInputTorque, 4);
+    put_f32(f, 0, 0.0);
+    out.push_back(f);
+    say_one(kSetAxisState, kIdle, out);
+    armed_ = false;
+    query(out);
+  }
+
+  bool hear(const BusFrame& f) override {
+    if (f.fd || f.extended || f.remote || f.id >> 5 != node_ || f.size < 8) return false;
+    switch (f.id & 0x1F) {
+      case kHeartbeat:
+        heartbeat(f);
+        return false;
+      case kGetEncoderEstimates:
+        if ((wanted_ & kEstimates) == 0) return false;
+        state_.turns = get_f32(f, 0);
+        state_.turns_s = get_f32(f, 4);
+        return came(kEstimates);
+      case kGetIq:
+        state_.q_current_A = get_f32(f, 4);
+        return came(kCurrent);
+      case kGetBusVoltageCurrent:
+        state_.bus_V = get_f32(f, 0);
+        return came(kBus);
+      default:
+        return false;
+    }
+  }
+
+ private:
+  enum : unsigned { kEstimates = 1, kCurrent = 2, kBus = 4 };
+
+  BusFrame frame(std::uint32_t command, std::uint8_t size) const {
+    return can_frame(node_ << 5 | command, size);
+  }
+  void say_one(std::uint32_t command, std::uint32_t value, std::vector<BusFrame>& out) const {
+    BusFrame f = frame(command, 4);
+    put_u32(f, 0, value);
+    out.push_back(f);
+  }
+  void say_two(std::uint32_t command, std::uint32_t first, std::uint32_t second,
+               std::vector<BusFrame>& out) const {
+    BusFrame f = frame(command, 8);
+    put_u32(f, 0, first);
+    put_u32(f, 4, second);
+    out.push_back(f);
+  }
+  void query(std::vector<BusFrame>& out) {
+    for (const std::uint32_t command : {kGetEncoderEstimates, kGetIq, kGetBusVoltageCurrent}) {
+      BusFrame f = frame(command, 0);
+      f.remote = true;
+      out.push_back(f);
+    }
+    wanted_ = kEstimates | kCurrent | kBus;
+  }
+  bool came(unsigned which) {
+    const bool last = wanted_ == which;
+    wanted_ &= ~which;
+    return last;
+  }
+  // The first heartbeat after arming may be from before it.
+  void heartbeat(const BusFrame& f) {
+    const std::uint32_t errors = get_u32(f, 0);
+    heartbeats_ = std::min(heartbeats_ + 1, 2);
+    state_.trouble.clear();
+    if (errors != 0) {
+      constexpr char kHex[] = "0123456789ABCDEF";
+      state_.trouble = "the ODrive reports error 0x";
+      for (int at = 28; at >= 0; at -= 4) state_.trouble += kHex[errors >> at & 0xFU];
+    } else if (armed_ && heartbeats_ > 1 && f.data[4] != kClosedLoop) {
+      state_.trouble = "the ODrive does not go into closed loop control";
+    }
+  }
+
+  std::uint32_t node_;
+  bool armed_ = false;
+  unsigned wanted_ = 0;
+  int heartbeats_ = 0;
+};
+
+std::unique_ptr<AxisHost> host(int id) { return std::make_unique<OdriveHost>(id); }
+
 constexpr MotorBusKind kKind{
     .id = "odrive",
     .title = "ODrive CANSimple, one node per motor",
@@ -311,6 +417,7 @@ constexpr MotorBusKind kKind{
     .default_first_id = 0,
     .max_first_id = 0x3E - kWheels,  // 63 is "not addressed"
     .default_watchdog_s = 0.0,
+    .host = host,
     .make = make,
 };
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "hil/wire/adapter_wire.h"
+#include "hil/wire/stick_wire.h"
 #include "hil/wire/wire_kind.h"
 
 namespace omnihil {
@@ -33,6 +34,40 @@ std::string_view take_word(std::string_view& text) {
   text.remove_prefix(word.size());
   return word;
 }
+
+// "8001 01000a bF": identifier, data and flags, the same in both directions.
+bool read_frame(std::string_view text, BusFrame& f) {
+  std::size_t size = 0;
+  if (!read_hex_number(take_word(text), f.id) || f.id > 0x1FFF'FFFFU) return false;
+  if (!read_hex(take_word(text), std::span(f.data).first(64), size)) return false;
+  f.size = static_cast<std::uint8_t>(size);
+  f.extended = f.id > kMaxStandardId;
+  f.fd = f.bitrate_switch = true;
+  for (const char flag : text) {
+    if (flag == 'b' || flag == 'B') f.bitrate_switch = flag == 'B';
+    if (flag == 'f' || flag == 'F') f.fd = flag == 'F';
+  }
+  if (!f.fd) f.bitrate_switch = false;
+  return f.fd || f.size <= 8;
+}
+
+class FdcanusbStick final : public CanStick {
+ public:
+  std::string open() const override { return "\ncan on\n"; }
+  std::string close() const override { return {}; }
+  bool say(const BusFrame& f, std::string& line) const override {
+    if (f.remote) return false;
+    line += fmt::format("can send {:x} ", f.id);
+    for (const std::uint8_t byte : f.bytes()) line += fmt::format("{:02x}", byte);
+    const int padded = can_fd_length(can_fd_code(f.size));
+    for (int i = f.size; f.fd && i < padded; ++i) line += fmt::format("{:02x}", f.pad);
+    line += fmt::format(" {}{}\n", f.bitrate_switch ? 'B' : 'b', f.fd ? 'F' : 'f');
+    return true;
+  }
+  bool hear(std::string_view line, BusFrame& frame) const override {
+    return take_word(line) == "rcv" && read_frame(line, frame);
+  }
+};
 
 class FdcanusbAdapter final : public CanAdapter {
  public:
@@ -98,21 +133,6 @@ class FdcanusbAdapter final : public CanAdapter {
     say(why, answer);
   }
 
-  static bool read_frame(std::string_view text, BusFrame& f) {
-    std::size_t size = 0;
-    if (!read_hex_number(take_word(text), f.id) || f.id > 0x1FFF'FFFFU) return false;
-    if (!read_hex(take_word(text), std::span(f.data).first(64), size)) return false;
-    f.size = static_cast<std::uint8_t>(size);
-    f.extended = f.id > kMaxStandardId;
-    f.fd = f.bitrate_switch = true;
-    for (const char flag : text) {
-      if (flag == 'b' || flag == 'B') f.bitrate_switch = flag == 'B';
-      if (flag == 'f' || flag == 'F') f.fd = flag == 'F';
-    }
-    if (!f.fd) f.bitrate_switch = false;
-    return f.fd || f.size <= 8;
-  }
-
   std::string line_;
   bool checksums_ = false;
 };
@@ -122,13 +142,17 @@ class FdcanusbAdapter final : public CanAdapter {
 std::unique_ptr<CanAdapter> make_fdcanusb_adapter() { return std::make_unique<FdcanusbAdapter>(); }
 
 const WireKind& wire_fdcanusb() {
-  static constexpr WireKind kKind{.scheme = "fdcanusb",
-                                  .says = "a pseudo-terminal that is an mjbots fdcanusb to whoever opens it",
-                                  .address = "name",
-                                  .example = "fdcanusb:./can",
-                                  .open_frames = [](const WireUrl& url, WireProblem& problem) {
-                                    return open_adapter_wire(url, make_fdcanusb_adapter(), problem);
-                                  }};
+  static constexpr WireParameter kParameters[] = {kStickParameter};
+  static constexpr WireKind kKind{
+      .scheme = "fdcanusb",
+      .says = "a pseudo-terminal that is an mjbots fdcanusb to whoever opens it",
+      .address = "name",
+      .example = "fdcanusb:./can",
+      .parameters = kParameters,
+      .open_frames = [](const WireUrl& url, WireProblem& problem) {
+        return url.number("stick") == 1 ? open_stick_wire(url, std::make_unique<FdcanusbStick>(), problem)
+                                        : open_adapter_wire(url, make_fdcanusb_adapter(), problem);
+      }};
   return kKind;
 }
 
