@@ -31,7 +31,8 @@ class PlanReader {
       : document_(document), keys_(document, problems) {}
 
   DatasetPlan read() {
-    static constexpr std::string_view kTop[] = {"format", "title", "rig", "model", "channels", "runs"};
+    static constexpr std::string_view kTop[] = {"format",   "title",    "rig", "model",
+                                                "firmware", "channels", "runs"};
     const toml::table& top = document_.table;
     keys_.only(top, "", kTop);
     read_head(top);
@@ -70,6 +71,8 @@ class PlanReader {
     } else {
       keys_.missing(top, "", "model", "model = \"model.toml\", the nominal model");
     }
+    plan_.firmware = keys_.text(top, "", "firmware").value_or("");
+    if (const toml::node* firmware = top.get("firmware")) plan_.firmware_at = place_of(*firmware);
   }
 
   void read_channel(const toml::key& key, const toml::node& node) {

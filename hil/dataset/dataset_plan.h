@@ -37,6 +37,8 @@ struct DatasetPlan {
   bool rig_known = false;
   std::string model;  // as the file names it
   TextPlace model_at;
+  std::string firmware;  // likewise; empty: none
+  TextPlace firmware_at;
   TextPlace channels_at;
   std::vector<RunPlan> runs;
 };

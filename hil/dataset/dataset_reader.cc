@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "hil/dataset/dataset_firmware.h"
 #include "hil/dataset/dataset_runs.h"
+#include "hil/loop/session_checks.h"
 #include "hil/text/text_file.h"
 #include "hil/text/toml_keys.h"
 #include "identify/predict/torque_scale.h"
@@ -21,7 +23,8 @@ namespace fs = std::filesystem;
 
 class DatasetReader {
  public:
-  DatasetReader(const std::string& path, const std::string& model) : asked_(path), other_model_(model) {
+  DatasetReader(const std::string& path, const std::string& model, const std::string& firmware)
+      : asked_(path), other_model_(model), other_firmware_(firmware) {
     std::error_code code;
     toml_ =
         fs::is_directory(path, code) ? (fs::path(path) / "dataset.toml").lexically_normal().string() : path;
@@ -48,6 +51,7 @@ class DatasetReader {
     add_runs(plan_, folder_, toml_, dataset_, out_.problems);
     if (out_.problems.empty()) {
       check_signals();
+      read_firmware();
       check_model();
     }
     if (!dataset_.has(Split::kValidation)) {
@@ -200,8 +204,41 @@ class DatasetReader {
     }
   }
 
-  // Duties of radio commands are made by the model's [controller].
+  bool by_radio() const {
+    return dataset_.rig == Rig::kRobot &&
+           std::any_of(dataset_.runs.begin(), dataset_.runs.end(),
+                       [](const Run& run) { return run.signal("duty_1") == nullptr; });
+  }
+
+  void read_firmware() {
+    if (plan_.firmware.empty() && other_firmware_.empty()) return;
+    const std::string file = other_firmware_.empty()
+                                 ? (fs::path(folder_) / plan_.firmware).lexically_normal().string()
+                                 : other_firmware_;
+    const std::string shown = fmt::format("\"{}\"", file);
+    if (!by_radio()) {
+      problem(plan_.firmware_at, "firmware", shown, "has nothing to do",
+              "a robot's commands without duties, for which a firmware makes them");
+      return;
+    }
+    if (wheel_count(out_.nominal->file.parameters) != kWheels) {
+      problem(plan_.firmware_at, "firmware", shown, "drives four wheels", "a model with four wheels");
+      return;
+    }
+    std::string why;
+    dataset_.firmware = open_dataset_firmware(file, robot_config(*out_.nominal->file.robot, 0), why);
+    if (!dataset_.firmware) {
+      problem(plan_.firmware_at, "firmware", shown, why,
+              "a library of this computer with omnihil_firmware_get (docs/firmware.md)");
+      return;
+    }
+    dataset_.notes.push_back(fmt::format("{} makes the duties; of [controller] the latency alone counts",
+                                         dataset_.firmware->fresh()->name()));
+  }
+
+  // Duties of radio commands are made by the firmware, or by the model's [controller].
   void check_robot_drive() {
+    if (dataset_.firmware) return;
     const ParameterTable& table = out_.nominal->file.parameters;
     const auto given = [&](const char* path) { return table.value_or(path, 0.0) > 0.0; };
     bool by_radio = false, by_body = false;
@@ -262,7 +299,7 @@ class DatasetReader {
                              .allowed = std::move(why)});
   }
 
-  std::string asked_, other_model_, toml_, folder_, model_file_;
+  std::string asked_, other_model_, other_firmware_, toml_, folder_, model_file_;
   DatasetPlan plan_;
   Dataset dataset_;
   DatasetReading out_;
@@ -270,8 +307,8 @@ class DatasetReader {
 
 }  // namespace
 
-DatasetReading read_dataset(const std::string& path, const std::string& model) {
-  return DatasetReader(path, model).read();
+DatasetReading read_dataset(const std::string& path, const std::string& model, const std::string& firmware) {
+  return DatasetReader(path, model, firmware).read();
 }
 
 }  // namespace omnihil

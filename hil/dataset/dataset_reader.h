@@ -28,8 +28,10 @@ struct DatasetReading {
   std::vector<ModelProblem> problems;
 };
 
-// `model`: path of another model to take in place of the dataset's own; empty: its own.
-DatasetReading read_dataset(const std::string& path, const std::string& model = "");
+// `model`: path of another model to take in place of the dataset's own; empty: its own. `firmware`: likewise, the library that a
+// robot under commands is predicted with.
+DatasetReading read_dataset(const std::string& path, const std::string& model = "",
+                            const std::string& firmware = "");
 
 // A model for a dataset, alone.
 struct CandidateReading {

@@ -265,6 +265,7 @@ MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& 
         robot_record(dataset, dataset.runs[0], rolling_params(bench.nominal.file.parameters));
     RobotMotionOptions options;
     options.slave_angle = options.follow_camera = false;
+    options.firmware = bench.like.firmware.get();
     const RobotMotion<double> m = run_robot(robot_values<double>(model, {}, 0), record, options);
     out.finite = m.finite;
     for (std::size_t k = 1; k < record.size(); ++k) {

@@ -21,6 +21,9 @@ class RobotPredictor : public Predictor {
   RobotPredictor(const Dataset& dataset, const Candidate& nominal, const PredictOptions& options)
       : dataset_(dataset), nominal_(nominal), options_(options) {
     motion_.slave_angle = options.slave_angle;
+    motion_.firmware = dataset_.firmware.get();
+    if (dataset_.firmware)
+      tick_s_ = 1e-9 * static_cast<double>(dataset_.firmware->fresh()->control_period_ns());
     for (const Run& run : dataset_.runs) {
       records_.push_back(robot_record(dataset_, run, rolling_params(of_run(nominal, run).file.parameters)));
       signals_.push_back(robot_signals(dataset_, run, records_.back()));
@@ -60,6 +63,7 @@ class RobotPredictor : public Predictor {
     const auto n = static_cast<std::size_t>(r);
     const Candidate here = of_run(candidate, run(r));
     const std::vector<Unknown> open = open_unknowns(unknowns, run(r));
+    if (motion_.firmware != nullptr && records_[n].radio) return by_differences(here, open, n);
     Prediction out;
     for (std::size_t first = 0; first < open.size(); first += kJetWidth) {
       const auto model = robot_values<Jet>(here, open, first);
@@ -88,6 +92,15 @@ class RobotPredictor : public Predictor {
   Capabilities capabilities() const override;
 
  private:
+  Prediction values_of(const Candidate& here, std::size_t n) const {
+    const RobotMotion<double> motion = run_robot(robot_values<double>(here, {}, 0), records_[n], motion_);
+    Prediction out;
+    out.finite = motion.finite;
+    for (const RobotSignal& s : signals_[n])
+      out.values.push_back(robot_signal_values(s, records_[n], motion));
+    return out;
+  }
+  Prediction by_differences(const Candidate& here, std::span<const Unknown> unknowns, std::size_t n) const;
   void add_input_noise(const Candidate& model, const RobotRecord& record, std::vector<RobotSignal>& signals) {
     if (record.size() < 2 || (record.duty_quantum == 0.0 && record.bus_sigma_V == 0.0)) return;
     const auto values = robot_values<double>(model, {}, 0);
@@ -118,10 +131,55 @@ class RobotPredictor : public Predictor {
   Candidate nominal_;
   PredictOptions options_;
   RobotMotionOptions motion_;
+  double tick_s_ = 0.0;  // of the firmware
   std::vector<RobotRecord> records_;
   std::vector<std::vector<RobotSignal>> signals_;
   std::vector<std::vector<ComparedSignal>> compared_;
 };
+
+// Of a loop that is closed by a firmware nothing is known but its answers. It counts its encoders in whole counts and rounds its
+// duties, so that a prediction is a staircase of a parameter: the difference is taken over a stretch that matters, and not over
+// the least that a double has. Central, where bounds and a finite run let it.
+Prediction RobotPredictor::by_differences(const Candidate& here, std::span<const Unknown> unknowns,
+                                          std::size_t n) const {
+  constexpr double kShare = 0.25;  // of the unknown's scale to either side: a choice
+  Prediction out = values_of(here, n);
+  for (const std::vector<double>& y : out.values) {
+    out.derivatives.emplace_back(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(y.size()),
+                                                       static_cast<Eigen::Index>(unknowns.size())));
+  }
+  if (!out.finite) return out;
+  for (std::size_t u = 0; u < unknowns.size(); ++u) {
+    const Unknown& unknown = unknowns[u];
+    if (unknown.path.empty()) continue;  // known in this run
+    const std::optional<double> at = unknown.effect >= 0
+                                         ? here.effects[static_cast<std::size_t>(unknown.effect)]
+                                               .values[static_cast<std::size_t>(unknown.row)]
+                                         : value_at(here, unknown.path);
+    if (!at) continue;
+    double step = kShare * unknown.scale;
+    // A packet is heard at a tick, whichever moment between two it came at.
+    if (unknown.path == "controller.latency_s") step = std::max(step, tick_s_);
+    const auto beside = [&](double value) {
+      const double held = std::clamp(value, unknown.lower, unknown.upper);
+      return std::pair(
+          held,
+          held == *at ? out : values_of(with_values(here, std::span(&unknown, 1), std::span(&held, 1)), n));
+    };
+    auto [low, below] = beside(*at - step);
+    auto [high, above] = beside(*at + step);
+    if (!below.finite) low = *at, below = out;
+    if (!above.finite) high = *at, above = out;
+    if (!(high > low)) continue;
+    for (std::size_t s = 0; s < out.values.size(); ++s) {
+      for (std::size_t k = 0; k < out.values[s].size(); ++k) {
+        out.derivatives[s](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(u)) =
+            (above.values[s][k] - below.values[s][k]) / (high - low);
+      }
+    }
+  }
+  return out;
+}
 
 std::unique_ptr<Predictor> RobotPredictor::simulated(const Candidate& truth, std::uint64_t seed) const {
   Dataset made = dataset_;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "identify/predict/firmware_loop.h"
 #include "sim/law/random.h"
 #include "sim/model/rolling_model.h"
 
@@ -70,7 +71,9 @@ class Runner {
         carry_(carry),
         robot_(model.params, model.uses, model.values),
         timing_states_(initial_states(robot_.effects())) {
-    if (record.radio) {
+    if (record.radio && options.firmware != nullptr) {
+      firmware_.emplace(*options.firmware, value_of(model.params.controller.latency_s), record.time_s[0]);
+    } else if (record.radio) {
       controller_.emplace(model.params.controller,
                           std::span(model.params.wheel_angle_rad).first(model.params.wheels),
                           value_of(model.params.drive.gear_ratio));
@@ -112,8 +115,30 @@ class Runner {
     const auto& value = radio.value[k];
     const std::size_t count = radio.frame == CommandFrame::kBodyVelocity ? 3 : record_.wheels;
     if (std::all_of(value.begin(), value.begin() + static_cast<std::ptrdiff_t>(count),
-                    [](double v) { return std::isfinite(v); }))
-      controller_->hear(record_.time_s[k], value, radio.frame);
+                    [](double v) { return std::isfinite(v); })) {
+      if (firmware_) firmware_->hear(record_.time_s[k], value, radio.frame);
+      if (controller_) controller_->hear(record_.time_s[k], value, radio.frame);
+    }
+  }
+  void run_firmware(const RollingState<T>& x, RollingInput<T>& in, double now_s, double step_s) {
+    if (firmware_->due(now_s, step_s)) {
+      FirmwareSees sees;
+      for (std::size_t i = 0; i < kWheels; ++i) {
+        sees.theta_rotor_rad[i] = value_of(x.theta_rotor_rad[i]);
+        sees.charge_C[i] = value_of(x.charge_C[i]);
+      }
+      const double supply = value_of(model_.params.drive.supply_voltage_V);
+      const double bus = in.bus_is_measured ? in.bus_voltage_V : value_of(x.bus_voltage_V);
+      sees.bus_voltage_V = bus > 0.0 ? bus : supply;
+      sees.gyro_z_rad_s = value_of(x.velocity[2]);
+      sees.accel_x_m_s2 = value_of(x.accel_x_m_s2);
+      sees.accel_y_m_s2 = value_of(x.accel_y_m_s2);
+      firmware_->tick(now_s, sees);
+    }
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      in.duty_ratio[i] = T(firmware_->duty()[i]);
+      in.enabled[i] = firmware_->enabled()[i];
+    }
   }
   void control(const RollingState<T>& x, const RollingInput<T>& in, double now_s, double step_s) {
     if (now_s < next_control_s_ - 0.5 * step_s) return;
@@ -177,12 +202,13 @@ class Runner {
     RollingState<T> x = begin(own_heading);
     double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
     if (controller_) step_s = std::min(step_s, controller_->period_s());
+    if (firmware_) step_s = std::min(step_s, firmware_->period_s());
     PerWheel<double> between;
     for (std::size_t k = 0;; ++k) {
       keep(x);
       if (k + 1 >= n) break;
       RollingInput<T> in = record_.template input<T>(k);
-      if (controller_) hear(k);
+      if (record_.radio) hear(k);
       if (!options_.slave_angle) in.theta_rotor_rad = nullptr;
       const double dt_s = record_.time_s[k + 1] - record_.time_s[k];
       const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - 1e-6)));
@@ -201,11 +227,14 @@ class Runner {
           control(x, in, record_.time_s[k] + dt_s * j / steps, dt_s / steps);
           in.duty_ratio = duty_;
         }
+        if (firmware_) run_firmware(x, in, record_.time_s[k] + dt_s * j / steps, dt_s / steps);
         robot_.advance(x, in, dt_s / steps);
         if (controller_) count_turns(omega_before, x, dt_s / steps);
         own_heading += 0.5 * (before + x.velocity[2]) * (dt_s / steps);
       }
-      if (!is_finite(x.velocity[0]) || !is_finite(x.omega_rotor_rad_s(0)) || !is_finite(x.charge_C[0])) {
+      if (firmware_ && firmware_->failed()) out_.finite = false;
+      if (!out_.finite || !is_finite(x.velocity[0]) || !is_finite(x.omega_rotor_rad_s(0)) ||
+          !is_finite(x.charge_C[0])) {
         out_.finite = false;
         break;
       }
@@ -234,6 +263,10 @@ class Runner {
     truth_.omega_rotor_rad_s.push_back(omega);
     if (controller_) {
       for (std::size_t i = 0; i < record_.wheels; ++i) omega[i] = controller_->reported_rad_s(i);
+    }
+    if (std::array<double, kWheels> told; firmware_ && firmware_->tells(told)) {
+      for (std::size_t i = 0; i < kWheels; ++i)
+        omega[i] = T(told[i] * value_of(model_.params.drive.gear_ratio));
     }
     truth_.reported_rad_s.push_back(omega);
     truth_.charge_C.push_back(x.charge_C);
@@ -396,6 +429,7 @@ class Runner {
   RollingRobot<T> robot_;
   std::array<T, kMaxEffectStates> timing_states_;
   std::optional<RadioController<T>> controller_;
+  std::optional<FirmwareLoop> firmware_;
   PerWheel<T> duty_{}, turned_rad_{};
   double last_control_s_ = 0.0, next_control_s_ = 0.0;
   T camera_age_s_ = T(0);

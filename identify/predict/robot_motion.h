@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "identify/predict/candidate.h"
+#include "identify/predict/firmware_source.h"
 #include "identify/predict/robot_record.h"
 
 namespace omnihil {
@@ -38,6 +39,9 @@ struct RobotMotionOptions {
   bool slave_angle = true;    // laws of the angle take the measured angle
   bool follow_camera = true;  // false: heading and path are the model's own, from the record's start
   std::optional<std::uint64_t> noise_seed;  // for effects that draw random numbers; none: expected values
+  // In the loop in place of the model's [controller] (firmware_loop.h): a motion of numbers alone, a Jet's derivatives are
+  // not followed through it. Not owned; null: none.
+  const FirmwareSource* firmware = nullptr;
 };
 
 // Where a motion was at its record's last row.

@@ -8,6 +8,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -56,6 +57,8 @@ struct Run {
 // Median of the n - 1 differences of n time stamps; 0: fewer than two.
 double median_period_s(const std::vector<double>& time_s);
 
+class FirmwareSource;  // identify/predict/firmware_source.h
+
 struct Dataset {
   std::string name;  // as it was asked for
   std::string title;
@@ -64,6 +67,8 @@ struct Dataset {
   std::vector<Channel> channels;
   std::vector<Run> runs;
   std::vector<std::string> notes;  // what was left out, counted; what a reader should know
+  // What made duties of the commands that a robot was driven by; null: the model's [controller].
+  std::shared_ptr<const FirmwareSource> firmware;
 
   const Channel* channel(std::string_view signal) const;
   bool has(Split split) const;

@@ -1,7 +1,8 @@
 // What the hidden robot's board does with radio commands, once per row: the loop of a usual SSL firmware.
 //
 // Speeds are differences of counts through a first-order low pass; the commanded body velocity is approached at no more
-// than an acceleration; each wheel has a PI loop in volts with a feed-forward, whose sum stands still at the limit.
+// than an acceleration; each wheel has a PI loop in volts with a feed-forward, whose sum stands still at the limit. Bend and
+// kick make it a law that the program has no numbers for.
 #pragma once
 #include <math.h>
 
@@ -29,7 +30,10 @@ static void firmware_tick(Firmware *f, const RobotParams *p, const double *comma
     const double a = angle[k] * M_PI / 180;
     const double rim = -sin(a) * f->goal[0] + cos(a) * f->goal[1] + p->loop_base_m * f->goal[2];
     const double wanted = rim / p->loop_wheel_m * p->gear, error = wanted - f->speed[k];
-    const double u = p->loop_ff * wanted + p->loop_kp * error + p->loop_ki * f->sum[k];
+    double u = p->loop_ff * wanted + p->loop_kp * error + p->loop_ki * f->sum[k];
+    // What no plain PI has: a voltage against friction, and a gain that falls with the error.
+    if (p->loop_kick_V != 0) u += p->loop_kick_V * tanh(wanted / p->loop_kick_rad_s);
+    if (p->loop_bend != 0) u -= p->loop_kp * error * (1 - 1 / (1 + p->loop_bend * fabs(error)));
     if (fabs(u) < bus || u * error < 0) f->sum[k] += error * dt;
     duty[k] = fmax(-1, fmin(1, u / bus));
   }

@@ -29,6 +29,7 @@
   /* firmware: with radio = 1 rows ask for vx, vy, w instead of duties */                                \
   X(radio, 0) X(loop_kp, 0.03) X(loop_ki, 0.3) X(loop_ff, 0.0335) X(loop_filter_s, 0.003) X(late_radio_s, 0.02) \
   X(loop_accel_m_s2, 6) X(loop_alpha_rad_s2, 60) X(loop_wheel_m, 0.027) X(loop_base_m, 0.0805)               \
+  X(loop_kick_V, 0) X(loop_kick_rad_s, 20) X(loop_bend, 0)                                                 \
   /* sensors */                                                                                          \
   X(encoder_cpr, 16384) X(current_noise_A, 0.05) X(bus_noise_V, 0.02) X(gyro_noise_rad_s, 0.01)            \
   X(accel_noise_m_s2, 0.15) X(vision_noise_m, 0.0008) X(vision_noise_rad, 0.004) X(vision_Hz, 60)

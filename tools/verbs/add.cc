@@ -17,6 +17,7 @@
 #include "tools/fitted_model.h"
 #include "tools/formula_argument.h"
 #include "tools/guarded.h"
+#include "tools/options/dataset_options.h"
 #include "tools/progress_line.h"
 #include "tools/verbs/verbs.h"
 
@@ -26,7 +27,7 @@ namespace {
 struct Arguments {
   std::string dataset;
   std::string effect;
-  std::string model;
+  std::string model, firmware;
   std::string write;
   std::uint64_t seed = 1;
   int jobs = 2;
@@ -81,7 +82,7 @@ int report(const Arguments& a, const Dataset& dataset, const Addition& addition,
 }
 
 int run(const Arguments& a) {
-  const DatasetReading reading = read_dataset(a.dataset, a.model);
+  const DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
   for (const ModelProblem& p : reading.problems) std::fprintf(stderr, "omnihil add: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
   const EffectUse use = use_of(a, *reading.nominal);
@@ -123,6 +124,7 @@ void add_verb_add(Verb& program, VerbResult& result) {
                   "id of an effect, or a formula: \"torque_Nm += -a*omega_rotor_rad_s; a = 2e-6\"")
       .required();
   verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
+  verb.add_option("--firmware", a->firmware, kFirmwareSays);
   verb.add_option("--write", a->write, "the model with it; a file that is there is kept as FILE.1");
   verb.add_flag("--force", a->force, "write it even when it is not useful");
   verb.add_option("--seed", a->seed, "of the simulated null and of the bootstrap").capture_default_str();

@@ -15,13 +15,14 @@
 #include "tools/compare_report.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
+#include "tools/options/dataset_options.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
 namespace {
 
 struct Arguments {
-  std::string dataset, model, json;
+  std::string dataset, model, firmware, json;
   std::vector<std::string> tubes;
   bool runs = false;
 };
@@ -68,7 +69,7 @@ void add_left_out(const Predictor& predictor, std::vector<std::string>& out) {
 }
 
 int run(const Arguments& a) {
-  DatasetReading reading = read_dataset(a.dataset, a.model);
+  DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
   for (const ModelProblem& p : reading.problems)
     std::fprintf(stderr, "omnihil compare: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
@@ -119,6 +120,7 @@ void add_verb_compare(Verb& program, VerbResult& result) {
       program.add_subcommand("compare", "how far a model is from a measurement, and where it is worst");
   verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
   verb.add_option("--model", a->model, "model file in place of the dataset's own");
+  verb.add_option("--firmware", a->firmware, kFirmwareSays);
   verb.add_option(
       "--tube", a->tubes,
       "SIGNAL=TOLERANCE[%][/SECONDS]: exit with 1 when a sample is farther from the model (%: of the "

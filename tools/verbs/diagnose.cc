@@ -16,6 +16,7 @@
 #include "tools/exit_codes.h"
 #include "tools/fitted_model.h"
 #include "tools/guarded.h"
+#include "tools/options/dataset_options.h"
 #include "tools/program_commit.h"
 #include "tools/progress_line.h"
 #include "tools/verbs/verbs.h"
@@ -25,7 +26,7 @@ namespace {
 
 struct Arguments {
   std::string dataset;
-  std::string model;
+  std::string model, firmware;
   std::string json;
   std::string report;
   std::string write;
@@ -48,7 +49,7 @@ void write_report(const Arguments& a, const DatasetReading& reading, const Diagn
 }
 
 int run(const Arguments& a) {
-  const DatasetReading reading = read_dataset(a.dataset, a.model);
+  const DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
   for (const ModelProblem& p : reading.problems)
     std::fprintf(stderr, "omnihil diagnose: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
@@ -94,6 +95,7 @@ void add_verb_diagnose(Verb& program, VerbResult& result) {
       program.add_subcommand("diagnose", "which physical effect a model lacks, and what to measure next");
   verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
   verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
+  verb.add_option("--firmware", a->firmware, kFirmwareSays);
   verb.add_option("--json", a->json,
                   "diagnosis as JSON (omnihil-diagnosis/1); - : to stdout, in place of the text");
   verb.add_option("--report", a->report, "diagnosis as one HTML file");

@@ -21,6 +21,7 @@
 #include "tools/exit_codes.h"
 #include "tools/experiment_files.h"
 #include "tools/guarded.h"
+#include "tools/options/dataset_options.h"
 #include "tools/progress_line.h"
 #include "tools/robot_bench.h"
 #include "tools/verbs/verbs.h"
@@ -31,7 +32,7 @@ namespace {
 constexpr std::string_view kBase = "base";
 
 struct Arguments {
-  std::string dataset, model, out, radio, write;
+  std::string dataset, model, firmware, out, radio, write;
   bool usual = false;
   BodyDriveOptions body;
   std::vector<std::string> separate;
@@ -181,7 +182,7 @@ int run(Arguments a) {
       std::filesystem::temp_directory_path() / fmt::format("omnihil-experiment-{}", ::getpid());
   if (faults.empty() && where.empty()) where = simulated_dataset(a, own, faults);
   DatasetReading reading;
-  if (faults.empty()) reading = read_dataset(where, a.dataset.empty() ? "" : a.model);
+  if (faults.empty()) reading = read_dataset(where, a.dataset.empty() ? "" : a.model, a.firmware);
   std::filesystem::remove_all(own);
   for (const ModelProblem& p : reading.problems) faults.push_back(p.text());
   std::unique_ptr<Predictor> predictor;
@@ -236,6 +237,7 @@ void add_verb_experiment(Verb& program, VerbResult& result) {
   verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml");
   verb.add_option("--model", a->model,
                   "model in place of the dataset's own; without a DATASET: a simulated bench");
+  verb.add_option("--firmware", a->firmware, kFirmwareSays);
   verb.add_option("--separate", a->separate, "effects to tell apart, or \"base\" for none: A,B");
   verb.add_option("--shrink", a->question.shrink, "number to know better: its path in the model")
       .type_name("PATH");

@@ -17,13 +17,14 @@
 #include "tools/fit_text.h"
 #include "tools/fitted_model.h"
 #include "tools/guarded.h"
+#include "tools/options/dataset_options.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
 namespace {
 
 struct Arguments {
-  std::string dataset, model, write, json;
+  std::string dataset, model, firmware, write, json;
   std::vector<std::string> free, freeze, with;
   FitOptions options;
 };
@@ -77,7 +78,7 @@ std::vector<Unknown> chosen(const Candidate& c, const Arguments& a, std::vector<
 }
 
 int run(const Arguments& a) {
-  const DatasetReading reading = read_dataset(a.dataset, a.model);
+  const DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
   for (const ModelProblem& p : reading.problems) std::fprintf(stderr, "omnihil fit: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
   std::vector<std::string> faults;
@@ -121,6 +122,7 @@ void add_verb_fit(Verb& program, VerbResult& result) {
   Verb verb = program.add_subcommand("fit", "the numbers of a model that explain a measurement best");
   verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
   verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
+  verb.add_option("--firmware", a->firmware, kFirmwareSays);
   verb.add_option("--with", a->with, "add this effect, starting without influence (several)")
       .type_name("EFFECT");
   verb.add_option("--free", a->free, "move only these: a path, an effect, a section (several)")

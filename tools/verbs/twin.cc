@@ -49,6 +49,9 @@ void watch_dataset(const Words& words, TwinRunner& runner) {
   const DatasetReading reading = read_dataset(words.data, words.twin.model);
   for (const ModelProblem& p : reading.problems) std::fprintf(stderr, "omnihil twin: %s\n", p.text().c_str());
   if (!reading.dataset) throw std::invalid_argument(words.data + ": cannot be used");
+  if (reading.dataset->firmware)
+    throw std::invalid_argument(words.data +
+                                ": has a firmware library, where the twin runs the model's [controller]");
   double start_s = 0.0;
   for (const Run& run : reading.dataset->runs) {
     const double shift_s = start_s - run.time_s.front();

@@ -1,0 +1,61 @@
+// A robot's own firmware in the loop of a simulated robot: what it is told, when it runs, what it asks of the bridges.
+//
+//   FirmwareLoop loop(source, latency_s, record.time_s[0]);
+//   loop.hear(now_s, std::array{0.5, 0.0, 1.0}, CommandFrame::kBodyVelocity);      // m/s, m/s, rad/s: acts latency_s later
+//   if (loop.due(now_s, step_s)) loop.tick(now_s, sees);
+//   loop.duty(), loop.enabled();                                         // until the next
+//
+// Each loop has a firmware that was just switched on, at the record's first row: a record should begin at rest. Commands arrive
+// between its ticks as radio packets do, the newest that is due. Its encoders count down-rounded, its current is the mean
+// since the tick before; it is shown no ball, and encoder faults that a model has are not shown to it.
+#pragma once
+#include <array>
+#include <deque>
+#include <memory>
+#include <span>
+
+#include "identify/predict/firmware_source.h"
+#include "sim/robot/radio_controller.h"
+
+namespace omnihil {
+
+// What its board can measure now; of the rotors, since whenever.
+struct FirmwareSees {
+  std::array<double, kWheels> theta_rotor_rad{}, charge_C{};
+  double bus_voltage_V = 0.0, gyro_z_rad_s = 0.0, accel_x_m_s2 = 0.0, accel_y_m_s2 = 0.0;
+};
+
+class FirmwareLoop {
+ public:
+  FirmwareLoop(const FirmwareSource& source, double latency_s, double start_s);
+
+  // Of a body three numbers, of wheels four.
+  void hear(double now_s, std::span<const double> value, CommandFrame frame);
+  bool due(double now_s, double step_s) const { return now_s >= next_s_ - 0.5 * step_s; }
+  void tick(double now_s, const FirmwareSees& sees);
+
+  double period_s() const { return period_s_; }
+  const std::array<double, kWheels>& duty() const { return duty_; }
+  const std::array<bool, kWheels>& enabled() const { return enabled_; }
+  // As its telemetry tells them; false: it tells none.
+  bool tells(std::array<double, kWheels>& omega_wheel_rad_s) const;
+  // It no longer answers.
+  bool failed() const { return !firmware_->failure().empty(); }
+
+ private:
+  struct Packet {
+    double due_s;
+    RobotCommand command;
+  };
+  std::int64_t clock_ns(double now_s) const;
+
+  std::unique_ptr<Firmware> firmware_;
+  double counts_per_rad_, latency_s_, start_s_, next_s_, period_s_;
+  std::deque<Packet> packets_;
+  std::array<double, kWheels> last_charge_C_{}, duty_{};
+  std::array<bool, kWheels> enabled_{};
+  double last_s_;
+  bool ran_ = false;
+};
+
+}  // namespace omnihil
