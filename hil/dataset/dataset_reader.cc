@@ -184,6 +184,7 @@ class DatasetReader {
 
   // As many of each signal per wheel as the model has wheels.
   void check_wheels() {
+    const char* const kOtherNumber = "has another number of wheels than the dataset";
     const std::size_t wheels = wheel_count(out_.nominal->file.parameters);
     for (const char* const signal : {"duty", "command_wheel"}) {
       std::size_t given = 0;
@@ -191,7 +192,8 @@ class DatasetReader {
         given += dataset_.channel(name) != nullptr ? 1u : 0u;
       need(given == 0 || given == wheels, "robot.wheel_angle_deg",
            fmt::format("the model has {} wheels, and the dataset {} channels {}_1, {}_2 …", wheels, given,
-                       signal, signal));
+                       signal, signal),
+           kOtherNumber);
     }
     for (const Channel& channel : dataset_.channels) {
       const std::size_t at = channel.signal.size() - 1;
@@ -200,7 +202,8 @@ class DatasetReader {
       if (!numbered) continue;
       const auto wheel = static_cast<std::size_t>(channel.signal[at] - '0');
       need(wheel <= wheels, "robot.wheel_angle_deg",
-           fmt::format("the model has {} wheels, and the dataset a channel {}", wheels, channel.signal));
+           fmt::format("the model has {} wheels, and the dataset a channel {}", wheels, channel.signal),
+           kOtherNumber);
     }
   }
 
@@ -288,14 +291,14 @@ class DatasetReader {
          "a drive by position_target needs the servo's gain");
   }
 
-  void need(bool good, std::string path, std::string why) {
+  void need(bool good, std::string path, std::string why, std::string what = "is missing") {
     if (good) return;
     out_.problems.push_back({.file = model_file_,
                              .line = 1,
                              .column = 1,
                              .key = std::move(path),
                              .value = "",
-                             .what = "is missing",
+                             .what = std::move(what),
                              .allowed = std::move(why)});
   }
 

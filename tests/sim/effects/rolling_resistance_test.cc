@@ -40,7 +40,7 @@ TEST(RollingResistance, HoldsWheelsThatThePushOfTheMotorDoesNotBreakAway) {
   drive_for(plant, duty_drive({0.003, 0.003, 0.003, 0.003}), 0.5);
   for (const double w : plant.truth(0).omega_wheel_rad_s) EXPECT_EQ(w, 0.0);
   drive_for(plant, duty_drive({0.006, 0.006, 0.006, 0.006}), 0.5);
-  for (const double w : plant.truth(0).omega_wheel_rad_s) EXPECT_GT(w, 0.0);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_GT(plant.truth(0).omega_wheel_rad_s[i], 0.0);
 }
 
 }  // namespace

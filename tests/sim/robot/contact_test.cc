@@ -102,7 +102,7 @@ TEST(WheelLoad, NeverFallsBelowZeroAndKeepsItsSumWhenAWheelWouldLift) {
   m.center_of_mass_height_m = 0.15;
   const auto c = skidding(m);
   double least_N = 1e9;
-  for (double load_N : c.load_N) least_N = std::min(least_N, load_N);
+  for (std::size_t i = 0; i < kWheels; ++i) least_N = std::min(least_N, c.load_N[i]);
   EXPECT_NEAR(least_N, 0.0, 1e-12);
   EXPECT_NEAR(sum(c.load_N), m.mass_kg * 9.80665, 1e-9);
 }
