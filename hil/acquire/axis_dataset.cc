@@ -128,7 +128,9 @@ std::string axis_readme_text(const AxisAbout& about, const AcquirePlan& plan,
   return out +
          "Columns: what was asked (V, N m at the rotor, duty), position and velocity of the output in rad "
          "and rad/s, or "
-         "the rotor's encoder in counts, current of the motor in A, bus in V.\n";
+         "the rotor's encoder in counts, current of the motor in A, bus in V. Duty and voltage hold from "
+         "their row on; a torque is of its "
+         "row's instant, where it was changed the mean of before and after.\n";
 }
 
 }  // namespace omnihil

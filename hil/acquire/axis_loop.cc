@@ -38,6 +38,16 @@ AxisMoment demand_alone(const AxisMoment& r) {
   return out;
 }
 
+// A held signal at the instants of its steps, as one reads it that is interpolated linearly: the mean of both sides. With the value
+// behind each step alone it would lead by half a row.
+std::vector<double> at_steps(const std::vector<double>& held) {
+  std::vector<double> out = held;
+  for (std::size_t k = 1; k < held.size(); ++k) {
+    if (std::isfinite(held[k - 1]) && std::isfinite(held[k])) out[k] = 0.5 * (held[k - 1] + held[k]);
+  }
+  return out;
+}
+
 struct Column {
   const char* name;
   double AxisMoment::*value;
@@ -126,6 +136,8 @@ RunRows axis_rows(const std::vector<AxisMoment>& samples, PlanDrive drive) {
     rows.values.push_back(std::move(column));
   };
   add(std::string(plan_drive_word(drive)), &AxisMoment::value);
+  if (drive == PlanDrive::kMotorTorque && !rows.values.empty())
+    rows.values.front() = at_steps(rows.values.front());
   // Of counts the rest is made.
   const bool counted = std::isfinite(rising.front()->counts);
   for (const Column& c : kColumns) {

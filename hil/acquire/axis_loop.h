@@ -46,7 +46,8 @@ class AxisAcquirer {
   Clock::time_point start_ = Clock::now();
 };
 
-// Columns: the drive's word, then encoder, or position and velocity, current, bus; what no sample tells is left out.
+// Columns: the drive's word, then encoder, or position and velocity, current, bus; what no sample tells is left out. Duty and voltage
+// are held from a row on; a torque is that of the row's instant, as a signal that was measured: at a step the mean of both sides.
 RunRows axis_rows(const std::vector<AxisMoment>& samples, PlanDrive drive);
 
 }  // namespace omnihil

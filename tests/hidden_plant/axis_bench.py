@@ -48,7 +48,7 @@ class Axis:
         self.live = plant.LiveAxis(self.params)
         self.how, self.asked, self.rows, self.currents = plant.LiveAxis.OFF, 0.0, 0, []
         self.start_s = time.monotonic()
-        self.live.row(self.how, 0.0)
+        self.live.look()
 
     def now_s(self):
         return time.monotonic() - self.start_s
@@ -57,6 +57,7 @@ class Axis:
         del self.currents[:-10000]
         while self.rows * ROW_S < to_s:
             self.live.row(self.how, self.asked)
+            self.live.look()
             self.rows += 1
             self.currents.append(self.live.raw[CURRENT])
 

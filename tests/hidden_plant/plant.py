@@ -151,8 +151,12 @@ class LiveAxis:
             raise ArithmeticError("the hidden axis stopped being finite")
         self.rows += 1
 
+    def look(self):
+        """`raw` as it is now: what is asked from here on has not acted yet."""
+        _lib.axis_look(self._axis, self._out)
+
     def seen(self):
-        """What the sensors make of the newest row."""
+        """What the sensors make of `raw`."""
         _lib.axis_sense(self._packed, self._out, 1, ctypes.c_double(self.rows), self._seen_out)
         return dict(zip(SEEN, self._seen))
 

@@ -59,9 +59,10 @@ class AxisPlantTest(unittest.TestCase):
         columns, _ = speeds(params, asked)
         live = plant.LiveAxis(params)
         for k, duty in enumerate(asked):
-            live.row(plant.LiveAxis.DUTY, duty)
-            for name in ("speed", "angle", "current", "bus"):
-                self.assertAlmostEqual(live.raw[plant.RAW.index(name)], columns[name][k], delta=1e-11, msg=(name, k))
+            for looks in (live.look, lambda on=duty: live.row(plant.LiveAxis.DUTY, on)):
+                looks()
+                for name in ("speed", "angle", "current", "bus"):
+                    self.assertAlmostEqual(live.raw[plant.RAW.index(name)], columns[name][k], delta=1e-11, msg=(name, k))
         live.close()
 
     def test_a_live_axis_takes_a_voltage_a_current_or_nothing(self):

@@ -229,6 +229,9 @@ TEST(AxisDataset, RowsRiseAndHoldWhatTheDeviceTells) {
             (std::vector<std::string>{"motor_voltage", "position", "velocity", "current", "bus"}));
   ASSERT_EQ(rows.time_s.size(), 3U);
   EXPECT_EQ((*rows.column("motor_voltage"))[2], 2.0);
+  // A torque is of the row's instant, between the one before and the one after it.
+  EXPECT_EQ(*axis_rows(samples, PlanDrive::kMotorTorque).column("motor_torque"),
+            (std::vector<double>{0.0, 0.5, 1.5}));
   const PlanRun run{.name = "r", .use = Split::kTraining, .excitation = "", .duration_s = 1.0, .steps = {}};
   AcquirePlan plan;
   plan.drive = PlanDrive::kMotorVoltage;
