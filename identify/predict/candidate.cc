@@ -136,7 +136,7 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
   const std::span<const EffectParam> rows = use.entry->info->params;
   constexpr double kNotGiven = -1.0;  // a marker: tolerances are not negative
   const double tolerance = i < use.tolerances.size() ? use.tolerances[i].value_or(kNotGiven) : kNotGiven;
-  const ParamRange range = param_range(row, linear, candidate.torque_scale);
+  const ParamRange range = param_range(row, candidate);
   if (tolerance == 0.0 || is_stated(use, i) || is_known_shape(use, i)) return std::nullopt;
   if (!(range.upper > range.lower) || is_whole(row)) return std::nullopt;
   if (row.role == ParamRole::kDetail && use.values[i] == row.neutral) return std::nullopt;
@@ -177,6 +177,10 @@ std::optional<Unknown> effect_unknown(const EffectUse& use, std::size_t i, const
 }
 
 }  // namespace
+
+ParamRange param_range(const EffectParam& row, const Candidate& of) {
+  return param_range(row, of.file.linear, of.torque_scale);
+}
 
 Candidate candidate_of(ModelFile file, std::vector<EffectUse> effects) {
   return {.file = std::move(file), .effects = std::move(effects)};

@@ -22,6 +22,7 @@
 #include "identify/predict/prior.h"
 #include "sim/law/drive_params.h"
 #include "sim/law/effect_set.h"
+#include "sim/law/param_range.h"
 #include "sim/model/model_file.h"
 
 namespace omnihil {
@@ -46,6 +47,9 @@ struct Unknown {
   double scale = 1.0;  // a step that matters: tolerance * value, or the effect's typical size
   ParamTrait trait = ParamTrait::kPlain;
 };
+
+// Bounds and scales of an effect's parameter on the drive that this is a model of.
+ParamRange param_range(const EffectParam& row, const Candidate& of);
 
 // From what the readers of a model file give. A robot's coulomb_friction, a base parameter elsewhere, is an
 // effect here.

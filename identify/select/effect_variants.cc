@@ -138,9 +138,7 @@ bool belongs_to_detail(const EffectInfo& info, std::size_t row) {
 }  // namespace
 
 double visible_size(const EffectParam& row, const Candidate& candidate) {
-  if (row.start_for == nullptr)
-    return (row.typical - row.neutral) *
-           param_range(row, candidate.file.linear, candidate.torque_scale).scale;
+  if (row.start_for == nullptr) return (row.typical - row.neutral) * param_range(row, candidate).scale;
   const DriveParams<double> drive = drive_of(candidate);
   return start_of(row, &drive) - row.neutral;
 }
@@ -231,15 +229,14 @@ EffectUse setting(const EffectVariant& variant, const VariantColumn& column) {
   return use;
 }
 
-EffectUse start_of(const EffectVariant& variant, const std::vector<double>& coefficients, bool linear,
-                   double torque_scale) {
+EffectUse start_of(const EffectVariant& variant, const std::vector<double>& coefficients,
+                   const Candidate& model) {
   EffectUse use = variant.shape;
   const EffectInfo& info = *use.entry->info;
   for (std::size_t c = 0; c < variant.columns.size(); ++c) {
     const VariantColumn& column = variant.columns[c];
     double& value = use.values[static_cast<std::size_t>(column.row)];
-    const ParamRange range =
-        param_range(info.params[static_cast<std::size_t>(column.row)], linear, torque_scale);
+    const ParamRange range = param_range(info.params[static_cast<std::size_t>(column.row)], model);
     if (column.phase_row >= 0) {
       if (column.phase != 0.0) continue;  // taken with its sine
       const double sine = coefficients[c], cosine = coefficients[c + 1];

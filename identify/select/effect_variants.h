@@ -4,7 +4,7 @@
 //   for (const EffectVariant& v : variants_of(entry, candidate, scale)) {
 //     for (const VariantColumn& c : v.columns) predictor.predict(with_use(candidate, setting(v, c)), run);
 //     // a difference signal each; their linear coefficients give strengths and phases to start a refit from:
-//     EffectUse start = start_of(v, coefficients, false);
+//     EffectUse start = start_of(v, coefficients, model);
 //   }
 //
 // Law: A sin(n x + p) = A cos p sin(n x) + A sin p cos(n x), so a phase needs two difference signals and no
@@ -58,8 +58,8 @@ std::vector<EffectVariant> series_variants(const EffectEntry& entry, const Candi
 
 EffectUse setting(const EffectVariant& variant, const VariantColumn& column);
 // `coefficients`: multiples of the columns' sizes that fit best. Kept within the rows' bounds.
-EffectUse start_of(const EffectVariant& variant, const std::vector<double>& coefficients, bool linear,
-                   double torque_scale = 1.0);
+EffectUse start_of(const EffectVariant& variant, const std::vector<double>& coefficients,
+                   const Candidate& model);
 
 // The candidate with this effect in the place that its id has; one of the same name is replaced.
 Candidate with_use(const Candidate& candidate, const EffectUse& use);

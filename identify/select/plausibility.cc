@@ -46,11 +46,11 @@ std::string moved_out_of_tolerance(const FitResult& parent, const FitResult& chi
 // A shape estimated at its bound suggests that the law is fitting something else. A strength may stay at its
 // neutral value (one of several; 1e-3 of its typical size is the optimiser's resolution there), a phase is
 // periodic, an exponent is a choice of form, a smoothing width goes to the sharp law at its lower bound.
-bool suspicious_bound(const ParameterEstimate& p, const EffectParam* row, bool linear) {
+bool suspicious_bound(const ParameterEstimate& p, const EffectParam* row, const Candidate& model) {
   if (!p.at_bound || row == nullptr) return false;
   if (row->role != ParamRole::kShape) return std::abs(p.value - row->neutral) > 1e-3 * std::abs(row->typical);
   if (row->trait == ParamTrait::kSmoothing) {
-    const ParamRange range = param_range(*row, linear);
+    const ParamRange range = param_range(*row, model);
     return p.value > 0.5 * (range.lower + range.upper);
   }
   return row->trait != ParamTrait::kPeriodic && row->trait != ParamTrait::kForm;
@@ -207,7 +207,7 @@ std::string ends_at_bound(const FitResult& child, const std::string& name) {
   for (const ParameterEstimate& p : child.parameters) {
     if (!p.path.starts_with(name + ".")) continue;
     const EffectParam* row = row_of(entry, child, p.path.substr(name.size() + 1));
-    if (suspicious_bound(p, row, child.model.file.linear))
+    if (suspicious_bound(p, row, child.model))
       return fmt::format("{} ends at a bound ({:.4g} {}): a symptom, not a result", p.path, p.value, p.unit);
   }
   return "";

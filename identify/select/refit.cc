@@ -119,7 +119,7 @@ EffectUse at_typical_size(const EffectUse& use, const Candidate& model) {
   for (std::size_t i = 0; i < out.values.size(); ++i) {
     const EffectParam& row = use.entry->info->params[i];
     if (row.role != ParamRole::kStrength) continue;
-    const ParamRange range = param_range(row, model.file.linear, model.torque_scale);
+    const ParamRange range = param_range(row, model);
     out.values[i] = std::clamp(row.neutral + visible_size(row, model), range.lower, range.upper);
   }
   return out;

@@ -46,14 +46,14 @@ Scored score(const ScreeningTask& task, EffectVariant variant) {
 // Sizes at which the linear coefficients would be one; false: they are nearly so, or cannot be changed.
 bool resize(const ScreeningTask& task, const Scored& scored, EffectVariant& variant, double idle_factor) {
   // Largest size tried, of the parameter's bound; smallest, of that; a change of size below this factor is
-  // none. All three only save simulations: the refit starts from the coefficients, whatever the size was.
+  // none. Choices; all three only save simulations: the refit starts from the coefficients, whatever the size was.
   constexpr double kOfBound = 0.9, kLeastOfBound = 1e-6, kSameBelow = 0.7, kSameAbove = 1.4;
   bool changed = false;
   const EffectInfo& info = *variant.shape.entry->info;
   for (std::size_t c = 0; c < variant.columns.size(); ++c) {
     VariantColumn& column = variant.columns[c];
     const EffectParam& row = info.params[static_cast<std::size_t>(column.row)];
-    const ParamRange range = param_range(row, task.model->file.linear, task.model->torque_scale);
+    const ParamRange range = param_range(row, *task.model);
     double factor = std::abs(scored.fit.coefficients[c]);
     if (column.phase_row >= 0) {
       const std::size_t other = column.phase == 0.0 ? c + 1 : c - 1;
@@ -106,7 +106,7 @@ class SizeSearch {
 
   Scored run(const std::vector<EffectVariant>& variants) {
     // Octaves about the typical size: 8 times to a 128th of it. Halvings of the last octave: to 2 % of the
-    // size where it begins to act (2^(1/32)).
+    // size where it begins to act (2^(1/32)). Choices, by cost: a simulation each.
     constexpr int kLargest = 3, kSmallest = -7, kHalvings = 5;
     // Sizes beyond that one. Tuned on the open cases (DECISIONS 33); sensitivity not measured.
     constexpr double kBeyond[] = {1.08, 1.2, 1.4, 1.7};  // tuned
@@ -134,7 +134,7 @@ class SizeSearch {
     EffectVariant sized = variant;
     VariantColumn& column = sized.columns.front();
     const EffectParam& row = variant.shape.entry->info->params[static_cast<std::size_t>(column.row)];
-    const ParamRange range = param_range(row, task_.model->file.linear, task_.model->torque_scale);
+    const ParamRange range = param_range(row, *task_.model);
     column.size *= factor;
     if (column.size <= 0.0 || row.neutral + column.size > range.upper) return true;
     Scored s = score(task_, std::move(sized));
@@ -198,8 +198,7 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
   }
   out.residual_fraction = best.columns.kept;
   out.closest_parameter = nearest_base(base, best);
-  out.start =
-      start_of(best.variant, best.fit.coefficients, task.model->file.linear, task.model->torque_scale);
+  out.start = start_of(best.variant, best.fit.coefficients, *task.model);
   out.base_unknowns = base.unknowns();
   for (std::size_t u = 0; u < base.unknowns().size(); ++u) {
     const Unknown& unknown = base.unknowns()[u];
@@ -258,7 +257,7 @@ std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const C
   const Eigen::VectorXd speed = residuals.track(model, "speed");
   const Eigen::VectorXd acceleration = residuals.track(model, "acceleration");
   const std::vector<double> speeds = finite_sizes(speed), accelerations = finite_sizes(acceleration);
-  // Samples in a regime: its mean square is then known to 10 % (sqrt(2 / n)).
+  // Samples in a regime: its mean square is then known to 10 % (sqrt(2 / n)); a choice.
   constexpr std::size_t kLeast = 200;
   // Limits of the regimes: shares of the top speed (98 % quantile, so that no glitch sets it), quantiles of
   // the acceleration. Tuned on the open cases; sensitivity not measured.

@@ -2,7 +2,7 @@
 //
 //   const EffectParam& row = find_effect("cogging")->info->params[0];
 //   param_key(row, true);               // "amplitude_N"
-//   param_range(row, true).upper;       // in N: linear_scale.h
+//   param_range(row, true, 1.0).upper;  // in N: linear_scale.h
 #pragma once
 #include <string>
 
@@ -23,7 +23,7 @@ struct ParamRange {
 };
 // torque_scale: how much stronger the drive is than those that the row's numbers are of; torques and what is a torque
 // per something grow with it.
-ParamRange param_range(const EffectParam& row, bool linear, double torque_scale = 1.0);
+ParamRange param_range(const EffectParam& row, bool linear, double torque_scale);
 
 // The strongest drive that a model file may be of, over a robot's: 100 N m in place of 0.1. A choice.
 inline constexpr double kStrongestDrive = 1000.0;

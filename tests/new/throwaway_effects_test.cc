@@ -93,7 +93,7 @@ TEST(ThrowawayEffects, AreSearchedAsTheirRowsSay) {
   ASSERT_EQ(tooth.size(), 1u);
   ASSERT_EQ(tooth[0].columns.size(), 2u);
   EXPECT_EQ(tooth[0].columns[1].phase, std::numbers::pi / 2.0);
-  EXPECT_EQ(start_of(tooth[0], {0.0, -1.0}, false).values[1], -std::numbers::pi / 2.0);
+  EXPECT_EQ(start_of(tooth[0], {0.0, -1.0}, axis()).values[1], -std::numbers::pi / 2.0);
   // six pulses per electrical turn, and no other number is tried
   const auto pulses = variants("pulse_window");
   ASSERT_EQ(pulses.size(), 1u);

@@ -27,7 +27,7 @@ TEST(EffectVariants, APhaseIsAPairOfSineAndCosine) {
   const Candidate model = axis_with_unknown_friction();
   const std::vector<EffectVariant> variants = variants_of(cogging(), model, {});
   ASSERT_EQ(variants.front().columns.size(), 2u);
-  const EffectUse start = start_of(variants.front(), {3.0, 4.0}, false);
+  const EffectUse start = start_of(variants.front(), {3.0, 4.0}, model);
   const double size = variants.front().columns[0].size;
   EXPECT_DOUBLE_EQ(start.values[row_of(cogging(), "amplitude_Nm")], 5.0 * size);
   EXPECT_DOUBLE_EQ(start.values[row_of(cogging(), "phase_rad")], std::atan2(4.0, 3.0));
@@ -91,7 +91,7 @@ TEST(EffectVariants, EveryEffectIsTriedWithinItsBoundsAndAwayFromNeutral) {
 TEST(EffectVariants, AStartStaysWithinTheBounds) {
   const std::vector<EffectVariant> variants =
       variants_of(*find_effect("constant_load"), axis_with_unknown_friction(), {});
-  EXPECT_EQ(start_of(variants.front(), {1e9}, false).values[0],
+  EXPECT_EQ(start_of(variants.front(), {1e9}, axis_with_unknown_friction()).values[0],
             find_effect("constant_load")->info->params[0].upper);
 }
 
