@@ -2,33 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "hil/wire/buffered_wire.h"
+#include "hil/wire/port_frame_wire.h"
 #include "hil/wire/pty_wire.h"
 
 namespace omnihil {
 namespace {
 
-constexpr std::size_t kBite_bytes = 4096;
-constexpr std::size_t kQueue_bytes = 65'536;  // of a host that does not read
-
-class AdapterWire final : public FrameWire {
+class AdapterWire final : public PortFrameWire {
  public:
-  AdapterWire(std::string name, std::unique_ptr<ByteWire> wire, std::unique_ptr<CanAdapter> adapter)
-      : name_(std::move(name)), wire_(std::move(wire), kQueue_bytes), adapter_(std::move(adapter)) {}
-
-  std::string_view name() const override { return name_; }
-  std::error_code error() const override { return wire_.error(); }
-  int handle() const override { return wire_.handle(); }
-
-  bool read(BusFrame& frame) override {
-    if (frames_.empty()) poll();
-    if (frames_.empty()) return false;
-    frame = frames_.back();
-    frames_.pop_back();
-    return true;
-  }
+  AdapterWire(std::string name, std::unique_ptr<ByteWire> pty, std::unique_ptr<CanAdapter> adapter)
+      : PortFrameWire(std::move(name), std::move(pty)), adapter_(std::move(adapter)) {}
 
   bool write(const BusFrame& frame) override {
     if (!wire_.peer_present()) return false;
@@ -37,16 +20,15 @@ class AdapterWire final : public FrameWire {
   }
 
   std::vector<std::string> report() const override {
-    return {fmt::format("{}: {} lines that were no command or no frame", name_, adapter_->bad_lines())};
+    return {fmt::format("{}: {} lines that were no command or no frame", name(), adapter_->bad_lines())};
   }
 
  private:
-  void poll() {
-    bytes_.clear();
+  void poll() override {
     line_.clear();
-    wire_.read(bytes_, kBite_bytes);
-    adapter_->receive(bytes_, frames_, line_);
-    std::reverse(frames_.begin(), frames_.end());
+    heard_.clear();
+    adapter_->receive(bytes(), heard_, line_);
+    frames_.assign(heard_.begin(), heard_.end());
     if (wire_.take_peer_closed()) {
       adapter_->host_closed();
       wire_.clear();
@@ -55,16 +37,9 @@ class AdapterWire final : public FrameWire {
     }
   }
 
-  bool send(std::string_view text) {
-    return wire_.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  }
-
-  std::string name_;
-  BufferedWire wire_;
   std::unique_ptr<CanAdapter> adapter_;
-  std::vector<std::uint8_t> bytes_;
-  std::vector<BusFrame> frames_;  // in reverse: the next one is the last
-  std::string line_;              // of the adapter to its host
+  std::vector<BusFrame> heard_;
+  std::string line_;  // of the adapter to its host
 };
 
 }  // namespace
