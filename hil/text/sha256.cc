@@ -54,4 +54,10 @@ std::string Sha256::hex() const {
   return to_hex(std::span(digest).first(size));
 }
 
+std::string sha256_of(std::string_view text) {
+  Sha256 hash;
+  hash.add(text);
+  return hash.hex();
+}
+
 }  // namespace omnihil

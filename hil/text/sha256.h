@@ -28,4 +28,6 @@ class Sha256 {
   std::unique_ptr<Impl> impl_;
 };
 
+std::string sha256_of(std::string_view text);  // 64 digits
+
 }  // namespace omnihil

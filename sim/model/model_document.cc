@@ -29,6 +29,12 @@ std::string ModelProblem::text() const {
   return out;
 }
 
+std::string lines_of(const std::vector<ModelProblem>& problems) {
+  std::string text;
+  for (const ModelProblem& problem : problems) text += (text.empty() ? "" : "\n") + problem.text();
+  return text;
+}
+
 std::string ModelDocument::written(const toml::node& node) const {
   const toml::source_region& s = node.source();
   if (s.begin.line == 0 || s.begin.line > lines.size()) return "";

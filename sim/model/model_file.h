@@ -35,6 +35,8 @@ struct ModelProblem {
       const;  // "robot.toml:12:1: motor.resistance_ohm = -1: out of range; allowed: more than 0 …"
 };
 
+std::string lines_of(const std::vector<ModelProblem>& problems);
+
 struct ModelEffect {
   std::string id;
   bool simulated = false;  // false: kept in the file, without influence on the simulation

@@ -1,8 +1,6 @@
 // omnihil acquire PLAN: drives a robot by its own radio as a plan says, and writes what came of it as a measurement.
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,12 +11,12 @@
 #include "hil/acquire/acquire_report.h"
 #include "hil/acquire/acquired_dataset.h"
 #include "hil/dataset/dataset_model.h"
-#include "hil/dataset/dataset_reader.h"
 #include "hil/dataset/radio_export.h"
 #include "hil/loop/model_store.h"
 #include "hil/loop/session_checks.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/text/program_files.h"
+#include "hil/text/sha256.h"
 #include "hil/text/text_file.h"
 #include "sim/model/rolling_model.h"
 #include "tools/command_line.h"
@@ -34,19 +32,13 @@
 namespace omnihil {
 namespace {
 
-struct AcquireWords {
-  std::string plan, device = "./dongle", radio, format_file, model = "omni_default", team = "blue", out;
+struct RobotWords : AcquireWords {
+  std::string plan, radio, format_file, team = "blue";
   AxisAcquireWords axis;
   VisionWords vision;
-  int robot = 0, runs = 0;
-  bool reference = false, dry_run = false, resume = false, confirm = false;
+  int robot = 0;
+  bool reference = false;
 };
-
-std::string all_of(const std::vector<ModelProblem>& problems) {
-  std::string text;
-  for (const ModelProblem& p : problems) text += (text.empty() ? "" : "\n") + p.text();
-  return text;
-}
 
 // A dataset's model: a file that stands alone as it is, else the robot's and its motor's in one.
 std::string model_text(const StoredModel& stored, bool reference) {
@@ -56,93 +48,47 @@ std::string model_text(const StoredModel& stored, bool reference) {
   return text;
 }
 
-// Runs that are whole, in the plan's order.
-std::vector<AcquiredRun> runs_there(const AcquirePlan& plan, const AcquireFolder& folder) {
-  std::vector<AcquiredRun> runs;
-  for (const PlanRun& run : plan.runs) {
-    if (folder.has(run.name)) runs.push_back({&run, rows_from_csv(folder.csv(run.name), run.name + ".csv")});
-  }
-  return runs;
+DrivenRun drive_one(Acquirer& acquirer, const AcquirePlan& plan, const PlanRun& run,
+                    const std::string& started) {
+  RunEnd end = acquirer.run(run, [] { return StopSignals::requested(); });
+  if (!end.problem.empty()) return {.problem = end.problem, .wire_lost = end.wire_lost};
+  const RunRows rows = run_rows(end.log, plan.drive);
+  return {.csv = rows_csv(rows),
+          .packets = std::move(end.packets),
+          .note = run_note(run, end, rows, started),
+          .words = fmt::format(
+              "{} packets, {} answers, {} frames{}", end.log.sent.size(), end.log.told.size(),
+              end.log.seen.size(),
+              end.left_out > 0 ? fmt::format("; {} packets left out, this computer was late", end.left_out)
+                               : "")};
 }
 
-int finish(const AcquirePlan& plan, AcquireFolder& folder, const RadioFormat& format,
-           const AcquireAbout& about) {
-  const std::vector<AcquiredRun> runs = runs_there(plan, folder);
-  std::vector<std::string> notes;
-  for (const PlanRun& run : plan.runs) notes.push_back(folder.note(run.name));
-  folder.describe(acquired_dataset_text(plan, runs, steady_noise(plan, runs, wheel_speed_step_rad_s(format))),
-                  readme_text(about, plan, notes));
-  const DatasetReading reading = read_dataset(folder.making().string(), "");
-  if (!reading.dataset) {
-    fmt::print(stderr, "omnihil acquire: what was measured cannot be used; it is kept in {}\n{}\n",
-               folder.making().string(), all_of(reading.problems));
-    return kExitDiffers;
-  }
-  folder.finish();
-  std::size_t rows = 0;
-  for (const AcquiredRun& run : runs) rows += run.rows.time_s.size();
-  fmt::print("{}: {} runs, {} rows\n", folder.path().string(), runs.size(), rows);
-  return kExitOk;
-}
-
-// Exit code of a run that was stopped.
-int stopped(const PlanRun& run, const RunEnd& end, const AcquireFolder& folder) {
-  fmt::print(stderr, "omnihil acquire: {}: stopped: {}\n", run.name, end.problem);
-  fmt::print(stderr, "what is whole is in {}; --resume goes on\n", folder.making().string());
-  if (end.wire_lost) return kExitIo;
-  return StopSignals::requested() ? kExitInterrupted : kExitDiffers;
-}
-
-int drive(const AcquireWords& words, const AcquirePlan& plan, const RadioFormat& format, const CommandTo& to,
+int drive(const RobotWords& words, const AcquirePlan& plan, const RadioFormat& format, const CommandTo& to,
           AcquireFolder& folder, const AcquireAbout& about) {
   const std::unique_ptr<ByteWire> wire = open_end(words.device, "serial", "--device");
   std::optional<UdpPort> vision = open_vision(words.vision);
-  const StopSignals signals;
   Acquirer acquirer({.wire = *wire, .format = format, .to = to, .vision = vision ? &*vision : nullptr}, plan);
-  int driven = 0;
-  for (const PlanRun& run : plan.runs) {
-    if (folder.has(run.name)) continue;
-    if (words.runs > 0 && driven == words.runs) {
-      fmt::print("{} runs driven; --resume goes on with {}\n", driven, run.name);
-      return kExitOk;
-    }
-    if (words.confirm && !confirm_run(run, "put the robot in its place")) return kExitInterrupted;
-    const std::string started = utc_now();
-    const RunEnd end = acquirer.run(run, [] { return StopSignals::requested(); });
-    if (!end.problem.empty()) return stopped(run, end, folder);
-    const RunRows rows = run_rows(end.log, plan.drive);
-    folder.add_run(run.name, rows_csv(rows), end.packets, run_note(run, end, rows, started));
-    ++driven;
-    fmt::print(
-        "{}: {} packets, {} answers, {} frames{}\n", run.name, end.log.sent.size(), end.log.told.size(),
-        end.log.seen.size(),
-        end.left_out > 0 ? fmt::format("; {} packets left out, this computer was late", end.left_out) : "");
-    std::fflush(stdout);
-  }
+  const auto one = [&](const PlanRun& run, const std::string& started) {
+    return drive_one(acquirer, plan, run, started);
+  };
+  if (const auto ended = drive_runs(words, plan, folder, "put the robot in its place", one)) return *ended;
   fmt::print("{}", clock_words(acquirer.cameras(), acquirer.unix_start_s()));
-  return finish(plan, folder, format, about);
+  return finish_measurement(plan, folder, [&](const auto& runs, const auto& notes) {
+    const auto noise = steady_noise(plan, runs, wheel_speed_step_rad_s(format));
+    return Described{acquired_dataset_text(plan, runs, noise), readme_text(about, plan, notes)};
+  });
 }
 
-int run_axis_plan(const AcquireWords& words, const AcquirePlan& plan, const std::string& text) {
-  AxisAcquireWords axis = words.axis;
-  axis.device = words.device;
-  axis.model = words.model;
-  axis.out = words.out;
-  axis.runs = words.runs;
-  axis.dry_run = words.dry_run, axis.resume = words.resume, axis.confirm = words.confirm;
-  return acquire_axis(axis, plan, text);
-}
-
-int run(const AcquireWords& words) {
+int run(const RobotWords& words) {
   std::string error;
   const std::string text = read_text_file(words.plan, error);
   if (!error.empty()) throw std::invalid_argument(words.plan + ": " + error);
   const PlanReading reading = read_acquire_plan(text, words.plan);
-  if (!reading.plan) throw std::invalid_argument(all_of(reading.problems));
+  if (!reading.plan) throw std::invalid_argument(lines_of(reading.problems));
   const AcquirePlan& plan = *reading.plan;
-  if (of_axis(plan.drive)) return run_axis_plan(words, plan, text);
+  if (of_axis(plan.drive)) return acquire_axis(words, words.axis, plan, text);
   const StoredModel stored = load_robot_model(words.model, {data_folder("models")});
-  if (!stored.model) throw std::invalid_argument(all_of(stored.problems));
+  if (!stored.model) throw std::invalid_argument(lines_of(stored.problems));
   const RadioFormat* format = format_or_complain(
       !words.radio.empty() || !words.format_file.empty() ? words.radio : stored.model->radio,
       words.format_file);
@@ -165,8 +111,8 @@ int run(const AcquireWords& words) {
                {.device = words.device,
                 .team = words.team,
                 .commit = program_commit(),
-                .plan_sha256 = text_hash(text),
-                .model_sha256 = text_hash(model),
+                .plan_sha256 = sha256_of(text),
+                .model_sha256 = sha256_of(model),
                 .format = format,
                 .robot = words.robot});
 }
@@ -174,8 +120,8 @@ int run(const AcquireWords& words) {
 }  // namespace
 
 void add_verb_acquire(Verb& program, VerbResult& result) {
-  auto words = std::make_shared<AcquireWords>();
-  AcquireWords& w = *words;
+  auto words = std::make_shared<RobotWords>();
+  RobotWords& w = *words;
   Verb verb = program.add_subcommand("acquire",
                                      "drives a robot by its own radio, or one axis by its motor bus, as a "
                                      "plan says; what came of it is a measurement");

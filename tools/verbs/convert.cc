@@ -53,12 +53,6 @@ std::optional<int> chosen_robot(const ConvertWords& words, const RecordingHeader
   return words.robot;
 }
 
-std::string all_of(const std::vector<ModelProblem>& problems) {
-  std::string text;
-  for (const ModelProblem& problem : problems) text += (text.empty() ? "" : "\n") + problem.text();
-  return text;
-}
-
 void write_dataset(const ConvertWords& words, const DatasetExport& made) {
   NewFolder folder(words.out);
   for (const DatasetFile& file : made.files) folder.write(file.name, file.text);
@@ -73,7 +67,7 @@ void tapped_to_dataset(const ConvertWords& words, const Recording& recording) {
     throw std::invalid_argument(
         "a tapped recording needs --robot and --model (with [controller], docs/radio-driven.md)");
   const StoredModel stored = load_robot_model(words.model, {data_folder("models")});
-  if (!stored.model) throw std::invalid_argument(all_of(stored.problems));
+  if (!stored.model) throw std::invalid_argument(lines_of(stored.problems));
   const RadioFormat* format = format_or_complain(recording.header.radio_format);
   if (format == nullptr) throw std::invalid_argument("the commands of this recording cannot be read");
   TappedOptions options{.robot = *chosen_robot(words, recording.header), .model_text = {}, .vision_csv = {}};
@@ -90,7 +84,7 @@ void tapped_to_dataset(const ConvertWords& words, const Recording& recording) {
 void to_dataset(const ConvertWords& words, const Recording& recording) {
   if (is_tapped(recording)) return tapped_to_dataset(words, recording);
   const ModelReading reading = read_bundle(session_setup(recording.header).model);
-  if (!reading.model) throw std::invalid_argument(all_of(reading.problems));
+  if (!reading.model) throw std::invalid_argument(lines_of(reading.problems));
   const std::optional<int> robot = chosen_robot(words, recording.header);
   const auto make = [&] {
     if (words.drive == "duties")

@@ -39,8 +39,7 @@ struct Arguments {
 std::vector<std::vector<double>> rows_of(const std::string& file, const std::vector<std::string>& wanted) {
   std::vector<ModelProblem> problems;
   const CsvTable table = read_csv(file, wanted, problems);
-  std::string text;
-  for (const ModelProblem& problem : problems) text += (text.empty() ? "" : "\n") + problem.text();
+  std::string text = lines_of(problems);
   for (std::size_t i = 0; text.empty() && i < wanted.size(); ++i)
     if (!table.columns[i]) text += fmt::format("{}: needs a column {}", file, wanted[i]);
   if (!text.empty()) throw std::invalid_argument(text);
