@@ -1,61 +1,12 @@
 // The counter, its outputs, captures, encoder and triggers against what the reference manual says in numbers.
-#include "firmware_iface/mcu/stm32/timer/timer.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tests/firmware_iface/mcu/fake_system.h"
+#include "tests/firmware_iface/mcu/timer_bench.h"
 
 namespace omnihil::mcu {
 namespace {
-constexpr std::uint32_t kBase = 0x40010000, kOther = 0x40000000;
-enum : std::uint32_t {
-  kCr1 = 0x00,
-  kCr2 = 0x04,
-  kSmcr = 0x08,
-  kDier = 0x0C,
-  kSr = 0x10,
-  kEgr = 0x14,
-  kCcmr1 = 0x18,
-  kCcmr2 = 0x1C,
-  kCcer = 0x20,
-  kCnt = 0x24,
-  kPsc = 0x28,
-  kArr = 0x2C,
-  kRcr = 0x30,
-  kCcr1 = 0x34,
-  kCcr2 = 0x38,
-  kBdtr = 0x44
-};
-
-struct TimerTest : testing::Test {
-  TimerTest() {
-    system.attach(kBase, 0x400, timer);
-    system.attach(kOther, 0x400, other);
-    ClockState state;
-    state.hclk_hz = 16e6;
-    context.clocks.set(state);
-    timer.on_output([this](std::int64_t) { last_output_at = system.now(); });
-  }
-  void set(std::uint32_t offset, std::uint32_t value) { system.write(kBase + offset, value); }
-  std::uint32_t get(std::uint32_t offset) { return system.read(kBase + offset); }
-  void set_other(std::uint32_t offset, std::uint32_t value) { system.write(kOther + offset, value); }
-
-  FakeSystem system;
-  ChipContext context{system};
-  Timer timer{{.number = 1,
-               .bus = Bus::kApb2,
-               .advanced = true,
-               .irq_update = 25,
-               .irq_compare = 27,
-               .internal_triggers = {"TIM5_TRGO", "TIM2_TRGO"}},
-              context};
-  Timer other{
-      {.number = 2, .bus = Bus::kApb1, .bits32 = true, .irq_update = 28, .internal_triggers = {"TIM1_TRGO"}},
-      context};
-  Cycles last_output_at = 0;
-};
 
 TEST_F(TimerTest, PeriodIsExactlyPrescalerTimesReload) {
   set(kPsc, 6);
@@ -276,61 +227,6 @@ TEST_F(TimerTest, NoDriveWithoutMainOutputEnable) {
   timer.break_input(true);
   EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff);
   EXPECT_EQ(get(kSr) >> 7 & 1, 1u);
-}
-
-// The break input works without the clock: at the instant of its edge, in the middle of a period as well.
-TEST_F(TimerTest, ABreakSwitchesTheOutputsOffAtItsInstant) {
-  set(kArr, 999);
-  set(kCcmr1, 0x0060);
-  set(kCcr1, 400);
-  set(kCcer, 0x5);
-  set(kDier, 1u << 7);
-  set(kBdtr, 1u << 15 | 1u << 12);  // active low
-  set(kCr1, 1);
-  timer.break_input(true);
-  system.run_for(537);
-  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kPwm);
-  timer.break_input(false);
-  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff);
-  EXPECT_EQ(timer.output(0).complement.drive, TimerPin::Drive::kOff);
-  EXPECT_EQ(last_output_at, system.now()) << "no cycle later";
-  EXPECT_EQ(get(kBdtr) >> 15 & 1, 0u);
-  set(kSr, 0);
-  EXPECT_EQ(get(kSr) >> 7 & 1, 1u) << "the flag stays while the input is active";
-  set(kBdtr, 1u << 15 | 1u << 12);
-  EXPECT_EQ(get(kBdtr) >> 15 & 1, 0u) << "and so does MOE";
-  timer.break_input(true);
-  set(kSr, 0);
-  EXPECT_EQ(get(kSr) >> 7 & 1, 0u);
-  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff) << "until software switches on again";
-  set(kBdtr, 1u << 15 | 1u << 12);
-  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kPwm);
-}
-
-TEST_F(TimerTest, OutputsComeBackByThemselvesWithTheNextUpdateWhereAoeSaysSo) {
-  set(kArr, 999);
-  set(kCcmr1, 0x0060);
-  set(kCcr1, 400);
-  set(kCcer, 0x1);
-  set(kBdtr, 1u << 15 | 1u << 14 | 1u << 13 | 1u << 12);
-  set(kCr1, 1);
-  system.run_for(300);
-  timer.break_input(true);
-  system.run_for(1000);
-  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff) << "still active at the update";
-  timer.break_input(false);
-  system.run_for(699);
-  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kOff);
-  system.run_for(1);
-  EXPECT_EQ(timer.output(0).main.drive, TimerPin::Drive::kPwm);
-}
-
-TEST_F(TimerTest, ABreakThatIsThereBeforeItIsEnabledActsThen) {
-  timer.break_input(true);
-  set(kBdtr, 1u << 15 | 1u << 13);
-  EXPECT_EQ(get(kBdtr) >> 15 & 1, 1u) << "not enabled";
-  set(kBdtr, 1u << 15 | 1u << 13 | 1u << 12);
-  EXPECT_EQ(get(kBdtr) >> 15 & 1, 0u);
 }
 
 TEST_F(TimerTest, DeadTimeShortensBothSidesOfAPair) {
