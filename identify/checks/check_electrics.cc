@@ -19,7 +19,7 @@ namespace {
 
 using Grade = DataFinding::Grade;
 
-constexpr double kWindow_s = 0.2;          // some hundred electrical time constants (L/R) of a small motor
+constexpr double kWindow_s = 0.2;  // some hundred electrical time constants (L/R) of a small motor; a choice
 constexpr std::size_t kLeastWindows = 15;  // several per coefficient of the line; a choice
 // |log| of a ratio that should be 1: 32 %, 39 %, 2.2 times. Tuned; what effects bring, the file header says.
 constexpr double kDoubtful = 0.28, kWrong = 0.33;  // tuned

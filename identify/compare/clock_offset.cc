@@ -8,9 +8,9 @@
 namespace omnihil {
 namespace {
 
-constexpr int kStretches = 8;          // a spread from so many is known within 27 % (1 / sqrt(2 (n - 1)))
-constexpr int kMostSteps = 60;         // periods, to either side: what the search costs; a choice
-constexpr double kMostSeconds = 0.15;  // beyond what a radio, a bus or a camera's chain delays; a choice
+constexpr int kStretches = 8;   // a spread from so many is known within 27 % (1 / sqrt(2 (n - 1))); a choice
+constexpr int kMostSteps = 60;  // periods, to either side: what the search costs; a choice
+constexpr double kMostSeconds = 0.15;       // beyond what a radio, a bus or a camera's chain delays; a choice
 constexpr std::size_t kLeastSamples = 200;  // per stretch; a choice
 
 struct Stretch {
@@ -36,7 +36,7 @@ std::vector<double> without_holes(const std::vector<double>& model) {
 }
 
 // Mean squared error at this lag over the samples that measurement and model both have; infinite when there
-// are fewer than kLeastCommon, of which a mean square is known within 26 % (sqrt(2 / n)).
+// are fewer than kLeastCommon, of which a mean square is known within 26 % (sqrt(2 / n)); a choice.
 double mean_square(const Stretch& s, int lag) {
   constexpr std::size_t kLeastCommon = 30;
   double sum = 0.0;

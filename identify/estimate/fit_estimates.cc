@@ -47,7 +47,7 @@ double data_variance(const Directions& d, Eigen::Index i, double scale) {
 // prior sigma of a hundred times each scale; strongest first.
 std::vector<std::string> partners(const Eigen::MatrixXd& information, const Eigen::VectorXd& scale,
                                   Eigen::Index i, const std::vector<Unknown>& unknowns) {
-  constexpr double kWeak = 1e-4;       // 1 / 100^2
+  constexpr double kWeak = 1e-4;       // derived: 1 / 100^2
   constexpr double kCorrelated = 0.5;  // a quarter of the variance in common; a choice
   constexpr std::size_t kMost = 3;     // names in a sentence
   Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();

@@ -120,7 +120,7 @@ class AxisPredictor final : public Predictor {
     for (std::size_t u = 0; u < unknowns.size() && rows > 0; ++u) {
       if (is_known(run(n), unknowns[u].path)) continue;
       if (is_hidden_delay(own, unknowns[u])) {
-        constexpr double kStep_s = 2e-3;  // two of the longest sub-steps
+        constexpr double kStep_s = 2e-3;  // two of the longest sub-steps; a choice
         difference(own, unknowns, u, n, kStep_s, p);
       } else if (play || explodes(s, unknowns[u], static_cast<Eigen::Index>(u), p)) {
         difference(own, unknowns, u, n, kSecant * unknowns[u].scale, p);

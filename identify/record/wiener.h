@@ -27,7 +27,7 @@ enum class NoiseSpectrum : std::uint8_t {
 };
 
 // n samples to n, of x's unit. Fewer than kLeastSmoothed samples are returned as they are.
-inline constexpr int kLeastSmoothed = 256;  // eight segments of the shortest length
+inline constexpr int kLeastSmoothed = 256;  // derived: eight segments of the shortest length
 std::vector<double> wiener_smoothed(std::span<const double> x, NoiseSpectrum noise);
 
 }  // namespace omnihil

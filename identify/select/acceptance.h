@@ -54,7 +54,7 @@ struct AcceptanceContext {
   const Residuals* base = nullptr;
 };
 
-// As `signal_to_null`: that gain was tested before, or there is no screening to test it by.
+// As `signal_to_null`: that gain was tested before, or there is no screening to test it by. A marker, above any threshold.
 inline constexpr double kScreenedBefore = 1e9;
 
 // `signal_to_null`: the screening's gain over the largest gain in the simulated null's replicates;

@@ -81,7 +81,7 @@ class Binning {
     }
     std::sort(sizes.begin(), sizes.end());
     std::vector<int> out(static_cast<std::size_t>(track.size()), -1);
-    constexpr std::size_t kLeastPerBin = 10;  // a variance to within 45 % (sqrt(2 / n))
+    constexpr std::size_t kLeastPerBin = 10;  // a variance to within 45 % (sqrt(2 / n)); a choice
     if (sizes.size() < kLeastPerBin * kBins) return out;
     for (std::size_t i = 0; i < out.size(); ++i) {
       const double v = std::abs(track[static_cast<Eigen::Index>(i)]);

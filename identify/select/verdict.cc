@@ -42,7 +42,8 @@ std::string unit_of(const Predictor& predictor, const std::string& channel) {
 
 // "2.1 rad/s RMS of velocity on held-out runs, 9 times the sensors' noise"
 std::string remainder(const ResidualExcess& excess) {
-  constexpr double kAtNoise = 1.05;  // of its root mean square: the replicates' own scatter is of that order
+  constexpr double kAtNoise =
+      1.05;  // of its root mean square: the replicates' own scatter is of that order; a choice
   const double ratio = std::sqrt(std::max(0.0, 1.0 + excess.excess));
   return fmt::format("{:.3g} {} RMS of {} on {} runs, {}", excess.rms, excess.unit, excess.signal,
                      excess.held_out ? "held-out" : "fit",

@@ -134,7 +134,7 @@ FaultPromise learn_fault(const std::vector<TwinScore>& scores, std::size_t f) {
     if (s.information > 0.0) size.push_back(s.size), information.push_back(s.information);
   }
   if (size.empty()) return p;
-  constexpr int kRounds = 5;  // weights and bias by turns; the second round changes the third digit
+  constexpr int kRounds = 5;  // weights and bias by turns; by cost: the second round changes the third digit
   for (int round = 0; round < kRounds; ++round) {
     double sum = 0.0, weight = 0.0;
     std::vector<double> square;
@@ -194,7 +194,7 @@ TwinPromise learned_promise(const std::vector<TwinWindow>& healthy, const TwinBa
   }
   p.least = least_sizes(bank);
   p.offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bank.faults.size()));
-  constexpr int kRounds = 3;  // noise and offset by turns; the third round changes the third digit
+  constexpr int kRounds = 3;  // noise and offset by turns; by cost: the third round changes the third digit
   for (int round = 0; round < kRounds; ++round) {
     for (auto& [name, signal] : p.signals) learn_signal(healthy, name, p.offset, signal);
     if (round + 1 < kRounds) p.offset = learn_offset(healthy, bank, p);

@@ -10,10 +10,12 @@ namespace {
 using State = Eigen::Vector4d;
 using Matrix = Eigen::Matrix4d;
 
-constexpr double kBiasSigma = 0.3;  // of an accelerometer, m/s2: several times a calibrated one's
+constexpr double kBiasSigma = 0.3;  // of an accelerometer, m/s2: several times a calibrated one's; a choice
 constexpr double kWide = 1e6;       // variance of what is not known at the start: any that is large; a choice
-constexpr int kLeastPower = -2,
-              kMostPower = 12;  // of ten: of q. Robots' jerks are 1e2 to 1e4 m/s3 over milliseconds
+constexpr int
+    kLeastPower = -2,
+    kMostPower =
+        12;  // of ten: of q. Robots' jerks are 1e2 to 1e4 m/s3 over milliseconds: a choice that holds them
 
 Matrix transition(double h) {
   Matrix f = Matrix::Identity();

@@ -120,7 +120,7 @@ TyreIdentification identify_tyre(const Dataset& dataset, const Candidate& nomina
   TyreIdentification t;
   t.points = tyre_points(dataset, nominal, t.faults);
   if (!t.faults.empty()) return t;
-  constexpr std::size_t kLeastPoints = 200;  // 2 s of a run
+  constexpr std::size_t kLeastPoints = 200;  // 2 s of a run; a choice
   if (t.points.all.size() < kLeastPoints) {
     t.faults.push_back(
         fmt::format("{} points of force over slip; needed: {} (pushes of half a second, forward and "

@@ -13,6 +13,7 @@
 namespace omnihil {
 namespace {
 
+// Choices where nothing else is said; sensitivity not measured.
 constexpr double kEvery_s = 0.01;  // a point
 constexpr double kEnds_s = 0.1;    // of a run, where the smoother has one side only
 constexpr double kJump = 0.02;     // of a duty, from sample to sample
@@ -195,7 +196,8 @@ class Reader {
   bool measured_current = false;
 
  private:
-  static constexpr double kStribeckFree_rad_s = 5.0;  // of the rotor: where its friction has its sign
+  static constexpr double kStribeckFree_rad_s =
+      5.0;  // of the rotor: where its friction has its sign; a choice
   const Dataset& dataset_;
   RollingParams<double> p_;
   double coulomb_Nm_;
@@ -231,7 +233,7 @@ RollingRadius rolling_radius(const std::vector<Raw>& raw, double most_N, double 
     if (std::abs(r.force_N) < kLightShare * most_N && std::abs(r.hub_m_s) > kLeastSpeed_m_s &&
         std::abs(r.omega_rad_s) * stated_m > kLeastSpeed_m_s)
       light.push_back(&r);
-  constexpr std::size_t kEnough = 30;
+  constexpr std::size_t kEnough = 30;  // a mean to a fifth of the scatter (1 / sqrt(n)); a choice
   if (light.size() < kEnough)
     return {stated_m, 0.01 * stated_m};  // guess: nothing rolls freely in these data
   std::vector<double> weight(light.size(), 1.0);
