@@ -12,14 +12,18 @@ import hashlib
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FIRST_S = 15.0  # to the first ranking: somebody waits for it
+# Raw recordings that an example's script makes a dataset of, and which of its folders that is.
+IMPORTED = {"kiwi_omni": ("examples/import/kiwi_omni.sh", "robot")}
 WHOLE_CPU_S = {"axis": 60.0, "robot": 120.0}  # for everything: a coffee is not worth fetching
 
 
@@ -46,15 +50,33 @@ def rig_of(folder):
     return tomllib.loads((folder / "dataset.toml").read_text()).get("rig", "axis")
 
 
-def measured_sets(names):
+def imported(name, recordings, args):
+    """The dataset that an example's script makes of recordings; None where it fails."""
+    script, part = IMPORTED[name]
+    folder = args.results / "imported" / name
+    with tempfile.TemporaryDirectory() as made:
+        run = subprocess.run([ROOT / script, recordings, made, args.program], capture_output=True, text=True, check=False)
+        if run.returncode != 0:
+            print(f"{name}: {script}: exit code {run.returncode}: {run.stderr.strip()[-300:]}", file=sys.stderr)
+            return None
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(pathlib.Path(made) / part, folder)
+    return folder
+
+
+def measured_sets(args):
     """Folders of the shared data, or the reason why there are none."""
+    names = args.sets
     shared = os.environ.get("OMNIHIL_SHARED")
     if not shared:
         return [], "OMNIHIL_SHARED is not set"
     data = pathlib.Path(shared) / "data"
     if not data.is_dir():
         return [], f"{data} is no folder"
-    return [f.parent for f in sorted(data.glob("*/dataset.toml")) if not names or f.parent.name in names], ""
+    found = [f.parent for f in data.glob("*/dataset.toml") if not names or f.parent.name in names]
+    raw = [n for n in IMPORTED if (data / n).is_dir() and not (data / n / "dataset.toml").exists() and (not names or n in names)]
+    found += [f for f in (imported(n, data / n, args) for n in raw) if f]
+    return sorted(found, key=lambda f: f.name), ""
 
 
 def blind_cases(count, results):
@@ -164,7 +186,7 @@ def main():
           f"of CPU on an axis, {WHOLE_CPU_S['robot']:.0f} s on a robot, idle cores")
     print(f"{'set':<30} {'first s':>7} {'its CPU':>7} {'wall s':>7} {'CPU s':>7}  {'verdict':<24} effects", flush=True)
     count = count_missed = 0
-    for what, (folders, why) in (("measured sets", measured_sets(args.sets)),
+    for what, (folders, why) in (("measured sets", measured_sets(args)),
                                  ("open cases", ([], "") if args.sets else blind_cases(args.blind, args.results))):
         if why:
             print(f"skipped: {what}: {why}")

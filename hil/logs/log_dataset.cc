@@ -179,6 +179,22 @@ std::string run_toml(const std::string& file, Split use) {
   return fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\n", toml_text(file), split_name(use));
 }
 
+// What was asked of columns that this run has, or that no log has: of a pose's columns runs without one know nothing.
+std::vector<ColumnMap> asked_here(const LogRun& run, const std::vector<LogRun>& all,
+                                  const std::vector<ColumnMap>& asked) {
+  const auto has = [](const LogTable& table, const ColumnMap& a) {
+    return std::any_of(table.series.begin(), table.series.end(),
+                       [&](const LogSeries& s) { return s.name == a.column; });
+  };
+  std::vector<ColumnMap> out;
+  for (const ColumnMap& a : asked) {
+    const bool of_a_pose =
+        std::any_of(all.begin(), all.end(), [&](const LogRun& r) { return has(r.pose, a); });
+    if (has(run.table, a) || !of_a_pose) out.push_back(a);
+  }
+  return out;
+}
+
 // "walk.wpilog" -> "walk"; of two of one name the second is walk_2.
 std::string stem_of(const std::string& path, std::map<std::string, int>& used) {
   std::string stem = plain_name(fs::path(path).stem().string());
@@ -188,14 +204,23 @@ std::string stem_of(const std::string& path, std::map<std::string, int>& used) {
 
 }  // namespace
 
-LogDataset make_log_dataset(const std::vector<LogRun>& runs, const LogDatasetOptions& o) {
+LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOptions& o) {
   LogDataset made;
   Channels channels(o, made);
   std::vector<DatasetFile> csv;
   std::map<std::string, int> used;
   std::string run_text, picture;
-  for (const LogRun& run : runs) {
-    const LogMeaning meaning = recognise(run.table, o.context, o.asked);
+  std::vector<LogRun> runs = given;
+  for (LogRun& run : runs) {
+    std::vector<ColumnMap> asked = asked_here(run, given, o.asked);
+    if (!run.pose_path.empty()) {
+      JoinedPose joined =
+          join_pose(run.table, run.pose, o.asked, o.geometry, o.context, run.path, run.pose_path);
+      run.table = std::move(joined.table);
+      asked = std::move(joined.asked);
+      made.notes.push_back(joined.note);
+    }
+    const LogMeaning meaning = recognise(run.table, o.context, asked);
     if (&run == &runs.front()) made.table = table_of(run, meaning, o);
     for (const std::string& note : run.table.notes) made.notes.push_back(note);
     add_doubts(run.path, meaning.doubts, made);

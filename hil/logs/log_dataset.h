@@ -8,13 +8,15 @@
 // A table's rows stay rows; those without a time, or at the time of the row before, are left out and counted. Topics
 // are put on the clock of the motion with the most samples: what was asked of the drive holds its last value, anything
 // else stands at its nearest instant within half a period and is empty elsewhere; by how much the drive is late is
-// said. The first instant is 0 s. Throws BadLog where time goes backwards. Cannot: align clocks of two files; resample.
+// said. Poses of another device beside a run are put on its clock (pose_join.h). The first instant is 0 s. Throws BadLog where
+// time goes backwards. Cannot: align clocks of other logs; resample.
 #pragma once
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "hil/dataset/dataset_export.h"
+#include "hil/logs/pose_join.h"
 #include "hil/logs/recognise.h"
 #include "hil/text/hashed_file.h"
 
@@ -25,6 +27,8 @@ struct LogRun {
   HashedFile file;
   LogTable table;
   Split use = Split::kTraining;
+  std::string pose_path;  // poses that another device took of the same drive; empty: none
+  LogTable pose{};
 };
 
 struct LogDatasetOptions {
@@ -34,6 +38,7 @@ struct LogDatasetOptions {
   std::string model_text;       // of model.toml
   double counts_per_rev = 0.0;  // of an encoder, after quadrature; 0: not known
   bool on_output = false;       // the encoder's shaft
+  PoseGeometry geometry;        // of a robot: what its wheels say of its motion, where there are poses
   double fit_share = 1.0;       // of a fit run's time; the rest becomes a holdout run
 };
 

@@ -108,7 +108,12 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-bool is_unit(std::string_view word) { return find_unit(word) != nullptr; }
+namespace {
+// "-rad": the other way round.
+std::string_view without_sign(std::string_view word) { return word.starts_with('-') ? word.substr(1) : word; }
+}  // namespace
+
+bool is_unit(std::string_view word) { return find_unit(without_sign(word)) != nullptr; }
 
 std::vector<std::string> units_for(std::string_view to) {
   std::vector<std::string> out;
@@ -127,7 +132,7 @@ std::vector<std::string> units_for(std::string_view to) {
 
 std::optional<UnitScale> unit_scale(std::string_view from, std::string_view to, const UnitContext& context,
                                     std::string& fault) {
-  const Unit* a = find_unit(from);
+  const Unit* a = find_unit(without_sign(from));
   const Unit* b = find_unit(to);
   if (a == nullptr || b == nullptr || a->kind != b->kind) {
     std::string allowed;
@@ -135,7 +140,7 @@ std::optional<UnitScale> unit_scale(std::string_view from, std::string_view to, 
     fault = fmt::format("\"{}\" is no unit for this; allowed: {}", from, allowed);
     return std::nullopt;
   }
-  double scale = a->factor / b->factor;
+  double scale = (from.starts_with('-') ? -1.0 : 1.0) * a->factor / b->factor;
   if (a->electrical) {
     if (!(context.pole_pairs > 0.0)) {
       fault = fmt::format("\"{}\" needs the number of pole pairs: motor.pole_pairs in the model", from);

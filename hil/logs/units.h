@@ -5,7 +5,8 @@
 //   split_unit("motor current [mA]");                                          // {"motor current", "mA"}
 //
 // Known: times, angles, speeds, currents, voltages, torques, forces, lengths, accelerations, temperatures, ratios,
-// counts. Electrical speeds and angles ("erpm", "erad/s", "erad") need the number of pole pairs. Turns are full turns;
+// counts. "-rad" is a radian the other way round.
+// Electrical speeds and angles ("erpm", "erad/s", "erad") need the number of pole pairs. Turns are full turns;
 // "Hz" of a speed is turns a second. Cannot: prefixes and products in general.
 #pragma once
 #include <optional>

@@ -162,6 +162,16 @@ TEST_F(ImportVerb, LiftedWheelsOfARealRobotBecomeDatasets) {
     EXPECT_EQ(ran.exit_code, 0) << ran.text;
     EXPECT_TRUE(ran.says("velocity  holdout")) << ran.text;
   }
+  // the whole robot: three duties, three speeds, a heading, a video on its clock
+  const std::string toml = text_of(out() / "robot/dataset.toml");
+  for (const char* channel :
+       {"duty_3 = ", "wheel_speed_3 = ", "vision_x = ", "vision_theta = ", "rig = \"robot\""})
+    EXPECT_NE(toml.find(channel), std::string::npos) << channel;
+  EXPECT_EQ(toml.find("duty_4"), std::string::npos);
+  const Ran ran = run_omnihil("compare" + shell(out() / "robot"));
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+  for (const char* signal : {"wheel_speed_1", "wheel_speed_3", "vision_x", "vision_theta"})
+    EXPECT_TRUE(ran.says(signal)) << ran.text;
 }
 
 }  // namespace

@@ -68,5 +68,65 @@ TEST_F(SimRobotVerb, TheDefaultDriveGripsAndItsModelExplainsIt) {
   EXPECT_EQ(compared.exit_code, 0) << compared.text;
 }
 
+// The same with other wheels: the bench's plant and the comparison's robot agree on them to a few counts.
+TEST_F(SimRobotVerb, TwoThreeAndSixWheelsAreExplainedByTheirModels) {
+  const std::string four = text_of(fs::path(OMNIHIL_SOURCE_DIR) / "models/robots/omni_default.toml");
+  struct Wheels {
+    std::string angles;
+    std::size_t count;
+    bool rollers;
+  };
+  for (const Wheels& w : {Wheels{"[90, 270]", 2, false},
+                          {"[150, 270, 30]", 3, true},
+                          {"[30, 90, 150, 210, 270, 330]", 6, true}}) {
+    fs::remove_all(out_);
+    fs::create_directories(out_);
+    std::string model = four;
+    const auto put = [&](const std::string& from, const std::string& to) {
+      ASSERT_NE(model.find(from), std::string::npos) << from;
+      model.replace(model.find(from), from.size(), to);
+    };
+    put("[55, 135, 225, 305]", w.angles);
+    put("\"../motors/", "\"" + (fs::path(OMNIHIL_SOURCE_DIR) / "models/motors/").string());
+    if (!w.rollers) {  // the wheel's own grip: sideways as ahead
+      put("extremum_slip   = { value = 1.0, ", "extremum_slip   = { value = 0.10,");
+      put("extremum_value  = { value = 0.02,", "extremum_value  = { value = 0.75,");
+      put("asymptote_slip  = { value = 2.0, ", "asymptote_slip  = { value = 0.40,");
+      put("asymptote_value = { value = 0.01,", "asymptote_value = { value = 0.60,");
+    }
+    std::ofstream(out_ / "wheels.toml") << model;
+    const Ran ran = run_omnihil("sim" + shell(out_ / "wheels.toml") + "--excite steps --duration 4 --out " +
+                                shell(out_ / "bench"));
+    ASSERT_EQ(ran.exit_code, 0) << ran.text;
+    const std::string toml = text_of(out_ / "bench" / "dataset.toml");
+    EXPECT_NE(toml.find("duty_" + std::to_string(w.count)), std::string::npos);
+    EXPECT_EQ(toml.find("duty_" + std::to_string(w.count + 1)), std::string::npos);
+    std::string tubes;
+    for (std::size_t i = 1; i <= w.count; ++i) tubes += " --tube velocity_" + std::to_string(i) + "=4";
+    const Ran compared = run_omnihil("compare " + shell(out_ / "bench") + tubes);
+    EXPECT_EQ(compared.exit_code, 0) << w.angles << compared.text;
+  }
+}
+
+TEST_F(SimRobotVerb, ADatasetOfAnotherNumberOfWheelsThanItsModelIsRefused) {
+  ASSERT_EQ(run_omnihil("sim omni_default --excite steps --duration 0.5 --out " + shell(out_)).exit_code, 0);
+  std::string model = text_of(out_ / "model.toml");
+  const auto at = model.find("wheel_angle_deg"), open = model.find('[', at), close = model.find(']', open);
+  ASSERT_NE(at, std::string::npos);
+  model.replace(open, close + 1 - open, "[150, 270, 30]");
+  std::ofstream(out_ / "model.toml") << model;
+  const Ran ran = run_omnihil("compare " + shell(out_));
+  EXPECT_EQ(ran.exit_code, 2) << ran.text;
+  EXPECT_TRUE(ran.says("the model has 3 wheels")) << ran.text;
+}
+
+TEST_F(SimRobotVerb, TheDongleServesRobotsOfFourWheelsOnlyAndSaysSo) {
+  const Ran ran =
+      run_omnihil("serve --duration 0.1 --clock free --device" + shell(out_) +
+                  "--radio ulaval-hermes --robot '" OMNIHIL_SOURCE_DIR "/examples/import/kiwi_robot.toml'");
+  EXPECT_EQ(ran.exit_code, 2) << ran.text;
+  EXPECT_TRUE(ran.says("has 3 wheels; radio, firmware and recordings know four")) << ran.text;
+}
+
 }  // namespace
 }  // namespace omnihil

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -60,9 +61,15 @@ bool take_model(const ImportDatasetWords& words, LogDatasetOptions& options) {
   options.context.rig = file.rig == "robot" ? Rig::kRobot : Rig::kAxis;
   options.context.linear = file.linear;
   options.context.pole_pairs = file.parameters.value_or("motor.pole_pairs", 0.0);
+  if (file.robot) {
+    options.geometry.wheels = wheel_geometry(*file.robot);
+    options.geometry.gear_ratio = file.robot->gear_ratio;
+  }
   options.model_text = file.motor_file.empty() ? model.text : candidate_text(*model.candidate);
   if (!(options.counts_per_rev > 0.0))
     options.counts_per_rev = file.parameters.value_or("encoder.counts_per_turn", 0.0);
+  options.geometry.counts_per_rotor_turn =
+      options.counts_per_rev / (options.on_output ? options.geometry.gear_ratio : 1.0);
   return true;
 }
 
@@ -86,6 +93,20 @@ std::vector<LogRun> read_runs(const ImportDatasetWords& words) {
   add(words.files, kTraining);
   add(words.holdout, kValidation);
   add(words.extrapolation, kExtrapolation);
+  for (const std::string& pair : words.poses) {
+    const std::size_t at = pair.find('=');
+    const auto run = std::find_if(runs.begin(), runs.end(), [&](const LogRun& r) {
+      return at != std::string::npos && fs::path(r.path).stem().string() == pair.substr(0, at);
+    });
+    if (run == runs.end()) {
+      std::string names;
+      for (const LogRun& r : runs) names += (names.empty() ? "" : ", ") + fs::path(r.path).stem().string();
+      throw std::invalid_argument(
+          fmt::format("--pose {}: no such run; allowed: RUN=FILE, RUN one of {}", pair, names));
+    }
+    run->pose_path = pair.substr(at + 1);
+    run->pose = read_log(run->pose_path, {});
+  }
   return runs;
 }
 
@@ -137,7 +158,7 @@ int check_written(const LogDataset& made, const std::string& out) {
 bool ImportDatasetWords::any() const {
   return !holdout.empty() || !extrapolation.empty() || !maps.empty() || !columns.empty() ||
          !imposed.empty() || !model.empty() || !title.empty() || counts_per_rev > 0.0 || period_s > 0.0 ||
-         split < 1.0 || si;
+         split < 1.0 || si || !poses.empty();
 }
 
 int import_dataset(ImportDatasetWords words) {
@@ -190,6 +211,11 @@ void add_import_dataset_options(Verb& verb, ImportDatasetWords& words) {
       .type_name("NAMES");
   verb.add_option("--period", words.period_s, "dataset: seconds from row to row, where no column is the time")
       .not_negative();
+  verb.add_option("--pose", words.poses,
+                  "dataset: RUN=FILE, poses that another device took of a robot's run (RUN: its log's name "
+                  "without the "
+                  "ending), on a clock of its own; put on the run's by what the wheels say")
+      .type_name("RUN=FILE");
   verb.add_option("--imposed", words.imposed, "dataset: signals that the bench set, such as motor_current")
       .type_name("SIGNAL");
   verb.add_option("--title", words.title, "dataset: its title");

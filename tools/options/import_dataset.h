@@ -11,7 +11,7 @@
 namespace omnihil {
 
 struct ImportDatasetWords {
-  std::vector<std::string> files, holdout, extrapolation, maps, columns, imposed;
+  std::vector<std::string> files, holdout, extrapolation, maps, columns, imposed, poses;
   std::string model, out, title, shaft = "rotor";
   double counts_per_rev = 0.0, period_s = 0.0, split = 1.0;
   bool si = false;

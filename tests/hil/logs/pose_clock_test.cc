@@ -1,0 +1,135 @@
+// Poses of another device on the robot's clock: lags that are known, frames that are turned, motions that are not one.
+#include "hil/logs/pose_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hil/logs/pose_join.h"
+#include "sim/law/random.h"
+
+namespace omnihil {
+namespace {
+
+using Complex = std::complex<double>;
+
+// Ahead, aside, back, with rests: a velocity at any time.
+Complex velocity(double t) {
+  if (t < 1.0 || t > 9.0) return 0.0;
+  return {0.4 * std::sin(0.9 * t), 0.3 * std::sin(1.7 * t + 0.4)};
+}
+
+MotionTrack robot(double noise_m_s) {
+  MotionTrack track;
+  for (int k = 0; k <= 1000; ++k) {
+    const auto n = static_cast<std::uint64_t>(k);
+    track.time_s.push_back(0.01 * k);
+    track.velocity_m_s.push_back(velocity(0.01 * k) +
+                                 Complex(noise_m_s * gaussian(1, 0, n), noise_m_s * gaussian(1, 1, n)));
+  }
+  return track;
+}
+
+// A path seen at 60 Hz whose clock is `late` ahead, in a frame that is turned, at another scale.
+MotionTrack camera(double late_s, double frame_rad, double scale) {
+  std::vector<double> time_s;
+  std::vector<Complex> place;
+  Complex at = 0.0;
+  for (int k = 0; k <= 20000; ++k) {
+    at += velocity(1e-3 * k - 5.0) * 1e-3;  // begins 5 s before the robot's log does
+    if (k % 16 != 0) continue;
+    time_s.push_back(1e-3 * k - 5.0 + late_s);
+    place.push_back(scale * at * std::polar(1.0, frame_rad));
+  }
+  return track_of_path(time_s, place, 0.1);
+}
+
+TEST(PoseClock, FindsLagFrameAndScaleUnderTheEncodersNoise) {
+  for (const double late_s : {0.0, 2.173, -3.4}) {
+    const PoseClock c = pose_clock(robot(0.5), camera(late_s, 0.3, 0.7));  // noise as large as the motion
+    ASSERT_EQ(c.problem, "");
+    EXPECT_NEAR(c.offset_s, late_s, 0.03);
+    EXPECT_LT(c.sigma_s, 0.1);
+    EXPECT_NEAR(c.frame_rad, 0.3, 0.05);
+    EXPECT_NEAR(c.scale, 0.7, 0.07);
+  }
+}
+
+TEST(PoseClock, IsExactWithoutNoise) {
+  const PoseClock c = pose_clock(robot(0.0), camera(1.234, -2.0, 1.0));
+  EXPECT_NEAR(c.offset_s, 1.234, 2e-3);
+  EXPECT_NEAR(c.frame_rad, -2.0, 2e-3);
+  EXPECT_NEAR(c.scale, 1.0, 0.02);  // the chord over 0.1 s and the mean over 0.2 s cut corners
+}
+
+TEST(PoseClock, AnotherDriveIsRefused) {
+  std::vector<double> time_s;
+  std::vector<Complex> place;
+  for (int k = 0; k <= 1000; ++k) {
+    time_s.push_back(0.01 * k);
+    place.emplace_back(0.2 * std::sin(0.07 * k), 0.3 * std::cos(0.11 * k));
+  }
+  const PoseClock c = pose_clock(robot(0.0), track_of_path(time_s, place, 0.1));
+  EXPECT_NE(c.problem.find("do not tell one motion"), std::string::npos) << c.correlation;
+}
+
+LogTable table(std::vector<LogSeries> series) {
+  LogTable t;
+  t.series = std::move(series);
+  return t;
+}
+
+TEST(PoseJoin, PosesStandAtTheRowsTheyWereTakenAt) {
+  PoseGeometry g;
+  g.wheels.wheels = 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double a = std::array{2.6179938779914944, 4.71238898038469, 0.5235987755982988}[i];
+    g.wheels.cos_angle[i] = std::cos(a);
+    g.wheels.sin_angle[i] = std::sin(a);
+  }
+  g.wheels.wheel_center_radius_m = 0.08;
+  g.wheels.wheel_radius_m = 0.025;
+  std::vector<LogSeries> log(5), pose(3);
+  const char* names[] = {"t", "w1", "w2", "w3", "u1"};
+  for (std::size_t s = 0; s < 5; ++s) log[s].name = names[s];
+  const char* pose_names[] = {"when", "px", "py"};
+  for (std::size_t s = 0; s < 3; ++s) pose[s].name = pose_names[s];
+  for (int k = 0; k <= 1000; ++k) {
+    const double t = 0.01 * k;
+    log[0].value.push_back(t);
+    const auto w = wheel_speeds<double>(g.wheels, {velocity(t).real(), velocity(t).imag(), 0.0});
+    for (std::size_t i = 0; i < 3; ++i) log[1 + i].value.push_back(w[i]);
+    log[4].value.push_back(0.0);
+  }
+  Complex at = 0.0;
+  std::vector<Complex> true_place;
+  for (int k = 0; k <= 1000; ++k) {
+    for (int j = 0; j < 10; ++j) at += velocity(0.01 * k + 1e-3 * j) * 1e-3;
+    true_place.push_back(at);
+    pose[0].value.push_back(0.01 * k + 3.0);
+    pose[1].value.push_back(at.real());
+    pose[2].value.push_back(at.imag());
+  }
+  std::vector<std::string> faults;
+  std::vector<ColumnMap> asked;
+  for (const char* map :
+       {"t=time:s", "w1=wheel_speed_1:rad/s", "w2=wheel_speed_2:rad/s", "w3=wheel_speed_3:rad/s",
+        "u1=duty_1:%", "when=time:s", "px=vision_x:m", "py=vision_y:m"})
+    asked.push_back(parse_map(map, faults));
+  ASSERT_TRUE(faults.empty());
+  MeaningContext context;
+  context.rig = Rig::kRobot;
+  const JoinedPose joined = join_pose(table(log), table(pose), asked, g, context, "drive.csv", "video.csv");
+  ASSERT_EQ(joined.columns, (std::vector<std::string>{"pose_vision_x", "pose_vision_y"}));
+  const std::vector<double>& x = joined.table.series[5].value;
+  ASSERT_EQ(x.size(), 1001u);
+  for (std::size_t k = 100; k < 900; k += 50)
+    EXPECT_NEAR(x[k], true_place[k].real(), 0.012) << k;  // within two rows of 0.4 m/s
+  EXPECT_NE(joined.note.find("3.0"), std::string::npos) << joined.note;
+  // what no wheel told cannot be lined up
+  log.erase(log.begin() + 2);
+  EXPECT_THROW(join_pose(table(log), table(pose), asked, g, context, "drive.csv", "video.csv"), BadLog);
+}
+
+}  // namespace
+}  // namespace omnihil
