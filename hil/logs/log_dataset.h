@@ -27,7 +27,7 @@ struct LogRun {
   HashedFile file;
   LogTable table;
   Split use = Split::kTraining;
-  std::string pose_path;  // poses that another device took of the same drive; empty: none
+  std::string pose_path{};  // poses that another device took of the same drive; empty: none
   LogTable pose{};
 };
 

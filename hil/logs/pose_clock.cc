@@ -100,7 +100,9 @@ MotionTrack track_of_path(const std::vector<double>& time_s, const std::vector<C
     while (time_s[k] - time_s[from] > 0.5 * span_s) ++from;
     while (to + 1 < time_s.size() && time_s[to] - time_s[k] < 0.5 * span_s) ++to;
     if (to == from) continue;
-    t.time_s.push_back(time_s[k]);
+    const double middle_s = 0.5 * (time_s[from] + time_s[to]);  // at the ends the chord has one side only
+    if (!t.time_s.empty() && middle_s <= t.time_s.back()) continue;
+    t.time_s.push_back(middle_s);
     t.velocity_m_s.push_back((place[to] - place[from]) / (time_s[to] - time_s[from]));
   }
   return t;
@@ -125,7 +127,9 @@ PoseClock pose_clock(const MotionTrack& robot_track, const MotionTrack& pose_tra
   }
   out.offset_s = pose_track.time_s.front() - robot_track.time_s.front() + *lag * kStep_s;
   out.frame_rad = std::arg(at.product);
-  out.scale = std::abs(at.product) / at.robot;
+  out.scale =
+      at.pose /
+      std::abs(at.product);  // the noise is the wheels': over their own energy it would come out too small
   const std::ptrdiff_t near = std::lround(kNear_s / kStep_s), middle = std::lround(*lag);
   double sum = 0.0, square = 0.0, count = 0.0;
   for (int s = 0; s < kStretches; ++s) {

@@ -6,8 +6,8 @@
 //
 // Law: both tell a velocity in the plane, v as a complex number: the robot by its wheels, turned by its heading; the pose
 // by its path. The lag is where |sum conj(v_robot) v_pose| / sqrt(sum |v_robot|^2 sum |v_pose|^2) is largest, both means over
-// kSmooth_s, in steps of kStep_s, refined by a parabola. The angle of that sum is that between the two frames, its size over
-// sum |v_robot|^2 how far the pose goes where the wheels say one. A pose without a place is lined up by its turn rate.
+// kSmooth_s, in steps of kStep_s, refined by a parabola. The angle of that sum is that between the two frames, its size under
+// sum |v_pose|^2 how far the pose goes where the wheels say one. A pose without a place is lined up by its turn rate.
 // Its spread is that of four stretches. Cannot: clocks that drift; a robot that drives one way at one speed.
 #pragma once
 #include <complex>
