@@ -91,8 +91,12 @@ MotionTrack robot_track(const LogTable& log, const LogMeaning& meaning, const Po
 }
 
 std::vector<double> unwrapped(std::vector<double> angle) {
-  for (std::size_t k = 1; k < angle.size(); ++k)
-    angle[k] = angle[k - 1] + std::remainder(angle[k] - angle[k - 1], kTurn);
+  double last = kEmpty;
+  for (double& a : angle) {
+    if (!std::isfinite(a)) continue;
+    if (std::isfinite(last)) a = last + std::remainder(a - last, kTurn);
+    last = a;
+  }
   return angle;
 }
 
@@ -112,30 +116,37 @@ JoinedPose join_pose(const LogTable& log, const LogTable& pose, const std::vecto
   const bool places = !x.empty() && !y.empty();
   if (!places && theta.empty())
     throw BadLog(pose_name + ": no pose: give --map \"COLUMN=vision_x:m\" and vision_y, or vision_theta");
-  std::vector<Complex> path;
+  // A frame in which the camera did not see the robot tells nothing.
+  std::vector<double> seen_s;
+  std::vector<Complex> seen;
+  std::vector<std::size_t> frame;
   const std::vector<double> heading = unwrapped(theta);
-  for (std::size_t k = 0; k < time_s.size(); ++k)
-    path.push_back(places ? Complex(x[k], y[k]) : Complex(heading[k], 0.0));
+  for (std::size_t k = 0; k < time_s.size(); ++k) {
+    const Complex at = places ? Complex(x[k], y[k]) : Complex(heading[k], 0.0);
+    if (!std::isfinite(time_s[k]) || !std::isfinite(at.real()) || !std::isfinite(at.imag())) continue;
+    seen_s.push_back(time_s[k]), seen.push_back(at), frame.push_back(k);
+  }
   const PoseClock clock = pose_clock(robot_track(log, of_log, geometry, !places, log_name),
-                                     track_of_path(time_s, path, kChord_s));
+                                     track_of_path(seen_s, seen, kChord_s));
   if (!clock.problem.empty())
     throw BadLog(fmt::format("{} beside {}: {}", pose_name, log_name, clock.problem));
   const std::vector<double> rows_s = values_of(log, of_log, "time");
   const double half_s = 0.5 * median_period_s(rows_s);
-  const bool own_heading = !theta.empty();
+  // One frame for place and heading: the robot's own, where its log has a heading.
+  const bool own_heading = !theta.empty() && of_log.of("vision_theta") == nullptr;
   const Complex turned = own_heading ? Complex(1.0, 0.0) : std::polar(1.0, -clock.frame_rad);
   std::vector<double> distance(rows_s.size(), INFINITY), px(rows_s.size(), kEmpty), py = px, ptheta = px;
-  for (std::size_t k = 0; k < time_s.size(); ++k) {
-    const double t = time_s[k] - clock.offset_s;
+  for (std::size_t k = 0; k < seen_s.size(); ++k) {
+    const double t = seen_s[k] - clock.offset_s;
     auto it = std::lower_bound(rows_s.begin(), rows_s.end(), t);
     if (it == rows_s.end() || (it != rows_s.begin() && t - *(it - 1) <= *it - t)) --it;
     const auto at = static_cast<std::size_t>(it - rows_s.begin());
     const double off = std::abs(*it - t);
     if (off > half_s || off >= distance[at]) continue;
     distance[at] = off;
-    const Complex place = path[k] * turned;
+    const Complex place = seen[k] * turned;
     if (places) px[at] = place.real(), py[at] = place.imag();
-    if (own_heading) ptheta[at] = theta[k];
+    if (own_heading) ptheta[at] = theta[frame[k]];
   }
   const auto add = [&](const char* signal, const char* unit, std::vector<double> values) {
     const std::string name = std::string("pose_") + signal;
@@ -144,7 +155,7 @@ JoinedPose join_pose(const LogTable& log, const LogTable& pose, const std::vecto
     out.columns.push_back(name);
   };
   if (places) add("vision_x", "m", std::move(px)), add("vision_y", "m", std::move(py));
-  if (own_heading && of_log.of("vision_theta") == nullptr) add("vision_theta", "rad", std::move(ptheta));
+  if (own_heading) add("vision_theta", "rad", std::move(ptheta));
   out.note = fmt::format("{} beside {}: its clock is {:.3f} s +- {:.3f} s ahead (correlation {:.2f})",
                          pose_name, log_name, clock.offset_s, clock.sigma_s, clock.correlation);
   if (places)

@@ -106,11 +106,9 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-}  // namespace
-
-namespace {
 // "-rad": the other way round.
 std::string_view without_sign(std::string_view word) { return word.starts_with('-') ? word.substr(1) : word; }
+
 }  // namespace
 
 bool is_unit(std::string_view word) { return find_unit(without_sign(word)) != nullptr; }
