@@ -255,7 +255,8 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
   s.approach.assign(r.size(), 0.0);
   if (!s.position.empty()) {
     const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());
-    const double least = std::max(kShareOfRange * (*high - *low), 3.0 * estimate_noise(s.position).quantum);
+    const double least = std::max(kShareOfRange * (*high - *low),
+                                  3.0 * estimate_noise(s.position, Differences::kSecond).quantum);
     double turned_at = s.position.front(), direction = 0.0;
     std::size_t first = r.size();
     for (std::size_t k = 1; k < r.size(); ++k) {
@@ -272,8 +273,8 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
     for (std::size_t k = 0; k < first && first < r.size(); ++k) s.approach[k] = s.approach[first];
   }
   const NeededName needed = needed_name(dataset, in.kind);
-  add(s, needed.name, needed.unit, AxisOutput::kNeededInput, r.command, estimate_noise(r.command).sigma,
-      false);
+  add(s, needed.name, needed.unit, AxisOutput::kNeededInput, r.command,
+      estimate_noise(r.command, Differences::kSecond).sigma, false);
 }
 
 }  // namespace omnihil

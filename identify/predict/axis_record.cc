@@ -1,12 +1,12 @@
 #include "identify/predict/axis_record.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "identify/predict/axis_setup.h"
+#include "identify/predict/channel.h"
 #include "identify/record/bus_voltage.h"
 #include "identify/record/statistics.h"
 #include "sim/bench/axis_signal.h"
@@ -15,78 +15,12 @@ namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-// Rows from `first` on, missing ones held at the last value; before the first value, at that one.
-std::vector<double> held(const std::vector<double>* column, std::size_t first) {
-  std::vector<double> out;
-  if (column == nullptr) return out;
-  const auto known = std::find_if(column->begin(), column->end(), [](double v) { return std::isfinite(v); });
-  if (known == column->end()) return out;
-  double last = *known;
-  for (std::size_t i = 0; i < column->size(); ++i) {
-    if (std::isfinite((*column)[i])) last = (*column)[i];
-    if (i >= first) out.push_back(last);
-  }
-  return out;
-}
+constexpr std::size_t kHalfBusWindow[] = {kBusWindow / 2};
 
 std::vector<double> as_measured(const std::vector<double>* column, std::size_t first) {
   if (column == nullptr) return {};
   std::vector<double> out(column->begin() + static_cast<std::ptrdiff_t>(first), column->end());
   if (std::none_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); })) out.clear();
-  return out;
-}
-
-// Speed at the first of the positions x(t), by a least-squares parabola. Zero where it is within three of its
-// standard errors (p = 0.3 %) plus a tenth of the speed gained over the span (error of the parabola itself; a
-// choice): most records start at rest.
-double first_slope(const std::vector<double>& t, const std::vector<double>& x, std::size_t from,
-                   std::size_t to) {
-  std::vector<Eigen::Vector3d> rows;
-  std::vector<double> values;
-  for (std::size_t i = from; i < to; ++i) {
-    if (!std::isfinite(x[i])) continue;
-    const double ti = t[i] - t[from];
-    rows.push_back({1.0, ti, ti * ti});
-    values.push_back(x[i] - x[from]);
-  }
-  if (rows.size() < 4 || !std::isfinite(x[from])) return kMissing;
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    normal += rows[i] * rows[i].transpose();
-    right += rows[i] * values[i];
-  }
-  const Eigen::Matrix3d inverse = normal.inverse();
-  const Eigen::Vector3d fit = inverse * right;
-  double square = 0.0;
-  for (std::size_t i = 0; i < rows.size(); ++i) square += std::pow(values[i] - rows[i].dot(fit), 2);
-  const double error = std::sqrt(square / static_cast<double>(rows.size() - 3) * inverse(1, 1));
-  const double gained = 2.0 * std::abs(fit[2]) * rows.back()[1];
-  return std::abs(fit[1]) > 3.0 * error + 0.1 * gained ? fit[1] : 0.0;
-}
-
-// The measured bus voltage is an input of the model: its sensor's noise would appear as current. Local linear
-// minimum mean square error filter: window mean plus the deviation times its share of variance beyond the
-// noise (J.-S. Lee, IEEE PAMI 2(2), 1980).
-std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
-  constexpr std::size_t kHalf = kBusWindow / 2;
-  const std::size_t n = x.size();
-  if (n < 2 * kHalf + 1 || !(sigma > 0.0)) return x;
-  std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
-  const double level = x.front();
-  for (std::size_t k = 0; k < n; ++k) {
-    const double d = x[k] - level;
-    sum[k + 1] = sum[k] + d, square[k + 1] = square[k] + d * d;
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t from = k > kHalf ? k - kHalf : 0, to = std::min(n, k + kHalf + 1);
-    const double count = static_cast<double>(to - from);
-    const double mean = (sum[to] - sum[from]) / count;
-    const double variance = (square[to] - square[from]) / count - mean * mean;
-    const double share = variance > sigma * sigma ? 1.0 - sigma * sigma / variance : 0.0;
-    out[k] = level + mean + share * (x[k] - level - mean);
-  }
   return out;
 }
 
@@ -184,13 +118,16 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
     r.bus_measured_V = as_measured(&bus_V, r.first_row);
     const std::vector<double> given_V = held(&bus_V, r.first_row);
     const double stated_V = bus != nullptr ? bus->sigma : 0.0;
-    r.bus_V = without_noise(given_V, stated_V > 0.0 ? stated_V : estimate_noise(given_V).sigma);
+    r.bus_V = without_noise(given_V,
+                            stated_V > 0.0 ? stated_V : estimate_noise(given_V, Differences::kSecond).sigma,
+                            {.half = kHalfBusWindow});
   }
   r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
   r.velocity = as_measured(run.signal("velocity"), r.first_row);
   const Channel* speed = dataset.channel("velocity");
   const double stated_rad_s = speed != nullptr ? speed->sigma : 0.0;
-  r.velocity_sigma_rad_s = stated_rad_s > 0.0 ? stated_rad_s : estimate_noise(r.velocity).sigma;
+  r.velocity_sigma_rad_s =
+      stated_rad_s > 0.0 ? stated_rad_s : estimate_noise(r.velocity, Differences::kSecond).sigma;
   r.position = as_measured(run.signal("position"), r.first_row);
   r.counts = as_measured(run.signal("encoder"), r.first_row);
   r.current = as_measured(run.signal("motor_current"), r.first_row);

@@ -10,19 +10,6 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Time since the input last moved by more than a twentieth of its range (a choice; a robot's: kStep_duty).
-std::vector<double> since_step(const AxisInput& in) {
-  const auto [low, high] = std::minmax_element(in.command.begin(), in.command.end());
-  const double step = 0.05 * (*high - *low);
-  std::vector<double> out;
-  double last_s = in.time_s.front(), level = in.command.front();
-  for (std::size_t k = 0; k < in.time_s.size(); ++k) {
-    if (std::abs(in.command[k] - level) > step) last_s = in.time_s[k], level = in.command[k];
-    out.push_back(in.time_s[k] - last_s);
-  }
-  return out;
-}
-
 std::vector<double> slope(const std::vector<double>& t, const std::vector<double>& x) {
   std::vector<double> out(x.size(), kMissing);
   for (std::size_t k = 1; k + 1 < x.size(); ++k) out[k] = (x[k + 1] - x[k - 1]) / (t[k + 1] - t[k - 1]);
@@ -72,7 +59,7 @@ std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model
   add("output_angle", linear ? "m" : "rad", angle);
   add("position", linear ? "m" : "rad", angle);
   if (!s.steady) add("time", "s", in.time_s);
-  if (!s.steady) add("time_since_step", "s", since_step(in));
+  if (!s.steady) add("time_since_step", "s", since_step(in.time_s, {in.command}));
   std::vector<double> command = mapped(in.command, [](double v) { return std::abs(v); });
   add("abs_command", "", command);
   std::vector<double> warm = s.measured_temperature;

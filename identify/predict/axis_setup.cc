@@ -84,18 +84,13 @@ class ForwardSetup {
 
   ComparedSignal& add(std::string name, std::string unit, AxisOutput output, std::vector<double> measured,
                       double stated_sigma) {
-    const NoiseEstimate estimate = estimate_noise(measured);
+    const NoiseEstimate estimate = estimate_noise(measured, Differences::kSecond);
     ComparedSignal c{.name = std::move(name),
                      .unit = std::move(unit),
                      .time_s = r_.time_s,
                      .measured = std::move(measured),
                      .left_out = {}};
-    c.quantum = estimate.quantum;
-    c.noise_is_stated = stated_sigma > 0.0;
-    // What is stated is the sensor's own; its reading is rounded on top: q^2 / 12 (Widrow 1956).
-    c.noise_sigma =
-        c.noise_is_stated ? std::hypot(stated_sigma, c.quantum / std::sqrt(12.0)) : estimate.sigma;
-    c.whitened_sigma = c.noise_sigma;
+    set_noise(stated_sigma, estimate, c);
     std::size_t after_gap = 0;
     for (std::size_t k = 1; k < r_.size(); ++k) {
       if (r_.gap_before(k)) c.measured[k] = kMissing, ++after_gap;
@@ -152,7 +147,7 @@ class ForwardSetup {
       add_differenced(differences, AxisOutput::kCountsDifferenced, r_.counts, r_.counts_per_output_rad, sigma,
                       1.0 / r_.counts_per_output_rad);
     } else if (!r_.position.empty() && !has_speed) {
-      const NoiseEstimate own = estimate_noise(r_.position);
+      const NoiseEstimate own = estimate_noise(r_.position, Differences::kSecond);
       const double sigma = channel("position").sigma > 0.0 ? channel("position").sigma : own.sigma;
       add_differenced(differences, AxisOutput::kPositionDifferenced, r_.position, 1.0, sigma, own.quantum);
     }
@@ -188,12 +183,6 @@ class ForwardSetup {
   AxisSetup& s_;
 };
 
-// The first measured temperature, which the winding starts at.
-double first_known(const std::vector<double>& x) {
-  const auto at = std::find_if(x.begin(), x.end(), finite);
-  return at == x.end() ? 0.0 : *at;
-}
-
 }  // namespace
 
 CommandKind axis_command_kind(const Dataset& dataset) {
@@ -219,7 +208,7 @@ AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, cons
   const AxisRecord record = make_axis_record(dataset, nominal, run);
   setup.first_row = record.first_row;
   setup.counts_per_output_rad = record.counts_per_output_rad;
-  setup.first_temperature_degC = first_known(record.temperature);
+  setup.first_temperature_degC = first_known(record.temperature, 0.0);
   if (record.size() < 2) return setup;
   if (run.steady) {
     make_steady_setup(dataset, record, setup);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/predict/predictor.h"
+#include "identify/predict/channel.h"
 #include "identify/record/filter.h"
 #include "sim/bench/axis_sim.h"
 
@@ -20,9 +20,6 @@ namespace omnihil {
 // Time constant of the whitening filter of differenced positions (predictor.h): slower errors weigh less. A
 // choice: above the mechanical time constants of a drive, below a record's length; sensitivity not measured.
 inline constexpr double kWhitening_s = 0.25;  // a choice
-// No sensor's noise is below this share of its signal's rms about the mean: 80 dB. A guess.
-inline constexpr double kLeastNoiseShare = 1e-4;  // a guess
-
 // The quantity of an AxisSample that a compared signal is predicted by.
 enum class AxisOutput : std::uint8_t {
   kVelocity,
@@ -62,13 +59,5 @@ AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, cons
 
 CommandKind axis_command_kind(const Dataset& dataset);
 Method axis_method(const Dataset& dataset);
-
-// Sensor noise of a record whose channel states none: robust sigma of its second differences (white noise
-// under a smooth signal), at least its quantum / sqrt(12) and kLeastNoiseShare. In the signal's unit.
-struct NoiseEstimate {
-  double sigma = 0.0;
-  double quantum = 0.0;
-};
-NoiseEstimate estimate_noise(const std::vector<double>& values);
 
 }  // namespace omnihil

@@ -360,7 +360,7 @@ class AxisPredictor final : public Predictor {
         add_band_noise(s, signal, p.values[c], draw);
       } else {
         for (std::size_t k = 0; k < p.values[c].size(); ++k)
-          p.values[c][k] = read(p.values[c][k], signal, draw(k));
+          p.values[c][k] = reading(p.values[c][k], signal.noise_sigma, signal.quantum, draw(k));
       }
       signal.measured = p.values[c];
       for (std::size_t k = 0; k < pattern.size(); ++k) {
@@ -409,15 +409,6 @@ class AxisPredictor final : public Predictor {
         p.values[c][k] = lagging.values[c][k] + drawn.values[c][k] - still.values[c][k];
     }
     return p;
-  }
-
-  // Reading of a quantised sensor: noise is added before rounding; noise_sigma^2 includes the rounding's q^2
-  // / 12.
-  static double read(double value, const ComparedSignal& signal, double normal) {
-    const double q = signal.quantum;
-    const double rest = signal.noise_sigma * signal.noise_sigma - q * q / 12.0;
-    const double noisy = value + normal * std::sqrt(std::max(0.0, rest));
-    return q > 0.0 ? std::round(noisy / q) * q : noisy;
   }
 
   template <typename Draw>

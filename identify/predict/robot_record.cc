@@ -5,9 +5,9 @@
 #include <numbers>
 #include <string>
 
+#include "identify/predict/channel.h"
 #include "identify/record/bus_voltage.h"
 #include "sim/law/random.h"
-#include "sim/law/symmetric.h"
 
 namespace omnihil {
 namespace {
@@ -22,52 +22,11 @@ std::string numbered(std::string_view name, std::size_t wheel) {
   return std::string(name) + "_" + std::to_string(wheel + 1);
 }
 
-// Gaps take the value before; those at the beginning `first`.
-std::vector<double> held(const std::vector<double>* signal, std::size_t size, double first) {
-  std::vector<double> out(size, first);
-  if (signal == nullptr) return out;
-  for (std::size_t k = 0; k < size; ++k) {
-    out[k] = std::isfinite((*signal)[k]) ? (*signal)[k] : (k > 0 ? out[k - 1] : first);
-  }
-  return out;
-}
-
-double first_of(const std::vector<double>& signal, double otherwise) {
-  const auto found = std::find_if(signal.begin(), signal.end(), [](double v) { return std::isfinite(v); });
-  return found == signal.end() ? otherwise : *found;
-}
-
-// The measured bus voltage is an input of the model, so its sensor's noise would appear as speed: white noise
-// of 20 mV moves a rotor's angle ten times as much as an encoder's rounding. Each sample is the mean of the
-// longest of three windows whose variance is not above the noise's; where the shortest one's is, the
-// deviation is kept by its share of variance beyond the noise (J.-S. Lee, IEEE PAMI 2(2), 1980).
-std::vector<double> without_noise(const std::vector<double>& x, double sigma) {
-  // Half widths in samples, the shortest as of an axis (kBusWindow); a choice.
-  constexpr std::array<std::size_t, 3> kHalf = {250, 50, 10};
-  // Of the noise's variance: three standard errors of a variance from 501 samples (sqrt(2 / n) = 6 %), within one
-  // of a variance from 21.
-  constexpr double kNoMoreThanNoise = 1.2;  // a choice; sensitivity not measured
-  const std::size_t n = x.size();
-  if (!(sigma > 0.0)) return x;
-  std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const double d = x[k] - x.front();
-    sum[k + 1] = sum[k] + d;
-    square[k + 1] = square[k] + d * d;
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    for (const std::size_t half : kHalf) {
-      const std::size_t from = k > half ? k - half : 0, to = std::min(n, k + half + 1);
-      const double count = static_cast<double>(to - from);
-      const double mean = (sum[to] - sum[from]) / count;
-      const double variance = (square[to] - square[from]) / count - mean * mean;
-      out[k] = x.front() + mean;
-      if (variance <= kNoMoreThanNoise * sigma * sigma) break;
-      if (half == kHalf.back()) out[k] += (1.0 - sigma * sigma / variance) * (x[k] - x.front() - mean);
-    }
-  }
-  return out;
-}
+// Half widths in samples, the shortest as of an axis (kBusWindow); a choice. More than noise is what exceeds its variance
+// by three standard errors of a variance from 501 samples (sqrt(2 / n) = 6 %), within one of a variance from 21.
+constexpr std::size_t kHalfWindows[] = {250, 50, 10};  // as above
+constexpr NoiseWindows kBusWindows = {.half = kHalfWindows,
+                                      .tolerated = 1.2};  // a choice; sensitivity not measured
 
 // A command is new where its cells are filled; all of a group together.
 void read_radio(const Run& run, RobotRecord& r) {
@@ -193,19 +152,6 @@ void unwrap_by_gyro(RobotRecord& r) {
   }
 }
 
-// v of theta = theta_0 + v t + a t^2 / 2 over the first kStartSpan_s, by least squares; rad/s.
-double speed_at_start(const RobotRecord& r, std::size_t wheel, std::size_t last) {
-  Eigen::MatrixXd normal = Eigen::Matrix3d::Zero();
-  Eigen::VectorXd right = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k <= last; ++k) {
-    const double t = (r.time_s[k] - r.time_s[0]) / kStartSpan_s;
-    const Eigen::Vector3d row(1.0, t, t * t);
-    normal += row * row.transpose();
-    right += row * (r.theta_rotor_rad[k][wheel] - r.theta_rotor_rad[0][wheel]);
-  }
-  return ldlt_solve(normal, right)(1) / kStartSpan_s;
-}
-
 // Where there are no counts: the first speeds that were reported, unless all are slow; rad/s at the wheels.
 constexpr double kStanding_rad_s = 1.0;  // 3 cm/s of rim: a choice
 std::optional<PerWheel<double>> reported_at_start(const Run& run, std::size_t wheels) {
@@ -214,7 +160,7 @@ std::optional<PerWheel<double>> reported_at_start(const Run& run, std::size_t wh
   for (std::size_t i = 0; i < wheels; ++i) {
     const std::vector<double>* reported = run.signal(numbered("wheel_speed", i));
     if (reported == nullptr) return std::nullopt;
-    omega[i] = first_of(*reported, 0.0);
+    omega[i] = first_known(*reported, 0.0);
     moves = moves || std::abs(omega[i]) > kStanding_rad_s;
   }
   return moves ? std::optional(omega) : std::nullopt;
@@ -238,11 +184,9 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const Run& run,
   }
   PerWheel<double> omega_wheel{};
   for (std::size_t i = 0; i < r.wheels; ++i) {
-    omega_wheel[i] = speed_at_start(r, i, last) / nominal.drive.gear_ratio;
-    // a displacement of up to two counts is no motion
-    const double count_rad = kTurn / r.counts_per_rotor_turn[i];
-    if (std::abs(r.theta_rotor_rad[last][i] - r.theta_rotor_rad[0][i]) < 2.5 * count_rad)
-      omega_wheel[i] = 0.0;
+    std::vector<double> theta;
+    for (std::size_t k = 0; k <= last; ++k) theta.push_back(r.theta_rotor_rad[k][i]);
+    omega_wheel[i] = first_slope(r.time_s, theta, 0, theta.size()) / nominal.drive.gear_ratio;
   }
   return body_velocity(g, omega_wheel);
 }
@@ -275,18 +219,21 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   read_drive(run, r);
   r.duty_quantum = rounding_of(r.duty_ratio, r.wheels);
   read_encoders(dataset, run, nominal.drive.gear_ratio, r);
-  r.dribbler_rad_s = held(run.signal("dribbler"), r.size(), 0.0);
+  r.dribbler_rad_s = held(run.signal("dribbler"));
+  r.dribbler_rad_s.resize(r.size());
   if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {
     const std::vector<double> bus_V = plausible_bus_voltage(*measured);
     const Channel* channel = dataset.channel("bus_voltage");
-    r.bus_sigma_V = channel != nullptr ? channel->sigma : 0.0;
-    r.bus_voltage_V =
-        without_noise(held(&bus_V, r.size(), first_of(bus_V, nominal.drive.supply_voltage_V)), r.bus_sigma_V);
+    const std::vector<double> given_V = held(&bus_V);
+    r.bus_sigma_V = channel != nullptr && channel->sigma > 0.0
+                        ? channel->sigma
+                        : estimate_noise(given_V, Differences::kThird).sigma;
+    r.bus_voltage_V = without_noise(given_V, r.bus_sigma_V, kBusWindows);
   }
   if (const std::vector<double>* gyro = run.signal("gyro_z"); gyro != nullptr) {
-    const std::vector<double> rate = held(gyro, r.size(), first_of(*gyro, 0.0));
-    r.turned_rad.resize(r.size());
-    for (std::size_t k = 1; k < r.size(); ++k) {
+    const std::vector<double> rate = held(gyro);
+    r.turned_rad.resize(rate.size());
+    for (std::size_t k = 1; k < rate.size(); ++k) {
       r.turned_rad[k] = r.turned_rad[k - 1] + 0.5 * (rate[k - 1] + rate[k]) * (r.time_s[k] - r.time_s[k - 1]);
     }
   }
@@ -305,7 +252,7 @@ RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {
     }
     if (!r.bus_voltage_V.empty()) r.bus_voltage_V[k] += r.bus_sigma_V * gaussian(seed, bus_stream, k);
   }
-  if (!r.bus_voltage_V.empty()) r.bus_voltage_V = without_noise(r.bus_voltage_V, r.bus_sigma_V);
+  if (!r.bus_voltage_V.empty()) r.bus_voltage_V = without_noise(r.bus_voltage_V, r.bus_sigma_V, kBusWindows);
   return r;
 }
 

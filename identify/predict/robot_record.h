@@ -34,7 +34,7 @@ struct RobotRecord {
   std::optional<RadioCommands> radio;
   std::vector<PerWheel<bool>> enabled;
   std::vector<double> bus_voltage_V;  // less its sensor's noise; empty: not measured
-  double bus_sigma_V = 0.0;           // of the sensor; 0: not stated
+  double bus_sigma_V = 0.0;           // of the sensor: stated, or estimated
   double duty_quantum = 0.0;          // step that the record's duties are rounded to; 0: none found
   std::vector<double> dribbler_rad_s;
   PerWheel<double> counts_per_rotor_turn{};         // 0: no encoder there

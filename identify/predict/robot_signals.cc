@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "identify/predict/channel.h"
 #include "identify/record/statistics.h"
 #include "sim/law/random.h"
 
@@ -39,25 +40,6 @@ double CameraFrame::*frame_member(RobotOutput output) {
 
 bool is_vision(RobotOutput o) {
   return o == RobotOutput::kVisionX || o == RobotOutput::kVisionY || o == RobotOutput::kVisionTheta;
-}
-
-// Robust sigma of white noise under a smooth signal: the third difference has the variance 20 sigma^2. In y's
-// unit.
-double noise_under(const std::vector<double>& y) {
-  std::vector<double> size;
-  for (std::size_t k = 3; k < y.size(); ++k) {
-    const double d = y[k] - 3.0 * y[k - 1] + 3.0 * y[k - 2] - y[k - 3];
-    if (std::isfinite(d)) size.push_back(std::abs(d));
-  }
-  double largest = 0.0;
-  for (const double v : y) {
-    if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
-  }
-  // Of the largest value: no sensor is better; a guess (kLeastNoiseShare: of the rms).
-  constexpr double kLeastShare = 1e-4;  // as above
-  const double least = std::max(kLeastShare * largest, 1e-12);
-  if (size.empty()) return least;
-  return std::max(least, sigma_by_mad(std::move(size)) / std::sqrt(20.0));
 }
 
 void take_velocity(const Channel& channel, const RobotRecord& r, RobotSignal& s) {
@@ -96,7 +78,7 @@ void take_frames(const Channel& channel, const RobotRecord& r, RobotSignal& s) {
     if (!first) c.measured[f.sample] = v;  // the first frame is the origin of the path
     first = false;
   }
-  s.channel_sigma = channel.sigma > 0.0 ? channel.sigma : noise_under(seen);
+  set_noise(channel.sigma, estimate_noise(seen, Differences::kThird), c);
 }
 
 void take(const Channel& channel, const Run& run, const RobotRecord& r, RobotSignal& s) {
@@ -108,10 +90,9 @@ void take(const Channel& channel, const Run& run, const RobotRecord& r, RobotSig
     // the mean over a period whose beginning was not recorded
     const bool mean = s.output == RobotOutput::kCurrent || s.output == RobotOutput::kBusVoltage;
     if (mean && !s.compared.measured.empty()) s.compared.measured[0] = kNaN;
-    s.channel_sigma = channel.sigma > 0.0 ? channel.sigma : noise_under(s.compared.measured);
+    set_noise(channel.sigma, estimate_noise(s.compared.measured, Differences::kThird), s.compared);
   }
-  s.compared.noise_sigma = s.compared.whitened_sigma = s.channel_sigma;
-  s.compared.noise_is_stated = channel.sigma > 0.0;
+  s.channel_sigma = s.compared.noise_sigma;
 }
 
 }  // namespace
@@ -224,29 +205,14 @@ namespace {
 
 // Least speed with a direction of travel: above the speeds' noise.
 constexpr double kMoving_m_s = 0.02;  // a choice
-// Change of duty from row to row that is a step; a choice (an axis: of its range).
-constexpr double kStep_duty = 0.05;  // as above
-// The same of a radio command: m/s, or rad/s; a twentieth of what robots drive at.
-constexpr double kStep_command = 0.1;  // a choice
-
 std::vector<double> time_since_step(const RobotRecord& r) {
-  std::vector<double> out(r.size(), 0.0);
-  double last_s = r.time_s.empty() ? 0.0 : r.time_s.front();
-  PerWheel<double> said{};
   const std::size_t axes = r.radio && r.radio->frame == CommandFrame::kBodyVelocity ? 3 : r.wheels;
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    for (std::size_t i = 0; i < r.wheels && k > 0 && !r.radio; ++i) {
-      if (std::abs(r.duty_ratio[k][i] - r.duty_ratio[k - 1][i]) > kStep_duty) last_s = r.time_s[k];
-    }
-    for (std::size_t i = 0; i < axes && r.radio; ++i) {
-      const double command = r.radio->value[k][i];
-      if (!std::isfinite(command)) continue;
-      if (k > 0 && std::abs(command - said[i]) > kStep_command) last_s = r.time_s[k];
-      said[i] = command;
-    }
-    out[k] = r.time_s[k] - last_s;
+  std::vector<std::vector<double>> inputs(axes);
+  for (std::size_t i = 0; i < axes; ++i) {
+    for (std::size_t k = 0; k < r.size(); ++k)
+      inputs[i].push_back(r.radio ? r.radio->value[k][i] : r.duty_ratio[k][i]);
   }
-  return out;
+  return since_step(r.time_s, inputs);
 }
 
 }  // namespace
@@ -329,7 +295,7 @@ void measure_robot(const RobotRecord& r, const RobotMotion<double>& m,
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;
       if (!std::isfinite(first)) first = is_vision(s.output) ? out[k] - values[k] : 0.0;
-      out[k] = values[k] + first + noise(k);
+      out[k] = reading(values[k] + first, s.channel_sigma, s.compared.quantum, gaussian(seed, stream, k));
     }
   }
 }

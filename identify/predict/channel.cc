@@ -1,0 +1,147 @@
+#include "identify/predict/channel.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identify/record/quantum.h"
+#include "identify/record/statistics.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Of a signal that never changes: so that an error of it counts as one. A choice.
+constexpr double kNoNoise = 1e-12;  // as above
+
+bool finite(double v) { return std::isfinite(v); }
+
+}  // namespace
+
+NoiseEstimate estimate_noise(const std::vector<double>& values, Differences order) {
+  const std::vector<double> known = finite_values(values);
+  NoiseEstimate out;
+  if (known.size() < 4) return out;
+  const bool third = order == Differences::kThird;
+  std::vector<double> sizes;
+  for (std::size_t k = third ? 3 : 2; k < values.size(); ++k) {
+    const double d = third ? values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3]
+                           : values[k] - 2.0 * values[k - 1] + values[k - 2];
+    if (finite(d)) sizes.push_back(std::abs(d));
+  }
+  out.quantum = quantum_of(known);
+  // white noise: variance of the second difference is 6 sigma^2, of the third 20 sigma^2
+  const double robust = sigma_by_mad(std::move(sizes)) / std::sqrt(third ? 20.0 : 6.0);
+  double mean = 0.0, square = 0.0;
+  for (const double v : known) mean += v / static_cast<double>(known.size());
+  for (const double v : known) square += (v - mean) * (v - mean) / static_cast<double>(known.size());
+  out.sigma = std::max({robust, out.quantum / std::sqrt(12.0), kLeastNoiseShare * std::sqrt(square)});
+  return out;
+}
+
+void set_noise(double stated_sigma, const NoiseEstimate& estimate, ComparedSignal& signal) {
+  signal.quantum = estimate.quantum;
+  signal.noise_is_stated = stated_sigma > 0.0;
+  signal.noise_sigma = signal.noise_is_stated ? std::hypot(stated_sigma, estimate.quantum / std::sqrt(12.0))
+                                              : std::max(estimate.sigma, kNoNoise);
+  signal.whitened_sigma = signal.noise_sigma;
+}
+
+double reading(double value, double sigma, double quantum, double normal) {
+  const double rest = sigma * sigma - quantum * quantum / 12.0;
+  const double noisy = value + normal * std::sqrt(std::max(0.0, rest));
+  return quantum > 0.0 ? std::round(noisy / quantum) * quantum : noisy;
+}
+
+double first_known(const std::vector<double>& values, double otherwise) {
+  const auto at = std::find_if(values.begin(), values.end(), finite);
+  return at == values.end() ? otherwise : *at;
+}
+
+std::vector<double> held(const std::vector<double>* column, std::size_t first) {
+  std::vector<double> out;
+  if (column == nullptr) return out;
+  double last = first_known(*column, kMissing);
+  if (!finite(last)) return out;
+  for (std::size_t i = 0; i < column->size(); ++i) {
+    if (finite((*column)[i])) last = (*column)[i];
+    if (i >= first) out.push_back(last);
+  }
+  return out;
+}
+
+std::vector<double> without_noise(const std::vector<double>& x, double sigma, const NoiseWindows& windows) {
+  const std::size_t n = x.size();
+  if (n < 2 * windows.half.back() + 1 || !(sigma > 0.0)) return x;
+  std::vector<double> sum(n + 1, 0.0), square(n + 1, 0.0), out(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double d = x[k] - x.front();
+    sum[k + 1] = sum[k] + d, square[k + 1] = square[k] + d * d;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    for (const std::size_t half : windows.half) {
+      const std::size_t from = k > half ? k - half : 0, to = std::min(n, k + half + 1);
+      const double count = static_cast<double>(to - from);
+      const double mean = (sum[to] - sum[from]) / count;
+      const double variance = (square[to] - square[from]) / count - mean * mean;
+      out[k] = x.front() + mean;
+      if (variance <= windows.tolerated * sigma * sigma) break;
+      if (half == windows.half.back()) out[k] += (1.0 - sigma * sigma / variance) * (x[k] - x.front() - mean);
+    }
+  }
+  return out;
+}
+
+double first_slope(const std::vector<double>& t, const std::vector<double>& x, std::size_t from,
+                   std::size_t to) {
+  std::vector<Eigen::Vector3d> rows;
+  std::vector<double> values;
+  for (std::size_t i = from; i < to; ++i) {
+    if (!finite(x[i])) continue;
+    const double ti = t[i] - t[from];
+    rows.push_back({1.0, ti, ti * ti});
+    values.push_back(x[i] - x[from]);
+  }
+  if (rows.size() < 4 || !finite(x[from])) return kMissing;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    normal += rows[i] * rows[i].transpose();
+    right += rows[i] * values[i];
+  }
+  const Eigen::Matrix3d inverse = normal.inverse();
+  const Eigen::Vector3d fit = inverse * right;
+  double square = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) square += std::pow(values[i] - rows[i].dot(fit), 2);
+  const double error = std::sqrt(square / static_cast<double>(rows.size() - 3) * inverse(1, 1));
+  const double gained = 2.0 * std::abs(fit[2]) * rows.back()[1];
+  return std::abs(fit[1]) > 3.0 * error + 0.1 * gained ? fit[1] : 0.0;
+}
+
+std::vector<double> since_step(const std::vector<double>& time_s,
+                               const std::vector<std::vector<double>>& inputs) {
+  constexpr double kStep = 0.05;  // of the input's range: a choice
+  std::vector<double> step, level, out;
+  for (const std::vector<double>& in : inputs) {
+    double low = kMissing, high = kMissing;
+    for (const double v : in) low = std::fmin(low, v), high = std::fmax(high, v);
+    step.push_back(kStep * (high - low));
+    level.push_back(first_known(in, 0.0));
+  }
+  double last_s = time_s.empty() ? 0.0 : time_s.front();
+  for (std::size_t k = 0; k < time_s.size(); ++k) {
+    bool moved = false;
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      moved = moved || std::abs(inputs[i][k] - level[i]) > step[i];
+    if (moved) last_s = time_s[k];
+    for (std::size_t i = 0; i < inputs.size() && moved; ++i) {
+      if (finite(inputs[i][k])) level[i] = inputs[i][k];
+    }
+    out.push_back(time_s[k] - last_s);
+  }
+  return out;
+}
+
+}  // namespace omnihil
