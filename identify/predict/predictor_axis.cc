@@ -8,6 +8,7 @@
 #include "identify/predict/axis_record.h"
 #include "identify/predict/axis_substep.h"
 #include "identify/predict/counted_setups.h"
+#include "identify/predict/predictor_rig.h"
 #include "sim/law/random.h"
 #include "sim/model/axis_model.h"
 
@@ -16,40 +17,11 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-bool is_known(const Run& run, const std::string& path) {
-  return std::any_of(run.known.begin(), run.known.end(),
-                     [&](const auto& k) { return k.first == path || k.first == "effects." + path; });
-}
-
-// The parameters of a candidate as dual numbers: unknown `first + j` is component j of this pass.
-struct Seeded {
-  DriveParams<Jet> params;
-  std::vector<Jet> values;
-};
-Seeded seeded(const Candidate& c, const Run& run, std::span<const Unknown> unknowns, std::size_t first) {
-  Seeded out{.params = drive_params_as<Jet>(drive_of(c)), .values = {}};
-  std::vector<std::size_t> offset;
-  for (const EffectUse& use : c.effects) {
-    offset.push_back(out.values.size());
-    for (const double v : use.values) out.values.emplace_back(v);
+Jet* number_of(DriveParams<Jet>& params, std::string_view path) {
+  for (const DriveParamPath& at : drive_param_paths()) {
+    if ((params.linear ? at.linear_path : at.path) == path) return &(params.*at.jet);
   }
-  const std::size_t count = std::min<std::size_t>(kJetWidth, unknowns.size() - first);
-  for (std::size_t j = 0; j < count; ++j) {
-    const Unknown& u = unknowns[first + j];
-    if (is_known(run, u.path)) continue;
-    const auto place = static_cast<int>(j);
-    if (u.effect >= 0) {
-      Jet& v = out.values[offset[static_cast<std::size_t>(u.effect)] + static_cast<std::size_t>(u.row)];
-      v = Jet(v.a, place);
-      continue;
-    }
-    for (const DriveParamPath& at : drive_param_paths()) {
-      if ((out.params.linear ? at.linear_path : at.path) != u.path) continue;
-      Jet& v = out.params.*at.jet;
-      v = Jet(v.a, place);
-    }
-  }
-  return out;
+  return nullptr;
 }
 
 // A delay whose derivative a limit behind it hides (predictor_axis.h).
@@ -59,12 +31,11 @@ bool is_hidden_delay(const Candidate& c, const Unknown& u) {
   return (info.numerics & kDelays) != 0 && static_cast<std::size_t>(u.row) == first_strength(info);
 }
 
-class AxisPredictor final : public Predictor {
+class AxisRig {
  public:
-  AxisPredictor(const Dataset& dataset, const Candidate& nominal, const PredictOptions& options)
-      : dataset_(std::make_shared<const Dataset>(dataset)),
-        nominal_(std::make_shared<const Candidate>(nominal)),
-        options_(options) {
+  AxisRig(std::shared_ptr<const Dataset> dataset, std::shared_ptr<const Candidate> nominal,
+          const PredictOptions& options)
+      : dataset_(std::move(dataset)), nominal_(std::move(nominal)), options_(options) {
     for (const Run& run : dataset_->runs) {
       setups_.push_back(make_axis_setup(*dataset_, *nominal_, run));
       if (!options_.slave_angle) setups_.back().input.measured_position_rad.clear();
@@ -75,129 +46,40 @@ class AxisPredictor final : public Predictor {
     choose_step();
   }
 
-  Method method() const override { return axis_method(*dataset_); }
-  int run_count() const override { return static_cast<int>(setups_.size()); }
-  const Run& run(int run) const override { return dataset_->runs[static_cast<std::size_t>(run)]; }
-  const std::vector<ComparedSignal>& compared(int run) const override { return setup(run).compared; }
-  std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
-    return axis_regimes(setup(n), with_known(candidate, run(n).known), step_for(candidate, n));
-  }
-  bool shows_signature_of(const EffectEntry& effect) const override { return counter_ == &effect; }
-  Capabilities capabilities() const override { return axis_capabilities(*dataset_, *nominal_); }
-
-  Prediction predict(const Candidate& candidate, int n) const override {
-    return predict_at(candidate, n, step_for(candidate, n));
+  const Dataset& dataset() const { return *dataset_; }
+  Method method() const { return axis_method(*dataset_); }
+  const std::vector<ComparedSignal>& compared(std::size_t n) const { return setups_[n].compared; }
+  bool shows_signature_of(const EffectEntry& effect) const { return counter_ == &effect; }
+  Capabilities capabilities() const { return axis_capabilities(*dataset_, *nominal_); }
+  double step_s(const Candidate& own, std::size_t n) const { return substep_.of(own, static_cast<int>(n)); }
+  bool is_exact(std::size_t) const { return true; }
+  std::vector<RegimeTrack> regimes(const Candidate& own, std::size_t n) const {
+    return axis_regimes(setups_[n], own, step_s(own, n));
   }
 
-  Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
-                                      int n) const override {
-    const AxisSetup& s = setup(n);
-    if (unknowns.empty()) return predict(candidate, n);
-    const Candidate own = with_known(candidate, run(n).known);
-    Prediction p;
-    const auto rows = static_cast<Eigen::Index>(s.input.time_s.size());
-    const auto all = static_cast<Eigen::Index>(unknowns.size());
-    p.derivatives.assign(s.outputs.size(), Eigen::MatrixXd::Zero(rows, all));
-    for (std::size_t first = 0; first < unknowns.size(); first += kJetWidth) {
-      const Seeded x = seeded(own, run(n), unknowns, first);
-      const auto y =
-          rows > 0 ? axis_outputs<Jet>(s, x.params, EffectSet<Jet>(own.effects, x.values), step_for(own, n))
-                   : std::vector<std::vector<Jet>>(s.outputs.size());
-      const Eigen::Index count = std::min<Eigen::Index>(kJetWidth, all - static_cast<Eigen::Index>(first));
-      for (std::size_t c = 0; c < y.size(); ++c) {
-        for (Eigen::Index k = 0; k < rows; ++k) {
-          const Jet& v = y[c][static_cast<std::size_t>(k)];
-          p.derivatives[c].row(k).segment(static_cast<Eigen::Index>(first), count) =
-              v.v.head(count).transpose();
-        }
-        if (first > 0) continue;
-        std::vector<double> values;
-        for (const Jet& v : y[c]) values.push_back(v.a);
-        p.values.push_back(std::move(values));
-      }
-    }
-    const bool play = acts(own, kImpacts);
-    for (std::size_t u = 0; u < unknowns.size() && rows > 0; ++u) {
-      if (is_known(run(n), unknowns[u].path)) continue;
-      if (is_hidden_delay(own, unknowns[u])) {
-        constexpr double kStep_s = 2e-3;  // two of the longest sub-steps; a choice
-        difference(own, unknowns, u, n, kStep_s, p);
-      } else if (play || explodes(s, unknowns[u], static_cast<Eigen::Index>(u), p)) {
-        difference(own, unknowns, u, n, kSecant * unknowns[u].scale, p);
-      }
-    }
-    complete(s, p);
-    return p;
+  template <typename T>
+  RigOutputs<T> outputs(const RigModel& model, std::size_t n, double step_s) const {
+    const AxisSetup& s = setups_[n];
+    if (s.input.time_s.empty()) return {.values = std::vector<std::vector<T>>(s.outputs.size())};
+    const auto m = rig_values<T>(model, drive_params_as<T>(drive_of(model.candidate)), number_of);
+    return {.values = axis_outputs<T>(s, m.params, EffectSet<T>(m.uses, m.values), step_s)};
   }
 
-  std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const override {
-    auto copy = std::make_unique<AxisPredictor>(*this);
-    for (int n = 0; n < run_count(); ++n) copy->replace_measurement(truth, n, seed);
-    return copy;
-  }
-
- private:
-  // Half width of a secant, in Unknown::scale (DECISIONS 29).
-  static constexpr double kSecant = 0.05;  // a choice; sensitivity not measured
-
-  // Would a step of Unknown::scale change a signal, to first order, by several times its rms? Then the
-  // derivative has grown from impact to impact (play, sticking) while the motion stays bounded: it holds for
-  // no finite step.
-  static bool explodes(const AxisSetup& s, const Unknown& unknown, Eigen::Index u, const Prediction& p) {
-    constexpr double kMost = 3.0;  // times the signal's rms, where a bounded change is below 2; a choice
-    for (std::size_t c = 0; c < p.derivatives.size(); ++c) {
-      double moved = 0.0, signal = 0.0;
-      for (Eigen::Index k = 0; k < p.derivatives[c].rows(); ++k) {
-        const double value = s.compared[c].measured[static_cast<std::size_t>(k)];
-        if (!std::isfinite(value)) continue;
-        moved += p.derivatives[c](k, u) * p.derivatives[c](k, u);
-        signal += value * value;
-      }
-      if (!(moved * unknown.scale * unknown.scale <= kMost * kMost * signal)) return true;
-    }
-    return false;
-  }
-
-  // The derivative as a secant, `step` to both sides.
-  void difference(const Candidate& own, std::span<const Unknown> unknowns, std::size_t u, int n, double step,
-                  Prediction& p) const {
-    const double at = value_at(own, unknowns[u].path).value_or(unknowns[u].start);
-    const double down = std::max(unknowns[u].lower, at - step), up = std::min(unknowns[u].upper, at + step);
-    if (!(up > down)) return;
-    const auto run_at = [&](double value) {
-      const Candidate moved = with_values(own, unknowns.subspan(u, 1), std::span(&value, 1));
-      return axis_outputs<double>(setup(n), drive_of(moved), EffectSet<double>(moved.effects),
-                                  step_for(own, n));
-    };
-    const auto a = run_at(up), b = run_at(down);
-    for (std::size_t c = 0; c < a.size(); ++c) {
-      for (std::size_t k = 0; k < a[c].size(); ++k) {
-        p.derivatives[c](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(u)) =
-            (a[c][k] - b[c][k]) / (up - down);
-      }
-    }
-  }
-
-  const AxisSetup& setup(int run) const { return setups_[static_cast<std::size_t>(run)]; }
-  double step_for(const Candidate& c, int n) const { return substep_.of(c, n); }
-
-  Prediction predict_at(const Candidate& candidate, int n, double step_s) const {
-    const AxisSetup& s = setup(n);
-    Prediction p;
-    if (s.input.time_s.empty()) {
-      p.values.resize(s.outputs.size());
-      return p;
-    }
-    const Candidate own = with_known(candidate, run(n).known);
-    p.values = axis_outputs<double>(s, drive_of(own), EffectSet<double>(own.effects), step_s);
-    complete(s, p);
-    return p;
+  double secant(const Candidate& own, const Unknown& unknown, Eigen::Index u, std::size_t n,
+                const Prediction& p) const {
+    constexpr double kStep_s = 2e-3;  // two of the longest sub-steps; a choice
+    constexpr double kSecant = 0.05;  // of Unknown::scale (DECISIONS 29): a choice; sensitivity not measured
+    if (setups_[n].input.time_s.empty()) return 0.0;
+    if (is_hidden_delay(own, unknown)) return kStep_s;
+    return acts(own, kImpacts) || explodes(setups_[n], unknown, u, p) ? kSecant * unknown.scale : 0.0;
   }
 
   // Linear after-treatment, and what is not finite said.
-  static void complete(const AxisSetup& s, Prediction& p) {
+  void complete(std::size_t n, Prediction& p) const {
+    const AxisSetup& s = setups_[n];
     for (std::size_t c = 0; c < p.values.size(); ++c) {
       const auto rows = static_cast<Eigen::Index>(p.values[c].size());
+      if (rows == 0) continue;
       Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(p.values[c].data(), rows);
       // differences have no first value: not a divergence
       const auto missing = [&](Eigen::Index k) {
@@ -218,6 +100,30 @@ class AxisPredictor final : public Predictor {
         finish(s, c, false, p.derivatives[c].col(u));
       }
     }
+  }
+
+  void measure(const Candidate& truth, std::uint64_t seed) {
+    for (std::size_t n = 0; n < setups_.size(); ++n)
+      replace_measurement(with_known(truth, dataset_->runs[n].known), n, seed);
+  }
+
+ private:
+  // Would a step of Unknown::scale change a signal, to first order, by several times its rms? Then the
+  // derivative has grown from impact to impact (play, sticking) while the motion stays bounded: it holds for
+  // no finite step.
+  static bool explodes(const AxisSetup& s, const Unknown& unknown, Eigen::Index u, const Prediction& p) {
+    constexpr double kMost = 3.0;  // times the signal's rms, where a bounded change is below 2; a choice
+    for (std::size_t c = 0; c < p.derivatives.size(); ++c) {
+      double moved = 0.0, signal = 0.0;
+      for (Eigen::Index k = 0; k < p.derivatives[c].rows(); ++k) {
+        const double value = s.compared[c].measured[static_cast<std::size_t>(k)];
+        if (!std::isfinite(value)) continue;
+        moved += p.derivatives[c](k, u) * p.derivatives[c](k, u);
+        signal += value * value;
+      }
+      if (!(moved * unknown.scale * unknown.scale <= kMost * kMost * signal)) return true;
+    }
+    return false;
   }
 
   // A signal has one noise in all runs: where it is not stated, the runs' median.
@@ -292,7 +198,7 @@ class AxisPredictor final : public Predictor {
   }
 
   // Root mean square of (a - b) / noise, the largest of the signals, unweighted and whitened.
-  double distance(int n, const Prediction& a, const Prediction& b) const {
+  double distance(std::size_t n, const Prediction& a, const Prediction& b) const {
     double largest = 0.0;
     for (std::size_t c = 0; c < a.values.size(); ++c) {
       const ComparedSignal& signal = compared(n)[c];
@@ -314,14 +220,16 @@ class AxisPredictor final : public Predictor {
 
   void choose_step() {
     constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
-    auto trial = std::make_shared<AxisPredictor>(*this);
+    auto trial = std::make_shared<AxisRig>(*this);
     for (AxisSetup& s : trial->setups_) shorten(s, kTrial_s);
     substep_ =
-        AxisSubstep(*nominal_, setups_, options_.step_s, [trial](const Candidate& model, int n, double h) {
-          const AxisSetup& s = trial->setup(n);
-          if (trial->run(n).split != Split::kTraining || s.steady || s.input.time_s.size() < 2)
-            return kMissing;
-          return trial->distance(n, trial->predict_at(model, n, h), trial->predict_at(model, n, 0.25 * h));
+        AxisSubstep(*nominal_, setups_, options_.step_s, [trial](const Candidate& model, int run, double h) {
+          const auto n = static_cast<std::size_t>(run);
+          const AxisSetup& s = trial->setups_[n];
+          const Run& of = trial->dataset_->runs[n];
+          if (of.split != Split::kTraining || s.steady || s.input.time_s.size() < 2) return kMissing;
+          const Candidate own = with_known(model, of.known);
+          return trial->distance(n, predicted(*trial, own, n, h), predicted(*trial, own, n, 0.25 * h));
         });
   }
 
@@ -342,12 +250,12 @@ class AxisPredictor final : public Predictor {
 
   // Replaces the run's measurement by one simulated with `truth`: noise where it enters the chain, rounding
   // of counts.
-  void replace_measurement(const Candidate& truth, int n, std::uint64_t seed) {
-    AxisSetup& s = setups_[static_cast<std::size_t>(n)];
+  void replace_measurement(const Candidate& truth, std::size_t n, std::uint64_t seed) {
+    AxisSetup& s = setups_[n];
     Prediction p = ground_truth_prediction(truth, n, seed);
     for (std::size_t c = 0; c < s.compared.size(); ++c) {
       ComparedSignal& signal = s.compared[c];
-      const std::uint64_t stream = stream_of(signal.name) + static_cast<std::uint64_t>(n) * 1000003;
+      const std::uint64_t stream = stream_of(signal.name) + std::uint64_t{n} * 1000003;
       const auto draw = [&](std::size_t k) { return gaussian(seed, stream, k); };
       const std::vector<double> pattern = signal.measured;
       if (signal.counted.window_s > 0.0) {
@@ -372,14 +280,14 @@ class AxisPredictor final : public Predictor {
   // The model's bus voltage is a measurement smoothed over kBusWindow samples (axis_record.h). The true one
   // differs from it by the mean of the sensor's noise over that window, which integrates into speed and
   // position.
-  Prediction ground_truth_prediction(const Candidate& truth, int n, std::uint64_t seed) {
-    AxisSetup& s = setups_[static_cast<std::size_t>(n)];
+  Prediction ground_truth_prediction(const Candidate& truth, std::size_t n, std::uint64_t seed) {
+    AxisSetup& s = setups_[n];
     const auto bus = std::find_if(s.compared.begin(), s.compared.end(),
                                   [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
-    s.input.noise_seed = random_bits(seed, stream_of("effects"), static_cast<std::uint64_t>(n));
+    s.input.noise_seed = random_bits(seed, stream_of("effects"), std::uint64_t{n});
     if (s.method != Method::kForward || bus == s.compared.end()) return as_drawn(truth, n);
     const std::vector<double> given = s.input.bus_voltage_V;
-    const std::uint64_t stream = stream_of("bus_voltage input") + static_cast<std::uint64_t>(n) * 1000003;
+    const std::uint64_t stream = stream_of("bus_voltage input") + std::uint64_t{n} * 1000003;
     double sum = 0.0;
     for (std::size_t k = 0; k < given.size(); ++k) {
       sum += gaussian(seed, stream, k) - (k >= kBusWindow ? gaussian(seed, stream, k - kBusWindow) : 0.0);
@@ -392,17 +300,18 @@ class AxisPredictor final : public Predictor {
 
   // Prediction with the random draws of its effects; the seed is cleared afterwards. The noise of a counted
   // speed is added by add_counting_noise(): that of the effect behind it is left out here, its delay is kept.
-  Prediction as_drawn(const Candidate& truth, int n) {
-    AxisSetup& s = setups_[static_cast<std::size_t>(n)];
+  Prediction as_drawn(const Candidate& truth, std::size_t n) {
+    AxisSetup& s = setups_[n];
+    const auto predict = [&](const Candidate& own) { return predicted(*this, own, n, step_s(own, n)); };
     Candidate others = truth;
     const bool counts =
         std::erase_if(others.effects, [&](const EffectUse& u) { return u.entry == counter_; }) > 0;
-    Prediction p = predict(truth, n);
-    const Prediction drawn = counts ? predict(others, n) : Prediction{};
+    Prediction p = predict(truth);
+    const Prediction drawn = counts ? predict(others) : Prediction{};
     s.input.noise_seed.reset();
     if (!counts) return p;
     // the expected value with the window's delay, plus the other effects' random part
-    const Prediction lagging = predict(truth, n), still = predict(others, n);
+    const Prediction lagging = predict(truth), still = predict(others);
     for (std::size_t c = 0; c < s.compared.size(); ++c) {
       if (s.compared[c].counted.window_s <= 0.0) continue;
       for (std::size_t k = 0; k < p.values[c].size(); ++k)
@@ -456,7 +365,7 @@ class AxisPredictor final : public Predictor {
 
 std::unique_ptr<Predictor> make_axis_predictor(const Dataset& dataset, const Candidate& nominal,
                                                const PredictOptions& options) {
-  return std::make_unique<AxisPredictor>(dataset, nominal, options);
+  return std::make_unique<RigPredictor<AxisRig>>(dataset, nominal, options);
 }
 
 }  // namespace omnihil

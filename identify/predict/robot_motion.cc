@@ -443,25 +443,8 @@ class Runner {
 template <typename T>
 RobotModelValues<T> robot_values(const Candidate& candidate, std::span<const Unknown> unknowns,
                                  std::size_t first) {
-  RobotModelValues<T> m;
-  m.params = rolling_params_as<T>(rolling_params(candidate.file.parameters));
-  m.uses = candidate.effects;
-  std::vector<std::size_t> first_value;
-  for (const EffectUse& use : candidate.effects) {
-    first_value.push_back(m.values.size());
-    for (const double v : use.values) m.values.push_back(T(v));
-  }
-  if constexpr (std::is_same_v<T, Jet>) {
-    for (std::size_t n = 0; n < kJetWidth && first + n < unknowns.size(); ++n) {
-      const Unknown& u = unknowns[first + n];
-      Jet* place =
-          u.effect < 0
-              ? rolling_number(m.params, u.path)
-              : &m.values[first_value[static_cast<std::size_t>(u.effect)] + static_cast<std::size_t>(u.row)];
-      if (place != nullptr) *place = Jet(place->a, static_cast<int>(n));
-    }
-  }
-  return m;
+  return rig_values<T>({candidate, unknowns, first},
+                       rolling_params_as<T>(rolling_params(candidate.file.parameters)), rolling_number<Jet>);
 }
 
 template <typename T>

@@ -16,17 +16,13 @@
 
 #include "identify/predict/candidate.h"
 #include "identify/predict/firmware_source.h"
+#include "identify/predict/rig_values.h"
 #include "identify/predict/robot_record.h"
 
 namespace omnihil {
 
-// A candidate's parameters on a scalar.
 template <typename T>
-struct RobotModelValues {
-  RollingParams<T> params;
-  std::vector<EffectUse> uses;
-  std::vector<T> values;  // of all `uses`, concatenated
-};
+using RobotModelValues = RigValues<T, RollingParams>;
 
 // For Jet: unknown `first` + n is the Jet's component n. Parameters that a run states as known have no
 // derivative.

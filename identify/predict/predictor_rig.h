@@ -1,0 +1,169 @@
+// What predictors of all rigs share: runs, passes of dual numbers, secants where a motion has no derivative that holds
+// for a finite step, numbers that a run states as known.
+//
+// What a rig is: PredictedRig below. All of its functions but the first are given candidates that hold what the run knows.
+#pragma once
+#include <algorithm>
+#include <concepts>
+#include <memory>
+#include <utility>
+
+#include "identify/predict/predictor.h"
+#include "identify/predict/rig_values.h"
+
+namespace omnihil {
+
+template <typename T>
+struct RigOutputs {
+  std::vector<std::vector<T>> values;  // [signal][sample], as Prediction's
+  bool finite = true;
+};
+
+// step_s(): of the simulation, at most. is_exact(): dual numbers pass through it. secant(): half width of a difference where
+// the exact derivative is not to be used, else 0. complete(): what is linear in values and derivatives alike. measure():
+// puts what `truth` shows these sensors, with their noise, in place of the measurement.
+template <class R>
+concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, const Unknown& unknown,
+                                std::size_t run, Eigen::Index u, Prediction& p) {
+  { rig.dataset() } -> std::same_as<const Dataset&>;
+  { rig.method() } -> std::same_as<Method>;
+  { rig.compared(run) } -> std::same_as<const std::vector<ComparedSignal>&>;
+  { rig.template outputs<double>(RigModel{own}, run, 1e-3) } -> std::same_as<RigOutputs<double>>;
+  { rig.template outputs<Jet>(RigModel{own}, run, 1e-3) } -> std::same_as<RigOutputs<Jet>>;
+  { rig.step_s(own, run) } -> std::same_as<double>;
+  { rig.is_exact(run) } -> std::same_as<bool>;
+  { rig.secant(own, unknown, u, run, p) } -> std::same_as<double>;
+  rig.complete(run, p);
+  { rig.regimes(own, run) } -> std::same_as<std::vector<RegimeTrack>>;
+  { rig.capabilities() } -> std::same_as<Capabilities>;
+  { rig.shows_signature_of(std::declval<const EffectEntry&>()) } -> std::same_as<bool>;
+  made.measure(own, std::uint64_t{1});
+};
+
+template <class Rig>
+Prediction predicted(const Rig& rig, const Candidate& own, std::size_t run, double step_s) {
+  RigOutputs<double> y = rig.template outputs<double>({own}, run, step_s);
+  Prediction p{.values = std::move(y.values), .derivatives = {}, .finite = y.finite};
+  rig.complete(run, p);
+  return p;
+}
+
+template <PredictedRig Rig>
+class RigPredictor final : public Predictor {
+ public:
+  RigPredictor(const Dataset& dataset, const Candidate& nominal, const PredictOptions& options)
+      : rig_(std::make_shared<const Dataset>(dataset), std::make_shared<const Candidate>(nominal), options) {}
+
+  Method method() const override { return rig_.method(); }
+  int run_count() const override { return static_cast<int>(rig_.dataset().runs.size()); }
+  const Run& run(int n) const override { return rig_.dataset().runs[at(n)]; }
+  const std::vector<ComparedSignal>& compared(int n) const override { return rig_.compared(at(n)); }
+  Capabilities capabilities() const override { return rig_.capabilities(); }
+  bool shows_signature_of(const EffectEntry& effect) const override {
+    return rig_.shows_signature_of(effect);
+  }
+  std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
+    return rig_.regimes(with_known(candidate, run(n).known), at(n));
+  }
+
+  Prediction predict(const Candidate& candidate, int n) const override {
+    const Candidate own = with_known(candidate, run(n).known);
+    return predicted(rig_, own, at(n), rig_.step_s(own, at(n)));
+  }
+
+  Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
+                                      int n) const override {
+    if (unknowns.empty()) return predict(candidate, n);
+    const Candidate own = with_known(candidate, run(n).known);
+    const std::vector<Unknown> open = open_unknowns(unknowns, run(n));
+    const double step_s = rig_.step_s(own, at(n));
+    Prediction p =
+        rig_.is_exact(at(n)) ? by_passes(own, open, at(n), step_s) : by_values(own, open, at(n), step_s);
+    for (std::size_t u = 0; u < open.size() && p.finite; ++u) {
+      if (open[u].path.empty()) continue;
+      const double half = rig_.secant(own, open[u], static_cast<Eigen::Index>(u), at(n), p);
+      if (half > 0.0) difference(own, std::span(open).subspan(u, 1), u, at(n), half, step_s, p);
+    }
+    rig_.complete(at(n), p);
+    return p;
+  }
+
+  std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const override {
+    auto copy = std::make_unique<RigPredictor>(*this);
+    copy->rig_.measure(truth, seed);
+    return copy;
+  }
+
+ private:
+  static std::size_t at(int n) { return static_cast<std::size_t>(n); }
+
+  // Unknowns that the run states as known keep their index, but have no path: their derivatives are zero.
+  static std::vector<Unknown> open_unknowns(std::span<const Unknown> unknowns, const Run& run) {
+    std::vector<Unknown> open(unknowns.begin(), unknowns.end());
+    for (Unknown& u : open) {
+      const bool known = std::any_of(run.known.begin(), run.known.end(), [&](const auto& k) {
+        return k.first == u.path || k.first == "effects." + u.path;
+      });
+      if (known) u.path.clear();
+    }
+    return open;
+  }
+
+  Prediction by_values(const Candidate& own, std::span<const Unknown> open, std::size_t n,
+                       double step_s) const {
+    RigOutputs<double> y = rig_.template outputs<double>({own}, n, step_s);
+    Prediction p{.values = std::move(y.values), .derivatives = {}, .finite = y.finite};
+    for (const auto& v : p.values)
+      p.derivatives.emplace_back(
+          Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(v.size()), static_cast<Eigen::Index>(open.size())));
+    return p;
+  }
+
+  Prediction by_passes(const Candidate& own, std::span<const Unknown> open, std::size_t n,
+                       double step_s) const {
+    Prediction p;
+    for (std::size_t first = 0; first < open.size(); first += kJetWidth) {
+      const RigOutputs<Jet> y = rig_.template outputs<Jet>({own, open, first}, n, step_s);
+      p.finite = p.finite && y.finite;
+      const auto count = static_cast<Eigen::Index>(std::min<std::size_t>(kJetWidth, open.size() - first));
+      for (std::size_t s = 0; s < y.values.size(); ++s) {
+        if (first == 0) {
+          p.derivatives.emplace_back(y.values[s].size(), open.size());
+          p.values.emplace_back();
+          for (const Jet& v : y.values[s]) p.values[s].push_back(v.a);
+        }
+        for (std::size_t k = 0; k < y.values[s].size(); ++k) {
+          p.derivatives[s]
+              .row(static_cast<Eigen::Index>(k))
+              .segment(static_cast<Eigen::Index>(first), count) = y.values[s][k].v.head(count).transpose();
+        }
+      }
+    }
+    return p;
+  }
+
+  // Central, where bounds and a finite motion let it: `half` to either side.
+  void difference(const Candidate& own, std::span<const Unknown> unknown, std::size_t u, std::size_t n,
+                  double half, double step_s, Prediction& p) const {
+    const double at = value_at(own, unknown[0].path).value_or(unknown[0].start);
+    const auto beside = [&](double value) {
+      value = std::clamp(value, unknown[0].lower, unknown[0].upper);
+      const Candidate moved = with_values(own, unknown, std::span(&value, 1));
+      RigOutputs<double> y = rig_.template outputs<double>({moved}, n, step_s);
+      return y.finite ? std::pair(value, std::move(y.values)) : std::pair(at, p.values);
+    };
+    const auto [low, below] = beside(at - half);
+    const auto [high, above] = beside(at + half);
+    if (!(high > low)) return;
+    for (std::size_t s = 0; s < p.values.size(); ++s) {
+      for (std::size_t k = 0; k < p.values[s].size(); ++k) {
+        p.derivatives[s](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(u)) =
+            (above[s][k] - below[s][k]) / (high - low);
+      }
+    }
+  }
+
+  Rig rig_;
+};
+
+}  // namespace omnihil
