@@ -22,8 +22,8 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FIRST_S = 15.0  # to the first ranking: somebody waits for it
-# Raw recordings that an example's script makes a dataset of, and which of its folders that is.
-IMPORTED = {"kiwi_omni": ("examples/import/kiwi_omni.sh", "robot")}
+# Raw recordings that an example's script makes datasets of, and the name of each of its folders that is diagnosed.
+IMPORTED = {"kiwi_omni": ("examples/import/kiwi_omni.sh", {"robot": "kiwi_omni", "commanded": "kiwi_omni_commanded"})}
 WHOLE_CPU_S = {"axis": 60.0, "robot": 120.0}  # for everything: a coffee is not worth fetching
 
 
@@ -51,17 +51,28 @@ def rig_of(folder):
 
 
 def imported(name, recordings, args):
-    """The dataset that an example's script makes of recordings; None where it fails."""
-    script, part = IMPORTED[name]
-    folder = args.results / "imported" / name
+    """The datasets that an example's script makes of recordings; none where it fails."""
+    script, parts = IMPORTED[name]
+    folders = []
     with tempfile.TemporaryDirectory() as made:
         run = subprocess.run([ROOT / script, recordings, made, args.program], capture_output=True, text=True, check=False)
         if run.returncode != 0:
             print(f"{name}: {script}: exit code {run.returncode}: {run.stderr.strip()[-300:]}", file=sys.stderr)
-            return None
-        shutil.rmtree(folder, ignore_errors=True)
-        shutil.copytree(pathlib.Path(made) / part, folder)
-    return folder
+            return []
+        for part, called in parts.items():
+            folders.append(args.results / "imported" / called)
+            shutil.rmtree(folders[-1], ignore_errors=True)
+            shutil.copytree(pathlib.Path(made) / part, folders[-1])
+    return folders
+
+
+def made_by(called):
+    """What a dataset was made by, and which of it; None of one that is there as it is."""
+    for script, parts in IMPORTED.values():
+        for part, name in parts.items():
+            if name == called:
+                return f"`{script}`, its folder `{part}`"
+    return None
 
 
 def measured_sets(args):
@@ -75,7 +86,7 @@ def measured_sets(args):
         return [], f"{data} is no folder"
     found = [f.parent for f in data.glob("*/dataset.toml") if not names or f.parent.name in names]
     raw = [n for n in IMPORTED if (data / n).is_dir() and not (data / n / "dataset.toml").exists() and (not names or n in names)]
-    found += [f for f in (imported(n, data / n, args) for n in raw) if f]
+    found += [f for n in raw for f in imported(n, data / n, args)]
     return sorted(found, key=lambda f: f.name), ""
 
 
@@ -142,6 +153,8 @@ def diagnosed(folder, args, program):
     model, comparison = out.with_suffix(".model.toml"), out.with_suffix(".compare.json")
     comparison.unlink(missing_ok=True)
     words = [args.program, "diagnose", folder, "--progress", "--json", said, "--jobs", args.jobs]
+    if made := made_by(folder.name):
+        key |= {"imported": made}
     entry = key | timed(list(map(str, words)), args.limit, out.with_suffix(".txt"))
     if said.exists():
         d = json.loads(said.read_text())

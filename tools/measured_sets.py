@@ -4,7 +4,8 @@
     measured_sets.py [--results DIR] [--shared DIR] [--write [PAGE]]      without --write: to stdout
 
 What a set is, its licence and the best known figures are read from the README of the shared data; verdicts, errors and times
-from the results. A set without a result is said to have none.
+from the results. A set without a result keeps what the page says of it, else it is said to have none. Results named SET_… that
+the README does not know are another dataset of the same recordings, by an example's script.
 """
 import argparse
 import json
@@ -176,12 +177,37 @@ def section(name, facts, readme, results):
     return lines, f"| [{name}](#{name}) | {d['outcome']} | {effects} | {entry['cpu_s']:.1f} | {known} |"
 
 
-def page(readme, results):
+def kept(old, name):
+    """The section of a set on the page that is there, and its row; None where it has none."""
+    part = re.search(rf"^## {re.escape(name)}\n.*?(?=^## |\Z)", old, re.M | re.S)
+    row = re.search(rf"^\| \[{re.escape(name)}\].*$", old, re.M)
+    return (part[0].rstrip(), row[0]) if part and row else None
+
+
+def names_with_parts(sets, results, old):
+    """Names of the README, each followed by those of further datasets of it."""
+    of_results = {f.name.removesuffix(".run.json") for f in results.glob("*.run.json")}
+    further = (of_results | set(re.findall(r"^## (\S+)$", old, re.M))) - set(sets)
+    for name in sets:
+        yield name, name
+        for part in sorted(n for n in further if n.startswith(name + "_")):
+            yield part, name
+
+
+def page(readme, results, old=""):
     parts, rows = [], []
-    for name, facts in sets_of(readme).items():
-        lines, row = section(name, facts, readme, results)
-        parts.append("\n".join(lines).rstrip())
-        rows.append(row)
+    sets = sets_of(readme)
+    for name, of_set in names_with_parts(sets, results, old):
+        before = None if (results / f"{name}.run.json").exists() else kept(old, name)
+        if before is None:
+            facts = dict(sets[of_set])
+            entry = results / f"{name}.run.json"
+            if made := json.loads(entry.read_text()).get("imported") if entry.exists() else None:
+                facts["dataset"] = made
+            lines, row = section(name, facts, readme, results)
+            before = "\n".join(lines).rstrip(), row
+        parts.append(before[0])
+        rows.append(before[1])
     head = f"""# What the diagnosis says of measured records
 
 Made by `./dev bench diagnose`, then `python3 tools/measured_sets.py --write`, from the results and from the README of the shared data: do not
@@ -203,7 +229,9 @@ def main():
     if not args.shared or not (args.shared / "data/README.md").exists():
         print("measured_sets: skipped: no data/README.md in OMNIHIL_SHARED", file=sys.stderr)
         return 77
-    text = page((args.shared / "data/README.md").read_text(encoding="utf-8"), args.results)
+    there = args.write or ROOT / "docs/measured-sets.md"
+    old = there.read_text(encoding="utf-8") if there.exists() else ""
+    text = page((args.shared / "data/README.md").read_text(encoding="utf-8"), args.results, old)
     if args.write:
         args.write.write_text(text, encoding="utf-8")
     else:

@@ -121,9 +121,22 @@ class Channels {
     }
   }
 
+  // Of one run's readings; a channel has that of all, rms.
+  void add_sigma(const std::string& signal, double sigma) {
+    if (!(sigma > 0.0) || !std::isfinite(sigma)) return;
+    auto& [square, count] = sigmas_[signal];
+    square += sigma * sigma, count += 1.0;
+  }
+
   std::string text() const {
     std::string out = "time = { column = \"time_s\" }\n";
-    for (const std::string& signal : order_) out += lines_.at(signal) + "\n";
+    for (const std::string& signal : order_) {
+      std::string line = lines_.at(signal);
+      if (const auto it = sigmas_.find(signal); it != sigmas_.end())
+        line.insert(line.size() - 2,
+                    fmt::format(", sigma = {:.3g}", std::sqrt(it->second.first / it->second.second)));
+      out += line + "\n";
+    }
     return out;
   }
 
@@ -150,6 +163,7 @@ class Channels {
   LogDataset& out_;
   std::map<std::string, std::string> lines_;
   std::vector<std::string> order_;
+  std::map<std::string, std::pair<double, double>> sigmas_;  // sum of squares, count
   bool said_ = false;
 };
 
@@ -219,6 +233,9 @@ LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOp
       run.table = std::move(joined.table);
       asked = std::move(joined.asked);
       made.notes.push_back(joined.note);
+      channels.add_sigma("vision_x", joined.place_sigma_m);
+      channels.add_sigma("vision_y", joined.place_sigma_m);
+      if (joined.heading_sigma_rad > 0.0) channels.add_sigma("vision_theta", joined.heading_sigma_rad);
     }
     const LogMeaning meaning = recognise(run.table, o.context, asked);
     if (&run == &runs.front()) made.table = table_of(run, meaning, o);

@@ -16,8 +16,8 @@ constexpr double kSmooth_s = 0.2;  // encoders' noise goes, a drive's turns stay
 constexpr double kOverlap = 0.5;   // of either one's motion, by its energy: less is another drive
 constexpr double kAlike =
     0.6;  // least correlation; noise alone of n independent stretches has 1 / sqrt(n): 10 s, 0.14
-constexpr int kStretches = 4;    // of which the spread is taken
-constexpr double kNear_s = 0.5;  // in which a stretch's own lag is sought
+constexpr double kKnown_s =
+    0.2;  // sigma of a lag that is worth having: a fifth of a drive's usual second; a choice
 
 std::vector<Complex> smoothed(const std::vector<Complex>& v) {
   const auto half = static_cast<std::ptrdiff_t>(0.5 * kSmooth_s / kStep_s),
@@ -90,6 +90,33 @@ std::optional<double> best_lag(const std::vector<Complex>& robot, const std::vec
   return curvature < 0.0 ? at + std::clamp(0.5 * (top[-1] - top[1]) / curvature, -0.5, 0.5) : at;
 }
 
+// What v_robot less v_pose / c leaves, c = scale exp(i frame), is noise of both components; with v = v_pose / c, d/dlag of the
+// model is v', d/dframe is i v.
+void add_sigmas(const std::vector<Complex>& robot, const std::vector<Complex>& pose, std::ptrdiff_t lag,
+                PoseClock& out) {
+  const Complex c = std::polar(out.scale, out.frame_rad);
+  double of_lag = 0.0, of_frame = 0.0, of_both = 0.0, rest = 0.0, count = 0.0;
+  // not at the ends, where the mean is of one side
+  const auto half = static_cast<std::ptrdiff_t>(0.5 * kSmooth_s / kStep_s) + 1,
+             n = static_cast<std::ptrdiff_t>(robot.size()), m = static_cast<std::ptrdiff_t>(pose.size());
+  for (std::ptrdiff_t k = std::max(half, half - lag); k < std::min(n, m - lag) - half; ++k) {
+    const auto at = static_cast<std::size_t>(k + lag);
+    const Complex v = pose[at] / c, turn = Complex(0.0, 1.0) * v,
+                  slope = (pose[at + 1] - pose[at - 1]) / (2.0 * kStep_s) / c;
+    of_lag += std::norm(slope);
+    of_frame += std::norm(turn);
+    of_both += (std::conj(slope) * turn).real();
+    rest += std::norm(robot[static_cast<std::size_t>(k)] - v);
+    count += 1.0;
+  }
+  const double noise2 = count > 0.0 ? 0.5 * rest / count * kSmooth_s / kStep_s : 0.0;
+  const double det = of_lag * of_frame - of_both * of_both;
+  // Relative to its terms: below, rounding decides.
+  const bool told = det > 1e-12 * of_lag * of_frame;
+  out.sigma_s = told ? std::sqrt(noise2 * of_frame / det) : INFINITY;
+  out.frame_sigma_rad = told ? std::sqrt(noise2 * of_lag / det) : INFINITY;
+}
+
 }  // namespace
 
 MotionTrack track_of_path(const std::vector<double>& time_s, const std::vector<Complex>& place,
@@ -130,17 +157,12 @@ PoseClock pose_clock(const MotionTrack& robot_track, const MotionTrack& pose_tra
   out.scale =
       at.pose /
       std::abs(at.product);  // the noise is the wheels': over their own energy it would come out too small
-  const std::ptrdiff_t near = std::lround(kNear_s / kStep_s), middle = std::lround(*lag);
-  double sum = 0.0, square = 0.0, count = 0.0;
-  for (int s = 0; s < kStretches; ++s) {
-    const auto own = best_lag(robot, pose, middle - near, middle + near, n * s / kStretches,
-                              n * (s + 1) / kStretches, 0.0, 0.0);
-    if (!own) continue;
-    sum += *own, square += *own * *own, count += 1.0;
-  }
-  if (count > 1.0)
-    out.sigma_s =
-        kStep_s * std::sqrt(std::max(0.0, square / count - sum * sum / count / count) / (count - 1.0));
+  add_sigmas(robot, pose, std::llround(*lag), out);
+  if (!(out.sigma_s < kKnown_s))
+    out.problem = fmt::format(
+        "they agree at many lags: the best is known to {:.2g} s, needed is {:.1f} s; a drive whose velocity "
+        "changes has one",
+        out.sigma_s, kKnown_s);
   return out;
 }
 

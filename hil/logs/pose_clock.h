@@ -23,11 +23,12 @@ struct MotionTrack {
 };
 
 struct PoseClock {
-  double offset_s = 0.0, sigma_s = 0.0;
-  double correlation = 0.0;  // 0 to 1
-  double frame_rad = 0.0;    // the pose's frame is turned so against the robot's heading
-  double scale = 1.0;        // way of the pose over way of the wheels
-  std::string problem;       // not empty: they do not tell one motion
+  double offset_s = 0.0, sigma_s = 0.0;  // sigma: infinite where the motion does not tell it
+  double correlation = 0.0;              // 0 to 1
+  double frame_rad = 0.0;                // the pose's frame is turned so against the robot's heading
+  double frame_sigma_rad = 0.0;
+  double scale = 1.0;   // way of the pose over way of the wheels
+  std::string problem;  // not empty: they do not tell one motion
 };
 
 // dx/dt of a path at its own samples, by the chord over `span_s`.

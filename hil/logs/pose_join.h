@@ -4,7 +4,8 @@
 //   joined.table;  joined.asked;  joined.note;             // "video.csv: 0.38 s +- 0.02 s late …"
 //
 // The poses stand at their nearest rows within half a period, shifted by the offset of pose_clock.h; where the poses have no
-// heading of their own, their places are turned into the frame of the robot's. Tables by rows only. Throws BadLog where
+// heading of their own, their places are turned into the frame of the robot's. How well lag and angle are known says how
+// well a place is, whatever the camera's own noise. Tables by rows only. Throws BadLog where
 // something is missing or the two do not tell one motion.
 #pragma once
 #include <string>
@@ -25,6 +26,8 @@ struct JoinedPose {
   LogTable table;
   std::vector<ColumnMap> asked;      // of this table
   std::vector<std::string> columns;  // of the poses
+  // Of places and headings on this clock and in this frame, rms: what the two are not known to moves them. m, rad.
+  double place_sigma_m = 0.0, heading_sigma_rad = 0.0;
   std::string note;
 };
 

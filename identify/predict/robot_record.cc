@@ -152,21 +152,38 @@ void unwrap_by_gyro(RobotRecord& r) {
   }
 }
 
-// Where there are no counts: the first speeds that were reported, unless all are slow; rad/s at the wheels.
+// Where there are no counts: the speeds that were first reported, unless they tell of no motion; rad/s at the wheels. One
+// reading is no speed where the sensor is coarse: means over the first rows, over more of them where the noise needs it.
 constexpr double kStanding_rad_s = 1.0;  // 3 cm/s of rim: a choice
-std::optional<PerWheel<double>> reported_at_start(const Run& run, std::size_t wheels) {
+constexpr double kSure_sigmas = 3.0;     // of a mean, beyond which it is a motion: the usual one
+constexpr double kLongStart = 5.0;  // times kStartSpan_s at most: a robot gains little speed in it; a choice
+std::optional<PerWheel<double>> reported_at_start(const Dataset& dataset, const Run& run,
+                                                  std::size_t wheels) {
   PerWheel<double> omega{};
   bool moves = false;
   for (std::size_t i = 0; i < wheels; ++i) {
-    const std::vector<double>* reported = run.signal(numbered("wheel_speed", i));
+    const std::string name = numbered("wheel_speed", i);
+    const std::vector<double>* reported = run.signal(name);
     if (reported == nullptr) return std::nullopt;
-    omega[i] = first_known(*reported, 0.0);
-    moves = moves || std::abs(omega[i]) > kStanding_rad_s;
+    const Channel* channel = dataset.channel(name);
+    const double sigma = channel != nullptr && channel->sigma > 0.0
+                             ? channel->sigma
+                             : estimate_noise(*reported, Differences::kThird).sigma;
+    double sum = 0.0, count = 0.0;
+    for (std::size_t k = 0; k < reported->size(); ++k) {
+      const double since_s = run.time_s[k] - run.time_s[0];
+      const bool sharp = count > 0.0 && kSure_sigmas * sigma <= kStanding_rad_s * std::sqrt(count);
+      if (count > 0.0 && (sharp || since_s > kLongStart * kStartSpan_s)) break;
+      if (std::isfinite((*reported)[k])) sum += (*reported)[k], count += 1.0;
+    }
+    if (count == 0.0) continue;
+    omega[i] = sum / count;
+    moves = moves || std::abs(omega[i]) > std::max(kStanding_rad_s, kSure_sigmas * sigma / std::sqrt(count));
   }
   return moves ? std::optional(omega) : std::nullopt;
 }
 
-BodyVelocity<double> start_velocity(const RobotRecord& r, const Run& run,
+BodyVelocity<double> start_velocity(const RobotRecord& r, const Dataset& dataset, const Run& run,
                                     const RollingParams<double>& nominal) {
   std::size_t last = 0;
   while (last + 1 < r.size() && r.time_s[last] - r.time_s[0] < kStartSpan_s) ++last;
@@ -179,7 +196,7 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const Run& run,
   g.wheel_center_radius_m = nominal.wheel_center_radius_m;
   g.wheel_radius_m = nominal.wheel_radius_m;
   if (!r.has_all_encoders || last < 3) {
-    const auto reported = reported_at_start(run, r.wheels);
+    const auto reported = reported_at_start(dataset, run, r.wheels);
     return reported ? body_velocity(g, *reported) : BodyVelocity<double>{};
   }
   PerWheel<double> omega_wheel{};
@@ -239,7 +256,7 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   }
   read_frames(run, r);
   unwrap_by_gyro(r);
-  r.start_velocity = start_velocity(r, run, nominal);
+  r.start_velocity = start_velocity(r, dataset, run, nominal);
   return r;
 }
 

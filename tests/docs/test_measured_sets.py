@@ -121,6 +121,30 @@ class Page(unittest.TestCase):
         self.assertIn("source: a drawer", self.section("top"))
         self.assertIn("| `cogging` | 4.2 | not compared |", measured_sets.page(README, self.results))
 
+    def test_a_set_that_was_not_run_again_keeps_what_the_page_says(self):
+        self.put("arm", diagnosis("velocity", "rad/s"), {})
+        old = measured_sets.page(README, self.results)
+        (self.results / "arm.run.json").unlink()
+        self.put("drum_left", diagnosis("position", "rad"), {})
+        new = measured_sets.page(README, self.results, old)
+        row = next(line for line in old.splitlines() if line.startswith("| [arm]"))
+        self.assertIn(row, new)
+        self.assertEqual(new.split("\n## arm\n")[1].split("\n## ")[0], old.split("\n## arm\n")[1].split("\n## ")[0])
+        self.assertIn("Not run", self.section("arm"))  # without the page there is nothing to keep
+        self.assertEqual(new.count("\n## arm\n"), 1)
+        self.assertIn("Verdict", new.split("\n## drum_left\n")[1].split("\n## ")[0])
+
+    def test_another_dataset_of_the_same_recordings_follows_its_set(self):
+        self.put("top", diagnosis("velocity", "rad/s"), {}, imported="`a.sh`, its folder `x`")
+        self.put("top_spun", diagnosis("velocity", "rad/s"), {}, imported="`a.sh`, its folder `y`")
+        page = measured_sets.page(README, self.results)
+        self.assertLess(page.index("\n## top\n"), page.index("\n## top_spun\n"))
+        self.assertIn("dataset: `a.sh`, its folder `y`", self.section("top_spun"))
+        self.assertIn("licence: MIT", self.section("top_spun"))
+        self.assertIn("| [top_spun](#top_spun) |", page)
+        (self.results / "top_spun.run.json").unlink()
+        self.assertEqual(measured_sets.page(README, self.results, page), page)
+
     def test_a_set_without_an_answer_is_said_to_have_none(self):
         self.put("arm", None, None, timed_out=True, first_wall_s=None)
         self.assertIn("No answer. Not done within 300 s.", self.section("arm"))

@@ -19,13 +19,13 @@ Complex velocity(double t) {
   return {0.4 * std::sin(0.9 * t), 0.3 * std::sin(1.7 * t + 0.4)};
 }
 
-MotionTrack robot(double noise_m_s) {
+MotionTrack robot(double noise_m_s, std::uint64_t seed = 1) {
   MotionTrack track;
   for (int k = 0; k <= 1000; ++k) {
     const auto n = static_cast<std::uint64_t>(k);
     track.time_s.push_back(0.01 * k);
     track.velocity_m_s.push_back(velocity(0.01 * k) +
-                                 Complex(noise_m_s * gaussian(1, 0, n), noise_m_s * gaussian(1, 1, n)));
+                                 Complex(noise_m_s * gaussian(seed, 0, n), noise_m_s * gaussian(seed, 1, n)));
   }
   return track;
 }
@@ -53,6 +53,35 @@ TEST(PoseClock, FindsLagFrameAndScaleUnderTheEncodersNoise) {
     EXPECT_NEAR(c.frame_rad, 0.3, 0.05);
     EXPECT_NEAR(c.scale, 0.7, 0.07);
   }
+}
+
+// Of thirty draws the error in sigmas has an rms of 1, to within its own spread (1 / sqrt(2 * 30) = 0.13) thrice.
+TEST(PoseClock, TheLagIsKnownToItsSigma) {
+  double lag2 = 0.0, frame2 = 0.0;
+  const MotionTrack seen = camera(1.7, 0.3, 0.7);
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const PoseClock c = pose_clock(robot(0.5, seed), seen);
+    ASSERT_EQ(c.problem, "");
+    lag2 += std::pow((c.offset_s - 1.7) / c.sigma_s, 2);
+    frame2 += std::pow((c.frame_rad - 0.3) / c.frame_sigma_rad, 2);
+  }
+  EXPECT_NEAR(std::sqrt(lag2 / 30.0), 1.0, 0.4);
+  EXPECT_NEAR(std::sqrt(frame2 / 30.0), 1.0, 0.4);
+}
+
+// A circle driven at one speed looks the same later and turned: neither is known, and it says so.
+TEST(PoseClock, ACircleTellsNoLagAndIsRefused) {
+  MotionTrack circle, noisy;
+  for (int k = 0; k <= 1000; ++k) {
+    circle.time_s.push_back(0.01 * k);
+    circle.velocity_m_s.push_back(0.4 * std::polar(1.0, 0.5 * 0.01 * k));
+  }
+  noisy = circle;
+  for (std::size_t k = 0; k < noisy.time_s.size(); ++k)
+    noisy.velocity_m_s[k] += Complex(0.1 * gaussian(1, 0, k), 0.1 * gaussian(1, 1, k));
+  const PoseClock c = pose_clock(noisy, circle);
+  EXPECT_GT(c.sigma_s, 1.0);
+  EXPECT_NE(c.problem.find("at many lags"), std::string::npos) << c.problem;
 }
 
 TEST(PoseClock, IsExactWithoutNoise) {

@@ -5,6 +5,7 @@
 #include "identify/estimate/fit.h"
 #include "identify/predict/predictor_robot.h"
 #include "identify/predict/robot_motion.h"
+#include "sim/law/random.h"
 #include "sim/model/rolling_model.h"
 #include "tests/identify/simulated_radio.h"
 
@@ -44,6 +45,31 @@ TEST(RadioDriven, TheModelThatMadeTheDataLeavesTheNoise) {
         if (std::isfinite(r)) square += r * r, count += 1.0;
       }
       EXPECT_NEAR(std::sqrt(square / count) / c.noise_sigma, 1.0, 0.15) << c.name << wheels;
+    }
+  }
+}
+
+// Speeds whose noise is as large as any motion (a coarse encoder, read often): a robot that stands is not begun at one reading
+// of them, one that drives not at rest.
+TEST(RadioDriven, TheStartIsNotOneNoisyReading) {
+  const auto nominal = rolling_params(radio_candidate().file.parameters);
+  const double angle[] = {55, 135, 225, 305};
+  for (const double v_m_s : {0.0, 1.5}) {
+    Dataset d = blank_radio(2.0);
+    for (Channel& c : d.channels) c.sigma = 0.0;  // to be found in the readings
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::vector<double>& w = d.runs[0].signals["wheel_speed_" + std::to_string(i + 1)];
+      const double a = angle[i] * std::numbers::pi / 180.0;
+      for (std::size_t k = 0; k < w.size(); ++k)
+        w[k] = -std::sin(a) * v_m_s / 0.027 + 15.0 * gaussian(5, i, static_cast<std::uint64_t>(k));
+    }
+    const BodyVelocity<double> start = robot_record(d, d.runs[0], nominal).start_velocity;
+    if (v_m_s == 0.0) {
+      EXPECT_EQ(start.v_forward_m_s, 0.0);
+      EXPECT_EQ(start.v_left_m_s, 0.0);
+      EXPECT_EQ(start.omega_body_rad_s, 0.0);
+    } else {  // means over 7 rows: 15 / sqrt(7) rad/s a wheel, 0.027 m, two pairs of them
+      EXPECT_NEAR(start.v_forward_m_s, v_m_s, 3.0 * 15.0 / std::sqrt(7.0) * 0.027 / std::sqrt(2.0));
     }
   }
 }
