@@ -56,13 +56,12 @@ class PlanReader {
  private:
   void read_head(const toml::table& top) {
     static constexpr std::string_view kFormats[] = {kFormat};
-    static constexpr std::string_view kRigs[] = {"axis", "robot"};
     keys_.word(top, "", "format", kFormats, 0);
     if (top.get("format") == nullptr) keys_.missing(top, "", "format", "format = \"omnihil-dataset/1\"");
     plan_.dataset.title = keys_.text(top, "", "title").value_or("");
-    if (top.get("rig") == nullptr) keys_.missing(top, "", "rig", "rig = \"axis\" or \"robot\"");
-    if (const auto rig = keys_.word(top, "", "rig", kRigs, std::nullopt)) {
-      plan_.dataset.rig = *rig == 0 ? Rig::kAxis : Rig::kRobot;
+    if (top.get("rig") == nullptr) keys_.missing(top, "", "rig", "rig = \"axis\", \"robot\" or \"wheel\"");
+    if (const auto rig = keys_.word(top, "", "rig", kRigNames, std::nullopt)) {
+      plan_.dataset.rig = static_cast<Rig>(*rig);
       plan_.rig_known = true;
     }
     plan_.model = keys_.text(top, "", "model").value_or("");
@@ -82,8 +81,7 @@ class PlanReader {
     if (row == nullptr && plan_.rig_known) {
       const auto names = signal_names(plan_.dataset.rig);
       keys_.wrong_key(key, path,
-                      fmt::format("there is no such signal on rig \"{}\"",
-                                  plan_.dataset.rig == Rig::kAxis ? "axis" : "robot"),
+                      fmt::format("there is no such signal on rig \"{}\"", rig_name(plan_.dataset.rig)),
                       spelling_hint(name, names));
     }
     if (!node.is_table()) {
@@ -153,7 +151,8 @@ class PlanReader {
     channel.imposed = keys_.word(table, path, "role", kRoles, 0).value_or(0) == 1;
     const bool can = row.rig == Rig::kAxis && (row.name == "velocity" || row.name == "position" ||
                                                row.name == "motor_current" || row.role == SignalRole::kDrive);
-    if (channel.imposed && !can) {
+    channel.imposed = channel.imposed || is_always_imposed(row);
+    if (channel.imposed && !can && !is_always_imposed(row)) {
       keys_.wrong(*table.get("role"), path + ".role", "a bench cannot impose this signal",
                   "allowed: velocity, position or motor_current of rig \"axis\"");
     }

@@ -87,17 +87,17 @@ class DatasetReader {
     for (ModelProblem& p : reading.problems) out_.problems.push_back(std::move(p));
     if (!reading.candidate) return;
     const bool robot = reading.candidate->file.rig == "robot";
-    if (robot != (plan_.dataset.rig == Rig::kRobot)) {
+    if (robot == (plan_.dataset.rig == Rig::kAxis)) {
       problem(plan_.model_at, "model", fmt::format("\"{}\"", model_file_),
               fmt::format("is a model of rig \"{}\"", reading.candidate->file.rig),
-              fmt::format("the dataset's rig is \"{}\"", robot ? "axis" : "robot"));
+              fmt::format("the dataset's rig is \"{}\"", rig_name(plan_.dataset.rig)));
       return;
     }
     out_.nominal = std::move(reading.candidate);
   }
 
   std::uint32_t rig_bit() const {
-    if (dataset_.rig == Rig::kRobot) return kRigRobot;
+    if (dataset_.rig != Rig::kAxis) return kRigRobot;
     return dataset_.linear ? kRigLinearAxis : kRigAxis;
   }
 
@@ -173,8 +173,10 @@ class DatasetReader {
       if (!motion && !run.steady) {
         problem(at, "runs", fmt::format("\"{}\"", run.file), "has no motion signal",
                 dataset_.rig == Rig::kAxis ? "one of encoder, position, velocity is needed"
-                                           : "encoder_1 to encoder_4, wheel_speed_1 to wheel_speed_4, gyro_z "
-                                             "or vision_x, vision_y, vision_theta");
+                : dataset_.rig == Rig::kWheel
+                    ? "encoder or wheel_speed is needed"
+                    : "encoder_1 to encoder_4, wheel_speed_1 to wheel_speed_4, gyro_z "
+                      "or vision_x, vision_y, vision_theta");
       } else if (!compared && !run.steady) {
         problem(at, "runs", fmt::format("\"{}\"", run.file), "leaves nothing to compare",
                 "where the speed is imposed, load_torque must be measured");
@@ -263,8 +265,13 @@ class DatasetReader {
 
   // What the drive input needs of the model.
   void check_model() {
-    if (dataset_.rig != Rig::kAxis) {
-      check_robot_drive();
+    if (dataset_.rig == Rig::kRobot) return check_robot_drive();
+    if (dataset_.rig == Rig::kWheel) {
+      for (std::size_t r = 0; r < dataset_.runs.size(); ++r) {
+        if (dataset_.runs[r].signal("body_vx") == nullptr)
+          problem(plan_.runs[r].at, "runs", fmt::format("\"{}\"", dataset_.runs[r].file), "has no body_vx",
+                  "the velocity that the bench gave the wheel's body, 0 where it stood");
+      }
       return;
     }
     const ParameterTable& table = out_.nominal->file.parameters;

@@ -194,7 +194,8 @@ class RunsReader {
                          .key = "runs",
                          .value = "",
                          .what = std::move(what),
-                         .allowed = dataset_.rig == Rig::kAxis
+                         .allowed = dataset_.rig == Rig::kWheel ? "duty is needed"
+                                    : dataset_.rig == Rig::kAxis
                                         ? "one of duty, motor_voltage, motor_torque, position_target, or "
                                           "motor_current with role = \"imposed\" is needed"
                                         : "duty_1 to duty_4, or command_vx, command_vy and command_w, or "

@@ -198,6 +198,10 @@ PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const
       bench.problem = "no run of use \"fit\" is a time series in which this bench moves";
     return bench;
   }
+  if (given.rig == Rig::kWheel) {
+    bench.problem = "of a wheel on a bench no drive is planned: the bench gives half of it";
+    return bench;
+  }
   bench.supply_V = nominal.file.parameters.value_or("supply.voltage_V", 0.0);
   const bool robot = given.rig == Rig::kRobot;
   const bool by_duty = bench.example.signal("duty_1") != nullptr;

@@ -4,6 +4,7 @@
 
 #include "identify/predict/predictor_axis.h"
 #include "identify/predict/predictor_robot.h"
+#include "identify/predict/predictor_wheel.h"
 
 namespace omnihil {
 
@@ -73,8 +74,15 @@ double averaged_sigma(const ComparedSignal& signal) {
 
 std::unique_ptr<Predictor> make_predictor(const Dataset& dataset, const Candidate& nominal,
                                           const PredictOptions& options) {
-  return dataset.rig == Rig::kAxis ? make_axis_predictor(dataset, nominal, options)
-                                   : make_robot_predictor(dataset, nominal, options);
+  switch (dataset.rig) {
+    case Rig::kAxis:
+      return make_axis_predictor(dataset, nominal, options);
+    case Rig::kWheel:
+      return make_wheel_predictor(dataset, nominal, options);
+    case Rig::kRobot:
+      break;
+  }
+  return make_robot_predictor(dataset, nominal, options);
 }
 
 }  // namespace omnihil

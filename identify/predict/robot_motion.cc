@@ -22,7 +22,7 @@ template <typename T>
 struct Truth {
   std::vector<PerWheel<T>> theta_rotor_rad, omega_rotor_rad_s, reported_rad_s, charge_C;
   std::vector<std::array<T, 3>> velocity;
-  std::vector<T> accel_x, accel_y, bus, supply;
+  std::vector<T> accel_x, accel_y, bus, supply, force_x, force_y;
 };
 
 // Linear interpolation at a time between the samples `from` and `from` + 1.
@@ -204,6 +204,7 @@ class Runner {
     if (controller_) step_s = std::min(step_s, controller_->period_s());
     if (firmware_) step_s = std::min(step_s, firmware_->period_s());
     PerWheel<double> between;
+    std::array<double, 3> imposed;
     for (std::size_t k = 0;; ++k) {
       keep(x);
       if (k + 1 >= n) break;
@@ -219,6 +220,11 @@ class Runner {
             between[i] = from + (to - from) * j / steps;
           }
           in.theta_rotor_rad = &between;
+        }
+        for (std::size_t a = 0; a < 3 && !record_.imposed_velocity.empty(); ++a) {
+          const double from = record_.imposed_velocity[k][a], to = record_.imposed_velocity[k + 1][a];
+          imposed[a] = from + (to - from) * (j + 1) / steps;
+          in.imposed_velocity = &imposed;
         }
         x.yaw_rad = heading_.empty() ? own_heading : heading_[k];
         const T before = x.velocity[2];
@@ -273,6 +279,10 @@ class Runner {
     truth_.velocity.push_back(x.velocity);
     truth_.accel_x.push_back(x.accel_x_m_s2);
     truth_.accel_y.push_back(x.accel_y_m_s2);
+    if (!record_.imposed_velocity.empty()) {
+      truth_.force_x.push_back(x.floor_x_N);
+      truth_.force_y.push_back(x.floor_y_N);
+    }
     truth_.bus.push_back(x.bus_voltage_V);
     truth_.supply.push_back(x.supply_voltage_V);
     out_.temperature_rise_K.push_back(rise);
@@ -313,6 +323,9 @@ class Runner {
       out_.gyro_rad_s[k] = seen([&](std::size_t j) { return truth_.velocity[j][2]; });
       out_.accel_x_m_s2[k] = seen([&](std::size_t j) { return truth_.accel_x[j]; });
       out_.accel_y_m_s2[k] = seen([&](std::size_t j) { return truth_.accel_y[j]; });
+      if (record_.imposed_velocity.empty()) continue;
+      out_.force_x_N.push_back(seen([&](std::size_t j) { return truth_.force_x[j]; }));
+      out_.force_y_N.push_back(seen([&](std::size_t j) { return truth_.force_y[j]; }));
     }
     out_.bus_voltage_V = truth_.bus;
     out_.supply_voltage_V = truth_.supply;

@@ -58,6 +58,8 @@ struct RobotMotion {
   std::vector<PerWheel<T>> wheel_rad_s;  // at the wheel; of a controller: as it measures them
   std::vector<PerWheel<T>> current_A;    // mean over the period that ends at the sample
   std::vector<T> gyro_rad_s, accel_x_m_s2, accel_y_m_s2;
+  std::vector<T> force_x_N,
+      force_y_N;  // of the floor on the wheels; empty unless the body's velocity is imposed
   std::vector<T> bus_voltage_V, supply_voltage_V;  // RollingState
   std::vector<T> temperature_rise_K;               // mean of the windings
   std::vector<std::array<T, 3>> velocity;          // body frame, true: without sensor; m/s, m/s, rad/s

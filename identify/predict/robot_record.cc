@@ -18,10 +18,6 @@ constexpr double kHeadingMemory_s = 1.0;  // a choice; sensitivity not measured
 // For the parabola of the speeds at the start: tens of samples.
 constexpr double kStartSpan_s = 0.02;  // a choice
 
-std::string numbered(std::string_view name, std::size_t wheel) {
-  return std::string(name) + "_" + std::to_string(wheel + 1);
-}
-
 // Half widths in samples, the shortest as of an axis (kBusWindow); a choice. More than noise is what exceeds its variance
 // by three standard errors of a variance from 501 samples (sqrt(2 / n) = 6 %), within one of a variance from 21.
 constexpr std::size_t kHalfWindows[] = {250, 50, 10};  // as above
@@ -35,7 +31,7 @@ void read_radio(const Run& run, RobotRecord& r) {
   if (body) {
     said = {run.signal("command_vx"), run.signal("command_vy"), run.signal("command_w")};
   } else {
-    for (std::size_t i = 0; i < r.wheels; ++i) said[i] = run.signal(numbered("command_wheel", i));
+    for (std::size_t i = 0; i < r.wheels; ++i) said[i] = run.signal(numbered("command_wheel", i, r.wheels));
   }
   RadioCommands radio{.frame = body ? CommandFrame::kBodyVelocity : CommandFrame::kWheelSpeeds, .value = {}};
   radio.value.resize(r.size());
@@ -49,9 +45,9 @@ void read_radio(const Run& run, RobotRecord& r) {
 }
 
 void read_drive(const Run& run, RobotRecord& r) {
-  if (run.signal("duty_1") == nullptr) return read_radio(run, r);
+  if (run.signal(numbered("duty", 0, r.wheels)) == nullptr) return read_radio(run, r);
   for (std::size_t i = 0; i < r.wheels; ++i) {
-    const std::vector<double>* duty = run.signal(numbered("duty", i));
+    const std::vector<double>* duty = run.signal(numbered("duty", i, r.wheels));
     const std::vector<double>* enable = run.signal("enable");
     for (std::size_t k = 0; k < r.size(); ++k) {
       const bool asked = duty != nullptr && std::isfinite((*duty)[k]);
@@ -102,7 +98,7 @@ std::vector<double> without_gaps(const std::vector<double>& time_s, const std::v
 void read_encoders(const Dataset& dataset, const Run& run, double gear_ratio, RobotRecord& r) {
   r.has_all_encoders = true;
   for (std::size_t i = 0; i < r.wheels; ++i) {
-    const std::string name = numbered("encoder", i);
+    const std::string name = numbered("encoder", i, r.wheels);
     const Channel* channel = dataset.channel(name);
     const std::vector<double>* counts = run.signal(name);
     const std::vector<double> full =
@@ -139,6 +135,13 @@ void read_frames(const Run& run, RobotRecord& r) {
   }
 }
 
+void read_imposed(const Run& run, RobotRecord& r) {
+  const std::vector<double> x = held(run.signal("body_vx")), y = held(run.signal("body_vy"));
+  if (x.empty()) return;
+  for (std::size_t k = 0; k < r.size(); ++k)
+    r.imposed_velocity.push_back({x[k], y.empty() ? 0.0 : y[k], 0.0});
+}
+
 // Unwraps the camera's heading: whole turns between two frames from the gyro's integral.
 void unwrap_by_gyro(RobotRecord& r) {
   if (r.turned_rad.empty()) return;
@@ -162,7 +165,7 @@ std::optional<PerWheel<double>> reported_at_start(const Dataset& dataset, const 
   PerWheel<double> omega{};
   bool moves = false;
   for (std::size_t i = 0; i < wheels; ++i) {
-    const std::string name = numbered("wheel_speed", i);
+    const std::string name = numbered("wheel_speed", i, wheels);
     const std::vector<double>* reported = run.signal(name);
     if (reported == nullptr) return std::nullopt;
     const Channel* channel = dataset.channel(name);
@@ -185,6 +188,10 @@ std::optional<PerWheel<double>> reported_at_start(const Dataset& dataset, const 
 
 BodyVelocity<double> start_velocity(const RobotRecord& r, const Dataset& dataset, const Run& run,
                                     const RollingParams<double>& nominal) {
+  if (!r.imposed_velocity.empty()) {
+    const auto& v = r.imposed_velocity.front();
+    return {v[0], v[1], v[2]};
+  }
   std::size_t last = 0;
   while (last + 1 < r.size() && r.time_s[last] - r.time_s[0] < kStartSpan_s) ++last;
   WheelGeometry<double> g;
@@ -225,6 +232,10 @@ RollingInput<T> RobotRecord::input(std::size_t k) const {
 template RollingInput<double> RobotRecord::input(std::size_t) const;
 template RollingInput<Jet> RobotRecord::input(std::size_t) const;
 
+std::string numbered(std::string_view name, std::size_t wheel, std::size_t wheels) {
+  return wheels == 1 ? std::string(name) : std::string(name) + "_" + std::to_string(wheel + 1);
+}
+
 RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal) {
   RobotRecord r;
   r.wheels = nominal.wheels;
@@ -256,6 +267,7 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   }
   read_frames(run, r);
   unwrap_by_gyro(r);
+  read_imposed(run, r);
   r.start_velocity = start_velocity(r, dataset, run, nominal);
   return r;
 }

@@ -5,10 +5,14 @@
 //   r.input(k);                         // held from sample k to the next
 //   headings<Jet>(r, camera_age_s);     // of the body in the field, per sample
 //
+// Signals of one wheel alone have no number ("duty"), those of several have theirs ("duty_1").
 // An empty duty is a bridge that is off. A missing sample of an input holds the one before.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "identify/record/dataset.h"
@@ -43,12 +47,16 @@ struct RobotRecord {
   bool has_all_encoders = false;
   std::vector<double> turned_rad;  // integral of the gyro; empty: none
   std::vector<CameraFrame> frames;
+  std::vector<std::array<double, 3>> imposed_velocity;  // of the body, by the bench; empty: it moves freely
   BodyVelocity<double> start_velocity;
 
   std::size_t size() const { return time_s.size(); }
   template <typename T = double>
   RollingInput<T> input(std::size_t sample) const;
 };
+
+// "encoder" of a wheel alone, else "encoder_1" of wheel 0 …
+std::string numbered(std::string_view name, std::size_t wheel, std::size_t wheels);
 
 // gear_ratio, wheel_radius_m and the wheels' places of the nominal model: for the start alone, and for
 // encoders on the wheel.

@@ -30,6 +30,8 @@ constexpr Source kSources[] = {
     {RobotOutput::kVisionX, "vision_x", "m", false},
     {RobotOutput::kVisionY, "vision_y", "m", false},
     {RobotOutput::kVisionTheta, "vision_theta", "rad", false},
+    {RobotOutput::kForceX, "force_x", "N", false},
+    {RobotOutput::kForceY, "force_y", "N", false},
     {RobotOutput::kBusVoltage, "bus_voltage", "V", false},
 };
 
@@ -88,7 +90,8 @@ void take(const Channel& channel, const Run& run, const RobotRecord& r, RobotSig
   } else {
     s.compared.measured = *run.signal(s.channel);
     // the mean over a period whose beginning was not recorded
-    const bool mean = s.output == RobotOutput::kCurrent || s.output == RobotOutput::kBusVoltage;
+    const bool mean = s.output == RobotOutput::kCurrent || s.output == RobotOutput::kBusVoltage ||
+                      s.output == RobotOutput::kForceX || s.output == RobotOutput::kForceY;
     if (mean && !s.compared.measured.empty()) s.compared.measured[0] = kNaN;
     set_noise(channel.sigma, estimate_noise(s.compared.measured, Differences::kThird), s.compared);
   }
@@ -101,7 +104,7 @@ std::vector<RobotSignal> robot_signals(const Dataset& dataset, const Run& run, c
   std::vector<RobotSignal> signals;
   for (const Source& source : kSources) {
     for (std::size_t i = 0; i < (source.per_wheel ? r.wheels : 1u); ++i) {
-      const std::string suffix = source.per_wheel ? "_" + std::to_string(i + 1) : "";
+      const std::string suffix = source.per_wheel ? numbered("", i, r.wheels) : "";
       RobotSignal s;
       s.output = source.output;
       s.wheel = i;
@@ -169,6 +172,10 @@ std::vector<T> robot_signal_values(const RobotSignal& s, const RobotRecord& r, c
       return m.y_m;
     case RobotOutput::kVisionTheta:
       return m.theta_rad;
+    case RobotOutput::kForceX:
+      return m.force_x_N;
+    case RobotOutput::kForceY:
+      return m.force_y_N;
     case RobotOutput::kBusVoltage:
       return at_mean_of(s.compared.measured, m.supply_voltage_V);
   }
@@ -257,7 +264,7 @@ std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, con
     }
   }
   for (std::size_t i = 0; i < r.wheels; ++i) {
-    const std::string wheel = "_" + std::to_string(i + 1);
+    const std::string wheel = numbered("", i, r.wheels);
     tracks.push_back(track("wheel_speed" + wheel, "rad/s", [&](std::size_t k) {
       return k > 0 ? (m.encoder_rad[k][i] - m.encoder_rad[k - 1][i]) / (r.time_s[k] - r.time_s[k - 1]) : kNaN;
     }));

@@ -23,6 +23,8 @@ enum class RobotOutput : std::uint8_t {
   kVisionX,
   kVisionY,
   kVisionTheta,
+  kForceX,
+  kForceY,
   kBusVoltage
 };
 

@@ -17,7 +17,7 @@ struct TorqueColumn {
 };
 
 TorqueColumn torque_column(const Dataset& dataset, const Candidate& nominal) {
-  if (dataset.rig == Rig::kRobot || dataset.linear) return {};
+  if (dataset.rig != Rig::kAxis || dataset.linear) return {};
   if (dataset.channel("motor_torque") != nullptr) return {"motor_torque", 1.0};
   const Channel* current = dataset.channel("motor_current");
   if (current == nullptr || !current->imposed) return {};

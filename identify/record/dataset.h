@@ -16,7 +16,10 @@
 
 namespace omnihil {
 
-enum class Rig : std::uint8_t { kAxis, kRobot };
+// What is driven: one drive on a bench, a robot on the floor, one of its wheels under a body that the bench moves.
+enum class Rig : std::uint8_t { kAxis, kRobot, kWheel };
+inline constexpr std::string_view kRigNames[] = {"axis", "robot", "wheel"};  // as the file format has them
+inline std::string_view rig_name(Rig rig) { return kRigNames[static_cast<std::size_t>(rig)]; }
 
 // Which part a run plays in cross-validation. The file format calls them "fit", "holdout", "extrapolation".
 // Unscoped on purpose: a split is also the index of arrays that hold one thing per split.

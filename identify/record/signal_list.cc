@@ -62,6 +62,18 @@ constexpr SignalRow kRows[] = {
     {"vision_x", "m", "", kMotion, Rig::kRobot, ""},
     {"vision_y", "m", "", kMotion, Rig::kRobot, ""},
     {"vision_theta", "rad", "", kMotion, Rig::kRobot, ""},
+
+    {"time", "s", "", kTime, Rig::kWheel, ""},
+    {"duty", "1", "", kDrive, Rig::kWheel, "duty"},
+    {"enable", "1", "", kFlag, Rig::kWheel, ""},
+    {"body_vx", "m/s", "", kMotion, Rig::kWheel, ""},
+    {"body_vy", "m/s", "", kMotion, Rig::kWheel, ""},
+    {"bus_voltage", "V", "", kMeasured, Rig::kWheel, ""},
+    {"motor_current", "A", "", kMeasured, Rig::kWheel, ""},
+    {"encoder", "counts", "", kCounts, Rig::kWheel, ""},
+    {"wheel_speed", "rad/s", "", kMotion, Rig::kWheel, ""},
+    {"force_x", "N", "", kMeasured, Rig::kWheel, ""},
+    {"force_y", "N", "", kMeasured, Rig::kWheel, ""},
 };
 
 }  // namespace

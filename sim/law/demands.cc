@@ -20,8 +20,9 @@ std::uint32_t demands_of(Place place) {
     case Place::kShaft:
       return kNeedsTwoInertias;
     case Place::kContact:
-    case Place::kBody:
       return kNeedsFloor;
+    case Place::kBody:
+      return kNeedsFloor | kNeedsFreeBody;
     case Place::kSensor:
       return kNeedsSimulation | kNeedsShaftSensor;
     case Place::kTiming:
@@ -57,7 +58,8 @@ std::string_view demand_name(DemandBit bit) {
                                                         "a body's speed: camera, gyro or accelerometer",
                                                         "a sensor of the shaft",
                                                         "an encoder",
-                                                        "an angle of the shaft"};
+                                                        "an angle of the shaft",
+                                                        "a body that moves freely"};
   return bit == kNeedsNothing ? "" : kNames[std::countr_zero(static_cast<std::uint32_t>(bit))];
 }
 

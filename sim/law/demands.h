@@ -32,8 +32,9 @@ enum DemandBit : std::uint32_t {
   kNeedsShaftSensor = 1u << 13,    // angle or speed of the shaft
   kNeedsEncoder = 1u << 14,        // that counts
   kNeedsAngle = 1u << 15,          // of the shaft: an encoder, or a position that the drive reports
+  kNeedsFreeBody = 1u << 16,       // that forces move: not one that a bench moves
 };
-inline constexpr int kDemands = 16;
+inline constexpr int kDemands = 17;
 
 // A base parameter beside which an effect has no place: it would do the same.
 struct BaseExclusion {

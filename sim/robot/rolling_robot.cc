@@ -122,8 +122,12 @@ void RollingRobot<T>::make_body() {
   }
   g.wheel_center_radius_m = p_.wheel_center_radius_m;
   g.wheel_radius_m = p_.wheel_radius_m;
-  load_ =
-      wheel_load_law(g, p_.mass_kg, p_.center_of_mass_x_m, p_.center_of_mass_y_m, p_.center_of_mass_height_m);
+  if (wheels_ == 1) {
+    load_.at_rest_N[0] = p_.mass_kg * kGravity_m_s2;
+  } else {
+    load_ = wheel_load_law(g, p_.mass_kg, p_.center_of_mass_x_m, p_.center_of_mass_y_m,
+                           p_.center_of_mass_height_m);
+  }
   const T sx = p_.mass_kg * p_.center_of_mass_x_m, sy = p_.mass_kg * p_.center_of_mass_y_m;
   Eigen::Matrix<T, 3, 3> mass;  // planar_law.h
   mass << p_.mass_kg, T(0), -sy, T(0), p_.mass_kg, sx, -sy, sx, p_.yaw_inertia_kg_m2;
@@ -162,7 +166,7 @@ void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput<T>& in, dou
   ask_floor(x, in, s);
   ask_body(x, in, s);
   drives(x, in, s);
-  predict(x, s);
+  predict(x, in, s);
   wheels_ <= 4 ? solve<4>(x, s) : solve<kMaxWheels>(x, s);
   finish(x, in, s);
 }
@@ -325,7 +329,7 @@ void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput<T>& in, Step
 // ----------------------------------------------------------------------------- what comes of it
 
 template <typename T>
-void RollingRobot<T>::predict(const RollingState<T>& x, Step& s) const {
+void RollingRobot<T>::predict(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const {
   using std::cos;
   using std::sin;
   const T half = 0.5 * s.h * (x.velocity[2] + 0.5 * x.turn_change_rad_s);  // mid-step, looked ahead
@@ -333,8 +337,12 @@ void RollingRobot<T>::predict(const RollingState<T>& x, Step& s) const {
   s.sin_half = sin(half);
   s.turned = s.half_turned(s.half_turned(Vector3(x.velocity[0], x.velocity[1], x.velocity[2])));
   s.free = s.turned + s.half_turned(inverse_mass_ * s.force) * T(s.h);
+  if (in.imposed_velocity != nullptr) {
+    const auto& v = *in.imposed_velocity;
+    s.free = Vector3(T(v[0]), T(v[1]), T(v[2]));
+  }
   for (std::size_t j = 0; j < wheels_; ++j) {
-    const Vector3 moved = s.half_turned(rim_mobility_[j]) * T(s.h);
+    const Vector3 moved = s.half_turned(rim_mobility_[j]) * T(in.imposed_velocity != nullptr ? 0.0 : s.h);
     for (std::size_t i = 0; i < wheels_; ++i) {
       s.mobility(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rim_[i].dot(moved);
     }
@@ -447,7 +455,7 @@ void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput<T>& in, Step
     x.force_N[i] = s.force_N[i];
     x.friction_Nm[i] = s.friction_Nm[i];
   }
-  const Vector3 end = s.free + s.half_turned(pushed) * T(s.h);
+  const Vector3 end = s.free + s.half_turned(pushed) * T(in.imposed_velocity != nullptr ? 0.0 : s.h);
   x.accel_x_m_s2 = (end(0) - s.turned(0)) / s.h;
   x.accel_y_m_s2 = (end(1) - s.turned(1)) / s.h;
   x.turn_change_rad_s = end(2) - x.velocity[2];

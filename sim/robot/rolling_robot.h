@@ -23,6 +23,7 @@
 // drive direction (roller_ripple) acts on wheel and body where there is a tyre, as in the plant. Without one
 // it turns the wheel only: on a wheel that rolls, a force at the point of contact does no work. Cannot
 // represent: what the planar plant cannot, and play or compliance between rotor and wheel.
+// One wheel alone carries all of mass_kg: a wheel on a test bench, whose body is moved by the bench.
 #pragma once
 #include <Eigen/Core>
 #include <memory>
@@ -48,6 +49,8 @@ struct RollingInput {
   double bus_voltage_V = 0.0;    // used when bus_is_measured
   bool bus_is_measured = false;  // at the bridge: then nothing sags it again
   double dribbler_rad_s = 0.0;
+  // The bench moves the body: its velocity at the end of the call, whatever the wheels do. Null: it moves freely.
+  const std::array<double, 3>* imposed_velocity = nullptr;
   // Angles that the laws of the angle shall see instead of the model's own; null: its own.
   const PerWheel<double>* theta_rotor_rad = nullptr;
 };
@@ -101,7 +104,7 @@ class RollingRobot {
   void set_grip(const RollingState<T>& x, std::size_t wheel, const T& hub_m_s, const ContactPort<T>& port,
                 Wheel& w) const;
   void ask_body(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
-  void predict(const RollingState<T>& x, Step& s) const;
+  void predict(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
   void winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state, double h,
                                  Wheel& w) const;
   T rotor_end(const RollingState<T>& x, const Step& s, std::size_t wheel, const T& force_N,

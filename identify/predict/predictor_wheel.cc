@@ -1,0 +1,48 @@
+#include "identify/predict/predictor_wheel.h"
+
+#include <numbers>
+
+#include "identify/predict/rolling_rig.h"
+
+namespace omnihil {
+namespace {
+
+struct OneWheel {
+  template <typename T>
+  static RollingParams<T> params(const RollingParams<T>& robot) {
+    RollingParams<T> wheel = robot;
+    wheel.wheels = 1;
+    wheel.wheel_angle_rad = {-0.5 * std::numbers::pi};  // its drive direction (-sin a, cos a) is x
+    wheel.mass_kg = robot.mass_kg * (1.0 / static_cast<double>(robot.wheels));
+    return wheel;
+  }
+
+  static Capabilities capabilities(const Dataset& dataset) {
+    constexpr std::uint32_t kAlways = kNeedsFloor | kNeedsSupply | kNeedsWinding | kNeedsDuty |
+                                      kNeedsVoltage | kNeedsSimulation | kNeedsBodySpeed;
+    return {.rig = kOnRobot,
+            .other_rig = "acts on a single axis",
+            .list = {{kAlways, true, ""},
+                     {kNeedsFreeBody, false, "the bench moves the body, whatever forces do"},
+                     {kNeedsSeveralMotors, false, "needs more than one motor"},
+                     {kNeedsTwoInertias, false,
+                      "needs a freedom between rotor and wheel, which a robot's model lacks"},
+                     {kNeedsPositionServo, false, "needs a position servo"},
+                     {kNeedsReportedSpeed, false, "needs a speed that the drive's electronics estimate"},
+                     {kNeedsCamera, false, "needs a camera"},
+                     {kNeedsDribbler, false, "needs the dribbler"},
+                     {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle, has_channel(dataset, "encoder"),
+                      "needs an encoder"}},
+            .free_base = {},
+            .present_base = {}};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Predictor> make_wheel_predictor(const Dataset& dataset, const Candidate& robot,
+                                                const PredictOptions& options) {
+  return std::make_unique<RigPredictor<RollingRig<OneWheel>>>(dataset, robot, options);
+}
+
+}  // namespace omnihil
