@@ -1,13 +1,8 @@
 // Rigs on wheels that roll on a floor, as a predictor has them (predictor_rig.h): records, signals, noise and null of any
-// of them. Kind says which: what it makes of a robot's parameters, and what effects may need.
-//
-//   struct WholeRobot {
-//     template <typename T>
-//     static RollingParams<T> params(const RollingParams<T>& robot);
-//     static Capabilities capabilities(const Dataset& dataset);
-//   };
+// of them. A kind says which.
 #pragma once
 #include <algorithm>
+#include <concepts>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -20,7 +15,16 @@
 
 namespace omnihil {
 
-template <class Kind>
+// What it makes of a robot's parameters, and what effects may need of it.
+template <class K>
+concept RollingKind = requires(const RollingParams<double>& robot, const RollingParams<Jet>& jets,
+                               const Dataset& dataset) {
+  { K::params(robot) } -> std::same_as<RollingParams<double>>;
+  { K::params(jets) } -> std::same_as<RollingParams<Jet>>;
+  { K::capabilities(dataset) } -> std::same_as<Capabilities>;
+};
+
+template <RollingKind Kind>
 class RollingRig {
  public:
   RollingRig(std::shared_ptr<const Dataset> dataset, std::shared_ptr<const Candidate> nominal,
@@ -103,7 +107,7 @@ class RollingRig {
   std::vector<std::vector<ComparedSignal>> compared_;
 };
 
-template <class Kind>
+template <RollingKind Kind>
 void RollingRig<Kind>::measure(const Candidate& truth, std::uint64_t seed) {
   auto made = std::make_shared<Dataset>(*dataset_);
   std::vector<RobotMotion<double>> motions;

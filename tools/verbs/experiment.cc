@@ -16,14 +16,13 @@
 #include "identify/select/refit.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/params.h"
-#include "tools/axis_bench.h"
+#include "tools/benches/virtual_bench.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/experiment_files.h"
 #include "tools/guarded.h"
 #include "tools/options/dataset_options.h"
 #include "tools/progress_line.h"
-#include "tools/robot_bench.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -57,16 +56,13 @@ std::string simulated_dataset(const Arguments& a, const std::filesystem::path& f
   bench.rate_Hz = a.options.rate_Hz;
   bench.seed = a.options.seed;
   NewFolder out(folder);
-  if (const std::optional<AxisBench> axis = make_bench(bench, faults); axis) {
-    out.write("dataset.toml", dataset_text(*axis));
-    out.write("model.toml", axis_model_text(axis->model));
-    for (const AxisBenchRun& run : axis->runs) out.write(run.name + ".csv", run_csv(*axis, run));
-  } else if (std::vector<std::string> own; true) {
-    const std::optional<RobotBench> robot = make_robot_bench(bench, own);
-    if (!robot) return "";
+  std::optional<VirtualBench> made = make_axis_bench(bench, faults);
+  if (std::vector<std::string> own; !made) {
+    made = make_robot_bench(bench, own);
+    if (!made) return "";
     faults.clear();
-    for (const DatasetFile& file : robot->files) out.write(file.name, file.text);
   }
+  for (const DatasetFile& file : made->files) out.write(file.name, file.text);
   out.finish();
   return folder.string();
 }

@@ -1,7 +1,6 @@
 // omnihil sim MODEL --excite NAME|FILE … --out DATASET: a virtual bench for one drive or a whole robot.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -10,11 +9,10 @@
 #include "hil/text/dataset_files.h"
 #include "hil/text/program_files.h"
 #include "sim/model/model_document.h"
-#include "tools/axis_bench.h"
+#include "tools/benches/virtual_bench.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
-#include "tools/robot_bench.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -26,26 +24,23 @@ struct Arguments {
   std::string out;
 };
 
-// Time of the first sample that is not finite, or nothing.
-bool diverged(const AxisBench& bench) {
-  for (const AxisBenchRun& run : bench.runs) {
-    for (const AxisSample<double>& s : run.samples) {
-      if (std::isfinite(s.omega_rotor_rad_s) && std::isfinite(s.theta_rotor_rad) &&
-          std::isfinite(s.motor_current_A)) {
-        continue;
-      }
-      std::fprintf(stderr,
-                   "omnihil sim: run %s: the state is not finite at %.6f s (speed %g rad/s, current %g A)\n",
-                   run.name.c_str(), s.time_s, s.omega_rotor_rad_s, s.motor_current_A);
-      return true;
-    }
-  }
-  return false;
+// A robot's model file is the whole robot unless a part of it is asked for.
+std::string rig_of(const Arguments& arguments) {
+  if (!arguments.rig.empty()) return arguments.rig;
+  const StoredModel stored = load_model(arguments.bench.model, {data_folder("models")});
+  std::vector<ModelProblem> said_later;
+  const auto document = parse_document(stored.bundle.robot_text, stored.bundle.robot_file, said_later);
+  if (!document || document->table["rig"].value_or(std::string()) != "robot") return "axis";
+  std::printf("%s is a robot: all of it is driven, on the floor (--rig axis: one of its wheels, lifted)\n",
+              arguments.bench.model.c_str());
+  return "robot";
 }
 
-int run_robot(const Arguments& arguments) {
+int run(const Arguments& arguments) {
+  const std::string rig = rig_of(arguments);
   std::vector<std::string> faults;
-  const std::optional<RobotBench> bench = make_robot_bench(arguments.bench, faults);
+  const auto make = rig == "robot" ? make_robot_bench : rig == "wheel" ? make_wheel_bench : make_axis_bench;
+  const std::optional<VirtualBench> bench = make(arguments.bench, faults);
   for (const std::string& fault : faults) std::fprintf(stderr, "omnihil sim: %s\n", fault.c_str());
   if (!bench) return kExitBadInput;
   if (!bench->diverged.empty()) {
@@ -56,38 +51,6 @@ int run_robot(const Arguments& arguments) {
   for (const DatasetFile& file : bench->files) folder.write(file.name, file.text);
   folder.finish();
   std::printf("%s: %zu runs, %zu rows\n", arguments.out.c_str(), bench->runs, bench->rows);
-  return kExitOk;
-}
-
-// A robot's model file is the whole robot unless one of its drives is asked for.
-bool wants_robot(const Arguments& arguments) {
-  if (!arguments.rig.empty()) return arguments.rig == "robot";
-  const StoredModel stored = load_model(arguments.bench.model, {data_folder("models")});
-  std::vector<ModelProblem> said_later;
-  const auto document = parse_document(stored.bundle.robot_text, stored.bundle.robot_file, said_later);
-  if (!document || document->table["rig"].value_or(std::string()) != "robot") return false;
-  std::printf("%s is a robot: all of it is driven, on the floor (--rig axis: one of its wheels, lifted)\n",
-              arguments.bench.model.c_str());
-  return true;
-}
-
-int run(const Arguments& arguments) {
-  if (wants_robot(arguments)) return run_robot(arguments);
-  std::vector<std::string> faults;
-  const std::optional<AxisBench> bench = make_bench(arguments.bench, faults);
-  for (const std::string& fault : faults) std::fprintf(stderr, "omnihil sim: %s\n", fault.c_str());
-  if (!bench) return kExitBadInput;
-  if (diverged(*bench)) return kExitDiverged;
-  NewFolder folder(arguments.out);
-  folder.write("dataset.toml", dataset_text(*bench));
-  folder.write("model.toml", axis_model_text(bench->model));
-  std::size_t rows = 0;
-  for (const AxisBenchRun& r : bench->runs) {
-    folder.write(r.name + ".csv", run_csv(*bench, r));
-    rows += r.samples.size();
-  }
-  folder.finish();
-  std::printf("%s: %zu runs, %zu rows\n", arguments.out.c_str(), bench->runs.size(), rows);
   return kExitOk;
 }
 
@@ -103,8 +66,10 @@ void add_verb_sim(Verb& program, VerbResult& result) {
           "steps, ramp, chirp, prbs, creep, or a CSV file of time and command; several give several runs")
       .required();
   verb.add_option("--rig", a->rig,
-                  "axis: one drive; robot: the whole robot on the floor; without it: what the model is")
-      .one_of({"axis", "robot"});
+                  "axis: one drive; robot: the whole robot on the floor; wheel: one of its wheels on the "
+                  "floor, its body "
+                  "moved by the bench; without it: what the model is")
+      .one_of({"axis", "robot", "wheel"});
   verb.add_option("--out", a->out, "new folder of the dataset").required();
   verb.add_option("--with", a->bench.with,
                   "add an effect: ID.parameter=value, or ID for its typical size; several allowed");

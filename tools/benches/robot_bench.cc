@@ -1,31 +1,23 @@
-#include "tools/robot_bench.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "hil/dataset/dataset_model.h"
 #include "hil/loop/effect_overrides.h"
 #include "hil/text/program_files.h"
-#include "hil/text/recording_text.h"
-#include "sim/bench/excitation.h"
 #include "sim/drive/sensor_chain.h"
 #include "sim/law/random.h"
 #include "sim/model/model_writer.h"
 #include "sim/robot/plant.h"
+#include "tools/benches/virtual_bench.h"
 
 namespace omnihil {
 namespace {
 
-constexpr double kHoldoutRatio = 1.0 / 3.0;  // of a file's time, at its end
-constexpr double kHoldoutAmplitude = 0.8;    // of the fit run's
-constexpr double kCamera_Hz = 60.0;          // rate of the league's vision
-constexpr std::int64_t kStep_ns = 500'000;   // of the mechanics
+constexpr double kCamera_Hz = 60.0;         // rate of the league's vision
+constexpr std::int64_t kStep_ns = 500'000;  // of the mechanics
 
 // 1-sigma of usual sensors (guesses, +-50 %), in the order of the columns.
 constexpr double kBus_V = 0.02, kCurrent_A = 0.03, kGyro_rad_s = 0.01, kAccel_m_s2 = 0.1, kVision_m = 0.001,
@@ -33,11 +25,7 @@ constexpr double kBus_V = 0.02, kCurrent_A = 0.03, kGyro_rad_s = 0.01, kAccel_m_
 
 using Duties = PerWheel<double>;
 
-struct Run {
-  std::string name, use, excitation;
-  std::vector<Duties> duty;  // one per sample
-  std::uint64_t seed = 0;
-};
+using Run = BenchRun<std::vector<Duties>>;
 
 // Duties of a body motion, scaled so that no wheel exceeds 1: rim speeds of eq. (5) with R_b = 1.
 Duties duties_of(const RobotModel& m, double forward, double left, double turn) {
@@ -86,111 +74,56 @@ std::vector<Duties> excited(Excitation kind, const RobotModel& m, const BenchOpt
   return out;
 }
 
-// Rows of a CSV file, held to the rate of the run. The first line may be a header.
+// Rows of a CSV file, held to the rate of the run.
 std::vector<Duties> read_file(const std::string& path, const RobotModel& m, const BenchOptions& o,
                               std::vector<std::string>& faults) {
+  const std::size_t widths[] = {1, m.wheels};
+  const std::string words =
+      fmt::format("one or {} duties", m.wheels == 4 ? "four" : std::to_string(m.wheels));
   std::vector<Duties> out;
-  std::ifstream file(path);
-  if (!file) faults.push_back(fmt::format("--excite {}: cannot be read", path));
-  std::string line;
-  double last_s = -1.0;
-  for (int number = 1; std::getline(file, line) && faults.size() < 20; ++number) {
-    std::istringstream cells(line);
-    std::vector<double> values;
-    bool good = true;
-    for (std::string cell; std::getline(cells, cell, ',');) {
-      while (!cell.empty() && (cell.back() == '\r' || cell.back() == ' ')) cell.pop_back();
-      cell.erase(0, cell.find_first_not_of(' '));
-      values.push_back(0.0);
-      good = parse_number(cell, values.back()) && good;
-    }
-    if (!good && number == 1) continue;
-    if (values.empty()) continue;
-    if (!good || (values.size() != 2 && values.size() != m.wheels + 1) || values[0] <= last_s) {
-      faults.push_back(fmt::format("{}:{}: \"{}\": needed are a time that increases and one or {} duties",
-                                   path, number, line, m.wheels == 4 ? "four" : std::to_string(m.wheels)));
-      continue;
-    }
-    last_s = values[0];
+  for (const BenchRow& row : read_bench_rows(path, widths, words, faults)) {
     Duties now{};
-    if (values.size() == 2)
-      now = duties_of(m, values[1], 0, 0);
+    if (row.values.size() == 1)
+      now = duties_of(m, row.values[0], 0, 0);
     else
-      std::copy(values.begin() + 1, values.end(), now.begin());
-    const auto upto = static_cast<std::size_t>(std::max(0.0, last_s) * o.rate_Hz + 0.5);
+      std::copy(row.values.begin(), row.values.end(), now.begin());
+    const auto upto = static_cast<std::size_t>(std::max(0.0, row.time_s) * o.rate_Hz + 0.5);
     while (out.size() < upto && !out.empty()) out.push_back(out.back());
     out.push_back(now);
   }
-  if (out.size() < 3 && faults.empty())
-    faults.push_back(fmt::format("--excite {}: fewer than three rows", path));
   return out;
-}
-
-std::vector<Run> runs_of(const BenchOptions& o, const RobotModel& m, std::vector<std::string>& faults) {
-  std::vector<Run> runs;
-  for (const std::string& e : o.excitations) {
-    if (const auto kind = find_excitation(e)) {
-      runs.push_back({e, "fit", e, excited(*kind, m, o, 1.0, o.seed), 0});
-      runs.push_back({e + "_holdout", "holdout", e, excited(*kind, m, o, kHoldoutAmplitude, o.seed + 1), 0});
-      continue;
-    }
-    if (e.find('.') == std::string::npos && !std::filesystem::exists(e)) {
-      faults.push_back(
-          fmt::format("--excite {}: allowed are {}, or a CSV file", e, fmt::join(excitation_names(), ", ")));
-      continue;
-    }
-    const std::vector<Duties> all = read_file(e, m, o, faults);
-    const auto cut = static_cast<std::ptrdiff_t>(static_cast<double>(all.size()) * (1.0 - kHoldoutRatio));
-    const std::string stem = std::filesystem::path(e).stem().string();
-    runs.push_back({stem, "fit", e, {all.begin(), all.begin() + cut}, 0});
-    runs.push_back({stem + "_holdout", "holdout", e, {all.begin() + cut, all.end()}, 0});
-  }
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    runs[i].seed = mix_bits(o.seed + i);
-    for (std::size_t j = 0; j < i; ++j) {
-      if (runs[i].name == runs[j].name)
-        faults.push_back(fmt::format("--excite {}: given twice", runs[i].name));
-    }
-  }
-  return runs;
 }
 
 std::string dataset_text(const BenchOptions& o, const RobotModel& m, const std::vector<Run>& runs) {
   const auto channel = [&](const std::string& signal, const std::string& column, double sigma) {
-    return sigma * o.noise_scale > 0.0 ? fmt::format("{} = {{ column = \"{}\", sigma = {:g} }}\n", signal,
-                                                     column, sigma * o.noise_scale)
-                                       : fmt::format("{} = {{ column = \"{}\" }}\n", signal, column);
+    return channel_line(signal, column, sigma * o.noise_scale);
   };
-  std::string text = fmt::format(
-      "format = \"omnihil-dataset/1\"\ntitle = {}\nrig = \"robot\"\nmodel = \"model.toml\"\n\n[channels]\n",
-      toml_text("simulated: " + o.model));
-  text += channel("time", "time_s", 0);
+  std::string text = dataset_head("simulated: " + o.model, "robot") + channel("time", "time_s", 0);
   for (std::size_t i = 1; i <= m.wheels; ++i)
     text += channel(fmt::format("duty_{}", i), fmt::format("duty_{}", i), 0);
   text += channel("bus_voltage", "bus_V", kBus_V);
+  const std::string counts =
+      fmt::format(", counts_per_rev = {}, shaft = \"rotor\"{}", m.encoder.counts_per_turn,
+                  m.encoder.direction < 0 ? ", scale = -1" : "");
   for (std::size_t i = 1; i <= m.wheels; ++i) {
     text += channel(fmt::format("motor_current_{}", i), fmt::format("current_{}", i), kCurrent_A);
-    text +=
-        fmt::format("encoder_{} = {{ column = \"ticks_{}\", counts_per_rev = {}, shaft = \"rotor\"{} }}\n", i,
-                    i, m.encoder.counts_per_turn, m.encoder.direction < 0 ? ", scale = -1" : "");
+    text += channel_line(fmt::format("encoder_{}", i), fmt::format("ticks_{}", i), 0, counts);
   }
   text += channel("gyro_z", "gyro_z", kGyro_rad_s);
   text += channel("accel_x", "accel_x", kAccel_m_s2) + channel("accel_y", "accel_y", kAccel_m_s2);
   text += channel("vision_x", "vision_x", kVision_m) + channel("vision_y", "vision_y", kVision_m);
   text += channel("vision_theta", "vision_theta", kVision_rad);
-  for (const Run& run : runs) {
-    text += fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\nexcitation = {}\n",
-                        toml_text(run.name + ".csv"), run.use, toml_text(run.excitation));
-  }
+  for (const Run& run : runs) text += run_lines(run.name, run.use, run.excitation);
   return text;
 }
 
 // Drives the robot through one run; the CSV so far when the plant diverged.
-std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, std::string& diverged) {
+std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, std::uint64_t seed,
+                    std::string& diverged) {
   PlantOptions options;
   options.physics = Physics::kPlanar;
   options.mechanical_step_ns = kStep_ns;
-  options.seed = run.seed;
+  options.seed = seed;
   Plant plant(std::vector<RobotModel>{m}, options);
   const std::int64_t period_ns = std::llround(1e9 / o.rate_Hz);
   std::string text = "time_s";
@@ -199,15 +132,15 @@ std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, 
   for (std::size_t i = 1; i <= m.wheels; ++i) text += fmt::format(",current_{0},ticks_{0}", i);
   text += ",gyro_z,accel_x,accel_y,vision_x,vision_y,vision_theta\n";
   std::int64_t last_frame = -1;
-  for (std::size_t k = 0; k < run.duty.size(); ++k) {
+  for (std::size_t k = 0; k < run.input.size(); ++k) {
     const PlantSensors all = plant.sample_all(0);
     const RobotSensors& s = all.board;
     const auto measured = [&](double value, double sigma, std::string_view stream) {
-      return noisy(value, sigma * o.noise_scale, run.seed, stream, k);
+      return noisy(value, sigma * o.noise_scale, seed, stream, k);
     };
     const double time_s = static_cast<double>(plant.now_ns()) * 1e-9;
     text += fmt::format("{:.6f}", time_s);
-    for (std::size_t i = 0; i < m.wheels; ++i) text += fmt::format(",{:.9g}", run.duty[k][i]);
+    for (std::size_t i = 0; i < m.wheels; ++i) text += fmt::format(",{:.9g}", run.input[k][i]);
     text += fmt::format(",{:.4f}", measured(s.bus_voltage_V, kBus_V, "bus_voltage"));
     for (std::size_t i = 0; i < m.wheels; ++i) {
       const std::string stream = fmt::format("motor_current_{}", i);
@@ -228,8 +161,8 @@ std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, 
       text += ",,,\n";
     }
     last_frame = frame;
-    plant.write_duties(0, run.duty[k]);
-    if (k + 1 < run.duty.size()) plant.advance(period_ns);
+    plant.write_duties(0, run.input[k]);
+    if (k + 1 < run.input.size()) plant.advance(period_ns);
     if (plant.fault()) {
       diverged = fmt::format("run {}: {} {} is not finite at {:.6f} s", run.name, plant.fault()->signal,
                              plant.fault()->index + 1, time_s);
@@ -239,40 +172,35 @@ std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, 
   return text;
 }
 
-void check_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
-  if (!(o.duration_s > 0.0 && o.duration_s <= 3600.0))
-    faults.push_back("--duration: allowed is more than 0 to 3600 s");
-  const bool whole = o.rate_Hz > 0.0 && std::llround(1e9 / o.rate_Hz) % kStep_ns == 0 && o.rate_Hz <= 2000.0;
-  if (!whole)
-    faults.push_back("--rate: allowed for a robot are 2000 Hz and its whole parts (1000, 500, 400 …)");
-  if (!(o.noise_scale >= 0.0 && o.noise_scale <= 1000.0)) faults.push_back("--noise: allowed is 0 to 1000");
-  if (!(o.amplitude >= -1.0 && o.amplitude <= 1.0))
-    faults.push_back("--amplitude: allowed is -1 to 1, a duty");
-  if (!o.drive.empty() && o.drive != "duty")
-    faults.push_back(fmt::format("--drive {}: a robot is driven by duty", o.drive));
-}
-
 }  // namespace
 
-std::optional<RobotBench> make_robot_bench(const BenchOptions& options, std::vector<std::string>& faults) {
-  check_numbers(options, faults);
+std::optional<VirtualBench> make_robot_bench(const BenchOptions& options, std::vector<std::string>& faults) {
+  check_robot_numbers(options, faults);
   StoredModel stored = load_robot_model(options.model, {data_folder("models")});
   for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
   if (!stored.model) return std::nullopt;
   ModelBundle bundle = stored.bundle;
   add_effects(bundle, options.with, faults);
   const ModelReading reading = read_bundle(bundle);
-  const double samples = options.duration_s * options.rate_Hz;
-  if (!reading.model || !(samples > 0.0 && samples <= 1e7)) return std::nullopt;  // said above
+  if (!reading.model || !faults.empty()) return std::nullopt;
   const RobotModel& robot = *reading.model->robot;
-  const std::vector<Run> runs = runs_of(options, robot, faults);
+  const auto runs = bench_runs<std::vector<Duties>>(
+      options, faults,
+      [&](Excitation e, double scale, std::uint64_t seed) { return excited(e, robot, options, scale, seed); },
+      [&](const std::string& path) { return read_file(path, robot, options, faults); },
+      [](const std::vector<Duties>& d, std::size_t from, std::size_t to) {
+        return std::vector<Duties>(d.begin() + static_cast<std::ptrdiff_t>(from),
+                                   d.begin() + static_cast<std::ptrdiff_t>(to));
+      },
+      [](const std::vector<Duties>& d) { return d.size(); });
   if (!faults.empty()) return std::nullopt;
-  RobotBench bench;
+  VirtualBench bench;
   bench.files = {{"dataset.toml", dataset_text(options, robot, runs)},
                  {"model.toml", dataset_model_text(*stored.model)}};
   for (const Run& run : runs) {
-    bench.files.push_back({run.name + ".csv", run_csv(options, robot, run, bench.diverged)});
-    bench.rows += run.duty.size();
+    const std::uint64_t seed = mix_bits(options.seed + bench.runs);
+    bench.files.push_back({run.name + ".csv", run_csv(options, robot, run, seed, bench.diverged)});
+    bench.rows += run.input.size();
     ++bench.runs;
     if (!bench.diverged.empty()) break;
   }

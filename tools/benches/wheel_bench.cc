@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hil/dataset/dataset_model.h"
+#include "hil/loop/effect_overrides.h"
+#include "hil/text/program_files.h"
+#include "identify/predict/predictor.h"
+#include "identify/record/signal_list.h"
+#include "sim/law/random.h"
+#include "sim/model/model_writer.h"
+#include "sim/robot/wheel_load.h"
+#include "tools/benches/virtual_bench.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kShareOfSpeed = 0.4;  // of the robot's full speed, that the bench moves at: a choice
+// 1-sigma of usual sensors: a shunt, a small load cell. Guesses, +-50 %.
+constexpr double kCurrent_A = 0.03, kForce_N = 0.05;  // as above
+
+double full_speed_m_s(const RobotModel& m) {
+  return m.bus_voltage_V / (m.motor.torque_constant_Nm_per_A * m.gear_ratio) * m.wheel_radius_m;
+}
+
+// Duty whose stall current slips the tyre.
+double slipping_duty(const RobotModel& m) {
+  const double grip_N =
+      m.tyre_longitudinal.extremum_value * m.mass_kg * kGravity_m_s2 / static_cast<double>(m.wheels);
+  const double torque_Nm = grip_N * m.wheel_radius_m / m.gear_ratio;
+  return torque_Nm / m.motor.torque_constant_Nm_per_A * m.motor.resistance_ohm / m.bus_voltage_V;
+}
+
+Run driven(const BenchOptions& o, const RobotModel& m, Excitation kind, double scale, std::uint64_t seed) {
+  Run run;
+  const auto count = static_cast<std::size_t>(o.duration_s * o.rate_Hz + 1e-6) + 1;
+  const auto pattern = [&](double t, std::uint64_t which) {
+    return excitation_at(which == 0 ? kind : Excitation::kSteps, t,
+                         {.duration_s = o.duration_s, .seed = mix_bits(3 * seed + which)});
+  };
+  const double full_m_s = full_speed_m_s(m), push = scale * o.amplitude * slipping_duty(m);
+  const double most_m_s = 0.5 * m.tyre_longitudinal.extremum_value * kGravity_m_s2 / o.rate_Hz;
+  double vx = 0.0, vy = 0.0;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double t = static_cast<double>(n) / o.rate_Hz;
+    const auto towards = [&](double now, double asked) {
+      return now + std::clamp(asked * scale * kShareOfSpeed * full_m_s - now, -most_m_s, most_m_s);
+    };
+    vx = towards(vx, pattern(t, 1)), vy = towards(vy, pattern(t, 2));
+    run.time_s.push_back(t);
+    run.signals["body_vx"].push_back(vx);
+    run.signals["body_vy"].push_back(vy);
+    run.signals["duty"].push_back(std::clamp(vx / full_m_s + push * pattern(t, 0), -1.0, 1.0));
+  }
+  // what will be measured
+  for (const char* name : {"motor_current", "encoder", "force_x", "force_y"}) run.signals[name].resize(count);
+  return run;
+}
+
+Dataset blank(const BenchOptions& o, const RobotModel& m, const std::vector<BenchRun<Run>>& runs) {
+  Dataset d;
+  d.rig = Rig::kWheel;
+  const auto channel = [&](const char* name, double sigma = 0.0) -> Channel& {
+    d.channels.push_back(
+        {.signal = name, .column = name, .unit = std::string(find_signal(d.rig, name)->unit)});
+    d.channels.back().sigma = sigma * o.noise_scale;
+    return d.channels.back();
+  };
+  channel("duty");
+  channel("body_vx").imposed = true;
+  channel("body_vy").imposed = true;
+  channel("motor_current", kCurrent_A);
+  channel("encoder").counts_per_rev = m.encoder.counts_per_turn;
+  channel("force_x", kForce_N);
+  channel("force_y", kForce_N);
+  for (const BenchRun<Run>& run : runs) d.runs.push_back(run.input);
+  return d;
+}
+
+std::string dataset_text(const std::string& model, const Dataset& d, const std::vector<BenchRun<Run>>& runs) {
+  std::string text =
+      dataset_head("simulated: a wheel of " + model, "wheel") + channel_line("time", "time_s", 0.0);
+  for (const Channel& c : d.channels) {
+    const bool counts = c.counts_per_rev > 0.0;
+    text += channel_line(
+        c.signal, c.column, c.sigma,
+        counts ? fmt::format(", counts_per_rev = {:g}, shaft = \"rotor\"", c.counts_per_rev) : "");
+  }
+  for (const BenchRun<Run>& run : runs) text += run_lines(run.name, run.use, run.excitation);
+  return text;
+}
+
+std::string run_text(const Dataset& d, const Run& run) {
+  std::string text = "time_s";
+  for (const Channel& c : d.channels) text += "," + c.column;
+  for (std::size_t k = 0; k < run.time_s.size(); ++k) {
+    text += fmt::format("\n{:.6f}", run.time_s[k]);
+    for (const Channel& c : d.channels) text += fmt::format(",{:.9g}", (*run.signal(c.signal))[k]);
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::optional<VirtualBench> make_wheel_bench(const BenchOptions& o, std::vector<std::string>& faults) {
+  check_robot_numbers(o, faults);
+  StoredModel stored = load_robot_model(o.model, {data_folder("models")});
+  for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
+  if (!stored.model) return std::nullopt;
+  ModelBundle bundle = stored.bundle;
+  add_effects(bundle, o.with, faults);
+  const ModelReading reading = read_bundle(bundle);
+  if (!reading.model || !faults.empty()) return std::nullopt;
+  const RobotModel& robot = *stored.model->robot;
+  const auto runs = bench_runs<Run>(
+      o, faults,
+      [&](Excitation e, double scale, std::uint64_t seed) { return driven(o, robot, e, scale, seed); },
+      [&](const std::string& path) {
+        faults.push_back(fmt::format("--excite {}: of a wheel excitations by name are allowed", path));
+        return Run();
+      },
+      [](const Run& run, std::size_t, std::size_t) { return run; },
+      [](const Run& run) { return run.time_s.size(); });
+  if (!faults.empty()) return std::nullopt;
+  const Dataset asked = blank(o, robot, runs);
+  const auto measured =
+      make_predictor(asked, candidate_of(*stored.model), {})->simulated(candidate_of(*reading.model), o.seed);
+  VirtualBench bench;
+  bench.files = {{"dataset.toml", dataset_text(o.model, asked, runs)},
+                 {"model.toml", dataset_model_text(*stored.model)}};
+  for (const BenchRun<Run>& planned : runs) {
+    const Run& run = measured->run(static_cast<int>(bench.runs++));
+    bench.files.push_back({planned.name + ".csv", run_text(asked, run)});
+    bench.rows += run.time_s.size();
+    for (const auto& [name, values] : run.signals) {
+      const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
+      if (bad == values.end() || !bench.diverged.empty()) continue;
+      bench.diverged = fmt::format("run {}: {} is not finite at {:.6f} s", planned.name, name,
+                                   run.time_s[static_cast<std::size_t>(bad - values.begin())]);
+    }
+  }
+  return bench;
+}
+
+}  // namespace omnihil
