@@ -163,17 +163,17 @@ double McuBoard::analog_value(const AnalogEntry& entry) const {
 }
 
 // On the mean of the PWM period, against the bus's minus, as its RC filter shows it. A leg that is off floats with the
-// motor's star point: half of the bus, its own back-EMF left out.
+// motor's star point, half of the bus, and its own back-EMF, where the world tells it.
 double McuBoard::phase_voltage_V(int wheel, std::size_t phase) const {
   const MotorWire* motor = this->wire(wheel);
   if (motor == nullptr || !motor->phases()) return 0.0;
   std::uint32_t leg[kLegs];
   double duty[kLegs];
   motor->legs(leg, duty);
-  double high_ratio = 0.5;
-  if (leg[phase] == OMNIHIL_LEG_PWM || leg[phase] == OMNIHIL_LEG_HIGH) high_ratio = duty[phase];
-  if (leg[phase] == OMNIHIL_LEG_LOW) high_ratio = 0.0;
-  return high_ratio * world_.bus_voltage_V;
+  if (leg[phase] == OMNIHIL_LEG_LOW) return 0.0;
+  if (leg[phase] == OMNIHIL_LEG_OFF)
+    return 0.5 * world_.bus_voltage_V + world_.phase_back_emf_V[static_cast<std::size_t>(wheel)][phase];
+  return duty[phase] * world_.bus_voltage_V;
 }
 
 void McuBoard::wire_analog() {

@@ -1,6 +1,7 @@
 #include "firmware_iface/mcu/stm32/watchdog.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace omnihil::mcu {
@@ -21,9 +22,11 @@ class Iwdg final : public RegisterBlock {
   void reset() override {
     RegisterBlock::reset();
     deadline_ns_ = -1;
+    updating_until_ns_.fill(-1);
     open_ = false;
     at_ = kNever;
   }
+  Cycles stable_until(std::uint32_t offset) const override { return offset == 0x0C ? 0 : kNever; }
   void clock_changed() override {
     at_ = deadline_ns_ < 0 ? kNever : std::max(now(), system().from_ns(deadline_ns_));
   }
@@ -34,9 +37,20 @@ class Iwdg final : public RegisterBlock {
   }
 
  protected:
+  std::uint32_t load(std::uint32_t offset) override {
+    if (offset != 0x0C) return value(offset);
+    std::uint32_t flags = 0;
+    for (std::size_t i = 0; i < updating_until_ns_.size(); ++i) {
+      if (system().to_ns(now()) < updating_until_ns_[i]) flags |= 1u << i;
+    }
+    return flags;
+  }
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override {
     if (offset != 0) {
-      if (open_) keep(offset, written, lanes);
+      if (!open_ || offset == 0x0C) return;
+      const double before = divider();
+      keep(offset, written, lanes);
+      if (deadline_ns_ >= 0) update(offset, divider() / before);
       if (offset == 0x10 && open_ && deadline_ns_ >= 0) feed();
       return;
     }
@@ -53,16 +67,25 @@ class Iwdg final : public RegisterBlock {
   }
 
  private:
+  double divider() const { return 4.0 * (1u << std::min(value(0x04) & 7u, 6u)); }
   std::int64_t counts_ns(std::uint32_t counts) const {
-    const double divider = 4.0 * (1u << std::min(value(0x04) & 7u, 6u));
-    return static_cast<std::int64_t>(std::llround(divider * counts / context_.clocks.lsi_hz * 1e9));
+    return static_cast<std::int64_t>(std::llround(divider() * counts / context_.clocks.lsi_hz * 1e9));
+  }
+  // While it runs: what is left is counted on at the new prescaler, and SR says for five LSI periods that the register
+  // is on its way (PVU, RVU, WVU).
+  void update(std::uint32_t offset, double slower) {
+    const std::int64_t now_ns = system().to_ns(now());
+    updating_until_ns_[offset == 0x10 ? 2 : offset / 8] = now_ns + std::llround(5e9 / context_.clocks.lsi_hz);
+    deadline_ns_ = now_ns + std::llround(static_cast<double>(deadline_ns_ - now_ns) * slower);
+    clock_changed();
   }
   void feed() {
     deadline_ns_ = system().to_ns(now()) + counts_ns(value(0x08) + 1);
     clock_changed();
   }
   ChipContext& context_;
-  std::int64_t deadline_ns_ = -1;  // below 0: not started
+  std::int64_t deadline_ns_ = -1;                                 // below 0: not started
+  std::array<std::int64_t, 3> updating_until_ns_ = {-1, -1, -1};  // PR, RLR, WINR
   bool open_ = false;
   Cycles at_ = kNever;
 };

@@ -130,6 +130,29 @@ TEST(Watchdog, UnfedItResetsAfterItsTimeAndNotBefore) {
   EXPECT_EQ(b.system.resets[0], "IWDG");
 }
 
+// A firmware that is about to write flash makes it slow, and feeds it while SR says that this is on its way.
+TEST(Watchdog, APrescalerWrittenWhileItRunsCountsWhatIsLeftOnAtTheNewRate) {
+  ChipBench b("stm32f405");
+  b.set("IWDG", 0x00, 0x5555);
+  b.set("IWDG", 0x04, 0);  // over 4
+  b.set("IWDG", 0x08, 99);
+  b.set("IWDG", 0x00, 0xCCCC);
+  const std::int64_t count_ns = 1'000'000'000LL * 4 / 32000;
+  b.system.run_for_ns(40 * count_ns);
+  EXPECT_EQ(b.get("IWDG", 0x0C), 0u);
+  b.set("IWDG", 0x00, 0x5555);
+  b.set("IWDG", 0x04, 4);  // over 64
+  EXPECT_EQ(b.get("IWDG", 0x0C), 1u);
+  b.set("IWDG", 0x08, 999);
+  EXPECT_EQ(b.get("IWDG", 0x0C), 3u);
+  b.system.run_for_ns(5 * 1'000'000'000LL / 32000 + 1000);
+  EXPECT_EQ(b.get("IWDG", 0x0C), 0u);
+  b.system.run_for_ns((60 * 16 - 2) * count_ns - 5 * 1'000'000'000LL / 32000);
+  EXPECT_TRUE(b.system.resets.empty());
+  b.system.run_for_ns(4 * count_ns);
+  EXPECT_EQ(b.system.resets.size(), 1u);
+}
+
 TEST(WindowWatchdog, ResetsWhenFedTooEarly) {
   ChipBench b("stm32f405");
   b.set("WWDG", 0x04, 0x50);
