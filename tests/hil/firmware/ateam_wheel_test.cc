@@ -28,7 +28,9 @@ struct AteamWheel : ThirdPartyImage {
   AteamWheel() : ThirdPartyImage("ateam-wheel.elf", "ateam_wheel_f031.toml") {}
   void SetUp() override {
     ThirdPartyImage::SetUp();
-    if (spec_) spec_->radio_via = "USART1";  // here the test is the main board
+    if (!spec_) return;
+    spec_->wheel_commands = {};
+    spec_->radio_via = "USART1";  // here the test is the main board
   }
   // The command each 10 ms up to `end_ns`; replies as they come.
   std::vector<std::vector<std::uint8_t>> talk(mcu::McuBoard& board, const std::vector<std::uint8_t>& command,

@@ -50,6 +50,8 @@ class MotorsOnBoard {
       world_.omega_rotor_rad_s[w] = motor.omega_rad_s();
       world_.motor_current_A[w] = motor.shunt_A;
       world_.phase_current_A[w] = motor.phase_A;
+      world_.phase_back_emf_V[w] = phase_constants(motor.drive.circuit, motor.theta_rad());
+      for (double& e : world_.phase_back_emf_V[w]) e *= motor.omega_rad_s();
     }
     board_.set_world(world_);
     for (MotorOnBoard& motor : motors) turn(motor);
