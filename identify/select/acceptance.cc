@@ -137,13 +137,8 @@ std::string reason_by_prior(const Fitted& parent, const Fitted& child, const Acc
       path == aliased_parameter ? "; these data cannot separate the two" : "");
 }
 
-// The gates of the gain, in order. Empty: passed.
-std::string reason_against_gain(const Fitted& parent, const Fitted& child, const AcceptanceResult& gains,
-                                Split decides, double signal_to_null, double rise) {
-  const bool held_out = decides == Split::kValidation;
-  const std::size_t d = static_cast<std::size_t>(decides);
-  const SplitGain& held = held_out ? gains.holdout : gains.fit;
-  const double gain = 1.0 - held.ratio, needed = kLeastGain + kLeastGainInNoise * held.floor;
+// The gates of the gain that do not depend on the split that decides, in order. Empty: passed.
+std::string reason_against_fit(const AcceptanceResult& gains, double signal_to_null) {
   if (signal_to_null < kLeastSignalToNull) {
     return signal_to_null < 0.05  // rounds to 0.0
                ? "linearised, it gains nothing"
@@ -153,6 +148,21 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
     return fmt::format("it lowers the error energy of the fit runs by {} only",
                        percent(1.0 - gains.fit.ratio));
   }
+  return "";
+}
+
+const SplitGain& gain_on(const AcceptanceResult& gains, Split split) {
+  if (split == Split::kTraining) return gains.fit;
+  return split == Split::kValidation ? gains.holdout : gains.extrapolation;
+}
+
+// Those that do, in order. Empty: passed.
+std::string reason_against_gain(const Fitted& parent, const Fitted& child, const AcceptanceResult& gains,
+                                Split decides, double share_of_base, double rise) {
+  const bool held_out = decides == Split::kValidation;
+  const std::size_t d = static_cast<std::size_t>(decides);
+  const SplitGain& held = gain_on(gains, decides);
+  const double gain = 1.0 - held.ratio, needed = kLeastGain + kLeastGainInNoise * held.floor;
   if (gain < needed && held.ratio > 1.0) {
     return fmt::format("it lowers the error that it was fitted to, and raises the {} error energy by {}",
                        held_out ? "held-out" : "fit", percent(-gain));
@@ -161,11 +171,11 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
     return fmt::format("it removes {} of the held-out error energy; {} is required", percent(gain),
                        percent(needed));
   }
-  if (gains.share_of_base < kFormDiscrepancy && gain < kNearlyAll) {
+  if (share_of_base < kFormDiscrepancy && gain < kNearlyAll) {
     return fmt::format(
         "it removes {:.2g} % of what the base model left: the form of an effect already found may "
         "leave as much ({:.0f} %)",
-        100.0 * std::max(gains.share_of_base, 0.0), 100.0 * kFormDiscrepancy);
+        100.0 * std::max(share_of_base, 0.0), 100.0 * kFormDiscrepancy);
   }
   const double unweighted = unweighted_gain(parent.unweighted[d], child.unweighted[d]);
   if (unweighted < kLeastUnweighted && gain < kLeastWhitened) {
@@ -176,6 +186,19 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
     return fmt::format("it raises the error energy of the extrapolation runs by {:.0f} %", 100.0 * rise);
   }
   return "";
+}
+
+// An effect that the held-out runs hardly move (a dead band under full steps) and another kind of motion does: the
+// extrapolation runs were not fitted to either. A little comes from the base parameters' last digits there, hence a
+// decisive gain, and no loss on the held-out runs.
+bool extrapolation_decides(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
+                           const AcceptanceResult& gains) {
+  constexpr Split kDecides = Split::kExtrapolation;
+  const bool has_both =
+      !(*context.splits)[kValidation].empty() && !(*context.splits)[kExtrapolation].empty();
+  if (!has_both || gains.holdout.ratio > 1.0 || 1.0 - gains.extrapolation.ratio < kDecisiveGain) return false;
+  const double share = share_of_base(context, kExtrapolation, parent, child);
+  return reason_against_gain(parent, child, gains, kDecides, share, 0.0).empty();
 }
 
 }  // namespace
@@ -213,11 +236,20 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
   if (implausible.empty()) implausible = below_time_resolution(child.fit, name, context.rate_Hz);
   out.plausible = implausible.empty();
   out.share_of_base = share_of_base(context, static_cast<std::size_t>(decides), parent, child);
-  out.why = reason_against_gain(parent, child, out, decides, signal_to_null, rise);
+  out.why = reason_against_fit(out, signal_to_null);
+  const SplitGain* by = &held;
+  if (out.why.empty()) {
+    out.why = reason_against_gain(parent, child, out, decides, out.share_of_base, rise);
+    if (!out.why.empty() && extrapolation_decides(context, parent, child, out)) {
+      out.why.clear();
+      by = &out.extrapolation;
+    }
+  }
   if (out.why.empty()) out.why = implausible;
   if (out.why.empty()) {
     out.accepted_by = AcceptedBy::kGain;
-    out.why = fmt::format("held-out error energy falls by {}", percent(1.0 - held.ratio));
+    out.why = fmt::format("{} error energy falls by {}", by == &held ? "held-out" : "extrapolation",
+                          percent(1.0 - by->ratio));
     return out;
   }
   if (rise > kMostRise || !implausible.empty()) return out;

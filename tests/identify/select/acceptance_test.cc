@@ -368,5 +368,18 @@ TEST(BoundedGainTest, AOneSidedStrengthIsNotTakenBelowZero) {
               1e-6);  // b' G^-1 b; copies of columns are damped
 }
 
+// A dead band under full steps: the held-out runs hardly show it, a ramp does, and neither was fitted to.
+TEST(AcceptanceTest, AnotherKindOfMotionDecidesWhereTheHeldOutRunsHardlyShowTheEffect) {
+  const AcceptanceFixture fixture;
+  const auto with = [&](double holdout, double extrapolation) {
+    return test_acceptance(fixture.context, fixture.leaving(2, 2, 2),
+                           fixture.leaving(1.8, 2 * holdout, 2 * extrapolation), "x", 100);
+  };
+  EXPECT_TRUE(with(0.995, 0.6).accepted());
+  EXPECT_NE(with(0.995, 0.6).why.find("extrapolation error energy falls by 64"), std::string::npos);
+  EXPECT_FALSE(with(1.005, 0.6).accepted()) << "a loss on the held-out runs is none of another motion's business";
+  EXPECT_FALSE(with(0.995, 0.9).accepted()) << "19 % of the energy may be the base parameters' last digits";
+}
+
 }  // namespace
 }  // namespace omnihil
