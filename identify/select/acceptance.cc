@@ -194,8 +194,7 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
 bool extrapolation_decides(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
                            const AcceptanceResult& gains) {
   constexpr Split kDecides = Split::kExtrapolation;
-  const bool has_both =
-      !(*context.splits)[kValidation].empty() && !(*context.splits)[kExtrapolation].empty();
+  const bool has_both = !(*context.splits)[kValidation].empty() && !(*context.splits)[kExtrapolation].empty();
   if (!has_both || gains.holdout.ratio > 1.0 || 1.0 - gains.extrapolation.ratio < kDecisiveGain) return false;
   const double share = share_of_base(context, kExtrapolation, parent, child);
   return reason_against_gain(parent, child, gains, kDecides, share, 0.0).empty();

@@ -98,7 +98,8 @@ NextExperiment next_experiment(const Dataset& dataset, const Diagnosis& diagnosi
   // The first in the ranking that these data could not show.
   for (const RankedEffect& r : diagnosis.ranking) {
     const EffectInfo* info = info_of(r.effect);
-    const bool hidden = r.visibility == Visibility::kAliased || r.visibility == Visibility::kBelowNoise;
+    const bool hidden = r.visibility == Visibility::kAliased || r.visibility == Visibility::kBelowNoise ||
+                        r.visibility == Visibility::kUnresolved;
     if (info == nullptr || !hidden) continue;
     next.what = fmt::format("To see {}, which these data could not show: {}", r.effect, info->reveals);
     next.separates = {r.effect};

@@ -34,6 +34,7 @@ enum class Visibility : std::uint8_t {
   kVisible,
   kAliased,     // no: a base parameter produces the same signal
   kBelowNoise,  // no: its gain would be within what the simulated null gives
+  kUnresolved,  // no: the rows lie too far apart to know the angle that it depends on
   kNotTried,    // not known: interrupted, or the model diverged with it
 };
 

@@ -208,6 +208,7 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
   const Eigen::Map<const Eigen::VectorXd> a(best.fit.coefficients.data(),
                                             static_cast<Eigen::Index>(best.fit.coefficients.size()));
   out.signal = best.columns.columns * a;
+  out.unresolved = unresolved_share(out.start, task.drift, out.signal);
   return out;
 }
 

@@ -18,6 +18,7 @@
 
 #include "identify/estimate/linear_base.h"
 #include "identify/estimate/null_model.h"
+#include "identify/select/angle_resolution.h"
 #include "identify/select/effect_variants.h"
 
 namespace omnihil {
@@ -36,6 +37,7 @@ struct ScreeningTask {
   std::vector<Eigen::VectorXd> noise;  // weighted residuals of the null: [replicate], one value per sample
   std::vector<RegimeMask> regimes;
   DataScale scale;
+  AngleDrift drift;  // empty: not looked at
   int jobs = 1;
   std::function<bool(double share)> progress;  // false: give up
 };
@@ -56,8 +58,9 @@ struct Screened {
   EffectUse start;
   std::vector<Unknown> base_unknowns;  // and their linear estimates beside the effect:
   std::vector<double> base_start;
-  Eigen::VectorXd signal;  // at its best size, base parameters projected out: one value per sample
-  bool tried = false;      // false: interrupted, or every size of it made the model diverge
+  Eigen::VectorXd signal;   // at its best size, base parameters projected out: one value per sample
+  double unresolved = 0.0;  // share of that in rows too far apart to know a law's angle (angle_resolution.h)
+  bool tried = false;       // false: interrupted, or every size of it made the model diverge
 
   // The base parameter that is aliased with it in these data, if its page lists that as easily confused;
   // empty: none.

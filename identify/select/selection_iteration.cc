@@ -24,6 +24,9 @@ constexpr double kLeastRegimeShare = 0.05;  // tuned
 // Screened share from which a candidate beyond the shortlist is refitted if no candidate of the shortlist is accepted. A
 // choice: the share that counts as structure (verdict.cc); smaller ones would be many tests for little.
 constexpr double kWorthSecondBatch = 0.1;
+// Share of its signal in rows too far apart to know the angle (angle_resolution.h), from which a law of the angle is
+// not told from one of the mean: most of it. A choice.
+constexpr double kMostUnresolved = 0.5;
 // Gain over the null's from which a candidate is refitted: that of the acceptance test (DECISIONS 52).
 constexpr double kLeastSignalToNull = 2.0;
 // An effect whose typical size would gain less than this many times the null's largest gain is not visible:
@@ -61,6 +64,17 @@ Eigen::VectorXd scales_now(const SelectionTask& task, const Fitted& parent) {
   return scale;
 }
 
+// Of the model's angle's rate, rad/s at the output; 0 where a sensor reports the angle, or none the speed.
+double speed_error(const SelectionTask& task, const Fitted& parent) {
+  const Dataset& data = *task.dataset;
+  if (data.channel("encoder") != nullptr || data.channel("position") != nullptr) return 0.0;
+  const std::vector<std::string>& names = task.channels->name;
+  const auto speed =
+      static_cast<Eigen::Index>(std::find(names.begin(), names.end(), "velocity") - names.begin());
+  const Eigen::VectorXd& mean_square = parent.unweighted[kTraining];
+  return speed < mean_square.size() ? std::sqrt(mean_square[speed]) : 0.0;
+}
+
 std::vector<const EffectEntry*> not_yet(const SelectionTask& task, const Candidate& model) {
   std::vector<const EffectEntry*> out;
   for (const EffectEntry* e : task.applicable) {
@@ -91,7 +105,7 @@ std::vector<std::size_t> above_null(const std::vector<Screened>& screened, const
     const Screened& s = screened[i];
     const bool above = s.gain > kLeastSignalToNull * s.null_gain &&
                        (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare);
-    if (s.tried && (above || has_signature(i))) order.push_back(i);
+    if (s.tried && s.unresolved <= kMostUnresolved && (above || has_signature(i))) order.push_back(i);
   }
   const auto rank = [&](std::size_t i) { return std::pair(has_signature(i), screened[i].share); };
   std::stable_sort(order.begin(), order.end(),
@@ -109,7 +123,8 @@ std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const 
     if (out.size() < kMostRefits - 1) out.push_back(i);
   }
   for (std::size_t i = 0; i < screened.size(); ++i) {
-    const bool absorbed = is_prior_rejected(parent.fit, screened[i].aliased_parameter());
+    const bool absorbed = screened[i].unresolved <= kMostUnresolved &&
+                          is_prior_rejected(parent.fit, screened[i].aliased_parameter());
     if (absorbed && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
   }
   const auto in_regime = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -181,7 +196,7 @@ std::vector<std::size_t> confounded_with_best(const Iteration& iteration, bool h
   std::vector<std::size_t> out;
   for (std::size_t i = 0; best != nullptr && i < iteration.screened.size(); ++i) {
     const Screened& s = iteration.screened[i];
-    if (s.tried && !s.extends && !was_refitted(iteration, s) &&
+    if (s.tried && s.unresolved <= kMostUnresolved && !s.extends && !was_refitted(iteration, s) &&
         listed_as_confounded(*best->screened.entry->info, *s.entry->info))
       out.push_back(i);
   }
@@ -207,6 +222,7 @@ bool has_accepted(const Iteration& iteration) {
 
 Visibility visibility_of(const Screened& s, double largest_null_gain) {
   if (!s.tried) return Visibility::kNotTried;
+  if (s.unresolved > kMostUnresolved) return Visibility::kUnresolved;
   if (!(s.typical_gain <= kVisibleSignalToNull * largest_null_gain)) return Visibility::kVisible;
   const bool aliased = s.residual_fraction < kAliasedFraction && !s.closest_parameter.empty();
   return aliased ? Visibility::kAliased : Visibility::kBelowNoise;
@@ -220,6 +236,10 @@ std::string reason_of_screening(const Screened& s, Visibility visibility) {
       return fmt::format("not visible in these data: {} produces the same signal", s.closest_parameter);
     case Visibility::kBelowNoise:
       return "not visible in these data: at its typical size it gains no more than in the simulated null";
+    case Visibility::kUnresolved:
+      return "not visible in these data: no sensor reports the angle, and from one row to the next the "
+             "model's is off "
+             "by more than half a period";
     case Visibility::kVisible:
       break;
   }
@@ -301,6 +321,7 @@ Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
     screening.noise.push_back(n.cwiseProduct(base.weights()));
   screening.regimes = regime_masks(fit, parent.fit.model);
   screening.scale = scale_of(task, parent, base);
+  screening.drift = angle_drift(fit, parent.fit.model, speed_error(task, parent));
   screening.jobs = task.jobs;
   screening.progress = [&](double share) {
     return !task.progress || task.progress("screening", 0.5 * share);

@@ -377,7 +377,8 @@ TEST(AcceptanceTest, AnotherKindOfMotionDecidesWhereTheHeldOutRunsHardlyShowTheE
   };
   EXPECT_TRUE(with(0.995, 0.6).accepted());
   EXPECT_NE(with(0.995, 0.6).why.find("extrapolation error energy falls by 64"), std::string::npos);
-  EXPECT_FALSE(with(1.005, 0.6).accepted()) << "a loss on the held-out runs is none of another motion's business";
+  EXPECT_FALSE(with(1.005, 0.6).accepted())
+      << "a loss on the held-out runs is none of another motion's business";
   EXPECT_FALSE(with(0.995, 0.9).accepted()) << "19 % of the energy may be the base parameters' last digits";
 }
 
