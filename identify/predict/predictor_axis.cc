@@ -52,7 +52,8 @@ class AxisRig {
   bool shows_signature_of(const EffectEntry& effect) const { return counter_ == &effect; }
   Capabilities capabilities() const { return axis_capabilities(*dataset_, *nominal_); }
   double step_s(const Candidate& own, std::size_t n) const { return substep_.of(own, static_cast<int>(n)); }
-  bool is_exact(std::size_t) const { return true; }
+  // Between parts that meet and leave exact derivatives hold for no finite step.
+  bool is_exact(const Candidate& own, std::size_t) const { return !acts(own, kImpacts); }
   std::vector<RegimeTrack> regimes(const Candidate& own, std::size_t n) const {
     return axis_regimes(setups_[n], own, step_s(own, n));
   }
@@ -65,13 +66,19 @@ class AxisRig {
     return {.values = axis_outputs<T>(s, m.params, EffectSet<T>(m.uses, m.values), step_s)};
   }
 
-  double secant(const Candidate& own, const Unknown& unknown, Eigen::Index u, std::size_t n,
+  Secant secant(const Candidate& own, const Unknown& unknown, Eigen::Index u, std::size_t n,
                 const Prediction& p) const {
-    constexpr double kStep_s = 2e-3;  // two of the longest sub-steps; a choice
-    constexpr double kSecant = 0.05;  // of Unknown::scale (DECISIONS 29): a choice; sensitivity not measured
-    if (setups_[n].input.time_s.empty()) return 0.0;
-    if (is_hidden_delay(own, unknown)) return kStep_s;
-    return acts(own, kImpacts) || explodes(setups_[n], unknown, u, p) ? kSecant * unknown.scale : 0.0;
+    constexpr double kStep_s = 4e-3;  // four of the longest sub-steps; a choice
+    constexpr double kWidth = 0.1;    // of Unknown::scale (DECISIONS 29): a choice; sensitivity not measured
+    if (setups_[n].input.time_s.empty()) return {};
+    if (is_hidden_delay(own, unknown)) return {.width = kStep_s};
+    const double width = kWidth * unknown.scale;
+    if (is_exact(own, n)) return {.width = explodes(setups_[n], unknown, u, p) ? width : 0.0};
+    const bool of_the_play =
+        unknown.effect >= 0 &&
+        (own.effects[static_cast<std::size_t>(unknown.effect)].entry->info->numerics & kImpacts) != 0;
+    if (of_the_play) return {.width = width};
+    return {.width = 0.5 * width, .forward = true};
   }
 
   // Linear after-treatment, and what is not finite said.

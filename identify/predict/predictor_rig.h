@@ -19,8 +19,14 @@ struct RigOutputs {
   bool finite = true;
 };
 
-// step_s(): of the simulation, at most. is_exact(): dual numbers pass through it. secant(): half width of a difference where
-// the exact derivative is not to be used, else 0. complete(): what is linear in values and derivatives alike. measure():
+// In place of a derivative: the difference over `width`, half of it to either side, or forward: half the simulations.
+struct Secant {
+  double width = 0.0;  // unit of the unknown; 0: none
+  bool forward = false;
+};
+
+// step_s(): of the simulation, at most. is_exact(): dual numbers pass through it. secant(): where the exact derivative is
+// not to be used. complete(): what is linear in values and derivatives alike. measure():
 // puts what `truth` shows these sensors, with their noise, in place of the measurement.
 template <class R>
 concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, const Unknown& unknown,
@@ -31,8 +37,8 @@ concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, con
   { rig.template outputs<double>(RigModel{own}, run, 1e-3) } -> std::same_as<RigOutputs<double>>;
   { rig.template outputs<Jet>(RigModel{own}, run, 1e-3) } -> std::same_as<RigOutputs<Jet>>;
   { rig.step_s(own, run) } -> std::same_as<double>;
-  { rig.is_exact(run) } -> std::same_as<bool>;
-  { rig.secant(own, unknown, u, run, p) } -> std::same_as<double>;
+  { rig.is_exact(own, run) } -> std::same_as<bool>;
+  { rig.secant(own, unknown, u, run, p) } -> std::same_as<Secant>;
   rig.complete(run, p);
   { rig.regimes(own, run) } -> std::same_as<std::vector<RegimeTrack>>;
   { rig.capabilities() } -> std::same_as<Capabilities>;
@@ -77,12 +83,12 @@ class RigPredictor final : public Predictor {
     const Candidate own = with_known(candidate, run(n).known);
     const std::vector<Unknown> open = open_unknowns(unknowns, run(n));
     const double step_s = rig_.step_s(own, at(n));
-    Prediction p =
-        rig_.is_exact(at(n)) ? by_passes(own, open, at(n), step_s) : by_values(own, open, at(n), step_s);
+    const bool exact = rig_.is_exact(own, at(n));
+    Prediction p = exact ? by_passes(own, open, at(n), step_s) : by_values(own, open, at(n), step_s);
     for (std::size_t u = 0; u < open.size() && p.finite; ++u) {
       if (open[u].path.empty()) continue;
-      const double half = rig_.secant(own, open[u], static_cast<Eigen::Index>(u), at(n), p);
-      if (half > 0.0) difference(own, std::span(open).subspan(u, 1), u, at(n), half, step_s, p);
+      const Secant secant = rig_.secant(own, open[u], static_cast<Eigen::Index>(u), at(n), p);
+      if (secant.width > 0.0) difference(own, std::span(open).subspan(u, 1), u, at(n), secant, step_s, p);
     }
     rig_.complete(at(n), p);
     return p;
@@ -142,23 +148,25 @@ class RigPredictor final : public Predictor {
     return p;
   }
 
-  // Central, where bounds and a finite motion let it: `half` to either side.
+  // As wide as the bounds and a finite motion let it.
   void difference(const Candidate& own, std::span<const Unknown> unknown, std::size_t u, std::size_t n,
-                  double half, double step_s, Prediction& p) const {
+                  const Secant& secant, double step_s, Prediction& p) const {
     const double at = value_at(own, unknown[0].path).value_or(unknown[0].start);
     const auto beside = [&](double value) {
       value = std::clamp(value, unknown[0].lower, unknown[0].upper);
+      if (value == at) return std::pair(at, p.values);
       const Candidate moved = with_values(own, unknown, std::span(&value, 1));
       RigOutputs<double> y = rig_.template outputs<double>({moved}, n, step_s);
       return y.finite ? std::pair(value, std::move(y.values)) : std::pair(at, p.values);
     };
-    const auto [low, below] = beside(at - half);
-    const auto [high, above] = beside(at + half);
-    if (!(high > low)) return;
+    const auto above = beside(at + (secant.forward ? 1.0 : 0.5) * secant.width);
+    const auto below = beside(secant.forward && above.first > at ? at : at - 0.5 * secant.width);
+    const double apart = above.first - below.first;
+    if (!(apart > 0.0)) return;
     for (std::size_t s = 0; s < p.values.size(); ++s) {
       for (std::size_t k = 0; k < p.values[s].size(); ++k) {
         p.derivatives[s](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(u)) =
-            (above[s][k] - below[s][k]) / (high - low);
+            (above.second[s][k] - below.second[s][k]) / apart;
       }
     }
   }

@@ -50,7 +50,9 @@ class RollingRig {
   bool shows_signature_of(const EffectEntry&) const { return false; }
   double step_s(const Candidate&, std::size_t) const { return motion_.step_s; }
   // Of a loop that is closed by a firmware nothing is known but its answers.
-  bool is_exact(std::size_t n) const { return motion_.firmware == nullptr || !records_[n].radio; }
+  bool is_exact(const Candidate&, std::size_t n) const {
+    return motion_.firmware == nullptr || !records_[n].radio;
+  }
   void complete(std::size_t, Prediction&) const {}
   std::vector<RegimeTrack> regimes(const Candidate& own, std::size_t n) const {
     return robot_regimes(dataset_->runs[n], records_[n],
@@ -68,13 +70,13 @@ class RollingRig {
 
   // A firmware counts its encoders in whole counts and rounds its duties, so that a prediction is a staircase of a
   // parameter: the difference is taken over a stretch that matters, and not over the least that a double has.
-  double secant(const Candidate&, const Unknown& unknown, Eigen::Index, std::size_t n,
+  Secant secant(const Candidate& own, const Unknown& unknown, Eigen::Index, std::size_t n,
                 const Prediction&) const {
-    constexpr double kShare = 0.25;  // of the unknown's scale to either side: a choice
-    if (is_exact(n)) return 0.0;
+    constexpr double kShare = 0.5;  // of the unknown's scale: a choice
+    if (is_exact(own, n)) return {};
     // A packet is heard at a tick, whichever moment between two it came at.
-    const double least_s = unknown.path == "controller.latency_s" ? tick_s_ : 0.0;
-    return std::max(kShare * unknown.scale, least_s);
+    const double least_s = unknown.path == "controller.latency_s" ? 2.0 * tick_s_ : 0.0;
+    return {.width = std::max(kShare * unknown.scale, least_s)};
   }
 
   void measure(const Candidate& truth, std::uint64_t seed);

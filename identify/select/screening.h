@@ -37,7 +37,7 @@ struct ScreeningTask {
   std::vector<Eigen::VectorXd> noise;  // weighted residuals of the null: [replicate], one value per sample
   std::vector<RegimeMask> regimes;
   DataScale scale;
-  AngleDrift drift;  // empty: not looked at
+  AngleDrift drift{};  // empty: not looked at
   int jobs = 1;
   std::function<bool(double share)> progress;  // false: give up
 };
