@@ -7,6 +7,7 @@
 #include "firmware_iface/mcu/board/board_keys.h"
 #include "firmware_iface/mcu/board/board_names.h"
 #include "firmware_iface/mcu/board/board_spec.h"
+#include "firmware_iface/mcu/board/wheel_commands_reader.h"
 #include "firmware_iface/mcu/stm32/device.h"
 #include "firmware_iface/robot_io.h"
 
@@ -379,30 +380,7 @@ void Reader::read_wheel_commands() {
                 fmt::format("the board's motors are not wheels 0 to {}", motors - 1),
                 "wheels counted from 0 on each board");
   }
-  const toml::node* node = top_.get("wheel_commands");
-  if (node == nullptr) return;
-  const toml::table* t = node->as_table();
-  if (t == nullptr) return keys_.wrong(top_, "", "wheel_commands", "not a table", "[wheel_commands]");
-  if (top_.contains("radio")) keys_.wrong(top_, "", "wheel_commands", "beside [radio]", "one of the two");
-  keys_.only(*t, "wheel_commands", {"dialect", "via", "reversed"});
-  std::string dialects;
-  for (const MotorBusKind* bus : motor_buses()) {
-    if (bus->main_board.dialect.empty()) continue;
-    dialects += (dialects.empty() ? "" : ", ") + std::string(bus->main_board.dialect);
-  }
-  WheelCommands& commands = spec_.wheel_commands;
-  commands.bus = find_dialect(keys_.text(*t, "wheel_commands", "dialect").value_or(""));
-  if (commands.bus == nullptr) {
-    keys_.wrong(*t, "wheel_commands", "dialect", t->contains("dialect") ? "unknown" : "missing", dialects);
-  }
-  commands.via = keys_.text(*t, "wheel_commands", "via").value_or("");
-  commands.sign = keys_.flag(*t, "wheel_commands", "reversed").value_or(false) ? -1.0 : 1.0;
-  if (commands.bus == nullptr || !names_) return;
-  const bool can = commands.bus->carrier != BusCarrier::kUart;
-  if (can ? !names_->has_can(commands.via) : !names_->has_serial(commands.via)) {
-    keys_.wrong(*t, "wheel_commands", "via", can ? "not a CAN of the chip" : "not a serial port of the chip",
-                can ? names_->cans() : names_->serials());
-  }
+  spec_.wheel_commands = mcu::read_wheel_commands(top_, keys_, names_.get(), motors);
 }
 
 // An input that never changes: a level, or a bit of the robot's number.

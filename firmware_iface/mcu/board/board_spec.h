@@ -17,6 +17,7 @@
 
 #include "firmware_iface/mcu/board/board_problem.h"
 #include "firmware_iface/motor_bus/motor_bus.h"
+#include "firmware_iface/motor_bus/wheel_words.h"
 
 namespace omnihil::mcu {
 
@@ -111,9 +112,12 @@ struct PortEntry {
 
 // A board that drives wheels as the robot's main board tells it, which the bench stands in for.
 struct WheelCommands {
-  const MotorBusKind* bus = nullptr;  // whose main board speaks; null: none
-  std::string via;                    // a serial port or a CAN
-  double sign = 1.0;                  // -1: its forward is the plant's backward
+  const MotorBusKind* bus = nullptr;  // whose main board speaks; null: its own words, or none
+  WheelWords words;                   // of the board file itself
+  bool serial = false;                // `via` is a serial port, else a CAN
+  std::string via;
+  double sign = 1.0;  // -1: its forward is the plant's backward
+  std::int64_t period_ns() const { return bus != nullptr ? bus->main_board.period_ns : words.period_ns; }
 };
 
 struct BoardSpec {
