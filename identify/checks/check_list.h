@@ -63,6 +63,7 @@ void check_stall(const CheckContext&, std::vector<DataFinding>&);
 void check_closed_loop(const CheckContext&, std::vector<DataFinding>&);
 void check_duplicates(const CheckContext&, std::vector<DataFinding>&);
 void check_flags(const CheckContext&, std::vector<DataFinding>&);
+void check_silent(const CheckContext&, std::vector<DataFinding>&);
 void check_splits(const CheckContext&, std::vector<DataFinding>&);
 
 // Helpers of the checks. Order statistics as in identify/record/statistics.h (QuantileRank::kNearest).

@@ -44,7 +44,8 @@ Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal)
                {kNeedsReportedSpeed, measured("velocity"), "needs a speed that the drive reports"},
                {kNeedsShaftSensor, true, ""},
                {kNeedsEncoder, encoder, "needs an encoder"},
-               {kNeedsAngle, encoder || measured("position"), "needs an encoder"}},
+               {kNeedsAngle, encoder || measured("position"), "needs an encoder"},
+               {kNeedsPhase, true, ""}},
       .free_base = {},
       .present_base = {}};
   add_base(nominal, drive, out);

@@ -37,7 +37,9 @@ Capabilities WholeRobot::capabilities(const Dataset& dataset) {
                     "needs the dribbler's speed (channel dribbler)"},
                    {kNeedsBodySpeed, body, "needs a body's speed: camera, gyro or accelerometer"},
                    {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle, has_channel(dataset, "encoder"),
-                    "needs encoders"}},
+                    "needs encoders"},
+                   {kNeedsPhase, has_channel(dataset, "encoder"),
+                    "needs encoders: its phase is that of an angle"}},
           .free_base = {},
           .present_base = std::move(present)};
 }

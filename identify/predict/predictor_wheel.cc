@@ -31,8 +31,8 @@ struct OneWheel {
                      {kNeedsReportedSpeed, false, "needs a speed that the drive's electronics estimate"},
                      {kNeedsCamera, false, "needs a camera"},
                      {kNeedsDribbler, false, "needs the dribbler"},
-                     {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle, has_channel(dataset, "encoder"),
-                      "needs an encoder"}},
+                     {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle | kNeedsPhase,
+                      has_channel(dataset, "encoder"), "needs an encoder"}},
             .free_base = {},
             .present_base = {}};
   }

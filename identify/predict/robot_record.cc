@@ -6,6 +6,7 @@
 #include <string>
 
 #include "identify/predict/channel.h"
+#include "identify/predict/silent_frames.h"
 #include "identify/record/bus_voltage.h"
 #include "sim/law/random.h"
 
@@ -266,6 +267,7 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
     }
   }
   read_frames(run, r);
+  drop_silent_frames(run, nominal, r);
   unwrap_by_gyro(r);
   read_imposed(run, r);
   r.start_velocity = start_velocity(r, dataset, run, nominal);

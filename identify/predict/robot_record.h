@@ -31,6 +31,13 @@ struct RadioCommands {
   std::vector<PerWheel<double>> value;  // n samples; of a body three: m/s, m/s, rad/s; of wheels rad/s
 };
 
+// Rows of a sensor that repeated its last value while the robot drove on (silent_frames.h): not among the frames.
+struct SilentStretch {
+  std::string signal;
+  std::size_t from = 0, to = 0;     // rows, both of them in it
+  double value = 0.0, moved = 0.0;  // what it repeats, how far the wheels moved: rad or m
+};
+
 struct RobotRecord {
   std::size_t wheels = kWheels;  // of lists per wheel the first so many count
   std::vector<double> time_s;
@@ -48,6 +55,7 @@ struct RobotRecord {
   std::vector<double> turned_rad;  // integral of the gyro; empty: none
   std::vector<CameraFrame> frames;
   std::vector<std::array<double, 3>> imposed_velocity;  // of the body, by the bench; empty: it moves freely
+  std::vector<SilentStretch> silent;
   BodyVelocity<double> start_velocity;
 
   std::size_t size() const { return time_s.size(); }

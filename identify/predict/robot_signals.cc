@@ -297,6 +297,12 @@ void measure_robot(const RobotRecord& r, const RobotMotion<double>& m,
       }
       continue;
     }
+    for (const SilentStretch& silent : r.silent) {  // nor does the simulated sensor say anything there
+      const bool both = silent.signal == "vision_x" && s.channel == "vision_y";
+      if (silent.signal != s.channel && !both) continue;
+      std::fill(out.begin() + static_cast<std::ptrdiff_t>(silent.from),
+                out.begin() + static_cast<std::ptrdiff_t>(silent.to) + 1, kNaN);
+    }
     const std::vector<double> values = robot_signal_values(s, r, m);
     double first = kNaN;  // difference of the camera's origin to the simulation's
     for (std::size_t k = 0; k < r.size(); ++k) {

@@ -1,7 +1,9 @@
 // A robot of which the radio's commands are known and no duties: the model's controller closes the loop.
+#include <algorithm>
 #include <cmath>
 
 #include "hil/dataset/dataset_reader.h"
+#include "identify/checks/check_data.h"
 #include "identify/estimate/fit.h"
 #include "identify/predict/predictor_robot.h"
 #include "identify/predict/robot_motion.h"
@@ -72,6 +74,44 @@ TEST(RadioDriven, TheStartIsNotOneNoisyReading) {
       EXPECT_NEAR(start.v_forward_m_s, v_m_s, 3.0 * 15.0 / std::sqrt(7.0) * 0.027 / std::sqrt(2.0));
     }
   }
+}
+
+// A heading that is held while the robot turns on is no measurement: its rows are no frames, in the null neither, and the
+// data's checks say so. One that is held while the robot stands is what it is.
+TEST(RadioDriven, AHeadingThatWentSilentIsNotMeasured) {
+  const Candidate truth = radio_candidate();
+  const auto nominal = rolling_params(truth.file.parameters);
+  Dataset d = blank_radio(8.0);
+  for (omnihil::Run& run : d.runs) {  // stands for 3 s, then turns at 1.5 rad/s
+    for (const char* axis : {"command_vx", "command_vy"}) run.signals[axis].assign(run.time_s.size(), 0.0);
+    for (std::size_t k = 0; k < run.time_s.size(); ++k)
+      run.signals["command_w"][k] = run.time_s[k] < 3.0 ? 0.0 : 1.5;
+  }
+  const auto simulated = make_predictor(d, truth, {})->simulated(truth, 3);
+  for (std::size_t r = 0; r < d.runs.size(); ++r) d.runs[r] = simulated->run(static_cast<int>(r));
+  std::vector<double>& theta = d.runs[0].signals["vision_theta"];
+  for (std::size_t k = 60; k < 150; ++k) theta[k] = theta[60];  // 1 s to 2.5 s: stands
+  EXPECT_TRUE(robot_record(d, d.runs[0], nominal).silent.empty());
+  for (std::size_t k = 300; k < theta.size(); ++k) theta[k] = 0.0;  // 5 s on
+  const RobotRecord record = robot_record(d, d.runs[0], nominal);
+  ASSERT_EQ(record.silent.size(), 1u);
+  EXPECT_EQ(record.silent[0].from, 300u);
+  EXPECT_NEAR(record.silent[0].moved, 1.5 * (8.0 - 5.0), 0.3);
+  for (const CameraFrame& f : record.frames) {
+    EXPECT_TRUE(std::isfinite(f.x_m));
+    EXPECT_EQ(std::isfinite(f.theta_rad), f.sample < 300) << f.sample;
+  }
+  const auto p = make_predictor(d, truth, {}), null = make_predictor(d, truth, {})->simulated(truth, 4);
+  for (std::size_t s = 0; s < p->compared(0).size(); ++s) {
+    for (std::size_t k = 0; k < theta.size(); ++k)
+      ASSERT_EQ(std::isfinite(p->compared(0)[s].measured[k]), std::isfinite(null->compared(0)[s].measured[k]))
+          << p->compared(0)[s].name << k;
+  }
+  const std::vector<DataFinding> findings = check_data(d, truth);
+  const auto said =
+      std::find_if(findings.begin(), findings.end(), [](const DataFinding& f) { return f.kind == "silent"; });
+  ASSERT_NE(said, findings.end());
+  EXPECT_NE(said->sentence.find("its sensor went silent"), std::string::npos) << said->sentence;
 }
 
 // A motion that is cut anywhere and gone on with is the whole one, derivatives too.

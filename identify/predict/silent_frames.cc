@@ -1,0 +1,117 @@
+#include "identify/predict/silent_frames.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "identify/predict/channel.h"
+
+namespace omnihil {
+namespace {
+
+constexpr double kSilent_s = 0.5;        // longer than a camera loses a robot and a filter holds it; a choice
+constexpr std::size_t kSilentRows = 10;  // as above
+constexpr double kTurned_rad = 0.3;      // least, by the wheels: 17 degrees no heading misses; a choice
+constexpr double kDriven_m = 0.1;        // half a robot; a choice
+constexpr double kSure_sigmas = 3.0;     // of a sum, beyond which it is a motion: the usual one
+
+// Of the body by the wheels, a value a row: m/s, m/s, rad/s; NaN where a wheel is not known. Empty: not measured.
+using Track = std::vector<double>;
+std::array<Track, 3> motion_by_wheels(const Run& run, const RollingParams<double>& nominal,
+                                      const RobotRecord& r) {
+  WheelGeometry<double> g;
+  g.wheels = r.wheels;
+  g.wheel_center_radius_m = nominal.wheel_center_radius_m;
+  g.wheel_radius_m = nominal.wheel_radius_m;
+  PerWheel<const Track*> reported{};
+  for (std::size_t i = 0; i < r.wheels; ++i) {
+    g.cos_angle[i] = std::cos(nominal.wheel_angle_rad[i]);
+    g.sin_angle[i] = std::sin(nominal.wheel_angle_rad[i]);
+    reported[i] = run.signal(numbered("wheel_speed", i, r.wheels));
+    if (reported[i] == nullptr && !r.has_all_encoders) return {};
+  }
+  std::array<Track, 3> out;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    PerWheel<double> omega{};
+    for (std::size_t i = 0; i < r.wheels; ++i) {
+      const std::size_t before = k > 0 ? k - 1 : 0;
+      omega[i] = reported[i] != nullptr ? (*reported[i])[k]
+                 : k > 0                ? (r.theta_rotor_rad[k][i] - r.theta_rotor_rad[before][i]) /
+                               (r.time_s[k] - r.time_s[before]) / nominal.drive.gear_ratio
+                         : 0.0;
+    }
+    const BodyVelocity<double> v = body_velocity(g, omega);
+    out[0].push_back(v.v_forward_m_s), out[1].push_back(v.v_left_m_s), out[2].push_back(v.omega_body_rad_s);
+  }
+  return out;
+}
+
+// The sum of a speed over rows (from, to], and three of its sigmas.
+std::pair<double, double> moved(const RobotRecord& r, const Track& speed, double sigma, std::size_t from,
+                                std::size_t to) {
+  double sum = 0.0, dt2 = 0.0;
+  for (std::size_t k = from + 1; k <= to; ++k) {
+    const double dt_s = r.time_s[k] - r.time_s[k - 1];
+    if (std::isfinite(speed[k])) sum += speed[k] * dt_s;
+    dt2 += dt_s * dt_s;
+  }
+  return {sum, kSure_sigmas * sigma * std::sqrt(dt2)};
+}
+
+// Index of the last of the frames from `first` on that say the same; frames that do not see it are passed over.
+template <typename Same>
+std::size_t last_same(const std::vector<CameraFrame>& frames, std::size_t first, Same same) {
+  std::size_t last = first;
+  for (std::size_t n = first + 1; n < frames.size() && same(frames[first], frames[n]); ++n) last = n;
+  return last;
+}
+
+// Calls silent(first, last) for all stretches of frames that are long enough to be a silence.
+template <typename Same, typename Silent>
+void for_stretches(const RobotRecord& r, Same same, Silent silent) {
+  for (std::size_t first = 0; first < r.frames.size();) {
+    const std::size_t last = last_same(r.frames, first, same);
+    const double long_s = r.time_s[r.frames[last].sample] - r.time_s[r.frames[first].sample];
+    if (last - first >= kSilentRows && long_s >= kSilent_s) silent(first, last);
+    first = last + 1;
+  }
+}
+
+}  // namespace
+
+void drop_silent_frames(const Run& run, const RollingParams<double>& nominal, RobotRecord& r) {
+  if (r.frames.size() <= kSilentRows) return;
+  const std::array<Track, 3> speed = motion_by_wheels(run, nominal, r);
+  if (speed[0].empty()) return;
+  std::array<double, 3> sigma{};
+  for (std::size_t a = 0; a < 3; ++a) sigma[a] = estimate_noise(speed[a], Differences::kThird).sigma;
+  const auto rows = [&](std::size_t first, std::size_t last) {
+    return std::pair(r.frames[first].sample, r.frames[last].sample);
+  };
+  const double nan = std::nan("");
+  for_stretches(
+      r, [](const CameraFrame& a, const CameraFrame& b) { return a.theta_rad == b.theta_rad; },
+      [&](std::size_t first, std::size_t last) {
+        const auto [from, to] = rows(first, last);
+        const auto [turned, sure] = moved(r, speed[2], sigma[2], from, to);
+        if (std::abs(turned) < std::max(kTurned_rad, sure)) return;
+        r.silent.push_back({"vision_theta", from, to, r.frames[first].theta_rad, turned});
+        for (std::size_t n = first; n <= last; ++n) r.frames[n].theta_rad = nan;
+      });
+  for_stretches(
+      r, [](const CameraFrame& a, const CameraFrame& b) { return a.x_m == b.x_m && a.y_m == b.y_m; },
+      [&](std::size_t first, std::size_t last) {
+        const auto [from, to] = rows(first, last);
+        const auto [x, sure_x] = moved(r, speed[0], sigma[0], from, to);
+        const auto [y, sure_y] = moved(r, speed[1], sigma[1], from, to);
+        if (std::hypot(x, y) < std::max(kDriven_m, std::hypot(sure_x, sure_y))) return;
+        r.silent.push_back({"vision_x", from, to, r.frames[first].x_m, std::hypot(x, y)});
+        for (std::size_t n = first; n <= last; ++n) r.frames[n].x_m = r.frames[n].y_m = nan;
+      });
+  std::erase_if(r.frames, [](const CameraFrame& f) {
+    return !std::isfinite(f.x_m) && !std::isfinite(f.y_m) && !std::isfinite(f.theta_rad);
+  });
+}
+
+}  // namespace omnihil
