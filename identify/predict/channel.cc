@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "identify/record/quantum.h"
 #include "identify/record/statistics.h"
@@ -47,6 +48,19 @@ void set_noise(double stated_sigma, const NoiseEstimate& estimate, ComparedSigna
   signal.noise_sigma = signal.noise_is_stated ? std::hypot(stated_sigma, estimate.quantum / std::sqrt(12.0))
                                               : std::max(estimate.sigma, kNoNoise);
   signal.whitened_sigma = signal.noise_sigma;
+}
+
+void share_noise(std::span<ComparedSignal* const> signals) {
+  std::map<std::string, std::vector<ComparedSignal*>> by_name;
+  for (ComparedSignal* const c : signals) {
+    if (!c->noise_is_stated && c->whitening_s <= 0.0) by_name[c->name].push_back(c);
+  }
+  for (const auto& [name, same] : by_name) {
+    std::vector<double> sigmas;
+    for (const ComparedSignal* const c : same) sigmas.push_back(c->noise_sigma);
+    const double sigma = median_in_place(sigmas);
+    for (ComparedSignal* const c : same) c->noise_sigma = c->whitened_sigma = sigma;
+  }
 }
 
 double reading(double value, double sigma, double quantum, double normal) {

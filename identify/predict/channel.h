@@ -34,6 +34,9 @@ NoiseEstimate estimate_noise(const std::vector<double>& values, Differences orde
 // (Widrow 1956); 0: not stated, estimated.
 void set_noise(double stated_sigma, const NoiseEstimate& estimate, ComparedSignal& signal);
 
+// A signal has one noise in all runs: where it is neither stated nor whitened, the median of the runs'.
+void share_noise(std::span<ComparedSignal* const> signals);
+
 // Reading of a quantised sensor: noise is added before rounding; sigma^2 includes the rounding's q^2 / 12.
 double reading(double value, double sigma, double quantum, double normal);
 

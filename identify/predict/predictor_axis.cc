@@ -41,7 +41,13 @@ class AxisRig {
       if (!options_.slave_angle) setups_.back().input.measured_position_rad.clear();
     }
     counter_ = find_counted_speed(setups_, drive_of(*nominal_));
-    share_noise();
+    std::vector<ComparedSignal*> series;
+    for (AxisSetup& s : setups_) {
+      for (ComparedSignal& c : s.compared) {
+        if (!s.steady) series.push_back(&c);
+      }
+    }
+    share_noise(series);
     choose_averaging();
     choose_step();
   }
@@ -131,29 +137,6 @@ class AxisRig {
       if (!(moved * unknown.scale * unknown.scale <= kMost * kMost * signal)) return true;
     }
     return false;
-  }
-
-  // A signal has one noise in all runs: where it is not stated, the runs' median.
-  void share_noise() {
-    std::vector<std::pair<std::string, std::vector<double>>> sizes;
-    for (const AxisSetup& s : setups_) {
-      for (const ComparedSignal& c : s.compared) {
-        if (c.noise_is_stated || c.whitening_s > 0.0 || s.steady) continue;
-        auto at = std::find_if(sizes.begin(), sizes.end(), [&](const auto& e) { return e.first == c.name; });
-        if (at == sizes.end()) at = sizes.insert(sizes.end(), {c.name, {}});
-        at->second.push_back(c.noise_sigma);
-      }
-    }
-    for (auto& [name, sigmas] : sizes) {
-      std::sort(sigmas.begin(), sigmas.end());
-      const double sigma = sigmas[sigmas.size() / 2];
-      for (AxisSetup& s : setups_) {
-        for (ComparedSignal& c : s.compared) {
-          if (c.name != name || c.noise_is_stated || c.whitening_s > 0.0 || s.steady) continue;
-          c.noise_sigma = c.whitened_sigma = sigma;
-        }
-      }
-    }
   }
 
   // The shortest time, by doubling, over which a differenced signal's displacement is kResolved_sigmas times the

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "identify/predict/channel.h"
 #include "identify/predict/predictor_rig.h"
 #include "identify/predict/robot_motion.h"
 #include "identify/predict/robot_signals.h"
@@ -38,9 +39,12 @@ class RollingRig {
       const Candidate model = with_known(*nominal_, run.known);
       records_.push_back(robot_record(*dataset_, run, Kind::params(rolling_params(model.file.parameters))));
       signals_.push_back(robot_signals(*dataset_, run, records_.back()));
-      add_input_noise(model, records_.back(), signals_.back());
+    }
+    share_channels();
+    for (std::size_t n = 0; n < records_.size(); ++n) {
+      add_input_noise(with_known(*nominal_, dataset_->runs[n].known), records_[n], signals_[n]);
       compared_.emplace_back();
-      for (const RobotSignal& s : signals_.back()) compared_.back().push_back(s.compared);
+      for (const RobotSignal& s : signals_[n]) compared_.back().push_back(s.compared);
     }
   }
 
@@ -88,6 +92,18 @@ class RollingRig {
     auto values = robot_values<T>(model.candidate, model.unknowns, model.first);
     values.params = Kind::params(values.params);
     return values;
+  }
+  void share_channels() {
+    std::vector<ComparedSignal*> all;
+    for (std::vector<RobotSignal>& of : signals_) {
+      for (RobotSignal& s : of) all.push_back(&s.compared);
+    }
+    share_noise(all);
+    for (std::vector<RobotSignal>& of : signals_) {
+      for (RobotSignal& s : of) {
+        if (!s.compared.noise_is_stated) s.channel_sigma = s.compared.noise_sigma;
+      }
+    }
   }
   void add_input_noise(const Candidate& model, const RobotRecord& record, std::vector<RobotSignal>& signals) {
     if (record.size() < 2 || (record.duty_quantum == 0.0 && record.bus_sigma_V == 0.0)) return;

@@ -102,5 +102,20 @@ TEST(Channel, ASlowClimbIsARowOfSteps) {
   EXPECT_NEAR(since_step(t, {still})[100], 1.0, 1e-12);
 }
 
+TEST(Channel, ASensorHasOneNoiseInAllRunsUnlessItIsStated) {
+  std::vector<ComparedSignal> c(4);
+  const double sigmas[] = {1.0, 5.0, 2.0, 9.0};
+  std::vector<ComparedSignal*> all;
+  for (std::size_t n = 0; n < c.size(); ++n) {
+    c[n].name = "motor_current";
+    c[n].noise_sigma = c[n].whitened_sigma = sigmas[n];
+    all.push_back(&c[n]);
+  }
+  c[3].noise_is_stated = true;
+  share_noise(all);
+  for (std::size_t n = 0; n < 3; ++n) EXPECT_DOUBLE_EQ(c[n].noise_sigma, 2.0);
+  EXPECT_DOUBLE_EQ(c[3].noise_sigma, 9.0);
+}
+
 }  // namespace
 }  // namespace omnihil::test
