@@ -15,11 +15,12 @@ struct WholeRobot {
 
 Capabilities WholeRobot::capabilities(const Dataset& dataset) {
   const bool camera = has_channel(dataset, "vision");
-  const bool body = camera || has_channel(dataset, "gyro") || has_channel(dataset, "accel");
+  const bool imposed = has_channel(dataset, "body_");
+  const bool body = imposed || camera || has_channel(dataset, "gyro") || has_channel(dataset, "accel");
   // Several drives by duty from one bus, simulated as a whole. Base parameters exclude no effect: what a tolerance
   // of an inductance trades with is for the fit to say.
   constexpr std::uint32_t kAlways = kNeedsFloor | kNeedsSeveralMotors | kNeedsSupply | kNeedsWinding |
-                                    kNeedsDuty | kNeedsVoltage | kNeedsSimulation | kNeedsFreeBody;
+                                    kNeedsDuty | kNeedsVoltage | kNeedsSimulation;
   // Where radio commands drive, the model's controller has the delay.
   std::vector<std::string> present;
   if (std::any_of(dataset.runs.begin(), dataset.runs.end(),
@@ -28,6 +29,7 @@ Capabilities WholeRobot::capabilities(const Dataset& dataset) {
   return {.rig = kOnRobot,
           .other_rig = "acts on a single axis",
           .list = {{kAlways, true, ""},
+                   {kNeedsFreeBody, !imposed, "the bench moves the body, whatever forces do"},
                    {kNeedsTwoInertias, false,
                     "needs a freedom between rotor and wheel, which a robot's model lacks"},
                    {kNeedsPositionServo, false, "needs a position servo"},

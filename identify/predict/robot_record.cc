@@ -137,10 +137,13 @@ void read_frames(const Run& run, RobotRecord& r) {
 }
 
 void read_imposed(const Run& run, RobotRecord& r) {
-  const std::vector<double> x = held(run.signal("body_vx")), y = held(run.signal("body_vy"));
-  if (x.empty()) return;
-  for (std::size_t k = 0; k < r.size(); ++k)
-    r.imposed_velocity.push_back({x[k], y.empty() ? 0.0 : y[k], 0.0});
+  const std::vector<double> v[] = {held(run.signal("body_vx")), held(run.signal("body_vy")),
+                                   held(run.signal("body_w"))};
+  if (std::all_of(std::begin(v), std::end(v), [](const auto& axis) { return axis.empty(); })) return;
+  r.imposed_velocity.resize(r.size());
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    for (std::size_t a = 0; a < 3; ++a) r.imposed_velocity[k][a] = v[a].empty() ? 0.0 : v[a][k];
+  }
 }
 
 // Unwraps the camera's heading: whole turns between two frames from the gyro's integral.

@@ -5,6 +5,13 @@ namespace {
 
 using enum SignalRole;
 
+// A row per wheel that a robot may have (kMaxWheels).
+#define EACH_WHEEL(name, ...)                                                                             \
+  {name "_1", __VA_ARGS__}, {name "_2", __VA_ARGS__}, {name "_3", __VA_ARGS__}, {name "_4", __VA_ARGS__}, \
+      {name "_5", __VA_ARGS__}, {                                                                         \
+    name "_6", __VA_ARGS__                                                                                \
+  }
+
 constexpr SignalRow kRows[] = {
     {"time", "s", "s", kTime, Rig::kAxis, ""},
     {"duty", "1", "1", kDrive, Rig::kAxis, "duty"},
@@ -21,40 +28,15 @@ constexpr SignalRow kRows[] = {
     {"load_torque", "N m", "N", kMeasured, Rig::kAxis, ""},
 
     {"time", "s", "", kTime, Rig::kRobot, ""},
-    {"duty_1", "1", "", kDrive, Rig::kRobot, "duty"},
-    {"duty_2", "1", "", kDrive, Rig::kRobot, "duty"},
-    {"duty_3", "1", "", kDrive, Rig::kRobot, "duty"},
-    {"duty_4", "1", "", kDrive, Rig::kRobot, "duty"},
-    {"duty_5", "1", "", kDrive, Rig::kRobot, "duty"},
-    {"duty_6", "1", "", kDrive, Rig::kRobot, "duty"},
+    EACH_WHEEL("duty", "1", "", kDrive, Rig::kRobot, "duty"),
     {"command_vx", "m/s", "", kDrive, Rig::kRobot, "command"},
     {"command_vy", "m/s", "", kDrive, Rig::kRobot, "command"},
     {"command_w", "rad/s", "", kDrive, Rig::kRobot, "command"},
-    {"command_wheel_1", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
-    {"command_wheel_2", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
-    {"command_wheel_3", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
-    {"command_wheel_4", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
-    {"command_wheel_5", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
-    {"command_wheel_6", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"},
+    EACH_WHEEL("command_wheel", "rad/s", "", kDrive, Rig::kRobot, "command_wheel"),
     {"dribbler", "rad/s", "", kMeasured, Rig::kRobot, ""},
-    {"encoder_1", "counts", "", kCounts, Rig::kRobot, ""},
-    {"encoder_2", "counts", "", kCounts, Rig::kRobot, ""},
-    {"encoder_3", "counts", "", kCounts, Rig::kRobot, ""},
-    {"encoder_4", "counts", "", kCounts, Rig::kRobot, ""},
-    {"encoder_5", "counts", "", kCounts, Rig::kRobot, ""},
-    {"encoder_6", "counts", "", kCounts, Rig::kRobot, ""},
-    {"wheel_speed_1", "rad/s", "", kMotion, Rig::kRobot, ""},
-    {"wheel_speed_2", "rad/s", "", kMotion, Rig::kRobot, ""},
-    {"wheel_speed_3", "rad/s", "", kMotion, Rig::kRobot, ""},
-    {"wheel_speed_4", "rad/s", "", kMotion, Rig::kRobot, ""},
-    {"wheel_speed_5", "rad/s", "", kMotion, Rig::kRobot, ""},
-    {"wheel_speed_6", "rad/s", "", kMotion, Rig::kRobot, ""},
-    {"motor_current_1", "A", "", kMeasured, Rig::kRobot, ""},
-    {"motor_current_2", "A", "", kMeasured, Rig::kRobot, ""},
-    {"motor_current_3", "A", "", kMeasured, Rig::kRobot, ""},
-    {"motor_current_4", "A", "", kMeasured, Rig::kRobot, ""},
-    {"motor_current_5", "A", "", kMeasured, Rig::kRobot, ""},
-    {"motor_current_6", "A", "", kMeasured, Rig::kRobot, ""},
+    EACH_WHEEL("encoder", "counts", "", kCounts, Rig::kRobot, ""),
+    EACH_WHEEL("wheel_speed", "rad/s", "", kMotion, Rig::kRobot, ""),
+    EACH_WHEEL("motor_current", "A", "", kMeasured, Rig::kRobot, ""),
     {"bus_voltage", "V", "", kMeasured, Rig::kRobot, ""},
     {"gyro_z", "rad/s", "", kMotion, Rig::kRobot, ""},
     {"accel_x", "m/s^2", "", kMeasured, Rig::kRobot, ""},
@@ -62,6 +44,11 @@ constexpr SignalRow kRows[] = {
     {"vision_x", "m", "", kMotion, Rig::kRobot, ""},
     {"vision_y", "m", "", kMotion, Rig::kRobot, ""},
     {"vision_theta", "rad", "", kMotion, Rig::kRobot, ""},
+    {"body_vx", "m/s", "", kMotion, Rig::kRobot, ""},
+    {"body_vy", "m/s", "", kMotion, Rig::kRobot, ""},
+    {"body_w", "rad/s", "", kMotion, Rig::kRobot, ""},
+    {"force_x", "N", "", kMeasured, Rig::kRobot, ""},
+    {"force_y", "N", "", kMeasured, Rig::kRobot, ""},
 
     {"time", "s", "", kTime, Rig::kWheel, ""},
     {"duty", "1", "", kDrive, Rig::kWheel, "duty"},
@@ -75,6 +62,7 @@ constexpr SignalRow kRows[] = {
     {"force_x", "N", "", kMeasured, Rig::kWheel, ""},
     {"force_y", "N", "", kMeasured, Rig::kWheel, ""},
 };
+#undef EACH_WHEEL
 
 }  // namespace
 

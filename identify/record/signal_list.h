@@ -33,8 +33,8 @@ struct SignalRow {
   std::string_view drive_group;  // of a drive signal
 };
 
-// The motion that a bench gives the body above a wheel.
-inline bool is_always_imposed(const SignalRow& row) { return row.name.starts_with("body_v"); }
+// The motion that a bench gives a body on wheels.
+inline bool is_always_imposed(const SignalRow& row) { return row.name.starts_with("body_"); }
 
 std::span<const SignalRow> signal_rows();
 const SignalRow* find_signal(Rig rig, std::string_view name);

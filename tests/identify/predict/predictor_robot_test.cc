@@ -189,5 +189,26 @@ TEST(PredictorRobot, SlowAnIndependentRobotIsExplainedToItsNoise) {
   }
 }
 
+// A bench that turns the whole robot at 2 rad/s: each wheel rolls at R_b w / r, whatever its motor does, and what would move
+// the body is refused.
+TEST(PredictorRobot, ABodyThatIsMovedTurnsItsWheels) {
+  Dataset d = blank_robot(1.0, true);
+  for (const char* name : {"body_vx", "body_vy", "body_w"}) {
+    d.channels.emplace_back().signal = name;
+    d.channels.back().imposed = true;
+    for (auto& run : d.runs)
+      run.signals[name].assign(run.time_s.size(), name == std::string("body_w") ? 2.0 : 0.0);
+  }
+  const Candidate c = robot_candidate();
+  const auto p = make_predictor(d, c, {});
+  const Prediction y = p->predict(c, 0);
+  for (std::size_t s = 0; s < y.values.size(); ++s) {
+    if (!p->compared(0)[s].name.starts_with("velocity")) continue;
+    EXPECT_NEAR(y.values[s].back(), 3.0 * 2.0 * 0.0805 / 0.027, 0.01) << p->compared(0)[s].name;
+  }
+  EXPECT_EQ(p->applies(*find_effect("floor_tilt")), "the bench moves the body, whatever forces do");
+  EXPECT_EQ(make_predictor(blank_robot(1.0, true), c, {})->applies(*find_effect("floor_tilt")), "");
+}
+
 }  // namespace
 }  // namespace omnihil::test
