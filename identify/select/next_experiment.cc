@@ -73,7 +73,7 @@ std::string sweep_over(std::string_view against) {
 std::string command_for(const Dataset& dataset, const std::vector<std::string>& members) {
   std::vector<std::string> rivals;
   std::copy_if(members.begin(), members.end(), std::back_inserter(rivals), is_effect);
-  if (rivals.empty()) return "";
+  if (rivals.empty() || dataset.rig == Rig::kWheel) return "";  // half of a wheel's drive is its bench's
   if (rivals.size() == 1) rivals.push_back("base");
   return fmt::format("omnihil experiment {} --separate {} --out next", dataset.name, fmt::join(rivals, ","));
 }

@@ -37,6 +37,16 @@ TEST(NextExperimentTest, PlansTheRunThatShowsWhatTheseDataCouldNot) {
             "omnihil experiment run/bench --separate cogging,base --out next");
 }
 
+// Of a wheel on a bench no drive is planned.
+TEST(NextExperimentTest, AsksForNoPlanOfAWheelWhoseBenchGivesHalfOfIt) {
+  Diagnosis d;
+  d.confounded = {{.members = {"cogging", "imbalance"}, .sentence = {}}};
+  Dataset wheel = bench();
+  wheel.rig = Rig::kWheel;
+  EXPECT_EQ(next_experiment(wheel, d).command, "");
+  EXPECT_FALSE(next_experiment(wheel, d).what.empty());
+}
+
 // Nobody sweeps time slowly in both directions.
 TEST(NextExperimentTest, SaysWhatAPersonCanDoAboutAResidual) {
   Diagnosis d;
