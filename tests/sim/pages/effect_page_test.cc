@@ -45,7 +45,8 @@ TEST(EffectPage, SaysWhatARigMustHaveForIt) {
     return effect_page(*find_effect(id)).find(text) != std::string::npos;
   };
   EXPECT_TRUE(says("duty_limit", "\n\nNeeds: a drive by duty.\n\n"));
-  EXPECT_TRUE(says("cogging", "\n\nNeeds: nothing in particular.\n\n"));
+  EXPECT_TRUE(says("stribeck_friction", "\n\nNeeds: nothing in particular.\n\n"));
+  EXPECT_TRUE(says("cogging", "\n\nNeeds: on a robot: encoders.\n\n"));
   EXPECT_TRUE(says("shaft_compliance", "\n\nNeeds: an inertia on either side of the shaft.\n\n"));
   for (const EffectEntry* e : all_effects()) {
     const std::string_view path = e->info->excludes.path;
