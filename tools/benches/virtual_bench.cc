@@ -43,13 +43,18 @@ std::vector<BenchRow> read_bench_rows(const std::string& path, std::span<const s
   return out;
 }
 
-std::string excitation_fault(const std::string& excitation) {
-  if (excitation.find('.') != std::string::npos || std::filesystem::exists(excitation)) return "";
+// "" or what is wrong with an excitation's name, which is no file's either.
+static std::string excitation_fault(const std::string& excitation) {
+  const bool file = excitation.find('.') != std::string::npos || std::filesystem::exists(excitation);
+  if (file || find_excitation(excitation)) return "";
   return fmt::format("--excite {}: allowed are {}, or a CSV file", excitation,
                      fmt::join(excitation_names(), ", "));
 }
 
 void check_bench_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
+  for (const std::string& e : o.excitations) {
+    if (const std::string fault = excitation_fault(e); !fault.empty()) faults.push_back(fault);
+  }
   if (!(o.duration_s > 0.0 && o.duration_s <= 3600.0))
     faults.push_back("--duration: allowed is more than 0 to 3600 s");
   if (!(o.rate_Hz >= 1.0 && o.rate_Hz <= 1e5)) faults.push_back("--rate: allowed is 1 to 100000 Hz");

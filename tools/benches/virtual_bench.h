@@ -71,8 +71,7 @@ struct BenchRow {
 std::vector<BenchRow> read_bench_rows(const std::string& path, std::span<const std::size_t> widths,
                                       const std::string& needed, std::vector<std::string>& faults);
 
-// "" or what is wrong with the excitation's name, which is no file's either.
-std::string excitation_fault(const std::string& excitation);
+// Names of excitations, and numbers.
 void check_bench_numbers(const BenchOptions& options, std::vector<std::string>& faults);
 // The same of a robot, or of one of its wheels.
 void check_robot_numbers(const BenchOptions& options, std::vector<std::string>& faults);
@@ -94,8 +93,6 @@ std::vector<BenchRun<Input>> bench_runs(const BenchOptions& o, std::vector<std::
     if (const auto kind = find_excitation(e)) {
       runs.push_back({e, "fit", e, excited(*kind, 1.0, o.seed)});
       runs.push_back({e + "_holdout", "holdout", e, excited(*kind, kHoldoutAmplitude, o.seed + 1)});
-    } else if (const std::string fault = excitation_fault(e); !fault.empty()) {
-      faults.push_back(fault);
     } else {
       const Input all = read(e);
       const auto cut = static_cast<std::size_t>(static_cast<double>(size(all)) * (1.0 - kHoldoutRatio));
