@@ -78,7 +78,7 @@ void check_between_rows(const RunView& view, const DriveView& drive, std::vector
   const std::vector<double>&t = view.run->time_s, &u = *drive.drive;
   std::vector<double> off;
   for (std::size_t k = 1; k < t.size(); ++k) off.push_back(std::abs(t[k] - t[k - 1] - view.period_s));
-  constexpr double kSigmaOverMad = 1.4826;  // of a normal
+  constexpr double kSigmaOverMad = 1.4826;  // 1 / 0.6745, of a normal: derived
   const double jitter = view.period_s > 0.0 ? kSigmaOverMad * median_of(off) / view.period_s : 0.0;
   if (jitter < kOddTimes) return;
   struct Block {

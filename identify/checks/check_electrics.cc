@@ -24,7 +24,8 @@ constexpr std::size_t kLeastWindows = 15;  // several per coefficient of the lin
 // |log| of a ratio that should be 1: 32 %, 39 %, 2.2 times. Tuned; what effects bring, the file header says.
 constexpr double kDoubtful = 0.28, kWrong = 0.33;  // tuned
 constexpr double kWrongAlone = 0.8;  // likewise, where the acceleration does not confirm it; tuned
-constexpr double kTolerances = 4.0;  // prior deviations of the model's parameter: p = 6e-5 of a normal
+constexpr double kTolerances =
+    4.0;  // prior deviations of the model's parameter: p = 6e-5 of a normal, derived
 // |log|: a factor of three; winding heat and friction bring less.
 constexpr double kWrongCurrent = 1.1;  // tuned
 // Share of the ideal speed. Derived: half is the least wrong scale that there is (one edge counted of two).
@@ -160,7 +161,7 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
 // largest w k' / u over windows of all runs in which at least half of the highest voltage is asked (three windows, 0.6 s:
 // not a reversal by chance; a choice); 0: fewer windows.
 double fastest_ratio(const CheckContext& data, std::size_t wheel, double ideal_rad_s_per_V) {
-  constexpr std::size_t kWindows = 3;
+  constexpr std::size_t kWindows = 3;  // as above: a choice
   const Windows all = windows_of(data, wheel, true);
   const double highest_V = largest_size(all.u);
   std::vector<double> ratios;

@@ -18,7 +18,8 @@ namespace {
 
 // All tuned (check_list.h): no smooth or quantised motion of the sound records passes for a glitch.
 constexpr double kOutstanding = 12.0;  // robust sigmas of the second difference; tuned
-constexpr double kQuanta = 4.0;  // of a counter: its rounding alone makes second differences of up to two
+constexpr double kQuanta =
+    4.0;  // of a counter: its rounding alone makes second differences of up to two; twice that, a choice
 constexpr std::size_t kSustained = 4;  // samples before and after that a speed must last; tuned
 constexpr double kFarBeyond = 2.5;     // times the bound: less may be a late time stamp; tuned
 constexpr double kShareFault = 5e-4;   // of the rows; tuned

@@ -7,7 +7,7 @@ namespace omnihil {
 
 void check_length(const CheckContext& data, std::vector<DataFinding>& findings) {
   constexpr std::size_t kFewRows = 30;       // not twice the base model's dozen parameters; a choice
-  constexpr double kFewTimeConstants = 5.0;  // a first-order step has settled to 1 - e^-5 = 99.3 %
+  constexpr double kFewTimeConstants = 5.0;  // a first-order step has settled to 1 - e^-5 = 99.3 %: derived
   const DriveParams<double> drive =
       data.dataset.rig == Rig::kAxis ? drive_of(data.nominal) : DriveParams<double>{};
   const double k = drive.torque_constant_Nm_per_A;

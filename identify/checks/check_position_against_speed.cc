@@ -17,9 +17,10 @@ namespace {
 
 using Grade = DataFinding::Grade;
 
-constexpr double kWindow_s = 0.1;      // many samples, so that noise and rounding average out; a choice
-constexpr double kScaleSaid = 0.05;    // departure of s from 1; tuned
-constexpr double kLeastMoments = 5.0;  // windows that carry the line, as in check_direction; fewer are chance
+constexpr double kWindow_s = 0.1;    // many samples, so that noise and rounding average out; a choice
+constexpr double kScaleSaid = 0.05;  // departure of s from 1; tuned
+constexpr double kLeastMoments =
+    5.0;  // windows that carry the line, as in check_direction; fewer are chance: a choice
 constexpr double kMisfit = 0.25;       // of the range of the windows' displacements; tuned
 constexpr double kMisfitShare = 0.02;  // of the windows; tuned
 

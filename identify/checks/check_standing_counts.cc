@@ -16,8 +16,10 @@ namespace {
 
 // All tuned (check_list.h): stick-slip, backlash and coarse encoders of the sound records bring none.
 constexpr std::size_t kLeastRows = 3, kMostRows = 100;  // of the same count: longer is a stop; tuned
-constexpr std::size_t kLongHold = 5;  // rows: shorter ones may be a slow drive that sticks for a moment
-constexpr double kLeastCounts = 4.0;  // per row, before and after: a row without a count is then no rounding
+constexpr std::size_t kLongHold =
+    5;  // rows: shorter ones may be a slow drive that sticks for a moment; a choice
+constexpr double kLeastCounts =
+    4.0;  // per row, before and after: a row without a count is then no rounding; a choice
 constexpr double kShareOfHighest = 0.1;  // of the highest speed; tuned
 constexpr std::size_t kAround = 3;       // rows looked at on either side; tuned
 

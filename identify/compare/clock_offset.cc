@@ -38,7 +38,7 @@ std::vector<double> without_holes(const std::vector<double>& model) {
 // Mean squared error at this lag over the samples that measurement and model both have; infinite when there
 // are fewer than kLeastCommon, of which a mean square is known within 26 % (sqrt(2 / n)); a choice.
 double mean_square(const Stretch& s, int lag) {
-  constexpr std::size_t kLeastCommon = 30;
+  constexpr std::size_t kLeastCommon = 30;  // as above: a choice
   double sum = 0.0;
   std::size_t n = 0;
   for (std::size_t k = s.from; k < s.to; ++k) {

@@ -11,9 +11,10 @@
 namespace omnihil {
 namespace {
 
-constexpr int kHighestOrder = 200;    // periods per turn; cogging of 14 poles and 12 slots has 84; a choice
-constexpr double kFastest_rad = 2.0;  // phase per sample, 2/3 of Nyquist's pi: a faster order is not resolved
-constexpr double kStandsOut = 8.0;    // times the median over all orders; tuned, sensitivity not measured
+constexpr int kHighestOrder = 200;  // periods per turn; cogging of 14 poles and 12 slots has 84; a choice
+constexpr double kFastest_rad =
+    2.0;  // phase per sample, 2/3 of Nyquist's pi: a faster order is not resolved; a choice
+constexpr double kStandsOut = 8.0;  // times the median over all orders; tuned, sensitivity not measured
 // Of the residual's energy; a third of what an effect has to take.
 constexpr double kLeastShare = 0.01;  // a choice
 

@@ -8,11 +8,11 @@ namespace omnihil {
 namespace {
 
 // Choices of resolution; a report's curves follow from them, no verdict. Sensitivity not measured.
-constexpr int kWidths = 24;               // bins of equal width over the axis
-constexpr int kShares = 24;               // quantiles that part bins further where the samples crowd
-constexpr int kAngleBins = 48;            // resolves up to 12 periods per turn with four bins each
-constexpr double kLeastShare = 1e-3;      // of the samples, per bin
-constexpr std::size_t kLeastSamples = 5;  // per bin: a standard error from blocks needs several
+constexpr int kWidths = 24;           // bins of equal width over the axis
+constexpr int kShares = 24;           // quantiles that part bins further where the samples crowd; a choice
+constexpr int kAngleBins = 48;        // resolves up to 12 periods per turn with four bins each: derived
+constexpr double kLeastShare = 1e-3;  // of the samples, per bin; a choice
+constexpr std::size_t kLeastSamples = 5;  // per bin: a standard error from blocks needs several; a choice
 
 bool is_angle(std::string_view axis) { return axis.ends_with("_angle"); }
 

@@ -7,7 +7,7 @@ namespace omnihil {
 namespace {
 
 constexpr std::size_t kColumns = 12, kRows = 8;  // a choice: what a reader takes in at once
-constexpr double kTail = 0.005;                  // of the samples, left out at each end of an axis
+constexpr double kTail = 0.005;                  // of the samples, left out at each end of an axis; a choice
 
 struct Sample {
   double x = 0.0, y = 0.0, error = 0.0;  // error: model minus measurement

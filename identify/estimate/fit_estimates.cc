@@ -14,7 +14,7 @@ namespace {
 
 // Share of the largest eigenvalue below which a direction is not determined by the data. Between rounding of
 // J'J (1e-16 times the samples' number) and any real information; numerical, sensitivity not measured.
-constexpr double kNothing = 1e-9;  // numerical
+constexpr double kNothing = 1e-9;  // numerical: a choice
 
 // Eigenvectors of the information matrix, unknowns in units of their scale, so that directions can be
 // compared.
@@ -49,7 +49,7 @@ std::vector<std::string> partners(const Eigen::MatrixXd& information, const Eige
                                   Eigen::Index i, const std::vector<Unknown>& unknowns) {
   constexpr double kWeak = 1e-4;       // derived: 1 / 100^2
   constexpr double kCorrelated = 0.5;  // a quarter of the variance in common; a choice
-  constexpr std::size_t kMost = 3;     // names in a sentence
+  constexpr std::size_t kMost = 3;     // names in a sentence; a choice
   Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   scaled.diagonal().array() += kWeak;
   const Eigen::MatrixXd covariance =
@@ -89,7 +89,7 @@ std::string sentence_of(const Unknown& u, const ParameterEstimate& p, double gra
     return fmt::format("not determined by these data: trades against {}", fmt::join(p.correlated_with, ", "));
   }
   if (!p.identifiable) return "not determined by these data";
-  constexpr double kDeviation = 3.0;  // two-sided p = 0.3 % of a normal prior
+  constexpr double kDeviation = 3.0;  // two-sided p = 0.3 % of a normal prior: derived
   if (std::abs(p.prior_deviation_sigmas) > kDeviation && u.effect < 0) {
     return fmt::format("{:.1f} tolerances from what the model file believed: a missing effect may hide in it",
                        std::abs(p.prior_deviation_sigmas));

@@ -9,9 +9,10 @@
 namespace omnihil {
 namespace {
 
-constexpr int kDraws = 200;  // a 5 % quantile has a standard error of sqrt(0.05 * 0.95 / 200) = 1.5 % in rank
+constexpr int kDraws =
+    200;  // a 5 % quantile has a standard error of sqrt(0.05 * 0.95 / 200) = 1.5 % in rank; by cost
 constexpr double kFloorWeight = 0.05;  // no channel gets worse unseen; a choice, sensitivity not measured
-constexpr double kUnmoved = 1e-9;      // of a channel's error energy: between rounding and any effect
+constexpr double kUnmoved = 1e-9;  // of a channel's error energy: between rounding and any effect; a choice
 
 double quantile_of(const Eigen::VectorXd& draws, double share) {
   return quantile({draws.begin(), draws.end()}, share, QuantileRank::kLower);

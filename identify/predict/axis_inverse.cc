@@ -13,8 +13,8 @@ namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr int kOrder = 4;                // with the cutoff's share: the published recipe of the linear axis
-constexpr double kShareOfNyquist = 0.2;  // Janot, Gautier, Brunot 2019
+constexpr int kOrder = 4;                    // with the cutoff's share: source as below
+constexpr double kShareOfNyquist = 0.2;      // source: Janot, Gautier, Brunot 2019
 constexpr double kHighestCutoff_Hz = 100.0;  // of faster records: beyond a drive's mechanics; a choice
 constexpr double kEndsInPeriods = 5.0;  // of the cutoff, left out at either end: the filter settles; a choice
 

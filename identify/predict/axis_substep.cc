@@ -13,7 +13,7 @@ constexpr int kTrialRuns = 4;            // bounds the cost; a choice
 // longest_step() holds these steps to its bound too.
 double coarser(const AxisSetup& s) {
   constexpr double kStepsPerRow = 128.0;  // a choice
-  constexpr double kMost = 8.0;           // a third of a small drive's mechanical time constant of 25 ms
+  constexpr double kMost = 8.0;  // a third of a small drive's mechanical time constant of 25 ms; a choice
   if (s.steady || s.input.time_s.size() < 2) return 1.0;
   return std::clamp(median_period_s(s.input.time_s) / (kStepsPerRow * kLongestStep_s), 1.0, kMost);
 }

@@ -94,7 +94,7 @@ std::optional<Unknown> base_unknown(const Parameter& p) {
   const bool number = row.kind == ParameterKind::kNumber && p.values.size() == 1;
   if (!number || is_effects_row(row) || !p.tolerance || *p.tolerance <= 0.0) return std::nullopt;
   // Of the value: in place of a bound that is excluded (R > 0).
-  constexpr double kLeastShare = 1e-4;  // numerical
+  constexpr double kLeastShare = 1e-4;  // numerical: a choice
   const double believed = p.believed();
   const double lower = row.above_lower ? std::max(row.lower, kLeastShare * believed) : row.lower;
   Unknown u{.path = parameter_path(row), .unit = std::string(row.unit)};

@@ -33,7 +33,7 @@ void FirmwareLoop::hear(double now_s, std::span<const double> value, CommandFram
 }
 
 void FirmwareLoop::tick(double now_s, const FirmwareSees& sees) {
-  constexpr double kSame_s = 1e-9;  // rounding of sums of periods
+  constexpr double kSame_s = 1e-9;  // rounding of sums of periods; a choice
   while (!packets_.empty() && packets_.front().due_s <= now_s + kSame_s) {
     firmware_->command(packets_.front().command, clock_ns(now_s));
     packets_.pop_front();

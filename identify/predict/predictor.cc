@@ -43,7 +43,7 @@ void average(const ComparedSignal& signal, Eigen::Ref<Eigen::MatrixXd> columns) 
     const auto at = static_cast<std::size_t>(k);
     return k > 0 ? signal.time_s[at] - signal.time_s[at - 1] : 0.0;
   };
-  constexpr double kRounding = 1e-6;  // of a period: time stamps are sums
+  constexpr double kRounding = 1e-6;  // of a period: time stamps are sums; a choice
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     const Eigen::VectorXd rate = columns.col(c);
     const auto displacement = [&](Eigen::Index k) { return std::isfinite(rate[k]) ? rate[k] * dt(k) : 0.0; };

@@ -161,7 +161,7 @@ class AxisRig {
 
   // 0: the signal's own period.
   double resolving_time(const std::string& name) const {
-    constexpr double kLongest_s = 0.5;  // a block of the bootstrap (whitened_residuals.cc)
+    constexpr double kLongest_s = 0.5;  // a block of the bootstrap (whitened_residuals.cc): a choice
     double period_s = 0.0;
     for (const AxisSetup& s : setups_) {
       const auto& t = s.input.time_s;

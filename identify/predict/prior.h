@@ -23,7 +23,7 @@ enum class PriorForm : std::uint8_t { kNormal, kLogNormal, kLogNormalAbove };
 inline constexpr double kOrderOfMagnitude = 0.5;  // a choice
 
 // Of the mean, in place of zero, whose logarithm is none: 30 standard deviations at a tolerance of 100 %.
-inline constexpr double kLeastOfMean = 1e-9;
+inline constexpr double kLeastOfMean = 1e-9;  // a choice
 
 inline PriorForm prior_form(double tolerance, bool may_be_zero) {
   if (tolerance < kOrderOfMagnitude) return PriorForm::kNormal;

@@ -162,7 +162,7 @@ void unwrap_by_gyro(RobotRecord& r) {
 // Where there are no counts: the speeds that were first reported, unless they tell of no motion; rad/s at the wheels. One
 // reading is no speed where the sensor is coarse: means over the first rows, over more of them where the noise needs it.
 constexpr double kStanding_rad_s = 1.0;  // 3 cm/s of rim: a choice
-constexpr double kSure_sigmas = 3.0;     // of a mean, beyond which it is a motion: the usual one
+constexpr double kSure_sigmas = 3.0;     // of a mean, beyond which it is a motion: p = 0.3 %, a choice
 constexpr double kLongStart = 5.0;  // times kStartSpan_s at most: a robot gains little speed in it; a choice
 std::optional<PerWheel<double>> reported_at_start(const Dataset& dataset, const Run& run,
                                                   std::size_t wheels) {

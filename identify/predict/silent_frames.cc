@@ -11,10 +11,10 @@ namespace omnihil {
 namespace {
 
 constexpr double kSilent_s = 0.5;        // longer than a camera loses a robot and a filter holds it; a choice
-constexpr std::size_t kSilentRows = 10;  // as above
+constexpr std::size_t kSilentRows = 10;  // as above: a choice
 constexpr double kTurned_rad = 0.3;      // least, by the wheels: 17 degrees no heading misses; a choice
 constexpr double kDriven_m = 0.1;        // half a robot; a choice
-constexpr double kSure_sigmas = 3.0;     // of a sum, beyond which it is a motion: the usual one
+constexpr double kSure_sigmas = 3.0;     // of a sum, beyond which it is a motion: p = 0.3 %, a choice
 
 // Of the body by the wheels, a value a row: m/s, m/s, rad/s; NaN where a wheel is not known. Empty: not measured.
 using Track = std::vector<double>;

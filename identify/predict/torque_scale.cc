@@ -8,7 +8,8 @@
 namespace omnihil {
 namespace {
 
-constexpr double kRobotTorque_Nm = 0.1;  // EC 45 flat, 50 W: 84 mN m for ever (data sheet), rounded up
+constexpr double kRobotTorque_Nm =
+    0.1;  // source: data sheet of an EC 45 flat, 50 W: 84 mN m for ever, rounded up
 
 // The column that says the torque, and what makes N m of it; null: none does.
 struct TorqueColumn {

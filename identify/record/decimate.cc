@@ -29,8 +29,8 @@ LowPass chebyshev(int order, double ripple_dB, double edge_Hz, double rate_Hz) {
 std::vector<double> decimate(std::span<const double> x, int factor) {
   // The filter of the usual tools' `decimate` (Chebyshev I of order 8, 0.05 dB, 0.8 of Nyquist), with which
   // the published force errors were computed (force_error.h).
-  constexpr int kOrder = 8;  // as above
-  constexpr double kRipple_dB = 0.05, kEdge = 0.8;
+  constexpr int kOrder = 8;                         // source: as above
+  constexpr double kRipple_dB = 0.05, kEdge = 0.8;  // source: as above
   const std::vector<double> low = zero_phase(chebyshev(kOrder, kRipple_dB, kEdge * 0.5 / factor, 1.0), x);
   std::vector<double> out;
   for (std::size_t i = 0; i < low.size(); i += static_cast<std::size_t>(factor)) out.push_back(low[i]);

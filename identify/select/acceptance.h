@@ -55,7 +55,7 @@ struct AcceptanceContext {
 };
 
 // As `signal_to_null`: that gain was tested before, or there is no screening to test it by. A marker, above any threshold.
-inline constexpr double kScreenedBefore = 1e9;
+inline constexpr double kScreenedBefore = 1e9;  // a choice
 
 // `signal_to_null`: the screening's gain over the largest gain in the simulated null's replicates;
 // `aliased_parameter`: the base parameter that these data cannot separate from the effect (screening.h).

@@ -12,19 +12,19 @@ namespace omnihil {
 namespace {
 
 // Coefficients of the logit, printed by `python3 tests/hidden_plant/calibrate.py`: fitted.
-constexpr double kConstant = 3.264;
-constexpr double kLater = -0.090;
-constexpr double kMoreRemains = -3.284;
-constexpr double kPerDecadeOfShare = 1.466;
-constexpr double kSelectionFrequency = 1.595;
-constexpr double kUndecided = 1.473;
-constexpr double kPerDecadeOverNoise = -12.291;
+constexpr double kConstant = 3.264;              // fitted
+constexpr double kLater = -0.090;                // fitted
+constexpr double kMoreRemains = -3.284;          // fitted
+constexpr double kPerDecadeOfShare = 1.466;      // fitted
+constexpr double kSelectionFrequency = 1.595;    // fitted
+constexpr double kUndecided = 1.473;             // fitted
+constexpr double kPerDecadeOverNoise = -12.291;  // fitted
 // From here on the made records hold too few names to tell (calibrate.py).
-constexpr double kMostOverNoise = 2.0;
+constexpr double kMostOverNoise = 2.0;  // a choice
 // The calibration saw a few hundred names: it cannot tell surer ones apart.
-constexpr double kSurest = 0.99;
+constexpr double kSurest = 0.99;  // a choice
 // Shares below are one and the same: none is accepted for its gain (acceptance.cc).
-constexpr double kLeastShareOfBase = 1e-3;
+constexpr double kLeastShareOfBase = 1e-3;  // a choice
 
 // The row of the ranking that each name was taken from; a law in place of another has the other's.
 std::map<std::string, const RankedEffect*> rows_taken(const Diagnosis& d) {

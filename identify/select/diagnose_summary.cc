@@ -13,9 +13,9 @@ namespace {
 // For what is printed; no verdict depends on them. Residual fraction (1 - R^2) of an effect's signal below
 // which the base parameter is named beside it, and fraction of a residual's variance that is worth a line: as
 // the smallest gain of interest (acceptance.cc). Lines: a screenful. Choices.
-constexpr double kNearlyAliased = 0.03;
-constexpr double kLeastExplained = 0.03;
-constexpr std::size_t kMostWhere = 6;
+constexpr double kNearlyAliased = 0.03;   // a choice
+constexpr double kLeastExplained = 0.03;  // a choice
+constexpr std::size_t kMostWhere = 6;     // a choice
 
 void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& diagnosis) {
   for (const ConfoundedSet& set : diagnosis.confounded) {

@@ -14,7 +14,7 @@ namespace omnihil {
 namespace {
 
 // Wald's test at 5 %: the normal quantile 1.96, rounded.
-constexpr double kSignificant_sigmas = 2.0;
+constexpr double kSignificant_sigmas = 2.0;  // derived
 // Prior deviation from which a base parameter counts as out of its tolerance (two-sided p = 5e-4), and how
 // much farther than without the effect it has to be. Tuned on the open cases (DECISIONS 22); sensitivity not
 // measured.
@@ -73,7 +73,7 @@ bool jointly_significant(const FitResult& child, const std::vector<Eigen::Index>
   }
   // Growth of that quantile per degree of freedom: 3.84, 5.99, 7.81, 9.49 for n = 1 to 4, the line below
   // within 5 %.
-  constexpr double kPerFurther = 1.9;
+  constexpr double kPerFurther = 1.9;  // derived
   const double asked = kSignificant_sigmas * kSignificant_sigmas + kPerFurther * static_cast<double>(n - 1);
   return d.dot(ldlt_solve(covariance, d)) > asked;
 }

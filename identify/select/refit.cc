@@ -17,7 +17,7 @@ constexpr double kWorthTypicalStart = 0.2;  // tuned
 constexpr double kWorthPriorStart = 0.1;    // tuned
 // A start has succeeded if it gains this fraction of what the screening predicts (it is linear, and not on
 // all bounds).
-constexpr double kOfPredicted = 0.5;
+constexpr double kOfPredicted = 0.5;  // a choice
 
 // Sets the starts of the unknowns named by `paths`.
 void start_at(std::vector<Unknown>& unknowns, const std::vector<Unknown>& paths,

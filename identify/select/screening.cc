@@ -140,7 +140,8 @@ class SizeSearch {
     Scored s = score(task_, std::move(sized));
     if (!s.finite) return true;
     s.fit = task_.base->gain_as_tried(s.columns);
-    constexpr double kActs = 1e-6;  // of the residual's energy: above rounding, below anything that gains
+    constexpr double kActs =
+        1e-6;  // of the residual's energy: above rounding, below anything that gains; a choice
     const bool acts = s.columns.gram(0, 0) > kActs * task_.base->energy();
     if (!best_.finite || s.fit.gain > best_.fit.gain) best_ = std::move(s);
     return acts;

@@ -94,7 +94,7 @@ bool add_best(const Library& library, const LinearBase& base, const std::vector<
   std::size_t which = library.terms.size();
   LinearGain found;
   for (std::size_t t = 0; t < library.terms.size(); ++t) {
-    constexpr double kRounding = 1e-6;  // residual fraction of a term that the base parameters span
+    constexpr double kRounding = 1e-6;  // residual fraction of a term that the base parameters span; a choice
     const bool usable = library.signals[t].columns.cols() == 1 && library.signals[t].kept > kRounding;
     if (!usable || std::find(selection.chosen.begin(), selection.chosen.end(), t) != selection.chosen.end())
       continue;

@@ -14,12 +14,12 @@ namespace {
 constexpr std::array<const char*, 4> kPaths{
     "tyre.longitudinal.extremum_slip", "tyre.longitudinal.extremum_value", "tyre.longitudinal.asymptote_slip",
     "tyre.longitudinal.asymptote_value"};
-constexpr double k90 = 1.645;          // two-sided 90 % of a normal
-constexpr double kFree = 1.0;          // tolerance where the model gives none: hardly a belief
-constexpr double kNear = 0.9;          // of the curve's largest grip, that some point must have carried
-constexpr double kGood_sigmas = 1.5;   // pooled: no further start is tried
-constexpr double kBeyondCurve = 1.5;   // noise and quasi-static loads: a fifth at most
-constexpr double kUndetermined = 0.5;  // sigma over value: no figure
+constexpr double k90 = 1.645;  // two-sided 90 % of a normal: derived
+constexpr double kFree = 1.0;  // tolerance where the model gives none: hardly a belief; a choice
+constexpr double kNear = 0.9;  // of the curve's largest grip, that some point must have carried; a choice
+constexpr double kGood_sigmas = 1.5;   // pooled: no further start is tried; a choice
+constexpr double kBeyondCurve = 1.5;   // noise and quasi-static loads: a fifth at most; a choice
+constexpr double kUndetermined = 0.5;  // sigma over value: no figure; a choice
 
 // The model with the tyre of the points, each number of it free.
 Candidate begin_with(const Candidate& nominal, const TyreCurve& c, std::vector<std::string>& faults) {
