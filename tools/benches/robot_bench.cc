@@ -175,14 +175,9 @@ std::string run_csv(const BenchOptions& o, const RobotModel& m, const Run& run, 
 }  // namespace
 
 std::optional<VirtualBench> make_robot_bench(const BenchOptions& options, std::vector<std::string>& faults) {
-  check_robot_numbers(options, faults);
-  StoredModel stored = load_robot_model(options.model, {data_folder("models")});
-  for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
-  if (!stored.model) return std::nullopt;
-  ModelBundle bundle = stored.bundle;
-  add_effects(bundle, options.with, faults);
-  const ModelReading reading = read_bundle(bundle);
-  if (!reading.model || !faults.empty()) return std::nullopt;
+  const std::optional<BenchRobot> opened = open_robot(options, faults);
+  if (!opened) return std::nullopt;
+  const auto& [stored, reading] = *opened;
   const RobotModel& robot = *reading.model->robot;
   const auto runs = bench_runs<std::vector<Duties>>(
       options, faults,

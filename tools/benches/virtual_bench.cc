@@ -7,10 +7,23 @@
 #include <fstream>
 #include <sstream>
 
+#include "hil/loop/effect_overrides.h"
+#include "hil/text/program_files.h"
 #include "hil/text/recording_text.h"
 #include "sim/law/toml_text.h"
 
 namespace omnihil {
+namespace {
+
+// "" or what is wrong with an excitation's name, which is no file's either.
+std::string excitation_fault(const std::string& excitation) {
+  const bool file = excitation.find('.') != std::string::npos || std::filesystem::exists(excitation);
+  if (file || find_excitation(excitation)) return "";
+  return fmt::format("--excite {}: allowed are {}, or a CSV file", excitation,
+                     fmt::join(excitation_names(), ", "));
+}
+
+}  // namespace
 
 std::vector<BenchRow> read_bench_rows(const std::string& path, std::span<const std::size_t> widths,
                                       const std::string& needed, std::vector<std::string>& faults) {
@@ -43,14 +56,6 @@ std::vector<BenchRow> read_bench_rows(const std::string& path, std::span<const s
   return out;
 }
 
-// "" or what is wrong with an excitation's name, which is no file's either.
-static std::string excitation_fault(const std::string& excitation) {
-  const bool file = excitation.find('.') != std::string::npos || std::filesystem::exists(excitation);
-  if (file || find_excitation(excitation)) return "";
-  return fmt::format("--excite {}: allowed are {}, or a CSV file", excitation,
-                     fmt::join(excitation_names(), ", "));
-}
-
 void check_bench_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
   for (const std::string& e : o.excitations) {
     if (const std::string fault = excitation_fault(e); !fault.empty()) faults.push_back(fault);
@@ -62,6 +67,8 @@ void check_bench_numbers(const BenchOptions& o, std::vector<std::string>& faults
   if (!(o.noise_scale >= 0.0 && o.noise_scale <= 1000.0)) faults.push_back("--noise: allowed is 0 to 1000");
 }
 
+namespace {
+
 void check_robot_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
   check_bench_numbers(o, faults);
   const bool whole = o.rate_Hz > 0.0 && std::llround(1e9 / o.rate_Hz) % 500'000 == 0 && o.rate_Hz <= 2000.0;
@@ -71,6 +78,20 @@ void check_robot_numbers(const BenchOptions& o, std::vector<std::string>& faults
     faults.push_back("--amplitude: allowed is -1 to 1, a duty");
   if (!o.drive.empty() && o.drive != "duty")
     faults.push_back(fmt::format("--drive {}: a robot is driven by duty", o.drive));
+}
+
+}  // namespace
+
+std::optional<BenchRobot> open_robot(const BenchOptions& options, std::vector<std::string>& faults) {
+  check_robot_numbers(options, faults);
+  BenchRobot out{.nominal = load_robot_model(options.model, {data_folder("models")}), .driven = {}};
+  for (const ModelProblem& p : out.nominal.problems) faults.push_back(p.text());
+  if (!out.nominal.model) return std::nullopt;
+  ModelBundle bundle = out.nominal.bundle;
+  add_effects(bundle, options.with, faults);
+  out.driven = read_bundle(bundle);
+  if (!out.driven.model || !faults.empty()) return std::nullopt;
+  return out;
 }
 
 std::string channel_line(const std::string& signal, const std::string& column, double sigma,

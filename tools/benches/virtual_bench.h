@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "hil/dataset/dataset_export.h"
+#include "hil/loop/model_store.h"
 #include "sim/bench/excitation.h"
 
 namespace omnihil {
@@ -73,8 +74,13 @@ std::vector<BenchRow> read_bench_rows(const std::string& path, std::span<const s
 
 // Names of excitations, and numbers.
 void check_bench_numbers(const BenchOptions& options, std::vector<std::string>& faults);
-// The same of a robot, or of one of its wheels.
-void check_robot_numbers(const BenchOptions& options, std::vector<std::string>& faults);
+// The robot's model of a bench of it, or of one of its wheels, nominal and with the effects of --with in it; the numbers are
+// checked as well. None: every fault is in `faults`.
+struct BenchRobot {
+  StoredModel nominal;  // has a model
+  ModelReading driven;  // has one
+};
+std::optional<BenchRobot> open_robot(const BenchOptions& options, std::vector<std::string>& faults);
 
 // A line of [channels]; `more`: further keys, ", counts_per_rev = 4096".
 std::string channel_line(const std::string& signal, const std::string& column, double sigma,

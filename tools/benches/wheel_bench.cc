@@ -104,14 +104,9 @@ std::string run_text(const Dataset& d, const Run& run) {
 }  // namespace
 
 std::optional<VirtualBench> make_wheel_bench(const BenchOptions& o, std::vector<std::string>& faults) {
-  check_robot_numbers(o, faults);
-  StoredModel stored = load_robot_model(o.model, {data_folder("models")});
-  for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
-  if (!stored.model) return std::nullopt;
-  ModelBundle bundle = stored.bundle;
-  add_effects(bundle, o.with, faults);
-  const ModelReading reading = read_bundle(bundle);
-  if (!reading.model || !faults.empty()) return std::nullopt;
+  const std::optional<BenchRobot> opened = open_robot(o, faults);
+  if (!opened) return std::nullopt;
+  const auto& [stored, reading] = *opened;
   const RobotModel& robot = *stored.model->robot;
   const auto runs = bench_runs<Run>(
       o, faults,

@@ -7,6 +7,7 @@
 
 #include "firmware_iface/mcu/board/board_spec.h"
 #include "firmware_iface/mcu/stm32/chip.h"
+#include "tests/firmware_iface/mcu/boards_for_tests.h"
 
 namespace omnihil::mcu {
 namespace {
@@ -100,20 +101,7 @@ pole_pairs = 8)");
   EXPECT_TRUE(spec->motors[1].hall_inverted);
 }
 
-const std::string kWheelBoard = R"(format = "omnihil-board/1"
-name = "test"
-chip = "STM32F303RB"
-boards_per_robot = 2
-
-[[motor]]
-wheel = 0
-pwm = ["TIM1.1", "TIM1.2", "TIM1.3"]
-
-[[motor]]
-wheel = 1
-pwm = ["TIM8.1", "TIM8.2", "TIM8.3"]
-
-[[flash]]
+const std::string kWheelBoard = kTwoMotorBoard + R"([[flash]]
 address = 0x0801F000
 words = [7, 8]
 board_number_at = 1

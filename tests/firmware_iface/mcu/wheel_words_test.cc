@@ -5,28 +5,13 @@
 #include <cstdlib>
 #include <string>
 
-#include "firmware_iface/mcu/board/mcu_firmware.h"
 #include "firmware_iface/mcu/stm32/can.h"
-#include "tests/firmware_iface/mcu/image_bench.h"
+#include "tests/firmware_iface/mcu/boards_for_tests.h"
 
 namespace omnihil::mcu {
 namespace {
 
-const std::string kHead = R"(format = "omnihil-board/1"
-name = "test"
-chip = "stm32f303"
-boards_per_robot = 2
-
-[[motor]]
-wheel = 0
-pwm = ["TIM1.1", "TIM1.2", "TIM1.3"]
-
-[[motor]]
-wheel = 1
-pwm = ["TIM8.1", "TIM8.2", "TIM8.3"]
-
-[wheel_commands]
-)";
+const std::string kHead = kTwoMotorBoard + "[wheel_commands]\n";
 
 // The built-in dialects, as the docs have them.
 const std::string kIbis = R"(via = "CAN1"
@@ -165,37 +150,23 @@ TEST(WheelWords, NamesWhatIsWrongInATable) {
 // A speed of 7 rad/s behind a gear of 3 is 21 of the motor, here its backward, every 2 ms.
 TEST(WheelWords, TheMainBoardSaysThemByTheBoardsCan) {
   OMNIHIL_NEED_IMAGES();
-  std::vector<BoardProblem> problems;
-  const auto spec = read_board(
-      "format = \"omnihil-board/1\"\nname = \"n\"\nchip = \"stm32f405\"\n[[motor]]\nwheel = 0\npwm = "
-      "\"TIM1.1\"\n"
-      "direction = \"PE0\"\n[wheel_commands]\nvia = \"CAN1\"\nreversed = true\nperiod_ms = 2\n"
-      "frame = [{ id = 0x100, bytes = 2, field = [{ at = 0, type = \"i16\", per_rad_s = 1 }] }]\n",
-      "b.toml", problems);
-  for (const BoardProblem& p : problems) ADD_FAILURE() << p.text();
-  ASSERT_TRUE(spec);
-  ElfImage image;
-  std::vector<std::string> wrong;
-  ASSERT_TRUE(read_elf(image_bytes("wheels"), image, wrong));
-  RobotConfig config{};
-  config.gear_ratio = 3.0;
-  config.wheel_radius_m = 0.027;
-  config.encoder_counts_per_rotor_turn = 4096.0;
-  config.bus_voltage_nominal_V = 24.0;
-  McuFirmware firmware(*spec, image, config);
+  const auto firmware = wheels_firmware(
+      "[wheel_commands]\nvia = \"CAN1\"\nreversed = true\nperiod_ms = 2\n"
+      "frame = [{ id = 0x100, bytes = 2, field = [{ at = 0, type = \"i16\", per_rad_s = 1 }] }]\n");
+  ASSERT_NE(firmware, nullptr);
   std::vector<CanFrame> heard;
-  firmware.board().chip().find<CanPort>("CAN1")->watch_frames(
+  firmware->board().chip().find<CanPort>("CAN1")->watch_frames(
       [&heard](const CanPass& pass) { heard.push_back(pass.frame); });
   RobotCommand command{};
   command.mode = OMNIHIL_MODE_WHEEL_SPEED;
   command.omega_wheel_rad_s[0] = 7.0;
-  firmware.command(command, 0);
+  firmware->command(command, 0);
   RobotSensors sensors{};
   for (int tick = 1; tick <= 20; ++tick) {
     sensors.now_us += 500;
-    firmware.tick(sensors);
+    firmware->tick(sensors);
   }
-  EXPECT_EQ(firmware.commands_ignored(), 0u);
+  EXPECT_EQ(firmware->commands_ignored(), 0u);
   ASSERT_EQ(heard.size(), 5u);
   for (const CanFrame& frame : heard) {
     EXPECT_EQ(frame.id, 0x100u);
