@@ -11,6 +11,7 @@
 #include "identify/select/diagnose_summary.h"
 #include "identify/select/diagnosis.h"
 #include "identify/select/effect_variants.h"
+#include "identify/select/elimination.h"
 #include "identify/select/nested_law.h"
 #include "identify/select/next_experiment.h"
 #include "identify/select/noise_effect.h"
@@ -222,6 +223,7 @@ class Diagnosing {
     const EffectPair pair = selection_pair(task_, current_, singles);
     if (!pair.found()) return false;
     current_ = refit_to_convergence(context_.setup(true, stop()), pair.fitted);
+    pair_ = pair.names;
     for (std::size_t k = 0; k < pair.names.size(); ++k) {
       out_.effects.push_back(pair.names[k]);
       aliased_parameter_[pair.names[k]] = pair.aliased_parameters[k];
@@ -231,27 +233,21 @@ class Diagnosing {
     return true;
   }
 
-  // Backward elimination: an effect that is no longer needed beside later ones is removed, and one that went to a
-  // bound beside them.
   void eliminate() {
-    for (std::size_t n = 0; n < out_.effects.size() && !stopped_;) {
-      const std::string name = out_.effects[n];
-      const bool symptom = !ends_at_bound(current_.fit, name).empty();
-      const bool latest = n + 1 == out_.effects.size();  // tested when it was added
-      if (latest && !symptom) return;
-      say("is " + name + " still needed", kAfterRounds);
-      const Fitted less =
-          refit_as_it_is(context_.setup(true, stop()), without_effect(current_.fit.model, name), 1);
-      const AcceptanceResult needed = test_acceptance(task_.acceptance_context, less, current_, name,
-                                                      kScreenedBefore, aliased_parameter_[name]);
-      if (!less.finite || (!symptom && (needed.accepted() || needed.decisive))) {
-        ++n;
-        continue;
-      }
-      current_ = less;
-      out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(n));
-      add_step("removed " + name, current_, compare(context_.predictor(), current_.fit.model));
+    bool removed = false;
+    while (!out_.effects.empty() && !stopped_) {
+      say("are all effects still needed", kAfterRounds);
+      std::optional<UnneededEffect> unneeded =
+          unneeded_effect(task_, context_.setup(true, stop()), current_, found(), removed);
+      if (!unneeded) return;
+      current_ = std::move(unneeded->fitted);
+      std::erase(out_.effects, unneeded->name);
+      add_step("removed " + unneeded->name, current_, compare(context_.predictor(), current_.fit.model));
+      removed = true;
     }
+  }
+  EffectsFound found() const {
+    return {.names = out_.effects, .aliased_parameters = aliased_parameter_, .pair = pair_};
   }
 
   // Laws whose shapes imitated what later effects explain give way to the laws that they become at a limit.
@@ -397,6 +393,7 @@ class Diagnosing {
   Fitted current_;
   Diagnosis out_;
   std::map<std::string, std::string> aliased_parameter_;  // of the effects added
+  std::vector<std::string> pair_;                         // accepted only together
   double order_ = 0.0;                                    // strongest of the residual's, per rotor turn
   double furthest_ = 0.0;
   std::mutex mutex_;  // progress comes from several threads

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "identify/select/effect_variants.h"
+#include "identify/select/elimination.h"
 #include "identify/select/nested_law.h"
 #include "identify/select/selection_context.h"
 #include "identify/select/selection_pair.h"
@@ -105,6 +106,43 @@ TEST(RefusedChoice, TheNextAcceptedOneIsChosenAndTheReasonStands) {
     EXPECT_EQ(r.why, "it ends at a bound");
   }
   EXPECT_LE(draws, 1.0 + 1e-9);  // shares of the same draws
+}
+
+// What is taken, in this order, out of a model with these effects that was fitted to the map.
+std::vector<std::string> eliminated(const TorqueMap& map, EffectsFound found) {
+  SelectionContext context(map.dataset, map.nominal, {.seed = 1, .jobs = 1});
+  EXPECT_TRUE(context.fit_base([] { return false; }));
+  context.simulate();
+  std::vector<std::string> not_applicable, out;
+  const SelectionTask task = context.task(not_applicable);
+  const RefitSetup setup = context.setup(true, [] { return false; });
+  Candidate with = context.base().fit.model;
+  for (const std::string& name : found.names)
+    with = with_use(with, at_typical_size(neutral_use(*find_effect(name)), with));
+  Fitted current = refit_as_it_is(setup, with, 1);
+  EXPECT_TRUE(current.finite);
+  while (auto less = unneeded_effect(task, setup, current, found, !out.empty())) {
+    out.push_back(less->name);
+    std::erase(found.names, less->name);
+    current = std::move(less->fitted);
+  }
+  return out;
+}
+
+using Names = std::vector<std::string>;
+
+// Nothing is hidden. The latest was accepted beside one that is gone: that says nothing of it any more.
+TEST(Elimination, TheLatestIsTestedAgainOnceAnotherIsGone) {
+  const Names both{"constant_load", "coulomb_friction"};
+  EXPECT_EQ(eliminated(TorqueMap({}), {.names = both, .aliased_parameters = {}, .pair = {}}), both);
+}
+
+TEST(Elimination, WhatIsThereStays) {
+  const Names both{"constant_load", "coulomb_friction"};
+  const TorqueMap map({.load_Nm = 0.004, .coulomb_Nm = 0.003});
+  EXPECT_EQ(eliminated(map, {.names = both, .aliased_parameters = {}, .pair = {}}), Names{});
+  const TorqueMap one({.coulomb_Nm = 0.003});
+  EXPECT_EQ(eliminated(one, {.names = both, .aliased_parameters = {}, .pair = both}), Names{"constant_load"});
 }
 
 }  // namespace

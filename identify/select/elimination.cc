@@ -1,0 +1,41 @@
+#include "identify/select/elimination.h"
+
+#include <algorithm>
+
+#include "identify/select/plausibility.h"
+
+namespace omnihil {
+namespace {
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool lost_its_partner(const EffectsFound& found, const std::string& name) {
+  return has(found.pair, name) && std::any_of(found.pair.begin(), found.pair.end(),
+                                              [&](const std::string& n) { return !has(found.names, n); });
+}
+
+}  // namespace
+
+std::optional<UnneededEffect> unneeded_effect(const SelectionTask& task, const RefitSetup& setup,
+                                              const Fitted& current, const EffectsFound& found,
+                                              bool since_removal) {
+  for (const std::string& name : found.names) {
+    const bool symptom = !ends_at_bound(current.fit, name).empty();
+    if (name == found.names.back() && !since_removal && !symptom) return std::nullopt;
+    if (setup.stop && setup.stop()) return std::nullopt;
+    Fitted less = refit_as_it_is(setup, without_effect(current.fit.model, name), 1);
+    if (!less.finite) continue;
+    const auto aliased = found.aliased_parameters.find(name);
+    const AcceptanceResult needed =
+        test_acceptance(task.acceptance_context, less, current, name, kScreenedBefore,
+                        aliased == found.aliased_parameters.end() ? "" : aliased->second);
+    const bool by_size = needed.decisive && !lost_its_partner(found, name);
+    if (!symptom && (needed.accepted() || by_size)) continue;
+    return UnneededEffect{.name = name, .fitted = std::move(less)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace omnihil
