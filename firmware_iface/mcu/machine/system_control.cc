@@ -24,7 +24,8 @@ enum Offset : std::uint32_t {
   kMmfar = 0xD34,
   kBfar = 0xD38,
   kIdFirst = 0xD3C,
-  kIdLast = 0xD80,
+  kIdLast = 0xD84,  // with the cache that CCSIDR speaks of
+  kCacheSelect = 0xD84,
   kCpacr = 0xD88,
   kMpuType = 0xD90,
   kStir = 0xF00,
@@ -37,7 +38,7 @@ enum Offset : std::uint32_t {
   kCacheFirst = 0xF50,
   kCacheLast = 0xF78,
 };
-constexpr std::uint32_t kDwtControl = 0xE0001000, kDwtCycles = 0xE0001004;
+constexpr std::uint32_t kDwtControl = 0xE0001000, kDwtCycles = 0xE0001004, kDwtLock = 0xE0001FB0;
 constexpr std::uint32_t kDhcsr = 0xE000EDF0, kDemcr = 0xE000EDFC;
 constexpr std::uint32_t kAircrKey = 0x05FA;
 
@@ -235,6 +236,8 @@ bool Machine::write_system(std::uint32_t offset, unsigned bytes, std::uint32_t v
         break;
       case kAuxiliary:
         break;
+      case kCacheSelect:
+        return cached;
       default:
         return offset >= kCacheFirst && offset <= kCacheLast && cached;  // there is no cache to maintain
     }
@@ -287,6 +290,8 @@ void Machine::write_debug(std::uint32_t address, std::uint32_t value) {
       return;
     case kDemcr:
       demcr_ = value;
+      return;
+    case kDwtLock:  // of M7; what it locks is open
       return;
     default:
       report_unmodelled("debug", fmt::format("0x{:08x} written", address));

@@ -52,6 +52,40 @@ constexpr RegisterInfo kV2[] = {{kIsr, "ISR", 0, 0},
                                 {0xB0, "DIFSEL", 0, 0x7FFFE, 0x7FFFE},
                                 {0xB4, "CALFACT", 0x00400040, 0x007F007F},
                                 {0xC0, "GCOMP", 0, 0x3FFF, 0x3FFF}};
+// Not followed: AUTDLY, JQM, watchdogs, oversampling, shifts, offsets, differential inputs, linearity's words.
+constexpr RegisterInfo kH7[] = {{kIsr, "ISR", 0, 0},
+                                {kIer, "IER", 0, 0x7FF, 0x780},
+                                {kCr, "CR", 0x20000000, 0x7FC10300},
+                                {kCfgr, "CFGR", 0x80000000, 0xFFFFFFFF, 0x01E04000},
+                                {kCfgr2, "CFGR2", 0, 0xFFFFFFFF, 0xF3FF07E3},
+                                {kSmpr1, "SMPR1"},
+                                {kSmpr2, "SMPR2"},
+                                {0x1C, "PCSEL", 0, 0xFFFFF},
+                                {0x20, "LTR1"},
+                                {0x24, "HTR1", 0x03FFFFFF},
+                                {kSqr1, "SQR1"},
+                                {0x34, "SQR2"},
+                                {0x38, "SQR3"},
+                                {0x3C, "SQR4"},
+                                {kDr, "DR", 0, 0},
+                                {kJsqr, "JSQR"},
+                                {0x60, "OFR1", 0, 0xFFFFFFFF, 0x83FFFFFF},
+                                {0x64, "OFR2", 0, 0xFFFFFFFF, 0x83FFFFFF},
+                                {0x68, "OFR3", 0, 0xFFFFFFFF, 0x83FFFFFF},
+                                {0x6C, "OFR4", 0, 0xFFFFFFFF, 0x83FFFFFF},
+                                {kJdr1, "JDR1", 0, 0},
+                                {0x84, "JDR2", 0, 0},
+                                {0x88, "JDR3", 0, 0},
+                                {0x8C, "JDR4", 0, 0},
+                                {0xA0, "AWD2CR", 0, 0xFFFFF, 0xFFFFF},
+                                {0xA4, "AWD3CR", 0, 0xFFFFF, 0xFFFFF},
+                                {0xB0, "LTR2"},
+                                {0xB4, "HTR2", 0x03FFFFFF},
+                                {0xB8, "LTR3"},
+                                {0xBC, "HTR3", 0x03FFFFFF},
+                                {0xC0, "DIFSEL", 0, 0xFFFFF, 0xFFFFF},
+                                {0xC4, "CALFACT", 0, 0x07FF07FF},
+                                {0xC8, "CALFACT2", 0, 0x3FFFFFFF}};
 constexpr RegisterInfo kF0[] = {{kIsr, "ISR", 0, 0},
                                 {kIer, "IER", 0, 0x9F, 0x80},
                                 {kCr, "CR", 0, 0},
@@ -62,13 +96,16 @@ constexpr RegisterInfo kF0[] = {{kIsr, "ISR", 0, 0},
                                 {kChselr, "CHSELR", 0, 0x7FFFF},
                                 {kDr, "DR", 0, 0}};
 constexpr RegisterInfo kCommon[] = {{0x00, "CSR", 0, 0}, {0x08, "CCR", 0, 0x01FFEF1F}, {0x0C, "CDR", 0, 0}};
+
+std::span<const RegisterInfo> rows_of(AdcFamily family) {
+  if (family == AdcFamily::kF0) return kF0;
+  return family == AdcFamily::kH7 ? std::span<const RegisterInfo>(kH7) : kV2;
+}
 }  // namespace
 
 AdcV2::AdcV2(const std::string& name, AdcFamily family, int irq, const AdcTriggers& triggers,
              ChipContext& context)
-    : Adc(name,
-          family == AdcFamily::kF0 ? std::span<const RegisterInfo>(kF0) : std::span<const RegisterInfo>(kV2),
-          triggers, context),
+    : Adc(name, rows_of(family), triggers, context),
       family_(family),
       irq_(context.irqs, irq),
       dma_(context.dma.line(name)) {}
@@ -92,7 +129,7 @@ unsigned AdcV2::channel(Group group, unsigned place) const {
     return static_cast<unsigned>(std::countr_zero(left | 1u << 31)) % 32;
   }
   if (group == Group::kInjected)
-    return field(value(kJsqr), (family_ == AdcFamily::kG4 ? 9 : 8) + 6 * place, 5);
+    return field(value(kJsqr), (family_ == AdcFamily::kF3 ? 8 : 9) + 6 * place, 5);
   return field(value(kSqr1 + 4 * ((place + 1) / 5)), 6 * ((place + 1) % 5), 5);
 }
 
@@ -100,9 +137,11 @@ double AdcV2::sample_clocks(unsigned channel) const {
   constexpr double kF0Clocks[] = {1.5, 7.5, 13.5, 28.5, 41.5, 55.5, 71.5, 239.5};
   constexpr double kF3Clocks[] = {1.5, 2.5, 4.5, 7.5, 19.5, 61.5, 181.5, 601.5};
   constexpr double kG4Clocks[] = {2.5, 6.5, 12.5, 24.5, 47.5, 92.5, 247.5, 640.5};
+  constexpr double kH7Clocks[] = {1.5, 2.5, 8.5, 16.5, 32.5, 64.5, 387.5, 810.5};
   if (family_ == AdcFamily::kF0) return kF0Clocks[value(kSmpr1) & 7u];
   const unsigned code =
       channel < 10 ? field(value(kSmpr1), 3 * channel, 3) : field(value(kSmpr2), 3 * (channel % 10), 3);
+  if (family_ == AdcFamily::kH7) return kH7Clocks[code];
   return family_ == AdcFamily::kF3 ? kF3Clocks[code] : kG4Clocks[code];
 }
 
@@ -114,12 +153,21 @@ double AdcV2::clock_hz() const {
   }
   const unsigned mode = field(ccr_, 16, 2);
   constexpr double kAsync[] = {1, 2, 4, 6, 8, 10, 12, 16, 32, 64, 128, 256, 256, 256, 256, 256};
+  const double halved = family_ == AdcFamily::kH7 ? 2.0 : 1.0;
   if (mode == 0)
-    return clocks.state().sysclk_hz / (family_ == AdcFamily::kG4 ? kAsync[field(ccr_, 18, 4)] : 1.0);
-  return clocks.state().hclk_hz / (mode == 1 ? 1 : mode == 2 ? 2 : 4);
+    return clocks.bus_hz(Bus::kAdc) / (family_ == AdcFamily::kF3 ? 1.0 : kAsync[field(ccr_, 18, 4)]) / halved;
+  return clocks.bus_hz(Bus::kAhb) / (mode == 1 ? 1 : mode == 2 ? 2 : 4) / halved;
 }
 
-bool AdcV2::left_aligned() const { return bit(value(kCfgr), family_ == AdcFamily::kG4 ? 15 : 5); }
+unsigned AdcV2::bits() const {
+  if (family_ != AdcFamily::kH7) return 12 - 2 * field(value(kCfgr), 3, 2);
+  constexpr unsigned kBits[] = {16, 14, 12, 10, 8, 14, 12, 8};
+  return kBits[field(value(kCfgr), 2, 3)];
+}
+
+bool AdcV2::left_aligned() const {
+  return family_ != AdcFamily::kH7 && bit(value(kCfgr), family_ == AdcFamily::kG4 ? 15 : 5);
+}
 
 std::pair<int, unsigned> AdcV2::trigger(Group group) const {
   const std::uint32_t cfgr = value(kCfgr), jsqr = value(kJsqr);
@@ -131,6 +179,7 @@ std::pair<int, unsigned> AdcV2::trigger(Group group) const {
       if (group == Group::kInjected) return {static_cast<int>(field(jsqr, 2, 4)), field(jsqr, 6, 2)};
       return {static_cast<int>(field(cfgr, 6, 4)), field(cfgr, 10, 2)};
     case AdcFamily::kG4:
+    case AdcFamily::kH7:
       break;
   }
   if (group == Group::kInjected) return {static_cast<int>(field(jsqr, 2, 5)), field(jsqr, 7, 2)};
@@ -163,7 +212,13 @@ void AdcV2::update() { irq_.set((value(kIsr) & value(kIer) & 0x7Fu) != 0); }
 
 std::uint32_t AdcV2::load(std::uint32_t offset) {
   if (offset == kDr) data_was_read();
-  return value(offset);
+  return shown(offset);
+}
+
+std::uint32_t AdcV2::shown(std::uint32_t offset) {  // H7: LDORDY, the regulator is ready
+  constexpr std::uint32_t kLdordy = 1u << 12;
+  const bool ready = family_ == AdcFamily::kH7 && offset == kIsr && bit(value(kCr), 28);
+  return value(offset) | (ready ? kLdordy : 0u);
 }
 
 void AdcV2::data_was_read() {
@@ -174,8 +229,10 @@ void AdcV2::data_was_read() {
 // CR: bits are set by software and cleared by the hardware.
 void AdcV2::control(std::uint32_t written) {
   std::uint32_t& cr = value(kCr);
-  cr = (cr & ~0x70000000u) | (written & 0x70000000u);  // voltage regulator, deep power down, calibration kind
-  if ((written & kAdcal) != 0) cr &= ~kAdcal;          // calibrated at once
+  // voltage regulator, deep power down, kind of calibration; H7 also boost and linearity
+  const std::uint32_t kept = family_ == AdcFamily::kH7 ? 0x7FC10300u : 0x70000000u;
+  cr = (cr & ~kept) | (written & kept);
+  if ((written & kAdcal) != 0) cr &= ~kAdcal;  // calibrated at once
   if ((written & kAddis) != 0) {
     cr &= ~(kAden | kAdstart | kJadstart);
     value(kIsr) &= ~kAdrdy;
@@ -186,6 +243,7 @@ void AdcV2::control(std::uint32_t written) {
   if ((written & kAden) != 0 && (cr & kAden) == 0) {
     cr |= kAden;
     value(kIsr) |= kAdrdy;
+    if (family_ == AdcFamily::kH7 && field(ccr_, 16, 2) == 0) context().clocks.need(Bus::kAdc, name());
   }
   if ((written & kAdstp) != 0) {
     cr &= ~kAdstart;

@@ -1,5 +1,5 @@
-// ADC registers of F3 and G4 (RM0316 §15, RM0440 §21), and of F0 (RM0091 §13), which has them without
-// injected ones.
+// ADC registers of F3, G4 and H7 (RM0316 §15, RM0440 §21, RM0433 §25), and of F0 (RM0091 §13), which has them
+// without injected ones. H7: as revision V of the chip, which halves the clock; 16 bits.
 //
 //   AdcV2 adc("ADC1", AdcFamily::kF3, irq, triggers, context);
 //
@@ -10,7 +10,7 @@
 
 namespace omnihil::mcu {
 
-enum class AdcFamily : std::uint8_t { kF0, kF3, kG4 };
+enum class AdcFamily : std::uint8_t { kF0, kF3, kG4, kH7 };
 
 class AdcV2 final : public Adc {
  public:
@@ -25,14 +25,14 @@ class AdcV2 final : public Adc {
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
-  std::uint32_t shown(std::uint32_t offset) override { return value(offset); }
+  std::uint32_t shown(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
   unsigned length(Group group) const override;
   unsigned channel(Group group, unsigned place) const override;
   double sample_clocks(unsigned channel) const override;
-  double convert_clocks() const override { return bits() + 0.5; }
+  double convert_clocks() const override { return (family_ == AdcFamily::kH7 ? bits() / 2 : bits()) + 0.5; }
   double clock_hz() const override;
-  unsigned bits() const override { return 12 - 2 * field(value(0x0C), 3, 2); }
+  unsigned bits() const override;
   bool left_aligned() const override;
   void result(Group group, unsigned place, std::uint32_t code, bool last) override;
   bool continues() const override { return bit(value(0x0C), 13); }

@@ -2,7 +2,8 @@
 #include "firmware_iface/mcu/stm32/block_map.h"
 
 #include <algorithm>
-#include <vector>
+
+#include "firmware_iface/mcu/stm32/families/block_maps.h"
 
 namespace omnihil::mcu {
 namespace {
@@ -261,6 +262,8 @@ std::span<const BlockPlace> map_of(BlockFamily family) {
   switch (family) {
     case BlockFamily::kF0:
       return kF0;
+    case BlockFamily::kF1:
+      return block_map_f1();
     case BlockFamily::kF3:
       return kF3;
     case BlockFamily::kF4:
@@ -269,6 +272,8 @@ std::span<const BlockPlace> map_of(BlockFamily family) {
       return kF446;
     case BlockFamily::kF7:
       return kF7;
+    case BlockFamily::kH7:
+      return block_map_h7();
     case BlockFamily::kG4:
       return kG4;
     default:

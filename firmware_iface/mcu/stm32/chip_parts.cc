@@ -9,10 +9,10 @@
 
 namespace omnihil::mcu {
 
-void add_ports(Chip& chip, std::string_view letters, std::uint32_t base) {
+void add_ports(Chip& chip, std::string_view letters, std::uint32_t base, GpioLayout layout) {
   for (const char letter : letters) {
     const auto n = static_cast<unsigned>(letter - 'A');
-    chip.add(base + 0x400 * n, 0x400, std::make_unique<GpioPort>(n, chip.context()));
+    chip.add(base + 0x400 * n, 0x400, std::make_unique<GpioPort>(n, chip.context(), layout));
   }
 }
 
@@ -21,9 +21,13 @@ std::vector<ExtiVector> usual_exti_vectors() {
 }
 
 void add_exti(Chip& chip, std::uint32_t exti, std::uint32_t syscfg, std::vector<ExtiVector> vectors,
-              bool remaps_zero) {
-  Syscfg& selection = chip.add(syscfg, 0x30, std::make_unique<Syscfg>(chip.context(), remaps_zero));
-  Exti& lines = chip.add(exti, 0x400, std::make_unique<Exti>(selection, std::move(vectors), chip.context()));
+              SyscfgFamily family) {
+  const bool large = family == SyscfgFamily::kH7;
+  Syscfg& selection =
+      chip.add(syscfg, large ? 0x400 : 0x30, std::make_unique<Syscfg>(chip.context(), family));
+  Exti& lines = chip.add(
+      exti, 0x400,
+      std::make_unique<Exti>(selection, std::move(vectors), large ? kExtiH7 : kExtiUsual, chip.context()));
   for (const Chip::Mapped& block : chip.blocks()) {
     if (auto* port = dynamic_cast<GpioPort*>(block.peripheral)) {
       port->on_level([&lines](unsigned at, unsigned pin, bool level) { lines.pin_changed(at, pin, level); });
@@ -40,7 +44,7 @@ void add_usart(Chip& chip, std::uint32_t base, const UsartSpec& spec) {
 }
 
 void add_spi(Chip& chip, std::uint32_t base, const SpiSpec& spec) {
-  chip.add(base, 0x400, std::make_unique<Spi>(spec, chip.context()));
+  chip.add(base, 0x400, make_spi(spec, chip.context()));
 }
 
 void add_i2c(Chip& chip, std::uint32_t base, const I2cSpec& spec) {
@@ -66,7 +70,7 @@ void add_identity(Chip& chip, const ChipIdentity& id) {
   for (unsigned i = 0; i < 3; ++i) block->put(id.unique_id - page + 4 * i, kUniqueId[i], 4);
   block->put(id.flash_size - page, id.flash_kib, 2);
   chip.add(page, bytes, std::move(block));
-  add_stored(chip, id.debug, 0x20, "DBGMCU", {{0, id.device_id}});
+  add_stored(chip, id.debug, 0x60, "DBGMCU", {{0, id.device_id}});
 }
 
 void add_dma_f4(Chip& chip) {

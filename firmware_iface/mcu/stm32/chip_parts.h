@@ -24,11 +24,12 @@
 
 namespace omnihil::mcu {
 
-void add_ports(Chip& chip, std::string_view letters, std::uint32_t base);
+void add_ports(Chip& chip, std::string_view letters, std::uint32_t base,
+               GpioLayout layout = GpioLayout::kModes);
 // Lines 0..4 alone, 5..9, 10..15 (all but F0).
 std::vector<ExtiVector> usual_exti_vectors();
 void add_exti(Chip& chip, std::uint32_t exti, std::uint32_t syscfg, std::vector<ExtiVector> vectors,
-              bool remaps_zero = true);
+              SyscfgFamily family = SyscfgFamily::kUsual);
 Timer& add_timer(Chip& chip, std::uint32_t base, TimerSpec spec);
 void add_usart(Chip& chip, std::uint32_t base, const UsartSpec& spec);
 void add_spi(Chip& chip, std::uint32_t base, const SpiSpec& spec);

@@ -39,7 +39,7 @@ std::span<const RegisterInfo> mux_table() {
     for (unsigned c = 0; c < 16; ++c) t.add(4 * c, "C" + std::to_string(c) + "CR", 0, 0x1F1F03FF, 0x00010000);
     t.add(0x80, "CSR", 0, 0);
     t.add(0x84, "CFR", 0, 0);
-    for (unsigned c = 0; c < 4; ++c)
+    for (unsigned c = 0; c < 8; ++c)
       t.add(0x100 + 4 * c, "RG" + std::to_string(c) + "CR", 0, 0xFFFFFFFF, 0x00010000);
     t.add(0x140, "RGSR", 0, 0);
     t.add(0x144, "RGCFR", 0, 0);
@@ -49,8 +49,9 @@ std::span<const RegisterInfo> mux_table() {
 }
 }  // namespace
 
-DmaMux::DmaMux(const std::vector<std::pair<unsigned, std::string>>& requests, ChipContext& context)
-    : RegisterBlock("DMAMUX", context.system, mux_table()) {
+DmaMux::DmaMux(const char* name, const std::vector<std::pair<unsigned, std::string>>& requests,
+               ChipContext& context)
+    : RegisterBlock(name, context.system, mux_table()) {
   for (const auto& [number, request] : requests) {
     if (lines_.size() <= number) lines_.resize(number + 1, -1);
     lines_[number] = context.dma.line(request);
@@ -62,10 +63,8 @@ int DmaMux::line(unsigned channel) const {
   return request < lines_.size() ? lines_[request] : -1;
 }
 
-DmaV1::DmaV1(int number, std::vector<int> irqs, ChipContext& context)
-    : RegisterBlock("DMA" + std::to_string(number), context.system, table()),
-      context_(context),
-      channels_(kChannels) {
+DmaV1::DmaV1(const std::string& name, std::vector<int> irqs, ChipContext& context)
+    : RegisterBlock(name, context.system, table()), context_(context), channels_(kChannels) {
   for (const int irq : irqs) irqs_.emplace_back(context.irqs, irq);
   context.dma.add(*this);
 }

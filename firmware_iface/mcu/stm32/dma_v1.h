@@ -1,6 +1,6 @@
-// DMA controller with channels (F0, F3, G4), and the request multiplexer of G4.
+// DMA controller with channels (F0, F1, F3, G4; BDMA of H7), and the request multiplexer of G4 and H7.
 //
-//   DmaV1 dma(1, {11, 12, 13, 14, 15, 16, 17}, context);
+//   DmaV1 dma("DMA1", {11, 12, 13, 14, 15, 16, 17}, context);
 //   dma.connect("USART1_TX", 4);             // fixed wiring; on G4: dma.use_mux(mux, 0)
 //
 // Law: RM0316 §13, RM0440 §12-13. A transfer takes no bus time: an item moves at the instant of its request.
@@ -18,7 +18,8 @@ namespace omnihil::mcu {
 class DmaMux final : public RegisterBlock {
  public:
   // `requests`: names by request number.
-  DmaMux(const std::vector<std::pair<unsigned, std::string>>& requests, ChipContext& context);
+  DmaMux(const char* name, const std::vector<std::pair<unsigned, std::string>>& requests,
+         ChipContext& context);
   int line(unsigned channel) const;  // the request line that the channel is set to; -1: none
 
  private:
@@ -27,8 +28,8 @@ class DmaMux final : public RegisterBlock {
 
 class DmaV1 final : public RegisterBlock, public DmaSink, public DmaErrors {
  public:
-  DmaV1(int number, std::vector<int> irqs, ChipContext& context);  // one interrupt per channel
-  void connect(std::string_view request, unsigned channel);        // from 1
+  DmaV1(const std::string& name, std::vector<int> irqs, ChipContext& context);  // one interrupt per channel
+  void connect(std::string_view request, unsigned channel);                     // from 1
   void use_mux(const DmaMux& mux, unsigned first);
   void reset() override;
   void requested(int line) override;

@@ -48,6 +48,11 @@ void DmaV2::connect(std::string_view request, unsigned stream, unsigned channel)
   rows_.push_back({context_.dma.line(request), stream, channel});
 }
 
+void DmaV2::use_mux(const DmaMux& mux, unsigned first) {
+  mux_ = &mux;
+  mux_first_ = first;
+}
+
 void DmaV2::reset() {
   RegisterBlock::reset();
   update_irqs();
@@ -69,6 +74,9 @@ void DmaV2::update_irqs() {
 }
 
 void DmaV2::requested(int line) {
+  for (unsigned s = 0; mux_ != nullptr && s < kStreams; ++s) {
+    if (mux_->line(mux_first_ + s) == line) serve(s, line);
+  }
   for (const Row& row : rows_) {
     if (row.line == line && field(reg(row.stream, kCr), 25, 3) == row.channel) serve(row.stream, line);
   }
@@ -102,6 +110,10 @@ void DmaV2::start(unsigned s) {
   if (direction == 2) {  // memory to memory: from PAR to M0AR
     while (stream.left > 0 && (reg(s, kCr) & kEn) != 0) item(s);
     return;
+  }
+  if (mux_ != nullptr) {
+    const int line = mux_->line(mux_first_ + s);
+    if (line >= 0 && context_.dma.high(line)) serve(s, line);
   }
   for (const Row& row : rows_) {
     if (row.stream == s && row.channel == field(cr, 25, 3) && context_.dma.high(row.line)) serve(s, row.line);

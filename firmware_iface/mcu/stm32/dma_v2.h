@@ -1,7 +1,7 @@
-// DMA controller with streams (F4, F7).
+// DMA controller with streams (F4, F7, H7).
 //
 //   DmaV2 dma(2, {56, 57, 58, 59, 60, 68, 69, 70}, context);
-//   dma.connect("USART1_TX", 7, 4);          // stream 7, channel 4
+//   dma.connect("USART1_TX", 7, 4);          // stream 7, channel 4; on H7: dma.use_mux(mux, 8)
 //
 // Law: RM0090 §10. A transfer takes no bus time: an item moves at the instant of its request; FIFO and bursts
 // change nothing that memory shows at the end. Double-buffer mode is modelled, peripheral flow control and
@@ -11,6 +11,7 @@
 
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/dma_item.h"
+#include "firmware_iface/mcu/stm32/dma_v1.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
 
 namespace omnihil::mcu {
@@ -19,6 +20,7 @@ class DmaV2 final : public RegisterBlock, public DmaSink, public DmaErrors {
  public:
   DmaV2(int number, std::vector<int> irqs, ChipContext& context);
   void connect(std::string_view request, unsigned stream, unsigned channel);
+  void use_mux(const DmaMux& mux, unsigned first);
   void reset() override;
   void requested(int line) override;
   bool fail_transfer() override;
@@ -48,6 +50,8 @@ class DmaV2 final : public RegisterBlock, public DmaSink, public DmaErrors {
   std::vector<Row> rows_;
   std::vector<Stream> streams_;
   std::vector<IrqLine> irqs_;
+  const DmaMux* mux_ = nullptr;
+  unsigned mux_first_ = 0;
 };
 
 }  // namespace omnihil::mcu

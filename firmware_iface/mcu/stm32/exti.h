@@ -1,6 +1,6 @@
-// Pin changes to interrupts: EXTI with the pin selection of SYSCFG.
+// Pin changes to interrupts: EXTI with the pin selection of SYSCFG (F1: AFIO).
 //
-//   Exti exti(syscfg, {{0, 0, 6}, …, {5, 9, 23}, {10, 15, 40}}, context);     // lines first..last -> interrupt
+//   Exti exti(syscfg, {{0, 0, 6}, …, {5, 9, 23}, {10, 15, 40}}, kExtiUsual, context);  // lines first..last -> interrupt
 //   exti.pin_changed(port, pin, level);                                // from the GPIO ports
 //
 // Lines 0..15 (pins). The lines above them (RTC, comparators, USB) are kept in their registers, and never
@@ -13,19 +13,20 @@
 
 namespace omnihil::mcu {
 
+// Whose registers the pin selection has. kUsual: MEM_MODE is followed: 0 flash, 1 system memory, 3 SRAM at address 0.
+enum class SyscfgFamily : std::uint8_t { kUsual, kF1, kF7, kH7, kL4 };
+
 class Syscfg final : public RegisterBlock {
  public:
-  // `remaps_zero`: MEM_MODE says what address 0 shows; F7 has none, there is RAM of its own.
-  Syscfg(ChipContext& context, bool remaps_zero);
+  Syscfg(ChipContext& context, SyscfgFamily family);
   unsigned port_of(unsigned line) const { return value(0x08 + 4 * (line / 4)) >> (4 * (line % 4)) & 15u; }
 
-  // MEM_MODE is followed: 0 flash, 1 system memory, 3 SRAM at address 0.
  protected:
   std::uint32_t load(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:
-  bool remaps_zero_;
+  SyscfgFamily family_;
 };
 
 struct ExtiVector {
@@ -33,9 +34,16 @@ struct ExtiVector {
   int irq;
 };
 
+// Where its registers of lines 0 to 31 are.
+struct ExtiMap {
+  std::span<const RegisterInfo> registers;
+  std::uint16_t imr, emr, rtsr, ftsr, swier, pr;
+};
+extern const ExtiMap kExtiUsual, kExtiH7;
+
 class Exti final : public RegisterBlock {
  public:
-  Exti(const Syscfg& syscfg, std::vector<ExtiVector> vectors, ChipContext& context);
+  Exti(const Syscfg& syscfg, std::vector<ExtiVector> vectors, const ExtiMap& map, ChipContext& context);
   void reset() override;
   void pin_changed(unsigned port, unsigned pin, bool level);
 
@@ -46,6 +54,7 @@ class Exti final : public RegisterBlock {
   void raise(std::uint32_t lines);
   void update();
 
+  const ExtiMap& map_;
   const Syscfg& syscfg_;
   std::vector<ExtiVector> vectors_;
   std::vector<IrqLine> lines_;

@@ -20,8 +20,8 @@ namespace omnihil::mcu {
 
 class FdcanRam final : public Peripheral {
  public:
-  static constexpr std::uint32_t kBytes = 3 * 0x350;  // one part each
-  FdcanRam() : Peripheral("FDCAN message RAM"), bytes_(kBytes, 0) {}
+  static constexpr std::uint32_t kBytes = 3 * 0x350;  // of G4: one part each
+  explicit FdcanRam(std::uint32_t bytes = kBytes) : Peripheral("FDCAN message RAM"), bytes_(bytes, 0) {}
   void reset() override {}
   std::uint32_t read(std::uint32_t offset, unsigned bytes) override;
   void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) override;

@@ -1,11 +1,11 @@
-// One port of 16 pins (all families but F1): modes, input, output, set/reset, alternate functions.
+// One port of 16 pins: modes, input, output, set/reset; registers of F1 (RM0008 §9) or of all later families (RM0090 §8).
 //
 //   port.drive(3, true);                                   // the outside pulls pin 3 high, at system.now()
 //   port.on_output(13, [](bool level) { … });              // called at every change of what the pin gives
-//   port.mode(8) == PinMode::kAlternate && port.alternate(8) == 1;
+//   port.mode(8) == PinMode::kAlternate;
 //
 // A pin that nobody drives reads its pull-up (1) or else 0. Cannot represent: open-drain against an outside
-// driver, slew rate, analogue levels between 0 and 1.
+// driver, slew rate, analogue levels between 0 and 1, which alternate function a pin has.
 #pragma once
 #include <array>
 #include <functional>
@@ -19,16 +19,17 @@ namespace omnihil::mcu {
 
 enum class PinMode : std::uint8_t { kInput, kOutput, kAlternate, kAnalog };
 
+enum class GpioLayout : std::uint8_t { kModes, kF1 };
+
 class GpioPort final : public RegisterBlock {
  public:
   // `port`: 0 for A. Pins A13..A15 and B3, B4 start as debug pins.
-  GpioPort(unsigned port, ChipContext& context);
+  GpioPort(unsigned port, ChipContext& context, GpioLayout layout = GpioLayout::kModes);
   void reset() override;
 
   unsigned port() const { return port_; }
-  PinMode mode(unsigned pin) const { return static_cast<PinMode>(value(0) >> (2 * pin) & 3u); }
-  unsigned alternate(unsigned pin) const;
-  bool output(unsigned pin) const { return (value(0x14) >> pin & 1u) != 0; }
+  PinMode mode(unsigned pin) const;
+  bool output(unsigned pin) const { return (value(odr_) >> pin & 1u) != 0; }
   bool level(unsigned pin) const;  // what a voltmeter at the pin would say
   void drive(unsigned pin, bool level);
   void release(unsigned pin);
@@ -53,7 +54,11 @@ class GpioPort final : public RegisterBlock {
   void note_modes();
   std::uint32_t levels() const;
 
+  bool pulled_up(unsigned pin) const;
+
   unsigned port_;
+  GpioLayout layout_;
+  std::uint32_t odr_;                       // the register's offset
   std::uint32_t outputs_ = 0, pulled_ = 0;  // of the registers, a bit per pin
   std::uint32_t driven_ = 0, driven_high_ = 0;
   std::uint32_t seen_levels_ = 0, seen_outputs_ = 0;

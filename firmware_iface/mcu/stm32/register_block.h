@@ -31,7 +31,7 @@ class RegisterBlock : public Peripheral {
   RegisterBlock(std::string name, System& system, std::span<const RegisterInfo> registers);
 
   void reset() override;
-  std::uint32_t read(std::uint32_t offset, unsigned bytes) final;
+  std::uint32_t read(std::uint32_t offset, unsigned bytes) override;
   void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) final;
   std::uint32_t peek(std::uint32_t offset) final { return info(offset) != nullptr ? shown(offset) : 0; }
   std::span<const RegisterInfo> registers() const { return registers_; }

@@ -22,16 +22,26 @@ constexpr RegisterInfo kRateOfLowPower[] = {{0x0C, "BRR", 0, 0xFFFFF}};
 constexpr RegisterInfo kDataOfV2[] = {{0x18, "RQR", 0, 0}, {0x1C, "ISR", 0xC0, 0},
                                       {0x20, "ICR", 0, 0}, {0x24, "RDR", 0, 0},
                                       {0x28, "TDR", 0, 0}, {0x2C, "PRESC", 0, 0xF, 0xF}};
+constexpr RegisterInfo kControlWithFifo[] = {{0x00, "CR1", 0, 0xFFFFFFFF, 0x0C006002},
+                                             {0x04, "CR2", 0, 0xFFFFFFFF, 0x00FFC800},
+                                             {0x08, "CR3", 0, 0xFFFFFFFF, 0x01008326}};
+constexpr RegisterInfo kDataWithFifo[] = {{0x18, "RQR", 0, 0}, {0x1C, "ISR", 0xC0, 0},
+                                          {0x20, "ICR", 0, 0}, {0x24, "RDR", 0, 0},
+                                          {0x28, "TDR", 0, 0}, {0x2C, "PRESC", 0, 0xF}};
 constexpr auto kV2 = joined(kControlOfV2, kRateOfV2, kDataOfV2);
+constexpr auto kFifo = joined(kControlWithFifo, kRateOfV2, kDataWithFifo);
+constexpr auto kLowPowerFifo = joined(kControlWithFifo, kRateOfLowPower, kDataWithFifo);
 constexpr auto kLowPower = joined(kControlOfV2, kRateOfLowPower, kDataOfV2);
 
 std::span<const RegisterInfo> rows_of(const UsartSpec& spec) {
-  if (spec.low_power) return kLowPower;
+  if (spec.low_power) return spec.fifo > 0 ? std::span<const RegisterInfo>(kLowPowerFifo) : kLowPower;
+  if (spec.fifo > 0) return kFifo;
   return spec.v2 ? std::span<const RegisterInfo>(kV2) : kV1;
 }
 // Status: the same places in SR and ISR.
 constexpr std::uint32_t kOre = 1u << 3, kIdle = 1u << 4, kRxne = 1u << 5, kTc = 1u << 6, kTxe = 1u << 7;
 constexpr std::uint32_t kErrors = 0x1F;
+constexpr std::uint32_t kTxfe = 1u << 23, kRxff = 1u << 24, kRxft = 1u << 26, kTxft = 1u << 27;  // with FIFOs
 // CR1
 constexpr std::uint32_t kRe = 1u << 2, kTe = 1u << 3, kPce = 1u << 10, kM = 1u << 12, kOver8 = 1u << 15;
 constexpr std::uint32_t kDmar = 1u << 6, kDmat = 1u << 7;  // CR3
@@ -52,7 +62,9 @@ Usart::Usart(UsartSpec spec, ChipContext& context)
 void Usart::reset() {
   RegisterBlock::reset();
   status_ = kTxe | kTc;
-  status_read_ = holding_full_ = false;
+  status_read_ = false;
+  holding_.clear();
+  received_more_.clear();
   schedule(transmit_end_, kNever);
   schedule(idle_at_, kNever);
   update();
@@ -65,8 +77,10 @@ Cycles Usart::bit_cycles() const {
   const std::uint32_t brr = value(spec_.v2 ? 0x0C : 0x08);
   const std::uint32_t periods = (cr1() & kOver8) != 0 ? ((brr & 0xFFF0u) | (brr & 0x7u) << 1) / 2 : brr;
   const ClockRatio clock = context_.clocks.bus(spec_.bus);
-  if (spec_.low_power) return std::max<Cycles>(1, Cycles{brr} * clock.div / (Cycles{256} * clock.mul));
-  return std::max<Cycles>(1, Cycles{periods} * clock.div / clock.mul);
+  constexpr unsigned kPrescalers[] = {1, 2, 4, 6, 8, 10, 12, 16, 32, 64, 128, 256, 256, 256, 256, 256};
+  const Cycles each = Cycles{clock.div} * (spec_.fifo > 0 ? kPrescalers[value(0x2C) & 15u] : 1);
+  if (spec_.low_power) return std::max<Cycles>(1, Cycles{brr} * each / (Cycles{256} * clock.mul));
+  return std::max<Cycles>(1, Cycles{periods} * each / clock.mul);
 }
 
 double Usart::baud() const { return system().core_hz() / static_cast<double>(bit_cycles()); }
@@ -97,9 +111,9 @@ void Usart::run_events() {
     const auto byte = static_cast<std::uint8_t>(shifting_);
     if (watcher_) show_frame(true, shifting_, end);
     schedule(transmit_end_, kNever);
-    if (holding_full_) {
-      shifting_ = holding_;
-      holding_full_ = false;
+    if (!holding_.empty()) {
+      shifting_ = holding_.front();
+      holding_.pop_front();
       schedule(transmit_end_, end + frame_cycles());
       status_ |= kTxe;
     } else {
@@ -145,7 +159,9 @@ void Usart::receive(std::uint8_t byte) {
     const bool odd = (__builtin_popcount(byte) & 1) != 0;
     data |= (odd != bit(cr1(), 9) ? 1u : 0u) << 8;
   }
-  if ((status_ & kRxne) != 0) {
+  if ((status_ & kRxne) != 0 && received_count() < capacity()) {
+    received_more_.push_back(data);
+  } else if ((status_ & kRxne) != 0) {
     if (!(spec_.v2 && bit(cr3(), 12))) status_ |= kOre;
     ++overruns_;
     ledger_.lost("byte", "came before the one before them was read (overrun)", now());
@@ -164,26 +180,48 @@ void Usart::transmit(std::uint32_t data) {
     shifting_ = data;
     schedule(transmit_end_, now() + frame_cycles());
   } else {
-    holding_ = data;
-    holding_full_ = true;
-    status_ &= ~kTxe;
+    if (holding_.size() >= capacity()) holding_.pop_back();  // written over
+    holding_.push_back(data);
+    if (holding_.size() >= capacity()) status_ &= ~kTxe;
   }
 }
 
 // Interrupt and DMA lines follow the flags. DMA last: it reads and writes the data register at once.
 void Usart::update() {
   const std::uint32_t enable = cr1();
-  irq_.set((status_ & enable & (kIdle | kRxne | kTc | kTxe)) != 0 ||
+  bool asks = false;
+  if (spec_.fifo > 0) {  // empty, full, and the thresholds of CR3
+    const std::uint32_t fifo = fifo_status();
+    asks = ((fifo & kTxfe) != 0 && bit(enable, 30)) || ((fifo & kRxff) != 0 && bit(enable, 31)) ||
+           ((fifo & kTxft) != 0 && bit(cr3(), 23)) || ((fifo & kRxft) != 0 && bit(cr3(), 28));
+  }
+  irq_.set(asks || (status_ & enable & (kIdle | kRxne | kTc | kTxe)) != 0 ||
            ((status_ & kOre) != 0 && ((enable & kRxne) != 0 || bit(cr3(), 0))));
   context_.dma.set(dma_rx_, (status_ & kRxne) != 0 && (cr3() & kDmar) != 0);
   context_.dma.set(dma_tx_, (status_ & kTxe) != 0 && (cr3() & kDmat) != 0 && on(kTe));
 }
 
+// TXFE, RXFF, RXFT, TXFT while the FIFOs are on.
+std::uint32_t Usart::fifo_status() const {
+  if (capacity() == 1) return 0;
+  constexpr unsigned kEighths[] = {1, 2, 4, 6, 7, 8, 8, 8};
+  const std::size_t full = capacity(), in = received_count(), out = holding_.size();
+  std::uint32_t status = (out == 0 ? kTxfe : 0u) | (in == full ? kRxff : 0u);
+  if (in * 8 >= full * kEighths[field(cr3(), 25, 3)]) status |= kRxft;
+  if ((full - out) * 8 >= full * kEighths[field(cr3(), 29, 3)]) status |= kTxft;
+  return status;
+}
+
 std::uint32_t Usart::take() {
-  status_ &= ~kRxne;
+  const std::uint32_t data = received_;
+  if (received_more_.empty()) {
+    status_ &= ~kRxne;
+  } else {
+    received_ = received_more_.front();
+    received_more_.pop_front();
+  }
   if (status_read_) status_ &= ~kErrors;  // v1: SR, then DR
   status_read_ = false;
-  const std::uint32_t data = received_;
   update();
   return data;
 }
@@ -197,7 +235,8 @@ std::uint32_t Usart::load(std::uint32_t offset) {
     return offset == 0x04 ? take() : value(offset);
   }
   if (offset == 0x1C) {  // TEACK, REACK follow TE, RE
-    return status_ | (on(kTe) ? 1u << 21 : 0u) | (on(kRe) ? 1u << 22 : 0u);
+    return status_ | (spec_.fifo > 0 ? fifo_status() : 0u) | (on(kTe) ? 1u << 21 : 0u) |
+           (on(kRe) ? 1u << 22 : 0u);
   }
   return offset == 0x24 ? take() : value(offset);
 }
@@ -215,9 +254,12 @@ void Usart::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
   } else if (spec_.v2 && offset == 0x20) {
     status_ &= ~(written & (kErrors | kTc));
   } else if (spec_.v2 && offset == 0x18) {
-    if (bit(written, 3)) status_ &= ~kRxne;  // RXFRQ
-    if (bit(written, 4)) {                   // TXFRQ
-      holding_full_ = false;
+    if (bit(written, 3)) {  // RXFRQ
+      status_ &= ~kRxne;
+      received_more_.clear();
+    }
+    if (bit(written, 4)) {  // TXFRQ
+      holding_.clear();
       status_ |= kTxe;
     }
   } else {
@@ -228,10 +270,11 @@ void Usart::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
 }
 
 void Usart::control_changed() {
-  if (bit(cr1(), spec_.v2 ? 0 : 13)) return;
+  if (bit(cr1(), spec_.v2 ? 0 : 13)) return context_.clocks.need(spec_.bus, name());
+  received_more_.clear();
   if (transmit_end_ == kNever) return;  // switched off in the middle of a frame: it is lost
   schedule(transmit_end_, kNever);
-  holding_full_ = false;
+  holding_.clear();
   status_ |= kTxe | kTc;
 }
 

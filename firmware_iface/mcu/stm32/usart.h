@@ -4,11 +4,11 @@
 //   usart.on_transmit([](std::uint8_t byte, Cycles end) { … });   // when its stop bit has left
 //   usart.feed(bytes, at_ns);                        // from the other end, one frame after the other
 //
-// Law: RM0090 §30, RM0316 §29; LPUART: RM0440 §38. A frame takes start + data + stop bits of BRR clock periods each; a received
-// byte is there at the end of its frame; the line is idle one frame after the last. Both ends are assumed to
-// agree on the baud rate unless `feed` says what the other end's bit takes. Parity is made and stripped, not
-// checked. Cannot represent: framing errors, noise, break, LIN, smart card, IrDA, synchronous mode, flow
-// control, mute, receiver timeout, the FIFOs of G4 (deeper than one byte).
+// Law: RM0090 §30, RM0316 §29; LPUART and FIFOs: RM0440 §37, §38. A frame takes start + data + stop bits of BRR
+// clock periods each; a received byte is there at the end of its frame; the line is idle one frame after the
+// last. Both ends are assumed to agree on the baud rate unless `feed` says what the other end's bit takes. Parity
+// is made and stripped, not checked. Cannot represent: framing errors, noise, break, LIN, smart card, IrDA,
+// synchronous mode, flow control, mute, receiver timeout.
 #pragma once
 #include <deque>
 #include <functional>
@@ -29,6 +29,7 @@ struct UsartSpec {
   Bus bus = Bus::kApb2;
   int irq = -1;
   bool low_power = false;  // LPUART: BRR counts 256ths of a clock period
+  unsigned fifo = 0;       // how many bytes its FIFOs hold; 0: it has none, and no prescaler
 };
 
 // What passed on one of its lines: levels from the start bit on, the first of them in bit 0.
@@ -87,6 +88,9 @@ class Usart final : public RegisterBlock, public BusEnd {
   void control_changed();
   void update();
   std::uint32_t take();
+  std::size_t capacity() const { return spec_.fifo > 0 && bit(cr1(), 29) ? spec_.fifo : 1; }
+  std::size_t received_count() const { return (bit(status_, 5) ? 1u : 0u) + received_more_.size(); }
+  std::uint32_t fifo_status() const;
 
   UsartSpec spec_;
   ChipContext& context_;
@@ -94,8 +98,8 @@ class Usart final : public RegisterBlock, public BusEnd {
   int dma_rx_, dma_tx_;
   std::uint32_t status_ = 0;
   bool status_read_ = false;
-  std::uint32_t received_ = 0, shifting_ = 0, holding_ = 0;
-  bool holding_full_ = false;
+  std::uint32_t received_ = 0, shifting_ = 0;
+  std::deque<std::uint32_t> holding_, received_more_;  // to be sent; behind received_, in a FIFO
   Cycles transmit_end_ = kNever, receive_at_ = kNever, idle_at_ = kNever;
   Cycles next_ = kNever;  // the first of them
   std::deque<Waiting> waiting_;

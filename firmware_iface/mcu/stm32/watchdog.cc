@@ -93,9 +93,10 @@ class Iwdg final : public RegisterBlock {
 class Wwdg final : public RegisterBlock {
  public:
   Cycles stable_until(std::uint32_t offset) const override { return offset < 4 ? 0 : kNever; }
-  Wwdg(int irq, unsigned at, unsigned bits, ChipContext& context)
+  Wwdg(int irq, unsigned at, unsigned bits, ChipContext& context, Bus bus)
       : RegisterBlock("WWDG", context.system, kWwdg),
         context_(context),
+        bus_(bus),
         irq_(context.irqs, irq),
         tb_at_(at),
         tb_bits_(bits) {
@@ -148,7 +149,7 @@ class Wwdg final : public RegisterBlock {
 
  private:
   Cycles count_cycles() const {
-    const ClockRatio clock = context_.clocks.bus(Bus::kApb1);
+    const ClockRatio clock = context_.clocks.bus(bus_);
     return (Cycles{4096} << field(value(0x04), tb_at_, tb_bits_)) * clock.div / clock.mul;
   }
   std::uint32_t counter() const {
@@ -167,6 +168,7 @@ class Wwdg final : public RegisterBlock {
     system().request_reset("WWDG");
   }
   ChipContext& context_;
+  Bus bus_;
   IrqLine irq_;
   unsigned tb_at_, tb_bits_;
   bool on_ = false;
@@ -176,8 +178,8 @@ class Wwdg final : public RegisterBlock {
 }  // namespace
 
 std::unique_ptr<RegisterBlock> make_iwdg(ChipContext& context) { return std::make_unique<Iwdg>(context); }
-std::unique_ptr<RegisterBlock> make_wwdg(int irq, unsigned at, unsigned bits, ChipContext& context) {
-  return std::make_unique<Wwdg>(irq, at, bits, context);
+std::unique_ptr<RegisterBlock> make_wwdg(int irq, unsigned at, unsigned bits, ChipContext& context, Bus bus) {
+  return std::make_unique<Wwdg>(irq, at, bits, context, bus);
 }
 
 }  // namespace omnihil::mcu

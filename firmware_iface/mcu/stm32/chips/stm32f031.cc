@@ -23,7 +23,7 @@ void build(Chip& chip) {
       {"I2C1_RX", 3},   {"TIM1_CH2", 3}, {"TIM2_CH2", 3},  {"TIM3_CH4", 3}, {"TIM3_UP", 3},  {"TIM16_CH1", 3},
       {"TIM16_UP", 3},  {"TIM1_CH4", 4}, {"TIM1_TRIG", 4}, {"TIM1_COM", 4}, {"TIM2_CH4", 4}, {"TIM3_CH1", 4},
       {"TIM3_TRIG", 4}, {"TIM1_CH3", 5}, {"TIM1_UP", 5},   {"TIM2_CH1", 5}};
-  auto dma = std::make_unique<DmaV1>(1, std::vector<int>{9, 10, 10, 11, 11}, context);
+  auto dma = std::make_unique<DmaV1>("DMA1", std::vector<int>{9, 10, 10, 11, 11}, context);
   for (const Row& row : kDma) dma->connect(row.request, row.channel);
   chip.add(0x40020000, 0x400, std::move(dma));
   using Itr = std::vector<std::string>;

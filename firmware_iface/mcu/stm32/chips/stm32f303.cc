@@ -26,9 +26,9 @@ void add_dma(Chip& chip) {
                              {"ADC4", 2},     {"SPI3_TX", 2},  {"TIM8_CH4", 2}, {"TIM8_TRIG", 2},
                              {"TIM8_COM", 2}, {"UART4_RX", 3}, {"TIM6_UP", 3},  {"TIM8_CH1", 3},
                              {"TIM7_UP", 4},  {"ADC3", 5},     {"UART4_TX", 5}, {"TIM8_CH2", 5}};
-  auto first = std::make_unique<DmaV1>(1, std::vector<int>{11, 12, 13, 14, 15, 16, 17}, chip.context());
+  auto first = std::make_unique<DmaV1>("DMA1", std::vector<int>{11, 12, 13, 14, 15, 16, 17}, chip.context());
   for (const Row& row : kFirst) first->connect(row.request, row.channel);
-  auto second = std::make_unique<DmaV1>(2, std::vector<int>{56, 57, 58, 59, 60}, chip.context());
+  auto second = std::make_unique<DmaV1>("DMA2", std::vector<int>{56, 57, 58, 59, 60}, chip.context());
   for (const Row& row : kSecond) second->connect(row.request, row.channel);
   chip.add(0x40020000, 0x400, std::move(first));
   chip.add(0x40020400, 0x400, std::move(second));

@@ -12,7 +12,7 @@ void build(Chip& chip) {
   chip.add(0x40007000, 0x400, make_pwr(PwrFamily::kF7, context));
   chip.add(0x40023C00, 0x400, std::make_unique<Flash>(FlashFamily::kF7, 2048 * 1024, 32768, 4, context));
   add_ports(chip, "ABCDEFGHIJK", 0x40020000);
-  add_exti(chip, 0x40013C00, 0x40013800, usual_exti_vectors(), false);
+  add_exti(chip, 0x40013C00, 0x40013800, usual_exti_vectors(), SyscfgFamily::kF7);
   add_dma_f4(chip);
   add_timers_f4(chip, true);
   add_adcs_f4(chip, adc_triggers_f7());

@@ -58,10 +58,17 @@ std::span<const RegisterInfo> table(FlashFamily family) {
 
 Flash::Flash(FlashFamily family, std::uint32_t bytes, std::uint32_t page_bytes, int irq, ChipContext& context)
     : RegisterBlock("FLASH", context.system, table(family)),
+      irq_(context.irqs, irq),
       family_(family),
       bytes_(bytes),
-      page_bytes_(page_bytes),
-      irq_(context.irqs, irq) {}
+      page_bytes_(page_bytes) {}
+
+Flash::Flash(std::span<const RegisterInfo> registers, std::uint32_t bytes, int irq, ChipContext& context)
+    : RegisterBlock("FLASH", context.system, registers),
+      irq_(context.irqs, irq),
+      family_(FlashFamily::kF4),
+      bytes_(bytes),
+      page_bytes_(bytes) {}
 
 void Flash::reset() {
   RegisterBlock::reset();
@@ -159,13 +166,17 @@ void Flash::flash_write(std::uint32_t address, unsigned bytes, std::uint32_t wor
     system().report_unmodelled(name(), "store into flash that is not being programmed ignored");
     return;
   }
+  program(address, bytes, word);
+  value(at.sr) |= 1u << at.done;
+  irq_.set(bit(value(at.cr), at.done_enable));
+}
+
+void Flash::program(std::uint32_t address, unsigned bytes, std::uint32_t word) {
   std::array<std::uint8_t, 4> cells{};
   for (unsigned i = 0; i < bytes; ++i) {  // programming clears bits
     cells[i] = static_cast<std::uint8_t>(system().bus_read(address + i, 1) & word >> (8 * i));
   }
   system().program_flash(address, std::span(cells).first(bytes));
-  value(at.sr) |= 1u << at.done;
-  irq_.set(bit(value(at.cr), at.done_enable));
 }
 
 }  // namespace omnihil::mcu

@@ -14,7 +14,7 @@ namespace omnihil::mcu {
 
 enum class FlashFamily { kF0F3, kF4, kF7, kG4 };
 
-class Flash final : public RegisterBlock, public FlashWrites {
+class Flash : public RegisterBlock, public FlashWrites {
  public:
   Flash(FlashFamily family, std::uint32_t bytes, std::uint32_t page_bytes, int irq, ChipContext& context);
   void reset() override;
@@ -23,19 +23,23 @@ class Flash final : public RegisterBlock, public FlashWrites {
   void flash_write(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
 
  protected:
+  Flash(std::span<const RegisterInfo> registers, std::uint32_t bytes, int irq, ChipContext& context);
   std::uint32_t load(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
+
+  void erase(std::uint32_t from, std::uint32_t count);  // from the flash's base
+  void program(std::uint32_t address, unsigned bytes, std::uint32_t value);
+  std::uint32_t bytes() const { return bytes_; }
+  IrqLine irq_;
 
  private:
   bool locked() const;
   void key(std::uint32_t written);
   void control(std::uint32_t written, std::uint32_t lanes);
-  void erase(std::uint32_t from, std::uint32_t count);
   void erase_sector(std::uint32_t sector);
 
   FlashFamily family_;
   std::uint32_t bytes_, page_bytes_;
-  IrqLine irq_;
   unsigned keys_ = 0;
   std::uint32_t boot_option_ = 0x0080;  // as delivered: 0x00200000
 };

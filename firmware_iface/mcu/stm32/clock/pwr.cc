@@ -23,6 +23,17 @@ constexpr RegisterInfo kG4[] = {{0x00, "CR1", 0x200, 0x4707, 0x4007},
                                 {0x34, "PDCRC"},
                                 {0x80, "CR5", 0x100, 0x100}};
 
+// RM0433 6.8. Not followed: deep sleep, batteries, monitors, wake-up pins.
+constexpr RegisterInfo kH7[] = {{0x00, "CR1", 0xF000C000, 0x0007C3F1, 0x000701F1},
+                                {0x04, "CSR1", 0, 0},
+                                {0x08, "CR2", 0, 0x11, 0x10},
+                                {0x0C, "CR3", 0x6, 0x0300033F, 0x300},
+                                {0x10, "CPUCR", 0, 0xE07, 0x7},
+                                {0x18, "D3CR", 0x4000, 0xC000},
+                                {0x20, "WKUPCR", 0, 0},
+                                {0x24, "WKUPFR", 0, 0},
+                                {0x28, "WKUPEPR", 0, 0x0FFF3F3F, 0x3F}};
+
 std::span<const RegisterInfo> table(PwrFamily family) {
   switch (family) {
     case PwrFamily::kF0F3:
@@ -31,6 +42,8 @@ std::span<const RegisterInfo> table(PwrFamily family) {
       return kF4;
     case PwrFamily::kF7:
       return kF7;
+    case PwrFamily::kH7:
+      return kH7;
     case PwrFamily::kG4:
       break;
   }
@@ -45,6 +58,7 @@ class Pwr final : public RegisterBlock {
  protected:
   std::uint32_t load(std::uint32_t offset) override {
     const std::uint32_t v = value(offset);
+    if (family_ == PwrFamily::kH7) return v | ready_of_h7(offset);
     if (offset != 4 || (family_ != PwrFamily::kF4 && family_ != PwrFamily::kF7)) return v;
     const std::uint32_t cr = value(0);
     // VOSRDY; backup regulator BRR follows BRE; over-drive ODRDY, ODSWRDY follow ODEN, ODSWEN (F7, F446)
@@ -52,6 +66,20 @@ class Pwr final : public RegisterBlock {
   }
 
  private:
+  std::uint32_t ready_of_h7(std::uint32_t offset) const {
+    switch (offset) {
+      case 0x04:
+        return 1u << 13 | (value(0x18) & 0xC000u);  // ACTVOSRDY, ACTVOS as VOS
+      case 0x08:
+        return (value(0x08) & 1u) << 16;  // BRRDY
+      case 0x0C:
+        return (value(0x0C) >> 24 & 1u) << 26;  // USB33RDY
+      case 0x18:
+        return 1u << 13;  // VOSRDY
+      default:
+        return 0;
+    }
+  }
   PwrFamily family_;
 };
 }  // namespace

@@ -16,7 +16,7 @@ std::uint32_t Rcc::load(std::uint32_t offset) {
   for (const RccReady& row : map_.ready) {
     if (row.offset == offset) out |= (v & row.switches) << row.up;
   }
-  if (offset == map_.cfgr) out |= selected() << 2;
+  if (offset == map_.cfgr) out |= selected() << map_.sws;
   if (offset == map_.csr) out |= reset_flags();
   return out;
 }
@@ -42,13 +42,12 @@ void Rcc::select(std::uint32_t wanted, bool ready, double hz) {
 
 std::uint32_t Rcc::reset_flags() const {
   if (flags_cleared_) return 0;
-  constexpr std::uint32_t kPin = 1u << 26, kPower = 1u << 27, kSoftware = 1u << 28;
-  constexpr std::uint32_t kIwdg = 1u << 29, kWwdg = 1u << 30;
+  const RccReasons& by = map_.reasons;
   const std::string_view cause = system().reset_cause();
-  if (cause == "IWDG") return kPin | kIwdg;
-  if (cause == "WWDG") return kPin | kWwdg;
-  if (cause == "power-on" || cause == "brown-out") return kPin | kPower;
-  return kPin | kSoftware;
+  if (cause == "IWDG") return by.pin | by.iwdg;
+  if (cause == "WWDG") return by.pin | by.wwdg;
+  if (cause == "power-on" || cause == "brown-out") return by.pin | by.power;
+  return by.pin | by.software;
 }
 
 std::uint32_t Rcc::ahb_divider(std::uint32_t code) {
@@ -62,7 +61,9 @@ ClockState Rcc::buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, s
   ClockState state;
   state.sysclk_hz = sysclk_hz;
   state.hclk_hz = sysclk_hz / ahb;
-  state.bus = {ClockRatio{1, 1}, ClockRatio{1, apb1}, ClockRatio{1, apb2}};
+  state.of(Bus::kApb1) = {1, apb1};
+  state.of(Bus::kApb2) = {1, apb2};
+  state.of(Bus::kAdc) = {ahb, 1};  // SYSCLK
   // An APB prescaler other than 1 doubles the timers' clock: half its divider.
   state.timers = {ClockRatio{1, 1}, ClockRatio{1, apb1 == 1 ? 1 : apb1 / 2},
                   ClockRatio{1, apb2 == 1 ? 1 : apb2 / 2}};
@@ -71,7 +72,9 @@ ClockState Rcc::buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, s
 
 std::unique_ptr<Rcc> make_rcc(RccFamily family, ChipContext& context) {
   if (family == RccFamily::kF0 || family == RccFamily::kF3) return make_rcc_f0_f3(family, context);
+  if (family == RccFamily::kF1) return make_rcc_f1(context);
   if (family == RccFamily::kG4) return make_rcc_g4(context);
+  if (family == RccFamily::kH7) return make_rcc_h7(context);
   return make_rcc_f4_f7(family, context);
 }
 

@@ -2,12 +2,12 @@
 //
 //   auto rcc = make_rcc(RccFamily::kF4, context);     // writes context.clocks at every change
 //
-// Law: the clock trees of RM0091 (F0), RM0316 (F3), RM0090 (F4), RM0410 (F7), RM0440 (G4), HSI or HSE or PLL
+// Law: the clock trees of RM0091 (F0), RM0008 (F1), RM0316 (F3), RM0090 (F4), RM0410 (F7), RM0440 (G4), RM0433 (H7), HSI or HSE or PLL
 // to SYSCLK, prescalers to HCLK and PCLKx. Oscillators and PLLs are ready at once after they are switched on.
 // A PLL whose input is off, or a selected source that is not ready, is reported and the switch does not
 // happen. Enable and reset bits of peripherals are kept; a peripheral works whether it is enabled or not (not
-// modelled), kernel clocks other than PCLK and SYSCLK for U(S)ARTs are reported. Clock outputs and the RTC
-// are not modelled.
+// modelled), kernel clocks other than PCLK and SYSCLK for U(S)ARTs are reported; those of H7 are followed. Clock outputs
+// and the RTC are not modelled.
 #pragma once
 #include <memory>
 
@@ -16,7 +16,7 @@
 
 namespace omnihil::mcu {
 
-enum class RccFamily { kF0, kF3, kF4, kF7, kG4 };
+enum class RccFamily { kF0, kF1, kF3, kF4, kF7, kG4, kH7 };
 
 // Ready bits that follow their switches at once: those of `switches`, `up` places further.
 struct RccReady {
@@ -25,14 +25,21 @@ struct RccReady {
   unsigned up = 1;
 };
 
+// Bits of the status register that say why the chip was reset; as RM0090's CSR has them.
+struct RccReasons {
+  std::uint32_t power = 1u << 27, pin = 1u << 26, software = 1u << 28, iwdg = 1u << 29, wwdg = 1u << 30;
+};
+
 // What a family's registers mean, by its reference manual.
 struct RccMap {
   std::span<const RegisterInfo> registers;
   std::span<const RccReady> ready;
   std::span<const std::uint16_t> tree;  // a write to one of them asks for another clock tree
-  std::uint16_t cfgr = 0;               // SW 1:0, SWS 3:2
-  std::uint16_t csr = 0;
-  unsigned rmvf = 0;      // CSR's bit that clears the reset flags
+  std::uint16_t cfgr = 0;               // SW from bit 0 on
+  unsigned sws = 2;                     // where SWS begins in it
+  std::uint16_t csr = 0;                // with the reset flags
+  unsigned rmvf = 0;                    // CSR's bit that clears them
+  RccReasons reasons{};
   std::uint32_t hsi = 0;  // the code of SW for the internal oscillator, the source after a reset
   double hsi_hz = 0.0;
 };
@@ -68,7 +75,6 @@ class Rcc : public RegisterBlock {
   double sysclk_hz() const { return sysclk_hz_; }
 
  private:
-  // Bits of the status register that say why the chip was reset: of RM0090's CSR, all families alike.
   std::uint32_t reset_flags() const;
   void apply() { context_.clocks.set(tree()); }
 
@@ -81,7 +87,9 @@ class Rcc : public RegisterBlock {
 
 std::unique_ptr<Rcc> make_rcc(RccFamily family, ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_f0_f3(RccFamily family, ChipContext& context);
+std::unique_ptr<Rcc> make_rcc_f1(ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_f4_f7(RccFamily family, ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_g4(ChipContext& context);
+std::unique_ptr<Rcc> make_rcc_h7(ChipContext& context);
 
 }  // namespace omnihil::mcu

@@ -125,12 +125,12 @@ void build_g4(Chip& chip, const G4Parts& parts) {
   chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kG4, parts.flash_bytes, 2048, 4, context));
   add_ports(chip, "ABCDEFG", 0x48000000);
   add_exti(chip, 0x40010400, 0x40010000, usual_exti_vectors());
-  auto mux = std::make_unique<DmaMux>(requests(), context);
+  auto mux = std::make_unique<DmaMux>("DMAMUX", requests(), context);
   std::vector<int> first{11, 12, 13, 14, 15, 16, 17, 96}, second{56, 57, 58, 59, 60, 97, 98, 99};
   first.resize(parts.dma_channels);
   second.resize(parts.dma_channels);
-  auto dma1 = std::make_unique<DmaV1>(1, std::move(first), context);
-  auto dma2 = std::make_unique<DmaV1>(2, std::move(second), context);
+  auto dma1 = std::make_unique<DmaV1>("DMA1", std::move(first), context);
+  auto dma2 = std::make_unique<DmaV1>("DMA2", std::move(second), context);
   dma1->use_mux(*mux, 0);
   dma2->use_mux(*mux, parts.dma_channels);
   chip.add(0x40020800, 0x400, std::move(mux));
@@ -139,14 +139,15 @@ void build_g4(Chip& chip, const G4Parts& parts) {
   add_timers(chip, parts);
   add_adcs(chip, parts);
   const Bus one = Bus::kApb1, two = Bus::kApb2;
-  add_usart(chip, 0x40013800, {.number = 1, .name = "USART1", .v2 = true, .bus = two, .irq = 37});
-  add_usart(chip, 0x40004400, {.number = 2, .name = "USART2", .v2 = true, .bus = one, .irq = 38});
-  add_usart(chip, 0x40004800, {.number = 3, .name = "USART3", .v2 = true, .bus = one, .irq = 39});
-  add_usart(chip, 0x40004C00, {.number = 4, .name = "UART4", .v2 = true, .bus = one, .irq = 52});
+  add_usart(chip, 0x40013800, {.number = 1, .name = "USART1", .v2 = true, .bus = two, .irq = 37, .fifo = 8});
+  add_usart(chip, 0x40004400, {.number = 2, .name = "USART2", .v2 = true, .bus = one, .irq = 38, .fifo = 8});
+  add_usart(chip, 0x40004800, {.number = 3, .name = "USART3", .v2 = true, .bus = one, .irq = 39, .fifo = 8});
+  add_usart(chip, 0x40004C00, {.number = 4, .name = "UART4", .v2 = true, .bus = one, .irq = 52, .fifo = 8});
   if (parts.large)
-    add_usart(chip, 0x40005000, {.number = 5, .name = "UART5", .v2 = true, .bus = one, .irq = 53});
-  add_usart(chip, 0x40008000,
-            {.number = 0, .name = "LPUART1", .v2 = true, .bus = one, .irq = 91, .low_power = true});
+    add_usart(chip, 0x40005000, {.number = 5, .name = "UART5", .v2 = true, .bus = one, .irq = 53, .fifo = 8});
+  add_usart(
+      chip, 0x40008000,
+      {.number = 0, .name = "LPUART1", .v2 = true, .bus = one, .irq = 91, .low_power = true, .fifo = 8});
   add_spi(chip, 0x40013000, {.name = "SPI1", .v2 = true, .bus = two, .irq = 35});
   add_spi(chip, 0x40003800, {.name = "SPI2", .v2 = true, .bus = one, .irq = 36});
   add_spi(chip, 0x40003C00, {.name = "SPI3", .v2 = true, .bus = one, .irq = 51});

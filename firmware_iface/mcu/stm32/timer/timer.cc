@@ -50,17 +50,21 @@ constexpr RegisterInfo kNewRest[] = {{kBdtr, "BDTR", 0, 0x3FFFFFFF, 0x3FFF0300},
                                      {0x64, "AF2", 1},
                                      {kNewDcr, "DCR", 0, 0x1F1F},
                                      {kNewDmar, "DMAR", 0, 0}};
+constexpr RegisterInfo kInputs[] = {{0x68, "TISEL", 0, 0x0F0F0F0F, 0x0F0F0F0F}};
 constexpr auto kCommon = joined(kControl, kCounting, kRest);
+constexpr auto kSelecting = joined(kControl, kCounting, kRest, kInputs);
 constexpr auto kNew = joined(kNewControl, kCounting, kNewRest);
 
 std::string timer_name(int number) { return "TIM" + std::to_string(number); }
+std::span<const RegisterInfo> rows_of(const TimerSpec& spec) {
+  if (spec.new_layout) return kNew;
+  return spec.selects_inputs ? std::span<const RegisterInfo>(kSelecting) : kCommon;
+}
 int or_update(int irq, const TimerSpec& spec) { return irq < 0 ? spec.irq_update : irq; }
 }  // namespace
 
 Timer::Timer(TimerSpec spec, ChipContext& context)
-    : RegisterBlock(
-          timer_name(spec.number), context.system,
-          spec.new_layout ? std::span<const RegisterInfo>(kNew) : std::span<const RegisterInfo>(kCommon)),
+    : RegisterBlock(timer_name(spec.number), context.system, rows_of(spec)),
       spec_(std::move(spec)),
       context_(context),
       irq_update_(context.irqs, spec_.irq_update),

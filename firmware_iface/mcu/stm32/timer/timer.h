@@ -29,9 +29,10 @@ struct TimerSpec {
   Bus bus = Bus::kApb1;
   unsigned channels = 4;
   bool bits32 = false;
-  bool advanced = false;    // BDTR, repetition, complementary outputs
-  bool fast_clock = false;  // can run from twice the PLL (F3: TIM1, TIM8)
-  bool new_layout = false;  // G4: DMA registers at 0x3DC
+  bool advanced = false;        // BDTR, repetition, complementary outputs
+  bool fast_clock = false;      // can run from twice the PLL (F3: TIM1, TIM8)
+  bool new_layout = false;      // G4: DMA registers at 0x3DC
+  bool selects_inputs = false;  // H7: TISEL
   int irq_update = -1, irq_compare = -1, irq_break = -1,
       irq_trigger = -1;                          // the last three: as update if below 0
   std::vector<std::string> internal_triggers{};  // ITR0.. by name: "TIM2_TRGO"

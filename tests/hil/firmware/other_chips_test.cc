@@ -1,0 +1,61 @@
+// The image of the four wheels, compiled for other chips, drives the simulated robot as it does on an STM32F405.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "hil/firmware/image_firmware.h"
+#include "hil/loop/model_store.h"
+#include "hil/recording/session_setup.h"
+
+namespace omnihil {
+namespace {
+constexpr double kRotor_rad_s = 60.0;  // in the board file's preset flash
+
+struct Other {
+  const char *chip, *image;
+};
+
+class OtherChips : public testing::TestWithParam<Other> {
+ protected:
+  static std::string image() { return std::string(OMNIHIL_BUILD_DIR "/images/") + GetParam().image + ".elf"; }
+  // The F405's board file with another chip's name in it: the image has its motors on the same timers and pins.
+  static std::string board_text() {
+    std::ifstream file(OMNIHIL_SOURCE_DIR "/boards/four_wheels_f405.toml");
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    text.replace(text.find("\"stm32f405\""), 11, std::string("\"") + GetParam().chip + "\"");
+    return text;
+  }
+  void SetUp() override {
+    if (!std::filesystem::exists(image())) GTEST_SKIP() << "no arm-none-eabi-gcc: the image was not built";
+  }
+};
+
+TEST_P(OtherChips, WheelsReachTheirSpeedsWithinOnePercentAndNothingIsUnmodelled) {
+  const auto board = std::filesystem::temp_directory_path() /
+                     ("omnihil-other-" + std::to_string(::getpid()) + GetParam().chip + ".toml");
+  std::ofstream(board) << board_text();
+  SessionSetup setup;
+  setup.model = load_robot_model("omni_default", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
+  setup.radio_format = "ulaval-hermes";
+  setup.robot_ids = {0};
+  setup.plant.physics = Physics::kPlanar;
+  setup.step_ns = 1'000'000;
+  Session session(session_config(setup), image_firmware(image(), board.string()));
+  std::filesystem::remove(board);
+  std::vector<std::uint8_t> out;
+  while (session.now_ns() < 1'500'000'000) session.step({}, out);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(session.plant().truth(0).omega_rotor_rad_s[i], kRotor_rad_s, 0.01 * kRotor_rad_s) << i;
+  for (const std::string& line : session.firmware(0).report()) EXPECT_EQ(line, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Chips, OtherChips,
+                         testing::Values(Other{"stm32f103ze", "wheels_f103"},
+                                         Other{"stm32h743", "wheels_h743"}),
+                         [](const auto& row) { return std::string(row.param.chip); });
+
+}  // namespace
+}  // namespace omnihil
