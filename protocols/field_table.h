@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "protocols/checksum.h"
+#include "firmware_iface/checksum.h"
 
 namespace omnihil {
 

@@ -16,11 +16,4 @@ const MotorBusKind* find_motor_bus(std::string_view id) {
   return nullptr;
 }
 
-const MotorBusKind* find_dialect(std::string_view dialect) {
-  for (const MotorBusKind* kind : motor_buses()) {
-    if (!dialect.empty() && kind->main_board.dialect == dialect) return kind;
-  }
-  return nullptr;
-}
-
 }  // namespace omnihil

@@ -1,13 +1,12 @@
 // A motor bus: what the motor controllers of one robot say and do on the wire between them and the main
-// board, and what that board says. One bus, one file in buses/, both ends of its wire; the list is generated
-// from that folder: a file added is a bus added.
+// board. One bus, one file in buses/; the list is generated from that folder: a file added is a bus added.
+// What a main board says to emulated boards is a table in a file (wheel_words.h).
 //
 //   const MotorBusKind* kind = find_motor_bus("odrive");
 //   auto bus = kind->make({axes, out, setup});
 //   BusVerdict verdict = bus->receive(frame, now_ns);      // anything but kOk changed nothing
 //   bus->tick(now_ns);                                     // timeouts, demands to the axes, cyclic frames
-//   kind->main_board.speak(0, speeds_rad_s, frames);       // the other end, of a whole robot
-//   std::unique_ptr<AxisHost> host = kind->host(1);        // the other end, of one motor (axis_host.h)
+//   std::unique_ptr<AxisHost> host = kind->host(1);        // the other end of the wire, of one motor (axis_host.h)
 //
 // Motor m of the bus is wheel `order[m]` of the robot's model.
 #pragma once
@@ -63,16 +62,6 @@ class MotorBus {
   std::uint64_t timeouts_ = 0;  // motors stopped because no command came
 };
 
-// The other end of the wire: a robot's main board, which the bench stands in for where an emulated board is
-// what drives the wheels.
-struct MainBoard {
-  std::string_view dialect{};  // as a board file names it; empty: nobody has needed this end yet
-  std::int64_t period_ns = 0;  // between what it says
-  // Appends what board number `board` hears so that its motors turn at these speeds; on a UART one frame is
-  // one burst and `id` the line.
-  void (*speak)(int board, std::span<const double> omega_rotor_rad_s, std::vector<BusFrame>& out) = nullptr;
-};
-
 struct MotorBusKind {
   std::string_view id;
   std::string_view title;
@@ -83,7 +72,6 @@ struct MotorBusKind {
   int max_first_id;           // such that all four fit
   double default_watchdog_s;  // 0: none
   bool even_parity = false;   // UART
-  MainBoard main_board{};
   std::unique_ptr<AxisHost> (*host)(int id) =
       nullptr;  // of the motor with this id; null: nobody has needed it
   std::unique_ptr<MotorBus> (*make)(const MotorBusContext& context);
@@ -91,6 +79,5 @@ struct MotorBusKind {
 
 std::span<const MotorBusKind* const> motor_buses();
 const MotorBusKind* find_motor_bus(std::string_view id);
-const MotorBusKind* find_dialect(std::string_view dialect);  // whose main board speaks it
 
 }  // namespace omnihil

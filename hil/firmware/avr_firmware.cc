@@ -132,7 +132,7 @@ Session::FirmwareMaker avr_firmware(const std::string& image_file, const std::st
         mcu::read_avr_image(bytes, image->bytes, problems);
       },
       [&](const std::string& text, std::vector<mcu::BoardProblem>& problems) {
-        if (auto board = mcu::read_avr_board(text, board_file, problems, served_radio(served)))
+        if (auto board = mcu::read_avr_board(text, board_file, problems, board_context(board_file, served)))
           image->board = std::move(*board);
       });
   return [image, deadline_s](const RobotConfig& config) -> std::unique_ptr<Firmware> {

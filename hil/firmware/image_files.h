@@ -11,12 +11,14 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware_iface/mcu/board/board_context.h"
 #include "firmware_iface/mcu/board/board_problem.h"
 
 namespace omnihil {
 
-// The formats that there are, and the one that a session serves (empty: any).
-mcu::ServedRadio served_radio(std::string_view format);
+// The radio formats that there are and the one that a session serves (empty: any); dialects of [wheel_commands] by
+// name, those of the program, or by the path of a file, as seen from the board's.
+mcu::BoardContext board_context(const std::string& board_file, std::string_view served = {});
 
 using ReadImage =
     std::function<void(std::span<const std::uint8_t> bytes, std::vector<std::string>& problems)>;

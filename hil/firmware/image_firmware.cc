@@ -159,7 +159,7 @@ Session::FirmwareMaker image_firmware(const std::string& image_file, const std::
         mcu::read_elf(bytes, image->elf, problems);
       },
       [&](const std::string& text, std::vector<mcu::BoardProblem>& problems) {
-        if (auto board = mcu::read_board(text, board_file, problems, served_radio(served)))
+        if (auto board = mcu::read_board(text, board_file, problems, board_context(board_file, served)))
           image->board = std::move(*board);
         for (mcu::BoardProblem& problem : port_problems(image->board, board_file))
           problems.push_back(std::move(problem));

@@ -5,7 +5,7 @@
 //
 // What a format's own checks then let pass is not drawn but found out by decoding. Theory, for what is wrong in many bits:
 // a CRC of n bits passes 2^-n of it, a sum or an exclusive or of bytes 2^-8, no checksum everything. Few flips are another
-// matter: a CRC sees any run up to n bits, sum and exclusive or see any one bit (protocols/checksum.h).
+// matter: a CRC sees any run up to n bits, sum and exclusive or see any one bit (firmware_iface/checksum.h).
 // Method: the distance to the next flip is geometric, so a clean packet costs one draw.
 #pragma once
 #include <cstdint>

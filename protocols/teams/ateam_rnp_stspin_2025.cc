@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-#include "protocols/checksum.h"
+#include "firmware_iface/checksum.h"
 #include "protocols/codec.h"
 #include "protocols/dongles/rnp_link.h"
 #include "protocols/field_rows.h"

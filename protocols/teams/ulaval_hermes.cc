@@ -7,7 +7,7 @@
 // Robot_stm32f4discovery/Src/robocup/hermes/), RoboCupULaval/StrategyAI ccddde1.
 #include <array>
 
-#include "protocols/checksum.h"
+#include "firmware_iface/checksum.h"
 #include "protocols/cobs.h"
 #include "protocols/codec.h"
 #include "protocols/dongles/hermes_dongle.h"

@@ -5,7 +5,7 @@
 #include <array>
 #include <random>
 
-#include "protocols/checksum.h"
+#include "firmware_iface/checksum.h"
 
 namespace omnihil {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "protocols/checksum.h"
+#include "firmware_iface/checksum.h"
 #include "tests/protocols/packet_util.h"
 
 namespace omnihil {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "protocols/checksum.h"
+#include "firmware_iface/checksum.h"
 #include "protocols/codec.h"
 #include "protocols/field_rows.h"
 #include "protocols/plain_packet.h"

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "protocols/checksum.h"
+#include "firmware_iface/checksum.h"
 #include "protocols/cobs.h"
 #include "protocols/rem_packet.h"
 #include "tests/protocols/packet_util.h"

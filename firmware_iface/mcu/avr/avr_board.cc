@@ -24,8 +24,8 @@ std::string names_of(const Entries& entries) {
 class Reader {
  public:
   Reader(const toml::table& top, const std::string& file, std::vector<BoardProblem>& problems,
-         const ServedRadio& radio)
-      : top_(top), keys_(file, problems), radio_(radio) {}
+         const BoardContext& context)
+      : top_(top), keys_(file, problems), context_(context) {}
   AvrBoardSpec read();
 
  private:
@@ -44,7 +44,7 @@ class Reader {
 
   const Table& top_;
   BoardKeys keys_;
-  const ServedRadio& radio_;
+  const BoardContext& context_;
   AvrBoardSpec spec_;
   std::set<int> wheels_;
 };
@@ -204,7 +204,7 @@ void Reader::read_radio() {
   const Table* t = node->as_table();
   if (t == nullptr) return keys_.wrong(top_, "", "radio", "not a table", "[radio]");
   keys_.only(*t, "radio", {"format", "via"});
-  spec_.radio_format = keys_.radio_format(*t, radio_);
+  spec_.radio_format = keys_.radio_format(*t, context_.radio);
   const std::string via = keys_.text(*t, "radio", "via").value_or("");
   const std::string serials(spec_.chip->serials);
   if (via.size() == 6 && via.starts_with("USART") && serials.find(via[5]) != std::string::npos) {
@@ -231,8 +231,8 @@ AvrBoardSpec Reader::read() {
 }  // namespace
 
 std::optional<AvrBoardSpec> read_avr_board(std::string_view text, const std::string& file,
-                                           std::vector<BoardProblem>& problems, const ServedRadio& radio) {
-  return read_board_by<Reader>(text, file, problems, radio);
+                                           std::vector<BoardProblem>& problems, const BoardContext& context) {
+  return read_board_by<Reader>(text, file, problems, context);
 }
 
 }  // namespace omnihil::mcu

@@ -52,6 +52,6 @@ struct AvrBoardSpec {
 
 std::optional<AvrBoardSpec> read_avr_board(std::string_view text, const std::string& file,
                                            std::vector<BoardProblem>& problems,
-                                           const ServedRadio& radio = {});
+                                           const BoardContext& context = {});
 
 }  // namespace omnihil::mcu

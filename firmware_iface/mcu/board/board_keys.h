@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware_iface/mcu/board/board_context.h"
 #include "firmware_iface/mcu/board/board_problem.h"
 
 namespace omnihil::mcu {
@@ -32,6 +33,7 @@ class BoardKeys {
              std::string allowed);
   // The key "format" of [radio]: one that there is, and the one that is served.
   std::string radio_format(const toml::table& radio, const ServedRadio& served);
+  std::vector<BoardProblem>& problems() { return problems_; }
   void missing(const toml::table& table, const std::string& path, std::string_view key, std::string allowed);
   // The tables of `[[name]]`, each with its path; anything else is a problem.
   std::vector<std::pair<const toml::table*, std::string>> tables(const toml::table& top,
@@ -46,14 +48,14 @@ class BoardKeys {
 std::optional<toml::table> parse_board(std::string_view text, const std::string& file,
                                        std::vector<BoardProblem>& problems);
 
-// What a Reader of (table, file, problems, radio) makes of a board file; nothing where it has a problem.
+// What a Reader of (table, file, problems, context) makes of a board file; nothing where it has a problem.
 template <typename Reader>
 auto read_board_by(std::string_view text, const std::string& file, std::vector<BoardProblem>& problems,
-                   const ServedRadio& radio) -> std::optional<decltype(std::declval<Reader&>().read())> {
+                   const BoardContext& context) -> std::optional<decltype(std::declval<Reader&>().read())> {
   const std::size_t before = problems.size();
   const std::optional<toml::table> top = parse_board(text, file, problems);
   if (!top) return std::nullopt;
-  auto spec = Reader(*top, file, problems, radio).read();
+  auto spec = Reader(*top, file, problems, context).read();
   if (problems.size() != before) return std::nullopt;
   return spec;
 }

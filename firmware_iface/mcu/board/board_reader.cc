@@ -18,8 +18,8 @@ constexpr const char* kFormat = "omnihil-board/1";
 class Reader {
  public:
   Reader(const toml::table& top, const std::string& file, std::vector<BoardProblem>& problems,
-         const ServedRadio& radio)
-      : top_(top), keys_(file, problems), radio_(radio) {}
+         const BoardContext& context)
+      : top_(top), keys_(file, problems), context_(context) {}
   BoardSpec read();
 
  private:
@@ -43,7 +43,7 @@ class Reader {
 
   const toml::table& top_;
   BoardKeys keys_;
-  const ServedRadio& radio_;
+  const BoardContext& context_;
   BoardSpec spec_;
   std::unique_ptr<BoardNames> names_;
   std::set<std::string> claimed_;
@@ -351,7 +351,7 @@ void Reader::read_radio() {
   const toml::table* t = node->as_table();
   if (t == nullptr) return keys_.wrong(top_, "", "radio", "not a table", "[radio]");
   keys_.only(*t, "radio", {"format", "via"});
-  spec_.radio_format = keys_.radio_format(*t, radio_);
+  spec_.radio_format = keys_.radio_format(*t, context_.radio);
   spec_.radio_via = keys_.text(*t, "radio", "via").value_or("");
   bool found = names_ && names_->has_serial(spec_.radio_via);
   for (const DeviceEntry& device : spec_.devices) {
@@ -380,7 +380,8 @@ void Reader::read_wheel_commands() {
                 fmt::format("the board's motors are not wheels 0 to {}", motors - 1),
                 "wheels counted from 0 on each board");
   }
-  spec_.wheel_commands = mcu::read_wheel_commands(top_, keys_, names_.get(), motors);
+  spec_.wheel_commands =
+      mcu::read_wheel_commands(top_, keys_, names_.get(), {motors, spec_.coupling_ns}, context_.find_dialect);
 }
 
 // An input that never changes: a level, or a bit of the robot's number.
@@ -467,8 +468,8 @@ BoardSpec Reader::read() {
 }  // namespace
 
 std::optional<BoardSpec> read_board(std::string_view text, const std::string& file,
-                                    std::vector<BoardProblem>& problems, const ServedRadio& radio) {
-  return read_board_by<Reader>(text, file, problems, radio);
+                                    std::vector<BoardProblem>& problems, const BoardContext& context) {
+  return read_board_by<Reader>(text, file, problems, context);
 }
 
 }  // namespace omnihil::mcu

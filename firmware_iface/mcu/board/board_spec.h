@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware_iface/mcu/board/board_context.h"
 #include "firmware_iface/mcu/board/board_problem.h"
-#include "firmware_iface/motor_bus/motor_bus.h"
 #include "firmware_iface/motor_bus/wheel_words.h"
 
 namespace omnihil::mcu {
@@ -112,12 +112,10 @@ struct PortEntry {
 
 // A board that drives wheels as the robot's main board tells it, which the bench stands in for.
 struct WheelCommands {
-  const MotorBusKind* bus = nullptr;  // whose main board speaks; null: its own words, or none
-  WheelWords words;                   // of the board file itself
-  bool serial = false;                // `via` is a serial port, else a CAN
+  WheelWords words;     // of a dialect or of the board file itself; no period: there are none
+  bool serial = false;  // `via` is a serial port, else a CAN
   std::string via;
   double sign = 1.0;  // -1: its forward is the plant's backward
-  std::int64_t period_ns() const { return bus != nullptr ? bus->main_board.period_ns : words.period_ns; }
 };
 
 struct BoardSpec {
@@ -143,6 +141,6 @@ struct BoardSpec {
 };
 
 std::optional<BoardSpec> read_board(std::string_view text, const std::string& file,
-                                    std::vector<BoardProblem>& problems, const ServedRadio& radio = {});
+                                    std::vector<BoardProblem>& problems, const BoardContext& context = {});
 
 }  // namespace omnihil::mcu

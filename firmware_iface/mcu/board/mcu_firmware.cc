@@ -64,7 +64,7 @@ std::size_t McuFirmware::radio_transmit(std::span<std::uint8_t> out) {
 
 void McuFirmware::command(const RobotCommand& command, std::int64_t now_ns) {
   const bool speeds = command.mode != OMNIHIL_MODE_WHEEL_DUTY;
-  if (spec_.wheel_commands.period_ns() == 0 || !speeds) ++commands_ignored_;
+  if (spec_.wheel_commands.words.period_ns == 0 || !speeds) ++commands_ignored_;
   command_ = command;
   command_at_ns_ = now_ns;
   commanded_ = speeds;
@@ -90,19 +90,14 @@ std::array<double, kWheels> McuFirmware::commanded_wheels_rad_s(std::int64_t now
 // What the main board says to each of its boards, on its own period.
 void McuFirmware::speak(std::int64_t now_ns) {
   const WheelCommands& to = spec_.wheel_commands;
-  if (to.period_ns() == 0 || now_ns % to.period_ns() != 0) return;
+  if (to.words.period_ns == 0 || now_ns % to.words.period_ns != 0) return;
   std::array<double, kWheels> speeds_rad_s = commanded_wheels_rad_s(now_ns);
   for (double& speed : speeds_rad_s) speed *= to.sign * config_.gear_ratio;  // of the motor
   for (std::size_t b = 0; b < boards_.size(); ++b) {
     const auto n = std::min(static_cast<std::size_t>(wheels_per_board_), spec_.motors.size());
     std::vector<BusFrame> frames;
     const auto own = std::span(speeds_rad_s).subspan(b * n, n);
-    const int number = static_cast<int>(b);
-    if (to.bus != nullptr) {
-      to.bus->main_board.speak(number, own, frames);
-    } else {
-      omnihil::speak(to.words, number, static_cast<int>(b * n), own, frames);
-    }
+    omnihil::speak(to.words, {static_cast<int>(b), static_cast<int>(b * n), now_ns}, own, frames);
     McuBoard& board = *boards_[b];
     for (const BusFrame& frame : frames) {
       if (to.serial) {

@@ -10,7 +10,7 @@
 // instant. Effects of the model on encoders act as the difference between sensed and exact counts at each
 // tick. A robot may have several boards with the same image, each driving the next wheels. Commands reach the
 // image as radio frames, which it decodes itself, or as wheel speeds by eq. (5) in the words of its main
-// board (motor_bus.h); a command older than a quarter of a second is speed 0. Cannot represent: ripple
+// board (wheel_words.h); a command older than a quarter of a second is speed 0. Cannot represent: ripple
 // within a coupling period, kicker and dribbler (they have no wires yet), duties to boards that take wheel
 // commands.
 #pragma once

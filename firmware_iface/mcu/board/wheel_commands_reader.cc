@@ -2,97 +2,54 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "firmware_iface/mcu/board/wheel_words_reader.h"
 
 namespace omnihil::mcu {
 namespace {
 
 constexpr std::string_view kPath = "wheel_commands";
+constexpr const char* kFormat = "omnihil-dialect/1";
 
-const MotorBusKind* read_dialect(const toml::table& t, BoardKeys& keys) {
-  std::string dialects;
-  for (const MotorBusKind* bus : motor_buses()) {
-    if (bus->main_board.dialect.empty()) continue;
-    dialects += std::string(bus->main_board.dialect) + ", ";
+Dialect read_named(const toml::table& t, BoardKeys& keys, int motors, const FindDialect& find) {
+  const auto name = keys.text(t, std::string(kPath), "dialect");
+  const DialectFile file = find ? find(name.value_or("")) : DialectFile{.error = "there are none"};
+  if (!t.contains("dialect")) {
+    keys.missing(t, std::string(kPath), "dialect",
+                 file.allowed + ", or [[wheel_commands.frame]] and period_ms");
+  } else if (name && !file.error.empty()) {
+    keys.wrong(t, std::string(kPath), "dialect", file.error, file.allowed);
+  } else if (name) {
+    return read_dialect(file, motors, keys.problems()).value_or(Dialect{});
   }
-  const MotorBusKind* bus = find_dialect(keys.text(t, std::string(kPath), "dialect").value_or(""));
-  if (bus == nullptr) {
-    keys.wrong(t, std::string(kPath), "dialect", t.contains("dialect") ? "unknown" : "missing",
-               dialects + "or [[wheel_commands.frame]] and period_ms");
-  }
-  return bus;
-}
-
-WordField read_field(const toml::table& t, const std::string& path, BoardKeys& keys, const WordFrame& frame,
-                     int motors) {
-  keys.only(t, path, {"at", "type", "big_endian", "value", "per_rad_s", "wheel"});
-  WordField field;
-  const auto type = word_type(keys.text(t, path, "type").value_or(""));
-  if (!type)
-    keys.wrong(t, path, "type", t.contains("type") ? "unknown" : "missing",
-               "u8, i8, u16, i16, u32, i32, f32");
-  field.type = type.value_or(WordType::kU8);
-  if (!t.contains("at")) keys.missing(t, path, "at", "the field's first byte, from 0");
-  const auto last = static_cast<std::int64_t>(frame.bytes) - static_cast<std::int64_t>(bytes_of(field.type));
-  field.at = static_cast<std::size_t>(keys.whole(t, path, "at", 0, last).value_or(0));
-  field.big_endian = keys.flag(t, path, "big_endian").value_or(false);
-  field.speed = t.contains("per_rad_s");
-  if (field.speed == t.contains("value"))
-    keys.wrong(t, path, field.speed ? "value" : "at",
-               field.speed ? "beside per_rad_s" : "neither value nor per_rad_s",
-               "a value that stays, or per_rad_s: what 1 rad/s of the motor is");
-  // A number that stays has to fit its type; a speed ends at the type's bounds.
-  double lower = -1e10, upper = 1e10;
-  if (!field.speed && field.type != WordType::kF32) {
-    const bool is_signed = keys.text(t, path, "type")->starts_with('i');
-    const double span = std::ldexp(1.0, 8 * static_cast<int>(bytes_of(field.type)));
-    lower = is_signed ? -0.5 * span : 0.0;
-    upper = (is_signed ? 0.5 : 1.0) * span - 1.0;
-  }
-  field.value = keys.number(t, path, field.speed ? "per_rad_s" : "value", lower, upper).value_or(0.0);
-  if (frame.each_wheel && t.contains("wheel"))
-    keys.wrong(t, path, "wheel", "in a frame for each wheel", "each = \"board\"");
-  field.wheel = static_cast<int>(keys.whole(t, path, "wheel", 0, motors - 1).value_or(0));
-  return field;
-}
-
-WordFrame read_frame(const toml::table& t, const std::string& path, BoardKeys& keys, bool serial,
-                     int motors) {
-  keys.only(t, path, {"each", "id", "extended", "bytes", "field"});
-  WordFrame frame;
-  const std::string each = keys.text(t, path, "each").value_or("wheel");
-  frame.each_wheel = each == "wheel";
-  if (each != "wheel" && each != "board") keys.wrong(t, path, "each", "unknown", "wheel, board");
-  frame.extended = keys.flag(t, path, "extended").value_or(false);
-  constexpr std::int64_t kLastStandard = 0x7FF, kLastExtended = 0x1FFFFFFF;
-  const std::int64_t last = (frame.extended ? kLastExtended : kLastStandard) - (kWheels - 1);
-  if (!serial && !t.contains("id")) keys.missing(t, path, "id", "of the robot's first wheel");
-  if (serial && t.contains("id")) keys.wrong(t, path, "id", "on a serial port", "frames without one");
-  frame.id = static_cast<std::uint32_t>(keys.whole(t, path, "id", 0, last).value_or(0));
-  const std::int64_t most = serial ? static_cast<std::int64_t>(BusFrame::kCapacity) : 8;
-  if (!t.contains("bytes")) keys.missing(t, path, "bytes", fmt::format("1 to {}", most));
-  frame.bytes = static_cast<std::uint8_t>(keys.whole(t, path, "bytes", 1, most).value_or(most));
-  for (const auto& [field, name] : keys.tables(t, "field"))
-    frame.fields.push_back(read_field(*field, path + "." + name, keys, frame, motors));
-  return frame;
-}
-
-WheelWords read_words(const toml::table& t, BoardKeys& keys, bool serial, int motors) {
-  const std::string path(kPath);
-  WheelWords words;
-  if (t.contains("dialect")) keys.wrong(t, path, "dialect", "beside frames", "one of the two");
-  if (!t.contains("period_ms")) keys.missing(t, path, "period_ms", "between what the main board says");
-  constexpr double kMs_ns = 1e6;
-  words.period_ns = static_cast<std::int64_t>(keys.whole(t, path, "period_ms", 1, 1000).value_or(1) * kMs_ns);
-  for (const auto& [frame, name] : keys.tables(t, "frame"))
-    words.frames.push_back(read_frame(*frame, path + "." + name, keys, serial, motors));
-  return words;
+  return {};
 }
 
 }  // namespace
 
+std::optional<Dialect> read_dialect(const DialectFile& file, int motors,
+                                    std::vector<BoardProblem>& problems) {
+  const std::size_t before = problems.size();
+  const auto top = parse_board(file.text, file.path, problems);
+  if (!top) return std::nullopt;
+  BoardKeys keys(file.path, problems);
+  keys.only(*top, "", {"format", "name", "source", "port", "period_ms", "frame"});
+  if (const auto format = keys.text(*top, "", "format"); !format || *format != kFormat)
+    keys.wrong(*top, "", "format", format ? "unknown" : "missing", kFormat);
+  for (const std::string_view key : {"name", "source"}) keys.text(*top, "", key);
+  if (!top->contains("name")) keys.missing(*top, "", "name", "a text");
+  const std::string port = keys.text(*top, "", "port").value_or("");
+  if (port != "serial" && port != "can")
+    keys.wrong(*top, "", "port", top->contains("port") ? "unknown" : "missing", "serial, can");
+  Dialect dialect{.words = {}, .serial = port == "serial"};
+  dialect.words = read_wheel_words(*top, "", keys, dialect.serial, motors);
+  if (dialect.words.frames.empty() && !top->contains("frame"))
+    keys.missing(*top, "", "frame", "[[frame]], what is said");
+  if (problems.size() != before) return std::nullopt;
+  return dialect;
+}
+
 WheelCommands read_wheel_commands(const toml::table& top, BoardKeys& keys, const BoardNames* names,
-                                  int motors) {
+                                  const CommandedBoard& board, const FindDialect& find) {
   WheelCommands commands;
   const std::string path(kPath);
   const toml::node* node = top.get(kPath);
@@ -105,25 +62,32 @@ WheelCommands read_wheel_commands(const toml::table& top, BoardKeys& keys, const
   if (top.contains("radio")) keys.wrong(top, "", kPath, "beside [radio]", "one of the two");
   keys.only(*t, path, {"dialect", "via", "reversed", "period_ms", "frame"});
   const bool own = t->contains("frame");
-  if (!own) commands.bus = read_dialect(*t, keys);
   commands.via = keys.text(*t, path, "via").value_or("");
   commands.sign = keys.flag(*t, path, "reversed").value_or(false) ? -1.0 : 1.0;
   const bool is_can = names != nullptr && names->has_can(commands.via),
              is_serial = names != nullptr && names->has_serial(commands.via);
+  const auto no_port = [&](const std::string& what, const std::string& allowed) {
+    keys.wrong(*t, path, "via", t->contains("via") ? what : "missing", allowed);
+  };
   if (own) {
-    commands.words = read_words(*t, keys, is_serial, motors);
+    if (t->contains("dialect")) keys.wrong(*t, path, "dialect", "beside frames", "one of the two");
     commands.serial = is_serial;
+    commands.words = read_wheel_words(*t, path, keys, is_serial, board.motors);
     if (names != nullptr && !is_can && !is_serial)
-      keys.wrong(*t, path, "via", t->contains("via") ? "no such port" : "missing",
-                 names->serials() + ", " + names->cans());
-    return commands;
+      no_port("no such port", names->serials() + ", " + names->cans());
+  } else {
+    if (t->contains("period_ms"))
+      keys.wrong(*t, path, "period_ms", "beside a dialect", "the dialect has its own");
+    const Dialect dialect = read_named(*t, keys, board.motors, find);
+    commands.words = dialect.words;
+    commands.serial = dialect.serial;
+    if (names != nullptr && dialect.words.period_ns != 0 && !(dialect.serial ? is_serial : is_can))
+      no_port(dialect.serial ? "not a serial port of the chip" : "not a CAN of the chip",
+              dialect.serial ? names->serials() : names->cans());
   }
-  if (commands.bus == nullptr || names == nullptr) return commands;
-  commands.serial = commands.bus->carrier == BusCarrier::kUart;
-  if (commands.serial ? !is_serial : !is_can) {
-    keys.wrong(*t, path, "via", commands.serial ? "not a serial port of the chip" : "not a CAN of the chip",
-               commands.serial ? names->serials() : names->cans());
-  }
+  if (commands.words.period_ns % board.coupling_ns != 0)
+    keys.wrong(*t, path, own ? "period_ms" : "dialect", "its period is no multiple of coupling_us",
+               fmt::format("{} us times a number", board.coupling_ns / 1000));
   return commands;
 }
 

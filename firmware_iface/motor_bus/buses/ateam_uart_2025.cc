@@ -167,16 +167,6 @@ void AteamUart2025::tick(std::int64_t now_ns) {
   }
 }
 
-// What the main board says to a board, which has one motor and a UART of its own: its speed, every 10 ms.
-void speak(int board, std::span<const double> omega_rotor_rad_s, std::vector<BusFrame>& out) {
-  BusFrame f = can_frame(static_cast<std::uint32_t>(board), kCommandBytes);
-  kTypeField.put(f, kMotionCommand);
-  kFlagsField.put(f, kTelemetry);
-  kKindField.put(f, kVelocity);
-  kSetpointField.put(f, static_cast<float>(omega_rotor_rad_s.empty() ? 0.0 : omega_rotor_rad_s[0]));
-  out.push_back(f);
-}
-
 std::unique_ptr<MotorBus> make(const MotorBusContext& context) {
   return std::make_unique<AteamUart2025>(context);
 }
@@ -191,7 +181,6 @@ constexpr MotorBusKind kKind{
     .max_first_id = -1,
     .default_watchdog_s = 0.1,
     .even_parity = true,
-    .main_board = {.dialect = "ateam-stspin-2025", .period_ns = 10'000'000, .speak = speak},
     .make = make,
 };
 

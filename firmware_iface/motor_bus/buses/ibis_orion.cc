@@ -29,7 +29,6 @@ constexpr std::int64_t kLoop_ns = 1'000'000, kSlow_ns = 16 * kLoop_ns;
 constexpr double kTemperature_degC = 25.0;
 constexpr std::uint32_t kSpeedId = 0x100;  // of motor 0, the others follow
 constexpr BusField<float> kSpeed_rev_s{.at = 0};
-constexpr std::uint8_t kSpeedBytes = 8;
 constexpr double kAngleSteps = 65535.0;  // of a 16-bit angle word
 
 struct Motor {
@@ -151,16 +150,6 @@ void IbisBus::tick(std::int64_t now_ns) {
   }
 }
 
-// What the main board says to a board of two motors: forgotten after 100 ms, so every 2 ms.
-void speak(int board, std::span<const double> omega_rotor_rad_s, std::vector<BusFrame>& out) {
-  for (std::size_t m = 0; m < omega_rotor_rad_s.size(); ++m) {
-    const auto motor = static_cast<std::uint32_t>(2 * board) + static_cast<std::uint32_t>(m);
-    BusFrame f = can_frame(kSpeedId + motor, kSpeedBytes);
-    kSpeed_rev_s.put(f, static_cast<float>(omega_rotor_rad_s[m] / kTwoPi));
-    out.push_back(f);
-  }
-}
-
 std::unique_ptr<MotorBus> make(const MotorBusContext& context) { return std::make_unique<IbisBus>(context); }
 
 constexpr MotorBusKind kKind{
@@ -172,7 +161,6 @@ constexpr MotorBusKind kKind{
     .default_first_id = -1,
     .max_first_id = -1,
     .default_watchdog_s = 0.1,
-    .main_board = {.dialect = "ibis-orion-can", .period_ns = 2'000'000, .speak = speak},
     .make = make,
 };
 

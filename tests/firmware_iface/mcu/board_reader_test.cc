@@ -8,6 +8,7 @@
 #include "firmware_iface/mcu/board/board_spec.h"
 #include "firmware_iface/mcu/stm32/chip.h"
 #include "tests/firmware_iface/mcu/boards_for_tests.h"
+#include "tests/firmware_iface/mcu/dialects_for_tests.h"
 
 namespace omnihil::mcu {
 namespace {
@@ -114,12 +115,12 @@ reversed = true
 
 TEST(BoardReader, ReadsABoardThatIsSeveralTimesInARobot) {
   std::vector<BoardProblem> problems;
-  const auto spec = read_board(kWheelBoard, "b.toml", problems);
+  const auto spec = read_board(kWheelBoard, "b.toml", problems, with_dialects());
   for (const BoardProblem& p : problems) ADD_FAILURE() << p.text();
   ASSERT_TRUE(spec);
   EXPECT_EQ(spec->boards_per_robot, 2);
   EXPECT_EQ(spec->flash[0].board_number_at, 1);
-  EXPECT_NE(spec->wheel_commands.bus, nullptr);
+  EXPECT_EQ(spec->wheel_commands.words.frames.size(), 1u);
   EXPECT_EQ(spec->wheel_commands.via, "CAN1");
   EXPECT_EQ(spec->wheel_commands.sign, -1.0);
 }
@@ -133,7 +134,7 @@ TEST(BoardReader, NamesWhatIsWrongWithWheelBoards) {
                                    {"ibis-orion-can", "ateam-stspin-2025", "wheel_commands.via"}};
   for (const auto& [from, to, key] : kCases) {
     std::vector<BoardProblem> problems;
-    EXPECT_FALSE(read_board(replaced(kWheelBoard, from, to), "b.toml", problems)) << to;
+    EXPECT_FALSE(read_board(replaced(kWheelBoard, from, to), "b.toml", problems, with_dialects())) << to;
     ASSERT_EQ(problems.size(), 1u) << to;
     EXPECT_NE(problems[0].text().find(key), std::string::npos) << problems[0].text();
     // where the number stands that the key names

@@ -7,6 +7,7 @@
 
 #include "firmware_iface/mcu/board/board.h"
 #include "firmware_iface/mcu/stm32/usart.h"
+#include "tests/firmware_iface/mcu/dialects_for_tests.h"
 #include "tests/firmware_iface/mcu/image_bench.h"
 
 namespace omnihil::mcu {
@@ -20,7 +21,7 @@ struct PollingWheel : testing::Test {
     const std::string file = OMNIHIL_SOURCE_DIR "/boards/ateam_wheel_f031.toml";
     const std::vector<std::uint8_t> text = file_bytes(file);
     std::vector<BoardProblem> wrong;
-    spec_ = read_board(std::string(text.begin(), text.end()), file, wrong);
+    spec_ = read_board(std::string(text.begin(), text.end()), file, wrong, with_dialects());
     ASSERT_TRUE(spec_);
     std::vector<std::string> problems;
     ASSERT_TRUE(read_elf(image_bytes("polling_wheel"), image_, problems));

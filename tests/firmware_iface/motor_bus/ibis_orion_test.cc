@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "tests/firmware_iface/mcu/dialects_for_tests.h"
 #include "tests/firmware_iface/motor_bus/bus_harness.h"
 
 namespace omnihil::test {
@@ -117,11 +118,12 @@ TEST(IbisOrionTest, the_main_board_says_set_points_in_the_bytes_that_the_firmwar
   const nlohmann::json all = firmware_io();
   if (all.is_null()) GTEST_SKIP() << kNoFile;
   int frames = 0;
+  const WheelWords words = mcu::dialect_words("ibis-orion-can", 2);
   for (const auto& row : all.at("rows")) {
     std::vector<double> omega_rad_s;
     for (const double rev_s : row.at("cmd_rps")) omega_rad_s.push_back(rev_s * kTwoPi);
     std::vector<BusFrame> said;
-    find_motor_bus("ibis-orion")->main_board.speak(0, omega_rad_s, said);
+    speak(words, {}, omega_rad_s, said);
     ASSERT_EQ(said.size(), row.at("can_in").size());
     for (std::size_t i = 0; i < said.size(); ++i, ++frames) {
       EXPECT_EQ(said[i].id, row.at("can_in")[i].at("id"));

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/board/mcu_firmware.h"
+#include "hil/firmware/image_files.h"
 #include "protocols/radio_format.h"
 
 namespace omnihil {
@@ -79,7 +80,7 @@ class ThirdPartyImage : public testing::Test {
     const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
     ASSERT_TRUE(mcu::read_elf(std::span(data, bytes.size()), elf_, problems)) << problems[0];
     std::vector<mcu::BoardProblem> wrong;
-    spec_ = mcu::read_board(third_party_text(board_file_), board_file_, wrong);
+    spec_ = mcu::read_board(third_party_text(board_file_), board_file_, wrong, board_context(board_file_));
     for (const mcu::BoardProblem& problem : wrong) ADD_FAILURE() << problem.text();
     ASSERT_TRUE(spec_);
   }

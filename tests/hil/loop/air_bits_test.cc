@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/checksum.h"
+#include "firmware_iface/checksum.h"
 #include "tests/binomial_bounds.h"
 
 namespace omnihil {

@@ -1,4 +1,4 @@
-// Checksums of radio frames.
+// Checksums of frames, on the air and on wires.
 //
 //   const std::uint8_t frame[] = {0x01, 0xFE, 0x03};
 //   std::uint8_t sum = sum8(frame);       // 02h: 258 mod 256
