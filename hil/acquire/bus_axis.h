@@ -14,8 +14,8 @@
 #include <deque>
 #include <memory>
 
-#include "firmware_iface/motor_bus/axis_host.h"
 #include "firmware_iface/motor_bus/frame_wire.h"
+#include "firmware_iface/motor_bus/motor_bus.h"
 #include "hil/acquire/axis_end.h"
 
 namespace omnihil {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "hil/check/console_difference.h"
 #include "hil/check/firmware_alone.h"
 #include "hil/check/law_difference.h"
 #include "hil/check/signal_series.h"
@@ -127,6 +128,16 @@ std::vector<SignalSummary> signals_beyond(const RecordingComparison& comparison)
   return signals;
 }
 
+namespace {
+void note_console(const Recording& recording, const ConsoleKeeper& console, CheckOutcome& out) {
+  constexpr std::size_t kShownLines = 20;  // as many as a report of the board has
+  const std::int64_t until_ns = out.comparison.first ? out.comparison.first->now_ns : recording.end_ns;
+  const std::span<const ConsoleLine> last = last_lines(console.lines(), until_ns, kShownLines);
+  out.console.assign(last.begin(), last.end());
+  out.console_difference = console_difference(recording, console.lines());
+}
+}  // namespace
+
 CheckOutcome check_recording(const std::string& file, const Recording& recording, const RadioFormat& format,
                              const CheckOptions& options) {
   CheckOutcome out;
@@ -158,6 +169,7 @@ CheckOutcome check_recording(const std::string& file, const Recording& recording
     throw std::invalid_argument(
         "nothing to compare: the recording has neither samples nor bytes of the dongle");
   }
+  if (options.console != nullptr && !out.passed()) note_console(recording, *options.console, out);
   if (out.comparison.agrees()) return out;
   explain(recording, run.answer, options.replay, out);
   const std::vector<SignalSummary> beyond = signals_beyond(out.comparison);

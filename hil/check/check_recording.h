@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hil/check/drive_difference.h"
+#include "hil/loop/console_line.h"
 #include "hil/recording/compare_recordings.h"
 #include "hil/recording/replay_run.h"
 #include "hil/text/line_chart.h"
@@ -18,8 +19,9 @@ namespace omnihil {
 struct CheckOptions {
   ReplayOptions replay;
   Tolerances tolerances;
-  std::string tolerance_reason;  // "exact, as asked"
-  std::size_t charts = 0;        // of the signals that differ most, at most so many
+  std::string tolerance_reason;            // "exact, as asked"
+  std::size_t charts = 0;                  // of the signals that differ most, at most so many
+  const ConsoleKeeper* console = nullptr;  // hears the replay's boards; null: nobody does
 };
 
 // Why there is no verdict.
@@ -39,6 +41,9 @@ struct CheckOutcome {
   std::vector<LineChart> charts;
   std::string
       field;  // SVG of the field from above, of the new run; where charts are asked for and there is one
+  // Of one that differs or failed: the last that its boards said until then, and the first line that was recorded otherwise.
+  std::vector<ConsoleLine> console;
+  std::string console_difference;
   double simulated_s = 0.0, wall_s = 0.0;
 
   bool passed() const { return fault == CheckFault::kNone && comparison.agrees(); }

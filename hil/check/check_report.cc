@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hil/loop/console_json.h"
 #include "hil/recording/replay_report.h"
 #include "hil/text/json_text.h"
 #include "hil/text/markup.h"
@@ -33,6 +34,14 @@ std::string fault_word(CheckFault fault) {
   return "";
 }
 
+// What the boards said last, and where they first said something else than was recorded.
+std::string console_text(const CheckOutcome& o, std::string_view said, std::string_view differs) {
+  std::string text;
+  for (const ConsoleLine& line : o.console) text += fmt::format("{}{}\n", said, line.words());
+  if (!o.console_difference.empty()) text += fmt::format("{}{}\n", differs, o.console_difference);
+  return text;
+}
+
 // Everything a reader of a CI log needs of a failure, several lines.
 std::string failure_text(const CheckOutcome& o) {
   std::string text;
@@ -41,6 +50,7 @@ std::string failure_text(const CheckOutcome& o) {
   if (o.drive) text += "drive: " + o.drive->text() + "\n";
   for (const std::string& change : o.cause) text += "cause: " + change + "\n";
   for (const std::string& change : o.changed) text += "changed: " + change + "\n";
+  text += console_text(o, "said: ", "console: ");
   text += o.explained;
   const std::vector<SignalSummary> beyond = signals_beyond(o.comparison);
   for (std::size_t i = 0; i < std::min(kNamedSignals, beyond.size()); ++i) {
@@ -88,6 +98,7 @@ std::string check_text(const CheckOutcome& o, bool table) {
                                             : "not identical");
   if (o.drive) text += "drive      " + o.drive->text() + "\n";
   for (const std::string& change : o.cause) text += "cause      " + change + "\n";
+  text += console_text(o, "said       ", "console    ");
   text += o.explained;
   if (!has_verdict(o)) text += fmt::format("{:<10} {}\n", fault_word(o.fault), o.fault_text);
   if (c.agrees()) return text + (has_verdict(o) ? "agrees\n" : "");
@@ -149,6 +160,8 @@ std::string check_json(std::span<const CheckOutcome> outcomes, const std::string
     if (o.comparison.first) one["first_difference"] = o.comparison.first->text();
     if (o.drive) one["drive_difference"] = o.drive->text();
     if (!o.cause.empty()) one["cause"] = o.cause;
+    if (!o.console.empty()) one["console"] = console_json(o.console);
+    if (!o.console_difference.empty()) one["console_difference"] = o.console_difference;
     if (!o.explained.empty()) one["model"] = o.explained;
     one["signals"] = nlohmann::ordered_json::array();
     for (const SignalSummary& signal : o.comparison.signals) one["signals"].push_back(signal_json(signal));

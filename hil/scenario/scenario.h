@@ -85,6 +85,8 @@ enum class CheckKind : std::uint8_t {
   kDutyLimit,
   kControlPeriods,
   kWheelOrder,
+  kConsoleSays,
+  kConsoleNeverSays,
   kSignal,
 };
 
@@ -98,7 +100,14 @@ struct ScenarioCheck {
   double band_ratio = 0.05;                     // kSettlingTime
   double standstill_rad_s = 1.0;                // kStopsAfterSilence, kStopsSafely
   bool magnitude = false;                       // kSignal: of the value's size
+  // kConsoleSays, kConsoleNeverSays: this stands in a line; of this port and board alone, where they are given.
+  std::string text{}, port{};
+  int board = -1;
 };
+
+constexpr bool of_console(CheckKind kind) {
+  return kind == CheckKind::kConsoleSays || kind == CheckKind::kConsoleNeverSays;
+}
 
 enum class CommandPath : std::uint8_t {
   kAny,    // by radio where the firmware decodes one that can say it, else as SI command

@@ -13,6 +13,7 @@ namespace omnihil {
 namespace {
 
 constexpr double kRisen = 0.9, kLastPart = 0.2, kHalf = 0.5;
+constexpr double kTick_s = 0.0015;  // the last control period begins before the window's end
 constexpr double kSmallest = 1e-9;  // of a step's height: below it there is none
 
 // One signal of one wheel over the window.
@@ -134,13 +135,13 @@ class Checker {
 
   void one(const ScenarioCheck& c, std::size_t w) {
     CheckResult r = blank(c, w);
+    if (of_console(c.kind)) return console(c, r);
     const std::string_view signal = signal_of(c);
     r.signals = {std::string(signal)};
     const ScenarioSignal& row = *find_scenario_signal(signal);
     if (!row.target.empty()) r.signals.emplace_back(row.target);
     if (signal != "duty_ratio" && row.of_wheels) r.signals.push_back("duty_ratio");
     const Window window = window_of(run_.trace, signal, w, c.from_s, c.to_s);
-    constexpr double kTick_s = 0.0015;  // the last control period begins before the window's end
     const std::span<const double> t = run_.trace.time_s();
     r.reached = window.size() >= 2 && (run_.failure.empty() || t.back() > c.to_s - kTick_s);
     if (!r.reached) {
@@ -242,6 +243,36 @@ class Checker {
     r.allowed = 0.0;
     r.note = found.verdict;
     r.passed = found.verdict.empty();
+    results_.push_back(r);
+  }
+
+  // A run that broke off before the window's end has not shown that nothing more would be said.
+  void console(const ScenarioCheck& c, CheckResult& r) {
+    r.name += fmt::format(" \"{}\"", c.text);
+    const auto fits = [&c](const ConsoleLine& line) {
+      const double at_s = static_cast<double>(line.at_ns) * 1e-9;
+      return at_s >= c.from_s && at_s <= c.to_s && (c.port.empty() || line.port == c.port) &&
+             (c.board < 0 || line.board == c.board) && line.text.find(c.text) != std::string::npos;
+    };
+    const auto said = std::ranges::find_if(run_.console, fits);
+    const bool is_said = said != run_.console.end();
+    if (is_said) {
+      r.at_s = static_cast<double>(said->at_ns) * 1e-9;
+      r.note = said->words();
+    }
+    const std::span<const double> t = run_.trace.time_s();
+    r.reached = is_said || run_.failure.empty() || (!t.empty() && t.back() > c.to_s - kTick_s);
+    if (!r.reached) r.note = "the run did not get to the end of this window";
+    if (c.kind == CheckKind::kConsoleSays) {
+      if (!r.allowed) r.allowed = c.to_s - c.from_s;
+      if (is_said) r.measured = r.at_s - c.from_s;
+      if (!is_said && r.reached) r.at_s = c.to_s;
+      r.passed = r.measured && *r.measured <= *r.allowed;
+    } else {
+      r.allowed = 0.0;
+      if (r.reached) r.measured = static_cast<double>(std::ranges::count_if(run_.console, fits));
+      r.passed = r.measured && *r.measured == 0.0;
+    }
     results_.push_back(r);
   }
 

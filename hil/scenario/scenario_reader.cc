@@ -361,8 +361,13 @@ class Reader {
     std::string suffix(row.suffix);
     if (row.follows_step || c.kind == CheckKind::kSignal) read_signal(t, path, row, c, suffix);
     const std::string most = "at_most_" + suffix, least = "at_least_" + suffix;
-    if (c.kind != CheckKind::kCommandedSign && c.kind != CheckKind::kWheelOrder)
+    const bool console = of_console(c.kind);
+    if (console) read_console(t, path, c);
+    if (c.kind == CheckKind::kConsoleSays && t.get(most) == nullptr) {
+      known.push_back(most);
+    } else if (!suffix.empty() || c.kind == CheckKind::kSignal) {
       limits(t, path, c, most, least, known);
+    }
     c.band_ratio =
         keys_.number(t, path, "band_ratio", 0.0, 1.0, true, "allowed: above 0 to 1").value_or(0.05);
     c.standstill_rad_s =
@@ -371,6 +376,13 @@ class Reader {
     c.magnitude = flag(t, path, "magnitude");
     keys_.only(t, path, known);
     out_.checks.push_back(c);
+  }
+
+  void read_console(const toml::table& t, const std::string& path, ScenarioCheck& c) {
+    need(t, path, "text", "what stands in a line");
+    c.text = keys_.text(t, path, "text").value_or("");
+    c.port = keys_.text(t, path, "port").value_or("");
+    if (t.get("board") != nullptr) c.board = count(t, path, "board", kWheels - 1);
   }
 
   void read_signal(const toml::table& t, const std::string& path, const CheckRow& row, ScenarioCheck& c,

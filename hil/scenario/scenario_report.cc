@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "hil/loop/console_json.h"
+#include "hil/text/json_text.h"
 #include "hil/text/markup.h"
 
 namespace omnihil {
@@ -28,6 +32,29 @@ std::string detail(const CheckResult& r) {
   return text;
 }
 
+// Of a failed one, the last lines until its last failed check was decided.
+std::span<const ConsoleLine> shown_console(const ScenarioOutcome& o) {
+  constexpr std::size_t kMost = 20;  // as many as a report of the board has
+  double until_s = 0.0;
+  for (const CheckResult& r : o.results) until_s = r.passed ? until_s : std::max(until_s, r.at_s);
+  if (o.passed()) return {};
+  return last_lines(o.console, std::llround(until_s * 1e9), kMost);
+}
+
+nlohmann::ordered_json result_json(const CheckResult& r) {
+  nlohmann::ordered_json one{
+      {"check", r.name}, {"line", r.line}, {"passed", r.passed}, {"reached", r.reached}};
+  if (r.wheel >= 0) one["wheel"] = r.wheel;
+  if (r.measured) one["measured"] = *r.measured;
+  if (r.allowed) one[r.at_least ? "at_least" : "at_most"] = *r.allowed;
+  if (!r.unit.empty()) one["unit"] = r.unit;
+  one["at_s"] = r.at_s;
+  one["from_s"] = r.from_s;
+  one["to_s"] = r.to_s;
+  if (!r.note.empty()) one["note"] = r.note;
+  return one;
+}
+
 }  // namespace
 
 bool ScenarioOutcome::passed() const { return failed_of(results) == 0; }
@@ -43,6 +70,7 @@ std::string scenario_text(const ScenarioOutcome& o, bool all) {
         fmt::format("  {}  {:<22} {:<8} {}\n", r.passed ? "ok  " : "FAIL", r.name, wheel_text(r), detail(r));
   }
   if (missed > 0 && !all) text += fmt::format("  FAIL  {} checks that it did not get to\n", missed);
+  for (const ConsoleLine& line : shown_console(o)) text += fmt::format("  said  {}\n", line.words());
   if (!o.plot.empty()) text += fmt::format("  plot  {}\n", o.plot);
   return text;
 }
@@ -92,9 +120,32 @@ std::string junit_xml(std::span<const ScenarioOutcome> outcomes) {
       const std::string line = escaped(failure_line(r));
       out += fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n", line, line);
     }
+    std::string said;
+    for (const ConsoleLine& line : shown_console(o)) said += line.words() + "\n";
+    if (!said.empty()) out += fmt::format("    <system-out>{}</system-out>\n", escaped(said));
     out += "  </testsuite>\n";
   }
   return out + "</testsuites>\n";
+}
+
+std::string scenario_json(std::span<const ScenarioOutcome> outcomes, const std::string& program) {
+  nlohmann::ordered_json all{{"format", "omnihil-scenario-report/1"}, {"program", program}};
+  all["scenarios"] = nlohmann::ordered_json::array();
+  for (const ScenarioOutcome& o : outcomes) {
+    nlohmann::ordered_json one{{"file", o.scenario.file},
+                               {"title", o.scenario.title},
+                               {"firmware", o.firmware},
+                               {"commands", o.commands},
+                               {"passed", o.passed()},
+                               {"firmware_failed", o.firmware_failed},
+                               {"duration_s", o.scenario.duration_s}};
+    if (!o.plot.empty()) one["plot"] = o.plot;
+    one["checks"] = nlohmann::ordered_json::array();
+    for (const CheckResult& r : o.results) one["checks"].push_back(result_json(r));
+    if (const auto said = shown_console(o); !said.empty()) one["console"] = console_json(said);
+    all["scenarios"].push_back(std::move(one));
+  }
+  return json_text(all) + "\n";
 }
 
 }  // namespace omnihil

@@ -105,6 +105,12 @@ constexpr CheckRow kChecks[] = {
      "each wheel turns at its own commanded speed and not at another's (sizes of the means over the window's "
      "last "
      "half); needs four speeds of different size"},
+    {CheckKind::kConsoleSays, "console_says", "s", "s", false, false, "text port board",
+     "time from from_s until a line with this text stands on a console of the board; without at_most_s "
+     "within "
+     "the window"},
+    {CheckKind::kConsoleNeverSays, "console_never_says", "", "", false, false, "text port board",
+     "no line with this text stands on a console of the board within the window"},
     {CheckKind::kSignal, "signal", "", "", true, false, "signal magnitude",
      "a signal within at_least_… and at_most_… throughout the window; magnitude = true: its size"},
 };

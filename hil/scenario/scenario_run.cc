@@ -22,8 +22,9 @@ std::int64_t ns(double time_s) { return std::llround(time_s * 1e3) * 1'000'000; 
 class Bench : public SessionObserver {
  public:
   Bench(const Scenario& scenario, const SessionConfig& config, const Session::FirmwareMaker& make_firmware,
-        const ScenarioVariables& variables)
+        const ScenarioVariables& variables, ScenarioConsole* console)
       : scenario_(scenario),
+        console_(console),
         geometry_(wheel_geometry(config.robots.at(0))),
         model_(config.robots.at(0)),
         robot_id_(config.robot_ids.at(0)),
@@ -39,6 +40,7 @@ class Bench : public SessionObserver {
                        scenario.file, session_.firmware(0).name())});
     }
     look_at(variables);
+    listen();
     break_chip();
   }
 
@@ -64,6 +66,8 @@ class Bench : public SessionObserver {
       run_.flash_in_use = chip->flash_in_use();
       run_.interrupts_in_use = chip->interrupts_in_use();
     }
+    if (console_ != nullptr)
+      run_.console.assign(console_->keeper.lines().begin(), console_->keeper.lines().end());
     return std::move(run_);
   }
 
@@ -79,6 +83,7 @@ class Bench : public SessionObserver {
 
   void robot_tick(std::int64_t at_ns, const RobotSample& robot) override {
     if (robot.robot_id != robot_id_) return;  // of an opponent
+    if (console_ != nullptr) console_->keeper.robot_tick(at_ns, robot);
     sample_.robot = robot;
     if (const BallState* const ball = session_.world().ball()) {
       sample_.ball_m = ball->position;
@@ -119,6 +124,19 @@ class Bench : public SessionObserver {
     throw_problems(problems);
     session_.set_watch(variables_.get());
     run_.trace = ScenarioTrace(variables_->names());
+  }
+
+  // A check of what is never said would pass where nobody can say anything.
+  void listen() {
+    if (console_ != nullptr && console_->there) return;
+    std::vector<std::string> problems;
+    for (const ScenarioCheck& check : scenario_.checks) {
+      if (!of_console(check.kind)) continue;
+      problems.push_back(
+          fmt::format("{}:{}: {}: needed: an image on a board with a console, [[port]] with console = true",
+                      scenario_.file, check.line, row_of(check.kind).word));
+    }
+    throw_problems(problems);
   }
 
   // All of them are given to the chip at once: it knows their instants better.
@@ -268,6 +286,7 @@ class Bench : public SessionObserver {
   }
 
   const Scenario& scenario_;
+  ScenarioConsole* console_;  // null: nobody listens
   WheelGeometry<double> geometry_;
   RobotModel model_;
   int robot_id_;
@@ -287,8 +306,9 @@ class Bench : public SessionObserver {
 }  // namespace
 
 ScenarioRun run_scenario(const Scenario& scenario, const SessionConfig& config,
-                         const Session::FirmwareMaker& make_firmware, const ScenarioVariables& variables) {
-  return Bench(scenario, config, make_firmware, variables).run();
+                         const Session::FirmwareMaker& make_firmware, const ScenarioVariables& variables,
+                         ScenarioConsole* console) {
+  return Bench(scenario, config, make_firmware, variables, console).run();
 }
 
 }  // namespace omnihil

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/loop/console_line.h"
 #include "hil/loop/session.h"
 #include "hil/scenario/scenario.h"
 #include "hil/scenario/scenario_signals.h"
@@ -22,6 +23,7 @@ struct ScenarioRun {
   std::string
       failure;  // the firmware answers no more, or a state is not finite: when and why; empty: neither
   bool firmware_failed = false;
+  std::vector<ConsoleLine> console;  // what its boards said
   // Of an emulated chip: what of it was in use.
   std::vector<ChipMemoryRange> ram_in_use, flash_in_use;
   std::vector<int> interrupts_in_use;
@@ -34,10 +36,16 @@ struct ScenarioVariables {
   std::vector<std::string> set;    // "NAME=VALUE", at the start
 };
 
+// Who hears the robot's boards, and whether one of them has a console.
+struct ScenarioConsole {
+  ConsoleKeeper keeper;
+  bool there = false;
+};
+
 // `config` has one robot. std::invalid_argument: the configuration, or a command that the path of the
-// scenario cannot carry, or variables that are not there.
+// scenario cannot carry, or variables or a console that are not there.
 ScenarioRun run_scenario(const Scenario& scenario, const SessionConfig& config,
-                         const Session::FirmwareMaker& make_firmware,
-                         const ScenarioVariables& variables = {});
+                         const Session::FirmwareMaker& make_firmware, const ScenarioVariables& variables = {},
+                         ScenarioConsole* console = nullptr);
 
 }  // namespace omnihil

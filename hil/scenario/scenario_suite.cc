@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "hil/loop/effect_overrides.h"
 #include "hil/loop/model_store.h"
@@ -84,6 +85,15 @@ void write(const fs::path& file, const std::string& text) {
   if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), file.string());
 }
 
+FirmwareChoice heard_by(ScenarioConsole& console, FirmwareChoice choice) {
+  choice.listeners.on_line = console.keeper.listener(choice.listeners.on_line);
+  choice.listeners.on_board = [&console, also = choice.listeners.on_board](const MadeBoard& made) {
+    console.there = console.there || std::ranges::any_of(made.mcu.spec().ports, &mcu::PortEntry::console);
+    if (also) also(made);
+  };
+  return choice;
+}
+
 // The plot of the first failed check that has signals.
 std::string plot_failure(const ScenarioOutcome& o, const ScenarioTrace& trace, const std::string& folder) {
   const auto failed =
@@ -122,14 +132,17 @@ SuiteReading read_suite(const std::vector<std::string>& paths, const std::string
 
 ScenarioRun run_of(const Scenario& scenario, const SuiteOptions& options) {
   const SessionConfig config = config_of(scenario, options);
-  const Session::FirmwareMaker maker = open_firmware(options.firmware, config);
+  ScenarioConsole console;
+  const Session::FirmwareMaker maker = open_firmware(heard_by(console, options.firmware), config);
+  const Session::FirmwareMaker opponents = open_firmware(options.firmware, config);
+  bool first = true;  // the robot that is looked at is made before its opponents
   const auto make = [&](const RobotConfig& robot) {
-    std::unique_ptr<Firmware> firmware = maker(robot);
+    std::unique_ptr<Firmware> firmware = std::exchange(first, false) ? maker(robot) : opponents(robot);
     if (options.gdb != nullptr && !options.gdb->problem().empty())
       throw std::invalid_argument("--gdb: " + options.gdb->problem());
     return firmware;
   };
-  return run_scenario(scenario, config, make, {options.firmware.file, options.watch, options.set});
+  return run_scenario(scenario, config, make, {options.firmware.file, options.watch, options.set}, &console);
 }
 
 ScenarioOutcome run_one(const Scenario& scenario, const SuiteOptions& options) {
@@ -142,6 +155,7 @@ ScenarioOutcome run_one(const Scenario& scenario, const SuiteOptions& options) {
   outcome.commands = run.commands;
   outcome.results = check_scenario(scenario, run);
   outcome.firmware_failed = run.firmware_failed;
+  outcome.console = run.console;
   outcome.plot = plot_failure(outcome, run.trace, options.plots);
   return outcome;
 }

@@ -108,7 +108,12 @@ std::vector<std::string> recordings_of(const std::vector<std::string>& paths) {
 CheckOutcome checked(const CheckWords& words, const std::string& file) {
   const Recording recording = load_recording(fs::path(file));
   CheckOptions options;
-  options.replay = replay_options(words.replay, recording.header);
+  ConsoleKeeper console;
+  ReplayWords replay = words.replay;
+  replay.firmware.all.listeners.on_line = console.listener();
+  options.console = &console;
+  options.replay = replay_options(replay, recording.header);
+  options.replay.observer = &console;
   const RadioFormat* format = find_radio_format(recording.header.radio_format);
   if (format == nullptr) {
     throw std::invalid_argument(fmt::format("radio format '{}' is not known: name its file with --format",

@@ -21,6 +21,7 @@
 #include "tools/options/observe_options.h"
 #include "tools/options/scenario_fuzz.h"
 #include "tools/options/variable_options.h"
+#include "tools/program_commit.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
@@ -28,7 +29,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> paths;
-  std::string level, junit, physics = "planar";
+  std::string level, junit, json, physics = "planar";
   std::string bench;  // expanded before the command line is read (bench_expansion.h)
   bool all = false, no_plots = false;
   SuiteOptions suite;
@@ -73,9 +74,10 @@ int list(const Arguments& a) {
   return kExitOk;
 }
 
-void write_junit(const std::string& path, const std::vector<ScenarioOutcome>& outcomes) {
+void write_report(const std::string& path, const std::string& text) {
+  if (path.empty()) return;
   std::ofstream out(path, std::ios::binary);
-  out << junit_xml(outcomes);
+  out << text;
   out.flush();
   if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), path);
 }
@@ -112,7 +114,8 @@ int run(Arguments& a) {
   }
   fmt::print("{}", summary_line(outcomes));
   fmt::print("{}", reports.write_profile());
-  if (!a.junit.empty()) write_junit(a.junit, outcomes);
+  write_report(a.junit, junit_xml(outcomes));
+  write_report(a.json, scenario_json(outcomes, program_commit()));
   const int code = firmware_failed ? kExitFirmware : passed ? kExitOk : kExitDiffers;
   if (gdb) gdb->end(code);
   return code;
@@ -146,6 +149,7 @@ void add_run(Verb& verb, const std::shared_ptr<Arguments>& a, VerbResult& result
       .capture_default_str();
   sub.add_option("--seed", a->suite.seed, "of everything random").capture_default_str();
   sub.add_option("--junit", a->junit, "write JUnit XML to this file");
+  sub.add_option("--json", a->json, "write every check's numbers to this file");
   a->suite.plots = "scenario-plots";
   sub.add_option("--plots", a->suite.plots, "folder for one SVG per failed scenario; made when one fails")
       .capture_default_str();

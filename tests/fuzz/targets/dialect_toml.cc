@@ -7,7 +7,8 @@
 OMNIHIL_FUZZ_TARGET(bytes) {
   using namespace omnihil;
   std::vector<mcu::BoardProblem> problems;
-  const auto dialect = mcu::read_dialect({.path = "fuzz.toml", .text = std::string(text_of(bytes))}, 2, problems);
+  const auto dialect =
+      mcu::read_dialect({.path = "fuzz.toml", .text = std::string(text_of(bytes))}, 2, problems);
   demand(dialect.has_value() == problems.empty(), "a dialect or a problem");
   for (const mcu::BoardProblem& problem : problems) demand(!problem.text().empty(), "a problem has words");
   if (!dialect) return;

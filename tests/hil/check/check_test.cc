@@ -8,6 +8,7 @@
 #include "hil/check/check_recording.h"
 #include "hil/check/check_report.h"
 #include "hil/check/compare_versions.h"
+#include "hil/check/console_difference.h"
 #include "hil/check/firmware_alone.h"
 #include "hil/check/law_difference.h"
 #include "hil/firmware/open_firmware.h"
@@ -240,6 +241,47 @@ TEST(CheckHistory, KeepsWhatItUnderstandsAndCountsTheRest) {
   EXPECT_EQ(runs[1].signal, "x");
   EXPECT_DOUBLE_EQ(runs[1].over_tolerance, 0.5);
   EXPECT_NE(check_page(std::span(&outcome, 1), history, "p").find("run by run"), std::string::npos);
+}
+
+Recording recorded_console(std::vector<std::string> texts) {
+  Recording recording;
+  for (const std::string& text : texts) {
+    RecordedChunk chunk;
+    chunk.kind = RecordedChunk::Kind::kConsole;
+    chunk.now_ns = 5'000'000;
+    chunk.robot_id = 1;
+    chunk.port = "RTT";
+    chunk.text = text;
+    recording.chunks.push_back(chunk);
+  }
+  return recording;
+}
+
+TEST(ConsoleDifference, NamesTheFirstLineThatIsAnotherThanRecorded) {
+  const std::vector<ConsoleLine> now{{1'000'000, 1, 0, "RTT", "boot"}, {8'000'000, 1, 0, "RTT", "stall"}};
+  EXPECT_EQ(console_difference(recorded_console({"boot", "stall"}), now), "");
+  EXPECT_EQ(console_difference(recorded_console({}), now), "") << "recorded without a console";
+  EXPECT_EQ(console_difference(recorded_console({"boot", "ready"}), now),
+            "robot 1 RTT, line 2: \"stall\" at 0.008 s, recorded \"ready\" at 0.005 s");
+  EXPECT_EQ(console_difference(recorded_console({"boot"}), now),
+            "robot 1 RTT, line 2: \"stall\" at 0.008 s, recorded nothing");
+  EXPECT_EQ(console_difference(recorded_console({"boot", "stall", "end"}), now),
+            "robot 1 RTT, line 3: nothing, recorded \"end\" at 0.005 s");
+}
+
+TEST(CheckReport, TheConsoleStandsInEveryReport) {
+  CheckOutcome o;
+  o.file = "a.omnirec";
+  o.fault = CheckFault::kFirmware;
+  o.console = {{8'000'000, 1, 0, "RTT", "stall"}};
+  o.console_difference = "robot 1 RTT, line 2";
+  EXPECT_NE(
+      check_text(o, false).find("said       0.008 s robot 1 RTT | stall\nconsole    robot 1 RTT, line 2\n"),
+      std::string::npos);
+  EXPECT_NE(check_junit({{o}}).find("said: 0.008 s robot 1 RTT | stall"), std::string::npos);
+  const std::string json = check_json({{o}}, "p");
+  EXPECT_NE(json.find("\"text\":\"stall\""), std::string::npos) << json;
+  EXPECT_NE(json.find("\"console_difference\":\"robot 1 RTT, line 2\""), std::string::npos) << json;
 }
 
 }  // namespace

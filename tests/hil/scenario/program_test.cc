@@ -82,5 +82,50 @@ TEST_F(ScenarioProgram, ServeRunsAHealthyLibrary) {
   EXPECT_EQ(ran.exit_code, 0) << ran.text;
 }
 
+// The image of the ports, which says "boot" on USART2 in its first 2 ms; its wheels do not turn.
+class ScenarioConsoleProgram : public ScenarioProgram {
+ protected:
+  void SetUp() override {
+    ScenarioProgram::SetUp();
+    if (!fs::exists(OMNIHIL_BUILD_DIR "/images/ports.elf")) GTEST_SKIP() << "no image";
+  }
+  Ran run(const std::string& checks, const std::string& port = "of = \"USART2\"\nconsole = true\n") const {
+    std::ifstream board(OMNIHIL_SOURCE_DIR "/boards/four_wheels_f405.toml");
+    std::ofstream(folder_ / "board.toml") << board.rdbuf() << (port.empty() ? "" : "\n[[port]]\n") << port;
+    std::ofstream(folder_ / "s.toml")
+        << "format = \"omnihil-scenario/1\"\ntitle = \"t\"\nduration_s = 0.05\nstand = true\n"
+           "opponents = 2\n[[step]]\nat_s = 0.01\ndo = \"command\"\nomega_wheel_rad_s = 5.0\n"
+        << checks;
+    return run_omnihil("scenario run" + shell(folder_ / "s.toml") + "--no-plots --all --json" +
+                       shell(folder_ / "out.json") + "--junit" + shell(folder_ / "out.xml") +
+                       "--firmware '" OMNIHIL_BUILD_DIR "/images/ports.elf' --board" +
+                       shell(folder_ / "board.toml"));
+  }
+};
+const std::string kSaysBoot = "[[check]]\nis = \"console_says\"\ntext = \"boot\"\nat_most_s = 0.003\n";
+const std::string kNeverBoot = "[[check]]\nis = \"console_never_says\"\ntext = \"boot\"\nport = \"USART2\"\n";
+
+TEST_F(ScenarioConsoleProgram, WhatABoardSaysIsExpected) {
+  const Ran ran = run(kSaysBoot + "[[check]]\nis = \"console_never_says\"\ntext = \"fault\"\n");
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+  EXPECT_TRUE(ran.says("console_says \"boot\"")) << ran.text;
+}
+
+// Once: of the robot, not of its opponents, which run the same image.
+TEST_F(ScenarioConsoleProgram, WhatItMustNotSayFailsAndIsShown) {
+  const Ran ran = run(kNeverBoot);
+  EXPECT_EQ(ran.exit_code, 1) << ran.text;
+  EXPECT_TRUE(ran.says("console_never_says \"boot\"") && ran.says("1              at most 0")) << ran.text;
+  EXPECT_TRUE(ran.says("  said  0.00") && ran.says("robot 1 USART2 | boot")) << ran.text;
+  EXPECT_NE(text_of("out.xml").find("<system-out>0.00"), std::string::npos);
+  EXPECT_NE(text_of("out.json").find("\"text\":\"boot\""), std::string::npos);
+}
+
+TEST_F(ScenarioConsoleProgram, WithoutAConsoleNothingIsExpectedOfIt) {
+  const Ran ran = run(kNeverBoot, "");
+  EXPECT_EQ(ran.exit_code, 2) << ran.text;
+  EXPECT_TRUE(ran.says("s.toml:10: console_never_says") && ran.says("console = true")) << ran.text;
+}
+
 }  // namespace
 }  // namespace omnihil

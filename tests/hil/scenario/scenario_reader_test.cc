@@ -122,7 +122,7 @@ TEST(ScenarioReader, ShippedSuiteReadsAndShowsEveryStepAndCheck) {
     })) << row.word;
   }
   for (const CheckRow& row : check_rows()) {
-    if (row.kind == CheckKind::kStopsSafely) continue;  // goes with those
+    if (row.kind == CheckKind::kStopsSafely || of_console(row.kind)) continue;  // go with those
     EXPECT_TRUE(std::ranges::any_of(suite.scenarios, [&](const Scenario& s) {
       return std::ranges::find(s.checks, row.kind, &ScenarioCheck::kind) != s.checks.end();
     })) << row.word;
@@ -154,6 +154,33 @@ TEST(ScenarioFault, IsOneStepThatLasts) {
   read_fault("at_s = 1.0, do = \"wheel_blokked\", wheels = [0]", problems);
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems[0].find("do = \"wheel_blokked\""), 0U) << problems[0];
+}
+
+TEST(ScenarioReader, ReadsWhatAConsoleIsToSay) {
+  const std::string says =
+      std::string(kGood) +
+      "[[check]]\nis = \"console_says\"\ntext = \"ready\"\nport = \"RTT\"\nboard = 1\nfrom_s = 0.5\n";
+  const ScenarioReading r = read_scenario(says, "s.toml");
+  ASSERT_TRUE(r.scenario) << r.problems.front().text();
+  const ScenarioCheck& c = r.scenario->checks.back();
+  EXPECT_EQ(c.text, "ready");
+  EXPECT_EQ(c.port, "RTT");
+  EXPECT_EQ(c.board, 1);
+  EXPECT_FALSE(c.at_most);
+  EXPECT_EQ(c.from_s, 0.5);
+  EXPECT_EQ(c.to_s, 2.0);
+  const std::pair<const char*, const char*> kWrong[] = {
+      {"is = \"console_says\"\n", "text"},
+      {"is = \"console_says\"\ntext = \"\"\n", "is empty"},
+      {"is = \"console_never_says\"\ntext = \"x\"\nat_most_s = 1.0\n", "at_most_s"},
+      {"is = \"console_never_says\"\ntext = \"x\"\nwheels = [0]\n", "wheels"},
+      {"is = \"console_says\"\ntext = \"x\"\nboard = 4\n", "0 to 3"},
+      {"is = \"rise_time\"\nat_most_s = 1.0\ntext = \"x\"\n", "text"}};
+  for (const auto& [check, what] : kWrong) {
+    const ScenarioReading wrong = read_scenario(std::string(kGood) + "[[check]]\n" + check, "s.toml");
+    ASSERT_EQ(wrong.problems.size(), 1u) << check;
+    EXPECT_NE(wrong.problems[0].text().find(what), std::string::npos) << wrong.problems[0].text();
+  }
 }
 
 }  // namespace

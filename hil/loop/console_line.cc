@@ -1,0 +1,32 @@
+#include "hil/loop/console_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace omnihil {
+
+std::string ConsoleLine::words() const {
+  const std::string of = board == 0 ? std::string() : fmt::format(" board {}", board);
+  return fmt::format("{:.3f} s robot {}{} {} | {}", static_cast<double>(at_ns) * 1e-9, robot_id, of, port,
+                     text);
+}
+
+ConsoleKeeper::Listener ConsoleKeeper::listener(Listener also) {
+  return [this, also = std::move(also)](std::uint32_t robot_id, int board, const std::string& port,
+                                        const std::string& line) {
+    lines_.push_back({now_ns_, static_cast<int>(robot_id), board, port, line});
+    if (also) also(robot_id, board, port, line);
+  };
+}
+
+std::span<const ConsoleLine> last_lines(std::span<const ConsoleLine> lines, std::int64_t until_ns,
+                                        std::size_t most) {
+  const auto end = std::ranges::upper_bound(lines, until_ns, {}, &ConsoleLine::at_ns);
+  const auto count = static_cast<std::size_t>(end - lines.begin());
+  const std::size_t kept = std::min(count, most);
+  return lines.subspan(count - kept, kept);
+}
+
+}  // namespace omnihil
