@@ -25,14 +25,14 @@ GpioPort::GpioPort(unsigned port, ChipContext& context, GpioLayout layout)
     : RegisterBlock(std::string("GPIO") + static_cast<char>('A' + port), context.system,
                     layout == GpioLayout::kF1 ? std::span<const RegisterInfo>(kPortOfF1) : kPort),
       port_(port),
-      layout_(layout),
-      odr_(layout == GpioLayout::kF1 ? f1::kOdr : kOdr) {
+      layout_(layout) {
   next_event_is(kNever);
   GpioPort::reset();
 }
 
 void GpioPort::reset() {
   RegisterBlock::reset();
+  odr_ = 0;
   if (layout_ == GpioLayout::kF1) {
     // floating inputs all, but the debug port has its pins until AFIO takes them from it
   } else if (port_ == 0) {  // SWDIO with pull-up, SWCLK with pull-down, JTDI with pull-up
@@ -46,38 +46,36 @@ void GpioPort::reset() {
   changed();
 }
 
-PinMode GpioPort::mode(unsigned pin) const {
-  if (layout_ == GpioLayout::kModes) return static_cast<PinMode>(value(kModer) >> (2 * pin) & 3u);
-  const std::uint32_t pair = value(f1::kCrl + 4 * (pin / 8)) >> (4 * (pin % 8)) & 15u;
-  if ((pair & 3u) == 0) return pair == 0 ? PinMode::kAnalog : PinMode::kInput;
-  return pair < 8 ? PinMode::kOutput : PinMode::kAlternate;
-}
-
-// F1: an input with a pull (CNF 2), which ODR says the direction of.
-bool GpioPort::pulled_up(unsigned pin) const {
-  if (layout_ == GpioLayout::kModes) return (value(kPupdr) >> (2 * pin) & 3u) == 1;
-  const std::uint32_t pair = value(f1::kCrl + 4 * (pin / 8)) >> (4 * (pin % 8)) & 15u;
-  return pair == 8 && output(pin);
-}
-
-// Which pins are outputs, and which have a pull-up: whenever what says so is written.
+// What each pin is, which are outputs and which have a pull-up: whenever what says so is written.
 void GpioPort::note_modes() {
+  if (layout_ == GpioLayout::kModes) modes_ = value(kModer);
   outputs_ = pulled_ = 0;
   for (unsigned pin = 0; pin < 16; ++pin) {
+    bool up = false;
+    if (layout_ == GpioLayout::kModes) {
+      up = (value(kPupdr) >> (2 * pin) & 3u) == 1;
+    } else {
+      const std::uint32_t four = value(f1::kCrl + 4 * (pin / 8)) >> (4 * (pin % 8)) & 15u;
+      const PinMode mode = (four & 3u) == 0 ? (four == 0 ? PinMode::kAnalog : PinMode::kInput)
+                           : four < 8       ? PinMode::kOutput
+                                            : PinMode::kAlternate;
+      modes_ = (modes_ & ~(3u << (2 * pin))) | static_cast<std::uint32_t>(mode) << (2 * pin);
+      up = four == 8 && output(pin);  // an input with a pull, which ODR says the direction of
+    }
     if (mode(pin) == PinMode::kOutput) outputs_ |= 1u << pin;
-    if (pulled_up(pin)) pulled_ |= 1u << pin;
+    if (up) pulled_ |= 1u << pin;
   }
 }
 
 std::uint32_t GpioPort::levels() const {
   const std::uint32_t idle = (driven_ & driven_high_) | (~driven_ & pulled_);
-  return ((outputs_ & value(odr_)) | (~outputs_ & idle)) & 0xFFFFu;
+  return ((outputs_ & odr_) | (~outputs_ & idle)) & 0xFFFFu;
 }
 
 bool GpioPort::level(unsigned pin) const { return (levels() >> pin & 1u) != 0; }
 
 void GpioPort::changed() {
-  const std::uint32_t levels_now = levels(), outputs = outputs_ & value(odr_);
+  const std::uint32_t levels_now = levels(), outputs = outputs_ & odr_;
   const std::uint32_t moved = levels_now ^ seen_levels_, given = outputs ^ seen_outputs_;
   seen_levels_ = levels_now;
   seen_outputs_ = outputs;
@@ -107,26 +105,44 @@ void GpioPort::on_output(unsigned pin, std::function<void(bool)> listener) {
 }
 
 std::uint32_t GpioPort::load(std::uint32_t offset) {
-  return offset == (layout_ == GpioLayout::kF1 ? f1::kIdr : kIdr) ? levels() : value(offset);
+  const bool old = layout_ == GpioLayout::kF1;
+  if (offset == (old ? f1::kIdr : kIdr)) return levels();
+  return offset == (old ? f1::kOdr : kOdr) ? odr_ : value(offset);
 }
 
 void GpioPort::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
-  const bool old = layout_ == GpioLayout::kF1;
-  std::uint32_t& odr = value(odr_);
-  const std::uint32_t before = odr;
-  const bool sets = offset == (old ? f1::kBsrr : kBsrr), clears = offset == (old ? f1::kBrr : kBrr);
-  if (sets) {
-    odr = (odr & ~(written >> 16)) | (written & 0xFFFFu);  // set wins over reset
-  } else if (clears) {
-    odr &= ~(written & 0xFFFFu);
+  if (layout_ == GpioLayout::kF1) [[unlikely]]
+    return store_f1(offset, written, lanes);
+  const std::uint32_t before = odr_;
+  if (offset == kBsrr) {
+    odr_ = (odr_ & ~(written >> 16)) | (written & 0xFFFFu);  // set wins over reset
+  } else if (offset == kBrr) {
+    odr_ &= ~(written & 0xFFFFu);
+  } else if (offset == kOdr) {
+    odr_ = ((odr_ & ~lanes) | (written & lanes)) & 0xFFFFu;
+  } else {
+    keep(offset, written, lanes);
+    if (offset == kModer || offset == kPupdr) note_modes();
+  }
+  if (odr_ == before && (offset == kBsrr || offset == kBrr)) return;
+  changed();
+  if (offset != kModer && offset != kAfrl && offset != kAfrl + 4) return;
+  for (const auto& listener : on_modes_) listener();
+}
+
+[[gnu::noinline]] void GpioPort::store_f1(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  if (offset == f1::kBsrr) {
+    odr_ = (odr_ & ~(written >> 16)) | (written & 0xFFFFu);
+  } else if (offset == f1::kBrr) {
+    odr_ &= ~(written & 0xFFFFu);
+  } else if (offset == f1::kOdr) {
+    odr_ = ((odr_ & ~lanes) | (written & lanes)) & 0xFFFFu;
   } else {
     keep(offset, written, lanes);
   }
-  if (odr == before && (sets || clears)) return;
-  const bool modes = old ? offset <= f1::kCrh : offset == kModer;
-  if (old || modes || offset == kPupdr) note_modes();  // F1: a pull's direction is ODR's
+  note_modes();  // pulls follow ODR
   changed();
-  if (!modes && (old || (offset != kAfrl && offset != kAfrl + 4))) return;
+  if (offset != f1::kCrl && offset != f1::kCrh) return;
   for (const auto& listener : on_modes_) listener();
 }
 

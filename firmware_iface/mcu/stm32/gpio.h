@@ -28,8 +28,8 @@ class GpioPort final : public RegisterBlock {
   void reset() override;
 
   unsigned port() const { return port_; }
-  PinMode mode(unsigned pin) const;
-  bool output(unsigned pin) const { return (value(odr_) >> pin & 1u) != 0; }
+  PinMode mode(unsigned pin) const { return static_cast<PinMode>(modes_ >> (2 * pin) & 3u); }
+  bool output(unsigned pin) const { return (odr_ >> pin & 1u) != 0; }
   bool level(unsigned pin) const;  // what a voltmeter at the pin would say
   void drive(unsigned pin, bool level);
   void release(unsigned pin);
@@ -54,11 +54,12 @@ class GpioPort final : public RegisterBlock {
   void note_modes();
   std::uint32_t levels() const;
 
-  bool pulled_up(unsigned pin) const;
+  void store_f1(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes);
 
   unsigned port_;
   GpioLayout layout_;
-  std::uint32_t odr_;                       // the register's offset
+  std::uint32_t odr_ = 0;                   // the output data register
+  std::uint32_t modes_ = 0;                 // two bits a pin, as MODER has them
   std::uint32_t outputs_ = 0, pulled_ = 0;  // of the registers, a bit per pin
   std::uint32_t driven_ = 0, driven_high_ = 0;
   std::uint32_t seen_levels_ = 0, seen_outputs_ = 0;
