@@ -51,6 +51,9 @@ std::string axis_dataset_text(const AcquirePlan& plan, const std::vector<Acquire
   add(word, word, "");
   add("encoder", "encoder", fmt::format(", counts_per_rev = {:.10g}, shaft = \"rotor\"", counts_per_turn));
   add("position", "position", "");
+  // A torque is compared with the acceleration. An error of a sample's instant makes a position wrong by the speed times it, a
+  // reported speed by the acceleration times it, and is differenced once less.
+  if (plan.drive == PlanDrive::kMotorTorque) add("velocity", "velocity", "");
   // The bus acts through the duty alone. A current is a signal as the mean over its period, which a board with the shim tells;
   // what a motor controller tells is of an instant, of another current where a demand has just been changed.
   if (plan.drive == PlanDrive::kDuty) {

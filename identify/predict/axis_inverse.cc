@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "identify/predict/axis_outputs.h"
 #include "identify/record/statistics.h"
 #include "identify/record/wiener.h"
 
@@ -13,9 +14,10 @@ namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr int kOrder = 4;                    // with the cutoff's share: source as below
-constexpr double kShareOfNyquist = 0.2;      // source: Janot, Gautier, Brunot 2019
-constexpr double kHighestCutoff_Hz = 100.0;  // of faster records: beyond a drive's mechanics; a choice
+constexpr int kOrder = 4;                      // with the cutoff's share: source as below
+constexpr double kShareOfNyquist = 0.2;        // source: Janot, Gautier, Brunot 2019
+constexpr double kHighestCutoff_Hz = 100.0;    // of faster records: beyond a drive's mechanics; a choice
+constexpr double kMotionShareOfNyquist = 0.8;  // where a low pass of that cutoff is still one; a choice
 constexpr double kEndsInPeriods = 5.0;  // of the cutoff, left out at either end: the filter settles; a choice
 
 LowPass filter_for(double rate_Hz) {
@@ -83,6 +85,22 @@ double band_noise(const std::vector<double>& raw, const std::vector<double>& low
   for (std::size_t i = 0; i < raw.size(); ++i) above.push_back(std::abs(raw[i] - low[i]));
   if (above.empty()) return 0.0;
   return sigma_by_mad(std::move(above)) * std::sqrt(cutoff_Hz / (0.5 * rate_Hz - cutoff_Hz));
+}
+
+// What the imposed motion's own error moves the torque that it needs by, 1-sigma in the filter's band: sigma^2 = J^2 mean over
+// frequency of S_e(f) |2 sin(pi f T) / T|^2 |F(f)|^4, the inertia times the rate of change from sample to sample; the motion and what is
+// needed for it are each filtered once. S_e: error of the smoothed speed (wiener.h), (rad/s)^2. In the inertia's unit times rad/s^2.
+double needed_torque_sigma(const std::vector<double>& speed_error, double inertia_kg_m2,
+                           const LowPass& filter, double rate_Hz) {
+  double square = 0.0;
+  const double count = static_cast<double>(speed_error.size());
+  for (std::size_t k = 0; k < speed_error.size(); ++k) {
+    const double share = static_cast<double>(k) / (count - 1.0);
+    const double slope = 2.0 * rate_Hz * std::sin(0.5 * std::numbers::pi * share);
+    const double gain = zero_phase_gain(filter, share);
+    square += speed_error[k] * std::pow(slope * gain * gain, 2) / count;
+  }
+  return inertia_kg_m2 * std::sqrt(square);
 }
 
 double rms_about_mean(const std::vector<double>& x) {
@@ -171,7 +189,8 @@ std::vector<double> smoothed_velocity(const AxisRecord& record) {
   return resampled(even, speed, record.time_s, false);
 }
 
-void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
+void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive, const AxisRecord& r,
+                        AxisSetup& s) {
   const CommandKind kind = axis_command_kind(dataset);
   const Channel* speed_channel = dataset.channel("velocity");
   s.speed_imposed = speed_channel != nullptr && speed_channel->imposed;
@@ -192,14 +211,23 @@ void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& 
   std::vector<double> position = linear(position_of(r));
   std::vector<double> velocity = linear(r.velocity);
   // The motion is the regressor here: its noise would make the inertia small (wiener.h).
+  NoiseSpectrum spectrum = NoiseSpectrum::kWhite;
   if (velocity.empty()) {
-    velocity = wiener_smoothed(central_differences(position), NoiseSpectrum::kDifferenced);
+    spectrum = NoiseSpectrum::kDifferenced;
+    velocity = central_differences(position);
     for (double& v : velocity) v *= rate;
-    position = zero_phase(s.filter, position);
-  } else {
-    velocity = wiener_smoothed(velocity, NoiseSpectrum::kWhite);
+    position = wiener_smoothed(position, NoiseSpectrum::kWhite);
   }
-  velocity = zero_phase(s.filter, velocity);
+  const double inertia_sigma_Nm = needed_torque_sigma(
+      wiener_error_spectrum(velocity, spectrum), inertia_at_rotor(drive) * drive.gear_ratio, s.filter, rate);
+  velocity = wiener_smoothed(velocity, spectrum);
+  // A law that is not linear (friction at a reversal) does not commute with a filter: the motion keeps what stands out of its
+  // noise, up to a drive's mechanics, and only what the laws make of it is brought into the compared band. Short records: no
+  // spectrum, hence that band.
+  if (velocity.size() < kLeastSmoothed)
+    velocity = zero_phase(s.filter, velocity);
+  else if (kHighestCutoff_Hz < kMotionShareOfNyquist * 0.5 * rate)
+    velocity = zero_phase(butterworth(kOrder, kHighestCutoff_Hz, rate), velocity);
   in.imposed_velocity_rad_s = velocity;
   in.measured_position_rad = position;
   if (!position.empty()) in.initial_position_rad = position.front();
@@ -213,8 +241,13 @@ void make_inverse_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& 
     const bool stated = channel != nullptr && channel->sigma > 0.0 && output != AxisOutput::kNeededInput;
     std::vector<double> low = zero_phase(s.filter, raw);
     // white noise of the channel, in the filter's band
-    const double sigma =
+    double sigma =
         stated ? channel->sigma * std::sqrt(cutoff / (0.5 * rate)) : band_noise(raw, low, cutoff, rate);
+    if (output == AxisOutput::kLoadTorque) sigma = std::hypot(sigma, drive.gear_ratio * inertia_sigma_Nm);
+    if (output == AxisOutput::kNeededInput) {
+      const double bus_V = in.bus_voltage_V.empty() ? 0.0 : median(in.bus_voltage_V);
+      sigma = std::hypot(sigma, inertia_sigma_Nm * input_per_torque(kind, drive, bus_V));
+    }
     add(s, std::move(name), std::move(unit), output, std::move(low), sigma, stated);
   };
   if (bench_torque) {

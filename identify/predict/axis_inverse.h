@@ -10,7 +10,9 @@
 
 namespace omnihil {
 
-void make_inverse_setup(const Dataset& dataset, const AxisRecord& record, AxisSetup& setup);
+// `drive`: nominal, by whose inertia the imposed speed's error is noise of the torque.
+void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive, const AxisRecord& record,
+                        AxisSetup& setup);
 void make_steady_setup(const Dataset& dataset, const AxisRecord& record, AxisSetup& setup);
 
 // Speed of the output in rad/s (m/s), one per sample of the record: from its sensor, else position or counts;

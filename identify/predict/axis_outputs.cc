@@ -8,21 +8,6 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Drive input per torque that is missing at the rotor: duty, V, A or N m per N m.
-template <typename T>
-T input_per_torque(CommandKind kind, const DriveParams<T>& p, double bus_V) {
-  switch (kind) {
-    case CommandKind::kMotorTorque:
-      return T(1.0);
-    case CommandKind::kMotorCurrent:
-      return 1.0 / p.torque_constant_Nm_per_A;
-    case CommandKind::kMotorVoltage:  // u = R / k tau
-      return p.resistance_ohm / p.torque_constant_Nm_per_A;
-    default:
-      return p.resistance_ohm / p.torque_constant_Nm_per_A / (bus_V > 0.0 ? T(bus_V) : p.supply_voltage_V);
-  }
-}
-
 double bus_at(const AxisInput& in, std::size_t k) {
   return in.bus_voltage_V.empty() ? 0.0 : in.bus_voltage_V[k];
 }

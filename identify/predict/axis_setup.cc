@@ -213,7 +213,7 @@ AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, cons
   if (run.steady) {
     make_steady_setup(dataset, record, setup);
   } else if (setup.method == Method::kInverse) {
-    make_inverse_setup(dataset, record, setup);
+    make_inverse_setup(dataset, drive_of(nominal), record, setup);
   } else {
     ForwardSetup(dataset, record, setup).make();
     setup.velocity = smoothed_velocity(record);

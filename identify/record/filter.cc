@@ -45,6 +45,14 @@ LowPass butterworth(int order, double cutoff_Hz, double rate_Hz) {
   return filter;
 }
 
+double zero_phase_gain(const LowPass& filter, double share_of_nyquist) {
+  const std::complex<double> back = std::polar(1.0, -std::numbers::pi * share_of_nyquist);  // 1 / z
+  double square = 1.0;
+  for (const Biquad& s : filter.sections)
+    square *= std::norm((s.b0 + back * (s.b1 + back * s.b2)) / (1.0 + back * (s.a1 + back * s.a2)));
+  return square;
+}
+
 std::vector<double> zero_phase(const LowPass& filter, std::span<const double> x) {
   const std::size_t n = x.size();
   if (n < 2) return {x.begin(), x.end()};

@@ -26,6 +26,9 @@ struct LowPass {
 
 LowPass butterworth(int order, double cutoff_Hz, double rate_Hz);
 
+// Gain of zero_phase() at a share of half the rate, 0 to 1: that of one pass, squared.
+double zero_phase_gain(const LowPass& filter, double share_of_nyquist);
+
 // n samples to n samples, of x's unit.
 std::vector<double> zero_phase(const LowPass& filter, std::span<const double> x);
 // Every column of [n samples x m] by itself.

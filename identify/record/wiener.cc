@@ -31,6 +31,8 @@ std::size_t segment_length(std::size_t samples) {
 struct Periodogram {
   std::vector<double> power;
   double segments = 0.0;
+  double window_square =
+      0.0;  // sum of the window's squares, of all segments: the power of white noise of variance 1
 };
 Periodogram welch(std::span<const double> x, std::size_t length) {
   Eigen::FFT<double> fft;
@@ -42,7 +44,9 @@ Periodogram welch(std::span<const double> x, std::size_t length) {
     for (std::size_t i = 0; i < length; ++i) mean += x[from + i] / static_cast<double>(length);
     for (std::size_t i = 0; i < length; ++i) {
       const double turn = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length);
-      segment[i] = 0.5 * (1.0 - std::cos(turn)) * (x[from + i] - mean);
+      const double window = 0.5 * (1.0 - std::cos(turn));
+      segment[i] = window * (x[from + i] - mean);
+      out.window_square += window * window;
     }
     fft.fwd(spectrum, segment);
     for (std::size_t k = 0; k < out.power.size(); ++k) out.power[k] += std::norm(spectrum[k]);
@@ -56,10 +60,8 @@ double shape_of(NoiseSpectrum noise, double share_of_nyquist) {
   return noise == NoiseSpectrum::kWhite ? 1.0 : s * s;
 }
 
-// H at the frequencies of the periodogram.
-std::vector<double> gain_of(const Periodogram& periodogram, NoiseSpectrum noise) {
-  const std::vector<double>& power = periodogram.power;
-  const double above = 1.0 + kAbove_sigmas * 1.03 / std::sqrt(periodogram.segments);
+// The noise's power at the frequencies of the periodogram.
+std::vector<double> noise_of(const std::vector<double>& power, NoiseSpectrum noise) {
   const double top = static_cast<double>(power.size() - 1);
   std::vector<double> level;
   for (std::size_t k = 0; k < power.size(); ++k) {
@@ -67,11 +69,20 @@ std::vector<double> gain_of(const Periodogram& periodogram, NoiseSpectrum noise)
     if (share >= kNoiseFrom && share <= kNoiseTo) level.push_back(power[k] / shape_of(noise, share));
   }
   const double size = median(std::move(level));
+  std::vector<double> out;
+  for (std::size_t k = 0; k < power.size(); ++k)
+    out.push_back(size * shape_of(noise, static_cast<double>(k) / top));
+  return out;
+}
+
+// H at the frequencies of the periodogram.
+std::vector<double> gain_of(const Periodogram& periodogram, NoiseSpectrum noise) {
+  const std::vector<double>& power = periodogram.power;
+  const std::vector<double> noise_power = noise_of(power, noise);
+  const double above = 1.0 + kAbove_sigmas * 1.03 / std::sqrt(periodogram.segments);
   std::vector<double> gain;
-  for (std::size_t k = 0; k < power.size(); ++k) {
-    const double noise_power = size * shape_of(noise, static_cast<double>(k) / top);
-    gain.push_back(power[k] > above * noise_power ? 1.0 - noise_power / power[k] : 0.0);
-  }
+  for (std::size_t k = 0; k < power.size(); ++k)
+    gain.push_back(power[k] > above * noise_power[k] ? 1.0 - noise_power[k] / power[k] : 0.0);
   // What is slower than a segment is not in its spectrum, and far above any noise.
   gain[0] = gain[1] = 1.0;
   return gain;
@@ -95,9 +106,20 @@ std::vector<double> kernel_of(const std::vector<double>& gain) {
 
 }  // namespace
 
+std::vector<double> wiener_error_spectrum(std::span<const double> x, NoiseSpectrum noise) {
+  if (x.size() < kLeastSmoothed) return {};
+  const Periodogram periodogram = welch(x, segment_length(x.size()));
+  const std::vector<double> gain = gain_of(periodogram, noise);
+  const std::vector<double> noise_power = noise_of(periodogram.power, noise);
+  std::vector<double> out;
+  for (std::size_t k = 0; k < gain.size(); ++k)
+    out.push_back(gain[k] * noise_power[k] / periodogram.window_square);
+  return out;
+}
+
 std::vector<double> wiener_smoothed(std::span<const double> x, NoiseSpectrum noise) {
   const std::size_t n = x.size();
-  if (n < static_cast<std::size_t>(kLeastSmoothed)) return {x.begin(), x.end()};
+  if (n < kLeastSmoothed) return {x.begin(), x.end()};
   const std::vector<double> h = kernel_of(gain_of(welch(x, segment_length(n)), noise));
   const std::size_t pad = h.size() - 1;
   // continued point-symmetrically at either end

@@ -27,7 +27,12 @@ enum class NoiseSpectrum : std::uint8_t {
 };
 
 // n samples to n, of x's unit. Fewer than kLeastSmoothed samples are returned as they are.
-inline constexpr int kLeastSmoothed = 256;  // derived: eight segments of the shortest length
+inline constexpr std::size_t kLeastSmoothed = 256;  // derived: eight segments of the shortest length
 std::vector<double> wiener_smoothed(std::span<const double> x, NoiseSpectrum noise);
+
+// What the smoothed record is still off by: S_e(f) = H(f) S_n(f), the error of the least-squares estimate. At K frequencies evenly
+// from 0 to half the rate, x's unit squared; their mean is the error's variance. Empty: fewer samples than kLeastSmoothed. Cannot:
+// the part of the motion that is lost where nothing is let through, which does not stand out of the noise.
+std::vector<double> wiener_error_spectrum(std::span<const double> x, NoiseSpectrum noise);
 
 }  // namespace omnihil

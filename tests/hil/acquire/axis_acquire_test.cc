@@ -238,6 +238,11 @@ TEST(AxisDataset, RowsRiseAndHoldWhatTheDeviceTells) {
   const std::string text = axis_dataset_text(plan, {{&run, rows}}, 0.0);
   EXPECT_NE(text.find("motor_voltage = { column = \"motor_voltage\" }"), std::string::npos) << text;
   EXPECT_EQ(text.find("motor_current"), std::string::npos) << text;  // of an instant
+  EXPECT_EQ(text.find("velocity"), std::string::npos) << text;
+  AcquirePlan by_torque;
+  by_torque.drive = PlanDrive::kMotorTorque;
+  const std::string torque = axis_dataset_text(by_torque, {{&run, rows}}, 0.0);
+  EXPECT_NE(torque.find("velocity = { column = \"velocity\" }"), std::string::npos) << torque;
   AcquirePlan by_duty;
   by_duty.drive = PlanDrive::kDuty;
   const std::string duty = axis_dataset_text(by_duty, {{&run, rows}}, 0.0);

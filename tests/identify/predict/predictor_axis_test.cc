@@ -11,6 +11,7 @@
 #include "sim/bench/axis_sim.h"
 #include "sim/drive/sensor_chain.h"
 #include "sim/law/effect_registry.h"
+#include "sim/law/random.h"
 #include "sim/model/axis_model.h"
 
 namespace omnihil {
@@ -286,15 +287,24 @@ TEST(AxisPredictor, SimulatedIsTheTruthThroughTheSensors) {
   }
 }
 
-TEST(AxisPredictor, ATorqueDrivenMotionNeedsTheTorqueThatMadeIt) {
-  // Linear motor: 95 kg, 200 N s/m, driven by a smooth force; exact position.
+// Linear motor: 95 kg, 200 N s/m, driven by a smooth force; its position read with white noise.
+struct ForceRecipe {
+  double position_sigma_m = 0.0, period_s = 1e-3;
+  std::string more = {};  // of the model file
+};
+struct ForceDriven {
+  Candidate truth;
+  std::unique_ptr<Predictor> predictor;
+};
+ForceDriven force_driven(const ForceRecipe& recipe) {
   const std::string text =
       "format = \"omnihil-model/1\"\nrig = \"axis\"\nlinear = true\n[load]\n"
       "mass_kg = { value = 95, tolerance = 0.1 }\n[motor]\n"
-      "viscous_friction_N_s_per_m = { value = 200, tolerance = 1 }\n";
+      "viscous_friction_N_s_per_m = { value = 200, tolerance = 1 }\n" +
+      recipe.more;
   const AxisReading r = read_axis_model(text, "m", nullptr);
-  ASSERT_TRUE(r.model);
-  const Candidate truth = candidate_of(r.model->file, r.model->effects);
+  EXPECT_TRUE(r.model);
+  ForceDriven out{.truth = candidate_of(r.model->file, r.model->effects), .predictor = nullptr};
   Dataset d;
   d.linear = true;
   d.channels = {{.signal = "motor_torque", .column = "", .unit = "N"},
@@ -303,24 +313,49 @@ TEST(AxisPredictor, ATorqueDrivenMotionNeedsTheTorqueThatMadeIt) {
   in.kind = CommandKind::kMotorTorque;
   std::vector<double> sampled;
   for (int k = 0; k < 3000; ++k) {
-    in.time_s.push_back(1e-3 * k);
+    in.time_s.push_back(recipe.period_s * k);
     const auto force_N = [](double t) { return 40.0 * std::sin(2.0 * std::numbers::pi * 2.0 * t); };
-    sampled.push_back(force_N(1e-3 * k));
-    in.command.push_back(force_N(1e-3 * (k + 0.5)));  // what acts until the next sample, on average
+    sampled.push_back(force_N(recipe.period_s * k));
+    in.command.push_back(
+        force_N(recipe.period_s * (k + 0.5)));  // what acts until the next sample, on average
   }
   omnihil::Run run = run_of("f.csv");
   run.time_s = in.time_s;
   run.signals["motor_torque"] = sampled;
-  for (const auto& s : run_axis<double>(drive_of(truth), {}, in))
-    run.signals["position"].push_back(s.position_rad);
+  for (const auto& s : run_axis<double>(drive_of(out.truth), EffectSet<double>(out.truth.effects), in)) {
+    const std::size_t k = run.signals["position"].size();
+    run.signals["position"].push_back(s.position_rad + recipe.position_sigma_m * gaussian(3, 1, k));
+  }
   d.runs = {run};
-  const auto p = make_predictor(d, truth, {});
+  out.predictor = make_predictor(d, out.truth, {});
+  return out;
+}
+
+TEST(AxisPredictor, ATorqueDrivenMotionNeedsTheTorqueThatMadeIt) {
+  const auto [truth, p] = force_driven({});
   ASSERT_EQ(p->method(), Method::kInverse);
   EXPECT_EQ(p->compared(0)[0].name, "motor_torque");
   EXPECT_LT(rms(p->compared(0)[0].measured, p->predict(truth, 0).values[0]), 1e-3 * 40.0);
   Candidate light = truth;
   ASSERT_EQ(set_value(light, "load.mass_kg", 90.0), "");
   EXPECT_GT(rms(p->compared(0)[0].measured, p->predict(light, 0).values[0]), 0.01 * 40.0);
+}
+
+// A command has no noise of its own: what the right model leaves is the position's noise, by the mass.
+TEST(AxisPredictor, TheNoiseOfANeededTorqueIsThatOfTheMotionTimesTheInertia) {
+  for (const double sigma_m : {1e-6, 3e-6, 1e-5}) {
+    const auto [truth, p] = force_driven({.position_sigma_m = sigma_m});
+    const ComparedSignal& force = p->compared(0)[0];
+    const double left_N = rms(force.measured, p->predict(truth, 0).values[0]);
+    EXPECT_NEAR(force.noise_sigma / left_N, 1.0, 0.3) << sigma_m << " m: " << left_N << " N";
+  }
+}
+
+// Friction at a reversal bends within the filter's time: it is taken of the motion, and then filtered, not of a filtered motion.
+TEST(AxisPredictor, ASlowRecordLeavesNoErrorWhereFrictionTurnsRound) {
+  const auto [truth, p] =
+      force_driven({.period_s = 1e-2, .more = "[effects.coulomb_friction]\ntorque_N = 8\n"});
+  EXPECT_LT(rms(p->compared(0)[0].measured, p->predict(truth, 0).values[0]), 0.05 * 8.0);
 }
 
 TEST(AxisPredictor, ASteadyPointIsHeldAgainstFrictionOfItsApproach) {

@@ -113,7 +113,27 @@ TEST(Wiener, TheCoefficientFromAPositionIsNotPulledLow) {
   EXPECT_NEAR(coefficient(slope_of(wiener_smoothed(speed, NoiseSpectrum::kDifferenced))), 1.0, 0.02);
 }
 
+double mean(const std::vector<double>& x) {
+  double sum = 0.0;
+  for (const double v : x) sum += v / static_cast<double>(x.size());
+  return sum;
+}
+
+// What is said of the smoothed record's error is what it is off by the motion.
+TEST(Wiener, TheErrorThatIsSaidIsTheErrorThatIsLeft) {
+  const std::vector<double> truth = motion_with(std::vector<double>(kSamples, 0.0));
+  for (const double sigma : {0.05, 0.5, 5.0}) {
+    const std::vector<double> measured = motion_with(white(sigma));
+    std::vector<double> off = wiener_smoothed(measured, NoiseSpectrum::kWhite);
+    for (std::size_t k = 0; k < kSamples; ++k) off[k] -= truth[k];
+    const double left = mean_square({off.begin() + 1000, off.end() - 1000});
+    const double said = mean(wiener_error_spectrum(measured, NoiseSpectrum::kWhite));
+    EXPECT_NEAR(std::sqrt(said / left), 1.0, 0.3) << sigma;
+  }
+}
+
 TEST(Wiener, AShortRecordStaysAsItIs) {
+  EXPECT_TRUE(wiener_error_spectrum(std::vector<double>(20, 1.0), NoiseSpectrum::kWhite).empty());
   const std::vector<double> x = {1.0, 3.0, 2.0};
   EXPECT_EQ(wiener_smoothed(x, NoiseSpectrum::kWhite), x);
 }
