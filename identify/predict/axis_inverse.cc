@@ -87,20 +87,29 @@ double band_noise(const std::vector<double>& raw, const std::vector<double>& low
   return sigma_by_mad(std::move(above)) * std::sqrt(cutoff_Hz / (0.5 * rate_Hz - cutoff_Hz));
 }
 
-// What the imposed motion's own error moves the torque that it needs by, 1-sigma in the filter's band: sigma^2 = J^2 mean over
-// frequency of S_e(f) |2 sin(pi f T) / T|^2 |F(f)|^4, the inertia times the rate of change from sample to sample; the motion and what is
-// needed for it are each filtered once. S_e: error of the smoothed speed (wiener.h), (rad/s)^2. In the inertia's unit times rad/s^2.
+// What the imposed motion's own error moves the torque that it needs by, 1-sigma in the filter's band: sigma^2 = J^2 mean
+// over frequency of S_e(f) |2 sin(pi f T) / T|^2 |M(f) F(f)|^2, the inertia times the rate of change from sample to sample.
+// S_e: error of the smoothed speed (wiener.h), (rad/s)^2; M, F: low passes of the motion and of what it needs.
 double needed_torque_sigma(const std::vector<double>& speed_error, double inertia_kg_m2,
-                           const LowPass& filter, double rate_Hz) {
+                           const LowPass& motion, const LowPass& filter, double rate_Hz) {
   double square = 0.0;
   const double count = static_cast<double>(speed_error.size());
   for (std::size_t k = 0; k < speed_error.size(); ++k) {
     const double share = static_cast<double>(k) / (count - 1.0);
     const double slope = 2.0 * rate_Hz * std::sin(0.5 * std::numbers::pi * share);
-    const double gain = zero_phase_gain(filter, share);
-    square += speed_error[k] * std::pow(slope * gain * gain, 2) / count;
+    const double gain = zero_phase_gain(motion, share) * zero_phase_gain(filter, share);
+    square += speed_error[k] * std::pow(slope * gain, 2) / count;
   }
   return inertia_kg_m2 * std::sqrt(square);
+}
+
+// A law that is not linear (friction at a reversal) does not commute with a filter: the motion keeps what stands out of
+// its noise, up to a drive's mechanics, and only what the laws make of it is brought into the compared band. Short records
+// have no spectrum: that band. No sections: no filter.
+LowPass motion_filter(const LowPass& compared, std::size_t samples, double rate_Hz) {
+  if (samples < kLeastSmoothed) return compared;
+  if (kHighestCutoff_Hz >= kMotionShareOfNyquist * 0.5 * rate_Hz) return {};
+  return butterworth(kOrder, kHighestCutoff_Hz, rate_Hz);
 }
 
 double rms_about_mean(const std::vector<double>& x) {
@@ -218,16 +227,12 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     for (double& v : velocity) v *= rate;
     position = wiener_smoothed(position, NoiseSpectrum::kWhite);
   }
-  const double inertia_sigma_Nm = needed_torque_sigma(
-      wiener_error_spectrum(velocity, spectrum), inertia_at_rotor(drive) * drive.gear_ratio, s.filter, rate);
+  const LowPass motion = motion_filter(s.filter, velocity.size(), rate);
+  const double inertia_sigma_Nm =
+      needed_torque_sigma(wiener_error_spectrum(velocity, spectrum),
+                          inertia_at_rotor(drive) * drive.gear_ratio, motion, s.filter, rate);
   velocity = wiener_smoothed(velocity, spectrum);
-  // A law that is not linear (friction at a reversal) does not commute with a filter: the motion keeps what stands out of its
-  // noise, up to a drive's mechanics, and only what the laws make of it is brought into the compared band. Short records: no
-  // spectrum, hence that band.
-  if (velocity.size() < kLeastSmoothed)
-    velocity = zero_phase(s.filter, velocity);
-  else if (kHighestCutoff_Hz < kMotionShareOfNyquist * 0.5 * rate)
-    velocity = zero_phase(butterworth(kOrder, kHighestCutoff_Hz, rate), velocity);
+  if (!motion.sections.empty()) velocity = zero_phase(motion, velocity);
   in.imposed_velocity_rad_s = velocity;
   in.measured_position_rad = position;
   if (!position.empty()) in.initial_position_rad = position.front();

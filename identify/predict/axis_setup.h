@@ -4,9 +4,10 @@
 //   AxisSetup s = make_axis_setup(dataset, nominal, run);
 //   auto y = axis_outputs<double>(s, drive_params, effects, step_s);       // axis_outputs.h
 //
-// Inverse: samples are put on an even clock; the drive input and what the model needs are low-pass filtered alike with zero
-// phase (Butterworth 4 at a fifth of the Nyquist frequency, at most 100 Hz), the motion by what stands out of its noise and by 100 Hz
-// (axis_inverse.cc); index i of every signal refers to the interval that ends at sample i, in which the input of sample i - 1 was held.
+// Inverse: samples are put on an even clock; the drive input and what the model needs are low-pass filtered
+// alike with zero phase (Butterworth 4 at a fifth of the Nyquist frequency, at most 100 Hz), the motion by what
+// stands out of its noise and by 100 Hz (axis_inverse.cc); index i of every signal refers to the interval that
+// ends at sample i, in which the input of sample i - 1 was held.
 #pragma once
 #include <string>
 #include <vector>
