@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
 #include <utility>
 
 #include "firmware_iface/mcu/board/boards_chip.h"
 #include "firmware_iface/mcu/board/boards_memory.h"
 #include "firmware_iface/mcu/board/mcu_firmware.h"
+#include "hil/firmware/card_files.h"
 #include "hil/firmware/image_files.h"
 #include "hil/text/merged_lines.h"
 
@@ -17,6 +19,7 @@ struct Image {
   std::string board_file;
   mcu::BoardSpec board;
   mcu::ElfImage elf;
+  std::shared_ptr<CardWriters> card_writers = std::make_shared<CardWriters>();
 };
 
 class ImageFirmware final : public Firmware {
@@ -26,7 +29,9 @@ class ImageFirmware final : public Firmware {
       : image_(std::move(image)),
         listeners_(listeners),
         observer_(std::move(observer)),
-        mcu_(image_->board, image_->elf, config),
+        cards_(image_->board_file, config.robot_id, image_->card_writers),
+        mcu_(image_->board, image_->elf, config,
+             [this](const mcu::DeviceEntry& entry, int board) { return cards_.open(entry, board); }),
         memory_(mcu_, image_->elf),
         chip_(mcu_, image_->elf) {
     if (observer_) observer_->begins(mcu_, image_->elf, config.robot_id);
@@ -43,6 +48,7 @@ class ImageFirmware final : public Firmware {
   }
   ~ImageFirmware() override {
     if (observer_) observer_->ends(mcu_);
+    for (const std::string& problem : cards_.save(mcu_)) std::fprintf(stderr, "%s\n", problem.c_str());
   }
   ImageFirmware(const ImageFirmware&) = delete;
   ImageFirmware& operator=(const ImageFirmware&) = delete;
@@ -139,6 +145,7 @@ class ImageFirmware final : public Firmware {
   ImageListeners listeners_;
   std::shared_ptr<ImageObserver> observer_;
   std::vector<std::vector<Said>> said_;  // by board, since tell()
+  CardFiles cards_;
   mcu::McuFirmware mcu_;
   mcu::BoardsMemory memory_;
   mcu::BoardsChip chip_;

@@ -7,6 +7,7 @@
 #include "firmware_iface/mcu/stm32/adc.h"
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
+#include "firmware_iface/mcu/stm32/sdmmc.h"
 #include "firmware_iface/mcu/stm32/spi.h"
 #include "firmware_iface/mcu/stm32/usart.h"
 
@@ -96,6 +97,7 @@ DeviceWorld McuBoard::device_world(const DeviceEntry& entry) {
   world.accel_x_m_s2 = [this](std::int64_t) { return world_.accel_x_m_s2; };
   world.accel_y_m_s2 = [this](std::int64_t) { return world_.accel_y_m_s2; };
   world.settings = entry.settings;
+  world.card = entry.card;
   return world;
 }
 
@@ -122,6 +124,7 @@ void McuBoard::wire_device(const DeviceEntry& entry) {
     port->on_output(pin, [follow](bool) { follow(); });
     port->on_modes(follow);
   }
+  if (SdDevice* card = device->sd()) chip_.find<Sdmmc>(entry.bus)->connect(*card);
   if (I2cDevice* slave = device->i2c()) chip_.find<I2c>(entry.bus)->connect(*slave);
   wire_device_pins(*device, entry);
 }

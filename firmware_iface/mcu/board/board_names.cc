@@ -5,6 +5,7 @@
 #include "firmware_iface/mcu/stm32/adc.h"
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
+#include "firmware_iface/mcu/stm32/sdmmc.h"
 #include "firmware_iface/mcu/stm32/spi.h"
 #include "firmware_iface/mcu/stm32/timer/timer.h"
 #include "firmware_iface/mcu/stm32/usart.h"
@@ -80,6 +81,7 @@ bool BoardNames::has_channel(const ChannelName& c) const {
 bool BoardNames::has_adc(const std::string& name) const { return chip_->find<Adc>(name) != nullptr; }
 bool BoardNames::has_spi(const std::string& name) const { return chip_->find<Spi>(name) != nullptr; }
 bool BoardNames::has_i2c(const std::string& name) const { return chip_->find<I2c>(name) != nullptr; }
+bool BoardNames::has_sdmmc(const std::string& name) const { return chip_->find<Sdmmc>(name) != nullptr; }
 bool BoardNames::has_serial(const std::string& name) const { return chip_->find<Usart>(name) != nullptr; }
 bool BoardNames::has_can(const std::string& name) const { return chip_->find<CanPort>(name) != nullptr; }
 std::string BoardNames::timers(unsigned channels) const {
@@ -96,6 +98,7 @@ std::string BoardNames::adcs() const { return join(chip_->names<Adc>()); }
 std::string BoardNames::serials() const { return join(chip_->names<Usart>()); }
 std::string BoardNames::spis() const { return join(chip_->names<Spi>()); }
 std::string BoardNames::i2cs() const { return join(chip_->names<I2c>()); }
+std::string BoardNames::sdmmcs() const { return join(chip_->names<Sdmmc>()); }
 std::string BoardNames::cans() const {
   std::vector<std::string> names;
   for (const Chip::Mapped& block : chip_->blocks()) {

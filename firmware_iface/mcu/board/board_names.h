@@ -27,6 +27,7 @@ class BoardNames {
   bool has_adc(const std::string& name) const;
   bool has_spi(const std::string& name) const;
   bool has_i2c(const std::string& name) const;
+  bool has_sdmmc(const std::string& name) const;
   bool has_serial(const std::string& name) const;
   bool has_can(const std::string& name) const;
   // Lists of what is allowed: "TIM1, TIM2, …", those with at least so many channels.
@@ -34,6 +35,7 @@ class BoardNames {
   std::string timers_with_complements() const;
   std::string spis() const;
   std::string i2cs() const;
+  std::string sdmmcs() const;
   std::string cans() const;
   std::string adcs() const;
   std::string serials() const;

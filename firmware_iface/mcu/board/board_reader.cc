@@ -210,7 +210,9 @@ void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEn
 }
 
 void Reader::read_device(const toml::table& t, const std::string& path) {
-  keys_.only(t, path, {"kind", "name", "bus", "select", "pins", "settings", "breaks", "wheel", "shaft"});
+  keys_.only(
+      t, path,
+      {"kind", "name", "bus", "select", "pins", "settings", "breaks", "wheel", "shaft", "image", "writable"});
   DeviceEntry device;
   std::string kinds;
   for (const DeviceKind* kind : all_devices()) kinds += (kinds.empty() ? "" : ", ") + std::string(kind->name);
@@ -234,12 +236,26 @@ void Reader::read_device(const toml::table& t, const std::string& path) {
 
 void Reader::read_device_wires(const toml::table& t, const std::string& path, DeviceEntry& device) {
   const std::unique_ptr<Device> sample = device.kind->make(DeviceWorld{});
-  const bool spi = sample->spi() != nullptr;
+  const bool spi = sample->spi() != nullptr, card = sample->sd() != nullptr;
   device.bus = keys_.text(t, path, "bus").value_or("");
-  const bool known = names_ && (spi ? names_->has_spi(device.bus) : names_->has_i2c(device.bus));
+  const bool known = names_ && (card  ? names_->has_sdmmc(device.bus)
+                                : spi ? names_->has_spi(device.bus)
+                                      : names_->has_i2c(device.bus));
   if (names_ && !known) {
-    keys_.wrong(t, path, "bus", spi ? "not an SPI of the chip" : "not an I2C of the chip",
-                spi ? names_->spis() : names_->i2cs());
+    keys_.wrong(t, path, "bus",
+                card  ? "not an SDMMC of the chip"
+                : spi ? "not an SPI of the chip"
+                      : "not an I2C of the chip",
+                card  ? names_->sdmmcs()
+                : spi ? names_->spis()
+                      : names_->i2cs());
+  }
+  device.image = keys_.text(t, path, "image").value_or("");
+  device.writable = keys_.flag(t, path, "writable").value_or(false);
+  if (card && device.image.empty()) keys_.missing(t, path, "image", "the file with what the card holds");
+  if (card) claim(t, path, "bus", "the card of " + device.bus);
+  for (const char* key : {"image", "writable"}) {
+    if (!card && t.contains(key)) keys_.wrong(t, path, key, "the device holds no file", "of an sd_card");
   }
   device.select = pin(t, path, "select");
   if (spi && !t.contains("select")) keys_.missing(t, path, "select", "the pin that selects the chip");

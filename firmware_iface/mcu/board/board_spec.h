@@ -17,6 +17,7 @@
 
 #include "firmware_iface/mcu/board/board_context.h"
 #include "firmware_iface/mcu/board/board_problem.h"
+#include "firmware_iface/mcu/stm32/sd_bus.h"
 #include "firmware_iface/motor_bus/wheel_words.h"
 
 namespace omnihil::mcu {
@@ -65,6 +66,9 @@ struct DeviceEntry {
   std::map<std::string, double, std::less<>> settings;
   int wheel = 0;  // of an angle sensor
   bool on_wheel_shaft = false;
+  std::string image = {};  // of a memory card: its file, as the board file says it; {id}, {board}: numbers
+  bool writable = false;   // what is written on the card goes to the file at the end
+  CardImage card = {};     // the file's contents, by whoever opens it
 };
 
 enum class AnalogSignal : std::uint8_t {

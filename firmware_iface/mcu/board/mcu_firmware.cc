@@ -12,8 +12,11 @@
 namespace omnihil::mcu {
 
 namespace {
-// The board's number in the words that are preset after the image.
-BoardSpec numbered(BoardSpec spec, int number) {
+// The board's number in the words that are preset after the image, and its own cards.
+BoardSpec numbered(BoardSpec spec, int number, const CardOpener& cards) {
+  for (DeviceEntry& entry : spec.devices) {
+    if (cards && !entry.image.empty()) entry.card = cards(entry, number);
+  }
   for (FlashEntry& entry : spec.flash) {
     if (entry.board_number_at < 0) continue;
     entry.words[static_cast<std::size_t>(entry.board_number_at)] = static_cast<std::uint32_t>(number);
@@ -22,14 +25,15 @@ BoardSpec numbered(BoardSpec spec, int number) {
 }
 }  // namespace
 
-McuFirmware::McuFirmware(const BoardSpec& spec, const ElfImage& image, const RobotConfig& config)
+McuFirmware::McuFirmware(const BoardSpec& spec, const ElfImage& image, const RobotConfig& config,
+                         const CardOpener& cards)
     : name_(fmt::format("image on {} ({})", spec.name,
                         spec.chip_name.empty() ? std::string(spec.chip->name) : spec.chip_name)),
       config_(config),
       spec_(spec) {
   if (spec.boards_per_robot > 1) wheels_per_board_ = static_cast<int>(spec.motors.size());
   for (int b = 0; b < spec.boards_per_robot; ++b) {
-    boards_.push_back(std::make_unique<McuBoard>(numbered(spec, b), image));
+    boards_.push_back(std::make_unique<McuBoard>(numbered(spec, b, cards), image));
     for (const PinEntry& entry : spec.pins) {  // the switches that say which robot this is
       if (entry.robot_id_bit < 0) continue;
       const bool level = ((config.robot_id >> entry.robot_id_bit & 1u) != 0) != entry.inverted;

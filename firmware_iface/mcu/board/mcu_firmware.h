@@ -16,6 +16,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -27,10 +28,14 @@
 
 namespace omnihil::mcu {
 
+// What the memory card of a board holds; throws std::invalid_argument.
+using CardOpener = std::function<CardImage(const DeviceEntry& card, int board)>;
+
 class McuFirmware final : public Firmware {
  public:
   // Throws std::invalid_argument if the image does not fit the chip.
-  McuFirmware(const BoardSpec& spec, const ElfImage& image, const RobotConfig& config);
+  McuFirmware(const BoardSpec& spec, const ElfImage& image, const RobotConfig& config,
+              const CardOpener& cards = {});
 
   std::string_view name() const override { return name_; }
   std::string_view radio_format() const override { return spec_.radio_format; }

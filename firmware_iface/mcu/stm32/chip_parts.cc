@@ -51,6 +51,10 @@ void add_i2c(Chip& chip, std::uint32_t base, const I2cSpec& spec) {
   chip.add(base, 0x400, make_i2c(spec, chip.context()));
 }
 
+void add_sdmmc(Chip& chip, std::uint32_t base, const SdmmcSpec& spec) {
+  chip.add(base, 0x400, std::make_unique<Sdmmc>(spec, chip.context()));
+}
+
 void add_stored(Chip& chip, std::uint32_t base, std::uint32_t bytes, const char* name,
                 std::vector<StoredBlock::Fixed> fixed) {
   chip.add(base, bytes, std::make_unique<StoredBlock>(name, std::move(fixed), bytes, chip.context()));
@@ -101,7 +105,8 @@ void add_dma_f4(Chip& chip) {
       {"SPI4_TX", 4, 5},   {"TIM1_CH4", 4, 6},  {"TIM1_TRIG", 4, 6}, {"TIM1_COM", 4, 6},  {"TIM8_CH3", 4, 7},
       {"SPI1_TX", 5, 3},   {"USART1_RX", 5, 4}, {"TIM1_UP", 5, 6},   {"TIM1_CH1", 6, 0},  {"TIM1_CH2", 6, 0},
       {"TIM1_CH3", 6, 0},  {"USART6_TX", 6, 5}, {"TIM1_CH3", 6, 6},  {"USART1_TX", 7, 4}, {"USART6_TX", 7, 5},
-      {"TIM8_CH4", 7, 7},  {"TIM8_TRIG", 7, 7}, {"TIM8_COM", 7, 7}};
+      {"TIM8_CH4", 7, 7},  {"TIM8_TRIG", 7, 7}, {"TIM8_COM", 7, 7},  {"SDIO", 3, 4},      {"SDIO", 6, 4},
+      {"SDMMC1", 3, 4},    {"SDMMC1", 6, 4}};
   auto first = std::make_unique<DmaV2>(1, std::vector<int>{11, 12, 13, 14, 15, 16, 17, 47}, chip.context());
   for (const Row& row : kFirst) first->connect(row.request, row.stream, row.channel);
   auto second = std::make_unique<DmaV2>(2, std::vector<int>{56, 57, 58, 59, 60, 68, 69, 70}, chip.context());
@@ -245,7 +250,7 @@ void add_common_f4(Chip& chip, std::string_view ports, std::uint32_t flash_bytes
   add_watchdogs(chip, 7, 2);
   add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
   add_stored(chip, 0x40007400, 0x400, "DAC");
-  add_stored(chip, 0x40012C00, 0x400, "SDIO");
+  add_sdmmc(chip, 0x40012C00, {.name = "SDIO", .irq = 49});
   chip.add(0x40023000, 0x400, std::make_unique<Crc>(CrcFamily::kV1, chip.context().system));
   // GRSTCTL: AHB idle, core reset and FIFO flushes done
   add_stored(chip, 0x50000000, 0x20000, "OTG_FS", {{0x10, 0x80000000, 0x31}});

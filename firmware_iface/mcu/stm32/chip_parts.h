@@ -17,6 +17,7 @@
 #include "firmware_iface/mcu/stm32/exti.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
 #include "firmware_iface/mcu/stm32/math/crc.h"
+#include "firmware_iface/mcu/stm32/sdmmc.h"
 #include "firmware_iface/mcu/stm32/spi.h"
 #include "firmware_iface/mcu/stm32/stored_block.h"
 #include "firmware_iface/mcu/stm32/timer/timer.h"
@@ -34,6 +35,7 @@ Timer& add_timer(Chip& chip, std::uint32_t base, TimerSpec spec);
 void add_usart(Chip& chip, std::uint32_t base, const UsartSpec& spec);
 void add_spi(Chip& chip, std::uint32_t base, const SpiSpec& spec);
 void add_i2c(Chip& chip, std::uint32_t base, const I2cSpec& spec);
+void add_sdmmc(Chip& chip, std::uint32_t base, const SdmmcSpec& spec);
 void add_stored(Chip& chip, std::uint32_t base, std::uint32_t bytes, const char* name,
                 std::vector<StoredBlock::Fixed> fixed = {});
 void add_watchdogs(Chip& chip, unsigned prescaler_at, unsigned prescaler_bits);

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "firmware_iface/mcu/stm32/sd_bus.h"
+
 namespace omnihil::mcu {
 
 class SpiDevice {
@@ -47,6 +49,7 @@ struct DeviceWorld {
   std::function<double(std::int64_t at_ns)> accel_x_m_s2, accel_y_m_s2;
   // Calls the device's woken() at that instant; the last call counts, and kNoWake takes it back.
   std::function<void(std::int64_t at_ns)> wake_at = [](std::int64_t) {};
+  CardImage card;                                       // of a memory card
   std::map<std::string, double, std::less<>> settings;  // from the board file: address, shunt_ohm, …
 
   double setting(std::string_view name, double otherwise) const {
@@ -61,6 +64,9 @@ class Device {
   virtual void reset() = 0;
   virtual SpiDevice* spi() { return nullptr; }
   virtual I2cDevice* i2c() { return nullptr; }
+  virtual SdDevice* sd() { return nullptr; }
+  // Of a memory card: blocks that are no longer what its image has.
+  virtual const CardBlocks* changed_blocks() const { return nullptr; }
   // Pins by name: inputs that the board's wires change, outputs that it listens to.
   virtual std::span<const std::string_view> inputs() const { return {}; }
   virtual void input(std::string_view, bool) {}

@@ -145,6 +145,12 @@ TEST(BoardReader, NamesWhatIsWrongWithWheelBoards) {
   }
 }
 
+const char* const kMonitor = "kind = \"ina219\"\nbus = \"I2C1\"\nsettings = { shunt_ohm = 0.01 }\n";
+const char* const kTwoCards =
+    "kind = \"sd_card\"\nbus = \"SDIO\"\nimage = \"c\"\n[[device]]\nkind = \"sd_card\"\nname = "
+    "\"other\"\nbus = "
+    "\"SDIO\"\nimage = \"d\"\n";
+
 struct Broken {
   const char *from, *to, *key, *what;
 };
@@ -174,6 +180,10 @@ TEST(BoardReader, NamesEveryKindOfMistakeWithItsLineAndKey) {
       {"select = \"PA4\"\n", "", "device[0].select", "missing"},
       {"ce = \"PB0\"", "cs = \"PB0\"", "device[0].pins.cs", "no such pin"},
       {"shunt_ohm = 0.01", "shunt = 0.01", "device[1].settings.shunt", "no such setting"},
+      {"bus = \"I2C1\"", "bus = \"I2C1\"\nimage = \"card.img\"", "device[1].image", "holds no file"},
+      {kMonitor, "kind = \"sd_card\"\nbus = \"SDIO\"\n", "device[1].image", "missing"},
+      {kMonitor, "kind = \"sd_card\"\nbus = \"SDMMC1\"\nimage = \"c\"\n", "device[1].bus", "not an SDMMC"},
+      {kMonitor, kTwoCards, "device[2].bus", "used twice"},
       {"\"ADC1\"", "\"ADC9\"", "analog[0].adc", "unknown"},
       {"\"bus_voltage\"", "\"voltage\"", "analog[0].signal", "unknown"},
       {"volts_per_unit = 0.1", "volts_per_unit = nan", "analog[0].volts_per_unit", "out of range"},

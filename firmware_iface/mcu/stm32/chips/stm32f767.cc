@@ -44,6 +44,7 @@ void build(Chip& chip) {
            std::make_unique<BxCan>("CAN2", std::array{63, 64, 65, 66}, 0u, &can1, context));
   chip.add(0x40003400, 0x400,
            std::make_unique<BxCan>("CAN3", std::array{104, 105, 106, 107}, 14u, nullptr, context));
+  add_sdmmc(chip, 0x40012C00, {.name = "SDMMC1", .irq = 49});
   add_watchdogs(chip, 7, 2);
   add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
   add_stored(chip, 0x40007400, 0x400, "DAC");

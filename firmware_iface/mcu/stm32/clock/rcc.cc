@@ -1,6 +1,8 @@
 #include "firmware_iface/mcu/stm32/clock/rcc.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace omnihil::mcu {
 
@@ -56,6 +58,13 @@ std::uint32_t Rcc::ahb_divider(std::uint32_t code) {
 }
 
 std::uint32_t Rcc::apb_divider(std::uint32_t code) { return code < 4 ? 1 : 2u << (code & 3u); }
+
+ClockRatio Rcc::ratio(double hz, double core_hz) {
+  const auto ticks = static_cast<std::uint64_t>(std::llround(hz));
+  const auto cycles = static_cast<std::uint64_t>(std::llround(core_hz));
+  const std::uint64_t common = std::gcd(ticks, cycles);
+  return {static_cast<std::uint32_t>(ticks / common), static_cast<std::uint32_t>(cycles / common)};
+}
 
 ClockState Rcc::buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, std::uint32_t apb2) {
   ClockState state;

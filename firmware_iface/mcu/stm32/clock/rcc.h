@@ -65,6 +65,8 @@ class Rcc : public RegisterBlock {
 
   static std::uint32_t ahb_divider(std::uint32_t code);  // HPRE
   static std::uint32_t apb_divider(std::uint32_t code);  // PPREx
+  // A frequency as a ratio to the core's.
+  static ClockRatio ratio(double hz, double core_hz);
   // Fills in HCLK, APB buses and their timers.
   static ClockState buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, std::uint32_t apb2);
   // Makes `wanted` (the code of SW) the system clock of `hz` if that source runs; if not, what was stays and

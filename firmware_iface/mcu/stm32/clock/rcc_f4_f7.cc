@@ -11,7 +11,9 @@ enum : std::uint16_t {
   kCfgr = 0x08,
   kBdcr = 0x70,
   kCsr = 0x74,
-  kDckCfgr = 0x8C
+  kPllSaiCfgr = 0x88,
+  kDckCfgr = 0x8C,
+  kDckCfgr2 = 0x90
 };
 
 constexpr RegisterInfo kRegisters[] = {
@@ -38,15 +40,15 @@ constexpr RegisterInfo kRegisters[] = {
     {kCsr, "CSR", 0, 0x00000001},
     {0x80, "SSCGR", 0, 0xFFFFFFFF, 0xFFFFFFFF},
     {0x84, "PLLI2SCFGR", 0x20003000},
-    {0x88, "PLLSAICFGR", 0x24003000},
+    {kPllSaiCfgr, "PLLSAICFGR", 0x24003000},
     {kDckCfgr, "DCKCFGR", 0},
-    {0x90, "DCKCFGR2", 0},
+    {kDckCfgr2, "DCKCFGR2", 0},
     {0x94, "DCKCFGR3", 0},
 };
 
 // CR: HSI, HSE, PLL, PLLI2S, PLLSAI
 constexpr RccReady kReady[] = {{kCr, 0x15010001}, {kBdcr, 1}, {kCsr, 1}};
-constexpr std::uint16_t kTree[] = {kCr, kPllCfgr, kCfgr, kDckCfgr};
+constexpr std::uint16_t kTree[] = {kCr, kPllCfgr, kCfgr, kPllSaiCfgr, kDckCfgr, kDckCfgr2};
 constexpr RccMap kMap{.registers = kRegisters,
                       .ready = kReady,
                       .tree = kTree,
@@ -71,12 +73,28 @@ class RccF4F7 final : public Rcc {
     return vco_hz / (2.0 * (field(v, 16, 2) + 1));
   }
 
+  // Of the card's host: 48 MHz by PLL's Q or PLLSAI's P, or SYSCLK; 0: what it is chosen from is off.
+  double card_hz() {
+    const std::uint32_t v = value(kPllCfgr), sai = value(kPllSaiCfgr), choice = value(kDckCfgr2);
+    if (bit(choice, 28)) return sysclk_hz();
+    const bool by_sai = bit(choice, 27);
+    const std::uint32_t m = field(v, 0, 6), n = by_sai ? field(sai, 6, 9) : field(v, 6, 9);
+    const std::uint32_t by = by_sai ? 2 * (field(sai, 16, 2) + 1) : field(v, 24, 4);
+    if (m == 0 || by == 0 || !bit(value(kCr), by_sai ? 28 : 24)) return 0.0;
+    return (bit(v, 22) ? clocks().hse_hz : clocks().hsi_hz) * n / m / by;
+  }
+
   ClockState tree() override {
     const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
     const bool ready = bit(cr, wanted == 0 ? 0 : wanted == 1 ? 16 : 24);
     select(wanted, ready, wanted == 1 ? clocks().hse_hz : pll_hz());
     const std::uint32_t apb1 = apb_divider(field(cfgr, 10, 3)), apb2 = apb_divider(field(cfgr, 13, 3));
     ClockState state = buses(sysclk_hz(), ahb_divider(field(cfgr, 4, 4)), apb1, apb2);
+    if (const double hz = card_hz(); hz > 0.0) {
+      state.of(Bus::kSdmmc) = ratio(hz, state.hclk_hz);
+    } else {
+      state.off |= 1u << static_cast<unsigned>(Bus::kSdmmc);
+    }
     if (bit(value(kDckCfgr), 24)) {  // TIMPRE: up to four times PCLK, at most HCLK
       state.timers[1].div = apb1 <= 4 ? 1 : apb1 / 4;
       state.timers[2].div = apb2 <= 4 ? 1 : apb2 / 4;

@@ -1,7 +1,5 @@
 // RCC of H7, single core (RM0433 §8; RM0468 §8).
 #include <array>
-#include <cmath>
-#include <numeric>
 
 #include "firmware_iface/mcu/stm32/clock/rcc.h"
 
@@ -187,11 +185,7 @@ class RccH7 final : public Rcc {
       state.off |= 1u << static_cast<unsigned>(which);
       return;
     }
-    const auto ticks = static_cast<std::uint64_t>(std::llround(hz));
-    const auto cycles = static_cast<std::uint64_t>(std::llround(state.hclk_hz));
-    const std::uint64_t common = std::gcd(ticks, cycles);
-    state.of(which) = {static_cast<std::uint32_t>(ticks / common),
-                       static_cast<std::uint32_t>(cycles / common)};
+    state.of(which) = ratio(hz, state.hclk_hz);
   }
   void kernels(ClockState& state) {
     const auto hz = [&state](Bus bus) {

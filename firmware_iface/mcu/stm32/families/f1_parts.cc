@@ -139,7 +139,7 @@ void build_f1(Chip& chip, const F1Parts& parts) {
   add_stored(chip, 0x40006000, 0x400, "USB packet memory");
   add_stored(chip, 0x40006C00, 0x400, "BKP");
   if (parts.high_density) add_stored(chip, 0x40007400, 0x400, "DAC");
-  if (parts.high_density) add_stored(chip, 0x40018000, 0x400, "SDIO");
+  if (parts.high_density) add_sdmmc(chip, 0x40018000, {.name = "SDIO", .irq = 49});
   if (parts.high_density) add_stored(chip, 0xA0000000, 0x1000, "FSMC");
   add_identity(chip, {0x1FFFF7E8, 0x1FFFF7E0, 0xE0042000, parts.device_id, parts.flash_bytes / 1024});
 }

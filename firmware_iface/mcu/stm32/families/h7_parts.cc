@@ -202,6 +202,8 @@ void add_buses(Chip& chip, const H7Parts& parts) {
   i2c(0x40005C00, "I2C3", Bus::kI2c123, 72);
   i2c(0x58001C00, "I2C4", Bus::kI2c4, 95);
   if (parts.newer) i2c(0x40006400, "I2C5", Bus::kI2c123, 157);
+  add_sdmmc(chip, 0x52007000, {.name = "SDMMC1", .v2 = true, .irq = 49});
+  add_sdmmc(chip, 0x48022400, {.name = "SDMMC2", .v2 = true, .irq = 124});
   ChipContext& context = chip.context();
   FdcanRam& ram = chip.add(0x4000AC00, 0x2800, std::make_unique<FdcanRam>(0x2800));
   chip.add(0x4000A000, 0x400, std::make_unique<FdcanH7>(1, std::pair{19, 21}, ram, context));
