@@ -3,21 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/robot/geometry.h"
+#include "sim/robot/rolling_robot.h"
 
 namespace omnihil {
 
 std::array<double, 3> asked_of_body(PlanDrive drive, const std::array<double, kWheels>& value,
                                     const RollingParams<double>& robot) {
   if (drive == PlanDrive::kBodyVelocity) return {value[0], value[1], value[2]};
-  WheelGeometry<double> g;
-  g.wheels = robot.wheels;
-  for (std::size_t i = 0; i < g.wheels; ++i) {
-    g.cos_angle[i] = std::cos(robot.wheel_angle_rad[i]);
-    g.sin_angle[i] = std::sin(robot.wheel_angle_rad[i]);
-  }
-  g.wheel_center_radius_m = robot.wheel_center_radius_m;
-  g.wheel_radius_m = robot.wheel_radius_m;
+  const WheelGeometry<double> g = wheel_geometry(robot);
   PerWheel<double> omega{};
   std::copy(value.begin(), value.end(), omega.begin());
   if (drive == PlanDrive::kWheelDuty) {

@@ -114,14 +114,7 @@ void RollingRobot<T>::make_body() {
     p_.center_of_mass_x_m = port.center_of_mass_x_m;
     p_.center_of_mass_y_m = port.center_of_mass_y_m;
   }
-  WheelGeometry<T> g;
-  g.wheels = wheels_;
-  for (std::size_t i = 0; i < wheels_; ++i) {
-    g.cos_angle[i] = T(std::cos(p_.wheel_angle_rad[i]));
-    g.sin_angle[i] = T(std::sin(p_.wheel_angle_rad[i]));
-  }
-  g.wheel_center_radius_m = p_.wheel_center_radius_m;
-  g.wheel_radius_m = p_.wheel_radius_m;
+  const WheelGeometry<T> g = wheel_geometry(p_);
   if (wheels_ == 1) {
     load_.at_rest_N[0] = p_.mass_kg * kGravity_m_s2;
   } else {

@@ -26,6 +26,7 @@
 // One wheel alone carries all of mass_kg: a wheel on a test bench, whose body is moved by the bench.
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -74,6 +75,20 @@ struct RollingState {
 
   const T& omega_rotor_rad_s(std::size_t i) const { return drive[i].omega_rotor_rad_s; }
 };
+
+// Where its wheels are, for geometry.h.
+template <typename T>
+WheelGeometry<T> wheel_geometry(const RollingParams<T>& p) {
+  WheelGeometry<T> g;
+  g.wheels = p.wheels;
+  for (std::size_t i = 0; i < g.wheels; ++i) {
+    g.cos_angle[i] = T(std::cos(p.wheel_angle_rad[i]));
+    g.sin_angle[i] = T(std::sin(p.wheel_angle_rad[i]));
+  }
+  g.wheel_center_radius_m = p.wheel_center_radius_m;
+  g.wheel_radius_m = p.wheel_radius_m;
+  return g;
+}
 
 template <typename T>
 class RollingRobot {
