@@ -8,6 +8,7 @@
 
 #include "hil/text/csv_table.h"
 #include "identify/record/statistics.h"
+#include "sim/bench/dataset_text.h"
 
 namespace omnihil {
 namespace {
@@ -106,32 +107,18 @@ std::map<std::string, double> steady_noise(const AcquirePlan& plan, const std::v
 
 std::string acquired_dataset_text(const AcquirePlan& plan, const std::vector<AcquiredRun>& runs,
                                   const std::map<std::string, double>& noise) {
-  std::string title = plan.title.empty() ? "acquired" : plan.title;
-  std::replace_if(
-      title.begin(), title.end(), [](char c) { return c == '"' || c == '\\'; }, ' ');
-  std::string text = fmt::format(
-      "format = \"omnihil-dataset/1\"\ntitle = \"{}\"\nrig = \"robot\"\nmodel = "
-      "\"model.toml\"\n\n[channels]\n"
-      "time = {{ column = \"time_s\" }}\n",
-      title);
+  std::string text = dataset_head(plan.title.empty() ? "acquired" : plan.title, "robot");
   for (const Signal& s : kSignals) {
     const bool there = std::any_of(runs.begin(), runs.end(), [&](const AcquiredRun& one) {
       return one.rows.column(s.column) != nullptr;
     });
     if (!there) continue;
     const auto sigma = noise.find(s.column);
-    text += sigma == noise.end() ? fmt::format("{} = {{ column = \"{}\" }}\n", s.signal, s.column)
-                                 : fmt::format("{} = {{ column = \"{}\", sigma = {:.3g} }}\n", s.signal,
-                                               s.column, sigma->second);
+    text += channel_line(s.signal, s.column, 0.0,
+                         sigma == noise.end() ? "" : fmt::format(", sigma = {:.3g}", sigma->second));
   }
-  for (const AcquiredRun& one : runs) {
-    std::string words = one.run->excitation;
-    std::replace_if(
-        words.begin(), words.end(), [](char c) { return c == '"' || c == '\\'; }, ' ');
-    text +=
-        fmt::format("\n[[runs]]\nfile = \"{}.csv\"\nuse = \"{}\"\n", one.run->name, split_name(one.run->use));
-    if (!words.empty()) text += fmt::format("excitation = \"{}\"\n", words);
-  }
+  for (const AcquiredRun& one : runs)
+    text += run_lines(one.run->name + ".csv", split_name(one.run->use), one.run->excitation);
   return text;
 }
 

@@ -6,15 +6,10 @@
 #include <cmath>
 
 #include "sim/bench/axis_sim.h"
+#include "sim/bench/dataset_text.h"
 
 namespace omnihil {
 namespace {
-
-std::string plain(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '"' || c == '\\'; }, ' ');
-  return text;
-}
 
 const char* unit_of(PlanDrive drive) {
   return drive == PlanDrive::kMotorVoltage ? "V" : drive == PlanDrive::kMotorTorque ? "N m" : "";
@@ -38,14 +33,11 @@ std::vector<AxisSample<double>> simulated(const AcquirePlan& plan, const PlanRun
 
 std::string axis_dataset_text(const AcquirePlan& plan, const std::vector<AcquiredRun>& runs,
                               double counts_per_turn) {
-  std::string text = fmt::format(
-      "format = \"omnihil-dataset/1\"\ntitle = \"{}\"\nrig = \"axis\"\nmodel = \"model.toml\"\n\n[channels]\n"
-      "time = {{ column = \"time_s\" }}\n",
-      plain(plan.title.empty() ? "acquired" : plan.title));
+  std::string text = dataset_head(plan.title.empty() ? "acquired" : plan.title, "axis");
   const auto add = [&](std::string_view signal, const std::string& column, const std::string& more) {
     const bool there = std::any_of(
         runs.begin(), runs.end(), [&](const AcquiredRun& one) { return one.rows.column(column) != nullptr; });
-    if (there) text += fmt::format("{} = {{ column = \"{}\"{} }}\n", signal, column, more);
+    if (there) text += channel_line(signal, column, 0.0, more);
   };
   const std::string word(plan_drive_word(plan.drive));
   add(word, word, "");
@@ -60,12 +52,8 @@ std::string axis_dataset_text(const AcquirePlan& plan, const std::vector<Acquire
     add("motor_current", "current", "");
     add("bus_voltage", "bus", "");
   }
-  for (const AcquiredRun& one : runs) {
-    text +=
-        fmt::format("\n[[runs]]\nfile = \"{}.csv\"\nuse = \"{}\"\n", one.run->name, split_name(one.run->use));
-    if (!one.run->excitation.empty())
-      text += fmt::format("excitation = \"{}\"\n", plain(one.run->excitation));
-  }
+  for (const AcquiredRun& one : runs)
+    text += run_lines(one.run->name + ".csv", split_name(one.run->use), one.run->excitation);
   return text;
 }
 

@@ -7,6 +7,7 @@
 
 #include "hil/dataset/dataset_model.h"
 #include "hil/text/recording_text.h"
+#include "sim/bench/dataset_text.h"
 #include "sim/model/model_writer.h"
 
 namespace omnihil {
@@ -120,33 +121,23 @@ struct ExportedRun {
 
 std::string dataset_text(const RecordingHeader& header, const ModelFile& model,
                          const std::vector<ExportedRun>& runs) {
-  const auto channel = [](const std::string& signal, const std::string& column,
-                          const std::string& more = "") {
-    return signal + " = { column = \"" + column + "\"" + more + " }\n";
-  };
-  std::string text = "format = \"omnihil-dataset/1\"\n";
-  text += "title = " +
-          toml_text("simulated " + header.robot_model + ", " + header.radio_format + ", " + header.firmware +
-                    ", commit " + header.commit) +
-          "\n";
-  text += "rig = \"robot\"\nmodel = \"model.toml\"\n\n[channels]\n" + channel("time", "time_s");
+  std::string text = dataset_head("simulated " + header.robot_model + ", " + header.radio_format + ", " +
+                                      header.firmware + ", commit " + header.commit,
+                                  "robot");
   const EncoderParams& encoder = model.robot->encoder;
   const std::string resolution = ", counts_per_rev = " + std::to_string(encoder.counts_per_turn) +
                                  ", shaft = \"rotor\"" + (encoder.direction < 0 ? ", scale = -1" : "");
   for (const char* wheel : {"1", "2", "3", "4"})
-    text += channel(std::string("duty_") + wheel, std::string("duty_") + wheel);
-  text += channel("bus_voltage", "bus_V");
+    text += channel_line(std::string("duty_") + wheel, std::string("duty_") + wheel);
+  text += channel_line("bus_voltage", "bus_V");
   for (const char* wheel : {"1", "2", "3", "4"}) {
-    text += channel(std::string("motor_current_") + wheel, std::string("current_") + wheel);
-    text += channel(std::string("encoder_") + wheel, std::string("ticks_") + wheel, resolution);
+    text += channel_line(std::string("motor_current_") + wheel, std::string("current_") + wheel);
+    text += channel_line(std::string("encoder_") + wheel, std::string("ticks_") + wheel, 0.0, resolution);
   }
   for (const char* same : {"gyro_z", "accel_x", "accel_y", "vision_x", "vision_y", "vision_theta"}) {
-    text += channel(same, same);
+    text += channel_line(same, same);
   }
-  for (const ExportedRun& run : runs) {
-    text += "\n[[runs]]\nfile = \"" + run.file + "\"\nuse = \"" + run.use +
-            "\"\nexcitation = \"recorded host\"\n";
-  }
+  for (const ExportedRun& run : runs) text += run_lines(run.file, run.use, "recorded host");
   return text;
 }
 

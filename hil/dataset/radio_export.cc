@@ -13,6 +13,7 @@
 #include "hil/dataset/dataset_model.h"
 #include "hil/loop/session_checks.h"
 #include "hil/text/recording_text.h"
+#include "sim/bench/dataset_text.h"
 #include "sim/model/model_writer.h"
 
 namespace omnihil {
@@ -135,13 +136,11 @@ namespace {
 
 std::string radio_dataset_text(const RecordingHeader& header, bool wheels,
                                const std::vector<std::pair<std::string, const char*>>& runs) {
-  std::string text =
-      "format = \"omnihil-dataset/1\"\ntitle = " +
-      toml_text("simulated " + header.robot_model + " by radio, " + header.radio_format + ", " +
-                header.firmware + ", commit " + header.commit) +
-      "\nrig = \"robot\"\nmodel = \"model.toml\"\n\n[channels]\ntime = { column = \"time_s\" }\n";
+  std::string text = dataset_head("simulated " + header.robot_model + " by radio, " + header.radio_format +
+                                      ", " + header.firmware + ", commit " + header.commit,
+                                  "robot");
   const auto channel = [&](const std::string& signal, const std::string& column) {
-    text += signal + " = { column = \"" + column + "\" }\n";
+    text += channel_line(signal, column);
   };
   for (const char* axis : {"vx", "vy", "w"}) {
     if (!wheels) channel(std::string("command_") + axis, std::string("cmd_") + axis);
@@ -152,8 +151,7 @@ std::string radio_dataset_text(const RecordingHeader& header, bool wheels,
   for (const char* wheel : {"1", "2", "3", "4"})
     channel(std::string("wheel_speed_") + wheel, std::string("wheel_") + wheel);
   for (const char* same : {"vision_x", "vision_y", "vision_theta"}) channel(same, same);
-  for (const auto& [file, use] : runs)
-    text += "\n[[runs]]\nfile = \"" + file + "\"\nuse = \"" + use + "\"\nexcitation = \"recorded host\"\n";
+  for (const auto& [file, use] : runs) text += run_lines(file, use, "recorded host");
   return text;
 }
 

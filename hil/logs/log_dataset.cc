@@ -11,6 +11,7 @@
 #include "hil/logs/log_rows.h"
 #include "hil/text/line_chart.h"
 #include "identify/record/signal_list.h"
+#include "sim/bench/dataset_text.h"
 
 namespace omnihil {
 namespace {
@@ -129,7 +130,7 @@ class Channels {
   }
 
   std::string text() const {
-    std::string out = "time = { column = \"time_s\" }\n";
+    std::string out;
     for (const std::string& signal : order_) {
       std::string line = lines_.at(signal);
       if (const auto it = sigmas_.find(signal); it != sigmas_.end())
@@ -187,10 +188,6 @@ void add_doubts(const std::string& path, const std::vector<std::string>& doubts,
                                    [&](const std::string& d) { return d.find(about) != std::string::npos; });
     if (!asked) made.doubts.push_back(path + ": " + doubt);
   }
-}
-
-std::string run_toml(const std::string& file, Split use) {
-  return fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\n", toml_text(file), split_name(use));
 }
 
 // What was asked of columns that this run has, or that no log has: of a pose's columns runs without one know nothing.
@@ -259,15 +256,14 @@ LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOp
             fmt::format("{}: --split {:g} leaves a part with less than two rows", run.path, o.fit_share));
     }
     csv.push_back({stem + ".csv", csv_text(run.table, rows, 0, cut)});
-    run_text += run_toml(csv.back().name, run.use);
+    run_text += run_lines(csv.back().name, split_name(run.use));
     if (cut == rows.time_s.size()) continue;
     csv.push_back({stem + "_holdout.csv", csv_text(run.table, rows, cut, rows.time_s.size())});
-    run_text += run_toml(csv.back().name, kValidation);
+    run_text += run_lines(csv.back().name, split_name(kValidation));
   }
   if (!made.doubts.empty()) return made;
-  std::string toml = fmt::format(
-      "format = \"omnihil-dataset/1\"\ntitle = {}\nrig = \"{}\"\nmodel = \"model.toml\"\n\n[channels]\n{}{}",
-      toml_text(o.title), o.context.rig == Rig::kAxis ? "axis" : "robot", channels.text(), run_text);
+  std::string toml =
+      dataset_head(o.title, o.context.rig == Rig::kAxis ? "axis" : "robot") + channels.text() + run_text;
   if (!made.doubts.empty()) return made;
   made.files = {{"dataset.toml", std::move(toml)},
                 {"model.toml", o.model_text},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/bench/axis_signal.h"
+#include "sim/bench/dataset_text.h"
 #include "sim/drive/sensor_chain.h"
 #include "sim/model/effect_reader.h"
 #include "sim/model/model_writer.h"
@@ -14,37 +15,29 @@ constexpr double kAmbient_degC = 25.0;
 
 bool has_encoder(const AxisBench& bench) { return bench.model.encoder_counts_per_turn > 0.0; }
 
-std::string channel(std::string_view signal, std::string_view column, double sigma) {
-  return sigma > 0.0 ? fmt::format("{} = {{ column = \"{}\", sigma = {:g} }}\n", signal, column, sigma)
-                     : fmt::format("{} = {{ column = \"{}\" }}\n", signal, column);
-}
-
 }  // namespace
 
 std::string dataset_text(const AxisBench& bench) {
   const CommandKind kind = bench.runs.front().input.kind;
-  std::string out = fmt::format(
-      "format = \"omnihil-dataset/1\"\ntitle = {}\nrig = \"axis\"\nmodel = \"model.toml\"\n\n[channels]\n",
-      toml_text(bench.title));
-  out += channel("time", "time_s", 0.0);
-  out += channel(command_name(kind), command_name(kind), 0.0);
+  std::string out = dataset_head(bench.title, "axis");
+  out += channel_line(command_name(kind), command_name(kind));
   if (bench.model.has_electrics) {
-    if (kind != CommandKind::kMotorVoltage) out += channel("bus_voltage", "bus_V", bench.noise.bus_voltage_V);
+    if (kind != CommandKind::kMotorVoltage)
+      out += channel_line("bus_voltage", "bus_V", bench.noise.bus_voltage_V);
     if (kind != CommandKind::kMotorCurrent)
-      out += channel("motor_current", "current_A", bench.noise.motor_current_A);
+      out += channel_line("motor_current", "current_A", bench.noise.motor_current_A);
   }
   if (has_encoder(bench)) {
-    out += fmt::format("encoder = {{ column = \"ticks\", counts_per_rev = {:g}, shaft = \"{}\" }}\n",
-                       bench.model.encoder_counts_per_turn,
-                       bench.runs.front().input.encoder_on_output ? "output" : "rotor");
+    out += channel_line(
+        "encoder", "ticks", 0.0,
+        fmt::format(", counts_per_rev = {:g}, shaft = \"{}\"", bench.model.encoder_counts_per_turn,
+                    bench.runs.front().input.encoder_on_output ? "output" : "rotor"));
   } else {
-    out += channel("position", "position", bench.noise.position_rad);
+    out += channel_line("position", "position", bench.noise.position_rad);
   }
-  if (bench.has_temperature) out += channel("winding_temperature", "winding_degC", bench.noise.winding_K);
-  for (const AxisBenchRun& run : bench.runs) {
-    out += fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\nexcitation = {}\n", toml_text(run.name + ".csv"),
-                       run.use, toml_text(run.excitation));
-  }
+  if (bench.has_temperature)
+    out += channel_line("winding_temperature", "winding_degC", bench.noise.winding_K);
+  for (const AxisBenchRun& run : bench.runs) out += run_lines(run.name + ".csv", run.use, run.excitation);
   return out;
 }
 

@@ -57,37 +57,6 @@ std::optional<CommandKind> kind_of(const BenchOptions& options, const AxisModel&
   return std::nullopt;
 }
 
-AxisInput read_file(const std::string& path, std::vector<std::string>& faults) {
-  constexpr std::size_t kOne[] = {1};
-  AxisInput in;
-  for (const BenchRow& row : read_bench_rows(path, kOne, "what is asked", faults)) {
-    in.time_s.push_back(row.time_s);
-    in.command.push_back(row.values[0]);
-  }
-  return in;
-}
-
-AxisInput excited(Excitation kind, const BenchOptions& options, double scale, std::uint64_t seed) {
-  AxisInput in;
-  const auto count = static_cast<std::size_t>(options.duration_s * options.rate_Hz + 1e-6) + 1;
-  for (std::size_t n = 0; n < count; ++n) {
-    in.time_s.push_back(static_cast<double>(n) / options.rate_Hz);
-    in.command.push_back(
-        options.amplitude * scale *
-        excitation_at(kind, in.time_s.back(), {.duration_s = options.duration_s, .seed = seed}));
-  }
-  return in;
-}
-
-AxisInput part_of(const AxisInput& in, std::size_t from, std::size_t to) {
-  AxisInput part;
-  part.time_s.assign(in.time_s.begin() + static_cast<std::ptrdiff_t>(from),
-                     in.time_s.begin() + static_cast<std::ptrdiff_t>(to));
-  part.command.assign(in.command.begin() + static_cast<std::ptrdiff_t>(from),
-                      in.command.begin() + static_cast<std::ptrdiff_t>(to));
-  return part;
-}
-
 // Time of the first sample that is not finite, or nothing.
 std::string divergence(const AxisBenchRun& run) {
   for (const AxisSample<double>& s : run.samples) {
@@ -114,11 +83,16 @@ std::optional<VirtualBench> make_axis_bench(const BenchOptions& options, std::ve
     if (!fault.empty()) faults.push_back("--with " + fault);
   }
   if (!faults.empty()) return std::nullopt;
-  const auto runs = bench_runs<AxisInput>(
-      options, faults,
-      [&](Excitation e, double scale, std::uint64_t seed) { return excited(e, options, scale, seed); },
-      [&](const std::string& path) { return read_file(path, faults); }, part_of,
-      [](const AxisInput& in) { return in.time_s.size(); });
+  const auto excited = [&](Excitation e, double scale, std::uint64_t seed) {
+    return bench_rows(options, [&](double t) {
+      const double pattern = excitation_at(e, t, {.duration_s = options.duration_s, .seed = seed});
+      return std::vector<double>{options.amplitude * scale * pattern};
+    });
+  };
+  const auto runs = bench_runs(options, faults, excited, [&](const std::string& path) {
+    constexpr std::size_t kOne[] = {1};
+    return read_bench_rows(path, kOne, "what is asked", faults);
+  });
   if (!faults.empty()) return std::nullopt;
   AxisBench bench{.title = "simulated: " + options.model, .model = *model, .runs = {}, .noise = {}};
   bench.noise.bus_voltage_V *= options.noise_scale;
@@ -132,9 +106,15 @@ std::optional<VirtualBench> make_axis_bench(const BenchOptions& options, std::ve
   const EffectSet<double> set(effects);
   VirtualBench out;
   std::uint64_t seed = options.seed;
-  for (const BenchRun<AxisInput>& planned : runs) {
-    AxisBenchRun& run = bench.runs.emplace_back(
-        AxisBenchRun{planned.name, planned.use, planned.excitation, planned.input, {}, 0});
+  for (const BenchRun& planned : runs) {
+    AxisBenchRun& run = bench.runs.emplace_back();
+    run.name = planned.name;
+    run.use = planned.use;
+    run.excitation = planned.excitation;
+    for (const BenchRow& row : planned.input) {
+      run.input.time_s.push_back(row.time_s);
+      run.input.command.push_back(row.values[0]);
+    }
     run.seed = mix_bits(seed++);
     run.input.kind = *kind;
     run.input.encoder_counts_per_turn = model->encoder_counts_per_turn;

@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "hil/loop/effect_overrides.h"
 #include "hil/text/program_files.h"
 #include "hil/text/recording_text.h"
-#include "sim/law/toml_text.h"
+#include "sim/bench/dataset_text.h"
+#include "sim/drive/sensor_chain.h"
 
 namespace omnihil {
 namespace {
@@ -56,6 +58,44 @@ std::vector<BenchRow> read_bench_rows(const std::string& path, std::span<const s
   return out;
 }
 
+std::vector<BenchRow> bench_rows(const BenchOptions& o,
+                                 const std::function<std::vector<double>(double)>& values) {
+  std::vector<BenchRow> out;
+  const auto count = static_cast<std::size_t>(o.duration_s * o.rate_Hz + 1e-6) + 1;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double time_s = static_cast<double>(n) / o.rate_Hz;
+    out.push_back({time_s, values(time_s)});
+  }
+  return out;
+}
+
+std::vector<BenchRun> bench_runs(
+    const BenchOptions& o, std::vector<std::string>& faults,
+    const std::function<std::vector<BenchRow>(Excitation, double, std::uint64_t)>& excited,
+    const std::function<std::vector<BenchRow>(const std::string&)>& read) {
+  constexpr double kHoldoutRatio = 1.0 / 3.0;  // of a file's time, at its end
+  constexpr double kHoldoutAmplitude = 0.8;    // of the fit run's
+  std::vector<BenchRun> runs;
+  for (const std::string& e : o.excitations) {
+    if (const auto kind = find_excitation(e)) {
+      runs.push_back({e, "fit", e, excited(*kind, 1.0, o.seed)});
+      runs.push_back({e + "_holdout", "holdout", e, excited(*kind, kHoldoutAmplitude, o.seed + 1)});
+    } else {
+      const std::vector<BenchRow> all = read(e);
+      const auto cut = static_cast<std::ptrdiff_t>(static_cast<double>(all.size()) * (1.0 - kHoldoutRatio));
+      const std::string stem = std::filesystem::path(e).stem().string();
+      runs.push_back({stem, "fit", e, {all.begin(), all.begin() + cut}});
+      runs.push_back({stem + "_holdout", "holdout", e, {all.begin() + cut, all.end()}});
+    }
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (runs[i].name == runs[j].name) faults.push_back("--excite " + runs[i].name + ": given twice");
+    }
+  }
+  return runs;
+}
+
 void check_bench_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
   for (const std::string& e : o.excitations) {
     if (const std::string fault = excitation_fault(e); !fault.empty()) faults.push_back(fault);
@@ -94,21 +134,32 @@ std::optional<BenchRobot> open_robot(const BenchOptions& options, std::vector<st
   return out;
 }
 
-std::string channel_line(const std::string& signal, const std::string& column, double sigma,
-                         const std::string& more) {
-  const std::string noise = sigma > 0.0 ? fmt::format(", sigma = {:g}", sigma) : "";
-  return fmt::format("{} = {{ column = \"{}\"{}{} }}\n", signal, column, noise, more);
+std::string bench_dataset(const std::string& title, const std::string& rig,
+                          const std::vector<BenchColumn>& columns, const std::vector<BenchRun>& runs) {
+  std::string text = dataset_head(title, rig);
+  for (const BenchColumn& c : columns) text += channel_line(c.signal, c.column, c.sigma, c.more);
+  for (const BenchRun& run : runs) text += run_lines(run.name + ".csv", run.use, run.excitation);
+  return text;
 }
 
-std::string run_lines(const std::string& name, const std::string& use, const std::string& excitation) {
-  return fmt::format("\n[[runs]]\nfile = {}\nuse = \"{}\"\nexcitation = {}\n", toml_text(name + ".csv"), use,
-                     toml_text(excitation));
+std::string bench_header(const std::vector<BenchColumn>& columns) {
+  std::string text = "time_s";
+  for (const BenchColumn& c : columns) text += "," + c.column;
+  return text + "\n";
 }
 
-std::string dataset_head(const std::string& title, const std::string& rig) {
-  return fmt::format(
-      "format = \"omnihil-dataset/1\"\ntitle = {}\nrig = \"{}\"\nmodel = \"model.toml\"\n\n[channels]\n",
-      toml_text(title), rig);
+std::string bench_line(const std::vector<BenchColumn>& columns, double time_s,
+                       const std::vector<double>& values, std::optional<std::uint64_t> seed,
+                       std::uint64_t k) {
+  std::string text = fmt::format("{:.6f}", time_s);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    text += ',';
+    if (!std::isfinite(values[i])) continue;
+    const BenchColumn& c = columns[i];
+    const double value = seed && c.sigma > 0.0 ? noisy(values[i], c.sigma, *seed, c.stream, k) : values[i];
+    text += fmt::format(fmt::runtime(c.format), value);
+  }
+  return text + "\n";
 }
 
 }  // namespace omnihil

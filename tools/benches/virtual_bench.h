@@ -9,7 +9,7 @@
 // what the data are to show.
 #pragma once
 #include <cstdint>
-#include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -56,21 +56,29 @@ std::optional<VirtualBench> make_wheel_bench(const BenchOptions& options, std::v
 
 // ---- What they share
 
-// By name, and where its input comes from.
-template <typename Input>
-struct BenchRun {
-  std::string name, use, excitation;
-  Input input;
-};
-
-// Rows of a CSV file: a time that increases, and as many numbers as one of `widths` says; the first line may be a header.
-// `needed`: the words for it.
+// What is asked of a bench at a time: of an axis its drive input, of a robot its duties.
 struct BenchRow {
   double time_s = 0.0;
   std::vector<double> values;
 };
+// By name, and where its input comes from.
+struct BenchRun {
+  std::string name, use, excitation;
+  std::vector<BenchRow> input;
+};
+
+// Rows of a CSV file: a time that increases, and as many numbers as one of `widths` says; the first line may be a header.
+// `needed`: the words for it.
 std::vector<BenchRow> read_bench_rows(const std::string& path, std::span<const std::size_t> widths,
                                       const std::string& needed, std::vector<std::string>& faults);
+// Rows at the bench's rate, values(t) each.
+std::vector<BenchRow> bench_rows(const BenchOptions& options,
+                                 const std::function<std::vector<double>(double)>& values);
+// excited(kind, scale, seed), read(path).
+std::vector<BenchRun> bench_runs(
+    const BenchOptions& options, std::vector<std::string>& faults,
+    const std::function<std::vector<BenchRow>(Excitation, double, std::uint64_t)>& excited,
+    const std::function<std::vector<BenchRow>(const std::string&)>& read);
 
 // Names of excitations, and numbers.
 void check_bench_numbers(const BenchOptions& options, std::vector<std::string>& faults);
@@ -82,37 +90,21 @@ struct BenchRobot {
 };
 std::optional<BenchRobot> open_robot(const BenchOptions& options, std::vector<std::string>& faults);
 
-// A line of [channels]; `more`: further keys, ", counts_per_rev = 4096".
-std::string channel_line(const std::string& signal, const std::string& column, double sigma,
-                         const std::string& more = "");
-std::string run_lines(const std::string& name, const std::string& use, const std::string& excitation);
-std::string dataset_head(const std::string& title, const std::string& rig);
+// A column of a bench's runs: its line in [channels], and how its numbers are written.
+struct BenchColumn {
+  std::string signal, column;
+  const char* format = "{:.9g}";  // of fmt
+  double sigma = 0.0;             // white noise of its sensor; 0: none
+  std::string more = {};          // further keys of its line: ", counts_per_rev = 4096"
+  std::string stream = {};        // of its noise
+};
+std::string bench_header(const std::vector<BenchColumn>& columns);  // first line of a run's CSV
+// A value a column, NaN: an empty cell. With a seed, their sensors' noise is put on row `k`'s.
+std::string bench_line(const std::vector<BenchColumn>& columns, double time_s,
+                       const std::vector<double>& values, std::optional<std::uint64_t> seed = {},
+                       std::uint64_t k = 0);
 
-// excited(kind, scale, seed), read(path), part(input, from, to), of which size(input) there are.
-template <typename Input, class Excited, class Read, class Part, class Size>
-std::vector<BenchRun<Input>> bench_runs(const BenchOptions& o, std::vector<std::string>& faults,
-                                        Excited excited, Read read, Part part, Size size) {
-  constexpr double kHoldoutRatio = 1.0 / 3.0;  // of a file's time, at its end
-  constexpr double kHoldoutAmplitude = 0.8;    // of the fit run's
-  std::vector<BenchRun<Input>> runs;
-  for (const std::string& e : o.excitations) {
-    if (const auto kind = find_excitation(e)) {
-      runs.push_back({e, "fit", e, excited(*kind, 1.0, o.seed)});
-      runs.push_back({e + "_holdout", "holdout", e, excited(*kind, kHoldoutAmplitude, o.seed + 1)});
-    } else {
-      const Input all = read(e);
-      const auto cut = static_cast<std::size_t>(static_cast<double>(size(all)) * (1.0 - kHoldoutRatio));
-      const std::string stem = std::filesystem::path(e).stem().string();
-      runs.push_back({stem, "fit", e, part(all, 0, cut)});
-      runs.push_back({stem + "_holdout", "holdout", e, part(all, cut, size(all))});
-    }
-  }
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (runs[i].name == runs[j].name) faults.push_back("--excite " + runs[i].name + ": given twice");
-    }
-  }
-  return runs;
-}
+std::string bench_dataset(const std::string& title, const std::string& rig,
+                          const std::vector<BenchColumn>& columns, const std::vector<BenchRun>& runs);
 
 }  // namespace omnihil

@@ -32,33 +32,40 @@ double slipping_duty(const RobotModel& m) {
   return torque_Nm / m.motor.torque_constant_Nm_per_A * m.motor.resistance_ohm / m.bus_voltage_V;
 }
 
-Run driven(const BenchOptions& o, const RobotModel& m, Excitation kind, double scale, std::uint64_t seed) {
-  Run run;
-  const auto count = static_cast<std::size_t>(o.duration_s * o.rate_Hz + 1e-6) + 1;
-  const auto pattern = [&](double t, std::uint64_t which) {
-    return excitation_at(which == 0 ? kind : Excitation::kSteps, t,
-                         {.duration_s = o.duration_s, .seed = mix_bits(3 * seed + which)});
-  };
+// Duty, and the body's velocity forward and to the left.
+std::vector<BenchRow> driven(const BenchOptions& o, const RobotModel& m, Excitation kind, double scale,
+                             std::uint64_t seed) {
   const double full_m_s = full_speed_m_s(m), push = scale * o.amplitude * slipping_duty(m);
   const double most_m_s = 0.5 * m.tyre_longitudinal.extremum_value * kGravity_m_s2 / o.rate_Hz;
   double vx = 0.0, vy = 0.0;
-  for (std::size_t n = 0; n < count; ++n) {
-    const double t = static_cast<double>(n) / o.rate_Hz;
+  return bench_rows(o, [&](double t) {
+    const auto pattern = [&](std::uint64_t which) {
+      return excitation_at(which == 0 ? kind : Excitation::kSteps, t,
+                           {.duration_s = o.duration_s, .seed = mix_bits(3 * seed + which)});
+    };
     const auto towards = [&](double now, double asked) {
       return now + std::clamp(asked * scale * kShareOfSpeed * full_m_s - now, -most_m_s, most_m_s);
     };
-    vx = towards(vx, pattern(t, 1)), vy = towards(vy, pattern(t, 2));
-    run.time_s.push_back(t);
-    run.signals["body_vx"].push_back(vx);
-    run.signals["body_vy"].push_back(vy);
-    run.signals["duty"].push_back(std::clamp(vx / full_m_s + push * pattern(t, 0), -1.0, 1.0));
+    vx = towards(vx, pattern(1)), vy = towards(vy, pattern(2));
+    return std::vector<double>{std::clamp(vx / full_m_s + push * pattern(0), -1.0, 1.0), vx, vy};
+  });
+}
+
+Run run_of(const BenchRun& planned) {
+  Run run;
+  for (const BenchRow& row : planned.input) {
+    run.time_s.push_back(row.time_s);
+    run.signals["duty"].push_back(row.values[0]);
+    run.signals["body_vx"].push_back(row.values[1]);
+    run.signals["body_vy"].push_back(row.values[2]);
   }
   // what will be measured
-  for (const char* name : {"motor_current", "encoder", "force_x", "force_y"}) run.signals[name].resize(count);
+  for (const char* name : {"motor_current", "encoder", "force_x", "force_y"})
+    run.signals[name].resize(run.time_s.size());
   return run;
 }
 
-Dataset blank(const BenchOptions& o, const RobotModel& m, const std::vector<BenchRun<Run>>& runs) {
+Dataset blank(const BenchOptions& o, const RobotModel& m, const std::vector<BenchRun>& runs) {
   Dataset d;
   d.rig = Rig::kWheel;
   const auto channel = [&](const char* name, double sigma = 0.0) -> Channel& {
@@ -74,31 +81,28 @@ Dataset blank(const BenchOptions& o, const RobotModel& m, const std::vector<Benc
   channel("encoder").counts_per_rev = m.encoder.counts_per_turn;
   channel("force_x", kForce_N);
   channel("force_y", kForce_N);
-  for (const BenchRun<Run>& run : runs) d.runs.push_back(run.input);
+  for (const BenchRun& run : runs) d.runs.push_back(run_of(run));
   return d;
 }
 
-std::string dataset_text(const std::string& model, const Dataset& d, const std::vector<BenchRun<Run>>& runs) {
-  std::string text =
-      dataset_head("simulated: a wheel of " + model, "wheel") + channel_line("time", "time_s", 0.0);
+std::vector<BenchColumn> columns_of(const Dataset& d) {
+  std::vector<BenchColumn> out;
   for (const Channel& c : d.channels) {
-    const bool counts = c.counts_per_rev > 0.0;
-    text += channel_line(
-        c.signal, c.column, c.sigma,
-        counts ? fmt::format(", counts_per_rev = {:g}, shaft = \"rotor\"", c.counts_per_rev) : "");
+    out.push_back({.signal = c.signal, .column = c.column, .sigma = c.sigma});
+    if (c.counts_per_rev > 0.0)
+      out.back().more = fmt::format(", counts_per_rev = {:g}, shaft = \"rotor\"", c.counts_per_rev);
   }
-  for (const BenchRun<Run>& run : runs) text += run_lines(run.name, run.use, run.excitation);
-  return text;
+  return out;
 }
 
-std::string run_text(const Dataset& d, const Run& run) {
-  std::string text = "time_s";
-  for (const Channel& c : d.channels) text += "," + c.column;
+std::string run_text(const std::vector<BenchColumn>& columns, const Run& run) {
+  std::string text = bench_header(columns);
   for (std::size_t k = 0; k < run.time_s.size(); ++k) {
-    text += fmt::format("\n{:.6f}", run.time_s[k]);
-    for (const Channel& c : d.channels) text += fmt::format(",{:.9g}", (*run.signal(c.signal))[k]);
+    std::vector<double> values;
+    for (const BenchColumn& c : columns) values.push_back((*run.signal(c.signal))[k]);
+    text += bench_line(columns, run.time_s[k], values);
   }
-  return text + "\n";
+  return text;
 }
 
 }  // namespace
@@ -108,25 +112,24 @@ std::optional<VirtualBench> make_wheel_bench(const BenchOptions& o, std::vector<
   if (!opened) return std::nullopt;
   const auto& [stored, reading] = *opened;
   const RobotModel& robot = *stored.model->robot;
-  const auto runs = bench_runs<Run>(
+  const auto runs = bench_runs(
       o, faults,
       [&](Excitation e, double scale, std::uint64_t seed) { return driven(o, robot, e, scale, seed); },
       [&](const std::string& path) {
         faults.push_back(fmt::format("--excite {}: of a wheel excitations by name are allowed", path));
-        return Run();
-      },
-      [](const Run& run, std::size_t, std::size_t) { return run; },
-      [](const Run& run) { return run.time_s.size(); });
+        return std::vector<BenchRow>();
+      });
   if (!faults.empty()) return std::nullopt;
   const Dataset asked = blank(o, robot, runs);
   const auto measured =
       make_predictor(asked, candidate_of(*stored.model), {})->simulated(candidate_of(*reading.model), o.seed);
+  const std::vector<BenchColumn> columns = columns_of(asked);
   VirtualBench bench;
-  bench.files = {{"dataset.toml", dataset_text(o.model, asked, runs)},
+  bench.files = {{"dataset.toml", bench_dataset("simulated: a wheel of " + o.model, "wheel", columns, runs)},
                  {"model.toml", dataset_model_text(*stored.model)}};
-  for (const BenchRun<Run>& planned : runs) {
+  for (const BenchRun& planned : runs) {
     const Run& run = measured->run(static_cast<int>(bench.runs++));
-    bench.files.push_back({planned.name + ".csv", run_text(asked, run)});
+    bench.files.push_back({planned.name + ".csv", run_text(columns, run)});
     bench.rows += run.time_s.size();
     for (const auto& [name, values] : run.signals) {
       const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
