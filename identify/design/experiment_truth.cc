@@ -273,11 +273,12 @@ MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& 
     const RobotMotion<double> m = run_robot(robot_values<double>(model, {}, 0), record, options);
     out.finite = m.finite;
     for (std::size_t k = 1; k < record.size(); ++k) {
-      out.travel = std::max(out.travel, std::hypot(m.x_m[k], m.y_m[k]));
+      const RollingSample<double>&now = m.samples[k], &before = m.samples[k - 1];
+      out.travel = std::max(out.travel, std::hypot(now.x_m, now.y_m));
       const double dt_s = record.time_s[k] - record.time_s[k - 1];
       for (std::size_t i = 0; i < record.wheels; ++i) {
-        out.current_A = std::max(out.current_A, std::abs(m.current_A[k][i]));
-        const double speed = std::abs(m.encoder_rad[k][i] - m.encoder_rad[k - 1][i]) / dt_s;
+        out.current_A = std::max(out.current_A, std::abs(now.current_A[i]));
+        const double speed = std::abs(now.encoder_rad[i] - before.encoder_rad[i]) / dt_s;
         out.rotor_speed_rad_s = std::max(out.rotor_speed_rad_s, speed);
       }
     }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "identify/predict/axis_outputs.h"
+#include "identify/predict/interpolation.h"
 #include "identify/record/statistics.h"
 #include "identify/record/wiener.h"
 
@@ -20,11 +21,8 @@ constexpr double kHighestCutoff_Hz = 100.0;    // of faster records: beyond a dr
 constexpr double kMotionShareOfNyquist = 0.8;  // where a low pass of that cutoff is still one; a choice
 constexpr double kEndsInPeriods = 5.0;  // of the cutoff, left out at either end: the filter settles; a choice
 
-LowPass filter_for(double rate_Hz) {
-  return butterworth(kOrder, std::min(kHighestCutoff_Hz, kShareOfNyquist * 0.5 * rate_Hz), rate_Hz);
-}
-
 double cutoff_for(double rate_Hz) { return std::min(kHighestCutoff_Hz, kShareOfNyquist * 0.5 * rate_Hz); }
+LowPass filter_for(double rate_Hz) { return butterworth(kOrder, cutoff_for(rate_Hz), rate_Hz); }
 
 // An even clock of the record's median period.
 std::vector<double> even_clock(const AxisRecord& r) {
@@ -33,29 +31,6 @@ std::vector<double> even_clock(const AxisRecord& r) {
   std::vector<double> t;
   for (std::size_t i = 0; i <= n; ++i) t.push_back(r.time_s.front() + static_cast<double>(i) * r.period_s);
   return t;
-}
-
-// Linear interpolation between known values, constant outside; held: zero-order hold instead. Empty stays
-// empty.
-std::vector<double> resampled(const AxisRecord& r, const std::vector<double>& x,
-                              const std::vector<double>& clock, bool held) {
-  std::vector<double> t, v;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (std::isfinite(x[k])) t.push_back(r.time_s[k]), v.push_back(x[k]);
-  }
-  std::vector<double> out;
-  if (t.empty()) return out;
-  std::size_t at = 0;
-  const double late = held ? 1e-6 * r.period_s : 0.0;
-  for (const double now : clock) {
-    while (at + 1 < t.size() && t[at + 1] <= now + late) ++at;
-    if (now <= t[at] || at + 1 == t.size() || held) {
-      out.push_back(v[at]);
-    } else {
-      out.push_back(v[at] + (v[at + 1] - v[at]) * (now - t[at]) / (t[at + 1] - t[at]));
-    }
-  }
-  return out;
 }
 
 std::vector<double> position_of(const AxisRecord& r) {
@@ -136,7 +111,7 @@ NeededName needed_name(const Dataset& dataset, CommandKind kind) {
   }
 }
 
-void add(AxisSetup& s, std::string name, std::string unit, AxisOutput output, std::vector<double> measured,
+void add(AxisSetup& s, std::string name, std::string unit, Quantity quantity, std::vector<double> measured,
          double sigma, bool stated) {
   ComparedSignal c{.name = std::move(name),
                    .unit = std::move(unit),
@@ -147,7 +122,7 @@ void add(AxisSetup& s, std::string name, std::string unit, AxisOutput output, st
   c.noise_sigma = c.whitened_sigma = std::max(sigma, least);
   c.noise_is_stated = stated;
   s.compared.push_back(std::move(c));
-  s.outputs.push_back(output);
+  s.seen.push_back({.quantity = quantity});
 }
 
 // Leaves out the ends, where the filter has transients, and the gaps, where samples are interpolated.
@@ -185,37 +160,37 @@ std::vector<double> smoothed_velocity(const AxisRecord& record) {
   const LowPass filter = filter_for(rate);
   std::vector<double> speed;
   if (!record.velocity.empty()) {
-    speed = zero_phase(filter, resampled(record, record.velocity, clock, false));
+    speed = zero_phase(filter, resampled(record.time_s, record.velocity, clock));
   } else {
-    const std::vector<double> x = resampled(record, position_of(record), clock, false);
+    const std::vector<double> x = resampled(record.time_s, position_of(record), clock);
     if (x.empty()) return {};
     speed = central_differences(zero_phase(filter, x));
     for (double& v : speed) v *= rate;
   }
-  AxisRecord even;
-  even.time_s = clock;
-  even.period_s = record.period_s;
-  return resampled(even, speed, record.time_s, false);
+  return resampled(clock, speed, record.time_s);
 }
 
 void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive, const AxisRecord& r,
                         AxisSetup& s) {
   const CommandKind kind = axis_command_kind(dataset);
   const Channel* speed_channel = dataset.channel("velocity");
-  s.speed_imposed = speed_channel != nullptr && speed_channel->imposed;
+  const bool speed_imposed = speed_channel != nullptr && speed_channel->imposed;
   const double rate = 1.0 / r.period_s;
   const double cutoff = cutoff_for(rate);
   s.filter = filter_for(rate);
   AxisInput& in = s.input;
   in.kind = kind;
   in.time_s = even_clock(r);
-  const auto linear = [&](const std::vector<double>& x) { return resampled(r, x, in.time_s, false); };
-  const auto steps = [&](const std::vector<double>& x) { return resampled(r, x, in.time_s, true); };
+  const auto linear = [&](const std::vector<double>& x) { return resampled(r.time_s, x, in.time_s); };
+  const auto steps = [&](const std::vector<double>& x) {
+    constexpr double kLate = 1e-6;  // of a period: time stamps are sums; a choice
+    return resampled_steps(r.time_s, x, in.time_s, kLate * r.period_s);
+  };
   const bool by_torque = kind == CommandKind::kMotorTorque || kind == CommandKind::kMotorCurrent;
   in.command = by_torque ? interval_means(linear(r.command)) : steps(r.command);
   for (const double e : steps(r.enable)) in.enable.push_back(e != 0.0 ? 1 : 0);
-  if (!by_torque) in.bus_voltage_V = steps(r.bus_V);
-  const bool bench_torque = s.speed_imposed && !r.load_torque_Nm.empty();
+  if (!by_torque) in.bus_voltage_V = steps(r.bus.input_V);
+  const bool bench_torque = speed_imposed && !r.load_torque_Nm.empty();
   if (!bench_torque) in.load_torque_Nm = steps(r.load_torque_Nm);
   std::vector<double> position = linear(position_of(r));
   std::vector<double> velocity = linear(r.velocity);
@@ -240,35 +215,35 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   s.position = position;
   s.measured_current = linear(r.current);
   s.measured_temperature = linear(r.temperature);
-  const auto add_filtered = [&](std::string name, std::string unit, AxisOutput output,
+  const auto add_filtered = [&](std::string name, std::string unit, Quantity quantity,
                                 const std::vector<double>& raw) {
     const Channel* channel = dataset.channel(name);
-    const bool stated = channel != nullptr && channel->sigma > 0.0 && output != AxisOutput::kNeededInput;
+    const bool stated = channel != nullptr && channel->sigma > 0.0 && quantity != Quantity::kNeededInput;
     std::vector<double> low = zero_phase(s.filter, raw);
     // white noise of the channel, in the filter's band
     double sigma =
         stated ? channel->sigma * std::sqrt(cutoff / (0.5 * rate)) : band_noise(raw, low, cutoff, rate);
-    if (output == AxisOutput::kLoadTorque) sigma = std::hypot(sigma, drive.gear_ratio * inertia_sigma_Nm);
-    if (output == AxisOutput::kNeededInput) {
+    if (quantity == Quantity::kLoadTorque) sigma = std::hypot(sigma, drive.gear_ratio * inertia_sigma_Nm);
+    if (quantity == Quantity::kNeededInput) {
       const double bus_V = in.bus_voltage_V.empty() ? 0.0 : median(in.bus_voltage_V);
       sigma = std::hypot(sigma, inertia_sigma_Nm * input_per_torque(kind, drive, bus_V));
     }
-    add(s, std::move(name), std::move(unit), output, std::move(low), sigma, stated);
+    add(s, std::move(name), std::move(unit), quantity, std::move(low), sigma, stated);
   };
   if (bench_torque) {
-    add_filtered("load_torque", dataset.linear ? "N" : "N m", AxisOutput::kLoadTorque,
+    add_filtered("load_torque", dataset.linear ? "N" : "N m", Quantity::kLoadTorque,
                  linear(r.load_torque_Nm));
-  } else if (!s.speed_imposed || by_torque || r.current.empty()) {
+  } else if (!speed_imposed || by_torque || r.current.empty()) {
     const NeededName needed = needed_name(dataset, kind);
     in.command_is_compared = true;
     s.given = zero_phase(s.filter, at_interval_end(in.command));
-    add_filtered(needed.name, needed.unit, AxisOutput::kNeededInput, at_interval_end(in.command));
+    add_filtered(needed.name, needed.unit, Quantity::kNeededInput, at_interval_end(in.command));
   }
   if (!r.current.empty() && !by_torque) {
-    add_filtered("motor_current", "A", AxisOutput::kCurrent, s.measured_current);
+    add_filtered("motor_current", "A", Quantity::kCurrent, s.measured_current);
   }
   if (!r.temperature.empty() && !by_torque) {
-    add_filtered("winding_temperature", "degC", AxisOutput::kWindingTemperature, s.measured_temperature);
+    add_filtered("winding_temperature", "degC", Quantity::kTemperature, s.measured_temperature);
   }
   leave_out(r, kEndsInPeriods / cutoff, s);
 }
@@ -280,7 +255,7 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
   in.time_s = r.time_s;
   in.command = s.given = r.command;
   in.command_is_compared = true;
-  in.bus_voltage_V = r.bus_V;
+  in.bus_voltage_V = r.bus.input_V;
   in.load_torque_Nm = r.load_torque_Nm;
   s.position = position_of(r);
   in.measured_position_rad = s.position;
@@ -293,8 +268,7 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
   s.approach.assign(r.size(), 0.0);
   if (!s.position.empty()) {
     const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());
-    const double least = std::max(kShareOfRange * (*high - *low),
-                                  3.0 * estimate_noise(s.position, Differences::kSecond).quantum);
+    const double least = std::max(kShareOfRange * (*high - *low), 3.0 * estimate_noise(s.position).quantum);
     double turned_at = s.position.front(), direction = 0.0;
     std::size_t first = r.size();
     for (std::size_t k = 1; k < r.size(); ++k) {
@@ -311,8 +285,7 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
     for (std::size_t k = 0; k < first && first < r.size(); ++k) s.approach[k] = s.approach[first];
   }
   const NeededName needed = needed_name(dataset, in.kind);
-  add(s, needed.name, needed.unit, AxisOutput::kNeededInput, r.command,
-      estimate_noise(r.command, Differences::kSecond).sigma, false);
+  add(s, needed.name, needed.unit, Quantity::kNeededInput, r.command, estimate_noise(r.command).sigma, false);
 }
 
 }  // namespace omnihil

@@ -13,38 +13,34 @@ double bus_at(const AxisInput& in, std::size_t k) {
 }
 
 template <typename T>
-T output_of(const AxisSetup& s, const DriveParams<T>& p, AxisOutput what,
-            const std::vector<AxisSample<T>>& samples, std::size_t k, std::size_t last) {
+T quantity_of(const AxisSetup& s, const DriveParams<T>& p, Quantity what,
+              const std::vector<AxisSample<T>>& samples, std::size_t k) {
   const AxisSample<T>& now = samples[k];
-  const double dt = last < k ? now.time_s - samples[last].time_s : 0.0;
   switch (what) {
-    case AxisOutput::kVelocity:
+    case Quantity::kSpeed:
       return now.velocity_rad_s;
-    case AxisOutput::kPosition:
+    case Quantity::kPosition:
       return now.position_rad;
-    case AxisOutput::kCountsDifferenced:
-      if (dt <= 0.0) return T(kMissing);
-      return (now.encoder_counts - samples[last].encoder_counts) / (s.counts_per_output_rad * dt);
-    case AxisOutput::kPositionDifferenced:
-      if (dt <= 0.0) return T(kMissing);
-      return (now.position_rad - samples[last].position_rad) / dt;
-    case AxisOutput::kCurrent:
+    case Quantity::kCounts:
+      return now.encoder_counts;
+    case Quantity::kCurrent:
       return now.motor_current_A;
-    case AxisOutput::kWindingTemperature:
+    case Quantity::kTemperature:
       return now.winding_rise_K + s.first_temperature_degC;
-    case AxisOutput::kBusVoltage:
+    case Quantity::kBusVoltage:
       return now.supply_voltage_V;
-    case AxisOutput::kLoadTorque:
+    case Quantity::kLoadTorque:
       return now.load_torque_Nm;
-    case AxisOutput::kNeededInput: {
+    case Quantity::kNeededInput: {
       if (k == 0) return T(0);
       const double load = s.input.load_torque_Nm.empty() ? 0.0 : s.input.load_torque_Nm[k - 1];
       // torque that the bench would have to add at the rotor, beyond the measured load
       const T lacking = (now.load_torque_Nm - load) / p.gear_ratio;
       return lacking * input_per_torque(s.input.kind, p, bus_at(s.input, k - 1));
     }
+    default:
+      return T(kMissing);
   }
-  return T(kMissing);
 }
 
 // Steady points: two steps so long that the winding has settled in each.
@@ -88,36 +84,13 @@ std::vector<std::vector<T>> axis_outputs(const AxisSetup& setup, const DrivePara
                                          const EffectSet<T>& effects, double step_s) {
   if (setup.steady) return steady_outputs(setup, params, effects);
   const std::vector<AxisSample<T>> samples = run_axis(params, effects, setup.input, {.step_s = step_s});
-  std::vector<std::vector<T>> out(setup.outputs.size());
-  for (std::size_t c = 0; c < out.size(); ++c) {
-    const bool differenced = setup.outputs[c] == AxisOutput::kCountsDifferenced ||
-                             setup.outputs[c] == AxisOutput::kPositionDifferenced;
-    out[c].reserve(samples.size());
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      out[c].push_back(
-          output_of(setup, params, setup.outputs[c], samples, k, differenced ? setup.difference_from[k] : k));
-    }
+  std::vector<std::vector<T>> out;
+  for (const Observation& how : setup.seen) {
+    out.push_back(observed<T>(how, setup.input.time_s, [&](std::size_t k) {
+      return quantity_of(setup, params, how.quantity, samples, k);
+    }));
   }
   return out;
-}
-
-void finish(const AxisSetup& setup, std::size_t signal, bool is_value, Eigen::Ref<Eigen::VectorXd> column) {
-  const AxisOutput what = setup.outputs[signal];
-  if (what == AxisOutput::kBusVoltage) {
-    // the level of the supply is the run's own: means are made equal
-    const std::vector<double>& measured = setup.compared[signal].measured;
-    double mean = 0.0, measured_mean = 0.0, n = 0.0;
-    for (std::size_t k = 0; k < measured.size(); ++k) {
-      if (!std::isfinite(measured[k])) continue;
-      mean += column[static_cast<Eigen::Index>(k)], measured_mean += measured[k], n += 1.0;
-    }
-    if (n > 0.0) column.array() += ((is_value ? measured_mean : 0.0) - mean) / n;
-    return;
-  }
-  if (setup.method != Method::kInverse || setup.steady || setup.filter.sections.empty()) return;
-  column = zero_phase(setup.filter, Eigen::MatrixXd(column)).col(0);
-  if (!is_value || what != AxisOutput::kNeededInput) return;
-  for (Eigen::Index k = 0; k < column.size(); ++k) column[k] += setup.given[static_cast<std::size_t>(k)];
 }
 
 template std::vector<std::vector<double>> axis_outputs(const AxisSetup&, const DriveParams<double>&,

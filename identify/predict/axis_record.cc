@@ -6,8 +6,6 @@
 #include <numbers>
 
 #include "identify/predict/axis_setup.h"
-#include "identify/predict/channel.h"
-#include "identify/record/bus_voltage.h"
 #include "identify/record/statistics.h"
 #include "sim/bench/axis_signal.h"
 
@@ -17,18 +15,11 @@ namespace {
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kHalfBusWindow[] = {kBusWindow / 2};
 
-std::vector<double> as_measured(const std::vector<double>* column, std::size_t first) {
-  if (column == nullptr) return {};
-  std::vector<double> out(column->begin() + static_cast<std::ptrdiff_t>(first), column->end());
-  if (std::none_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); })) out.clear();
-  return out;
-}
-
 }  // namespace
 
-bool AxisRecord::gap_before(std::size_t k) const {
+double AxisRecord::longest_gap_s() const {
   constexpr double kGapPeriods = 10.0;  // a lost row or a late one is bridged, a pause is not; a choice
-  return k > 0 && time_s[k] - time_s[k - 1] > kGapPeriods * period_s;
+  return kGapPeriods * period_s;
 }
 
 std::vector<double> AxisRecord::angle() const {
@@ -105,33 +96,18 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
       std::find_if(command->begin(), command->end(), [](double v) { return std::isfinite(v); });
   if (first == command->end()) return r;
   r.first_row = static_cast<std::size_t>(first - command->begin());
-  r.time_s = as_measured(&run.time_s, r.first_row);
+  r.time_s = from_row(&run.time_s, r.first_row);
   r.period_s = median_period_s(r.time_s);
   r.command = held(command, r.first_row);
   r.enable = held(run.signal("enable"), r.first_row);
-  if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {
-    const std::vector<double> bus_V = plausible_bus_voltage(*measured);
-    for (std::size_t k = r.first_row; k < bus_V.size(); ++k) {
-      if (std::isfinite((*measured)[k]) && !std::isfinite(bus_V[k])) ++r.bus_left_out;
-    }
-    const Channel* bus = dataset.channel("bus_voltage");
-    r.bus_measured_V = as_measured(&bus_V, r.first_row);
-    const std::vector<double> given_V = held(&bus_V, r.first_row);
-    const double stated_V = bus != nullptr ? bus->sigma : 0.0;
-    r.bus_V = without_noise(given_V,
-                            stated_V > 0.0 ? stated_V : estimate_noise(given_V, Differences::kSecond).sigma,
-                            {.half = kHalfBusWindow});
-  }
+  r.bus = read_bus(dataset, run, r.first_row, {.half = kHalfBusWindow});
   r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
-  r.velocity = as_measured(run.signal("velocity"), r.first_row);
-  const Channel* speed = dataset.channel("velocity");
-  const double stated_rad_s = speed != nullptr ? speed->sigma : 0.0;
-  r.velocity_sigma_rad_s =
-      stated_rad_s > 0.0 ? stated_rad_s : estimate_noise(r.velocity, Differences::kSecond).sigma;
-  r.position = as_measured(run.signal("position"), r.first_row);
-  r.counts = as_measured(run.signal("encoder"), r.first_row);
-  r.current = as_measured(run.signal("motor_current"), r.first_row);
-  r.temperature = as_measured(run.signal("winding_temperature"), r.first_row);
+  r.velocity = from_row(run.signal("velocity"), r.first_row);
+  r.velocity_sigma_rad_s = noise_sigma_of(dataset, "velocity", r.velocity);
+  r.position = from_row(run.signal("position"), r.first_row);
+  r.counts = from_row(run.signal("encoder"), r.first_row);
+  r.current = from_row(run.signal("motor_current"), r.first_row);
+  r.temperature = from_row(run.signal("winding_temperature"), r.first_row);
   if (const Channel* encoder = dataset.channel("encoder");
       encoder != nullptr && encoder->counts_per_rev > 0.0) {
     const double per_shaft_rad = encoder->counts_per_rev / (2.0 * std::numbers::pi);

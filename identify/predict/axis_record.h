@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "identify/predict/candidate.h"
+#include "identify/predict/channel.h"
 #include "identify/record/dataset.h"
 
 namespace omnihil {
@@ -25,16 +25,17 @@ struct AxisRecord {
   double period_s = 0.0;  // median
   std::vector<double> time_s;
   std::vector<double> command;
-  std::vector<double> enable, bus_V, load_torque_Nm;  // empty: not measured; bus_V: less its stated noise
+  std::vector<double> enable, load_torque_Nm;  // empty: not measured
+  BusReading bus;
   // measured, NaN where missing; empty: not measured
-  std::vector<double> velocity, position, counts, current, temperature, bus_measured_V;
-  std::size_t bus_left_out = 0;  // readings that no supply gives (bus_voltage.h)
+  std::vector<double> velocity, position, counts, current, temperature;
   double counts_per_output_rad = 0.0;
   double velocity_sigma_rad_s = 0.0;  // stated, or estimated from differences
   double gear_ratio = 1.0;            // nominal
 
   std::size_t size() const { return time_s.size(); }
-  bool gap_before(std::size_t k) const;
+  double longest_gap_s() const;  // that is bridged
+  bool gap_before(std::size_t k) const { return k > 0 && time_s[k] - time_s[k - 1] > longest_gap_s(); }
   // Position of the output from its sensor or its encoder; empty where it is not measured, or too coarse for
   // laws of the angle (fewer than 200 counts per rotor turn).
   std::vector<double> angle() const;

@@ -1,11 +1,13 @@
 #include "identify/predict/channel.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
+#include "identify/record/bus_voltage.h"
 #include "identify/record/quantum.h"
 #include "identify/record/statistics.h"
 
@@ -21,20 +23,27 @@ bool finite(double v) { return std::isfinite(v); }
 
 }  // namespace
 
-NoiseEstimate estimate_noise(const std::vector<double>& values, Differences order) {
+NoiseEstimate estimate_noise(const std::vector<double>& values) {
+  // Relative standard errors of a sigma by MAD: 1.17 / sqrt(n) each (asymptotic, of a normal), n / 2 of the differences being as
+  // good as independent: three of them.
+  constexpr double kChance = 5.0;  // derived: 3 x 1.17 x sqrt(2)
   const std::vector<double> known = finite_values(values);
   NoiseEstimate out;
   if (known.size() < 4) return out;
-  const bool third = order == Differences::kThird;
-  std::vector<double> sizes;
-  for (std::size_t k = third ? 3 : 2; k < values.size(); ++k) {
-    const double d = third ? values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3]
-                           : values[k] - 2.0 * values[k - 1] + values[k - 2];
-    if (finite(d)) sizes.push_back(std::abs(d));
+  std::vector<double> second, third;
+  for (std::size_t k = 2; k < values.size(); ++k) {
+    const double d = values[k] - 2.0 * values[k - 1] + values[k - 2];
+    if (finite(d)) second.push_back(std::abs(d));
+    const double before = k > 2 ? values[k - 1] - 2.0 * values[k - 2] + values[k - 3] : kMissing;
+    if (finite(d - before)) third.push_back(std::abs(d - before));
   }
   out.quantum = quantum_of(known);
   // white noise: variance of the second difference is 6 sigma^2, of the third 20 sigma^2
-  const double robust = sigma_by_mad(std::move(sizes)) / std::sqrt(third ? 20.0 : 6.0);
+  const double chance = kChance / std::sqrt(static_cast<double>(std::max<std::size_t>(third.size(), 1)));
+  const bool has_third = !third.empty();
+  double robust = sigma_by_mad(std::move(second)) / std::sqrt(6.0);
+  const double unbent = sigma_by_mad(std::move(third)) / std::sqrt(20.0);
+  if (has_third && unbent < robust * (1.0 - chance)) robust = unbent;
   double mean = 0.0, square = 0.0;
   for (const double v : known) mean += v / static_cast<double>(known.size());
   for (const double v : known) square += (v - mean) * (v - mean) / static_cast<double>(known.size());
@@ -50,17 +59,9 @@ void set_noise(double stated_sigma, const NoiseEstimate& estimate, ComparedSigna
   signal.whitened_sigma = signal.noise_sigma;
 }
 
-void share_noise(std::span<ComparedSignal* const> signals) {
-  std::map<std::string, std::vector<ComparedSignal*>> by_name;
-  for (ComparedSignal* const c : signals) {
-    if (!c->noise_is_stated && c->whitening_s <= 0.0) by_name[c->name].push_back(c);
-  }
-  for (const auto& [name, same] : by_name) {
-    std::vector<double> sigmas;
-    for (const ComparedSignal* const c : same) sigmas.push_back(c->noise_sigma);
-    const double sigma = median_in_place(sigmas);
-    for (ComparedSignal* const c : same) c->noise_sigma = c->whitened_sigma = sigma;
-  }
+double noise_sigma_of(const Dataset& dataset, std::string_view channel, const std::vector<double>& values) {
+  const Channel* c = dataset.channel(channel);
+  return c != nullptr && c->sigma > 0.0 ? c->sigma : estimate_noise(values).sigma;
 }
 
 double reading(double value, double sigma, double quantum, double normal) {
@@ -105,6 +106,34 @@ std::vector<double> without_noise(const std::vector<double>& x, double sigma, co
       if (half == windows.half.back()) out[k] += (1.0 - sigma * sigma / variance) * (x[k] - x.front() - mean);
     }
   }
+  return out;
+}
+
+BusReading read_bus(const Dataset& dataset, const Run& run, std::size_t first, const NoiseWindows& windows) {
+  BusReading out;
+  const std::vector<double>* measured = run.signal("bus_voltage");
+  if (measured == nullptr) return out;
+  const std::vector<double> bus_V = plausible_bus_voltage(*measured);
+  for (std::size_t k = first; k < bus_V.size(); ++k) {
+    if (finite((*measured)[k]) && !finite(bus_V[k])) ++out.left_out;
+  }
+  const std::vector<double> given_V = held(&bus_V, first);
+  out.sigma_V = noise_sigma_of(dataset, "bus_voltage", given_V);
+  out.input_V = without_noise(given_V, out.sigma_V, windows);
+  out.measured_V = from_row(&bus_V, first);
+  return out;
+}
+
+void say_left_out(const BusReading& bus, ComparedSignal& signal) {
+  if (bus.left_out == 0) return;
+  if (!signal.left_out.empty()) signal.left_out += ", ";
+  signal.left_out += fmt::format("{} readings of bus_voltage that no supply gives", bus.left_out);
+}
+
+std::vector<double> from_row(const std::vector<double>* column, std::size_t first) {
+  if (column == nullptr) return {};
+  std::vector<double> out(column->begin() + static_cast<std::ptrdiff_t>(first), column->end());
+  if (std::none_of(out.begin(), out.end(), finite)) out.clear();
   return out;
 }
 

@@ -21,7 +21,7 @@ Speeds speeds_of(std::vector<AxisSetup>& setups) {
   Speeds out;
   for (AxisSetup& s : setups) {
     for (std::size_t c = 0; c < s.compared.size(); ++c) {
-      if (s.steady || s.method != Method::kForward || s.outputs[c] != AxisOutput::kVelocity) continue;
+      if (s.steady || s.method != Method::kForward || s.seen[c].quantity != Quantity::kSpeed) continue;
       ComparedSignal& signal = s.compared[c];
       out.signals.push_back(&signal);
       out.readings.push_back(std::numeric_limits<double>::quiet_NaN());

@@ -41,20 +41,19 @@ class AxisRig {
       if (!options_.slave_angle) setups_.back().input.measured_position_rad.clear();
     }
     counter_ = find_counted_speed(setups_, drive_of(*nominal_));
-    std::vector<ComparedSignal*> series;
+    std::vector<RigRun*> all, series;
     for (AxisSetup& s : setups_) {
-      for (ComparedSignal& c : s.compared) {
-        if (!s.steady) series.push_back(&c);
-      }
+      all.push_back(&s);
+      if (!s.steady) series.push_back(&s);
     }
     share_noise(series);
-    choose_averaging();
+    choose_averaging(*dataset_, all);
     choose_step();
   }
 
   const Dataset& dataset() const { return *dataset_; }
   Method method() const { return axis_method(*dataset_); }
-  const std::vector<ComparedSignal>& compared(std::size_t n) const { return setups_[n].compared; }
+  const RigRun& run(std::size_t n) const { return setups_[n]; }
   bool shows_signature_of(const EffectEntry& effect) const { return counter_ == &effect; }
   Capabilities capabilities() const { return axis_capabilities(*dataset_, *nominal_); }
   double step_s(const Candidate& own, std::size_t n) const { return substep_.of(own, static_cast<int>(n)); }
@@ -67,7 +66,7 @@ class AxisRig {
   template <typename T>
   RigOutputs<T> outputs(const RigModel& model, std::size_t n, double step_s) const {
     const AxisSetup& s = setups_[n];
-    if (s.input.time_s.empty()) return {.values = std::vector<std::vector<T>>(s.outputs.size())};
+    if (s.input.time_s.empty()) return {.values = std::vector<std::vector<T>>(s.seen.size())};
     const auto m = rig_values<T>(model, drive_params_as<T>(drive_of(model.candidate)), number_of);
     return {.values = axis_outputs<T>(s, m.params, EffectSet<T>(m.uses, m.values), step_s)};
   }
@@ -87,37 +86,15 @@ class AxisRig {
     return {.width = 0.5 * width, .forward = true};
   }
 
-  // Linear after-treatment, and what is not finite said.
-  void complete(std::size_t n, Prediction& p) const {
-    const AxisSetup& s = setups_[n];
-    for (std::size_t c = 0; c < p.values.size(); ++c) {
-      const auto rows = static_cast<Eigen::Index>(p.values[c].size());
-      if (rows == 0) continue;
-      Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(p.values[c].data(), rows);
-      // differences have no first value: not a divergence
-      const auto missing = [&](Eigen::Index k) {
-        return !std::isfinite(s.compared[c].measured[static_cast<std::size_t>(k)]);
-      };
-      for (Eigen::Index k = 0; k < rows; ++k) {
-        const bool bad = !std::isfinite(values[k]);
-        if (bad && !missing(k)) p.finite = false;
-        if (bad && missing(k)) values[k] = 0.0;
-      }
-      finish(s, c, true, values);
-      Eigen::Map<Eigen::VectorXd>(p.values[c].data(), rows) = values;
-      if (p.derivatives.empty()) continue;
-      for (Eigen::Index u = 0; u < p.derivatives[c].cols(); ++u) {
-        for (Eigen::Index k = 0; k < rows; ++k) {
-          if (!std::isfinite(p.derivatives[c](k, u))) p.derivatives[c](k, u) = 0.0;
-        }
-        finish(s, c, false, p.derivatives[c].col(u));
+  void measure(const Candidate& truth, std::uint64_t seed) {
+    for (std::size_t n = 0; n < setups_.size(); ++n) {
+      AxisSetup& s = setups_[n];
+      Prediction p = ground_truth_prediction(with_known(truth, dataset_->runs[n].known), n, seed);
+      for (std::size_t c = 0; c < s.compared.size(); ++c) {
+        add_sensor_noise(s, c, seed, stream_of(s.compared[c].name) + std::uint64_t{n} * 1000003, p.values[c]);
+        s.compared[c].measured = p.values[c];
       }
     }
-  }
-
-  void measure(const Candidate& truth, std::uint64_t seed) {
-    for (std::size_t n = 0; n < setups_.size(); ++n)
-      replace_measurement(with_known(truth, dataset_->runs[n].known), n, seed);
   }
 
  private:
@@ -139,75 +116,6 @@ class AxisRig {
     return false;
   }
 
-  // The shortest time, by doubling, over which a differenced signal's displacement is kResolved_sigmas times the
-  // noise of its two ends, rms over the fit runs; the same in all runs.
-  void choose_averaging() {
-    std::vector<std::string> names;
-    for (const AxisSetup& s : setups_) {
-      for (const ComparedSignal& c : s.compared) {
-        if (c.whitening_s > 0.0 && std::find(names.begin(), names.end(), c.name) == names.end())
-          names.push_back(c.name);
-      }
-    }
-    for (const std::string& name : names) {
-      const double seconds = resolving_time(name);
-      for (AxisSetup& s : setups_) {
-        for (ComparedSignal& c : s.compared) {
-          if (c.name == name) c.averaging_s = seconds;
-        }
-      }
-    }
-  }
-
-  // 0: the signal's own period.
-  double resolving_time(const std::string& name) const {
-    constexpr double kLongest_s = 0.5;  // a block of the bootstrap (whitened_residuals.cc): a choice
-    double period_s = 0.0;
-    for (const AxisSetup& s : setups_) {
-      const auto& t = s.input.time_s;
-      if (t.size() > 1) period_s = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
-      if (period_s > 0.0) break;
-    }
-    for (double seconds = period_s; seconds > 0.0; seconds *= 2.0) {
-      double square = 0.0, noise = 0.0, count = 0.0;
-      for (std::size_t n = 0; n < setups_.size(); ++n) {
-        if (dataset_->runs[n].split != Split::kTraining) continue;
-        for (ComparedSignal c : setups_[n].compared) {
-          if (c.name != name) continue;
-          c.averaging_s = seconds;
-          for (const double v : averaged(c, c.measured)) {
-            if (std::isfinite(v)) square += v * v, noise += std::pow(averaged_sigma(c), 2), count += 1.0;
-          }
-        }
-      }
-      if (count == 0.0) return 0.0;
-      if (square >= kResolved_sigmas * kResolved_sigmas * noise || 2.0 * seconds > kLongest_s)
-        return seconds > period_s ? seconds : 0.0;
-    }
-    return 0.0;
-  }
-
-  // Root mean square of (a - b) / noise, the largest of the signals, unweighted and whitened.
-  double distance(std::size_t n, const Prediction& a, const Prediction& b) const {
-    double largest = 0.0;
-    for (std::size_t c = 0; c < a.values.size(); ++c) {
-      const ComparedSignal& signal = compared(n)[c];
-      std::vector<double> d(a.values[c].size());
-      for (std::size_t k = 0; k < d.size(); ++k) d[k] = a.values[c][k] - b.values[c][k];
-      const auto size_of = [&](const std::vector<double>& v, double sigma) {
-        double square = 0.0, count = 0.0;
-        for (std::size_t k = 0; k < v.size(); ++k) {
-          if (!std::isfinite(v[k]) || !std::isfinite(signal.measured[k])) continue;
-          square += v[k] * v[k], count += 1.0;
-        }
-        return count > 0.0 && sigma > 0.0 ? std::sqrt(square / count) / sigma : 0.0;
-      };
-      largest = std::max(largest, size_of(d, signal.noise_sigma));
-      largest = std::max(largest, size_of(whitened(signal, d), signal.whitened_sigma));
-    }
-    return largest;
-  }
-
   void choose_step() {
     constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
     auto trial = std::make_shared<AxisRig>(*this);
@@ -219,7 +127,7 @@ class AxisRig {
           const Run& of = trial->dataset_->runs[n];
           if (of.split != Split::kTraining || s.steady || s.input.time_s.size() < 2) return kMissing;
           const Candidate own = with_known(model, of.known);
-          return trial->distance(n, predicted(*trial, own, n, h), predicted(*trial, own, n, 0.25 * h));
+          return distance(s, predicted(*trial, own, n, h), predicted(*trial, own, n, 0.25 * h));
         });
   }
 
@@ -236,35 +144,6 @@ class AxisRig {
     cut(in.load_torque_Nm), cut(in.measured_position_rad), cut(in.restart_velocity_rad_s), cut(s.given);
     for (ComparedSignal& c : s.compared) cut(c.measured);
     cut(in.time_s);
-  }
-
-  // Replaces the run's measurement by one simulated with `truth`: noise where it enters the chain, rounding
-  // of counts.
-  void replace_measurement(const Candidate& truth, std::size_t n, std::uint64_t seed) {
-    AxisSetup& s = setups_[n];
-    Prediction p = ground_truth_prediction(truth, n, seed);
-    for (std::size_t c = 0; c < s.compared.size(); ++c) {
-      ComparedSignal& signal = s.compared[c];
-      const std::uint64_t stream = stream_of(signal.name) + std::uint64_t{n} * 1000003;
-      const auto draw = [&](std::size_t k) { return gaussian(seed, stream, k); };
-      const std::vector<double> pattern = signal.measured;
-      if (signal.counted.window_s > 0.0) {
-        add_counting_noise(signal.counted, signal.time_s, p.values[c], uniform(seed, stream, 1u << 30));
-        for (std::size_t k = 0; k < p.values[c].size(); ++k)
-          p.values[c][k] += signal.counted.sensor_sigma * draw(k);
-      } else if (signal.whitening_s > 0.0) {
-        differenced_noise(s, signal, p.values[c], uniform(seed, stream, 1u << 30), draw);
-      } else if (s.method == Method::kInverse && !s.steady && !s.filter.sections.empty()) {
-        add_band_noise(s, signal, p.values[c], draw);
-      } else {
-        for (std::size_t k = 0; k < p.values[c].size(); ++k)
-          p.values[c][k] = reading(p.values[c][k], signal.noise_sigma, signal.quantum, draw(k));
-      }
-      signal.measured = p.values[c];
-      for (std::size_t k = 0; k < pattern.size(); ++k) {
-        if (!std::isfinite(pattern[k])) signal.measured[k] = kMissing;
-      }
-    }
   }
 
   // The model's bus voltage is a measurement smoothed over kBusWindow samples (axis_record.h). The true one
@@ -308,39 +187,6 @@ class AxisRig {
         p.values[c][k] = lagging.values[c][k] + drawn.values[c][k] - still.values[c][k];
     }
     return p;
-  }
-
-  template <typename Draw>
-  static void differenced_noise(const AxisSetup& s, const ComparedSignal& signal, std::vector<double>& v,
-                                double start, Draw draw) {
-    // the speed integrated to a position, which is rounded by the sensor and differenced again
-    const auto& t = s.input.time_s;
-    const double dt = t.size() > 1 ? (t.back() - t.front()) / static_cast<double>(t.size() - 1) : 1.0;
-    const double q = signal.quantum * dt;
-    const double leak_sigma = signal.noise_sigma * dt / std::sqrt(2.0);
-    const double rest = std::sqrt(std::max(0.0, leak_sigma * leak_sigma - q * q / 12.0));
-    std::vector<double> x(v.size(), 0.0), seen(v.size(), 0.0);
-    for (std::size_t k = 0; k < v.size(); ++k) {
-      const std::size_t from = s.difference_from[k];
-      if (from < k)
-        x[k] = x[from] + v[k] * (t[k] - t[from]);
-      else if (k > 0)
-        x[k] = x[k - 1];
-      const double noisy = x[k] + rest * draw(k) + start * q;  // counts do not start on an edge
-      seen[k] = q > 0.0 ? std::floor(noisy / q) * q : noisy;
-      if (from < k) v[k] = (seen[k] - seen[from]) / (t[k] - t[from]);
-    }
-  }
-
-  template <typename Draw>
-  static void add_band_noise(const AxisSetup& s, const ComparedSignal& signal, std::vector<double>& v,
-                             Draw draw) {
-    std::vector<double> white(v.size());
-    for (std::size_t k = 0; k < v.size(); ++k) white[k] = draw(k);
-    const std::vector<double> low = zero_phase(s.filter, white);
-    double square = 0.0;
-    for (const double x : low) square += x * x / static_cast<double>(low.size());
-    for (std::size_t k = 0; k < v.size(); ++k) v[k] += signal.noise_sigma * low[k] / std::sqrt(square);
   }
 
   std::shared_ptr<const Dataset> dataset_;

@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "identify/predict/predictor.h"
+#include "identify/predict/observation.h"
 #include "identify/predict/rig_values.h"
 
 namespace omnihil {
@@ -26,20 +26,18 @@ struct Secant {
 };
 
 // step_s(): of the simulation, at most. is_exact(): dual numbers pass through it. secant(): where the exact derivative is
-// not to be used. complete(): what is linear in values and derivatives alike. measure():
-// puts what `truth` shows these sensors, with their noise, in place of the measurement.
+// not to be used. measure(): puts what `truth` shows these sensors, with their noise, in place of the measurement.
 template <class R>
 concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, const Unknown& unknown,
                                 std::size_t run, Eigen::Index u, Prediction& p) {
   { rig.dataset() } -> std::same_as<const Dataset&>;
   { rig.method() } -> std::same_as<Method>;
-  { rig.compared(run) } -> std::same_as<const std::vector<ComparedSignal>&>;
+  { rig.run(run) } -> std::same_as<const RigRun&>;
   { rig.template outputs<double>(RigModel{own}, run, 1e-3) } -> std::same_as<RigOutputs<double>>;
   { rig.template outputs<Jet>(RigModel{own}, run, 1e-3) } -> std::same_as<RigOutputs<Jet>>;
   { rig.step_s(own, run) } -> std::same_as<double>;
   { rig.is_exact(own, run) } -> std::same_as<bool>;
   { rig.secant(own, unknown, u, run, p) } -> std::same_as<Secant>;
-  rig.complete(run, p);
   { rig.regimes(own, run) } -> std::same_as<std::vector<RegimeTrack>>;
   { rig.capabilities() } -> std::same_as<Capabilities>;
   { rig.shows_signature_of(std::declval<const EffectEntry&>()) } -> std::same_as<bool>;
@@ -50,7 +48,7 @@ template <class Rig>
 Prediction predicted(const Rig& rig, const Candidate& own, std::size_t run, double step_s) {
   RigOutputs<double> y = rig.template outputs<double>({own}, run, step_s);
   Prediction p{.values = std::move(y.values), .derivatives = {}, .finite = y.finite};
-  rig.complete(run, p);
+  complete(rig.run(run), p);
   return p;
 }
 
@@ -63,7 +61,7 @@ class RigPredictor final : public Predictor {
   Method method() const override { return rig_.method(); }
   int run_count() const override { return static_cast<int>(rig_.dataset().runs.size()); }
   const Run& run(int n) const override { return rig_.dataset().runs[at(n)]; }
-  const std::vector<ComparedSignal>& compared(int n) const override { return rig_.compared(at(n)); }
+  const std::vector<ComparedSignal>& compared(int n) const override { return rig_.run(at(n)).compared; }
   Capabilities capabilities() const override { return rig_.capabilities(); }
   bool shows_signature_of(const EffectEntry& effect) const override {
     return rig_.shows_signature_of(effect);
@@ -90,7 +88,7 @@ class RigPredictor final : public Predictor {
       const Secant secant = rig_.secant(own, open[u], static_cast<Eigen::Index>(u), at(n), p);
       if (secant.width > 0.0) difference(own, std::span(open).subspan(u, 1), u, at(n), secant, step_s, p);
     }
-    rig_.complete(at(n), p);
+    complete(rig_.run(at(n)), p);
     return p;
   }
 

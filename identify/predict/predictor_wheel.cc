@@ -18,23 +18,13 @@ struct OneWheel {
   }
 
   static Capabilities capabilities(const Dataset& dataset) {
-    constexpr std::uint32_t kAlways = kNeedsFloor | kNeedsSupply | kNeedsWinding | kNeedsDuty |
-                                      kNeedsVoltage | kNeedsSimulation | kNeedsBodySpeed;
-    return {.rig = kOnRobot,
-            .other_rig = "acts on a single axis",
-            .list = {{kAlways, true, ""},
-                     {kNeedsFreeBody, false, "the bench moves the body, whatever forces do"},
-                     {kNeedsSeveralMotors, false, "needs more than one motor"},
-                     {kNeedsTwoInertias, false,
-                      "needs a freedom between rotor and wheel, which a robot's model lacks"},
-                     {kNeedsPositionServo, false, "needs a position servo"},
-                     {kNeedsReportedSpeed, false, "needs a speed that the drive's electronics estimate"},
-                     {kNeedsCamera, false, "needs a camera"},
-                     {kNeedsDribbler, false, "needs the dribbler"},
-                     {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle | kNeedsPhase,
-                      has_channel(dataset, "encoder"), "needs an encoder"}},
-            .free_base = {},
-            .present_base = {}};
+    Capabilities out = rolling_capabilities(false, kNeedsBodySpeed);
+    out.list.insert(out.list.end(), {{kNeedsSeveralMotors, false, "needs more than one motor"},
+                                     {kNeedsCamera, false, "needs a camera"},
+                                     {kNeedsDribbler, false, "needs the dribbler"},
+                                     {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle | kNeedsPhase,
+                                      has_channel(dataset, "encoder"), "needs an encoder"}});
+    return out;
   }
 };
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "identify/predict/firmware_loop.h"
+#include "identify/predict/interpolation.h"
 #include "sim/law/random.h"
 #include "sim/model/rolling_model.h"
 
@@ -17,38 +18,13 @@ namespace {
 constexpr double kFollow_s = 0.5;  // a choice
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Everything true, at the samples.
+// Everything true at a sample, beside what RollingSample keeps of it.
 template <typename T>
 struct Truth {
-  std::vector<PerWheel<T>> theta_rotor_rad, omega_rotor_rad_s, reported_rad_s, charge_C;
-  std::vector<std::array<T, 3>> velocity;
-  std::vector<T> accel_x, accel_y, bus, supply, force_x, force_y;
+  PerWheel<T> theta_rotor_rad{}, omega_rotor_rad_s{}, reported_rad_s{}, charge_C{};
+  std::array<T, 3> velocity{};
+  T accel_x{}, accel_y{}, force_x{}, force_y{};
 };
-
-// Linear interpolation at a time between the samples `from` and `from` + 1.
-template <typename T>
-struct Instant {
-  std::size_t from = 0;
-  T share = T(0);
-
-  template <typename V>
-  T of(const V& values) const {
-    return values(from) + (values(from + 1) - values(from)) * share;
-  }
-};
-
-template <typename T>
-Instant<T> instant(const std::vector<double>& time_s, const T& at_s) {
-  const auto after = std::upper_bound(time_s.begin(), time_s.end(), value_of(at_s));
-  std::size_t k = static_cast<std::size_t>(after - time_s.begin());
-  k = std::clamp<std::size_t>(k, 1, time_s.size() - 1);
-  Instant<T> i;
-  i.from = k - 1;
-  i.share = (at_s - time_s[k - 1]) / (time_s[k] - time_s[k - 1]);
-  // before the first sample: its value, constant
-  if (value_of(i.share) < 0.0) i.share = T(0);
-  return i;
-}
 
 bool is_finite(double x) { return std::isfinite(x); }
 bool is_finite(const Jet& x) { return std::isfinite(x.a) && x.v.allFinite(); }
@@ -74,16 +50,14 @@ class Runner {
     if (record.radio && options.firmware != nullptr) {
       firmware_.emplace(*options.firmware, value_of(model.params.controller.latency_s), record.time_s[0]);
     } else if (record.radio) {
-      controller_.emplace(model.params.controller,
-                          std::span(model.params.wheel_angle_rad).first(model.params.wheels),
-                          value_of(model.params.drive.gear_ratio));
+      at_.controller.emplace(model.params.controller,
+                             std::span(model.params.wheel_angle_rad).first(model.params.wheels),
+                             value_of(model.params.drive.gear_ratio));
     }
   }
 
   RobotMotion<T> run() {
-    camera_age_s_ = T(0);
-    const std::size_t n = record_.size();
-    if (!timing().empty() && n > 1) {
+    if (!timing().empty() && record_.size() > 1) {
       // ages of the camera do not change along a run, but for jitter, which has no expected value
       auto states = timing_states_;
       camera_age_s_ = age(Stamped::kVision, 0, states);
@@ -117,22 +91,20 @@ class Runner {
     if (std::all_of(value.begin(), value.begin() + static_cast<std::ptrdiff_t>(count),
                     [](double v) { return std::isfinite(v); })) {
       if (firmware_) firmware_->hear(record_.time_s[k], value, radio.frame);
-      if (controller_) controller_->hear(record_.time_s[k], value, radio.frame);
+      if (at_.controller) at_.controller->hear(record_.time_s[k], value, radio.frame);
     }
   }
-  void run_firmware(const RollingState<T>& x, RollingInput<T>& in, double now_s, double step_s) {
+  void run_firmware(RollingInput<T>& in, double now_s, double step_s) {
+    const RollingState<T>& x = at_.state;
     if (firmware_->due(now_s, step_s)) {
-      FirmwareSees sees;
+      FirmwareSees sees{.bus_voltage_V = value_of(bus_or_supply(in)),
+                        .gyro_z_rad_s = value_of(x.velocity[2]),
+                        .accel_x_m_s2 = value_of(x.accel_x_m_s2),
+                        .accel_y_m_s2 = value_of(x.accel_y_m_s2)};
       for (std::size_t i = 0; i < kWheels; ++i) {
         sees.theta_rotor_rad[i] = value_of(x.theta_rotor_rad[i]);
         sees.charge_C[i] = value_of(x.charge_C[i]);
       }
-      const double supply = value_of(model_.params.drive.supply_voltage_V);
-      const double bus = in.bus_is_measured ? in.bus_voltage_V : value_of(x.bus_voltage_V);
-      sees.bus_voltage_V = bus > 0.0 ? bus : supply;
-      sees.gyro_z_rad_s = value_of(x.velocity[2]);
-      sees.accel_x_m_s2 = value_of(x.accel_x_m_s2);
-      sees.accel_y_m_s2 = value_of(x.accel_y_m_s2);
       firmware_->tick(now_s, sees);
     }
     for (std::size_t i = 0; i < kWheels; ++i) {
@@ -140,196 +112,160 @@ class Runner {
       in.enabled[i] = firmware_->enabled()[i];
     }
   }
-  void control(const RollingState<T>& x, const RollingInput<T>& in, double now_s, double step_s) {
-    if (now_s < next_control_s_ - 0.5 * step_s) return;
-    const double span_s = now_s - last_control_s_;
-    PerWheel<T> omega{};
-    for (std::size_t i = 0; i < record_.wheels; ++i) {
-      omega[i] = span_s > 0.0 ? T(turned_rad_[i] * (1.0 / span_s)) : x.omega_rotor_rad_s(i);
-      turned_rad_[i] = T(0);
+  void control(RollingInput<T>& in, double now_s, double step_s) {
+    if (now_s >= at_.next_control_s - 0.5 * step_s) {
+      const double span_s = now_s - at_.last_control_s;
+      PerWheel<T> omega = speeds();
+      for (std::size_t i = 0; i < record_.wheels; ++i) {
+        if (span_s > 0.0) omega[i] = at_.turned_rad[i] * (1.0 / span_s);
+        at_.turned_rad[i] = T(0);
+      }
+      at_.duty = at_.controller->update(now_s, omega, bus_or_supply(in),
+                                        value_of(model_.params.drive.duty_limit_ratio));
+      at_.last_control_s = now_s;
+      at_.next_control_s += at_.controller->period_s();
     }
-    const T bus = in.bus_is_measured ? T(in.bus_voltage_V) : x.bus_voltage_V;
-    const T& supply = model_.params.drive.supply_voltage_V;
-    duty_ = controller_->update(now_s, omega, value_of(bus) > 0.0 ? bus : supply,
-                                value_of(model_.params.drive.duty_limit_ratio));
-    last_control_s_ = now_s;
-    next_control_s_ += controller_->period_s();
+    in.duty_ratio = at_.duty;
   }
-  void count_turns(const PerWheel<T>& before, const RollingState<T>& x, double h) {
-    for (std::size_t i = 0; i < record_.wheels; ++i)
-      turned_rad_[i] += (before[i] + x.omega_rotor_rad_s(i)) * (0.5 * h);
+  T bus_or_supply(const RollingInput<T>& in) const {
+    const T bus = in.bus_is_measured ? T(in.bus_voltage_V) : at_.state.bus_voltage_V;
+    return value_of(bus) > 0.0 ? bus : model_.params.drive.supply_voltage_V;
   }
-  PerWheel<T> speeds(const RollingState<T>& x) const {
+  PerWheel<T> speeds() const {
     PerWheel<T> omega{};
-    for (std::size_t i = 0; i < record_.wheels; ++i) omega[i] = x.omega_rotor_rad_s(i);
+    for (std::size_t i = 0; i < record_.wheels; ++i) omega[i] = at_.state.omega_rotor_rad_s(i);
     return omega;
   }
 
-  RollingState<T> begin(T& own_heading) {
+  void begin() {
     if (carry_ != nullptr && carry_->begun) {
-      controller_ = carry_->controller;
-      duty_ = carry_->duty;
-      turned_rad_ = carry_->turned_rad;
-      last_control_s_ = carry_->last_control_s;
-      next_control_s_ = carry_->next_control_s;
-      own_heading = carry_->heading;
-      return carry_->state;
+      at_ = *carry_;
+      return;
     }
-    RollingState<T> x = robot_.start(record_.start_velocity, record_.theta_rotor_rad[0]);
-    if (controller_) {
-      last_control_s_ = next_control_s_ = record_.time_s[0];
-      controller_->begin(record_.start_velocity, speeds(x), model_.params.drive.torque_constant_Nm_per_A,
-                         record_.radio->frame);
-    }
-    return x;
+    at_.state = robot_.start(record_.start_velocity, record_.theta_rotor_rad[0]);
+    if (!at_.controller) return;
+    at_.last_control_s = at_.next_control_s = record_.time_s[0];
+    at_.controller->begin(record_.start_velocity, speeds(), model_.params.drive.torque_constant_Nm_per_A,
+                          record_.radio->frame);
   }
-  void leave(const RollingState<T>& x, const T& own_heading) {
-    if (carry_ == nullptr) return;
-    carry_->begun = out_.finite;
-    if (!out_.finite) return;
-    carry_->state = x;
-    carry_->controller = controller_;
-    carry_->duty = duty_;
-    carry_->turned_rad = turned_rad_;
-    carry_->last_control_s = last_control_s_;
-    carry_->next_control_s = next_control_s_;
-    carry_->heading = own_heading;
+
+  // One of the equal steps that the period after sample k is parted into.
+  void step(std::size_t k, int j, int steps, RollingInput<T> in) {
+    const double period_s = record_.time_s[k + 1] - record_.time_s[k], h = period_s / steps;
+    const double now_s = record_.time_s[k] + period_s * j / steps;
+    RollingState<T>& x = at_.state;
+    PerWheel<double> angle;
+    std::array<double, 3> imposed;
+    const auto between = [&](const auto& values, std::size_t i, int part) {
+      return values[k][i] + (values[k + 1][i] - values[k][i]) * part / steps;
+    };
+    for (std::size_t i = 0; i < record_.wheels && in.theta_rotor_rad != nullptr; ++i)
+      angle[i] = between(record_.theta_rotor_rad, i, j);
+    if (in.theta_rotor_rad != nullptr) in.theta_rotor_rad = &angle;
+    for (std::size_t a = 0; a < 3 && !record_.imposed_velocity.empty(); ++a) {
+      imposed[a] = between(record_.imposed_velocity, a, j + 1);
+      in.imposed_velocity = &imposed;
+    }
+    x.yaw_rad = heading_.empty() ? at_.heading : heading_[k];
+    const T turn_rate = x.velocity[2];
+    const PerWheel<T> omega = at_.controller ? speeds() : PerWheel<T>{};
+    if (at_.controller) control(in, now_s, h);
+    if (firmware_) run_firmware(in, now_s, h);
+    robot_.advance(x, in, h);
+    for (std::size_t i = 0; i < record_.wheels && at_.controller; ++i)
+      at_.turned_rad[i] += (omega[i] + x.omega_rotor_rad_s(i)) * (0.5 * h);
+    at_.heading += 0.5 * (turn_rate + x.velocity[2]) * h;
   }
 
   void simulate() {
-    const std::size_t n = record_.size();
-    T own_heading = T(0);
-    RollingState<T> x = begin(own_heading);
+    begin();
     double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
-    if (controller_) step_s = std::min(step_s, controller_->period_s());
+    if (at_.controller) step_s = std::min(step_s, at_.controller->period_s());
     if (firmware_) step_s = std::min(step_s, firmware_->period_s());
-    PerWheel<double> between;
-    std::array<double, 3> imposed;
-    for (std::size_t k = 0;; ++k) {
-      keep(x);
-      if (k + 1 >= n) break;
+    for (std::size_t k = 0; out_.finite; ++k) {
+      keep();
+      if (k + 1 >= record_.size()) break;
       RollingInput<T> in = record_.template input<T>(k);
       if (record_.radio) hear(k);
       if (!options_.slave_angle) in.theta_rotor_rad = nullptr;
       const double dt_s = record_.time_s[k + 1] - record_.time_s[k];
       const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - 1e-6)));
-      for (int j = 0; j < steps; ++j) {
-        if (in.theta_rotor_rad != nullptr && steps > 1) {
-          for (std::size_t i = 0; i < record_.wheels; ++i) {
-            const double from = record_.theta_rotor_rad[k][i], to = record_.theta_rotor_rad[k + 1][i];
-            between[i] = from + (to - from) * j / steps;
-          }
-          in.theta_rotor_rad = &between;
-        }
-        for (std::size_t a = 0; a < 3 && !record_.imposed_velocity.empty(); ++a) {
-          const double from = record_.imposed_velocity[k][a], to = record_.imposed_velocity[k + 1][a];
-          imposed[a] = from + (to - from) * (j + 1) / steps;
-          in.imposed_velocity = &imposed;
-        }
-        x.yaw_rad = heading_.empty() ? own_heading : heading_[k];
-        const T before = x.velocity[2];
-        const PerWheel<T> omega_before = controller_ ? speeds(x) : PerWheel<T>{};
-        if (controller_) {
-          control(x, in, record_.time_s[k] + dt_s * j / steps, dt_s / steps);
-          in.duty_ratio = duty_;
-        }
-        if (firmware_) run_firmware(x, in, record_.time_s[k] + dt_s * j / steps, dt_s / steps);
-        robot_.advance(x, in, dt_s / steps);
-        if (controller_) count_turns(omega_before, x, dt_s / steps);
-        own_heading += 0.5 * (before + x.velocity[2]) * (dt_s / steps);
-      }
-      if (firmware_ && firmware_->failed()) out_.finite = false;
-      if (!out_.finite || !is_finite(x.velocity[0]) || !is_finite(x.omega_rotor_rad_s(0)) ||
-          !is_finite(x.charge_C[0])) {
-        out_.finite = false;
-        break;
-      }
+      for (int j = 0; j < steps; ++j) step(k, j, steps, in);
+      const RollingState<T>& x = at_.state;
+      out_.finite = !(firmware_ && firmware_->failed()) && is_finite(x.velocity[0]) &&
+                    is_finite(x.omega_rotor_rad_s(0)) && is_finite(x.charge_C[0]);
     }
-    leave(x, own_heading);
-    if (out_.finite) return;
-    // samples after a divergence repeat the last state; `finite` marks the run as diverged
-    const std::size_t known = truth_.bus.size();
-    for (std::size_t k = known; k < n; ++k) {
-      keep(x);
-      truth_.velocity.back() = {T(kNaN), T(kNaN), T(kNaN)};
-      truth_.theta_rotor_rad.back().fill(T(kNaN));
-      truth_.charge_C.back().fill(T(kNaN));
-      truth_.accel_x.back() = truth_.accel_y.back() = T(kNaN);
+    at_.begun = out_.finite;
+    if (carry_ != nullptr) *carry_ = at_;
+    // samples after a divergence; `finite` marks the run as diverged
+    while (truth_.size() < record_.size()) {
+      keep();
+      out_.samples.back().velocity.fill(T(kNaN));
+      truth_.back().velocity.fill(T(kNaN));
+      truth_.back().theta_rotor_rad.fill(T(kNaN));
+      truth_.back().charge_C.fill(T(kNaN));
+      truth_.back().accel_x = truth_.back().accel_y = T(kNaN);
     }
   }
 
-  void keep(const RollingState<T>& x) {
-    truth_.theta_rotor_rad.push_back(x.theta_rotor_rad);
-    PerWheel<T> omega{};
-    T rise = T(0);
+  void keep() {
+    const RollingState<T>& x = at_.state;
+    Truth<T>& t = truth_.emplace_back();
+    t = {.theta_rotor_rad = x.theta_rotor_rad,
+         .omega_rotor_rad_s = speeds(),
+         .reported_rad_s = speeds(),
+         .charge_C = x.charge_C,
+         .velocity = x.velocity,
+         .accel_x = x.accel_x_m_s2,
+         .accel_y = x.accel_y_m_s2,
+         .force_x = x.floor_x_N,
+         .force_y = x.floor_y_N};
+    std::array<double, kWheels> told;
+    const bool tells = firmware_ && firmware_->tells(told);
+    RollingSample<T>& s = out_.samples.emplace_back();
+    s.bus_voltage_V = x.bus_voltage_V;
+    s.supply_voltage_V = x.supply_voltage_V;
+    s.velocity = x.velocity;
     for (std::size_t i = 0; i < record_.wheels; ++i) {
-      omega[i] = x.omega_rotor_rad_s(i);
-      rise += (1.0 / static_cast<double>(record_.wheels)) * x.drive[i].temperature_rise_K;
+      if (at_.controller) t.reported_rad_s[i] = at_.controller->reported_rad_s(i);
+      if (tells) t.reported_rad_s[i] = T(told[i] * value_of(model_.params.drive.gear_ratio));
+      s.temperature_rise_K += (1.0 / static_cast<double>(record_.wheels)) * x.drive[i].temperature_rise_K;
     }
-    truth_.omega_rotor_rad_s.push_back(omega);
-    if (controller_) {
-      for (std::size_t i = 0; i < record_.wheels; ++i) omega[i] = controller_->reported_rad_s(i);
-    }
-    if (std::array<double, kWheels> told; firmware_ && firmware_->tells(told)) {
-      for (std::size_t i = 0; i < kWheels; ++i)
-        omega[i] = T(told[i] * value_of(model_.params.drive.gear_ratio));
-    }
-    truth_.reported_rad_s.push_back(omega);
-    truth_.charge_C.push_back(x.charge_C);
-    truth_.velocity.push_back(x.velocity);
-    truth_.accel_x.push_back(x.accel_x_m_s2);
-    truth_.accel_y.push_back(x.accel_y_m_s2);
-    if (!record_.imposed_velocity.empty()) {
-      truth_.force_x.push_back(x.floor_x_N);
-      truth_.force_y.push_back(x.floor_y_N);
-    }
-    truth_.bus.push_back(x.bus_voltage_V);
-    truth_.supply.push_back(x.supply_voltage_V);
-    out_.temperature_rise_K.push_back(rise);
   }
 
   void sense() {
-    const std::size_t n = record_.size();
-    out_.encoder_rad.resize(n);
-    out_.current_A.resize(n);
-    out_.wheel_rad_s.resize(n);
     const T inverse_gear = 1.0 / model_.params.drive.gear_ratio;
-    out_.gyro_rad_s.resize(n);
-    out_.accel_x_m_s2.resize(n);
-    out_.accel_y_m_s2.resize(n);
     PerWheel<std::array<T, kMaxEffectStates>> states;
     states.fill(initial_states(robot_.effects()));
-    PerWheel<T> last_theta = truth_.theta_rotor_rad[0], last_charge{};
+    PerWheel<T> last_theta = truth_[0].theta_rotor_rad, last_charge{};
     T last_s = T(record_.time_s[0]);
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < record_.size(); ++k) {
       T seen_s = T(record_.time_s[k]);
       if (!timing().empty()) seen_s -= age(Stamped::kDriveSensors, k, timing_states_);
-      const bool now = timing().empty() || n < 2;
+      const bool now = timing().empty() || record_.size() < 2;
       const Instant<T> at = now ? Instant<T>{} : instant(record_.time_s, seen_s);
-      const auto seen = [&](const auto& values) { return now ? values(k) : at.of(values); };
+      const auto seen = [&](auto get) {
+        return now ? T(get(truth_[k])) : at.of([&](std::size_t j) { return get(truth_[j]); });
+      };
       const T span_s = seen_s - last_s;
+      RollingSample<T>& s = out_.samples[k];
       for (std::size_t i = 0; i < record_.wheels; ++i) {
-        const T theta = seen([&](std::size_t j) { return truth_.theta_rotor_rad[j][i]; });
-        const T omega = seen([&](std::size_t j) { return truth_.omega_rotor_rad_s[j][i]; });
-        const T charge = seen([&](std::size_t j) { return truth_.charge_C[j][i]; });
-        const T reported = seen([&](std::size_t j) { return truth_.reported_rad_s[j][i]; });
-        out_.wheel_rad_s[k][i] = reported * inverse_gear;
-        out_.encoder_rad[k][i] = encoder(k, i, theta, omega, T(theta - last_theta[i]), states[i]);
-        out_.current_A[k][i] = value_of(span_s) > 0.0 ? T((charge - last_charge[i]) / span_s) : T(0);
+        const T theta = seen([i](const Truth<T>& t) { return t.theta_rotor_rad[i]; });
+        const T omega = seen([i](const Truth<T>& t) { return t.omega_rotor_rad_s[i]; });
+        const T charge = seen([i](const Truth<T>& t) { return t.charge_C[i]; });
+        s.wheel_rad_s[i] = seen([i](const Truth<T>& t) { return t.reported_rad_s[i]; }) * inverse_gear;
+        s.encoder_rad[i] = encoder(k, i, theta, omega, T(theta - last_theta[i]), states[i]);
+        if (value_of(span_s) > 0.0) s.current_A[i] = (charge - last_charge[i]) / span_s;
         last_theta[i] = theta;
         last_charge[i] = charge;
       }
       last_s = seen_s;
-      out_.gyro_rad_s[k] = seen([&](std::size_t j) { return truth_.velocity[j][2]; });
-      out_.accel_x_m_s2[k] = seen([&](std::size_t j) { return truth_.accel_x[j]; });
-      out_.accel_y_m_s2[k] = seen([&](std::size_t j) { return truth_.accel_y[j]; });
-      if (record_.imposed_velocity.empty()) continue;
-      out_.force_x_N.push_back(seen([&](std::size_t j) { return truth_.force_x[j]; }));
-      out_.force_y_N.push_back(seen([&](std::size_t j) { return truth_.force_y[j]; }));
+      s.gyro_rad_s = seen([](const Truth<T>& t) { return t.velocity[2]; });
+      s.accel_x_m_s2 = seen([](const Truth<T>& t) { return t.accel_x; });
+      s.accel_y_m_s2 = seen([](const Truth<T>& t) { return t.accel_y; });
+      s.force_x_N = seen([](const Truth<T>& t) { return t.force_x; });
+      s.force_y_N = seen([](const Truth<T>& t) { return t.force_y; });
     }
-    out_.bus_voltage_V = truth_.bus;
-    out_.supply_voltage_V = truth_.supply;
-    out_.velocity = truth_.velocity;
   }
 
   T encoder(std::size_t k, std::size_t i, const T& theta, const T& omega, const T& travel,
@@ -354,41 +290,30 @@ class Runner {
     return theta + (port.encoder_angle_rad - port.theta_rotor_rad);
   }
 
-  // Path and heading by the trapezoidal rule, and their values at the camera's frames.
+  // Path and heading by the trapezoidal rule, and what the camera makes of them.
   void see() {
     using std::cos;
     using std::sin;
-    const std::size_t n = record_.size();
-    std::vector<T> x(n, T(0)), y(n, T(0)), theta(n, T(0));
+    const std::vector<double>& t = record_.time_s;
     T vx = T(0), vy = T(0);
-    theta[0] = T(options_.follow_camera ? 0.0 : first_heading());
-    for (std::size_t k = 0; k < n; ++k) {
-      if (k > 0) {
-        const double dt_s = record_.time_s[k] - record_.time_s[k - 1];
-        theta[k] = theta[k - 1] + 0.5 * dt_s * (truth_.velocity[k - 1][2] + truth_.velocity[k][2]);
-      }
-      const T& heading = heading_.empty() ? theta[k] : heading_[k];
-      const T c = cos(heading), s = sin(heading);
-      const T wx = c * truth_.velocity[k][0] - s * truth_.velocity[k][1];
-      const T wy = s * truth_.velocity[k][0] + c * truth_.velocity[k][1];
-      if (k > 0) {
-        const double half_s = 0.5 * (record_.time_s[k] - record_.time_s[k - 1]);
-        x[k] = x[k - 1] + half_s * (vx + wx);
-        y[k] = y[k - 1] + half_s * (vy + wy);
-      }
+    if (!options_.follow_camera) out_.samples[0].theta_rad = T(first_heading());
+    for (std::size_t k = 0; k < record_.size(); ++k) {
+      RollingSample<T>& s = out_.samples[k];
+      const RollingSample<T>& before = out_.samples[k > 0 ? k - 1 : 0];
+      const double half_s = k > 0 ? 0.5 * (t[k] - t[k - 1]) : 0.0;
+      if (k > 0) s.theta_rad = before.theta_rad + half_s * (before.velocity[2] + s.velocity[2]);
+      const T& heading = heading_.empty() ? s.theta_rad : heading_[k];
+      const T cosine = cos(heading), sine = sin(heading);
+      const T wx = cosine * s.velocity[0] - sine * s.velocity[1];
+      const T wy = sine * s.velocity[0] + cosine * s.velocity[1];
+      s.x_m = before.x_m + half_s * (vx + wx);
+      s.y_m = before.y_m + half_s * (vy + wy);
       vx = wx;
       vy = wy;
     }
-    if (!options_.follow_camera) {
-      look_back(x), look_back(y), look_back(theta);
-      out_.x_m = x;
-      out_.y_m = y;
-      out_.theta_rad = theta;
-      return;
-    }
-    out_.x_m = follow(x, &CameraFrame::x_m);
-    out_.y_m = follow(y, &CameraFrame::y_m);
-    out_.theta_rad = follow(theta, &CameraFrame::theta_rad);
+    report(&RollingSample<T>::x_m, &CameraFrame::x_m);
+    report(&RollingSample<T>::y_m, &CameraFrame::y_m);
+    report(&RollingSample<T>::theta_rad, &CameraFrame::theta_rad);
   }
 
   double first_heading() const {
@@ -398,41 +323,38 @@ class Runner {
     return 0.0;
   }
 
-  void look_back(std::vector<T>& way) const {
-    if (value_of(camera_age_s_) == 0.0) return;
-    const std::vector<T> now = way;
-    for (std::size_t k = 0; k < way.size(); ++k) {
-      way[k] = instant(record_.time_s, T(record_.time_s[k] - camera_age_s_)).of([&](std::size_t j) {
-        return now[j];
+  // One coordinate of the path as the camera says it: as old as its frames, and at the frames alone (NaN between),
+  // corrected by the camera's earlier ones where they are followed: first order filter of its difference to the path.
+  void report(T RollingSample<T>::*coordinate, double CameraFrame::*seen) {
+    std::vector<T> path;
+    for (const RollingSample<T>& s : out_.samples) path.push_back(s.*coordinate);
+    const auto there_at = [&](std::size_t k) {
+      if (is_exactly(camera_age_s_, 0.0)) return path[k];
+      return instant(record_.time_s, T(record_.time_s[k] - camera_age_s_)).of([&](std::size_t j) {
+        return path[j];
       });
-    }
-  }
-
-  // One coordinate of the path at the frames (n samples, NaN between), corrected by the camera's earlier
-  // frames: first order filter of the camera's difference to the path.
-  std::vector<T> follow(const std::vector<T>& path, double CameraFrame::*seen) const {
-    std::vector<T> out(path.size(), T(kNaN));
+    };
+    for (std::size_t k = 0; k < path.size(); ++k)
+      out_.samples[k].*coordinate = options_.follow_camera ? T(kNaN) : there_at(k);
+    if (!options_.follow_camera) return;
     T correction = T(0);
     double last_s = kNaN, frames = 0.0;
     for (const CameraFrame& f : record_.frames) {
       if (!std::isfinite(f.*seen)) continue;
       const double now_s = record_.time_s[f.sample];
-      const T there =
-          is_exactly(camera_age_s_, 0.0)
-              ? path[f.sample]
-              : instant(record_.time_s, T(now_s - camera_age_s_)).of([&](std::size_t j) { return path[j]; });
+      const T there = there_at(f.sample);
+      T& out = out_.samples[f.sample].*coordinate;
       if (!std::isfinite(last_s)) {
         correction = f.*seen - there;  // the first frame is the path's origin, and is not compared
       } else {
-        out[f.sample] = there + correction;
+        out = there + correction;
         // at first the mean of the frames so far, so that the first one's noise is averaged out
         const double gain = std::max(-std::expm1(-(now_s - last_s) / kFollow_s), 1.0 / (frames + 1.0));
-        correction += (f.*seen - out[f.sample]) * gain;
+        correction += (f.*seen - out) * gain;
       }
       last_s = now_s;
       frames += 1.0;
     }
-    return out;
   }
 
   const RobotModelValues<T>& model_;
@@ -441,13 +363,11 @@ class Runner {
   RobotCarry<T>* carry_;
   RollingRobot<T> robot_;
   std::array<T, kMaxEffectStates> timing_states_;
-  std::optional<RadioController<T>> controller_;
+  RobotCarry<T> at_;
   std::optional<FirmwareLoop> firmware_;
-  PerWheel<T> duty_{}, turned_rad_{};
-  double last_control_s_ = 0.0, next_control_s_ = 0.0;
   T camera_age_s_ = T(0);
   std::vector<T> heading_;
-  Truth<T> truth_;
+  std::vector<Truth<T>> truth_;
   RobotMotion<T> out_;
 };
 

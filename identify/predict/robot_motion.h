@@ -3,7 +3,7 @@
 //
 //   RobotModelValues<Jet> m = robot_values<Jet>(candidate, unknowns, 0);      // unknown n is the Jet's component n
 //   RobotMotion<Jet> y = run_robot(m, record, {});
-//   y.encoder_rad[k][i], y.current_A[k][i], y.gyro_rad_s[k], y.x_m[k] …
+//   y.samples[k].encoder_rad[i], y.samples[k].gyro_rad_s, y.samples[k].x_m …
 //
 // A record that goes on where another ended is run from where that one's motion was, by a RobotCarry: its first row is the
 // last row of the one before, on the same clock. Cut anywhere, the motion is the whole record's (but for states of
@@ -40,7 +40,7 @@ struct RobotMotionOptions {
   const FirmwareSource* firmware = nullptr;
 };
 
-// Where a motion was at its record's last row.
+// Where a motion is: at its record's last row, for the next record to go on from.
 template <typename T>
 struct RobotCarry {
   bool begun = false;
@@ -51,22 +51,27 @@ struct RobotCarry {
   T heading = T(0);
 };
 
-// n samples of the record each.
 template <typename T>
-struct RobotMotion {
-  std::vector<PerWheel<T>> encoder_rad;  // unrounded, at the rotor
-  std::vector<PerWheel<T>> wheel_rad_s;  // at the wheel; of a controller: as it measures them
-  std::vector<PerWheel<T>> current_A;    // mean over the period that ends at the sample
-  std::vector<T> gyro_rad_s, accel_x_m_s2, accel_y_m_s2;
-  std::vector<T> force_x_N,
-      force_y_N;  // of the floor on the wheels; empty unless the body's velocity is imposed
-  std::vector<T> bus_voltage_V, supply_voltage_V;  // RollingState
-  std::vector<T> temperature_rise_K;               // mean of the windings
-  std::vector<std::array<T, 3>> velocity;          // body frame, true: without sensor; m/s, m/s, rad/s
+struct RollingSample {
+  // as measured (through sensor and timing effects)
+  PerWheel<T> encoder_rad{};  // unrounded, at the rotor
+  PerWheel<T> wheel_rad_s{};  // at the wheel; of a controller: as it measures them
+  PerWheel<T> current_A{};    // mean over the period that ends at the sample
+  T gyro_rad_s = T(0), accel_x_m_s2 = T(0), accel_y_m_s2 = T(0);
+  T force_x_N = T(0), force_y_N = T(0);  // of the floor on the wheels
   // Pose as the camera reports it, the corrections of follow_camera included; NaN between frames
   // (follow_camera) or where the record has none.
-  std::vector<T> x_m, y_m, theta_rad;
-  bool finite = true;
+  T x_m = T(0), y_m = T(0), theta_rad = T(0);
+  // true
+  T bus_voltage_V = T(0), supply_voltage_V = T(0);  // RollingState
+  T temperature_rise_K = T(0);                      // mean of the windings
+  std::array<T, 3> velocity{};                      // body frame; m/s, m/s, rad/s
+};
+
+template <typename T>
+struct RobotMotion {
+  std::vector<RollingSample<T>> samples;  // one per sample of the record
+  bool finite = true;                     // false: the run diverged; samples after that are NaN
 };
 
 // `carry`: gone on from and left at the end; not owned; null: from the record's own start. A motion that is not finite

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 
-#include "identify/predict/channel.h"
+#include "identify/predict/interpolation.h"
 #include "identify/predict/silent_frames.h"
-#include "identify/record/bus_voltage.h"
 #include "sim/law/random.h"
 
 namespace omnihil {
@@ -34,40 +34,35 @@ void read_radio(const Run& run, RobotRecord& r) {
   } else {
     for (std::size_t i = 0; i < r.wheels; ++i) said[i] = run.signal(numbered("command_wheel", i, r.wheels));
   }
-  RadioCommands radio{.frame = body ? CommandFrame::kBodyVelocity : CommandFrame::kWheelSpeeds, .value = {}};
-  radio.value.resize(r.size());
-  const std::vector<double>* enable = run.signal("enable");
+  r.radio = {.frame = body ? CommandFrame::kBodyVelocity : CommandFrame::kWheelSpeeds, .value = {}};
+  r.radio->value.resize(r.size());
   for (std::size_t k = 0; k < r.size(); ++k) {
     for (std::size_t a = 0; a < said.size(); ++a)
-      radio.value[k][a] = said[a] != nullptr ? (*said[a])[k] : 0.0;
-    r.enabled[k].fill(enable == nullptr || !((*enable)[k] == 0.0));
+      r.radio->value[k][a] = said[a] != nullptr ? (*said[a])[k] : 0.0;
   }
-  r.radio = std::move(radio);
 }
 
 void read_drive(const Run& run, RobotRecord& r) {
-  if (run.signal(numbered("duty", 0, r.wheels)) == nullptr) return read_radio(run, r);
+  const std::vector<double>* enable = run.signal("enable");
+  const bool by_duty = run.signal(numbered("duty", 0, r.wheels)) != nullptr;
+  if (!by_duty) read_radio(run, r);
   for (std::size_t i = 0; i < r.wheels; ++i) {
     const std::vector<double>* duty = run.signal(numbered("duty", i, r.wheels));
-    const std::vector<double>* enable = run.signal("enable");
     for (std::size_t k = 0; k < r.size(); ++k) {
-      const bool asked = duty != nullptr && std::isfinite((*duty)[k]);
+      const bool asked = by_duty && duty != nullptr && std::isfinite((*duty)[k]);
       r.duty_ratio[k][i] = asked ? (*duty)[k] : 0.0;
-      r.enabled[k][i] = asked && (enable == nullptr || !((*enable)[k] == 0.0));
+      r.enabled[k][i] = (asked || !by_duty) && (enable == nullptr || !((*enable)[k] == 0.0));
     }
   }
 }
 
 // Step that duties are rounded to by the decimals of their record; 0: full precision.
 double rounding_of(const std::vector<PerWheel<double>>& duties, std::size_t wheels) {
-  std::vector<double> all;
+  constexpr std::size_t kEnough = 20;  // different values; fewer may be round set points; a choice
+  std::set<double> different;
   for (const auto& duty : duties)
-    all.insert(all.end(), duty.begin(), duty.begin() + static_cast<std::ptrdiff_t>(wheels));
-  std::sort(all.begin(), all.end());
-  constexpr std::ptrdiff_t kEnough = 20;  // different values; fewer may be round set points; a choice
-  std::vector<double> different = all;
-  different.erase(std::unique(different.begin(), different.end()), different.end());
-  if (static_cast<std::ptrdiff_t>(different.size()) < kEnough) return 0.0;
+    different.insert(duty.begin(), duty.begin() + static_cast<std::ptrdiff_t>(wheels));
+  if (different.size() < kEnough) return 0.0;
   constexpr std::array<double, 4> kDecimals = {1e2, 1e3, 1e4, 1e5};
   for (const double scale : kDecimals) {
     const bool round = std::all_of(different.begin(), different.end(), [&](double v) {
@@ -78,24 +73,6 @@ double rounding_of(const std::vector<PerWheel<double>>& duties, std::size_t whee
   return 0.0;
 }
 
-// Linear interpolation over gaps.
-std::vector<double> without_gaps(const std::vector<double>& time_s, const std::vector<double>& signal) {
-  std::vector<double> out = signal;
-  std::size_t last = signal.size();
-  for (std::size_t k = 0; k < signal.size(); ++k) {
-    if (!std::isfinite(signal[k])) continue;
-    const std::size_t from = last == signal.size() ? 0 : last + 1;
-    for (std::size_t j = from; j < k; ++j) {
-      const double s = last == signal.size() ? 1.0 : (time_s[j] - time_s[last]) / (time_s[k] - time_s[last]);
-      out[j] = last == signal.size() ? signal[k] : signal[last] + s * (signal[k] - signal[last]);
-    }
-    last = k;
-  }
-  if (last == signal.size()) return {};
-  for (std::size_t j = last + 1; j < signal.size(); ++j) out[j] = signal[last];
-  return out;
-}
-
 void read_encoders(const Dataset& dataset, const Run& run, double gear_ratio, RobotRecord& r) {
   r.has_all_encoders = true;
   for (std::size_t i = 0; i < r.wheels; ++i) {
@@ -103,7 +80,7 @@ void read_encoders(const Dataset& dataset, const Run& run, double gear_ratio, Ro
     const Channel* channel = dataset.channel(name);
     const std::vector<double>* counts = run.signal(name);
     const std::vector<double> full =
-        counts != nullptr ? without_gaps(r.time_s, *counts) : std::vector<double>{};
+        counts != nullptr ? resampled(r.time_s, *counts, r.time_s) : std::vector<double>{};
     if (channel == nullptr || full.empty() || channel->counts_per_rev <= 0.0) {
       r.has_all_encoders = false;
       continue;
@@ -172,10 +149,7 @@ std::optional<PerWheel<double>> reported_at_start(const Dataset& dataset, const 
     const std::string name = numbered("wheel_speed", i, wheels);
     const std::vector<double>* reported = run.signal(name);
     if (reported == nullptr) return std::nullopt;
-    const Channel* channel = dataset.channel(name);
-    const double sigma = channel != nullptr && channel->sigma > 0.0
-                             ? channel->sigma
-                             : estimate_noise(*reported, Differences::kThird).sigma;
+    const double sigma = noise_sigma_of(dataset, name, *reported);
     double sum = 0.0, count = 0.0;
     for (std::size_t k = 0; k < reported->size(); ++k) {
       const double since_s = run.time_s[k] - run.time_s[0];
@@ -198,14 +172,7 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const Dataset& dataset
   }
   std::size_t last = 0;
   while (last + 1 < r.size() && r.time_s[last] - r.time_s[0] < kStartSpan_s) ++last;
-  WheelGeometry<double> g;
-  g.wheels = r.wheels;
-  for (std::size_t i = 0; i < r.wheels; ++i) {
-    g.cos_angle[i] = std::cos(nominal.wheel_angle_rad[i]);
-    g.sin_angle[i] = std::sin(nominal.wheel_angle_rad[i]);
-  }
-  g.wheel_center_radius_m = nominal.wheel_center_radius_m;
-  g.wheel_radius_m = nominal.wheel_radius_m;
+  const WheelGeometry<double> g = wheel_geometry(nominal);
   if (!r.has_all_encoders || last < 3) {
     const auto reported = reported_at_start(dataset, run, r.wheels);
     return reported ? body_velocity(g, *reported) : BodyVelocity<double>{};
@@ -226,8 +193,8 @@ RollingInput<T> RobotRecord::input(std::size_t k) const {
   RollingInput<T> in;
   for (std::size_t i = 0; i < wheels; ++i) in.duty_ratio[i] = T(duty_ratio[k][i]);
   in.enabled = enabled[k];
-  in.bus_is_measured = !bus_voltage_V.empty();
-  if (in.bus_is_measured) in.bus_voltage_V = bus_voltage_V[k];
+  in.bus_is_measured = !bus.input_V.empty();
+  if (in.bus_is_measured) in.bus_voltage_V = bus.input_V[k];
   in.dribbler_rad_s = dribbler_rad_s[k];
   if (has_all_encoders) in.theta_rotor_rad = &theta_rotor_rad[k];
   return in;
@@ -253,15 +220,7 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   read_encoders(dataset, run, nominal.drive.gear_ratio, r);
   r.dribbler_rad_s = held(run.signal("dribbler"));
   r.dribbler_rad_s.resize(r.size());
-  if (const std::vector<double>* measured = run.signal("bus_voltage"); measured != nullptr) {
-    const std::vector<double> bus_V = plausible_bus_voltage(*measured);
-    const Channel* channel = dataset.channel("bus_voltage");
-    const std::vector<double> given_V = held(&bus_V);
-    r.bus_sigma_V = channel != nullptr && channel->sigma > 0.0
-                        ? channel->sigma
-                        : estimate_noise(given_V, Differences::kThird).sigma;
-    r.bus_voltage_V = without_noise(given_V, r.bus_sigma_V, kBusWindows);
-  }
+  r.bus = read_bus(dataset, run, 0, kBusWindows);
   if (const std::vector<double>* gyro = run.signal("gyro_z"); gyro != nullptr) {
     const std::vector<double> rate = held(gyro);
     r.turned_rad.resize(rate.size());
@@ -284,9 +243,9 @@ RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {
     for (std::size_t i = 0; i < r.wheels; ++i) {
       r.duty_ratio[k][i] += r.duty_quantum * (uniform(seed, duty_stream + i, k) - 0.5);
     }
-    if (!r.bus_voltage_V.empty()) r.bus_voltage_V[k] += r.bus_sigma_V * gaussian(seed, bus_stream, k);
+    if (!r.bus.input_V.empty()) r.bus.input_V[k] += r.bus.sigma_V * gaussian(seed, bus_stream, k);
   }
-  if (!r.bus_voltage_V.empty()) r.bus_voltage_V = without_noise(r.bus_voltage_V, r.bus_sigma_V, kBusWindows);
+  if (!r.bus.input_V.empty()) r.bus.input_V = without_noise(r.bus.input_V, r.bus.sigma_V, kBusWindows);
   return r;
 }
 
@@ -294,40 +253,23 @@ RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {
 
 namespace {
 
-// Linear interpolation of (time, values) at a time that may carry derivatives.
-template <typename T>
-T line_at(const std::vector<double>& time_s, const std::vector<double>& values, const T& at_s) {
-  const auto after = std::upper_bound(time_s.begin(), time_s.end(), value_of(at_s));
-  if (after == time_s.begin()) return T(values.front());
-  if (after == time_s.end()) return T(values.back());
-  const auto k = static_cast<std::size_t>(after - time_s.begin());
-  const double slope = (values[k] - values[k - 1]) / (time_s[k] - time_s[k - 1]);
-  return values[k - 1] + slope * (at_s - time_s[k - 1]);
-}
-
 // Means over both sides, weighted by exp(-|dt| / memory).
 template <typename T>
 std::vector<T> smoothed(const std::vector<double>& time_s, const std::vector<T>& values, double memory_s) {
   const std::size_t n = values.size();
   std::vector<T> sum = values;
   std::vector<double> weight(n, 1.0);
-  T carried = T(0);
-  double carried_weight = 0.0;
-  for (std::size_t k = 1; k < n; ++k) {
-    const double keep = std::exp(-(time_s[k] - time_s[k - 1]) / memory_s);
-    carried = (carried + values[k - 1]) * keep;
-    carried_weight = (carried_weight + 1.0) * keep;
-    sum[k] += carried;
-    weight[k] += carried_weight;
-  }
-  carried = T(0);
-  carried_weight = 0.0;
-  for (std::size_t k = n - 1; k-- > 0;) {
-    const double keep = std::exp(-(time_s[k + 1] - time_s[k]) / memory_s);
-    carried = (carried + values[k + 1]) * keep;
-    carried_weight = (carried_weight + 1.0) * keep;
-    sum[k] += carried;
-    weight[k] += carried_weight;
+  for (const bool forward : {true, false}) {
+    T carried = T(0);
+    double carried_weight = 0.0;
+    for (std::size_t i = 1; i < n; ++i) {
+      const std::size_t k = forward ? i : n - 1 - i, last = forward ? k - 1 : k + 1;
+      const double keep = std::exp(-std::abs(time_s[k] - time_s[last]) / memory_s);
+      carried = (carried + values[last]) * keep;
+      carried_weight = (carried_weight + 1.0) * keep;
+      sum[k] += carried;
+      weight[k] += carried_weight;
+    }
   }
   for (std::size_t k = 0; k < n; ++k) sum[k] /= weight[k];
   return sum;
@@ -337,37 +279,27 @@ std::vector<T> smoothed(const std::vector<double>& time_s, const std::vector<T>&
 
 template <typename T>
 std::vector<T> headings(const RobotRecord& r, const T& camera_age_s) {
-  std::vector<double> seen_s;
-  std::vector<double> seen_rad;
+  std::vector<double> seen_s, seen_rad;
   for (const CameraFrame& f : r.frames) {
     if (!std::isfinite(f.theta_rad)) continue;
     seen_s.push_back(r.time_s[f.sample]);
     seen_rad.push_back(f.theta_rad);
   }
-  std::vector<T> heading(r.size(), T(0));
+  const auto at = [](const std::vector<double>& clock_s, const T& at_s, const auto& values) {
+    return instant(clock_s, at_s).of([&](std::size_t k) { return T(values[k]); });
+  };
+  std::vector<T> heading, offset;
   if (r.turned_rad.empty()) {
-    if (seen_s.empty()) return {};
-    for (std::size_t k = 0; k < r.size(); ++k) {
-      heading[k] = line_at(seen_s, seen_rad, T(r.time_s[k] + camera_age_s));
-    }
+    for (std::size_t k = 0; k < r.size() && !seen_s.empty(); ++k)
+      heading.push_back(at(seen_s, T(r.time_s[k] + camera_age_s), seen_rad));
     return heading;
   }
-  std::vector<T> offset;
-  for (std::size_t n = 0; n < seen_s.size(); ++n) {
-    offset.push_back(seen_rad[n] - line_at(r.time_s, r.turned_rad, T(seen_s[n] - camera_age_s)));
-  }
+  for (std::size_t n = 0; n < seen_s.size(); ++n)
+    offset.push_back(seen_rad[n] - at(r.time_s, T(seen_s[n] - camera_age_s), r.turned_rad));
   if (!offset.empty()) offset = smoothed(seen_s, offset, kHeadingMemory_s);
-  std::size_t n = 0;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    heading[k] = T(r.turned_rad[k]);
-    if (offset.empty()) continue;
-    while (n + 1 < seen_s.size() && seen_s[n + 1] <= r.time_s[k]) ++n;
-    if (n + 1 < seen_s.size() && r.time_s[k] > seen_s[n]) {
-      const double s = (r.time_s[k] - seen_s[n]) / (seen_s[n + 1] - seen_s[n]);
-      heading[k] += offset[n] + (offset[n + 1] - offset[n]) * s;
-    } else {
-      heading[k] += offset[n];
-    }
+    heading.push_back(T(r.turned_rad[k]));
+    if (!offset.empty()) heading[k] += at(seen_s, T(r.time_s[k]), offset);
   }
   return heading;
 }

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "identify/record/dataset.h"
+#include "identify/predict/channel.h"
 #include "sim/robot/rolling_robot.h"
 
 namespace omnihil {
@@ -44,9 +44,8 @@ struct RobotRecord {
   std::vector<PerWheel<double>> duty_ratio;  // 0 where `radio` drives
   std::optional<RadioCommands> radio;
   std::vector<PerWheel<bool>> enabled;
-  std::vector<double> bus_voltage_V;  // less its sensor's noise; empty: not measured
-  double bus_sigma_V = 0.0;           // of the sensor: stated, or estimated
-  double duty_quantum = 0.0;          // step that the record's duties are rounded to; 0: none found
+  BusReading bus;
+  double duty_quantum = 0.0;  // step that the record's duties are rounded to; 0: none found
   std::vector<double> dribbler_rad_s;
   PerWheel<double> counts_per_rotor_turn{};         // 0: no encoder there
   std::vector<PerWheel<double>> encoder_rotor_rad;  // as counted

@@ -5,190 +5,140 @@
 #include <limits>
 #include <numbers>
 
-#include "identify/predict/channel.h"
-#include "identify/record/statistics.h"
 #include "sim/law/random.h"
 
 namespace omnihil {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kAnyGap_s = std::numeric_limits<double>::infinity();
 
 struct Source {
-  RobotOutput output;
+  Quantity quantity;
+  View view;
   std::string_view channel;  // without the wheel's index
   std::string_view unit;
   bool per_wheel;
 };
 constexpr Source kSources[] = {
-    {RobotOutput::kVelocity, "encoder", "rad/s", true},
-    {RobotOutput::kWheelSpeed, "wheel_speed", "rad/s", true},
-    {RobotOutput::kCurrent, "motor_current", "A", true},
-    {RobotOutput::kGyro, "gyro_z", "rad/s", false},
-    {RobotOutput::kAccelX, "accel_x", "m/s2", false},
-    {RobotOutput::kAccelY, "accel_y", "m/s2", false},
-    {RobotOutput::kVisionX, "vision_x", "m", false},
-    {RobotOutput::kVisionY, "vision_y", "m", false},
-    {RobotOutput::kVisionTheta, "vision_theta", "rad", false},
-    {RobotOutput::kForceX, "force_x", "N", false},
-    {RobotOutput::kForceY, "force_y", "N", false},
-    {RobotOutput::kBusVoltage, "bus_voltage", "V", false},
+    {Quantity::kCounts, View::kDifference, "encoder", "rad/s", true},
+    {Quantity::kWheelSpeed, View::kPoint, "wheel_speed", "rad/s", true},
+    {Quantity::kCurrent, View::kMean, "motor_current", "A", true},
+    {Quantity::kGyro, View::kPoint, "gyro_z", "rad/s", false},
+    {Quantity::kAccelX, View::kPoint, "accel_x", "m/s2", false},
+    {Quantity::kAccelY, View::kPoint, "accel_y", "m/s2", false},
+    {Quantity::kVisionX, View::kFrames, "vision_x", "m", false},
+    {Quantity::kVisionY, View::kFrames, "vision_y", "m", false},
+    {Quantity::kVisionTheta, View::kFrames, "vision_theta", "rad", false},
+    {Quantity::kForceX, View::kMean, "force_x", "N", false},
+    {Quantity::kForceY, View::kMean, "force_y", "N", false},
+    {Quantity::kBusVoltage, View::kLevel, "bus_voltage", "V", false},
 };
 
-double CameraFrame::*frame_member(RobotOutput output) {
-  if (output == RobotOutput::kVisionX) return &CameraFrame::x_m;
-  return output == RobotOutput::kVisionY ? &CameraFrame::y_m : &CameraFrame::theta_rad;
-}
-
-bool is_vision(RobotOutput o) {
-  return o == RobotOutput::kVisionX || o == RobotOutput::kVisionY || o == RobotOutput::kVisionTheta;
-}
-
-void take_velocity(const Channel& channel, const RobotRecord& r, RobotSignal& s) {
-  const std::size_t n = r.size();
-  ComparedSignal& c = s.compared;
-  c.measured.assign(n, kNaN);
-  std::vector<double> periods;
-  for (std::size_t k = 1; k < n; ++k) {
-    const double dt_s = r.time_s[k] - r.time_s[k - 1];
-    periods.push_back(dt_s);
-    c.measured[k] = (r.encoder_rotor_rad[k][s.wheel] - r.encoder_rotor_rad[k - 1][s.wheel]) / dt_s;
+template <typename T>
+const T& quantity_of(const RollingSample<T>& s, const Observation& how) {
+  switch (how.quantity) {
+    case Quantity::kCounts:
+      return s.encoder_rad[how.wheel];
+    case Quantity::kWheelSpeed:
+      return s.wheel_rad_s[how.wheel];
+    case Quantity::kCurrent:
+      return s.current_A[how.wheel];
+    case Quantity::kGyro:
+      return s.gyro_rad_s;
+    case Quantity::kAccelX:
+      return s.accel_x_m_s2;
+    case Quantity::kAccelY:
+      return s.accel_y_m_s2;
+    case Quantity::kVisionX:
+      return s.x_m;
+    case Quantity::kVisionY:
+      return s.y_m;
+    case Quantity::kVisionTheta:
+      return s.theta_rad;
+    case Quantity::kForceX:
+      return s.force_x_N;
+    case Quantity::kForceY:
+      return s.force_y_N;
+    default:
+      return s.supply_voltage_V;
   }
-  if (periods.empty()) return;
-  const double period_s = median(std::move(periods));
-  const double rad_per_count = 2.0 * std::numbers::pi / r.counts_per_rotor_turn[s.wheel];
-  c.quantum = rad_per_count / period_s;
-  // variance of one reading in counts^2: rounding, uniform over a count, and the channel's own noise
-  const double counts2 = 1.0 / 12.0 + channel.sigma * channel.sigma;
-  s.channel_sigma = channel.sigma;
-  c.noise_sigma = std::sqrt(2.0 * counts2) * c.quantum;
-  c.noise_is_stated = true;
-  // Not whitened (predictor.h): random forces of the floor integrate to more angle than the counts' rounding,
-  // and would be taken for a law of motion.
-  c.whitened_sigma = c.noise_sigma;
 }
 
-void take_frames(const Channel& channel, const RobotRecord& r, RobotSignal& s) {
-  ComparedSignal& c = s.compared;
-  c.measured.assign(r.size(), kNaN);
-  std::vector<double> seen;
-  bool first = true;
-  for (const CameraFrame& f : r.frames) {
-    const double v = f.*frame_member(s.output);
+double CameraFrame::*frame_member(Quantity quantity) {
+  if (quantity == Quantity::kVisionX) return &CameraFrame::x_m;
+  return quantity == Quantity::kVisionY ? &CameraFrame::y_m : &CameraFrame::theta_rad;
+}
+
+// Not whitened (predictor.h): random forces of the floor integrate to more angle than the counts' rounding, and would be
+// taken for a law of motion.
+void add_encoder(const Channel& channel, Observation how, const std::string& name, RobotRun& r) {
+  const RobotRecord& record = r.record;
+  if (record.counts_per_rotor_turn[how.wheel] <= 0.0) return;
+  std::vector<double> angle;
+  for (const PerWheel<double>& counted : record.encoder_rotor_rad) angle.push_back(counted[how.wheel]);
+  const double rad_per_count = kTurn / record.counts_per_rotor_turn[how.wheel];
+  // of one reading: rounding, uniform over a count, and the channel's own noise
+  const double sigma = std::hypot(1.0 / std::sqrt(12.0), channel.sigma) * rad_per_count;
+  add_difference(r, std::move(how), name, "rad/s", record.time_s, angle, kAnyGap_s, sigma, rad_per_count,
+                 0.0);
+  r.seen.back().channel_sigma = channel.sigma;
+}
+
+// The first frame is the origin of the path, and is not compared.
+void add_frames(const Channel& channel, Observation how, std::string_view unit, RobotRun& r) {
+  std::vector<double> seen, at_rows(r.record.size(), kNaN);
+  for (const CameraFrame& f : r.record.frames) {
+    const double v = f.*frame_member(how.quantity);
     if (!std::isfinite(v)) continue;
+    if (!seen.empty()) at_rows[f.sample] = v;
     seen.push_back(v);
-    if (!first) c.measured[f.sample] = v;  // the first frame is the origin of the path
-    first = false;
   }
-  set_noise(channel.sigma, estimate_noise(seen, Differences::kThird), c);
-}
-
-void take(const Channel& channel, const Run& run, const RobotRecord& r, RobotSignal& s) {
-  if (s.output == RobotOutput::kVelocity) return take_velocity(channel, r, s);
-  if (is_vision(s.output)) {
-    take_frames(channel, r, s);
-  } else {
-    s.compared.measured = *run.signal(s.channel);
-    // the mean over a period whose beginning was not recorded
-    const bool mean = s.output == RobotOutput::kCurrent || s.output == RobotOutput::kBusVoltage ||
-                      s.output == RobotOutput::kForceX || s.output == RobotOutput::kForceY;
-    if (mean && !s.compared.measured.empty()) s.compared.measured[0] = kNaN;
-    set_noise(channel.sigma, estimate_noise(s.compared.measured, Differences::kThird), s.compared);
-  }
-  s.channel_sigma = s.compared.noise_sigma;
+  const std::string name = how.channel;
+  ComparedSignal& c =
+      add_signal(r, std::move(how), name, std::string(unit), r.record.time_s, std::move(at_rows), 0.0);
+  set_noise(channel.sigma, estimate_noise(seen), c);  // from frame to frame
+  r.seen.back().channel_sigma = c.noise_sigma;
 }
 
 }  // namespace
 
-std::vector<RobotSignal> robot_signals(const Dataset& dataset, const Run& run, const RobotRecord& r) {
-  std::vector<RobotSignal> signals;
+RobotRun robot_run(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal) {
+  RobotRun r;
+  r.record = robot_record(dataset, run, nominal);
   for (const Source& source : kSources) {
-    for (std::size_t i = 0; i < (source.per_wheel ? r.wheels : 1u); ++i) {
-      const std::string suffix = source.per_wheel ? numbered("", i, r.wheels) : "";
-      RobotSignal s;
-      s.output = source.output;
-      s.wheel = i;
-      s.channel = std::string(source.channel) + suffix;
-      const Channel* channel = dataset.channel(s.channel);
-      if (channel == nullptr || channel->imposed || run.signal(s.channel) == nullptr) continue;
-      if (s.output == RobotOutput::kVelocity && r.counts_per_rotor_turn[i] <= 0.0) continue;
-      s.compared.name =
-          (s.output == RobotOutput::kVelocity ? "velocity" : std::string(source.channel)) + suffix;
-      s.compared.unit = source.unit;
-      s.compared.time_s = r.time_s;
-      take(*channel, run, r, s);
-      signals.push_back(std::move(s));
+    for (std::size_t i = 0; i < (source.per_wheel ? r.record.wheels : 1u); ++i) {
+      const std::string name =
+          source.per_wheel ? numbered(source.channel, i, r.record.wheels) : std::string(source.channel);
+      const Channel* channel = dataset.channel(name);
+      if (channel == nullptr || channel->imposed || run.signal(name) == nullptr) continue;
+      const Observation how{.quantity = source.quantity, .view = source.view, .channel = name, .wheel = i};
+      if (source.view == View::kDifference) {
+        add_encoder(*channel, how, numbered("velocity", i, r.record.wheels), r);
+      } else if (source.view == View::kFrames) {
+        add_frames(*channel, how, source.unit, r);
+      } else {
+        const bool bus = source.view == View::kLevel;
+        add_signal(r, how, name, std::string(source.unit), r.record.time_s,
+                   bus ? r.record.bus.measured_V : *run.signal(name), channel->sigma);
+        if (bus) say_left_out(r.record.bus, r.compared.back());
+      }
     }
   }
-  return signals;
+  return r;
 }
-
-namespace {
 
 template <typename T>
-std::vector<T> at_mean_of(const std::vector<double>& measured, std::vector<T> y) {
-  T shift = T(0);
-  double count = 0.0;
-  for (std::size_t k = 0; k < y.size(); ++k) {
-    if (!std::isfinite(measured[k])) continue;
-    shift += measured[k] - y[k];
-    count += 1.0;
-  }
-  for (T& v : y) v += shift / std::max(count, 1.0);
-  return y;
+std::vector<T> robot_signal_values(const RobotRun& r, std::size_t signal, const RobotMotion<T>& m) {
+  const Observation& how = r.seen[signal];
+  return observed<T>(how, r.record.time_s, [&](std::size_t k) { return quantity_of(m.samples[k], how); });
 }
 
-}  // namespace
+template std::vector<double> robot_signal_values(const RobotRun&, std::size_t, const RobotMotion<double>&);
+template std::vector<Jet> robot_signal_values(const RobotRun&, std::size_t, const RobotMotion<Jet>&);
 
-template <typename T>
-std::vector<T> robot_signal_values(const RobotSignal& s, const RobotRecord& r, const RobotMotion<T>& m) {
-  const std::size_t n = r.size();
-  std::vector<T> out(n, T(kNaN));
-  const auto per_wheel = [&](const auto& values) {
-    for (std::size_t k = 0; k < n; ++k) out[k] = values[k][s.wheel];
-  };
-  switch (s.output) {
-    case RobotOutput::kVelocity:
-      for (std::size_t k = 1; k < n; ++k) {
-        out[k] = (m.encoder_rad[k][s.wheel] - m.encoder_rad[k - 1][s.wheel]) *
-                 (1.0 / (r.time_s[k] - r.time_s[k - 1]));
-      }
-      break;
-    case RobotOutput::kWheelSpeed:
-      per_wheel(m.wheel_rad_s);
-      break;
-    case RobotOutput::kCurrent:
-      per_wheel(m.current_A);
-      break;
-    case RobotOutput::kGyro:
-      return m.gyro_rad_s;
-    case RobotOutput::kAccelX:
-      return m.accel_x_m_s2;
-    case RobotOutput::kAccelY:
-      return m.accel_y_m_s2;
-    case RobotOutput::kVisionX:
-      return m.x_m;
-    case RobotOutput::kVisionY:
-      return m.y_m;
-    case RobotOutput::kVisionTheta:
-      return m.theta_rad;
-    case RobotOutput::kForceX:
-      return m.force_x_N;
-    case RobotOutput::kForceY:
-      return m.force_y_N;
-    case RobotOutput::kBusVoltage:
-      return at_mean_of(s.compared.measured, m.supply_voltage_V);
-  }
-  return out;
-}
-
-template std::vector<double> robot_signal_values(const RobotSignal&, const RobotRecord&,
-                                                 const RobotMotion<double>&);
-template std::vector<Jet> robot_signal_values(const RobotSignal&, const RobotRecord&,
-                                              const RobotMotion<Jet>&);
-
-void add_input_noise(const RobotRecord& r, const RobotMotion<double>& m, const RobotMotion<double>& perturbed,
-                     std::vector<RobotSignal>& signals) {
+void add_input_noise(const RobotMotion<double>& m, const RobotMotion<double>& perturbed, RobotRun& r) {
   const auto mean_square = [](const std::vector<double>& d) {
     double sum = 0.0, count = 0.0;
     for (const double v : d) {
@@ -196,11 +146,12 @@ void add_input_noise(const RobotRecord& r, const RobotMotion<double>& m, const R
     }
     return count > 0.0 ? sum / count : 0.0;
   };
-  for (RobotSignal& s : signals) {
-    std::vector<double> d = robot_signal_values(s, r, perturbed);
-    const std::vector<double> plain = robot_signal_values(s, r, m);
+  for (std::size_t s = 0; s < r.compared.size(); ++s) {
+    std::vector<double> d = robot_signal_values(r, s, perturbed);
+    const std::vector<double> plain = robot_signal_values(r, s, m);
     for (std::size_t k = 0; k < d.size(); ++k) d[k] -= plain[k];
-    ComparedSignal& c = s.compared;
+    complete(r, s, false, Eigen::Map<Eigen::VectorXd>(d.data(), static_cast<Eigen::Index>(d.size())));
+    ComparedSignal& c = r.compared[s];
     c.noise_sigma = std::sqrt(c.noise_sigma * c.noise_sigma + mean_square(d));
     c.whitened_sigma = std::sqrt(c.whitened_sigma * c.whitened_sigma + mean_square(whitened(c, d)));
   }
@@ -225,101 +176,92 @@ std::vector<double> time_since_step(const RobotRecord& r) {
 }  // namespace
 
 std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, const RobotMotion<double>& m) {
-  const std::size_t n = r.size();
-  const auto track = [&](std::string name, std::string unit, auto value) {
-    RegimeTrack t{std::move(name), std::move(unit), std::vector<double>(n, kNaN)};
-    for (std::size_t k = 0; k < n; ++k) t.value[k] = value(k);
-    return t;
-  };
-  const auto speed = [&](std::size_t k) { return std::hypot(m.velocity[k][0], m.velocity[k][1]); };
+  using Sample = RollingSample<double>;
   std::vector<RegimeTrack> tracks;
-  tracks.push_back(track("speed", "m/s", speed));
-  tracks.push_back(track("direction", "rad", [&](std::size_t k) {
-    return speed(k) > kMoving_m_s ? std::atan2(m.velocity[k][1], m.velocity[k][0]) : kNaN;
-  }));
-  tracks.push_back(track("turn_rate", "rad/s", [&](std::size_t k) { return m.velocity[k][2]; }));
-  tracks.push_back(track("acceleration", "m/s2",
-                         [&](std::size_t k) { return std::hypot(m.accel_x_m_s2[k], m.accel_y_m_s2[k]); }));
-  tracks.push_back(track("abs_current", "A", [&](std::size_t k) {
+  // value(k, sample k)
+  const auto add = [&](std::string name, std::string unit, auto value) {
+    RegimeTrack& t = tracks.emplace_back(RegimeTrack{std::move(name), std::move(unit), {}});
+    for (std::size_t k = 0; k < r.size(); ++k) t.value.push_back(value(k, m.samples[k]));
+  };
+  const auto speed = [](const Sample& s) { return std::hypot(s.velocity[0], s.velocity[1]); };
+  const std::vector<double> since = time_since_step(r), heading = headings(r, 0.0);
+  add("speed", "m/s", [&](std::size_t, const Sample& s) { return speed(s); });
+  add("direction", "rad", [&](std::size_t, const Sample& s) {
+    return speed(s) > kMoving_m_s ? std::atan2(s.velocity[1], s.velocity[0]) : kNaN;
+  });
+  add("turn_rate", "rad/s", [](std::size_t, const Sample& s) { return s.velocity[2]; });
+  add("acceleration", "m/s2",
+      [](std::size_t, const Sample& s) { return std::hypot(s.accel_x_m_s2, s.accel_y_m_s2); });
+  add("abs_current", "A", [&](std::size_t, const Sample& s) {
     double sum = 0.0;
     for (std::size_t i = 0; i < r.wheels; ++i)
-      sum += (1.0 / static_cast<double>(r.wheels)) * std::abs(m.current_A[k][i]);
+      sum += (1.0 / static_cast<double>(r.wheels)) * std::abs(s.current_A[i]);
     return sum;
-  }));
-  tracks.push_back(track("time", "s", [&](std::size_t k) { return r.time_s[k]; }));
-  const std::vector<double> since = time_since_step(r);
-  tracks.push_back(track("time_since_step", "s", [&](std::size_t k) { return since[k]; }));
-  const std::vector<double>& bus = r.bus_voltage_V.empty() ? m.bus_voltage_V : r.bus_voltage_V;
-  tracks.push_back(track("bus_voltage", "V", [&](std::size_t k) { return bus[k]; }));
-  const bool warm = std::any_of(m.temperature_rise_K.begin(), m.temperature_rise_K.end(),
-                                [](double rise) { return rise > 0.0; });
-  if (warm)
-    tracks.push_back(track("temperature", "K", [&](std::size_t k) { return m.temperature_rise_K[k]; }));
-  if (!r.frames.empty() || run.signal("vision_theta") != nullptr) {
-    const std::vector<double> heading = headings(r, 0.0);
-    if (!heading.empty()) {
-      tracks.push_back(track("heading", "rad", [&](std::size_t k) {
-        return std::remainder(heading[k], 2.0 * std::numbers::pi);
-      }));
-    }
-  }
+  });
+  add("time", "s", [&](std::size_t k, const Sample&) { return r.time_s[k]; });
+  add("time_since_step", "s", [&](std::size_t k, const Sample&) { return since[k]; });
+  add("bus_voltage", "V", [&](std::size_t k, const Sample& s) {
+    return r.bus.input_V.empty() ? s.bus_voltage_V : r.bus.input_V[k];
+  });
+  if (std::any_of(m.samples.begin(), m.samples.end(),
+                  [](const Sample& s) { return s.temperature_rise_K > 0.0; }))
+    add("temperature", "K", [](std::size_t, const Sample& s) { return s.temperature_rise_K; });
+  if (!heading.empty() && (!r.frames.empty() || run.signal("vision_theta") != nullptr))
+    add("heading", "rad", [&](std::size_t k, const Sample&) { return std::remainder(heading[k], kTurn); });
   for (std::size_t i = 0; i < r.wheels; ++i) {
-    const std::string wheel = numbered("", i, r.wheels);
-    tracks.push_back(track("wheel_speed" + wheel, "rad/s", [&](std::size_t k) {
-      return k > 0 ? (m.encoder_rad[k][i] - m.encoder_rad[k - 1][i]) / (r.time_s[k] - r.time_s[k - 1]) : kNaN;
-    }));
+    add(numbered("wheel_speed", i, r.wheels), "rad/s", [&](std::size_t k, const Sample& s) {
+      if (k == 0) return kNaN;
+      return (s.encoder_rad[i] - m.samples[k - 1].encoder_rad[i]) / (r.time_s[k] - r.time_s[k - 1]);
+    });
     if (r.counts_per_rotor_turn[i] <= 0.0) continue;
-    tracks.push_back(track("rotor_angle" + wheel, "rad", [&](std::size_t k) {
-      const double turns = r.theta_rotor_rad[k][i] / (2.0 * std::numbers::pi);
-      return 2.0 * std::numbers::pi * (turns - std::floor(turns));
-    }));
+    add(numbered("rotor_angle", i, r.wheels), "rad", [&](std::size_t k, const Sample&) {
+      const double turns = r.theta_rotor_rad[k][i] / kTurn;
+      return kTurn * (turns - std::floor(turns));
+    });
   }
   return tracks;
 }
 
-void measure_robot(const RobotRecord& r, const RobotMotion<double>& m,
-                   const std::vector<RobotSignal>& signals, std::uint64_t seed, Run& run) {
-  for (const RobotSignal& s : signals) {
-    std::vector<double>& out = run.signals.find(s.channel)->second;
+void measure_robot(const RobotRun& run, const RobotMotion<double>& m, std::uint64_t seed, Run& made) {
+  const RobotRecord& r = run.record;
+  for (std::size_t n = 0; n < run.seen.size(); ++n) {
+    const Observation& s = run.seen[n];
+    std::vector<double>& out = made.signals.find(s.channel)->second;
     const std::uint64_t stream = stream_of(s.channel);
-    const auto noise = [&](std::size_t k) { return s.channel_sigma * gaussian(seed, stream, k); };
-    if (s.output == RobotOutput::kBusVoltage) {  // an input: the true one has no sensor's noise
-      for (std::size_t k = 0; k < r.size(); ++k) {
-        if (std::isfinite(out[k])) out[k] = r.bus_voltage_V[k] + noise(k);
-      }
-      continue;
-    }
-    if (s.output == RobotOutput::kVelocity) {
-      const double counts_per_rad = r.counts_per_rotor_turn[s.wheel] / (2.0 * std::numbers::pi);
-      for (std::size_t k = 0; k < r.size(); ++k) {
-        if (!std::isfinite(out[k])) continue;
-        out[k] = std::floor(m.encoder_rad[k][s.wheel] * counts_per_rad + noise(k));
-      }
-      continue;
-    }
     for (const SilentStretch& silent : r.silent) {  // nor does the simulated sensor say anything there
       const bool both = silent.signal == "vision_x" && s.channel == "vision_y";
       if (silent.signal != s.channel && !both) continue;
       std::fill(out.begin() + static_cast<std::ptrdiff_t>(silent.from),
                 out.begin() + static_cast<std::ptrdiff_t>(silent.to) + 1, kNaN);
     }
-    const std::vector<double> values = robot_signal_values(s, r, m);
-    double first = kNaN;  // difference of the camera's origin to the simulation's
+    const double counts_per_rad = r.counts_per_rotor_turn[s.wheel] / kTurn;
+    double origin = s.view == View::kFrames ? kNaN : 0.0;  // of the camera, from the simulation's
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;
-      if (!std::isfinite(first)) first = is_vision(s.output) ? out[k] - values[k] : 0.0;
-      out[k] = reading(values[k] + first, s.channel_sigma, s.compared.quantum, gaussian(seed, stream, k));
+      const double normal = gaussian(seed, stream, k), value = quantity_of(m.samples[k], s);
+      if (!std::isfinite(origin)) origin = out[k] - value;
+      if (s.view == View::kLevel) {  // an input: the true one has no sensor's noise
+        out[k] = r.bus.input_V[k] + s.channel_sigma * normal;
+      } else if (s.view == View::kDifference) {
+        out[k] = std::floor(value * counts_per_rad + s.channel_sigma * normal);
+      } else {
+        out[k] = reading(value + origin, s.channel_sigma, run.compared[n].quantum, normal);
+      }
     }
   }
 }
 
-void measure_robot_bus(const RobotRecord& r, const RobotMotion<double>& m, std::uint64_t seed,
-                       RobotSignal& s) {
-  const std::vector<double> values = robot_signal_values(s, r, m);
+void measure_compared_bus(const RobotMotion<double>& m, std::uint64_t seed, RobotRun& r) {
   const std::uint64_t stream = stream_of("bus_voltage compared");
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    double& out = s.compared.measured[k];
-    if (std::isfinite(out)) out = values[k] + s.channel_sigma * gaussian(seed, stream, k);
+  for (std::size_t n = 0; n < r.seen.size(); ++n) {
+    if (r.seen[n].view != View::kLevel) continue;
+    std::vector<double> values = robot_signal_values(r, n, m);
+    complete(r, n, true,
+             Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      double& out = r.compared[n].measured[k];
+      if (std::isfinite(out)) out = values[k] + r.seen[n].channel_sigma * gaussian(seed, stream, k);
+    }
   }
 }
 

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "identify/predict/channel.h"
 #include "identify/predict/predictor_rig.h"
 #include "identify/predict/robot_motion.h"
 #include "identify/predict/robot_signals.h"
@@ -37,38 +36,35 @@ class RollingRig {
       tick_s_ = 1e-9 * static_cast<double>(dataset_->firmware->fresh()->control_period_ns());
     for (const Run& run : dataset_->runs) {
       const Candidate model = with_known(*nominal_, run.known);
-      records_.push_back(robot_record(*dataset_, run, Kind::params(rolling_params(model.file.parameters))));
-      signals_.push_back(robot_signals(*dataset_, run, records_.back()));
+      runs_.push_back(robot_run(*dataset_, run, Kind::params(rolling_params(model.file.parameters))));
     }
-    share_channels();
-    for (std::size_t n = 0; n < records_.size(); ++n) {
-      add_input_noise(with_known(*nominal_, dataset_->runs[n].known), records_[n], signals_[n]);
-      compared_.emplace_back();
-      for (const RobotSignal& s : signals_[n]) compared_.back().push_back(s.compared);
-    }
+    std::vector<RigRun*> all;
+    for (RobotRun& r : runs_) all.push_back(&r);
+    share_noise(all);
+    for (std::size_t n = 0; n < runs_.size(); ++n)
+      add_input_noise(with_known(*nominal_, dataset_->runs[n].known), runs_[n]);
   }
 
   const Dataset& dataset() const { return *dataset_; }
   Method method() const { return Method::kForward; }
-  const std::vector<ComparedSignal>& compared(std::size_t n) const { return compared_[n]; }
+  const RigRun& run(std::size_t n) const { return runs_[n]; }
   bool shows_signature_of(const EffectEntry&) const { return false; }
   double step_s(const Candidate&, std::size_t) const { return motion_.step_s; }
   // Of a loop that is closed by a firmware nothing is known but its answers.
   bool is_exact(const Candidate&, std::size_t n) const {
-    return motion_.firmware == nullptr || !records_[n].radio;
+    return motion_.firmware == nullptr || !runs_[n].record.radio;
   }
-  void complete(std::size_t, Prediction&) const {}
   std::vector<RegimeTrack> regimes(const Candidate& own, std::size_t n) const {
-    return robot_regimes(dataset_->runs[n], records_[n],
-                         run_robot(values_of<double>({own}), records_[n], motion_));
+    return robot_regimes(dataset_->runs[n], runs_[n].record,
+                         run_robot(values_of<double>({own}), runs_[n].record, motion_));
   }
 
   template <typename T>
   RigOutputs<T> outputs(const RigModel& model, std::size_t n, double) const {
-    const RobotMotion<T> motion = run_robot(values_of<T>(model), records_[n], motion_);
+    const RobotMotion<T> motion = run_robot(values_of<T>(model), runs_[n].record, motion_);
     RigOutputs<T> out{.values = {}, .finite = motion.finite};
-    for (const RobotSignal& s : signals_[n])
-      out.values.push_back(robot_signal_values(s, records_[n], motion));
+    for (std::size_t s = 0; s < runs_[n].seen.size(); ++s)
+      out.values.push_back(robot_signal_values(runs_[n], s, motion));
     return out;
   }
 
@@ -93,24 +89,13 @@ class RollingRig {
     values.params = Kind::params(values.params);
     return values;
   }
-  void share_channels() {
-    std::vector<ComparedSignal*> all;
-    for (std::vector<RobotSignal>& of : signals_) {
-      for (RobotSignal& s : of) all.push_back(&s.compared);
-    }
-    share_noise(all);
-    for (std::vector<RobotSignal>& of : signals_) {
-      for (RobotSignal& s : of) {
-        if (!s.compared.noise_is_stated) s.channel_sigma = s.compared.noise_sigma;
-      }
-    }
-  }
-  void add_input_noise(const Candidate& model, const RobotRecord& record, std::vector<RobotSignal>& signals) {
-    if (record.size() < 2 || (record.duty_quantum == 0.0 && record.bus_sigma_V == 0.0)) return;
+  void add_input_noise(const Candidate& model, RobotRun& run) {
+    const RobotRecord& record = run.record;
+    if (record.size() < 2 || (record.duty_quantum == 0.0 && record.bus.sigma_V == 0.0)) return;
     const auto values = values_of<double>({model});
     const RobotMotion<double> motion = run_robot(values, record, motion_);
     const RobotMotion<double> other = run_robot(values, with_input_noise(record, kNoiseSeed), motion_);
-    if (motion.finite && other.finite) omnihil::add_input_noise(record, motion, other, signals);
+    if (motion.finite && other.finite) omnihil::add_input_noise(motion, other, run);
   }
   // Any: the draw is used for the rms of the noise floor alone.
   static constexpr std::uint64_t kNoiseSeed = 1;  // as above
@@ -120,9 +105,7 @@ class RollingRig {
   PredictOptions options_;
   RobotMotionOptions motion_;
   double tick_s_ = 0.0;  // of the firmware
-  std::vector<RobotRecord> records_;
-  std::vector<std::vector<RobotSignal>> signals_;
-  std::vector<std::vector<ComparedSignal>> compared_;
+  std::vector<RobotRun> runs_;
 };
 
 template <RollingKind Kind>
@@ -137,24 +120,21 @@ void RollingRig<Kind>::measure(const Candidate& truth, std::uint64_t seed) {
     free.noise_seed = own_seed(n);
     const Candidate own = with_known(truth, made->runs[n].known);
     // the true inputs: duties before rounding, bus voltage without its sensor's noise
-    RobotRecord true_input = with_input_noise(records_[n], own_seed(n));
-    true_input.bus_voltage_V = records_[n].bus_voltage_V;
+    RobotRecord true_input = with_input_noise(runs_[n].record, own_seed(n));
+    true_input.bus = runs_[n].record.bus;
     motions.push_back(run_robot(values_of<double>({own}), true_input, free));
-    measure_robot(records_[n], motions.back(), signals_[n], own_seed(n), made->runs[n]);
+    measure_robot(runs_[n], motions.back(), own_seed(n), made->runs[n]);
   }
   RollingRig null(made, nominal_, options_);
   for (std::size_t n = 0; n < made->runs.size(); ++n) {
-    for (std::size_t s = 0; s < null.signals_[n].size(); ++s) {
-      RobotSignal& signal = null.signals_[n][s];
-      if (signal.output == RobotOutput::kBusVoltage) {
-        measure_robot_bus(records_[n], motions[n], own_seed(n), signal);
-        null.compared_[n][s] = signal.compared;
-      }
-      // the sensors are those of the recording: sigmas are not estimated anew
-      signal.channel_sigma = signals_[n][s].channel_sigma;
-      null.compared_[n][s].noise_sigma = compared_[n][s].noise_sigma;
-      null.compared_[n][s].whitened_sigma = compared_[n][s].whitened_sigma;
+    RobotRun& run = null.runs_[n];
+    // the sensors are those of the recording: sigmas are not estimated anew
+    for (std::size_t s = 0; s < run.seen.size(); ++s) {
+      run.seen[s].channel_sigma = runs_[n].seen[s].channel_sigma;
+      run.compared[s].noise_sigma = runs_[n].compared[s].noise_sigma;
+      run.compared[s].whitened_sigma = runs_[n].compared[s].whitened_sigma;
     }
+    measure_compared_bus(motions[n], own_seed(n), run);
   }
   *this = std::move(null);
 }
@@ -162,6 +142,23 @@ void RollingRig<Kind>::measure(const Candidate& truth, std::uint64_t seed) {
 inline bool has_channel(const Dataset& dataset, std::string_view prefix) {
   return std::any_of(dataset.channels.begin(), dataset.channels.end(),
                      [&](const Channel& c) { return c.signal.starts_with(prefix); });
+}
+
+// What rigs on wheels have in common: drives by duty from one bus, and no shaft between rotor and wheel. Base parameters
+// exclude no effect: what a tolerance of an inductance trades with is for the fit to say.
+inline Capabilities rolling_capabilities(bool body_is_free, std::uint32_t more) {
+  constexpr std::uint32_t kAlways =
+      kNeedsFloor | kNeedsSupply | kNeedsWinding | kNeedsDuty | kNeedsVoltage | kNeedsSimulation;
+  return {.rig = kOnRobot,
+          .other_rig = "acts on a single axis",
+          .list = {{kAlways | more, true, ""},
+                   {kNeedsFreeBody, body_is_free, "the bench moves the body, whatever forces do"},
+                   {kNeedsTwoInertias, false,
+                    "needs a freedom between rotor and wheel, which a robot's model lacks"},
+                   {kNeedsPositionServo, false, "needs a position servo"},
+                   {kNeedsReportedSpeed, false, "needs a speed that the drive's electronics estimate"}},
+          .free_base = {},
+          .present_base = {}};
 }
 
 }  // namespace omnihil

@@ -20,14 +20,9 @@ constexpr double kSure_sigmas = 3.0;     // of a sum, beyond which it is a motio
 using Track = std::vector<double>;
 std::array<Track, 3> motion_by_wheels(const Run& run, const RollingParams<double>& nominal,
                                       const RobotRecord& r) {
-  WheelGeometry<double> g;
-  g.wheels = r.wheels;
-  g.wheel_center_radius_m = nominal.wheel_center_radius_m;
-  g.wheel_radius_m = nominal.wheel_radius_m;
+  const WheelGeometry<double> g = wheel_geometry(nominal);
   PerWheel<const Track*> reported{};
   for (std::size_t i = 0; i < r.wheels; ++i) {
-    g.cos_angle[i] = std::cos(nominal.wheel_angle_rad[i]);
-    g.sin_angle[i] = std::sin(nominal.wheel_angle_rad[i]);
     reported[i] = run.signal(numbered("wheel_speed", i, r.wheels));
     if (reported[i] == nullptr && !r.has_all_encoders) return {};
   }
@@ -85,7 +80,7 @@ void drop_silent_frames(const Run& run, const RollingParams<double>& nominal, Ro
   const std::array<Track, 3> speed = motion_by_wheels(run, nominal, r);
   if (speed[0].empty()) return;
   std::array<double, 3> sigma{};
-  for (std::size_t a = 0; a < 3; ++a) sigma[a] = estimate_noise(speed[a], Differences::kThird).sigma;
+  for (std::size_t a = 0; a < 3; ++a) sigma[a] = estimate_noise(speed[a]).sigma;
   const auto rows = [&](std::size_t first, std::size_t last) {
     return std::pair(r.frames[first].sample, r.frames[last].sample);
   };

@@ -36,12 +36,6 @@ std::vector<double> slopes(const std::vector<double>& time_s, const std::vector<
   return out;
 }
 
-std::vector<Jet> expected_of(const RobotSignal& s, const RobotRecord& record,
-                             const RobotMotion<Jet>& motion) {
-  if (s.output == RobotOutput::kBusVoltage) return motion.supply_voltage_V;
-  return robot_signal_values(s, record, motion);
-}
-
 }  // namespace
 
 std::string twin_refusal(const Candidate& model) {
@@ -64,8 +58,8 @@ void TwinModel::restart() {
 
 TwinWindow TwinModel::advance(const Run& piece) {
   const Dataset dataset = told_by(piece);
-  const RobotRecord record = robot_record(dataset, piece, rolling_params(bank_.model.file.parameters));
-  const std::vector<RobotSignal> signals = robot_signals(dataset, piece, record);
+  const RobotRun run = robot_run(dataset, piece, rolling_params(bank_.model.file.parameters));
+  const RobotRecord& record = run.record;
   TwinWindow out{.from_s = piece.time_s.front(), .to_s = piece.time_s.back(), .signals = {}};
   const bool goes_on = carries_.front().begun;
   const RobotMotionOptions options{.slave_angle = false, .follow_camera = false, .noise_seed = {}};
@@ -73,7 +67,7 @@ TwinWindow TwinModel::advance(const Run& piece) {
   for (std::size_t m = 0; m < models_.size(); ++m) {
     const RobotMotion<Jet> motion = run_robot(models_[m], record, options, &carries_[m]);
     out.finite = out.finite && motion.finite;
-    for (const RobotSignal& s : signals) expected.push_back(expected_of(s, record, motion));
+    for (std::size_t s = 0; s < run.seen.size(); ++s) expected.push_back(robot_signal_values(run, s, motion));
   }
   if (!out.finite) {
     restart();
@@ -81,15 +75,15 @@ TwinWindow TwinModel::advance(const Run& piece) {
   }
   const auto faults = static_cast<Eigen::Index>(unknowns_.size());
   double square = 0.0, count = 0.0;
-  for (std::size_t s = 0; s < signals.size(); ++s) {
+  for (std::size_t s = 0; s < run.seen.size(); ++s) {
     TwinSignal told;
-    told.name = signals[s].compared.name;
-    told.unit = signals[s].compared.unit;
-    told.wheel_speed = signals[s].output == RobotOutput::kWheelSpeed;
+    told.name = run.compared[s].name;
+    told.unit = run.compared[s].unit;
+    told.wheel_speed = run.seen[s].quantity == Quantity::kWheelSpeed;
     std::vector<double> plain;
     for (const Jet& y : expected[s]) plain.push_back(y.a);
     const std::vector<double> slope = slopes(record.time_s, plain);
-    const std::vector<double>& measured = signals[s].compared.measured;
+    const std::vector<double>& measured = run.compared[s].measured;
     std::vector<std::size_t> rows;
     for (std::size_t k = goes_on ? 1 : 0; k < plain.size(); ++k) {
       if (std::isfinite(measured[k])) rows.push_back(k);
@@ -102,12 +96,12 @@ TwinWindow TwinModel::advance(const Run& piece) {
       told.expected.push_back(plain[k]);
       told.slope.push_back(slope[k]);
       for (Eigen::Index f = 0; f < faults; ++f) {
-        const Jet& y = expected[static_cast<std::size_t>(f / kJetWidth) * signals.size() + s][k];
+        const Jet& y = expected[static_cast<std::size_t>(f / kJetWidth) * run.seen.size() + s][k];
         told.gains(static_cast<Eigen::Index>(n), f) = y.v[f % kJetWidth];
       }
       if (told.wheel_speed) square += plain[k] * plain[k], count += 1.0;
     }
-    if (signals[s].output == RobotOutput::kBusVoltage) take_level(told);
+    if (run.seen[s].quantity == Quantity::kBusVoltage) take_level(told);
     out.signals.push_back(std::move(told));
   }
   out.moved_rad_s = count > 0.0 ? std::sqrt(square / count) : 0.0;

@@ -7,7 +7,7 @@
 #include "identify/predict/robot_record.h"
 #include "identify/tyre/motion_smoother.h"
 #include "sim/model/rolling_model.h"
-#include "sim/robot/geometry.h"
+#include "sim/robot/rolling_robot.h"
 #include "sim/robot/wheel_load.h"
 
 namespace omnihil {
@@ -104,13 +104,7 @@ class Reader {
  public:
   Reader(const Dataset& dataset, const Candidate& nominal)
       : dataset_(dataset), p_(rolling_params(nominal.file.parameters)), coulomb_Nm_(coulomb_Nm(nominal)) {
-    g_.wheels = p_.wheels;
-    for (std::size_t i = 0; i < p_.wheels; ++i) {
-      g_.cos_angle[i] = std::cos(p_.wheel_angle_rad[i]);
-      g_.sin_angle[i] = std::sin(p_.wheel_angle_rad[i]);
-    }
-    g_.wheel_center_radius_m = p_.wheel_center_radius_m;
-    g_.wheel_radius_m = p_.wheel_radius_m;
+    g_ = wheel_geometry(p_);
     load_ = wheel_load_law(g_, p_.mass_kg, p_.center_of_mass_x_m, p_.center_of_mass_y_m,
                            p_.center_of_mass_height_m);
   }
@@ -157,8 +151,7 @@ class Reader {
           current_A = sum / count;
           current_sigma_A = sigma_of(dataset_, "motor_current_1", 0.05) / std::sqrt(count);
         } else {
-          const double bus_V =
-              record.bus_voltage_V.empty() ? p_.drive.supply_voltage_V : record.bus_voltage_V[k];
+          const double bus_V = record.bus.input_V.empty() ? p_.drive.supply_voltage_V : record.bus.input_V[k];
           const double volt = record.duty_ratio[k][i] * bus_V;
           current_A = record.enabled[k][i]
                           ? (volt - p_.drive.torque_constant_Nm_per_A * rotor_rad_s) / p_.drive.resistance_ohm

@@ -210,5 +210,35 @@ TEST(PredictorRobot, ABodyThatIsMovedTurnsItsWheels) {
   EXPECT_EQ(make_predictor(blank_robot(1.0, true), c, {})->applies(*find_effect("floor_tilt")), "");
 }
 
+const ComparedSignal& signal_of(const Predictor& p, const std::string& name) {
+  for (const ComparedSignal& c : p.compared(0)) {
+    if (c.name == name) return c;
+  }
+  ADD_FAILURE() << name;
+  return p.compared(0).front();
+}
+
+// As of an axis: v_k = (x_k - x_j) / (t_k - t_j), j the last counted row.
+TEST(PredictorRobot, AMissingRowOfAnEncoderCostsItselfAlone) {
+  Dataset d = blank_robot(0.5, false);
+  std::vector<double>& counts = d.runs[0].signals["encoder_1"];
+  for (std::size_t k = 0; k < counts.size(); ++k) counts[k] = 3.0 * static_cast<double>(k);
+  counts[200] = std::numeric_limits<double>::quiet_NaN();
+  const auto p = make_predictor(d, robot_candidate(), {});
+  const ComparedSignal& c = signal_of(*p, "velocity_1");
+  EXPECT_TRUE(std::isnan(c.measured[200]));
+  EXPECT_NEAR(c.measured[201], 3.0 / 1e-3 * 2.0 * std::numbers::pi / 16384.0, 1e-6);
+}
+
+TEST(PredictorRobot, ABusReadingThatNoSupplyGivesIsNotComparedAndSaid) {
+  Dataset d = blank_robot(0.5, true);
+  d.runs[0].signals["bus_voltage"][200] = 90.0;  // V, of a supply of 22
+  const auto p = make_predictor(d, robot_candidate(), {});
+  const ComparedSignal& c = signal_of(*p, "bus_voltage");
+  EXPECT_TRUE(std::isnan(c.measured[200]));
+  EXPECT_NEAR(c.measured[201], 22.1, 1e-12);
+  EXPECT_NE(c.left_out.find("1 readings of bus_voltage that no supply gives"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace omnihil::test

@@ -137,7 +137,7 @@ TEST(RadioDriven, AMotionInPiecesIsTheWholeOne) {
     ASSERT_TRUE(part.finite);
     for (std::size_t k = first; k <= last; ++k) {
       for (std::size_t i = 0; i < kWheels; ++i) {
-        const Jet &a = whole.wheel_rad_s[k][i], &b = part.wheel_rad_s[k - first][i];
+        const Jet &a = whole.samples[k].wheel_rad_s[i], &b = part.samples[k - first].wheel_rad_s[i];
         ASSERT_NEAR(a.a, b.a, 1e-9) << k;
         ASSERT_LT((a.v - b.v).norm(), 1e-9 * (1.0 + a.v.norm())) << k;
       }

@@ -92,9 +92,9 @@ class Drive {
           told_["wheel_speed_" + std::to_string(i + 1)].resize(asked.time_s.size());
         for (std::size_t i = 0; i < kWheels; ++i)
           told_["wheel_speed_" + std::to_string(i + 1)][first + k] =
-              m.wheel_rad_s[k][i] + 0.05 * noise(random);
+              m.samples[k].wheel_rad_s[i] + 0.05 * noise(random);
         told_["gyro_z"].resize(asked.time_s.size());
-        told_["gyro_z"][first + k] = m.gyro_rad_s[k] + 0.01 * noise(random);
+        told_["gyro_z"][first + k] = m.samples[k].gyro_rad_s + 0.01 * noise(random);
       }
     }
     for (const auto& [name, values] : told_) run_.signals[name] = values;
