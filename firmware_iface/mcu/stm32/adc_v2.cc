@@ -128,8 +128,7 @@ unsigned AdcV2::channel(Group group, unsigned place) const {
     for (unsigned i = 0; i < n; ++i) left &= left - 1;
     return static_cast<unsigned>(std::countr_zero(left | 1u << 31)) % 32;
   }
-  if (group == Group::kInjected)
-    return field(value(kJsqr), (family_ == AdcFamily::kF3 ? 8 : 9) + 6 * place, 5);
+  if (group == Group::kInjected) return field(value(kJsqr), (old_fields() ? 8 : 9) + 6 * place, 5);
   return field(value(kSqr1 + 4 * ((place + 1) / 5)), 6 * ((place + 1) % 5), 5);
 }
 
@@ -176,6 +175,7 @@ std::pair<int, unsigned> AdcV2::trigger(Group group) const {
       if (group == Group::kInjected) return {-1, 0};
       return {static_cast<int>(field(cfgr, 6, 3)), field(cfgr, 10, 2)};
     case AdcFamily::kF3:
+    case AdcFamily::kL4:
       if (group == Group::kInjected) return {static_cast<int>(field(jsqr, 2, 4)), field(jsqr, 6, 2)};
       return {static_cast<int>(field(cfgr, 6, 4)), field(cfgr, 10, 2)};
     case AdcFamily::kG4:

@@ -1,4 +1,4 @@
-// ADC registers of F3, G4 and H7 (RM0316 §15, RM0440 §21, RM0433 §25), and of F0 (RM0091 §13), which has them
+// ADC registers of F3, G4, H7 and L4 (RM0316 §15, RM0440 §21, RM0433 §25, RM0351 §18), and of F0 (RM0091 §13), which has them
 // without injected ones. H7: as revision V of the chip, which halves the clock; 16 bits.
 //
 //   AdcV2 adc("ADC1", AdcFamily::kF3, irq, triggers, context);
@@ -10,7 +10,7 @@
 
 namespace omnihil::mcu {
 
-enum class AdcFamily : std::uint8_t { kF0, kF3, kG4, kH7 };
+enum class AdcFamily : std::uint8_t { kF0, kF3, kG4, kH7, kL4 };
 
 class AdcV2 final : public Adc {
  public:
@@ -44,6 +44,7 @@ class AdcV2 final : public Adc {
 
  private:
   void control(std::uint32_t written);
+  bool old_fields() const { return family_ == AdcFamily::kF3 || family_ == AdcFamily::kL4; }
   void update();
   AdcFamily family_;
   IrqLine irq_;

@@ -272,6 +272,8 @@ std::span<const BlockPlace> map_of(BlockFamily family) {
       return kF446;
     case BlockFamily::kF7:
       return kF7;
+    case BlockFamily::kL4:
+      return block_map_l4();
     case BlockFamily::kH7:
       return block_map_h7();
     case BlockFamily::kG4:

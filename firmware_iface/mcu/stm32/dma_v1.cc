@@ -27,7 +27,7 @@ std::span<const RegisterInfo> table() {
       t.add(0x10 + 20 * c, "CPAR" + n);
       t.add(0x14 + 20 * c, "CMAR" + n);
     }
-    t.add(0xA8, "CSELR", 0, 0x0FFFFFFF, 0x0FFFFFFF);
+    t.add(0xA8, "CSELR", 0, 0x0FFFFFFF);
     return t;
   }();
   return all.rows();
@@ -69,8 +69,8 @@ DmaV1::DmaV1(const std::string& name, std::vector<int> irqs, ChipContext& contex
   context.dma.add(*this);
 }
 
-void DmaV1::connect(std::string_view request, unsigned channel) {
-  channels_[channel - 1].lines.push_back(context_.dma.line(request));
+void DmaV1::connect(std::string_view request, unsigned channel, int code) {
+  channels_[channel - 1].wires.push_back({context_.dma.line(request), code});
 }
 
 void DmaV1::use_mux(const DmaMux& mux, unsigned first) {
@@ -85,8 +85,9 @@ void DmaV1::reset() {
 
 bool DmaV1::serves(unsigned channel, int line) const {
   if (mux_ != nullptr) return mux_->line(mux_first_ + channel) == line;
-  const auto& lines = channels_[channel].lines;
-  return std::find(lines.begin(), lines.end(), line) != lines.end();
+  const auto& wires = channels_[channel].wires;
+  return std::any_of(wires.begin(), wires.end(),
+                     [&](const Wire& wire) { return wire.line == line && chosen(channel, wire.code); });
 }
 
 void DmaV1::update_irqs() {
@@ -131,8 +132,8 @@ void DmaV1::start(unsigned c) {
     if (line >= 0 && context_.dma.high(line)) requested(line);
     return;
   }
-  for (const int line : channel.lines) {
-    if (context_.dma.high(line)) requested(line);
+  for (const Wire& wire : channel.wires) {
+    if (context_.dma.high(wire.line)) requested(wire.line);
   }
 }
 

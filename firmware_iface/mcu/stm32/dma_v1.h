@@ -1,4 +1,4 @@
-// DMA controller with channels (F0, F1, F3, G4; BDMA of H7), and the request multiplexer of G4 and H7.
+// DMA controller with channels (F0, F1, F3, G4, L4; BDMA of H7), and the request multiplexer of G4 and H7.
 //
 //   DmaV1 dma("DMA1", {11, 12, 13, 14, 15, 16, 17}, context);
 //   dma.connect("USART1_TX", 4);             // fixed wiring; on G4: dma.use_mux(mux, 0)
@@ -29,7 +29,8 @@ class DmaMux final : public RegisterBlock {
 class DmaV1 final : public RegisterBlock, public DmaSink, public DmaErrors {
  public:
   DmaV1(const std::string& name, std::vector<int> irqs, ChipContext& context);  // one interrupt per channel
-  void connect(std::string_view request, unsigned channel);                     // from 1
+  // Channels from 1. `code`: what CSELR has to say for it (L4); below 0: wired for good.
+  void connect(std::string_view request, unsigned channel, int code = -1);
   void use_mux(const DmaMux& mux, unsigned first);
   void reset() override;
   void requested(int line) override;
@@ -40,13 +41,19 @@ class DmaV1 final : public RegisterBlock, public DmaSink, public DmaErrors {
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:
+  struct Wire {
+    int line, code;
+  };
   struct Channel {
     DmaTransfer transfer;
     std::uint32_t left = 0, all = 0;
-    std::vector<int> lines;
+    std::vector<Wire> wires;
   };
   std::uint32_t& reg(unsigned channel, unsigned which) { return value(0x08 + 20 * channel + 4 * which); }
   bool serves(unsigned channel, int line) const;
+  bool chosen(unsigned channel, int code) const {
+    return code < 0 || field(value(0xA8), 4 * channel, 4) == static_cast<unsigned>(code);
+  }
   void start(unsigned channel);
   void item(unsigned channel);
   void update_irqs();

@@ -54,7 +54,8 @@ TEST_P(OtherChips, WheelsReachTheirSpeedsWithinOnePercentAndNothingIsUnmodelled)
 
 INSTANTIATE_TEST_SUITE_P(Chips, OtherChips,
                          testing::Values(Other{"stm32f103ze", "wheels_f103"},
-                                         Other{"stm32h743", "wheels_h743"}),
+                                         Other{"stm32h743", "wheels_h743"},
+                                         Other{"stm32l476", "wheels_l476"}),
                          [](const auto& row) { return std::string(row.param.chip); });
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace omnihil::mcu {
 
-enum class FlashFamily { kF0F3, kF4, kF7, kG4 };
+enum class FlashFamily { kF0F3, kF4, kF7, kG4, kL4 };
 
 class Flash : public RegisterBlock, public FlashWrites {
  public:

@@ -23,6 +23,20 @@ constexpr RegisterInfo kG4[] = {{0x00, "CR1", 0x200, 0x4707, 0x4007},
                                 {0x34, "PDCRC"},
                                 {0x80, "CR5", 0x100, 0x100}};
 
+// RM0351 5.4
+constexpr RegisterInfo kL4[] = {{0x00, "CR1", 0x200, 0x4707, 0x4107},
+                                {0x04, "CR2", 0, 0x6FF, 0xFF},
+                                {0x08, "CR3", 0x8000, 0xFFFF},
+                                {0x0C, "CR4", 0, 0x31F, 0x1F},
+                                {0x10, "SR1", 0, 0},
+                                {0x14, "SR2", 0x100, 0},
+                                {0x18, "SCR", 0, 0},
+                                {0x20, "PUCRA"},
+                                {0x24, "PDCRA"},
+                                {0x28, "PUCRB"},
+                                {0x2C, "PDCRB"},
+                                {0x30, "PUCRC"},
+                                {0x34, "PDCRC"}};
 // RM0433 6.8. Not followed: deep sleep, batteries, monitors, wake-up pins.
 constexpr RegisterInfo kH7[] = {{0x00, "CR1", 0xF000C000, 0x0007C3F1, 0x000701F1},
                                 {0x04, "CSR1", 0, 0},
@@ -44,6 +58,8 @@ std::span<const RegisterInfo> table(PwrFamily family) {
       return kF7;
     case PwrFamily::kH7:
       return kH7;
+    case PwrFamily::kL4:
+      return kL4;
     case PwrFamily::kG4:
       break;
   }

@@ -84,6 +84,7 @@ std::unique_ptr<Rcc> make_rcc(RccFamily family, ChipContext& context) {
   if (family == RccFamily::kF1) return make_rcc_f1(context);
   if (family == RccFamily::kG4) return make_rcc_g4(context);
   if (family == RccFamily::kH7) return make_rcc_h7(context);
+  if (family == RccFamily::kL4) return make_rcc_l4(context);
   return make_rcc_f4_f7(family, context);
 }
 

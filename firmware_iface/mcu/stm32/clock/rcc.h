@@ -2,10 +2,10 @@
 //
 //   auto rcc = make_rcc(RccFamily::kF4, context);     // writes context.clocks at every change
 //
-// Law: the clock trees of RM0091 (F0), RM0008 (F1), RM0316 (F3), RM0090 (F4), RM0410 (F7), RM0440 (G4), RM0433 (H7), HSI or HSE or PLL
-// to SYSCLK, prescalers to HCLK and PCLKx. Oscillators and PLLs are ready at once after they are switched on.
-// A PLL whose input is off, or a selected source that is not ready, is reported and the switch does not
-// happen. Enable and reset bits of peripherals are kept; a peripheral works whether it is enabled or not (not
+// Law: the clock trees of RM0091 (F0), RM0008 (F1), RM0316 (F3), RM0090 (F4), RM0410 (F7), RM0440 (G4), RM0433 (H7) and
+// RM0351 (L4), an internal oscillator or HSE or PLL to SYSCLK, prescalers to HCLK and PCLKx. Oscillators and PLLs are ready
+// at once after they are switched on. A PLL whose input is off, or a selected source that is not ready, is reported and the
+// switch does not happen. Enable and reset bits of peripherals are kept; a peripheral works whether it is enabled or not (not
 // modelled), kernel clocks other than PCLK and SYSCLK for U(S)ARTs are reported; those of H7 are followed. Clock outputs
 // and the RTC are not modelled.
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace omnihil::mcu {
 
-enum class RccFamily { kF0, kF1, kF3, kF4, kF7, kG4, kH7 };
+enum class RccFamily { kF0, kF1, kF3, kF4, kF7, kG4, kH7, kL4 };
 
 // Ready bits that follow their switches at once: those of `switches`, `up` places further.
 struct RccReady {
@@ -93,5 +93,6 @@ std::unique_ptr<Rcc> make_rcc_f1(ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_f4_f7(RccFamily family, ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_g4(ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_h7(ChipContext& context);
+std::unique_ptr<Rcc> make_rcc_l4(ChipContext& context);
 
 }  // namespace omnihil::mcu

@@ -10,5 +10,6 @@ namespace omnihil::mcu {
 
 std::span<const BlockPlace> block_map_f1();
 std::span<const BlockPlace> block_map_h7();
+std::span<const BlockPlace> block_map_l4();
 
 }  // namespace omnihil::mcu

@@ -1,6 +1,6 @@
 /* Four wheels at constant speed: PI loops at 1 kHz on encoder timers 2 to 5, PWM of timer 1 with direction
  * pins. Rotor speeds come from a page of flash that the board file presets; serial port 1 echoes what it
- * receives. For an STM32F405, with -DF103 an STM32F103 of high density, with -DH743 an STM32H743. */
+ * receives. For an STM32F405, with -DF103 an STM32F103 of high density, -DH743, -DL476. */
 #include "image.h"
 
 #if defined(F103)
@@ -17,6 +17,13 @@
 #define TIM1 0x40010000u
 #define USART1 0x40011000u
 #define TIMER6_MHZ 200u
+#elif defined(L476)
+#define RCC 0x40021000u
+#define GPIOE 0x48001000u
+#define PORT_SET (GPIOE + 0x18)
+#define TIM1 0x40012C00u
+#define USART1 0x40013800u
+#define TIMER6_MHZ 80u
 #else
 #define RCC 0x40023800u
 #define GPIOE 0x40021000u
@@ -71,6 +78,20 @@ static void start_clock(void) {
   while ((REG(RCC + 0x10) >> 3 & 7) != 3) {
   }
 }
+#elif defined(L476)
+static void start_clock(void) {
+  REG(RCC) |= 1u << 16;
+  while (!(REG(RCC) & 1u << 17)) {
+  }
+  REG(RCC + 0x0C) = 3u | 20u << 8 | 1u << 24; /* HSE x 20 / 2 */
+  REG(RCC) |= 1u << 24;
+  while (!(REG(RCC) & 1u << 25)) {
+  }
+  REG(0x40022000u) = 0x604;
+  REG(RCC + 8) = 3u;
+  while ((REG(RCC + 8) >> 2 & 3) != 3) {
+  }
+}
 #else
 static void start_clock(void) {
   REG(RCC) |= 1u << 16;
@@ -108,7 +129,7 @@ static void start_outputs(void) {
   REG(TIM6) = 1;
 }
 
-#if defined(H743)
+#if defined(H743) || defined(L476)
 static void start_serial(void) {
   REG(USART1 + 0x0C) = 100;
   REG(USART1) = 1u << 3 | 1u << 2 | 1u;
