@@ -1,5 +1,4 @@
-#include "identify/predict/axis_inverse.h"
-
+// Inverse method and steady points (axis_setup.h).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include "identify/predict/interpolation.h"
 #include "identify/record/statistics.h"
 #include "identify/record/wiener.h"
+#include "sim/bench/axis_signal.h"
 
 namespace omnihil {
 namespace {
@@ -94,34 +94,25 @@ double rms_about_mean(const std::vector<double>& x) {
   return std::sqrt(square);
 }
 
-struct NeededName {
-  const char* name;
-  std::string unit;
-};
-NeededName needed_name(const Dataset& dataset, CommandKind kind) {
-  switch (kind) {
-    case CommandKind::kMotorTorque:
-      return {"motor_torque", dataset.linear ? "N" : "N m"};
-    case CommandKind::kMotorCurrent:
-      return {"motor_current", "A"};
-    case CommandKind::kMotorVoltage:
-      return {"motor_voltage", "V"};
-    default:
-      return {"duty", "1"};
-  }
+// What a needed input is named after; a servo's target is no input of the winding.
+CommandKind needed_kind(CommandKind kind) {
+  return kind == CommandKind::kPositionTarget ? CommandKind::kDuty : kind;
+}
+std::string torque_unit(const Dataset& dataset) { return dataset.linear ? "N" : "N m"; }
+std::string needed_unit(const Dataset& dataset, CommandKind kind) {
+  return kind == CommandKind::kMotorTorque ? torque_unit(dataset)
+                                           : std::string(command_unit(needed_kind(kind)));
 }
 
-void add(AxisSetup& s, std::string name, std::string unit, Quantity quantity, std::vector<double> measured,
-         double sigma, bool stated) {
-  ComparedSignal c{.name = std::move(name),
-                   .unit = std::move(unit),
-                   .time_s = s.input.time_s,
-                   .measured = std::move(measured),
-                   .left_out = {}};
-  const double least = kLeastNoiseShare * rms_about_mean(c.measured);
-  c.noise_sigma = c.whitened_sigma = std::max(sigma, least);
+void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantity,
+         std::vector<double> measured, double sigma, bool stated) {
+  ComparedSignal& c = s.compared.emplace_back();
+  c.name = name;
+  c.unit = std::move(unit);
+  c.time_s = s.input.time_s;
+  c.noise_sigma = c.whitened_sigma = std::max(sigma, kLeastNoiseShare * rms_about_mean(measured));
   c.noise_is_stated = stated;
-  s.compared.push_back(std::move(c));
+  c.measured = std::move(measured);
   s.seen.push_back({.quantity = quantity});
 }
 
@@ -215,7 +206,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   s.position = position;
   s.measured_current = linear(r.current);
   s.measured_temperature = linear(r.temperature);
-  const auto add_filtered = [&](std::string name, std::string unit, Quantity quantity,
+  const auto add_filtered = [&](std::string_view name, std::string unit, Quantity quantity,
                                 const std::vector<double>& raw) {
     const Channel* channel = dataset.channel(name);
     const bool stated = channel != nullptr && channel->sigma > 0.0 && quantity != Quantity::kNeededInput;
@@ -228,28 +219,25 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
       const double bus_V = in.bus_voltage_V.empty() ? 0.0 : median(in.bus_voltage_V);
       sigma = std::hypot(sigma, inertia_sigma_Nm * input_per_torque(kind, drive, bus_V));
     }
-    add(s, std::move(name), std::move(unit), quantity, std::move(low), sigma, stated);
+    add(s, name, std::move(unit), quantity, std::move(low), sigma, stated);
   };
   if (bench_torque) {
-    add_filtered("load_torque", dataset.linear ? "N" : "N m", Quantity::kLoadTorque,
-                 linear(r.load_torque_Nm));
+    add_filtered("load_torque", torque_unit(dataset), Quantity::kLoadTorque, linear(r.load_torque_Nm));
   } else if (!speed_imposed || by_torque || r.current.empty()) {
-    const NeededName needed = needed_name(dataset, kind);
+    const std::vector<double> input = at_interval_end(in.command);
     in.command_is_compared = true;
-    s.given = zero_phase(s.filter, at_interval_end(in.command));
-    add_filtered(needed.name, needed.unit, Quantity::kNeededInput, at_interval_end(in.command));
+    s.given = zero_phase(s.filter, input);
+    add_filtered(command_name(needed_kind(kind)), needed_unit(dataset, kind), Quantity::kNeededInput, input);
   }
-  if (!r.current.empty() && !by_torque) {
+  if (!r.current.empty() && !by_torque)
     add_filtered("motor_current", "A", Quantity::kCurrent, s.measured_current);
-  }
-  if (!r.temperature.empty() && !by_torque) {
+  if (!r.temperature.empty() && !by_torque)
     add_filtered("winding_temperature", "degC", Quantity::kTemperature, s.measured_temperature);
-  }
   leave_out(r, kEndsInPeriods / cutoff, s);
 }
 
 void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
-  constexpr double kShareOfRange = 1e-3;  // hysteresis of the approach's direction; a choice (axis_inverse.h)
+  constexpr double kShareOfRange = 1e-3;  // hysteresis of the approach's direction; a choice (axis_setup.h)
   AxisInput& in = s.input;
   in.kind = axis_command_kind(dataset);
   in.time_s = r.time_s;
@@ -284,8 +272,8 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
     }
     for (std::size_t k = 0; k < first && first < r.size(); ++k) s.approach[k] = s.approach[first];
   }
-  const NeededName needed = needed_name(dataset, in.kind);
-  add(s, needed.name, needed.unit, Quantity::kNeededInput, r.command, estimate_noise(r.command).sigma, false);
+  add(s, command_name(needed_kind(in.kind)), needed_unit(dataset, in.kind), Quantity::kNeededInput, r.command,
+      estimate_noise(r.command).sigma, false);
 }
 
 }  // namespace omnihil

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "identify/predict/axis_inverse.h"
-#include "identify/predict/axis_record.h"
 #include "sim/bench/axis_signal.h"
 
 namespace omnihil {

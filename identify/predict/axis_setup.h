@@ -9,6 +9,7 @@
 // stands out of its noise and by 100 Hz (axis_inverse.cc); index i of every signal refers to the interval that
 // ends at sample i, in which the input of sample i - 1 was held.
 #pragma once
+#include "identify/predict/axis_record.h"
 #include "identify/predict/observation.h"
 #include "sim/bench/axis_sim.h"
 
@@ -33,6 +34,18 @@ struct AxisSetup : RigRun {
 // Empty `input.time_s`: nothing can be predicted of this run (the reason is in compared[…].left_out where
 // there is one).
 AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, const Run& run);
+
+// Of make_axis_setup. Inverse: the measured motion is imposed, and the model predicts the drive input (or the bench's torque)
+// that it requires; `drive`: nominal, by whose inertia the imposed speed's error is noise of the torque. Steady points: each
+// row alone, the speed constant (zero where it was not measured). At rest friction's sign is the direction in which the
+// point was approached: that of the last displacement larger than noise (hysteresis of a thousandth of the record's range,
+// at least three quanta).
+void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive, const AxisRecord& record,
+                        AxisSetup& setup);
+void make_steady_setup(const Dataset& dataset, const AxisRecord& record, AxisSetup& setup);
+// Speed of the output in rad/s (m/s), one per sample of the record: from its sensor, else position or counts;
+// low-passed without delay where the clock is even.
+std::vector<double> smoothed_velocity(const AxisRecord& record);
 
 CommandKind axis_command_kind(const Dataset& dataset);
 Method axis_method(const Dataset& dataset);

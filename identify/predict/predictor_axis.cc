@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "identify/predict/axis_outputs.h"
-#include "identify/predict/axis_record.h"
 #include "identify/predict/axis_substep.h"
 #include "identify/predict/counted_setups.h"
 #include "identify/predict/predictor_rig.h"

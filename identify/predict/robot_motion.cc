@@ -83,6 +83,17 @@ class Runner {
     return port.age_s;
   }
 
+  RollingInput<T> input(std::size_t k) const {
+    RollingInput<T> in;
+    for (std::size_t i = 0; i < record_.wheels; ++i) in.duty_ratio[i] = T(record_.duty_ratio[k][i]);
+    in.enabled = record_.enabled[k];
+    in.bus_is_measured = !record_.bus.input_V.empty();
+    if (in.bus_is_measured) in.bus_voltage_V = record_.bus.input_V[k];
+    in.dribbler_rad_s = record_.dribbler_rad_s[k];
+    if (record_.has_all_encoders && options_.slave_angle) in.theta_rotor_rad = &record_.theta_rotor_rad[k];
+    return in;
+  }
+
   // Commands are heard at their samples; the loop runs once per period, on the mean speed since it last ran.
   void hear(std::size_t k) {
     const RadioCommands& radio = *record_.radio;
@@ -185,9 +196,8 @@ class Runner {
     for (std::size_t k = 0; out_.finite; ++k) {
       keep();
       if (k + 1 >= record_.size()) break;
-      RollingInput<T> in = record_.template input<T>(k);
+      const RollingInput<T> in = input(k);
       if (record_.radio) hear(k);
-      if (!options_.slave_angle) in.theta_rotor_rad = nullptr;
       const double dt_s = record_.time_s[k + 1] - record_.time_s[k];
       const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - 1e-6)));
       for (int j = 0; j < steps; ++j) step(k, j, steps, in);

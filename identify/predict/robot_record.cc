@@ -188,21 +188,6 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const Dataset& dataset
 
 }  // namespace
 
-template <typename T>
-RollingInput<T> RobotRecord::input(std::size_t k) const {
-  RollingInput<T> in;
-  for (std::size_t i = 0; i < wheels; ++i) in.duty_ratio[i] = T(duty_ratio[k][i]);
-  in.enabled = enabled[k];
-  in.bus_is_measured = !bus.input_V.empty();
-  if (in.bus_is_measured) in.bus_voltage_V = bus.input_V[k];
-  in.dribbler_rad_s = dribbler_rad_s[k];
-  if (has_all_encoders) in.theta_rotor_rad = &theta_rotor_rad[k];
-  return in;
-}
-
-template RollingInput<double> RobotRecord::input(std::size_t) const;
-template RollingInput<Jet> RobotRecord::input(std::size_t) const;
-
 std::string numbered(std::string_view name, std::size_t wheel, std::size_t wheels) {
   return wheels == 1 ? std::string(name) : std::string(name) + "_" + std::to_string(wheel + 1);
 }

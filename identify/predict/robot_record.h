@@ -2,7 +2,7 @@
 // velocity at the start. n samples each, at the units of the names.
 //
 //   RobotRecord r = robot_record(dataset, run, nominal);
-//   r.input(k);                         // held from sample k to the next
+//   r.duty_ratio[k];                    // held from sample k to the next
 //   headings<Jet>(r, camera_age_s);     // of the body in the field, per sample
 //
 // Signals of one wheel alone have no number ("duty"), those of several have theirs ("duty_1").
@@ -58,8 +58,6 @@ struct RobotRecord {
   BodyVelocity<double> start_velocity;
 
   std::size_t size() const { return time_s.size(); }
-  template <typename T = double>
-  RollingInput<T> input(std::size_t sample) const;
 };
 
 // "encoder" of a wheel alone, else "encoder_1" of wheel 0 …

@@ -40,9 +40,7 @@ Duties duties_of(const RobotModel& m, double forward, double left, double turn) 
 // Largest change of a duty in a second that a tyre follows without skidding: half of what its grip can accelerate, over the
 // rim's speed at full duty. A robot that skids shows its floor and little else.
 double gentle_slew_per_s(const RobotModel& m) {
-  const double full_m_s =
-      m.bus_voltage_V / (m.motor.torque_constant_Nm_per_A * m.gear_ratio) * m.wheel_radius_m;
-  return 0.5 * m.tyre_longitudinal.extremum_value * 9.81 / full_m_s;
+  return 0.5 * m.tyre_longitudinal.extremum_value * 9.81 / full_speed_m_s(m);
 }
 
 std::vector<double> listed(const RobotModel& m, const Duties& d) {

@@ -96,6 +96,10 @@ std::vector<BenchRun> bench_runs(
   return runs;
 }
 
+double full_speed_m_s(const RobotModel& m) {
+  return m.bus_voltage_V / (m.motor.torque_constant_Nm_per_A * m.gear_ratio) * m.wheel_radius_m;
+}
+
 void check_bench_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
   for (const std::string& e : o.excitations) {
     if (const std::string fault = excitation_fault(e); !fault.empty()) faults.push_back(fault);

@@ -80,6 +80,9 @@ std::vector<BenchRun> bench_runs(
     const std::function<std::vector<BenchRow>(Excitation, double, std::uint64_t)>& excited,
     const std::function<std::vector<BenchRow>(const std::string&)>& read);
 
+// Speed of the rim at full duty, at no load.
+double full_speed_m_s(const RobotModel& robot);
+
 // Names of excitations, and numbers.
 void check_bench_numbers(const BenchOptions& options, std::vector<std::string>& faults);
 // The robot's model of a bench of it, or of one of its wheels, nominal and with the effects of --with in it; the numbers are

@@ -20,10 +20,6 @@ constexpr double kShareOfSpeed = 0.4;  // of the robot's full speed, that the be
 // 1-sigma of usual sensors: a shunt, a small load cell. Guesses, +-50 %.
 constexpr double kCurrent_A = 0.03, kForce_N = 0.05;  // as above
 
-double full_speed_m_s(const RobotModel& m) {
-  return m.bus_voltage_V / (m.motor.torque_constant_Nm_per_A * m.gear_ratio) * m.wheel_radius_m;
-}
-
 // Duty whose stall current slips the tyre.
 double slipping_duty(const RobotModel& m) {
   const double grip_N =
