@@ -71,7 +71,19 @@ Stop Cpu::run(std::int64_t now, std::int64_t deadline) {
   fp_changed();
   watching_ = false;
   watch_.rest = watch_.rest < 2 ? 2 : watch_.rest;
-  if (watch_.idle_pc - reg.r[15] < kLongestWait) watch_.rest = 1;  // back in the loop that it waited in
+  const bool waits = watch_.idle_pc - reg.r[15] < kLongestWait;
+  if (waits) watch_.rest = 1;  // back in the loop that it waited in
+  if (waits && may_pass() && (reg.fpscr & kRoundingMode) == 0) {
+    std::int64_t then = pass_wait(now, deadline);
+    if (then == now) {
+      Stop stop = Stop::kDeadline;
+      if (!learn_wait(then, deadline, stop)) return stop;
+      then = pass_wait(then, deadline);
+    }
+    now_ = now = then;
+    if (now >= deadline) return Stop::kDeadline;
+  }
+  wait_.steady_until = 0;
   if ((reg.fpscr & kRoundingMode) != 0) return run_rounded(now, deadline);
   const Stop stop = observer_ == nullptr ? execute(now, deadline) : execute_observed(now, deadline);
   if ((reg.fpscr & kRoundingMode) != 0) std::fesetround(FE_TONEAREST);
@@ -344,6 +356,7 @@ bool Cpu::invalid_access(std::uint32_t address, unsigned bytes, bool must_align)
     fault = {kUnaligned, address};
     return true;
   }
+  if (learning_) changed_ = true;
   bus_.note_unaligned(address);
   return false;
 }
@@ -363,7 +376,9 @@ bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value,
   const bool own =
       address - kPrivate < kPrivateSize && (address & (bytes - 1)) == 0 && watches_.empty();  // of the core
   if (!own && !is_device(address, bytes)) return far_load(address, bytes, value, must_align);
-  return bus_.read(address, bytes, value) || bus_fault(address);
+  if (!bus_.read(address, bytes, value)) return bus_fault(address);
+  if (learning_) note_of_wait(address, bytes, value, nullptr);
+  return true;
 }
 
 bool Cpu::slow_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align) {
@@ -380,9 +395,13 @@ bool Cpu::far_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, 
     value = 0;
     std::memcpy(&value, region->data() + (address - region->base), bytes);
     if (address < 4096) bus_.note_null(address, false);
+    if (learning_) note_of_wait(address, bytes, value, region->data() + (address - region->base));
     return true;
   }
-  if (address % bytes == 0) return bus_.read(address, bytes, value) || bus_fault(address);
+  if (address % bytes == 0) {
+    if (learning_) changed_ = true;  // of a device: what it does is not known here
+    return bus_.read(address, bytes, value) || bus_fault(address);
+  }
   if (!region) {  // device memory takes no unaligned access
     fault = {kUnaligned, address};
     return false;
@@ -406,6 +425,7 @@ bool Cpu::far_store(std::uint32_t address, unsigned bytes, std::uint32_t value, 
     std::memcpy(region->data() + at, &value, bytes);
     memory_.invalidate(*region->block, at, bytes);
     if (address < 4096) bus_.note_null(address, true);
+    if (learning_) note_of_wait(address, bytes, value, region->data() + (address - region->base));
     return true;
   }
   changed_ = true;

@@ -18,6 +18,7 @@
 
 #include "firmware_iface/mcu/core/decode.h"
 #include "firmware_iface/mcu/core/fp.h"
+#include "firmware_iface/mcu/core/known_wait.h"
 #include "firmware_iface/mcu/core/memory.h"
 #include "firmware_iface/mcu/core/registers.h"
 #include "firmware_iface/mcu/core/variant.h"
@@ -78,6 +79,11 @@ class CpuBus {
   // A null pointer, or an address that is no multiple of its size: allowed, and worth telling.
   virtual void note_null(std::uint32_t address, bool is_write) = 0;
   virtual void note_unaligned(std::uint32_t address) = 0;
+  // What read() would give, without doing anything, and until when it would (in 16ths of a cycle) if nothing from
+  // outside comes; 0: not said.
+  virtual std::int64_t steady_until(std::uint32_t /*address*/, unsigned /*bytes*/, std::uint32_t& /*value*/) {
+    return 0;
+  }
 };
 
 // Sees every instruction before it runs. While there is one, the core runs by a loop of its own (execute_observed.cc)
@@ -109,6 +115,8 @@ class Cpu {
   void limit_fast_forward(std::int64_t at) { watch_.limit = at < watch_.limit ? at : watch_.limit; }
   bool watching() const { return watching_; }
   void spoil_fast_forward() { changed_ = true; }
+  // A register of the core's own peripherals was changed by somebody else than its code.
+  void own_register_changed() { wait_.steady_until = 0; }
 
   std::uint32_t access_pc() const;                    // of the instruction whose bus access is going on
   void memory_changed();                              // regions were added: fetch their addresses anew
@@ -190,6 +198,13 @@ class Cpu {
   bool far_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align);
   bool far_store(std::uint32_t address, unsigned bytes, std::uint32_t value, bool must_align);
   Pace watch_loop(const Op* at, Pace pace, std::int64_t end);
+  bool may_pass() const;
+  std::int64_t pass_wait(std::int64_t now, std::int64_t deadline);
+  std::int64_t steady_wait();
+  bool wait_reads_the_same();
+  bool learn_wait(std::int64_t& now, std::int64_t deadline, Stop& stop);
+  void keep_learnt(std::int64_t turn);
+  void note_of_wait(std::uint32_t address, unsigned bytes, std::uint32_t value, const std::uint8_t* memory);
   void leave_code_out();  // of store_
   bool is_near_constant(std::uint32_t address) const;
   std::uint32_t address_of(const Op* op) const;
@@ -216,7 +231,10 @@ class Cpu {
   std::vector<Op*> row_;  // that is being decoded
   const Op* access_op_ = nullptr;
   Watch watch_;
-  std::vector<std::uint32_t> halts_;  // in order
+  KnownWait wait_, learnt_;
+  bool learning_ = false;
+  int learning_rest_ = 0, learning_pause_ = 1;  // in runs
+  std::vector<std::uint32_t> halts_;            // in order
   std::vector<AccessWatch> watches_;
   std::optional<AccessHit> hit_;
   CpuObserver* observer_ = nullptr;

@@ -72,6 +72,7 @@ bool Memory::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
     const std::uint32_t at = address - region->base;
     const std::size_t part = std::min<std::size_t>(bytes.size(), region->size - at);
     std::copy_n(bytes.begin(), part, region->data() + at);
+    if (!region->writable()) ++code_changes_;
     invalidate(*region->block, at, static_cast<std::uint32_t>(part));
     bytes = bytes.subspan(part);
     address += static_cast<std::uint32_t>(part);
@@ -82,6 +83,7 @@ bool Memory::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
 void Memory::map_at_zero(std::uint32_t base) {
   const MemoryRegion* target = find(base);
   if (!target || target->base == 0) return;
+  ++code_changes_;
   for (const auto& region : regions_) {
     if (region->base != 0 || !region->is_alias) continue;
     region->block = target->block;
@@ -99,6 +101,7 @@ void Memory::clear_ram() {
 
 void Memory::invalidate(MemoryBlock& block, std::uint32_t begin, std::uint32_t size) {
   if (begin + size <= block.code_begin || begin >= block.code_begin + block.code_size) return;
+  ++code_changes_;
   const std::uint32_t first = (begin - std::min(begin, kReachBack)) / 2, last = (begin + size - 1) / 2;
   for (const auto& region : regions_) {
     if (region->block != &block || region->ops.empty()) continue;
@@ -110,6 +113,7 @@ void Memory::invalidate(MemoryBlock& block, std::uint32_t begin, std::uint32_t s
 }
 
 void Memory::forget_code() {
+  ++code_changes_;
   for (const auto& region : regions_) region->ops.clear();
   for (const auto& block : blocks_) block->code_begin = block->code_size = 0;
 }

@@ -85,8 +85,11 @@ class Memory {
   // The bytes [begin, begin + size) of the block have changed: what was decoded from them is forgotten.
   void invalidate(MemoryBlock& block, std::uint32_t begin, std::uint32_t size);
   void forget_code();
+  // Goes up whenever code, or flash that it may read constants from, is another than before.
+  std::uint64_t code_changes() const { return code_changes_; }
 
  private:
+  std::uint64_t code_changes_ = 0;
   std::vector<std::unique_ptr<MemoryBlock>> blocks_;
   std::vector<std::unique_ptr<MemoryRegion>> regions_;
 };

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace omnihil::mcu {
 
@@ -28,13 +29,13 @@ struct Registers : Flags {
   std::uint32_t q = 0, ge = 0;
   std::uint32_t other_sp = 0;  // the stack pointer not in use
   std::uint32_t control = 0, primask = 0, basepri = 0, faultmask = 0;
-  std::uint32_t ipsr = 0;  // the exception being handled, 0 in thread mode
-  std::uint32_t s[32] = {};
-  std::uint32_t fpscr = 0;
+  std::uint32_t ipsr = 0;       // the exception being handled, 0 in thread mode
   std::uint32_t exclusive = 0;  // the local monitor
   std::uint32_t event = 0;      // the event register of WFE
+  std::uint32_t fpscr = 0;      // from here on all is 0 without an FPU
+  std::uint32_t s[32] = {};
 
-  bool operator==(const Registers&) const = default;
+  bool operator==(const Registers& other) const;  // of all bytes at once: there are none between the members
 
   bool uses_psp() const { return (control & kUseProcessStack) && ipsr == 0; }
   bool privileged() const { return ipsr != 0 || !(control & kUnprivileged); }
@@ -61,6 +62,11 @@ struct Registers : Flags {
     s[i + 1] = static_cast<std::uint32_t>(value >> 32);
   }
 };
+
+static_assert(std::has_unique_object_representations_v<Registers>);
+inline bool Registers::operator==(const Registers& other) const {
+  return std::memcmp(this, &other, sizeof other) == 0;
+}
 
 // EPSR.IT as it lies in xPSR.
 inline std::uint32_t it_to_xpsr(std::uint32_t it) { return (it & 3) << 25 | (it >> 2) << 10; }

@@ -64,6 +64,16 @@ bool Machine::read(std::uint32_t address, unsigned bytes, std::uint32_t& value) 
   return true;
 }
 
+// Of SysTick alone: what waits poll between the events of others. Its reads do nothing while it is steady.
+std::int64_t Machine::steady_until(std::uint32_t address, unsigned bytes, std::uint32_t& value) {
+  if (!in(address, kSysTickBlock, 16) || !cpu_.reg.privileged()) return 0;
+  const std::uint32_t offset = (address - kSysTickBlock) & ~3u;
+  const Cycles until = systick_.stable_until(offset, now());
+  if (until <= now()) return 0;
+  value = part(systick_.read(offset, now()), address, bytes);
+  return until == kNever ? INT64_MAX : static_cast<std::int64_t>(until) * kSubcycles;
+}
+
 // By the loop that is being watched, what it read being steady until then.
 void Machine::was_polled(Cycles steady_until) {
   if (steady_until <= now()) return cpu_.spoil_fast_forward();

@@ -172,6 +172,7 @@ class Machine final : public System, private CpuBus {
   bool write(std::uint32_t address, unsigned bytes, std::uint32_t value) override;
   void note_null(std::uint32_t address, bool is_write) override;
   void note_unaligned(std::uint32_t address) override;
+  std::int64_t steady_until(std::uint32_t address, unsigned bytes, std::uint32_t& value) override;
 
   bool peek_word(std::uint32_t address, std::uint32_t& word);
   const Slot* slot_at(std::uint32_t address);

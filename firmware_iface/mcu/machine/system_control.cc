@@ -199,6 +199,7 @@ bool Machine::write_system(std::uint32_t offset, unsigned bytes, std::uint32_t v
   const bool v7 = config_.variant.arch != Arch::kV6M, cached = config_.variant.fpv5;
   if (offset >= kSysTickFirst && offset <= kSysTickLast) {
     systick_.write(offset - kSysTickFirst, value, now());
+    cpu_.own_register_changed();
     reschedule();
   } else if (is_interrupt_register(offset)) {
     write_interrupts(offset, bytes, value);

@@ -136,6 +136,7 @@ void Adc::finish() {
 }
 
 void Adc::triggered(int source, bool rising) {
+  const Cycles before = phase_end_;
   for (const Group group : {Group::kInjected, Group::kRegular}) {
     const auto& lines = group == Group::kRegular ? regular_lines_ : injected_lines_;
     const auto [number, edges] = trigger(group);
@@ -143,7 +144,7 @@ void Adc::triggered(int source, bool rising) {
     if (lines[static_cast<std::size_t>(number)] != source || (edges & (rising ? 1u : 2u)) == 0) continue;
     if (armed(group)) start(group);
   }
-  system().reschedule();
+  if (phase_end_ != before) system().event_moved(&phase_end_, before);
 }
 
 // Listens to the triggers that the registers select, and to no others.

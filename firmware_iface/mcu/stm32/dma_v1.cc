@@ -70,7 +70,11 @@ DmaV1::DmaV1(const std::string& name, std::vector<int> irqs, ChipContext& contex
 }
 
 void DmaV1::connect(std::string_view request, unsigned channel, int code) {
-  channels_[channel - 1].wires.push_back({context_.dma.line(request), code});
+  const int line = context_.dma.line(request);
+  channels_[channel - 1].wires.push_back({line, code});
+  const auto at = static_cast<std::size_t>(line);
+  if (wired_to_.size() <= at) wired_to_.resize(at + 1);
+  wired_to_[at] |= static_cast<std::uint8_t>(1u << (channel - 1));
 }
 
 void DmaV1::use_mux(const DmaMux& mux, unsigned first) {
@@ -90,6 +94,13 @@ bool DmaV1::serves(unsigned channel, int line) const {
                      [&](const Wire& wire) { return wire.line == line && chosen(channel, wire.code); });
 }
 
+// A bit for each channel that this line may request: it serves() those that are set so.
+std::uint32_t DmaV1::wired_to(int line) const {
+  if (mux_ != nullptr) return (1u << irqs_.size()) - 1u;
+  const auto at = static_cast<std::size_t>(line);
+  return at < wired_to_.size() ? wired_to_[at] : 0u;
+}
+
 void DmaV1::update_irqs() {
   for (unsigned c = 0; c < irqs_.size(); ++c) {
     const std::uint32_t flags = value(kIsr) >> (4 * c) & 0xEu;
@@ -98,8 +109,9 @@ void DmaV1::update_irqs() {
 }
 
 void DmaV1::requested(int line) {
-  for (unsigned c = 0; c < irqs_.size(); ++c) {
-    if (!serves(c, line)) continue;
+  const std::uint32_t channels = wired_to(line);
+  for (unsigned c = 0; channels >> c != 0; ++c) {
+    if ((channels >> c & 1u) == 0 || !serves(c, line)) continue;
     for (int n = 0; context_.dma.high(line) && (reg(c, kCcr) & (kEn | kMem2Mem)) == kEn; ++n) {
       if (channels_[c].left == 0) break;
       if (n == kMaxItemsAtOnce) {

@@ -54,12 +54,14 @@ class DmaV1 final : public RegisterBlock, public DmaSink, public DmaErrors {
   bool chosen(unsigned channel, int code) const {
     return code < 0 || field(value(0xA8), 4 * channel, 4) == static_cast<unsigned>(code);
   }
+  std::uint32_t wired_to(int line) const;
   void start(unsigned channel);
   void item(unsigned channel);
   void update_irqs();
 
   ChipContext& context_;
   std::vector<Channel> channels_;
+  std::vector<std::uint8_t> wired_to_;  // by request line, a bit for each channel
   std::vector<IrqLine> irqs_;
   const DmaMux* mux_ = nullptr;
   unsigned mux_first_ = 0;

@@ -129,10 +129,11 @@ void Timer::look_at_references() {
     seen_references_ = levels;
     return;
   }
+  std::uint32_t now_there = levels;
   for (unsigned c = 0; c < spec_.channels && c < kChannels; ++c) {
-    // A listener may be the timer itself, and move it.
-    const bool level = (references_at(position()) >> c & 1u) != 0;
-    if (level != ((seen_references_ >> c & 1u) != 0)) reference_moved(c, level);
+    if (((now_there ^ seen_references_) >> c & 1u) == 0) continue;
+    reference_moved(c, (now_there >> c & 1u) != 0);
+    now_there = references_at(position());  // a listener may be the timer itself, and move it
   }
 }
 
