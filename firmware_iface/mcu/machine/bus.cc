@@ -249,8 +249,9 @@ bool Machine::write_words(std::uint32_t address, std::span<const std::uint32_t> 
 
 std::uint32_t Machine::bus_read(std::uint32_t address, unsigned bytes) {
   std::uint32_t value = 0;
+  const MemoryRegion* region = memory_.find(address);
   std::uint8_t raw[4] = {};
-  if (memory_.read(address, {raw, bytes})) {
+  if (region != nullptr && memory_.read(address, {raw, bytes})) {
     std::memcpy(&value, raw, 4);
   } else if (is_private(address) || !read(address, bytes, value)) {
     report_unmodelled("bus", fmt::format("0x{:08x} read by DMA: nothing is there", address));
@@ -264,7 +265,13 @@ void Machine::bus_write(std::uint32_t address, unsigned bytes, std::uint32_t val
     std::uint8_t raw[4];
     std::memcpy(raw, &value, 4);
     cpu_.spoil_fast_forward();
-    memory_.write(address, {raw, bytes});
+    const std::uint32_t at = address - region->base;
+    if (bytes > region->size - at) {
+      memory_.write(address, {raw, bytes});
+    } else {  // most are
+      std::memcpy(region->data() + at, raw, bytes);
+      memory_.invalidate(*region->block, at, bytes);
+    }
   } else if (is_private(address) || region || !write(address, bytes, value)) {
     report_unmodelled("bus", fmt::format("0x{:08x} written by DMA: nothing is there", address));
   }
