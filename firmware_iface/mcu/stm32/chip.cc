@@ -60,6 +60,9 @@ void attach(Chip& chip, Machine& machine) {
 }
 
 Chip::Chip(const ChipSpec& spec, System& system) : spec_(spec), context_(system) {
+  for (const MemorySpec& memory : spec.memories) {
+    if (memory.core_only) context_.core_only.push_back({memory.base, memory.bytes});
+  }
   spec.build(*this);
   reset();
 }

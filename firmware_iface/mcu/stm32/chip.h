@@ -31,6 +31,7 @@ struct MemorySpec {
   std::string_view name;
   std::uint32_t base = 0, bytes = 0;
   bool flash = false;
+  bool core_only = false;  // no DMA controller reaches it
 };
 
 struct ChipSpec {

@@ -135,6 +135,11 @@ void DmaV1::start(unsigned c) {
                       .peripheral_steps = (ccr & kPinc) != 0,
                       .memory_steps = (ccr & kMinc) != 0,
                       .to_peripheral = (ccr & kDir) != 0};
+  if (!context_.reaches(channel.transfer.peripheral, name()) ||
+      !context_.reaches(channel.transfer.memory, name())) {
+    fail(c);
+    return;
+  }
   if ((ccr & kMem2Mem) != 0) {
     while (channel.left > 0 && (reg(c, kCcr) & kEn) != 0) item(c);
     return;
@@ -172,13 +177,17 @@ void DmaV1::item(unsigned c) {
 bool DmaV1::fail_transfer() {
   for (unsigned c = 0; c < irqs_.size(); ++c) {
     if ((reg(c, kCcr) & kEn) == 0 || channels_[c].left == 0) continue;
-    reg(c, kCcr) &= ~kEn;
-    reg(c, kCndtr) = channels_[c].left;
-    value(kIsr) |= (kGlobal | kError) << (4 * c);
-    update_irqs();
+    fail(c);
     return true;
   }
   return false;
+}
+
+void DmaV1::fail(unsigned c) {
+  reg(c, kCcr) &= ~kEn;
+  reg(c, kCndtr) = channels_[c].left;
+  value(kIsr) |= (kGlobal | kError) << (4 * c);
+  update_irqs();
 }
 
 std::uint32_t DmaV1::load(std::uint32_t offset) {

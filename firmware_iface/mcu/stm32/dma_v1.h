@@ -57,6 +57,7 @@ class DmaV1 final : public RegisterBlock, public DmaSink, public DmaErrors {
   std::uint32_t wired_to(int line) const;
   void start(unsigned channel);
   void item(unsigned channel);
+  void fail(unsigned channel);
   void update_irqs();
 
   ChipContext& context_;

@@ -107,6 +107,11 @@ void DmaV2::start(unsigned s) {
                      .peripheral_steps = (cr & kPinc) != 0,
                      .memory_steps = (cr & kMinc) != 0,
                      .to_peripheral = direction == 1};
+  if (!context_.reaches(stream.transfer.peripheral, name()) ||
+      !context_.reaches(stream.transfer.memory, name())) {
+    fail(s);
+    return;
+  }
   if (direction == 2) {  // memory to memory: from PAR to M0AR
     while (stream.left > 0 && (reg(s, kCr) & kEn) != 0) item(s);
     return;
@@ -146,12 +151,16 @@ void DmaV2::item(unsigned s) {
 bool DmaV2::fail_transfer() {
   for (unsigned s = 0; s < kStreams; ++s) {
     if ((reg(s, kCr) & kEn) == 0 || streams_[s].left == 0) continue;
-    reg(s, kCr) &= ~kEn;
-    reg(s, kNdtr) = streams_[s].left;
-    flag(s, kError);
+    fail(s);
     return true;
   }
   return false;
+}
+
+void DmaV2::fail(unsigned s) {
+  reg(s, kCr) &= ~kEn;
+  reg(s, kNdtr) = streams_[s].left;
+  flag(s, kError);
 }
 
 std::uint32_t DmaV2::load(std::uint32_t offset) {

@@ -42,6 +42,7 @@ class DmaV2 final : public RegisterBlock, public DmaSink, public DmaErrors {
   void serve(unsigned stream, int line);
   void start(unsigned stream);
   void item(unsigned stream);
+  void fail(unsigned stream);
   void flag(unsigned stream, std::uint32_t flags);
   std::uint32_t flags(unsigned stream) const;
   void update_irqs();

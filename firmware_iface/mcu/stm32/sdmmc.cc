@@ -38,7 +38,7 @@ constexpr std::uint32_t kHalfEmpty = 1u << 14, kHalfFull = 1u << 15, kTxFull = 1
 constexpr std::uint32_t kCmdact1 = 1u << 11, kTxact = 1u << 12, kRxact = 1u << 13, kTxdavl = 1u << 20,
                         kRxdavl = 1u << 21;
 constexpr std::uint32_t kDabort = 1u << 11, kDpsmact = 1u << 12, kCpsmact = 1u << 13, kBusyd0 = 1u << 20,
-                        kBusyd0end = 1u << 21, kIdmaBtc = 1u << 28;
+                        kBusyd0end = 1u << 21, kIdmate = 1u << 27, kIdmaBtc = 1u << 28;
 constexpr std::uint32_t kDten = 1u << 0, kDtdir = 1u << 1, kDmaen1 = 1u << 3, kFiforst = 1u << 13;
 constexpr std::uint32_t kPieceBytes = 32, kAnswerGap = 5, kBlockRest = 18;  // CRC of 16 bits, start, stop
 
@@ -67,7 +67,7 @@ std::span<const RegisterInfo> table(bool v2) {
     } else {
       t.add(kFifoCount, "FIFOCNT", 0, 0);
     }
-    for (unsigned i = 0; i < 32; ++i) t.add(kFifo + 4 * i, "FIFO", 0, 0);
+    for (unsigned i = 0; i < 32; ++i) t.add(kFifo + 4 * i, "FIFO" + std::to_string(i), 0, 0);
     return t;
   };
   static const RegisterTable first = made(false), second = made(true);
@@ -171,6 +171,10 @@ void Sdmmc::arm() {
   moved_ = false;
   memory_at_ = bit(value(kIdmaCtrl), 2) ? value(kIdmaBase1) : value(kIdmaBase0);
   memory_left_ = bit(value(kIdmaCtrl), 1) ? value(kIdmaSize) : ~0u;
+  if (own_dma() && data_ != Data::kIdle && !context_.reaches(memory_at_, name())) {
+    data_ = Data::kIdle;
+    flags_ |= kIdmate;
+  }
   timeout_at_ = data_ == Data::kReceive ? now() + clocks(std::max(1u, value(kDtimer))) : kNever;
   look_for_data();
 }

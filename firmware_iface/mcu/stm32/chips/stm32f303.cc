@@ -148,7 +148,7 @@ const ChipSpec& chip_stm32f303() {
                              .reset_hz = 8e6,
                              .memories = {{"flash", 0x08000000, 256 * 1024, true},
                                           {"sram", 0x20000000, 40 * 1024},
-                                          {"ccm", 0x10000000, 8 * 1024}},
+                                          {"ccm", 0x10000000, 8 * 1024, false, true}},
                              .build = build};
   return spec;
 }

@@ -18,7 +18,7 @@ const ChipSpec& chip_stm32f405() {
                              .blocks = BlockFamily::kF4,
                              .memories = {{"flash", 0x08000000, 1024 * 1024, true},
                                           {"sram", 0x20000000, 128 * 1024},
-                                          {"ccm", 0x10000000, 64 * 1024},
+                                          {"ccm", 0x10000000, 64 * 1024, false, true},
                                           {"backup", 0x40024000, 4096}},
                              .build = build};
   return spec;
