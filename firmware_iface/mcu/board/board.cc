@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/adc/adc.h"
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
 #include "firmware_iface/mcu/stm32/sdmmc.h"

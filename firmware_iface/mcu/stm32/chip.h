@@ -17,7 +17,7 @@
 
 #include "firmware_iface/mcu/core/variant.h"
 #include "firmware_iface/mcu/machine/machine.h"
-#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/adc/adc.h"
 #include "firmware_iface/mcu/stm32/block_map.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/clock/flash.h"

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware_iface/mcu/stm32/adc_v1.h"
-#include "firmware_iface/mcu/stm32/adc_v2.h"
+#include "firmware_iface/mcu/stm32/adc/adc_v1.h"
+#include "firmware_iface/mcu/stm32/adc/adc_v2.h"
 #include "firmware_iface/mcu/stm32/chip.h"
 #include "firmware_iface/mcu/stm32/clock/pwr.h"
 #include "firmware_iface/mcu/stm32/clock/rcc.h"

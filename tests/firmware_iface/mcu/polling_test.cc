@@ -7,7 +7,7 @@
 
 #include "firmware_iface/mcu/board/board.h"
 #include "firmware_iface/mcu/stm32/usart.h"
-#include "tests/firmware_iface/mcu/dialects_for_tests.h"
+#include "tests/firmware_iface/mcu/board/dialects_for_tests.h"
 #include "tests/firmware_iface/mcu/image_bench.h"
 
 namespace omnihil::mcu {

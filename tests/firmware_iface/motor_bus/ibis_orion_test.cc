@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tests/firmware_iface/mcu/dialects_for_tests.h"
+#include "tests/firmware_iface/mcu/board/dialects_for_tests.h"
 #include "tests/firmware_iface/motor_bus/bus_harness.h"
 
 namespace omnihil::test {

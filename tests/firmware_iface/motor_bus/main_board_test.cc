@@ -2,7 +2,7 @@
 // understand it.
 #include <numbers>
 
-#include "tests/firmware_iface/mcu/dialects_for_tests.h"
+#include "tests/firmware_iface/mcu/board/dialects_for_tests.h"
 #include "tests/firmware_iface/motor_bus/bus_harness.h"
 
 namespace omnihil::test {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware_iface/mcu/stm32/adc_f1.h"
+#include "firmware_iface/mcu/stm32/adc/adc_f1.h"
 #include "firmware_iface/mcu/stm32/bxcan.h"
 #include "firmware_iface/mcu/stm32/chip_parts.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "firmware_iface/mcu/stm32/can.h"
-#include "tests/firmware_iface/mcu/boards_for_tests.h"
-#include "tests/firmware_iface/mcu/dialects_for_tests.h"
+#include "tests/firmware_iface/mcu/board/boards_for_tests.h"
+#include "tests/firmware_iface/mcu/board/dialects_for_tests.h"
 
 namespace omnihil::mcu {
 namespace {

@@ -1,4 +1,4 @@
-#include "firmware_iface/mcu/stm32/adc_v1.h"
+#include "firmware_iface/mcu/stm32/adc/adc_v1.h"
 
 namespace omnihil::mcu {
 namespace {

@@ -6,7 +6,7 @@
 // Law: as adc.h; a conversion takes 12.5 clocks of PCLK2 over ADCPRE. EOC is set at the end of either sequence, by ADON
 // written again a conversion starts. Dual modes as adc_together.h, the pair's results as one word in ADC1's DR.
 #pragma once
-#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/adc/adc.h"
 
 namespace omnihil::mcu {
 

@@ -6,7 +6,7 @@
 // The common block of a pair (clock prescaler, dual status) is at offset 0x300 of the first of them:
 // AdcV2Common.
 #pragma once
-#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/adc/adc.h"
 
 namespace omnihil::mcu {
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware_iface/mcu/stm32/adc_together.h"
+#include "firmware_iface/mcu/stm32/adc/adc_together.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
 

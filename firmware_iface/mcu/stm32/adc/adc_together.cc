@@ -1,8 +1,8 @@
-#include "firmware_iface/mcu/stm32/adc_together.h"
+#include "firmware_iface/mcu/stm32/adc/adc_together.h"
 
 #include <algorithm>
 
-#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/adc/adc.h"
 
 namespace omnihil::mcu {
 

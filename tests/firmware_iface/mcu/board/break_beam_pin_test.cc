@@ -1,7 +1,7 @@
 // A board's pin follows the break beam's receiver.
 #include <gtest/gtest.h>
 
-#include "tests/firmware_iface/mcu/boards_for_tests.h"
+#include "tests/firmware_iface/mcu/board/boards_for_tests.h"
 
 namespace omnihil::mcu {
 namespace {

@@ -3,7 +3,7 @@
 //   AdcV1Common common(context);
 //   AdcV1 adc(1, irq, common, triggers, context);
 #pragma once
-#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/adc/adc.h"
 
 namespace omnihil::mcu {
 

@@ -1,4 +1,4 @@
-#include "firmware_iface/mcu/stm32/adc.h"
+#include "firmware_iface/mcu/stm32/adc/adc.h"
 
 #include <fmt/format.h>
 

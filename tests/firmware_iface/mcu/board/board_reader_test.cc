@@ -7,8 +7,8 @@
 
 #include "firmware_iface/mcu/board/board_spec.h"
 #include "firmware_iface/mcu/stm32/chip.h"
-#include "tests/firmware_iface/mcu/boards_for_tests.h"
-#include "tests/firmware_iface/mcu/dialects_for_tests.h"
+#include "tests/firmware_iface/mcu/board/boards_for_tests.h"
+#include "tests/firmware_iface/mcu/board/dialects_for_tests.h"
 
 namespace omnihil::mcu {
 namespace {

@@ -1,4 +1,4 @@
-#include "firmware_iface/mcu/stm32/adc_f1.h"
+#include "firmware_iface/mcu/stm32/adc/adc_f1.h"
 
 namespace omnihil::mcu {
 namespace {
