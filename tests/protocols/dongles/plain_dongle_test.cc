@@ -30,8 +30,10 @@ TEST(PlainDongle, AFormatIsOneFileOfUnder300LinesThatNothingElseNames) {
   ASSERT_NE(text.find("radio_format_example_plain"), std::string::npos);
   EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 300);
   const std::regex include("#include (\\S+)");
+  // Checksums are shared with the buses behind the radio, so they lie below both.
+  const std::regex allowed("<\\w+>|\"protocols/.*\\.h\"|\"firmware_iface/checksum\\.h\"");
   for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
-    EXPECT_TRUE(std::regex_match((*it)[1].str(), std::regex("<\\w+>|\"protocols/.*\\.h\""))) << (*it)[1];
+    EXPECT_TRUE(std::regex_match((*it)[1].str(), allowed)) << (*it)[1];
   }
   for (const char* folder : {"protocols", "hil", "tools"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(source / folder)) {
