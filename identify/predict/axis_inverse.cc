@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "identify/predict/axis_outputs.h"
 #include "identify/predict/interpolation.h"
@@ -191,14 +192,13 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     spectrum = NoiseSpectrum::kDifferenced;
     velocity = central_differences(position);
     for (double& v : velocity) v *= rate;
-    position = wiener_smoothed(position, NoiseSpectrum::kWhite);
+    position = wiener_smoothed(position, NoiseSpectrum::kWhite).value;
   }
   const LowPass motion = motion_filter(s.filter, velocity.size(), rate);
-  const double inertia_sigma_Nm =
-      needed_torque_sigma(wiener_error_spectrum(velocity, spectrum),
-                          inertia_at_rotor(drive) * drive.gear_ratio, motion, s.filter, rate);
-  velocity = wiener_smoothed(velocity, spectrum);
-  if (!motion.sections.empty()) velocity = zero_phase(motion, velocity);
+  const WienerEstimate smoothed = wiener_smoothed(velocity, spectrum);
+  const double inertia_sigma_Nm = needed_torque_sigma(
+      smoothed.error_spectrum, inertia_at_rotor(drive) * drive.gear_ratio, motion, s.filter, rate);
+  velocity = motion.sections.empty() ? smoothed.value : zero_phase(motion, smoothed.value);
   in.imposed_velocity_rad_s = velocity;
   in.measured_position_rad = position;
   if (!position.empty()) in.initial_position_rad = position.front();

@@ -76,9 +76,8 @@ std::vector<double> noise_of(const std::vector<double>& power, NoiseSpectrum noi
 }
 
 // H at the frequencies of the periodogram.
-std::vector<double> gain_of(const Periodogram& periodogram, NoiseSpectrum noise) {
+std::vector<double> gain_of(const Periodogram& periodogram, const std::vector<double>& noise_power) {
   const std::vector<double>& power = periodogram.power;
-  const std::vector<double> noise_power = noise_of(power, noise);
   const double above = 1.0 + kAbove_sigmas * 1.03 / std::sqrt(periodogram.segments);
   std::vector<double> gain;
   for (std::size_t k = 0; k < power.size(); ++k)
@@ -106,21 +105,19 @@ std::vector<double> kernel_of(const std::vector<double>& gain) {
 
 }  // namespace
 
-std::vector<double> wiener_error_spectrum(std::span<const double> x, NoiseSpectrum noise) {
-  if (x.size() < kLeastSmoothed) return {};
-  const Periodogram periodogram = welch(x, segment_length(x.size()));
-  const std::vector<double> gain = gain_of(periodogram, noise);
-  const std::vector<double> noise_power = noise_of(periodogram.power, noise);
-  std::vector<double> out;
-  for (std::size_t k = 0; k < gain.size(); ++k)
-    out.push_back(gain[k] * noise_power[k] / periodogram.window_square);
-  return out;
-}
-
-std::vector<double> wiener_smoothed(std::span<const double> x, NoiseSpectrum noise) {
+WienerEstimate wiener_smoothed(std::span<const double> x, NoiseSpectrum noise) {
   const std::size_t n = x.size();
-  if (n < kLeastSmoothed) return {x.begin(), x.end()};
-  const std::vector<double> h = kernel_of(gain_of(welch(x, segment_length(n)), noise));
+  WienerEstimate out;
+  if (n < kLeastSmoothed) {
+    out.value.assign(x.begin(), x.end());
+    return out;
+  }
+  const Periodogram periodogram = welch(x, segment_length(n));
+  const std::vector<double> noise_power = noise_of(periodogram.power, noise);
+  const std::vector<double> gain = gain_of(periodogram, noise_power);
+  for (std::size_t k = 0; k < gain.size(); ++k)
+    out.error_spectrum.push_back(gain[k] * noise_power[k] / periodogram.window_square);
+  const std::vector<double> h = kernel_of(gain);
   const std::size_t pad = h.size() - 1;
   // continued point-symmetrically at either end
   std::vector<double> y;
@@ -128,13 +125,13 @@ std::vector<double> wiener_smoothed(std::span<const double> x, NoiseSpectrum noi
   for (std::size_t i = pad; i > 0; --i) y.push_back(2.0 * x[0] - x[i]);
   y.insert(y.end(), x.begin(), x.end());
   for (std::size_t i = 1; i <= pad; ++i) y.push_back(2.0 * x[n - 1] - x[n - 1 - i]);
-  std::vector<double> out(n);
+  out.value.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     const double* const middle = y.data() + k + pad;
     double value = h[0] * middle[0];
     for (std::size_t i = 1; i <= pad; ++i)
       value += h[i] * (middle[i] + middle[-static_cast<std::ptrdiff_t>(i)]);
-    out[k] = value;
+    out.value[k] = value;
   }
   return out;
 }

@@ -1,7 +1,7 @@
 // Smooths a measured record by what its spectrum has above the sensor's noise, so that a fit on it is not pulled low.
 //
-//   std::vector<double> v = wiener_smoothed(speed, NoiseSpectrum::kWhite);        // a speed that is measured
-//   std::vector<double> w = wiener_smoothed(slope, NoiseSpectrum::kDifferenced);  // central differences of a position
+//   std::vector<double> v = wiener_smoothed(speed, NoiseSpectrum::kWhite).value;        // a speed that is measured
+//   std::vector<double> w = wiener_smoothed(slope, NoiseSpectrum::kDifferenced).value;  // central differences of a position
 //
 // Law: the least-squares estimate of a signal from itself with noise, H(f) = max(0, 1 - S_n(f) / S_x(f)) (N. Wiener,
 // Extrapolation, Interpolation, and Smoothing of Stationary Time Series, 1949), as a symmetric kernel in time. Why:
@@ -26,13 +26,15 @@ enum class NoiseSpectrum : std::uint8_t {
   kDifferenced,  // of central differences of white noise: sin^2(w T)
 };
 
-// n samples to n, of x's unit. Fewer than kLeastSmoothed samples are returned as they are.
+// value: n samples, of x's unit; of fewer than kLeastSmoothed those of x, and no spectrum.
+// error_spectrum: what that is still off by, S_e(f) = H(f) S_n(f), the error of the least-squares estimate. At K frequencies evenly
+// from 0 to half the rate, x's unit squared; their mean is the error's variance. Cannot: the part of the motion that is lost where
+// nothing is let through, which does not stand out of the noise.
 inline constexpr std::size_t kLeastSmoothed = 256;  // derived: eight segments of the shortest length
-std::vector<double> wiener_smoothed(std::span<const double> x, NoiseSpectrum noise);
-
-// What the smoothed record is still off by: S_e(f) = H(f) S_n(f), the error of the least-squares estimate. At K frequencies evenly
-// from 0 to half the rate, x's unit squared; their mean is the error's variance. Empty: fewer samples than kLeastSmoothed. Cannot:
-// the part of the motion that is lost where nothing is let through, which does not stand out of the noise.
-std::vector<double> wiener_error_spectrum(std::span<const double> x, NoiseSpectrum noise);
+struct WienerEstimate {
+  std::vector<double> value;
+  std::vector<double> error_spectrum;
+};
+WienerEstimate wiener_smoothed(std::span<const double> x, NoiseSpectrum noise);
 
 }  // namespace omnihil

@@ -70,20 +70,20 @@ double coefficient(const std::vector<double>& measured) {
 
 TEST(Wiener, KeepsAMotionWithoutNoise) {
   const std::vector<double> x = motion_with(std::vector<double>(kSamples, 0.0));
-  const std::vector<double> y = wiener_smoothed(x, NoiseSpectrum::kWhite);
+  const std::vector<double> y = wiener_smoothed(x, NoiseSpectrum::kWhite).value;
   for (std::size_t k = 600; k + 600 < kSamples; ++k) ASSERT_NEAR(y[k], x[k], 1e-3) << k;
 }
 
 TEST(Wiener, KeepsAConstantAndARamp) {
   std::vector<double> x = white(0.01);
   for (std::size_t k = 0; k < kSamples; ++k) x[k] += 5.0 + 1e-3 * static_cast<double>(k);
-  const std::vector<double> y = wiener_smoothed(x, NoiseSpectrum::kWhite);
+  const std::vector<double> y = wiener_smoothed(x, NoiseSpectrum::kWhite).value;
   for (std::size_t k = 0; k < kSamples; ++k)
     ASSERT_NEAR(y[k], 5.0 + 1e-3 * static_cast<double>(k), 0.04) << k;
 }
 
 TEST(Wiener, TakesMostOfWhiteNoise) {
-  const std::vector<double> y = wiener_smoothed(white(1.0), NoiseSpectrum::kWhite);
+  const std::vector<double> y = wiener_smoothed(white(1.0), NoiseSpectrum::kWhite).value;
   EXPECT_LT(mean_square(y), 0.01);
 }
 
@@ -95,7 +95,7 @@ TEST(Wiener, TheCoefficientOfASlopeIsNotPulledLow) {
   const double sigma = std::sqrt(2.0 * power) * kPeriod_s;
   const std::vector<double> measured = motion_with(white(sigma));
   EXPECT_NEAR(coefficient(slope_of(measured)), 0.5, 0.02);
-  EXPECT_NEAR(coefficient(slope_of(wiener_smoothed(measured, NoiseSpectrum::kWhite))), 1.0, 0.01);
+  EXPECT_NEAR(coefficient(slope_of(wiener_smoothed(measured, NoiseSpectrum::kWhite).value)), 1.0, 0.01);
 }
 
 // The same from a position, whose differences have noise that grows with the frequency.
@@ -110,7 +110,7 @@ TEST(Wiener, TheCoefficientFromAPositionIsNotPulledLow) {
   }
   const std::vector<double> speed = slope_of(position);
   EXPECT_LT(coefficient(slope_of(speed)), 0.6);
-  EXPECT_NEAR(coefficient(slope_of(wiener_smoothed(speed, NoiseSpectrum::kDifferenced))), 1.0, 0.02);
+  EXPECT_NEAR(coefficient(slope_of(wiener_smoothed(speed, NoiseSpectrum::kDifferenced).value)), 1.0, 0.02);
 }
 
 double mean(const std::vector<double>& x) {
@@ -124,18 +124,18 @@ TEST(Wiener, TheErrorThatIsSaidIsTheErrorThatIsLeft) {
   const std::vector<double> truth = motion_with(std::vector<double>(kSamples, 0.0));
   for (const double sigma : {0.05, 0.5, 5.0}) {
     const std::vector<double> measured = motion_with(white(sigma));
-    std::vector<double> off = wiener_smoothed(measured, NoiseSpectrum::kWhite);
+    std::vector<double> off = wiener_smoothed(measured, NoiseSpectrum::kWhite).value;
     for (std::size_t k = 0; k < kSamples; ++k) off[k] -= truth[k];
     const double left = mean_square({off.begin() + 1000, off.end() - 1000});
-    const double said = mean(wiener_error_spectrum(measured, NoiseSpectrum::kWhite));
+    const double said = mean(wiener_smoothed(measured, NoiseSpectrum::kWhite).error_spectrum);
     EXPECT_NEAR(std::sqrt(said / left), 1.0, 0.3) << sigma;
   }
 }
 
 TEST(Wiener, AShortRecordStaysAsItIs) {
-  EXPECT_TRUE(wiener_error_spectrum(std::vector<double>(20, 1.0), NoiseSpectrum::kWhite).empty());
+  EXPECT_TRUE(wiener_smoothed(std::vector<double>(20, 1.0), NoiseSpectrum::kWhite).error_spectrum.empty());
   const std::vector<double> x = {1.0, 3.0, 2.0};
-  EXPECT_EQ(wiener_smoothed(x, NoiseSpectrum::kWhite), x);
+  EXPECT_EQ(wiener_smoothed(x, NoiseSpectrum::kWhite).value, x);
 }
 
 }  // namespace
