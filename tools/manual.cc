@@ -1,9 +1,8 @@
 #include "tools/manual.h"
 
 #include <filesystem>
-#include <fstream>
-#include <system_error>
 
+#include "hil/text/text_file.h"
 #include "tools/completion.h"
 #include "tools/man_page.h"
 
@@ -14,10 +13,7 @@ namespace fs = std::filesystem;
 
 void write(const fs::path& path, const std::string& text) {
   fs::create_directories(path.parent_path());
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::system_error(std::make_error_code(std::errc::io_error), path.string());
+  write_text_file(path, text);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "hil/text/json_text.h"
+#include "hil/text/text_file.h"
 
 namespace omnihil {
 namespace {
@@ -69,10 +70,7 @@ void append_history(const std::string& path, std::span<const CheckOutcome> outco
                         {"over_tolerance", run.over_tolerance}}) +
              "\n";
   }
-  std::ofstream out(path, std::ios::binary | std::ios::app);
-  out << lines;
-  out.flush();
-  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), path);
+  append_text_file(path, lines);
 }
 
 CheckHistory parse_history(const std::string& text) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <system_error>
@@ -79,10 +78,7 @@ SessionConfig config_of(const Scenario& scenario, const SuiteOptions& options) {
 void write(const fs::path& file, const std::string& text) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.flush();
-  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), file.string());
+  write_text_file(file, text);
 }
 
 FirmwareChoice heard_by(ScenarioConsole& console, FirmwareChoice choice) {

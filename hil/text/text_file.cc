@@ -4,6 +4,16 @@
 #include <system_error>
 
 namespace omnihil {
+namespace {
+
+void put(const std::filesystem::path& path, std::string_view text, std::ios::openmode mode) {
+  std::ofstream out(path, std::ios::binary | mode);
+  out << text;
+  out.flush();
+  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), path.string());
+}
+
+}  // namespace
 
 std::string read_text_file(const std::filesystem::path& path, std::string& error) {
   namespace fs = std::filesystem;
@@ -30,6 +40,14 @@ std::string read_text_file(const std::filesystem::path& path, std::string& error
   }
   if (text.empty()) error = "is empty";
   return text;
+}
+
+void write_text_file(const std::filesystem::path& path, std::string_view text) {
+  put(path, text, std::ios::out);
+}
+
+void append_text_file(const std::filesystem::path& path, std::string_view text) {
+  put(path, text, std::ios::app);
 }
 
 }  // namespace omnihil

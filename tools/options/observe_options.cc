@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
-#include <system_error>
 
 #include "hil/observe/image_trace.h"
 #include "hil/observe/profile_text.h"
@@ -13,17 +11,6 @@
 #include "hil/text/text_file.h"
 
 namespace omnihil {
-namespace {
-
-void write_file(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.flush();
-  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), path);
-}
-
-}  // namespace
-
 void add_trace_options(Verb& verb, ObserveWords& words, const std::string& when) {
   verb.add_option("--trace", words.trace,
                   "write what the image does: to a .json interrupts, functions, stack, control period "
@@ -78,7 +65,7 @@ std::string ImageReports::write_trace(const std::string& name, bool failed) {
   } else if (words_.last_s <= 0.0 || failed) {
     std::filesystem::path path(words_.trace);
     if (!name.empty()) path.replace_filename(path.stem().string() + "-" + name + path.extension().string());
-    write_file(path.string(), trace_->text());
+    write_text_file(path.string(), trace_->text());
     said = fmt::format("  trace {} ({} events{})\n", path.string(), trace_->events(),
                        trace_->dropped() ? ", older ones are gone: there were too many" : "");
   }
@@ -95,9 +82,9 @@ std::string ImageReports::write_profile() {
   const std::vector<DebugLine> lines = read_lines({text.begin(), text.end()});
   if (!words_.coverage.empty() && lines.empty())
     throw std::invalid_argument("--coverage: " + image_file_ + " has no lines: compile and link it with -g");
-  if (!words_.coverage.empty()) write_file(words_.coverage, lcov_text(*profile_, lines));
+  if (!words_.coverage.empty()) write_text_file(words_.coverage, lcov_text(*profile_, lines));
   if (words_.profile.empty()) return {};
-  write_file(words_.profile, callgrind_text(*profile_, lines));
+  write_text_file(words_.profile, callgrind_text(*profile_, lines));
   return profile_table(*profile_);
 }
 

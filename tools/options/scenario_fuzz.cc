@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "hil/scenario/chip_fuzz.h"
 #include "hil/scenario/scenario_rows.h"
 #include "hil/text/program_files.h"
+#include "hil/text/text_file.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/options/firmware_options.h"
@@ -31,10 +31,7 @@ struct FuzzArguments {
 void write_case(const fs::path& file, const std::string& text) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.flush();
-  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), file.string());
+  write_text_file(file, text);
 }
 
 void print_failure(const FuzzArguments& a, const Scenario& scenario, const FuzzFailure& f) {

@@ -19,6 +19,7 @@
 #include "hil/recording/recording_reader.h"
 #include "hil/recording/replay_report.h"
 #include "hil/text/dataset_files.h"
+#include "hil/text/text_file.h"
 #include "hil/text/today.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
@@ -170,13 +171,6 @@ int exit_code_of(const CheckOutcome& o) {
   return kExitOk;
 }
 
-void append_file(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary | std::ios::app);
-  out << text;
-  out.flush();
-  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), path);
-}
-
 // In CI the commit under test; else the day.
 std::string label_of(const CheckWords& words) {
   if (!words.label.empty()) return words.label;
@@ -188,7 +182,7 @@ void write_reports(const CheckWords& words, const std::vector<CheckOutcome>& out
   const std::string program = std::string("omnihil ") + program_commit();
   if (!words.junit.empty()) replace_file(words.junit, check_junit(outcomes));
   if (!words.json.empty()) replace_file(words.json, check_json(outcomes, program));
-  if (!words.summary.empty()) append_file(words.summary, check_markdown(outcomes));
+  if (!words.summary.empty()) append_text_file(words.summary, check_markdown(outcomes));
   if (!words.history.empty()) append_history(words.history, outcomes, label_of(words), today_utc());
   if (words.html.empty()) return;
   const CheckHistory history = words.history.empty() ? CheckHistory{} : load_history(words.history);

@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "hil/scenario/scenario_rows.h"
 #include "hil/scenario/scenario_suite.h"
 #include "hil/text/program_files.h"
+#include "hil/text/text_file.h"
 #include "tools/command_line.h"
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
@@ -74,14 +74,6 @@ int list(const Arguments& a) {
   return kExitOk;
 }
 
-void write_report(const std::string& path, const std::string& text) {
-  if (path.empty()) return;
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.flush();
-  if (!out) throw std::system_error(std::make_error_code(std::errc::io_error), path);
-}
-
 int run(Arguments& a) {
   const SuiteReading suite = read_suite(a.paths, a.level, data_folder("examples/scenarios"));
   for (const std::string& problem : suite.problems) fmt::print(stderr, "omnihil scenario: {}\n", problem);
@@ -114,8 +106,8 @@ int run(Arguments& a) {
   }
   fmt::print("{}", summary_line(outcomes));
   fmt::print("{}", reports.write_profile());
-  write_report(a.junit, junit_xml(outcomes));
-  write_report(a.json, scenario_json(outcomes, program_commit()));
+  if (!a.junit.empty()) write_text_file(a.junit, junit_xml(outcomes));
+  if (!a.json.empty()) write_text_file(a.json, scenario_json(outcomes, program_commit()));
   const int code = firmware_failed ? kExitFirmware : passed ? kExitOk : kExitDiffers;
   if (gdb) gdb->end(code);
   return code;
