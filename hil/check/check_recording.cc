@@ -130,9 +130,8 @@ std::vector<SignalSummary> signals_beyond(const RecordingComparison& comparison)
 
 namespace {
 void note_console(const Recording& recording, const ConsoleKeeper& console, CheckOutcome& out) {
-  constexpr std::size_t kShownLines = 20;  // as many as a report of the board has
   const std::int64_t until_ns = out.comparison.first ? out.comparison.first->now_ns : recording.end_ns;
-  const std::span<const ConsoleLine> last = last_lines(console.lines(), until_ns, kShownLines);
+  const std::span<const ConsoleLine> last = last_lines(console.lines(), until_ns);
   out.console.assign(last.begin(), last.end());
   out.console_difference = console_difference(recording, console.lines());
 }

@@ -12,16 +12,18 @@ namespace omnihil {
 namespace {
 
 using Console = std::tuple<int, int, std::string>;  // robot, board, port
-using Said = std::map<Console, std::vector<ConsoleLine>>;
+using Lines = std::vector<const ConsoleLine*>;
+struct Said {
+  Lines before, now;
+};
 
-Said recorded_lines(const Recording& recording) {
-  Said said;
+std::vector<ConsoleLine> recorded_lines(const Recording& recording) {
+  std::vector<ConsoleLine> lines;
   for (const RecordedChunk& chunk : recording.chunks) {
-    if (chunk.kind != RecordedChunk::Kind::kConsole) continue;
-    said[{chunk.robot_id, chunk.board, chunk.port}].push_back(
-        {chunk.now_ns, chunk.robot_id, chunk.board, chunk.port, chunk.text});
+    if (chunk.kind == RecordedChunk::Kind::kConsole)
+      lines.push_back({chunk.now_ns, chunk.robot_id, chunk.board, chunk.port, chunk.text});
   }
-  return said;
+  return lines;
 }
 
 std::string quoted(const ConsoleLine* line) {
@@ -32,30 +34,28 @@ std::string quoted(const ConsoleLine* line) {
 }  // namespace
 
 std::string console_difference(const Recording& recording, std::span<const ConsoleLine> replayed) {
-  const Said before = recorded_lines(recording);
-  if (before.empty()) return {};
-  Said now;
-  for (const ConsoleLine& line : replayed) now[{line.robot_id, line.board, line.port}].push_back(line);
-  Said all = before;
-  all.insert(now.begin(), now.end());
+  const std::vector<ConsoleLine> recorded = recorded_lines(recording);
+  if (recorded.empty()) return {};
+  std::map<Console, Said> consoles;
+  const auto of = [&](const ConsoleLine& line) -> Said& {
+    return consoles[{line.robot_id, line.board, line.port}];
+  };
+  for (const ConsoleLine& line : recorded) of(line).before.push_back(&line);
+  for (const ConsoleLine& line : replayed) of(line).now.push_back(&line);
   std::optional<std::int64_t> first_ns;
   std::string text;
-  for (const auto& entry : all) {
-    const Console& console = entry.first;
-    const std::vector<ConsoleLine> none;
-    const auto of = [&](const Said& said) { return said.contains(console) ? said.at(console) : none; };
-    const std::vector<ConsoleLine> was = of(before), is = of(now);
-    const auto [a, b] = std::ranges::mismatch(was, is, {}, &ConsoleLine::text, &ConsoleLine::text);
-    if (a == was.end() && b == is.end()) continue;
-    const ConsoleLine* const old_line = a == was.end() ? nullptr : &*a;
-    const ConsoleLine* const new_line = b == is.end() ? nullptr : &*b;
-    const std::int64_t at_ns = new_line != nullptr ? new_line->at_ns : old_line->at_ns;
+  for (const auto& [console, said] : consoles) {
+    const auto same = [](const ConsoleLine* a, const ConsoleLine* b) { return a->text == b->text; };
+    const auto [a, b] = std::ranges::mismatch(said.before, said.now, same);
+    if (a == said.before.end() && b == said.now.end()) continue;
+    const ConsoleLine* const old_line = a == said.before.end() ? nullptr : *a;
+    const ConsoleLine* const new_line = b == said.now.end() ? nullptr : *b;
+    const std::int64_t at_ns = (new_line != nullptr ? new_line : old_line)->at_ns;
     if (first_ns && *first_ns <= at_ns) continue;
     first_ns = at_ns;
     const auto& [robot, board, port] = console;
-    text = fmt::format("robot {}{} {}, line {}: {}, recorded {}", robot,
-                       board == 0 ? std::string() : fmt::format(" board {}", board), port,
-                       a - was.begin() + 1, quoted(new_line), quoted(old_line));
+    text = fmt::format("{} {}, line {}: {}, recorded {}", board_words(robot, board), port,
+                       a - said.before.begin() + 1, quoted(new_line), quoted(old_line));
   }
   return text;
 }

@@ -7,10 +7,13 @@
 
 namespace omnihil {
 
+std::string board_words(int robot_id, int board) {
+  return board == 0 ? fmt::format("robot {}", robot_id) : fmt::format("robot {} board {}", robot_id, board);
+}
+
 std::string ConsoleLine::words() const {
-  const std::string of = board == 0 ? std::string() : fmt::format(" board {}", board);
-  return fmt::format("{:.3f} s robot {}{} {} | {}", static_cast<double>(at_ns) * 1e-9, robot_id, of, port,
-                     text);
+  return fmt::format("{:.3f} s {} {} | {}", static_cast<double>(at_ns) * 1e-9, board_words(robot_id, board),
+                     port, text);
 }
 
 ConsoleKeeper::Listener ConsoleKeeper::listener(Listener also) {
@@ -21,11 +24,11 @@ ConsoleKeeper::Listener ConsoleKeeper::listener(Listener also) {
   };
 }
 
-std::span<const ConsoleLine> last_lines(std::span<const ConsoleLine> lines, std::int64_t until_ns,
-                                        std::size_t most) {
+std::span<const ConsoleLine> last_lines(std::span<const ConsoleLine> lines, std::int64_t until_ns) {
+  constexpr std::size_t kShown = 20;  // as many as the report of a board has (console_text.h)
   const auto end = std::ranges::upper_bound(lines, until_ns, {}, &ConsoleLine::at_ns);
   const auto count = static_cast<std::size_t>(end - lines.begin());
-  const std::size_t kept = std::min(count, most);
+  const std::size_t kept = std::min(count, kShown);
   return lines.subspan(count - kept, kept);
 }
 

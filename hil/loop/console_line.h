@@ -16,6 +16,9 @@
 
 namespace omnihil {
 
+// Who speaks: "robot 1", "robot 1 board 2" of a further board.
+std::string board_words(int robot_id, int board);
+
 struct ConsoleLine {
   std::int64_t at_ns = 0;
   int robot_id = 0, board = 0;
@@ -38,8 +41,7 @@ class ConsoleKeeper : public SessionObserver {
   std::vector<ConsoleLine> lines_;
 };
 
-// The last `most` lines that were said until then.
-std::span<const ConsoleLine> last_lines(std::span<const ConsoleLine> lines, std::int64_t until_ns,
-                                        std::size_t most);
+// The last lines that were said until then, as many as a report of something that failed shows.
+std::span<const ConsoleLine> last_lines(std::span<const ConsoleLine> lines, std::int64_t until_ns);
 
 }  // namespace omnihil

@@ -34,11 +34,10 @@ std::string detail(const CheckResult& r) {
 
 // Of a failed one, the last lines until its last failed check was decided.
 std::span<const ConsoleLine> shown_console(const ScenarioOutcome& o) {
-  constexpr std::size_t kMost = 20;  // as many as a report of the board has
   double until_s = 0.0;
   for (const CheckResult& r : o.results) until_s = r.passed ? until_s : std::max(until_s, r.at_s);
   if (o.passed()) return {};
-  return last_lines(o.console, std::llround(until_s * 1e9), kMost);
+  return last_lines(o.console, std::llround(until_s * 1e9));
 }
 
 nlohmann::ordered_json result_json(const CheckResult& r) {

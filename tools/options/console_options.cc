@@ -1,11 +1,10 @@
 #include "tools/options/console_options.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <vector>
 
+#include "hil/loop/console_line.h"
 #include "hil/loop/session_checks.h"
 #include "hil/recording/session_setup.h"
 
@@ -25,8 +24,7 @@ ConsoleListener console_listener(const std::string& robots) {
   throw_problems(problems);
   return [ids](std::uint32_t robot, int board, const std::string& port, const std::string& line) {
     if (!std::ranges::binary_search(ids, static_cast<int>(robot))) return;
-    const std::string who =
-        board == 0 ? fmt::format("robot {}", robot) : fmt::format("robot {} board {}", robot, board);
+    const std::string who = board_words(static_cast<int>(robot), board);
     std::fprintf(stderr, "%s %s | %s\n", who.c_str(), port.c_str(), line.c_str());
     std::fflush(stderr);
   };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hil/capture/decimal_time.h"
+#include "hil/loop/console_line.h"
 #include "hil/recording/capture_import.h"
 #include "hil/recording/recorded_packets.h"
 #include "hil/recording/recording_reader.h"
@@ -48,8 +49,8 @@ std::string line_of(const PassedPacket& passed, const RadioFormat& format, bool 
 
 // "    1.250000 | robot 3 board 1 USART2: boot"
 std::string console_text(const RecordedChunk& chunk) {
-  return fmt::format("{:12.6f} | robot {}{} {}: {}", static_cast<double>(chunk.now_ns) / 1e9, chunk.robot_id,
-                     chunk.board == 0 ? "" : fmt::format(" board {}", chunk.board), chunk.port, chunk.text);
+  return fmt::format("{:12.6f} | {} {}: {}", static_cast<double>(chunk.now_ns) / 1e9,
+                     board_words(chunk.robot_id, chunk.board), chunk.port, chunk.text);
 }
 
 // Of a capture without a radio format: its pieces in hex, with what carried them.
