@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "hil/wire/descriptor.h"
 #include "hil/wire/wire_url.h"
 
 namespace omnihil {
@@ -20,21 +21,11 @@ namespace fs = std::filesystem;
 constexpr std::uintmax_t kUnitBytes = 512 * 1024;
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 35;  // 32 GiB: SDHC's most
 
-struct Descriptor {
-  explicit Descriptor(int at) : fd(at) {}
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int fd;
-};
-
 std::string reason() { return std::strerror(errno); }
 
 // The file as it lies on the disk, read where the card is read.
 mcu::CardImage mapped(const Descriptor& file, std::size_t bytes) {
-  void* at = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file.fd, 0);
+  void* at = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file.get(), 0);
   if (at == MAP_FAILED) return {};
   std::shared_ptr<const void> owner(at, [bytes](const void* p) { ::munmap(const_cast<void*>(p), bytes); });
   return {owner, {static_cast<const std::uint8_t*>(at), bytes}};
@@ -60,11 +51,11 @@ std::string replace_file(const std::string& path, const mcu::CardBlocks& changed
   std::string why = error ? error.message() : "";
   if (done) {
     const Descriptor file(::open(making.c_str(), O_WRONLY | O_CLOEXEC));
-    done = file.fd >= 0;
+    done = static_cast<bool>(file);
     for (auto at = changed.begin(); done && at != changed.end(); ++at)
-      done = write_all(file.fd, at->second.data(), at->second.size(),
+      done = write_all(file.get(), at->second.data(), at->second.size(),
                        std::uint64_t{at->first} * mcu::kCardBlockBytes);
-    done = done && ::fsync(file.fd) == 0 && ::rename(making.c_str(), path.c_str()) == 0;
+    done = done && ::fsync(file.get()) == 0 && ::rename(making.c_str(), path.c_str()) == 0;
     if (!done) why = reason();
   }
   if (!done) fs::remove(making, error);
@@ -81,9 +72,9 @@ mcu::CardImage CardFiles::open(const mcu::DeviceEntry& entry, int board) {
         fmt::format("{}: device {}: image = '{}' {}", board_file_, entry.name, named, what));
   };
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.fd < 0) fail(fmt::format("cannot be read: {}", reason()));
+  if (!file) fail(fmt::format("cannot be read: {}", reason()));
   struct stat is {};
-  if (::fstat(file.fd, &is) != 0 || !S_ISREG(is.st_mode)) fail("is no regular file");
+  if (::fstat(file.get(), &is) != 0 || !S_ISREG(is.st_mode)) fail("is no regular file");
   const auto bytes = static_cast<std::uintmax_t>(is.st_size);
   if (bytes == 0 || bytes % kUnitBytes != 0 || bytes > kMostBytes)
     fail(fmt::format("has {} bytes; allowed: a multiple of 512 KiB, up to 32 GiB", bytes));
