@@ -9,17 +9,12 @@ namespace omnihil {
 namespace {
 
 struct TypeRow {
-  std::string_view name;
   std::size_t bytes;
   bool has_sign;
 };
-constexpr std::array<TypeRow, static_cast<std::size_t>(WordType::kCount)> kTypes{{{"u8", 1, false},
-                                                                                  {"i8", 1, true},
-                                                                                  {"u16", 2, false},
-                                                                                  {"i16", 2, true},
-                                                                                  {"u32", 4, false},
-                                                                                  {"i32", 4, true},
-                                                                                  {"f32", 4, true}}};
+// In the order of WordType.
+constexpr std::array<TypeRow, static_cast<std::size_t>(WordType::kCount)> kTypes{
+    {{1, false}, {1, true}, {2, false}, {2, true}, {4, false}, {4, true}, {4, true}}};
 
 const TypeRow& row(WordType type) { return kTypes[static_cast<std::size_t>(type)]; }
 
@@ -82,13 +77,6 @@ void fill(BusFrame& frame, const WordFrame& said, std::int64_t n, std::size_t wh
 }
 
 }  // namespace
-
-std::optional<WordType> word_type(std::string_view name) {
-  for (std::size_t i = 0; i < kTypes.size(); ++i) {
-    if (kTypes[i].name == name) return static_cast<WordType>(i);
-  }
-  return std::nullopt;
-}
 
 std::size_t bytes_of(WordType type) { return row(type).bytes; }
 bool is_unsigned(WordType type) { return !row(type).has_sign; }

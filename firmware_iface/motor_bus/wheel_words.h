@@ -12,9 +12,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "firmware_iface/checksum.h"
@@ -23,7 +21,6 @@
 namespace omnihil {
 
 enum class WordType : std::uint8_t { kU8, kI8, kU16, kI16, kU32, kI32, kF32, kCount };
-std::optional<WordType> word_type(std::string_view name);  // "u8", "i16", "f32", …
 std::size_t bytes_of(WordType type);
 bool is_unsigned(WordType type);
 

@@ -68,9 +68,7 @@ void Reader::read_top() {
   keys_.only(top_, "",
              {"format", "name", "source", "chip", "crystal_Hz", "coupling_us", "control_interrupt",
               "control_period_us", "radio", "motor", "analog", "pin", "eeprom"});
-  if (const auto format = keys_.text(top_, "", "format"); !format || *format != kFormat) {
-    keys_.wrong(top_, "", "format", format ? "unknown" : "missing", kFormat);
-  }
+  keys_.format(top_, kFormat);
   spec_.name = keys_.text(top_, "", "name").value_or("");
   if (spec_.name.empty()) keys_.missing(top_, "", "name", "a text");
   const auto chip = keys_.text(top_, "", "chip");
@@ -116,10 +114,8 @@ void Reader::read_motor(const Table& t, const std::string& path) {
   }
   motor.inverted = keys_.flag(t, path, "inverted").value_or(false);
   motor.direction = pin(t, path, "direction");
-  if (const auto word = keys_.text(t, path, "forward")) {
-    motor.direction_high_is_forward = *word == "high";
-    if (*word != "high" && *word != "low") keys_.wrong(t, path, "forward", "unknown", "high, low");
-  }
+  if (const auto level = keys_.word(t, path, "forward", {"high", "low"}))
+    motor.direction_high_is_forward = *level == 0;
   motor.sign = keys_.flag(t, path, "reversed").value_or(false) ? -1.0 : 1.0;
   motor.enable = pin(t, path, "enable");
   read_encoder(t, path, motor);
@@ -160,14 +156,9 @@ void Reader::read_analog(const Table& t, const std::string& path) {
   const unsigned channels = spec_.chip->adc_channels;
   analog.channel = static_cast<unsigned>(keys_.whole(t, path, "channel", 0, channels - 1).value_or(0));
   if (!t.contains("channel")) keys_.missing(t, path, "channel", fmt::format("0 to {}", channels - 1));
-  const std::string signal = keys_.text(t, path, "signal").value_or("constant");
-  if (signal == "bus_voltage") {
-    analog.signal = AnalogSignal::kBusVoltage;
-  } else if (signal == "motor_current") {
-    analog.signal = AnalogSignal::kMotorCurrent;
-  } else if (signal != "constant") {
-    keys_.wrong(t, path, "signal", "unknown", "bus_voltage, motor_current, constant");
-  }
+  const auto signal =  // in the order of AnalogSignal
+      keys_.word(t, path, "signal", {"constant", "bus_voltage", "motor_current"});
+  analog.signal = static_cast<AnalogSignal>(signal.value_or(0));
   analog.volts_per_unit = keys_.number(t, path, "volts_per_unit", -1e3, 1e3).value_or(0.0);
   analog.offset_V = keys_.number(t, path, "offset_V", -100.0, 100.0).value_or(0.0);
   spec_.analog.push_back(analog);
@@ -219,11 +210,11 @@ AvrBoardSpec Reader::read() {
   read_top();
   if (spec_.chip == nullptr) return std::move(spec_);  // the rest is said of a chip
   read_control();
-  for (const auto& [t, path] : keys_.tables(top_, "motor")) read_motor(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "motor")) read_motor(*t, path);
   if (spec_.motors.empty()) keys_.missing(top_, "", "motor", "[[motor]], one per wheel");
-  for (const auto& [t, path] : keys_.tables(top_, "pin")) read_pin(*t, path);
-  for (const auto& [t, path] : keys_.tables(top_, "analog")) read_analog(*t, path);
-  for (const auto& [t, path] : keys_.tables(top_, "eeprom")) read_eeprom(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "pin")) read_pin(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "analog")) read_analog(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "eeprom")) read_eeprom(*t, path);
   read_radio();
   return std::move(spec_);
 }

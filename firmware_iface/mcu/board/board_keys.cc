@@ -50,10 +50,8 @@ void BoardKeys::only(const toml::table& table, const std::string& path,
                      std::initializer_list<std::string_view> allowed) {
   for (const auto& [key, node] : table) {
     if (std::find(allowed.begin(), allowed.end(), key.str()) != allowed.end()) continue;
-    std::string list;
-    for (const std::string_view word : allowed) list += (list.empty() ? "" : ", ") + std::string(word);
-    problems_.push_back(
-        {file_, key.source().begin.line, key_path(path, key.str()), written(node), "unknown key", list});
+    problems_.push_back({file_, key.source().begin.line, key_path(path, key.str()), written(node),
+                         "unknown key", fmt::format("{}", fmt::join(allowed, ", "))});
   }
 }
 
@@ -64,6 +62,23 @@ std::optional<std::string> BoardKeys::text(const toml::table& table, const std::
   if (const auto value = node->value_exact<std::string>()) return *value;
   wrong(table, path, key, "not a text", "a text");
   return std::nullopt;
+}
+
+std::optional<std::size_t> BoardKeys::word(const toml::table& table, const std::string& path,
+                                           std::string_view key,
+                                           std::initializer_list<std::string_view> allowed, bool needed) {
+  const std::string list = fmt::format("{}", fmt::join(allowed, ", "));
+  if (needed && !table.contains(key)) missing(table, path, key, list);
+  const auto value = text(table, path, key);
+  if (!value) return std::nullopt;
+  const auto* const found = std::find(allowed.begin(), allowed.end(), *value);
+  if (found != allowed.end()) return static_cast<std::size_t>(found - allowed.begin());
+  wrong(table, path, key, "unknown", list);
+  return std::nullopt;
+}
+
+void BoardKeys::format(const toml::table& top, std::string_view allowed) {
+  word(top, "", "format", {allowed}, true);
 }
 
 std::string BoardKeys::radio_format(const toml::table& radio, const ServedRadio& served) {
@@ -137,18 +152,19 @@ std::vector<std::string> BoardKeys::texts(const toml::table& table, const std::s
   return {};
 }
 
-std::vector<std::pair<const toml::table*, std::string>> BoardKeys::tables(const toml::table& top,
+std::vector<std::pair<const toml::table*, std::string>> BoardKeys::tables(const toml::table& table,
+                                                                          const std::string& path,
                                                                           std::string_view name) {
   std::vector<std::pair<const toml::table*, std::string>> all;
-  const toml::node* node = top.get(name);
+  const toml::node* node = table.get(name);
   if (node == nullptr) return all;
   const toml::array* list = node->as_array();
   if (list == nullptr || !list->is_array_of_tables()) {
-    wrong(top, "", name, "not a list of tables", fmt::format("[[{}]]", name));
+    wrong(table, path, name, "not a list of tables", fmt::format("[[{}]]", name));
     return all;
   }
   for (std::size_t i = 0; i < list->size(); ++i) {
-    all.emplace_back(list->get(i)->as_table(), fmt::format("{}[{}]", name, i));
+    all.emplace_back(list->get(i)->as_table(), fmt::format("{}[{}]", key_path(path, name), i));
   }
   return all;
 }

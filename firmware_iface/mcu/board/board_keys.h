@@ -26,17 +26,23 @@ class BoardKeys {
                                double lower, double upper);
   std::optional<std::int64_t> whole(const toml::table& table, const std::string& path, std::string_view key,
                                     std::int64_t lower, std::int64_t upper);
+  // The index of the word among those allowed; none where it is absent or wrong. `needed`: it may not be absent.
+  std::optional<std::size_t> word(const toml::table& table, const std::string& path, std::string_view key,
+                                  std::initializer_list<std::string_view> allowed, bool needed = false);
   std::optional<bool> flag(const toml::table& table, const std::string& path, std::string_view key);
   // A text or a list of texts.
   std::vector<std::string> texts(const toml::table& table, const std::string& path, std::string_view key);
   void wrong(const toml::table& table, const std::string& path, std::string_view key, std::string what,
              std::string allowed);
+  // The key "format" at the top, which says what file it is.
+  void format(const toml::table& top, std::string_view allowed);
   // The key "format" of [radio]: one that there is, and the one that is served.
   std::string radio_format(const toml::table& radio, const ServedRadio& served);
   std::vector<BoardProblem>& problems() { return problems_; }
   void missing(const toml::table& table, const std::string& path, std::string_view key, std::string allowed);
   // The tables of `[[name]]`, each with its path; anything else is a problem.
-  std::vector<std::pair<const toml::table*, std::string>> tables(const toml::table& top,
+  std::vector<std::pair<const toml::table*, std::string>> tables(const toml::table& table,
+                                                                 const std::string& path,
                                                                  std::string_view name);
 
  private:

@@ -73,9 +73,7 @@ void Reader::read_top() {
              {"format", "name", "source", "chip", "boot_address", "crystal_Hz", "cpi_scale", "coupling_us",
               "adc_reference_V", "control_timer", "boards_per_robot", "wheel_commands", "radio", "motor",
               "device", "analog", "pin", "flash", "port"});
-  if (const auto format = keys_.text(top_, "", "format"); !format || *format != kFormat) {
-    keys_.wrong(top_, "", "format", format ? "unknown" : "missing", kFormat);
-  }
+  keys_.format(top_, kFormat);
   spec_.name = keys_.text(top_, "", "name").value_or("");
   if (spec_.name.empty()) keys_.missing(top_, "", "name", "a text");
   std::string chips;
@@ -168,10 +166,8 @@ void Reader::read_motor(const toml::table& t, const std::string& path) {
   motor.inverted = keys_.flag(t, path, "inverted").value_or(false);
   motor.direction = pin(t, path, "direction");
   if (motor.direction && motor.pwm.size() > 1) keys_.wrong(t, path, "direction", "goes with one channel", "");
-  if (const auto word = keys_.text(t, path, "forward")) {
-    motor.direction_high_is_forward = *word == "high";
-    if (*word != "high" && *word != "low") keys_.wrong(t, path, "forward", "unknown", "high, low");
-  }
+  if (const auto level = keys_.word(t, path, "forward", {"high", "low"}))
+    motor.direction_high_is_forward = *level == 0;
   motor.sign = keys_.flag(t, path, "reversed").value_or(false) ? -1.0 : 1.0;
   motor.enable = pin(t, path, "enable");
   motor.brake = pin(t, path, "brake");
@@ -225,10 +221,8 @@ void Reader::read_device(const toml::table& t, const std::string& path) {
   }
   device.name = keys_.text(t, path, "name").value_or(device.name);
   device.wheel = static_cast<int>(keys_.whole(t, path, "wheel", 0, kWheels - 1).value_or(0));
-  if (const auto shaft = keys_.text(t, path, "shaft")) {
-    device.on_wheel_shaft = *shaft == "wheel";
-    if (*shaft != "wheel" && *shaft != "rotor") keys_.wrong(t, path, "shaft", "unknown", "rotor, wheel");
-  }
+  if (const auto shaft = keys_.word(t, path, "shaft", {"rotor", "wheel"}))
+    device.on_wheel_shaft = *shaft == 1;
   if (device.kind != nullptr) read_device_wires(t, path, device);
   claim(t, path, "name", "device " + device.name);
   spec_.devices.push_back(std::move(device));
@@ -305,16 +299,10 @@ void Reader::read_analog(const toml::table& t, const std::string& path) {
   }
   analog.channel = static_cast<unsigned>(keys_.whole(t, path, "channel", 0, 31).value_or(0));
   if (!t.contains("channel")) keys_.missing(t, path, "channel", "0 to 31");
-  // In the order of AnalogSignal.
-  constexpr std::string_view kSignals[] = {"constant", "bus_voltage", "motor_current", "phase_current",
-                                           "phase_voltage"};
-  const std::string signal = keys_.text(t, path, "signal").value_or("constant");
-  const auto* found = std::find(std::begin(kSignals), std::end(kSignals), signal);
-  if (found == std::end(kSignals)) {
-    keys_.wrong(t, path, "signal", "unknown", fmt::format("{}", fmt::join(kSignals, ", ")));
-  } else {
-    analog.signal = static_cast<AnalogSignal>(found - kSignals);
-  }
+  const auto signal =  // in the order of AnalogSignal
+      keys_.word(t, path, "signal",
+                 {"constant", "bus_voltage", "motor_current", "phase_current", "phase_voltage"});
+  analog.signal = static_cast<AnalogSignal>(signal.value_or(0));
   analog.phase = static_cast<int>(keys_.whole(t, path, "phase", 0, kLegs - 1).value_or(0));
   analog.wheel = static_cast<int>(keys_.whole(t, path, "wheel", 0, kWheels - 1).value_or(0));
   analog.volts_per_unit = keys_.number(t, path, "volts_per_unit", -1e3, 1e3).value_or(0.0);
@@ -467,18 +455,18 @@ void Reader::read_port(const toml::table& t, const std::string& path) {
 
 BoardSpec Reader::read() {
   read_top();
-  for (const auto& [t, path] : keys_.tables(top_, "motor")) read_motor(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "motor")) read_motor(*t, path);
   if (spec_.motors.empty())
     keys_.missing(top_, "", "motor", "[[motor]], one per wheel that the board drives");
-  for (const auto& [t, path] : keys_.tables(top_, "device")) read_device(*t, path);
-  for (const auto& [t, path] : keys_.tables(top_, "analog")) read_analog(*t, path);
-  for (const auto& [t, path] : keys_.tables(top_, "flash")) read_flash(*t, path);
-  for (const auto& [t, path] : keys_.tables(top_, "pin")) {
+  for (const auto& [t, path] : keys_.tables(top_, "", "device")) read_device(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "analog")) read_analog(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "flash")) read_flash(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "pin")) {
     read_pin(*t, path);
   }
   read_radio();
   read_wheel_commands();
-  for (const auto& [t, path] : keys_.tables(top_, "port")) read_port(*t, path);
+  for (const auto& [t, path] : keys_.tables(top_, "", "port")) read_port(*t, path);
   return std::move(spec_);
 }
 }  // namespace

@@ -33,14 +33,11 @@ std::optional<Dialect> read_dialect(const DialectFile& file, int motors,
   if (!top) return std::nullopt;
   BoardKeys keys(file.path, problems);
   keys.only(*top, "", {"format", "name", "source", "port", "period_ms", "frame"});
-  if (const auto format = keys.text(*top, "", "format"); !format || *format != kFormat)
-    keys.wrong(*top, "", "format", format ? "unknown" : "missing", kFormat);
+  keys.format(*top, kFormat);
   for (const std::string_view key : {"name", "source"}) keys.text(*top, "", key);
   if (!top->contains("name")) keys.missing(*top, "", "name", "a text");
-  const std::string port = keys.text(*top, "", "port").value_or("");
-  if (port != "serial" && port != "can")
-    keys.wrong(*top, "", "port", top->contains("port") ? "unknown" : "missing", "serial, can");
-  Dialect dialect{.words = {}, .serial = port == "serial"};
+  const auto port = keys.word(*top, "", "port", {"serial", "can"}, true);
+  Dialect dialect{.words = {}, .serial = port == 0u};
   dialect.words = read_wheel_words(*top, "", keys, dialect.serial, motors);
   if (dialect.words.frames.empty() && !top->contains("frame"))
     keys.missing(*top, "", "frame", "[[frame]], what is said");

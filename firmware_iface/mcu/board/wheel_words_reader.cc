@@ -112,11 +112,9 @@ WordChecksum read_checksum(const toml::table& t, const std::string& path, BoardK
 // Where it stands: its type, its bytes, its bits of them.
 void read_place(const toml::table& t, const std::string& path, FrameAtWork& work, WordField& field) {
   BoardKeys& keys = work.keys;
-  const auto type = word_type(keys.text(t, path, "type").value_or(""));
-  if (!type)
-    keys.wrong(t, path, "type", t.contains("type") ? "unknown" : "missing",
-               "u8, i8, u16, i16, u32, i32, f32");
-  field.type = type.value_or(WordType::kU8);
+  const auto type =  // in the order of WordType
+      keys.word(t, path, "type", {"u8", "i8", "u16", "i16", "u32", "i32", "f32"}, true);
+  field.type = static_cast<WordType>(type.value_or(0));
   if (!t.contains("at")) keys.missing(t, path, "at", "the field's first byte, from 0");
   const auto bytes = static_cast<std::int64_t>(bytes_of(field.type));
   const auto at = keys.whole(t, path, "at", 0, work.frame.bytes - bytes);
@@ -204,9 +202,7 @@ WordFrame read_frame(const toml::table& t, const std::string& path, BoardKeys& k
                      std::int64_t period_ns) {
   keys.only(t, path, {"each", "id", "extended", "bytes", "every_ms", "from_ms", "until_ms", "field"});
   WordFrame frame;
-  const std::string each = keys.text(t, path, "each").value_or("wheel");
-  frame.each_wheel = each == "wheel";
-  if (each != "wheel" && each != "board") keys.wrong(t, path, "each", "unknown", "wheel, board");
+  frame.each_wheel = keys.word(t, path, "each", {"wheel", "board"}).value_or(0) == 0;
   frame.extended = keys.flag(t, path, "extended").value_or(false);
   constexpr std::int64_t kLastStandard = 0x7FF, kLastExtended = 0x1FFFFFFF;
   const std::int64_t last = (frame.extended ? kLastExtended : kLastStandard) - (kWheels - 1);
@@ -218,8 +214,8 @@ WordFrame read_frame(const toml::table& t, const std::string& path, BoardKeys& k
   frame.bytes = static_cast<std::uint8_t>(keys.whole(t, path, "bytes", 1, most).value_or(most));
   read_times(t, path, keys, period_ns, frame);
   FrameAtWork work{keys, frame, motors};
-  for (const auto& [field, name] : keys.tables(t, "field"))
-    frame.fields.push_back(read_field(*field, path + "." + name, work));
+  for (const auto& [field, at] : keys.tables(t, path, "field"))
+    frame.fields.push_back(read_field(*field, at, work));
   return frame;
 }
 
@@ -230,9 +226,8 @@ WheelWords read_wheel_words(const toml::table& t, const std::string& path, Board
   WheelWords words;
   if (!t.contains("period_ms")) keys.missing(t, path, "period_ms", "between what the main board says");
   words.period_ns = keys.whole(t, path, "period_ms", 1, 1000).value_or(1) * kMs_ns;
-  for (const auto& [frame, name] : keys.tables(t, "frame"))
-    words.frames.push_back(
-        read_frame(*frame, path.empty() ? name : path + "." + name, keys, serial, motors, words.period_ns));
+  for (const auto& [frame, at] : keys.tables(t, path, "frame"))
+    words.frames.push_back(read_frame(*frame, at, keys, serial, motors, words.period_ns));
   return words;
 }
 

@@ -227,6 +227,7 @@ TEST(WheelWords, NamesWhatIsWrongInATable) {
 TEST(WheelWords, NamesWhatIsWrongWithCountersAndChecksums) {
   const std::string field = "wheel_commands.frame[0].field[0]";
   const std::string kCases[][3] = {
+      {"3", "wheel_commands.frame[0].field", "not a list of tables"},
       {"{ at = 0, type = \"u8\", counter = 3 }", field + ".counter", "not a table"},
       {"{ at = 0, type = \"i8\", counter = {} }", field + ".type", "u8, u16, u32"},
       {"{ at = 0, type = \"u8\", counter = { last = 256 } }", field + ".counter.last", "0 to 255"},
