@@ -31,7 +31,6 @@ RobotModelValues<T> robot_values(const Candidate& candidate, std::span<const Unk
                                  std::size_t first);
 
 struct RobotMotionOptions {
-  double step_s = 1e-3;       // at most; a sample period is parted into equal steps
   bool slave_angle = true;    // laws of the angle take the measured angle
   bool follow_camera = true;  // false: heading and path are the model's own, from the record's start
   std::optional<std::uint64_t> noise_seed;  // for effects that draw random numbers; none: expected values

@@ -49,7 +49,7 @@ class RollingRig {
   Method method() const { return Method::kForward; }
   const RigRun& run(std::size_t n) const { return runs_[n]; }
   bool shows_signature_of(const EffectEntry&) const { return false; }
-  double step_s(const Candidate&, std::size_t) const { return motion_.step_s; }
+  double step_s(const Candidate&, std::size_t) const { return kRollingStep_s; }
   // Of a loop that is closed by a firmware nothing is known but its answers.
   bool is_exact(const Candidate&, std::size_t n) const {
     return motion_.firmware == nullptr || !runs_[n].record.radio;
