@@ -11,7 +11,7 @@ namespace omnihil {
 void check_counter(const CheckContext& data, std::vector<DataFinding>& findings) {
   using Grade = DataFinding::Grade;
   // Turns of common encoders and the ranges of 8 to 32 bit counters.
-  constexpr double kWraps[] = {256, 1024, 4096, 16384, 32768, 65536, 4294967296.0};
+  constexpr double kWraps[] = {256, 1024, 4096, 16384, 32768, 65536, 4294967296.0};  // as above: a choice
   for (const RunView& view : data.runs) {
     for (const DriveView& drive : view.drives) {
       if (drive.position == nullptr || drive.quantum == 0.0) continue;

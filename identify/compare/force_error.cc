@@ -8,7 +8,7 @@
 namespace omnihil {
 namespace {
 
-constexpr int kFactor = 10;  // of the published recipe (Janot, Gautier, Brunot 2019): 1 kHz to 100 Hz
+constexpr int kFactor = 10;  // source: the published recipe (Janot, Gautier, Brunot 2019): 1 kHz to 100 Hz
 constexpr std::size_t kLeastSamples = 100;  // of a stretch: shorter ones are all ends of the filter; a choice
 
 double decimated_square(const std::vector<double>& x) {

@@ -20,10 +20,10 @@ namespace {
 
 // The design grid: choices of effort. A coarser grid proposes a worse run, never a wrong distance.
 // Levels are steps of a factor of two to three down to where stiction holds a drive.
-constexpr double kLevels[] = {1.0, 0.5, 0.2, 0.08, 0.03, 0.01};  // shares of the largest input allowed
+constexpr double kLevels[] = {1.0, 0.5, 0.2, 0.08, 0.03, 0.01};  // shares of the largest input; as above
 constexpr int kRefitIterations = 3;        // Gauss-Newton; a choice, convergence is not checked
 constexpr std::size_t kRefined = 3;        // best of the linear ranking, refitted in full; by cost
-constexpr double kCoarseLongest_s = 10.0;  // within a diagnosis, whose time it costs
+constexpr double kCoarseLongest_s = 10.0;  // within a diagnosis; by cost
 
 struct Trial {
   std::size_t entry = 0;  // of the menu

@@ -40,6 +40,7 @@ double square(double turns) { return turns - std::floor(turns) < 0.5 ? 1.0 : -1.
 
 // Twelve sines from 0.3 to 60 Hz, each harmonic of a 10 s period, with phases that keep the sum flat.
 double multisine(double t, double) {
+  // Evenly over the decades: Fibonacci's numbers, and the end of the band. A choice.
   constexpr std::array<int, 12> kHarmonics = {3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 600};
   double sum = 0.0;
   for (std::size_t k = 0; k < kHarmonics.size(); ++k) {

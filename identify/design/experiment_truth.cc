@@ -153,7 +153,7 @@ Run imposed_run(const PlannedBench& bench, const PlannedInputs& inputs) {
 void fill_motion(const Dataset& given, const Predictor& predictor, const Candidate& nominal,
                  PlannedBench& bench) {
   constexpr double kAcceleration =
-      0.99;  // quantile: the largest ones are the sensor's noise, differentiated twice
+      0.99;  // quantile: the largest ones are the sensor's noise, differentiated twice; a choice
   bench.full_input = 0.0;
   std::vector<double> accelerations;
   for (int r = 0; r < predictor.run_count(); ++r) {

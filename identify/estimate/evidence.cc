@@ -8,8 +8,8 @@ namespace {
 
 constexpr Eigen::Index kLongestLag = 2000;  // samples, by cost
 constexpr Eigen::Index kEveryLag =
-    50;                          // up to here; beyond, lags grow by 4 %, which the integral does not see
-constexpr double kWindow = 5.0;  // of the integral, in autocorrelation times: Sokal 1997
+    50;  // up to here; beyond, lags grow by 4 %, which the integral does not see; by cost
+constexpr double kWindow = 5.0;  // of the integral, in autocorrelation times: source, Sokal 1997
 
 bool usable(const WhitenedResiduals& residuals, const ResidualPair& pair) {
   return !residuals.empty() && pair.parent.size() == residuals.size() &&

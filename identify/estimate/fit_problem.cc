@@ -32,7 +32,7 @@ double autocorrelation_time(const Eigen::VectorXd& r) {
   const Eigen::Index n = r.size();
   const double energy = r.squaredNorm();
   if (n < 8 || !(energy > 0.0)) return 1.0;
-  constexpr double kWindow = 5.0;  // Sokal 1997: 4 to 10, truncation against noise of the sum
+  constexpr double kWindow = 5.0;  // source: Sokal 1997, 4 to 10, truncation against noise of the sum
   double time = 1.0;
   const Eigen::Index longest = std::min<Eigen::Index>(n / 10, 4000);
   for (Eigen::Index lag = 1; lag < longest; ++lag) {

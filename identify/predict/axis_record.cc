@@ -13,7 +13,7 @@ namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kHalfBusWindow[] = {kBusWindow / 2};
+constexpr std::size_t kHalfBusWindow[] = {kBusWindow / 2};  // to either side: derived
 
 }  // namespace
 
@@ -63,11 +63,13 @@ double AxisRecord::speed_near(std::size_t k) const {
   for (std::size_t i = k; i < size() && i < k + kSamples && !velocity.empty(); ++i) {
     if (std::isfinite(velocity[i])) near.push_back(velocity[i]);
   }
-  const bool at_rest_by_counts = !counts.empty() && k + 20 < size() && counts[k] == counts[k + 20];
+  constexpr std::size_t kRests = 20;  // samples without a count; a choice
+  const bool at_rest_by_counts = !counts.empty() && k + kRests < size() && counts[k] == counts[k + kRests];
   if (at_rest_by_counts) return 0.0;
   const auto slope = [&] {
+    constexpr std::size_t kFewest = 8;  // twice what a parabola's error needs; a choice
     std::size_t end = k;
-    while (end < size() && (end < k + 8 || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
+    while (end < size() && (end < k + kFewest || time_s[end] - time_s[k] < kSlopeSpan_s)) ++end;
     return first_slope(time_s, displacement, k, end) / per_rad;
   };
   // Standard error of a slope through n counted positions: about count / (span sqrt(n)), often far below the
@@ -80,7 +82,7 @@ double AxisRecord::speed_near(std::size_t k) const {
   if (!near.empty() && std::isfinite(velocity[k])) {
     // Where the speed changes within these samples, their median is the speed of a later instant (DECISIONS
     // 37).
-    constexpr double kMoves = 6.0;  // sigmas of one reading: 4.2 of the difference of two, p = 2e-5
+    constexpr double kMoves = 6.0;  // sigmas of one reading: 4.2 of the difference of two, p = 2e-5: a choice
     if (std::abs(near.back() - near.front()) > kMoves * velocity_sigma_rad_s) return near.front();
     return median_in_place(near);
   }

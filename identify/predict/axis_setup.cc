@@ -51,9 +51,8 @@ void compare_forward(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) 
   };
   const auto add = [&](Quantity quantity, View view, const std::string& name, const char* unit,
                        std::vector<double> measured, double sigma) -> ComparedSignal& {
-    ComparedSignal& c = add_signal(s, {.quantity = quantity, .view = view, .channel = name}, name, unit,
-                                   r.time_s, std::move(measured), sigma);
-    return c;
+    return add_signal(s, {.quantity = quantity, .view = view, .channel = name}, name, unit, r.time_s,
+                      std::move(measured), sigma);
   };
   const auto differences = [&](Quantity quantity, const std::vector<double>& x, double per_unit, double sigma,
                                double quantum) {

@@ -199,7 +199,8 @@ class Runner {
       const RollingInput<T> in = input(k);
       if (record_.radio) hear(k);
       const double dt_s = record_.time_s[k + 1] - record_.time_s[k];
-      const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - 1e-6)));
+      constexpr double kOff = 1e-6;  // of a step: clocks are sums; a choice
+      const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - kOff)));
       for (int j = 0; j < steps; ++j) step(k, j, steps, in);
       const RollingState<T>& x = at_.state;
       out_.finite = !(firmware_ && firmware_->failed()) && is_finite(x.velocity[0]) &&

@@ -63,9 +63,10 @@ double rounding_of(const std::vector<PerWheel<double>>& duties, std::size_t whee
   for (const auto& duty : duties)
     different.insert(duty.begin(), duty.begin() + static_cast<std::ptrdiff_t>(wheels));
   if (different.size() < kEnough) return 0.0;
-  constexpr std::array<double, 4> kDecimals = {1e2, 1e3, 1e4, 1e5};
+  constexpr std::array<double, 4> kDecimals = {1e2, 1e3, 1e4, 1e5};  // fewer are set points; a choice
   for (const double scale : kDecimals) {
     const bool round = std::all_of(different.begin(), different.end(), [&](double v) {
+      // a file's ninth decimal, and what the product rounds off; a choice
       return std::abs(v * scale - std::round(v * scale)) < 1e-6 * scale * 1e-3 + 1e-7;
     });
     if (round) return 1.0 / scale;

@@ -7,9 +7,9 @@ namespace omnihil {
 namespace {
 
 constexpr double kLongest_s = 0.05;   // of a window: slower than any speed loop that uses it; a choice
-constexpr double kFewestPeriods = 2;  // shorter, the reading is the difference of two samples
+constexpr double kFewestPeriods = 2;  // shorter, the reading is the difference of two samples: derived
 constexpr double kOffStep = 0.02;  // of a step: decimals of a file; a choice, below the 0.5 of a wrong step
-constexpr int kFewestSteps = 3;    // different readings; fewer fit any step
+constexpr int kFewestSteps = 3;    // different readings; fewer fit any step: derived
 
 // A window that slides changes its reading by each pulse that comes in and by each that goes out, and by
 // nothing else: 2 |omega| T / pulse changes per sample of T where the motion is slow and even, less those
@@ -21,7 +21,7 @@ bool slides(const std::vector<double>& values, double step, double window_sample
   // Changes per sample: "slow" of the law above; tuned on it.
   constexpr double kSlowest = 0.05, kFastest = 0.6;  // tuned
   constexpr double kUneven = 0.5;    // change of speed over a window, of the speed: "even"; tuned
-  constexpr double kFewest = 100.0;  // expected changes: their number is then within 10 % (Poisson)
+  constexpr double kFewest = 100.0;  // expected changes: their number is then within 10 % (Poisson), a choice
   const std::size_t n = values.size();
   std::vector<double> sum(n + 1, 0.0), missing(n + 1, 0.0);
   for (std::size_t k = 0; k < n; ++k) {
@@ -48,7 +48,7 @@ bool slides(const std::vector<double>& values, double step, double window_sample
 // A window that is held: the reading stays for whole windows and changes at multiples of the window alone.
 bool is_held(const std::vector<double>& values, double step, double window_samples) {
   constexpr double kOff = 0.02;     // of the changes, off the window's clock: jitter of time stamps; a choice
-  constexpr double kFewest = 50.0;  // changes: one of them off is 2 %
+  constexpr double kFewest = 50.0;  // changes: one of them off is 2 %, which kOff allows: derived
   // Samples, of which ±1 is allowed: shorter, any change would do.
   constexpr double kShortest = 4.0;  // derived
   if (window_samples < kShortest) return false;

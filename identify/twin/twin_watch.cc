@@ -62,6 +62,7 @@ void TwinWatch::add(const TwinScore& score) {
     const FaultPromise& p = promise_->faults[f];
     const double variance = p.variance(s.information), off = s.size - p.bias;
     double sum = 0.0;
+    // Times the least: a fault of any size lies within an octave of one, or far beyond the threshold. A choice.
     constexpr std::array<double, 3> kSizes = {1.0, 2.0, 4.0};
     for (const double times : kSizes) {
       const double size = times * bank_.faults[f].least;

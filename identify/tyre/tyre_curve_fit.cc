@@ -10,10 +10,10 @@ namespace omnihil {
 namespace {
 
 constexpr double kHuber = 2.0;                               // sigmas; a choice
-constexpr double kLawShare = 0.02;                           // of the largest ratio: see the header
+constexpr double kLawShare = 0.02;                           // of the largest ratio, see the header; a choice
 constexpr int kRounds = 40;                                  // by cost
-constexpr double kStarts[] = {0.003, 0.01, 0.03, 0.1, 0.3};  // of the extremum's slip
-constexpr double kSticks = 0.02;  // of slip, beside three sigmas: see sticking_grip()
+constexpr double kStarts[] = {0.003, 0.01, 0.03, 0.1, 0.3};  // of the extremum's slip; a choice
+constexpr double kSticks = 0.02;  // of slip, beside three sigmas (sticking_grip()); a choice
 
 // (log slip, log value, log (asymptote's slip / extremum's - 1), logit (asymptote's value / extremum's))
 TyreCurve curve_of(const Eigen::Vector4d& x) {

@@ -14,17 +14,20 @@ namespace omnihil {
 namespace {
 
 // Choices where nothing else is said; sensitivity not measured.
-constexpr double kEvery_s = 0.01;  // a point
-constexpr double kEnds_s = 0.1;    // of a run, where the smoother has one side only
-constexpr double kJump = 0.02;     // of a duty, from sample to sample
+constexpr double kEvery_s = 0.01;  // a point; as above
+constexpr double kEnds_s = 0.1;    // of a run, where the smoother has one side only; as above
+constexpr double kJump = 0.02;     // of a duty, from sample to sample; as above
 constexpr double kJumpMemory_s =
-    0.03;  // of the smoothers, at q of a motor's jerk and these sensors: 20 to 30 ms
-constexpr double kLeastSpeed_m_s = 0.15;  // below it slip is the slip speed over the floor: not used for R
-constexpr double kLightShare = 0.25;      // of the largest force: there slip is proportional to it
+    0.03;  // of the smoothers, at q of a motor's jerk and these sensors: 20 to 30 ms; derived
+constexpr double kLeastSpeed_m_s =
+    0.15;  // below it slip is the slip speed over the floor: not used for R; as above
+constexpr double kLightShare = 0.25;  // of the largest force: there slip is proportional to it; as above
 constexpr double kWorstRadius = 0.01,
-                 kFarthestRadius = 0.1;  // of the stated one: else wheels slid, not rolled
-constexpr double kHangTogether = 10.0;   // points of 0.1 s, the smoother's memory, count as one
-constexpr double kCamera_m = 1e-3, kCamera_rad = 5e-3, kAccelerometer_m_s2 = 0.2;  // where nothing is stated
+                 kFarthestRadius = 0.1;  // of the stated one: else wheels slid, not rolled; as above
+constexpr double kHangTogether = 10.0;   // points of 0.1 s, the smoother's memory, count as one: derived
+// Sensors where nothing is stated: as good as those of the virtual benches (tools/benches), or less. Guesses.
+constexpr double kCamera_m = 1e-3, kCamera_rad = 5e-3, kAccelerometer_m_s2 = 0.2,
+                 kCurrent_A = 0.05;  // as above
 
 double sigma_of(const Dataset& dataset, const char* channel, double otherwise) {
   const Channel* found = dataset.channel(channel);
@@ -149,7 +152,7 @@ class Reader {
           for (std::size_t j = k >= 3 ? k - 3 : 0; j < std::min(n, k + 4); ++j)
             if (std::isfinite((*current[i])[j])) sum += (*current[i])[j], ++count;
           current_A = sum / count;
-          current_sigma_A = sigma_of(dataset_, "motor_current_1", 0.05) / std::sqrt(count);
+          current_sigma_A = sigma_of(dataset_, "motor_current_1", kCurrent_A) / std::sqrt(count);
         } else {
           const double bus_V = record.bus.input_V.empty() ? p_.drive.supply_voltage_V : record.bus.input_V[k];
           const double volt = record.duty_ratio[k][i] * bus_V;
