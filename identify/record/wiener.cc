@@ -12,13 +12,13 @@ namespace omnihil {
 namespace {
 
 // Segments, powers of two, by cost and resolution: at 1 kHz 1 Hz. At least eight fit into a record.
-constexpr std::size_t kShortest = 32, kLongest = 1024;
+constexpr std::size_t kShortest = 32, kLongest = 1024;  // by cost
 // Where the noise is looked for, in shares of the Nyquist frequency: above the motion, and below where differences of
 // a position have no noise left. Choices.
-constexpr double kNoiseFrom = 0.5, kNoiseTo = 0.9;
+constexpr double kNoiseFrom = 0.5, kNoiseTo = 0.9;  // choices
 // Standard deviations of the periodogram's mean that a frequency has to stand above the noise: a slope multiplies what
 // is let through by chance with its frequency. One in 3e4 by chance (normal, one-sided).
-constexpr double kAbove_sigmas = 4.0;
+constexpr double kAbove_sigmas = 4.0;  // a choice
 
 std::size_t segment_length(std::size_t samples) {
   std::size_t length = kShortest;

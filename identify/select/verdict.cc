@@ -13,7 +13,7 @@ namespace {
 constexpr double kStructure = 0.10;  // tuned
 // Fraction of the baseline's excess that an accepted effect may leave. Right laws in another form left 4 % at
 // most in 67 cases of the hidden-effect test, wrong ones passed where 20 % was allowed (DECISIONS 46).
-constexpr double kUnexplained = 0.10;
+constexpr double kUnexplained = 0.10;  // tuned
 // Standard deviations of the null's replicates: far out, since that standard deviation comes from few
 // replicates (8: known to 27 %, 1 / sqrt(2 (n - 1))). Tuned on the open cases; sensitivity not measured.
 constexpr double kSpreads = 5.0;  // tuned
