@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "firmware_iface/mcu/stm32/bxcan.h"
+#include "firmware_iface/mcu/stm32/families/timer_rows.h"
 #include "firmware_iface/mcu/stm32/watchdog.h"
 
 namespace omnihil::mcu {
@@ -77,6 +78,13 @@ void add_identity(Chip& chip, const ChipIdentity& id) {
   add_stored(chip, id.debug, 0x60, "DBGMCU", {{0, id.device_id}});
 }
 
+void add_dma(Chip& chip, std::uint32_t base, const char* name, std::vector<int> irqs,
+             std::span<const DmaRow> rows) {
+  auto dma = std::make_unique<DmaV1>(name, std::move(irqs), chip.context());
+  for (const DmaRow& row : rows) dma->connect(row.request, row.channel, row.code);
+  chip.add(base, 0x400, std::move(dma));
+}
+
 void add_dma_f4(Chip& chip) {
   struct Row {
     const char* request;
@@ -116,67 +124,17 @@ void add_dma_f4(Chip& chip) {
 }
 
 void add_timers_f4(Chip& chip, bool small) {
-  using Itr = std::vector<std::string>;
-  const Bus one = Bus::kApb1, two = Bus::kApb2;
-  add_timer(chip, 0x40010000,
-            {.number = 1,
-             .bus = two,
-             .advanced = true,
-             .irq_update = 25,
-             .irq_compare = 27,
-             .irq_break = 24,
-             .irq_trigger = 26,
-             .internal_triggers = Itr{"TIM5_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM4_TRGO"}});
-  add_timer(chip, 0x40010400,
-            {.number = 8,
-             .bus = two,
-             .advanced = true,
-             .irq_update = 44,
-             .irq_compare = 46,
-             .irq_break = 43,
-             .irq_trigger = 45,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM4_TRGO", "TIM5_TRGO"}});
-  add_timer(chip, 0x40000000,
-            {.number = 2,
-             .bus = one,
-             .bits32 = true,
-             .irq_update = 28,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM8_TRGO", "TIM3_TRGO", "TIM4_TRGO"}});
-  add_timer(chip, 0x40000400,
-            {.number = 3,
-             .bus = one,
-             .irq_update = 29,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM5_TRGO", "TIM4_TRGO"}});
-  add_timer(chip, 0x40000800,
-            {.number = 4,
-             .bus = one,
-             .irq_update = 30,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM8_TRGO"}});
-  add_timer(chip, 0x40000C00,
-            {.number = 5,
-             .bus = one,
-             .bits32 = true,
-             .irq_update = 50,
-             .internal_triggers = Itr{"TIM2_TRGO", "TIM3_TRGO", "TIM4_TRGO", "TIM8_TRGO"}});
-  add_timer(chip, 0x40001000, {.number = 6, .bus = one, .channels = 0, .irq_update = 54});
-  add_timer(chip, 0x40001400, {.number = 7, .bus = one, .channels = 0, .irq_update = 55});
+  const Bus two = Bus::kApb2;
+  add_timers(chip, timers_1_to_8({.tim1 = 0x40010000, .tim8 = 0x40010400}));
   add_timer(chip, 0x40014000,
             {.number = 9,
              .bus = two,
              .channels = 2,
              .irq_update = 24,
-             .internal_triggers = Itr{"TIM2_TRGO", "TIM3_TRGO", "TIM10_CC1", "TIM11_CC1"}});
+             .internal_triggers = {"TIM2_TRGO", "TIM3_TRGO", "TIM10_CC1", "TIM11_CC1"}});
   add_timer(chip, 0x40014400, {.number = 10, .bus = two, .channels = 1, .irq_update = 25});
   add_timer(chip, 0x40014800, {.number = 11, .bus = two, .channels = 1, .irq_update = 26});
-  if (!small) return;
-  add_timer(chip, 0x40001800,
-            {.number = 12,
-             .bus = one,
-             .channels = 2,
-             .irq_update = 43,
-             .internal_triggers = Itr{"TIM4_TRGO", "TIM5_TRGO", "TIM13_CC1", "TIM14_CC1"}});
-  add_timer(chip, 0x40001C00, {.number = 13, .bus = one, .channels = 1, .irq_update = 44});
-  add_timer(chip, 0x40002000, {.number = 14, .bus = one, .channels = 1, .irq_update = 45});
+  if (small) add_timers(chip, timers_12_to_14());
 }
 
 AdcTriggers adc_triggers_f4() {

@@ -4,6 +4,7 @@
 //   add_exti(chip, 0x40013C00, 0x40013800, {{0, 0, 6}, …});
 //   add_timer(chip, 0x40010000, {.number = 1, …});
 #pragma once
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +37,14 @@ void add_usart(Chip& chip, std::uint32_t base, const UsartSpec& spec);
 void add_spi(Chip& chip, std::uint32_t base, const SpiSpec& spec);
 void add_i2c(Chip& chip, std::uint32_t base, const I2cSpec& spec);
 void add_sdmmc(Chip& chip, std::uint32_t base, const SdmmcSpec& spec);
+// A DMA controller of fixed wiring: requests of channels, with what CSELR has to say where the chip has it.
+struct DmaRow {
+  const char* request;
+  unsigned channel;
+  int code = -1;
+};
+void add_dma(Chip& chip, std::uint32_t base, const char* name, std::vector<int> irqs,
+             std::span<const DmaRow> rows);
 void add_stored(Chip& chip, std::uint32_t base, std::uint32_t bytes, const char* name,
                 std::vector<StoredBlock::Fixed> fixed = {});
 void add_watchdogs(Chip& chip, unsigned prescaler_at, unsigned prescaler_bits);

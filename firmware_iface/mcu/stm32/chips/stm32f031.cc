@@ -12,20 +12,14 @@ void build(Chip& chip) {
   chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kF0F3, 32 * 1024, 1024, 3, context));
   add_ports(chip, "ABCF", 0x48000000);
   add_exti(chip, 0x40010400, 0x40010000, {{0, 1, 5}, {2, 3, 6}, {4, 15, 7}});
-  struct Row {
-    const char* request;
-    unsigned channel;
-  };
   // RM0091 table 29
-  constexpr Row kDma[] = {
+  constexpr DmaRow kDma[] = {
       {"ADC1", 1},      {"TIM2_CH3", 1}, {"TIM17_CH1", 1}, {"TIM17_UP", 1}, {"SPI1_RX", 2},  {"USART1_TX", 2},
       {"I2C1_TX", 2},   {"TIM1_CH1", 2}, {"TIM2_UP", 2},   {"TIM3_CH3", 2}, {"SPI1_TX", 3},  {"USART1_RX", 3},
       {"I2C1_RX", 3},   {"TIM1_CH2", 3}, {"TIM2_CH2", 3},  {"TIM3_CH4", 3}, {"TIM3_UP", 3},  {"TIM16_CH1", 3},
       {"TIM16_UP", 3},  {"TIM1_CH4", 4}, {"TIM1_TRIG", 4}, {"TIM1_COM", 4}, {"TIM2_CH4", 4}, {"TIM3_CH1", 4},
       {"TIM3_TRIG", 4}, {"TIM1_CH3", 5}, {"TIM1_UP", 5},   {"TIM2_CH1", 5}};
-  auto dma = std::make_unique<DmaV1>("DMA1", std::vector<int>{9, 10, 10, 11, 11}, context);
-  for (const Row& row : kDma) dma->connect(row.request, row.channel);
-  chip.add(0x40020000, 0x400, std::move(dma));
+  add_dma(chip, 0x40020000, "DMA1", {9, 10, 10, 11, 11}, kDma);
   using Itr = std::vector<std::string>;
   const Bus apb = Bus::kApb1;  // one APB, two address ranges
   add_timer(chip, 0x40012C00,

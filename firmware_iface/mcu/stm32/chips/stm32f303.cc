@@ -3,16 +3,13 @@
 
 #include "firmware_iface/mcu/stm32/bxcan.h"
 #include "firmware_iface/mcu/stm32/chip_parts.h"
+#include "firmware_iface/mcu/stm32/families/timer_rows.h"
 
 namespace omnihil::mcu {
 namespace {
-void add_dma(Chip& chip) {
-  struct Row {
-    const char* request;
-    unsigned channel;
-  };
+void add_dmas(Chip& chip) {
   // RM0316 tables 78, 79, without the remappings of SYSCFG
-  constexpr Row kFirst[] = {
+  constexpr DmaRow kFirst[] = {
       {"ADC1", 1},      {"TIM2_CH3", 1},  {"TIM4_CH1", 1},  {"TIM17_CH1", 1}, {"TIM17_UP", 1},
       {"USART3_TX", 2}, {"SPI1_RX", 2},   {"TIM1_CH1", 2},  {"TIM2_UP", 2},   {"TIM3_CH3", 2},
       {"USART3_RX", 3}, {"SPI1_TX", 3},   {"TIM1_CH2", 3},  {"TIM3_CH4", 3},  {"TIM3_UP", 3},
@@ -22,68 +19,22 @@ void add_dma(Chip& chip) {
       {"TIM15_CH1", 5}, {"TIM15_UP", 5},  {"USART2_RX", 6}, {"I2C1_TX", 6},   {"TIM1_CH3", 6},
       {"TIM3_CH1", 6},  {"TIM3_TRIG", 6}, {"USART2_TX", 7}, {"I2C1_RX", 7},   {"TIM2_CH2", 7},
       {"TIM2_CH4", 7},  {"TIM4_UP", 7}};
-  constexpr Row kSecond[] = {{"ADC2", 1},     {"SPI3_RX", 1},  {"TIM8_CH3", 1}, {"TIM8_UP", 1},
-                             {"ADC4", 2},     {"SPI3_TX", 2},  {"TIM8_CH4", 2}, {"TIM8_TRIG", 2},
-                             {"TIM8_COM", 2}, {"UART4_RX", 3}, {"TIM6_UP", 3},  {"TIM8_CH1", 3},
-                             {"TIM7_UP", 4},  {"ADC3", 5},     {"UART4_TX", 5}, {"TIM8_CH2", 5}};
-  auto first = std::make_unique<DmaV1>("DMA1", std::vector<int>{11, 12, 13, 14, 15, 16, 17}, chip.context());
-  for (const Row& row : kFirst) first->connect(row.request, row.channel);
-  auto second = std::make_unique<DmaV1>("DMA2", std::vector<int>{56, 57, 58, 59, 60}, chip.context());
-  for (const Row& row : kSecond) second->connect(row.request, row.channel);
-  chip.add(0x40020000, 0x400, std::move(first));
-  chip.add(0x40020400, 0x400, std::move(second));
+  constexpr DmaRow kSecond[] = {{"ADC2", 1},     {"SPI3_RX", 1},  {"TIM8_CH3", 1}, {"TIM8_UP", 1},
+                                {"ADC4", 2},     {"SPI3_TX", 2},  {"TIM8_CH4", 2}, {"TIM8_TRIG", 2},
+                                {"TIM8_COM", 2}, {"UART4_RX", 3}, {"TIM6_UP", 3},  {"TIM8_CH1", 3},
+                                {"TIM7_UP", 4},  {"ADC3", 5},     {"UART4_TX", 5}, {"TIM8_CH2", 5}};
+  add_dma(chip, 0x40020000, "DMA1", {11, 12, 13, 14, 15, 16, 17}, kFirst);
+  add_dma(chip, 0x40020400, "DMA2", {56, 57, 58, 59, 60}, kSecond);
 }
 
 void add_timers(Chip& chip) {
-  using Itr = std::vector<std::string>;
-  const Bus one = Bus::kApb1, two = Bus::kApb2;
-  add_timer(chip, 0x40012C00,
-            {.number = 1,
-             .bus = two,
-             .advanced = true,
-             .fast_clock = true,
-             .irq_update = 25,
-             .irq_compare = 27,
-             .irq_break = 24,
-             .irq_trigger = 26,
-             .internal_triggers = Itr{"TIM15_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM4_TRGO"}});
-  add_timer(chip, 0x40013400,
-            {.number = 8,
-             .bus = two,
-             .advanced = true,
-             .fast_clock = true,
-             .irq_update = 44,
-             .irq_compare = 46,
-             .irq_break = 43,
-             .irq_trigger = 45,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM4_TRGO", "TIM3_TRGO"}});
-  add_timer(chip, 0x40000000,
-            {.number = 2,
-             .bus = one,
-             .bits32 = true,
-             .irq_update = 28,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM8_TRGO", "TIM3_TRGO", "TIM4_TRGO"}});
-  add_timer(chip, 0x40000400,
-            {.number = 3,
-             .bus = one,
-             .irq_update = 29,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM15_TRGO", "TIM4_TRGO"}});
-  add_timer(chip, 0x40000800,
-            {.number = 4,
-             .bus = one,
-             .irq_update = 30,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM8_TRGO"}});
-  add_timer(chip, 0x40001000, {.number = 6, .bus = one, .channels = 0, .irq_update = 54});
-  add_timer(chip, 0x40001400, {.number = 7, .bus = one, .channels = 0, .irq_update = 55});
-  add_timer(chip, 0x40014000,
-            {.number = 15,
-             .bus = two,
-             .channels = 2,
-             .advanced = true,
-             .irq_update = 24,
-             .internal_triggers = Itr{"TIM2_TRGO", "TIM3_TRGO", "TIM16_CC1", "TIM17_CC1"}});
-  add_timer(chip, 0x40014400, {.number = 16, .bus = two, .channels = 1, .advanced = true, .irq_update = 25});
-  add_timer(chip, 0x40014800, {.number = 17, .bus = two, .channels = 1, .advanced = true, .irq_update = 26});
+  for (TimerRow& row : timers_1_to_8({.tim1 = 0x40012C00, .tim8 = 0x40013400, .itr = "TIM15_TRGO"})) {
+    if (row.spec.number == 5) continue;
+    row.spec.fast_clock = row.spec.advanced;
+    if (row.spec.number == 8) row.spec.internal_triggers[3] = "TIM3_TRGO";
+    add_timer(chip, row.base, std::move(row.spec));
+  }
+  add_timers(chip, timers_15_to_17(24, {"TIM2_TRGO", "TIM3_TRGO", "TIM16_CC1", "TIM17_CC1"}));
 }
 
 void add_adcs(Chip& chip) {
@@ -112,7 +63,7 @@ void build(Chip& chip) {
   chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kF0F3, 256 * 1024, 2048, 4, context));
   add_ports(chip, "ABCDEF", 0x48000000);
   add_exti(chip, 0x40010400, 0x40010000, usual_exti_vectors());
-  add_dma(chip);
+  add_dmas(chip);
   add_timers(chip);
   add_adcs(chip);
   const Bus one = Bus::kApb1, two = Bus::kApb2;

@@ -3,26 +3,18 @@
 
 namespace omnihil::mcu {
 namespace {
-void build(Chip& chip) {
-  build_h7(chip, {.flash_bytes = 1024 * 1024, .flash_banks = 1, .device_id = 0x10016483, .newer = true});
-}
+constexpr H7Parts kParts{.flash_bytes = 1024 * 1024,
+                         .flash_banks = 1,
+                         .sram_bytes = 320 * 1024,
+                         .d2_bytes = 32 * 1024,
+                         .sram4_bytes = 16 * 1024,
+                         .device_id = 0x10016483,
+                         .newer = true};
 }  // namespace
 
 const ChipSpec& chip_stm32h723() {
-  static const ChipSpec spec{.name = "stm32h723",
-                             .variants = {"stm32h725", "stm32h733", "stm32h735"},
-                             .core = kCortexM7,
-                             .blocks = BlockFamily::kH7,
-                             .reset_hz = 64e6,
-                             .memories = {{"flash", 0x08000000, 1024 * 1024, true},
-                                          {"itcm", 0x00000000, 64 * 1024, false, true},
-                                          {"dtcm", 0x20000000, 128 * 1024, false, true},
-                                          {"sram", 0x24000000, 320 * 1024},
-                                          {"sram of D2", 0x30000000, 32 * 1024},
-                                          {"sram4", 0x38000000, 16 * 1024},
-                                          {"backup", 0x38800000, 4096}},
-                             .aliases = {{"sram of D2", 0x10000000}},
-                             .build = build};
+  static const ChipSpec spec = h7_spec("stm32h723", {"stm32h725", "stm32h733", "stm32h735"}, kParts,
+                                       [](Chip& chip) { build_h7(chip, kParts); });
   return spec;
 }
 

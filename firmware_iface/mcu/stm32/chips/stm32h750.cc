@@ -3,26 +3,17 @@
 
 namespace omnihil::mcu {
 namespace {
-void build(Chip& chip) {
-  build_h7(chip, {.flash_bytes = 128 * 1024, .flash_banks = 1, .device_id = 0x20036450, .newer = false});
-}
+constexpr H7Parts kParts{.flash_bytes = 128 * 1024,
+                         .flash_banks = 1,
+                         .sram_bytes = 512 * 1024,
+                         .d2_bytes = 288 * 1024,
+                         .sram4_bytes = 64 * 1024,
+                         .device_id = 0x20036450};
 }  // namespace
 
 const ChipSpec& chip_stm32h750() {
-  static const ChipSpec spec{.name = "stm32h750",
-                             .variants = {"stm32h750vb"},
-                             .core = kCortexM7,
-                             .blocks = BlockFamily::kH7,
-                             .reset_hz = 64e6,
-                             .memories = {{"flash", 0x08000000, 128 * 1024, true},
-                                          {"itcm", 0x00000000, 64 * 1024, false, true},
-                                          {"dtcm", 0x20000000, 128 * 1024, false, true},
-                                          {"sram", 0x24000000, 512 * 1024},
-                                          {"sram of D2", 0x30000000, 288 * 1024},
-                                          {"sram4", 0x38000000, 64 * 1024},
-                                          {"backup", 0x38800000, 4096}},
-                             .aliases = {{"sram of D2", 0x10000000}},
-                             .build = build};
+  static const ChipSpec spec =
+      h7_spec("stm32h750", {"stm32h750vb"}, kParts, [](Chip& chip) { build_h7(chip, kParts); });
   return spec;
 }
 

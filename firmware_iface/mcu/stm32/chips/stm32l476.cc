@@ -6,20 +6,15 @@
 
 #include "firmware_iface/mcu/stm32/bxcan.h"
 #include "firmware_iface/mcu/stm32/chip_parts.h"
+#include "firmware_iface/mcu/stm32/families/timer_rows.h"
 
 namespace omnihil::mcu {
 namespace {
-using Itr = std::vector<std::string>;
 constexpr std::uint32_t kFlashBytes = 1024 * 1024;
 
-void add_dma(Chip& chip) {
-  struct Row {
-    const char* request;
-    unsigned channel;
-    int code;
-  };
+void add_dmas(Chip& chip) {
   // RM0351 tables 44, 45
-  constexpr Row kFirst[] = {
+  constexpr DmaRow kFirst[] = {
       {"ADC1", 1, 0},      {"TIM2_CH3", 1, 4},   {"TIM17_CH1", 1, 5}, {"TIM17_UP", 1, 5},
       {"TIM4_CH1", 1, 6},  {"ADC2", 2, 0},       {"SPI1_RX", 2, 1},   {"USART3_TX", 2, 2},
       {"I2C3_TX", 2, 3},   {"TIM2_UP", 2, 4},    {"TIM3_CH3", 2, 5},  {"TIM1_CH1", 2, 7},
@@ -34,7 +29,7 @@ void add_dma(Chip& chip) {
       {"TIM3_TRIG", 6, 5}, {"TIM1_UP", 6, 7},    {"USART2_TX", 7, 2}, {"I2C1_RX", 7, 3},
       {"TIM2_CH2", 7, 4},  {"TIM2_CH4", 7, 4},   {"TIM17_CH1", 7, 5}, {"TIM17_UP", 7, 5},
       {"TIM4_UP", 7, 6},   {"TIM1_CH3", 7, 7}};
-  constexpr Row kSecond[] = {
+  constexpr DmaRow kSecond[] = {
       {"UART5_TX", 1, 2}, {"SPI3_RX", 1, 3},  {"TIM5_CH4", 1, 5},  {"TIM5_TRIG", 1, 5},
       {"TIM8_CH3", 1, 7}, {"TIM8_UP", 1, 7},  {"UART5_RX", 2, 2},  {"SPI3_TX", 2, 3},
       {"TIM5_CH3", 2, 5}, {"TIM5_UP", 2, 5},  {"TIM8_CH4", 2, 7},  {"TIM8_TRIG", 2, 7},
@@ -44,64 +39,8 @@ void add_dma(Chip& chip) {
       {"TIM5_CH1", 5, 5}, {"SDMMC1", 5, 7},   {"USART1_TX", 6, 2}, {"LPUART1_TX", 6, 4},
       {"I2C1_RX", 6, 5},  {"TIM8_CH1", 6, 7}, {"USART1_RX", 7, 2}, {"LPUART1_RX", 7, 4},
       {"I2C1_TX", 7, 5},  {"TIM8_CH2", 7, 7}};
-  auto first = std::make_unique<DmaV1>("DMA1", std::vector<int>{11, 12, 13, 14, 15, 16, 17}, chip.context());
-  for (const Row& row : kFirst) first->connect(row.request, row.channel, row.code);
-  auto second = std::make_unique<DmaV1>("DMA2", std::vector<int>{56, 57, 58, 59, 60, 68, 69}, chip.context());
-  for (const Row& row : kSecond) second->connect(row.request, row.channel, row.code);
-  chip.add(0x40020000, 0x400, std::move(first));
-  chip.add(0x40020400, 0x400, std::move(second));
-}
-
-void add_timers(Chip& chip) {
-  const std::vector<std::pair<std::uint32_t, TimerSpec>> rows = {
-      {0x40012C00,
-       {.number = 1,
-        .bus = Bus::kApb2,
-        .advanced = true,
-        .irq_update = 25,
-        .irq_compare = 27,
-        .irq_break = 24,
-        .irq_trigger = 26,
-        .internal_triggers = Itr{"TIM15_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM4_TRGO"}}},
-      {0x40013400,
-       {.number = 8,
-        .bus = Bus::kApb2,
-        .advanced = true,
-        .irq_update = 44,
-        .irq_compare = 46,
-        .irq_break = 43,
-        .irq_trigger = 45,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM4_TRGO", "TIM5_TRGO"}}},
-      {0x40000000,
-       {.number = 2,
-        .bits32 = true,
-        .irq_update = 28,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM8_TRGO", "TIM3_TRGO", "TIM4_TRGO"}}},
-      {0x40000400,
-       {.number = 3,
-        .irq_update = 29,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM15_TRGO", "TIM4_TRGO"}}},
-      {0x40000800,
-       {.number = 4,
-        .irq_update = 30,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM8_TRGO"}}},
-      {0x40000C00,
-       {.number = 5,
-        .bits32 = true,
-        .irq_update = 50,
-        .internal_triggers = Itr{"TIM2_TRGO", "TIM3_TRGO", "TIM4_TRGO", "TIM8_TRGO"}}},
-      {0x40001000, {.number = 6, .channels = 0, .irq_update = 54}},
-      {0x40001400, {.number = 7, .channels = 0, .irq_update = 55}},
-      {0x40014000,
-       {.number = 15,
-        .bus = Bus::kApb2,
-        .channels = 2,
-        .advanced = true,
-        .irq_update = 24,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM3_TRGO", "TIM16_CC1", "TIM17_CC1"}}},
-      {0x40014400, {.number = 16, .bus = Bus::kApb2, .channels = 1, .advanced = true, .irq_update = 25}},
-      {0x40014800, {.number = 17, .bus = Bus::kApb2, .channels = 1, .advanced = true, .irq_update = 26}}};
-  for (const auto& [base, spec] : rows) add_timer(chip, base, spec);
+  add_dma(chip, 0x40020000, "DMA1", {11, 12, 13, 14, 15, 16, 17}, kFirst);
+  add_dma(chip, 0x40020400, "DMA2", {56, 57, 58, 59, 60, 68, 69}, kSecond);
 }
 
 void add_adcs(Chip& chip) {
@@ -143,8 +82,9 @@ void build(Chip& chip) {
   chip.add(0x40022000, 0x400, std::make_unique<Flash>(FlashFamily::kL4, kFlashBytes, 2048, 4, context));
   add_ports(chip, "ABCDEFGH", 0x48000000);
   add_exti(chip, 0x40010400, 0x40010000, usual_exti_vectors(), SyscfgFamily::kL4);
-  add_dma(chip);
-  add_timers(chip);
+  add_dmas(chip);
+  add_timers(chip, timers_1_to_8({.tim1 = 0x40012C00, .tim8 = 0x40013400, .itr = "TIM15_TRGO"}));
+  add_timers(chip, timers_15_to_17(24, {"TIM1_TRGO", "TIM3_TRGO", "TIM16_CC1", "TIM17_CC1"}));
   add_adcs(chip);
   add_buses(chip);
   add_watchdogs(chip, 7, 2);

@@ -8,77 +8,36 @@
 #include "firmware_iface/mcu/stm32/adc/adc_f1.h"
 #include "firmware_iface/mcu/stm32/bxcan.h"
 #include "firmware_iface/mcu/stm32/chip_parts.h"
+#include "firmware_iface/mcu/stm32/families/timer_rows.h"
 
 namespace omnihil::mcu {
 namespace {
-using Itr = std::vector<std::string>;
-
-void add_dma(Chip& chip, const F1Parts& parts) {
-  struct Row {
-    const char* request;
-    unsigned channel;
-  };
+void add_dmas(Chip& chip, const F1Parts& parts) {
   // RM0008 tables 78, 79
-  constexpr Row kFirst[] = {{"ADC1", 1},      {"TIM2_CH3", 1},  {"TIM4_CH1", 1},  {"USART3_TX", 2},
-                            {"TIM1_CH1", 2},  {"TIM2_UP", 2},   {"TIM3_CH3", 2},  {"SPI1_RX", 2},
-                            {"USART3_RX", 3}, {"TIM1_CH2", 3},  {"TIM3_CH4", 3},  {"TIM3_UP", 3},
-                            {"SPI1_TX", 3},   {"USART1_TX", 4}, {"TIM1_CH4", 4},  {"TIM1_TRIG", 4},
-                            {"TIM1_COM", 4},  {"TIM4_CH2", 4},  {"SPI2_RX", 4},   {"I2C2_TX", 4},
-                            {"USART1_RX", 5}, {"TIM1_UP", 5},   {"SPI2_TX", 5},   {"TIM2_CH1", 5},
-                            {"TIM4_CH3", 5},  {"I2C2_RX", 5},   {"TIM1_CH3", 6},  {"USART2_RX", 6},
-                            {"TIM3_CH1", 6},  {"TIM3_TRIG", 6}, {"I2C1_TX", 6},   {"TIM2_CH2", 7},
-                            {"TIM2_CH4", 7},  {"TIM4_UP", 7},   {"USART2_TX", 7}, {"I2C1_RX", 7}};
-  constexpr Row kSecond[] = {
+  constexpr DmaRow kFirst[] = {{"ADC1", 1},      {"TIM2_CH3", 1},  {"TIM4_CH1", 1},  {"USART3_TX", 2},
+                               {"TIM1_CH1", 2},  {"TIM2_UP", 2},   {"TIM3_CH3", 2},  {"SPI1_RX", 2},
+                               {"USART3_RX", 3}, {"TIM1_CH2", 3},  {"TIM3_CH4", 3},  {"TIM3_UP", 3},
+                               {"SPI1_TX", 3},   {"USART1_TX", 4}, {"TIM1_CH4", 4},  {"TIM1_TRIG", 4},
+                               {"TIM1_COM", 4},  {"TIM4_CH2", 4},  {"SPI2_RX", 4},   {"I2C2_TX", 4},
+                               {"USART1_RX", 5}, {"TIM1_UP", 5},   {"SPI2_TX", 5},   {"TIM2_CH1", 5},
+                               {"TIM4_CH3", 5},  {"I2C2_RX", 5},   {"TIM1_CH3", 6},  {"USART2_RX", 6},
+                               {"TIM3_CH1", 6},  {"TIM3_TRIG", 6}, {"I2C1_TX", 6},   {"TIM2_CH2", 7},
+                               {"TIM2_CH4", 7},  {"TIM4_UP", 7},   {"USART2_TX", 7}, {"I2C1_RX", 7}};
+  constexpr DmaRow kSecond[] = {
       {"TIM5_CH4", 1},  {"TIM5_TRIG", 1}, {"TIM8_CH3", 1}, {"TIM8_UP", 1}, {"SPI3_RX", 1}, {"TIM8_CH4", 2},
       {"TIM8_TRIG", 2}, {"TIM8_COM", 2},  {"TIM5_CH3", 2}, {"TIM5_UP", 2}, {"SPI3_TX", 2}, {"TIM8_CH1", 3},
       {"UART4_RX", 3},  {"TIM6_UP", 3},   {"TIM5_CH2", 4}, {"SDIO", 4},    {"TIM7_UP", 4}, {"ADC3", 5},
       {"TIM8_CH2", 5},  {"TIM5_CH1", 5},  {"UART4_TX", 5}};
-  auto first = std::make_unique<DmaV1>("DMA1", std::vector<int>{11, 12, 13, 14, 15, 16, 17}, chip.context());
-  for (const Row& row : kFirst) first->connect(row.request, row.channel);
-  chip.add(0x40020000, 0x400, std::move(first));
-  if (!parts.high_density) return;
-  auto second = std::make_unique<DmaV1>("DMA2", std::vector<int>{56, 57, 58, 59, 59}, chip.context());
-  for (const Row& row : kSecond) second->connect(row.request, row.channel);
-  chip.add(0x40020400, 0x400, std::move(second));
+  add_dma(chip, 0x40020000, "DMA1", {11, 12, 13, 14, 15, 16, 17}, kFirst);
+  if (parts.high_density) add_dma(chip, 0x40020400, "DMA2", {56, 57, 58, 59, 59}, kSecond);
 }
 
 void add_timers(Chip& chip, const F1Parts& parts) {
-  struct Advanced {
-    std::uint32_t base;
-    int number, up, cc, brk, trg;
-    Itr itr;
-  };
-  struct General {
-    std::uint32_t base;
-    int number, irq;
-    Itr itr;
-  };
-  // RM0008 tables 86, 87: internal triggers
-  for (const Advanced& t :
-       {Advanced{0x40012C00, 1, 25, 27, 24, 26, {"TIM5_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM4_TRGO"}},
-        Advanced{0x40013400, 8, 44, 46, 43, 45, {"TIM1_TRGO", "TIM2_TRGO", "TIM4_TRGO", "TIM5_TRGO"}}}) {
-    if (t.number == 8 && !parts.high_density) continue;
-    add_timer(chip, t.base,
-              {.number = t.number,
-               .bus = Bus::kApb2,
-               .advanced = true,
-               .irq_update = t.up,
-               .irq_compare = t.cc,
-               .irq_break = t.brk,
-               .irq_trigger = t.trg,
-               .internal_triggers = t.itr});
+  for (TimerRow& row : timers_1_to_8({.tim1 = 0x40012C00, .tim8 = 0x40013400})) {
+    if (row.spec.number > 4 && !parts.high_density) continue;
+    row.spec.bits32 = false;
+    add_timer(chip, row.base, std::move(row.spec));
   }
-  for (const General& t :
-       {General{0x40000000, 2, 28, {"TIM1_TRGO", "TIM8_TRGO", "TIM3_TRGO", "TIM4_TRGO"}},
-        General{0x40000400, 3, 29, {"TIM1_TRGO", "TIM2_TRGO", "TIM5_TRGO", "TIM4_TRGO"}},
-        General{0x40000800, 4, 30, {"TIM1_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM8_TRGO"}},
-        General{0x40000C00, 5, 50, {"TIM2_TRGO", "TIM3_TRGO", "TIM4_TRGO", "TIM8_TRGO"}}}) {
-    if (t.number == 5 && !parts.high_density) continue;
-    add_timer(chip, t.base, {.number = t.number, .irq_update = t.irq, .internal_triggers = t.itr});
-  }
-  if (!parts.high_density) return;
-  add_timer(chip, 0x40001000, {.number = 6, .channels = 0, .irq_update = 54});
-  add_timer(chip, 0x40001400, {.number = 7, .channels = 0, .irq_update = 55});
 }
 
 void add_adcs(Chip& chip, const F1Parts& parts) {
@@ -128,7 +87,7 @@ void build_f1(Chip& chip, const F1Parts& parts) {
            std::make_unique<Flash>(FlashFamily::kF0F3, parts.flash_bytes, parts.page_bytes, 4, context));
   add_ports(chip, parts.high_density ? "ABCDEFG" : "ABCDE", 0x40010800, GpioLayout::kF1);
   add_exti(chip, 0x40010400, 0x40010000, usual_exti_vectors(), SyscfgFamily::kF1);
-  add_dma(chip, parts);
+  add_dmas(chip, parts);
   add_timers(chip, parts);
   add_adcs(chip, parts);
   add_buses(chip, parts);

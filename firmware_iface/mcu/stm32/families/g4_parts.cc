@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/stm32/chip_parts.h"
+#include "firmware_iface/mcu/stm32/families/timer_rows.h"
 #include "firmware_iface/mcu/stm32/fdcan.h"
 #include "firmware_iface/mcu/stm32/math/cordic.h"
 
@@ -38,60 +39,22 @@ std::vector<std::pair<unsigned, std::string>> requests() {
 }
 
 void add_timers(Chip& chip, const G4Parts& parts) {
-  // ITR0..10 are the same for all timers
+  // ITR0..10 are the same for all timers that have them
   const std::vector<std::string> itr = {"TIM1_TRGO", "TIM2_TRGO",  "TIM3_TRGO", "TIM4_TRGO", "TIM5_TRGO",
                                         "TIM8_TRGO", "TIM15_TRGO", "TIM16_CC1", "TIM17_CC1", "TIM20_TRGO"};
-  const Bus one = Bus::kApb1, two = Bus::kApb2;
-  struct Advanced {
-    std::uint32_t base;
-    int number, up, cc, brk, trg;
-  };
-  for (const Advanced& t : {Advanced{0x40012C00, 1, 25, 27, 24, 26}, Advanced{0x40013400, 8, 44, 46, 43, 45},
-                            Advanced{0x40015000, 20, 78, 80, 77, 79}}) {
-    if (t.number == 20 && !parts.large) continue;
-    add_timer(chip, t.base,
-              {.number = t.number,
-               .bus = two,
-               .advanced = true,
-               .new_layout = true,
-               .irq_update = t.up,
-               .irq_compare = t.cc,
-               .irq_break = t.brk,
-               .irq_trigger = t.trg,
-               .internal_triggers = itr});
+  std::vector<TimerRow> rows = timers_1_to_8({.tim1 = 0x40012C00, .tim8 = 0x40013400});
+  TimerSpec twentieth = rows[1].spec;  // another TIM8
+  twentieth.number = 20;
+  twentieth.irq_update = 78, twentieth.irq_compare = 80, twentieth.irq_break = 77, twentieth.irq_trigger = 79;
+  rows.insert(rows.begin() + 2, {0x40015000, std::move(twentieth)});
+  const std::vector<TimerRow> last = timers_15_to_17(24, itr);
+  rows.insert(rows.end(), last.begin(), last.end());
+  for (auto& [base, spec] : rows) {
+    if ((spec.number == 5 || spec.number == 20) && !parts.large) continue;
+    spec.new_layout = true;
+    if (!spec.internal_triggers.empty()) spec.internal_triggers = itr;
+    add_timer(chip, base, std::move(spec));
   }
-  struct General {
-    std::uint32_t base;
-    int number, irq;
-    bool wide;
-  };
-  for (const General& t : {General{0x40000000, 2, 28, true}, General{0x40000400, 3, 29, false},
-                           General{0x40000800, 4, 30, false}, General{0x40000C00, 5, 50, true}}) {
-    if (t.number == 5 && !parts.large) continue;
-    add_timer(chip, t.base,
-              {.number = t.number,
-               .bus = one,
-               .bits32 = t.wide,
-               .new_layout = true,
-               .irq_update = t.irq,
-               .internal_triggers = itr});
-  }
-  add_timer(chip, 0x40001000, {.number = 6, .bus = one, .channels = 0, .new_layout = true, .irq_update = 54});
-  add_timer(chip, 0x40001400, {.number = 7, .bus = one, .channels = 0, .new_layout = true, .irq_update = 55});
-  add_timer(chip, 0x40014000,
-            {.number = 15,
-             .bus = two,
-             .channels = 2,
-             .advanced = true,
-             .new_layout = true,
-             .irq_update = 24,
-             .internal_triggers = itr});
-  add_timer(
-      chip, 0x40014400,
-      {.number = 16, .bus = two, .channels = 1, .advanced = true, .new_layout = true, .irq_update = 25});
-  add_timer(
-      chip, 0x40014800,
-      {.number = 17, .bus = two, .channels = 1, .advanced = true, .new_layout = true, .irq_update = 26});
 }
 
 void add_adcs(Chip& chip, const G4Parts& parts) {

@@ -7,14 +7,13 @@
 
 #include "firmware_iface/mcu/stm32/chip_parts.h"
 #include "firmware_iface/mcu/stm32/clock/flash_h7.h"
+#include "firmware_iface/mcu/stm32/families/timer_rows.h"
 #include "firmware_iface/mcu/stm32/fdcan_h7.h"
 #include "firmware_iface/mcu/stm32/math/cordic.h"
 #include "firmware_iface/mcu/stm32/watchdog.h"
 
 namespace omnihil::mcu {
 namespace {
-using Itr = std::vector<std::string>;
-
 // RM0433 table 121, RM0468 table 119: request numbers of DMAMUX1.
 std::vector<std::pair<unsigned, std::string>> requests() {
   std::vector<std::pair<unsigned, std::string>> all;
@@ -70,79 +69,27 @@ void add_dma(Chip& chip) {
 }
 
 void add_timers(Chip& chip, const H7Parts& parts) {
-  // RM0433 tables 312, 319, 333, 340: internal triggers
-  const std::vector<std::pair<std::uint32_t, TimerSpec>> rows = {
-      {0x40010000,
-       {.number = 1,
-        .bus = Bus::kApb2,
-        .advanced = true,
-        .irq_update = 25,
-        .irq_compare = 27,
-        .irq_break = 24,
-        .irq_trigger = 26,
-        .internal_triggers = Itr{"TIM15_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM4_TRGO"}}},
-      {0x40010400,
-       {.number = 8,
-        .bus = Bus::kApb2,
-        .advanced = true,
-        .irq_update = 44,
-        .irq_compare = 46,
-        .irq_break = 43,
-        .irq_trigger = 45,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM4_TRGO", "TIM5_TRGO"}}},
-      {0x40000000,
-       {.number = 2,
-        .bits32 = true,
-        .irq_update = 28,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM8_TRGO", "TIM3_TRGO", "TIM4_TRGO"}}},
-      {0x40000400,
-       {.number = 3,
-        .irq_update = 29,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM15_TRGO", "TIM4_TRGO"}}},
-      {0x40000800,
-       {.number = 4,
-        .irq_update = 30,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM8_TRGO"}}},
-      {0x40000C00,
-       {.number = 5,
-        .bits32 = true,
-        .irq_update = 50,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM8_TRGO", "TIM3_TRGO", "TIM4_TRGO"}}},
-      {0x40001000, {.number = 6, .channels = 0, .irq_update = 54}},
-      {0x40001400, {.number = 7, .channels = 0, .irq_update = 55}},
-      {0x40001800,
-       {.number = 12,
-        .channels = 2,
-        .irq_update = 43,
-        .internal_triggers = Itr{"TIM4_TRGO", "TIM5_TRGO", "TIM13_CC1", "TIM14_CC1"}}},
-      {0x40001C00, {.number = 13, .channels = 1, .irq_update = 44}},
-      {0x40002000, {.number = 14, .channels = 1, .irq_update = 45}},
-      {0x40014000,
-       {.number = 15,
-        .bus = Bus::kApb2,
-        .channels = 2,
-        .advanced = true,
-        .irq_update = 116,
-        .internal_triggers = Itr{"TIM1_TRGO", "TIM3_TRGO", "TIM16_CC1", "TIM17_CC1"}}},
-      {0x40014400, {.number = 16, .bus = Bus::kApb2, .channels = 1, .advanced = true, .irq_update = 117}},
-      {0x40014800, {.number = 17, .bus = Bus::kApb2, .channels = 1, .advanced = true, .irq_update = 118}},
-      {0x4000E000, {.number = 23, .bits32 = true, .irq_update = 161}},
-      {0x4000E400, {.number = 24, .bits32 = true, .irq_update = 162}}};
-  for (auto [base, spec] : rows) {
-    if (spec.number > 20 && !parts.newer) continue;
-    spec.selects_inputs = true;
-    add_timer(chip, base, std::move(spec));
+  std::vector<TimerRow> rows = timers_1_to_8({.tim1 = 0x40010000, .tim8 = 0x40010400, .itr = "TIM15_TRGO"});
+  const auto append = [&rows](const std::vector<TimerRow>& more) {
+    rows.insert(rows.end(), more.begin(), more.end());
+  };
+  append(timers_12_to_14());
+  append(timers_15_to_17(116, {"TIM1_TRGO", "TIM3_TRGO", "TIM16_CC1", "TIM17_CC1"}));
+  if (parts.newer) {
+    append({{0x4000E000, {.number = 23, .bits32 = true, .irq_update = 161}},
+            {0x4000E400, {.number = 24, .bits32 = true, .irq_update = 162}}});
   }
+  for (auto& [base, spec] : rows) {
+    spec.selects_inputs = true;
+    if (spec.number == 5) spec.internal_triggers = {"TIM1_TRGO", "TIM8_TRGO", "TIM3_TRGO", "TIM4_TRGO"};
+  }
+  add_timers(chip, rows);
 }
 
 void add_adcs(Chip& chip, const H7Parts& parts) {
   ChipContext& context = chip.context();
-  // RM0433 tables 205, 206; HRTIM's and LPTIM's triggers are not modelled, nor are TRGO2
-  const AdcTriggers triggers{
-      {"TIM1_CC1", "TIM1_CC2", "TIM1_CC3", "TIM2_CC2", "TIM3_TRGO", "TIM4_CC4", "EXTI11", "TIM8_TRGO", "",
-       "TIM1_TRGO", "", "TIM2_TRGO", "TIM4_TRGO", "TIM6_TRGO", "TIM15_TRGO", "TIM3_CC4"},
-      {"TIM1_TRGO", "TIM1_CC4", "TIM2_TRGO", "TIM2_CC1", "TIM3_CC4", "TIM4_TRGO", "EXTI15", "TIM8_CC4", "",
-       "TIM8_TRGO", "", "TIM3_CC3", "TIM3_TRGO", "TIM3_CC1", "TIM6_TRGO", "TIM15_TRGO"}};
+  // RM0433 tables 205, 206: those of F3; HRTIM's and LPTIM's are not modelled
+  const AdcTriggers triggers = adc_triggers_f3();
   std::vector<AdcV2*> pair;
   for (unsigned n = 0; n < 2; ++n) {
     pair.push_back(&chip.add(
@@ -247,6 +194,24 @@ void build_h7(Chip& chip, const H7Parts& parts) {
   if (parts.newer) chip.add(0x48024400, 0x400, std::make_unique<Cordic>(context, 154));
   add_kept(chip, parts);
   add_identity(chip, {0x1FF1E800, 0x1FF1E880, 0x5C001000, parts.device_id, parts.flash_bytes / 1024});
+}
+
+ChipSpec h7_spec(std::string_view name, std::vector<std::string_view> variants, const H7Parts& parts,
+                 void (*build)(Chip& chip)) {
+  return {.name = name,
+          .variants = std::move(variants),
+          .core = kCortexM7,
+          .blocks = BlockFamily::kH7,
+          .reset_hz = 64e6,
+          .memories = {{"flash", 0x08000000, parts.flash_bytes, true},
+                       {"itcm", 0x00000000, 64 * 1024, false, true},
+                       {"dtcm", 0x20000000, 128 * 1024, false, true},
+                       {"sram", 0x24000000, parts.sram_bytes},
+                       {"sram of D2", 0x30000000, parts.d2_bytes},
+                       {"sram4", 0x38000000, parts.sram4_bytes},
+                       {"backup", 0x38800000, 4096}},
+          .aliases = {{"sram of D2", 0x10000000}},
+          .build = build};
 }
 
 }  // namespace omnihil::mcu
