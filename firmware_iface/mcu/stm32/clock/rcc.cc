@@ -29,8 +29,10 @@ void Rcc::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes
   if (std::find(map_.tree.begin(), map_.tree.end(), offset) != map_.tree.end()) apply();
 }
 
-void Rcc::select(std::uint32_t wanted, bool ready, double hz) {
+void Rcc::select(std::uint32_t wanted, double hz) {
   constexpr double kSlowest_hz = 1e5;  // of a source that is meant
+  const int by = wanted < map_.switches.size() ? map_.switches[wanted] : -1;
+  bool ready = by >= 0 && bit(value(0x00), static_cast<unsigned>(by));
   if (wanted == map_.hsi) {
     ready = true, hz = clocks().hsi_hz;  // switched on by the hardware when it is asked for
   }
@@ -64,6 +66,14 @@ ClockRatio Rcc::ratio(double hz, double core_hz) {
   const auto cycles = static_cast<std::uint64_t>(std::llround(core_hz));
   const std::uint64_t common = std::gcd(ticks, cycles);
   return {static_cast<std::uint32_t>(ticks / common), static_cast<std::uint32_t>(cycles / common)};
+}
+
+void Rcc::kernel(ClockState& state, Bus which, double hz) {
+  if (hz > 0.0) {
+    state.of(which) = ratio(hz, state.hclk_hz);
+  } else {
+    state.off |= 1u << static_cast<unsigned>(which);
+  }
 }
 
 ClockState Rcc::buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, std::uint32_t apb2) {

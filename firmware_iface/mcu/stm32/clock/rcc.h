@@ -9,6 +9,7 @@
 // modelled), kernel clocks other than PCLK and SYSCLK for U(S)ARTs are reported; those of H7 are followed. Clock outputs
 // and the RTC are not modelled.
 #pragma once
+#include <array>
 #include <memory>
 
 #include "firmware_iface/mcu/stm32/chip_context.h"
@@ -40,7 +41,9 @@ struct RccMap {
   std::uint16_t csr = 0;                // with the reset flags
   unsigned rmvf = 0;                    // CSR's bit that clears them
   RccReasons reasons{};
-  std::uint32_t hsi = 0;  // the code of SW for the internal oscillator, the source after a reset
+  std::array<int, 4> switches{0, 16, 24,
+                              -1};  // CR's bit of each source by its code of SW; below 0: there is none
+  std::uint32_t hsi = 0;            // the code of SW for the internal oscillator, the source after a reset
   double hsi_hz = 0.0;
 };
 
@@ -69,9 +72,11 @@ class Rcc : public RegisterBlock {
   static ClockRatio ratio(double hz, double core_hz);
   // Fills in HCLK, APB buses and their timers.
   static ClockState buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, std::uint32_t apb2);
-  // Makes `wanted` (the code of SW) the system clock of `hz` if that source runs; if not, what was stays and
+  // A kernel clock; of no frequency: off, its bus's is taken (its block says so).
+  static void kernel(ClockState& state, Bus which, double hz);
+  // Makes `wanted` (the code of SW) the system clock of `hz` if that source is on; if not, what was stays and
   // it is reported.
-  void select(std::uint32_t wanted, bool ready, double hz);
+  void select(std::uint32_t wanted, double hz);
   // CFGR's SWS: the source in use.
   std::uint32_t selected() const { return selected_; }
   double sysclk_hz() const { return sysclk_hz_; }

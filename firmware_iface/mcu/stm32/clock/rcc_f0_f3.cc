@@ -57,9 +57,8 @@ class RccF0F3 final : public Rcc {
   }
 
   ClockState tree() override {
-    const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
-    const bool ready = wanted < 3 && bit(cr, wanted == 0 ? 0 : wanted == 1 ? 16 : 24);
-    select(wanted, ready, wanted == 1 ? clocks().hse_hz : pll_hz());
+    const std::uint32_t cfgr = value(kCfgr), wanted = cfgr & 3u;
+    select(wanted, wanted == 1 ? clocks().hse_hz : pll_hz());
     const std::uint32_t apb1 = apb_divider(field(cfgr, 8, 3));
     const std::uint32_t apb2 = f3_ ? apb_divider(field(cfgr, 11, 3)) : apb1;  // F0 has one APB
     const std::uint32_t ahb = ahb_divider(field(cfgr, 4, 4));

@@ -44,9 +44,8 @@ class RccF1 final : public Rcc {
   }
 
   ClockState tree() override {
-    const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
-    const bool ready = wanted < 3 && bit(cr, wanted == 0 ? 0 : wanted == 1 ? 16 : 24);
-    select(wanted, ready, wanted == 1 ? clocks().hse_hz : pll_hz());
+    const std::uint32_t cfgr = value(kCfgr), wanted = cfgr & 3u;
+    select(wanted, wanted == 1 ? clocks().hse_hz : pll_hz());
     const std::uint32_t apb2 = apb_divider(field(cfgr, 11, 3));
     ClockState state =
         buses(sysclk_hz(), ahb_divider(field(cfgr, 4, 4)), apb_divider(field(cfgr, 8, 3)), apb2);

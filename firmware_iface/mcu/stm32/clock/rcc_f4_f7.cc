@@ -55,6 +55,7 @@ constexpr RccMap kMap{.registers = kRegisters,
                       .cfgr = kCfgr,
                       .csr = kCsr,
                       .rmvf = 24,
+                      .switches = {0, 16, 24, 24},
                       .hsi = 0,
                       .hsi_hz = 16e6};
 
@@ -85,16 +86,11 @@ class RccF4F7 final : public Rcc {
   }
 
   ClockState tree() override {
-    const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
-    const bool ready = bit(cr, wanted == 0 ? 0 : wanted == 1 ? 16 : 24);
-    select(wanted, ready, wanted == 1 ? clocks().hse_hz : pll_hz());
+    const std::uint32_t cfgr = value(kCfgr), wanted = cfgr & 3u;
+    select(wanted, wanted == 1 ? clocks().hse_hz : pll_hz());
     const std::uint32_t apb1 = apb_divider(field(cfgr, 10, 3)), apb2 = apb_divider(field(cfgr, 13, 3));
     ClockState state = buses(sysclk_hz(), ahb_divider(field(cfgr, 4, 4)), apb1, apb2);
-    if (const double hz = card_hz(); hz > 0.0) {
-      state.of(Bus::kSdmmc) = ratio(hz, state.hclk_hz);
-    } else {
-      state.off |= 1u << static_cast<unsigned>(Bus::kSdmmc);
-    }
+    kernel(state, Bus::kSdmmc, card_hz());
     if (bit(value(kDckCfgr), 24)) {  // TIMPRE: up to four times PCLK, at most HCLK
       state.timers[1].div = apb1 <= 4 ? 1 : apb1 / 4;
       state.timers[2].div = apb2 <= 4 ? 1 : apb2 / 4;

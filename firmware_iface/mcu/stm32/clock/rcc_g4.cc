@@ -46,6 +46,7 @@ constexpr RccMap kMap{.registers = kRegisters,
                       .cfgr = kCfgr,
                       .csr = kCsr,
                       .rmvf = 23,
+                      .switches = {-1, 8, 16, 24},
                       .hsi = 1,
                       .hsi_hz = 16e6};
 
@@ -62,9 +63,8 @@ class RccG4 final : public Rcc {
   }
 
   ClockState tree() override {
-    const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
-    const bool ready = bit(cr, wanted == 1 ? 8 : wanted == 2 ? 16 : 24) && wanted != 0;
-    select(wanted, ready, wanted == 2 ? clocks().hse_hz : pll_hz());
+    const std::uint32_t cfgr = value(kCfgr), wanted = cfgr & 3u;
+    select(wanted, wanted == 2 ? clocks().hse_hz : pll_hz());
     return buses(sysclk_hz(), ahb_divider(field(cfgr, 4, 4)), apb_divider(field(cfgr, 8, 3)),
                  apb_divider(field(cfgr, 11, 3)));
   }

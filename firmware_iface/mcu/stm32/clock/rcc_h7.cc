@@ -108,6 +108,7 @@ constexpr RccMap kMap{.registers = kRegisters,
                       .rmvf = 16,
                       // POR and brown-out, pin, software, IWDG1, WWDG1 (RM0433 8.7.40)
                       .reasons = {1u << 23 | 1u << 21, 1u << 22, 1u << 24, 1u << 26, 1u << 28},
+                      .switches = {0, 7, 16, 24},
                       .hsi = 0,
                       .hsi_hz = 64e6};
 constexpr double kCsi_hz = 4e6;
@@ -151,11 +152,10 @@ class RccH7 final : public Rcc {
   double lse_hz() { return bit(value(kBdcr), 0) ? clocks().lse_hz : kOff; }
 
   ClockState tree() override {
-    const std::uint32_t cr = value(kCr), wanted = value(kCfgr) & 7u;
+    const std::uint32_t wanted = value(kCfgr) & 7u;
     const std::array<double, 4> sources{hsi_hz(), kCsi_hz, hse_hz(), pll_hz(1, 0)};
-    constexpr unsigned kSwitch[] = {0, 7, 16, 24};
     clocks().hsi_hz = hsi_hz();
-    select(wanted, wanted < 4 && bit(cr, kSwitch[wanted & 3u]), sources[wanted & 3u]);
+    select(wanted, sources[wanted & 3u]);
     const std::uint32_t d1 = value(kD1Cfgr), d2 = value(kD2Cfgr), d3 = value(kD3Cfgr);
     const std::uint32_t ahb = ahb_divider(field(d1, 0, 4));
     const std::uint32_t apb1 = apb_divider(field(d2, 4, 3)), apb2 = apb_divider(field(d2, 8, 3));
@@ -178,14 +178,9 @@ class RccH7 final : public Rcc {
   }
 
  private:
-  // A kernel clock as a ratio to the core's; where it is off, the bus's (its block says so).
   void kernel(ClockState& state, Bus which, Bus bus, double hz) {
     state.of(which) = state.of(bus);
-    if (hz <= kOff) {
-      state.off |= 1u << static_cast<unsigned>(which);
-      return;
-    }
-    state.of(which) = ratio(hz, state.hclk_hz);
+    Rcc::kernel(state, which, hz);
   }
   void kernels(ClockState& state) {
     const auto hz = [&state](Bus bus) {

@@ -60,6 +60,7 @@ constexpr RccMap kMap{.registers = kRegisters,
                       .cfgr = kCfgr,
                       .csr = kCsr,
                       .rmvf = 23,
+                      .switches = {0, 8, 16, 24},
                       .hsi = 0,  // the MSI
                       .hsi_hz = 4e6};
 constexpr double kHsi16_hz = 16e6;
@@ -84,11 +85,10 @@ class RccL4 final : public Rcc {
   }
 
   ClockState tree() override {
-    const std::uint32_t cr = value(kCr), cfgr = value(kCfgr), wanted = cfgr & 3u;
-    constexpr unsigned kSwitch[] = {0, 8, 16, 24};
+    const std::uint32_t cfgr = value(kCfgr), wanted = cfgr & 3u;
     clocks().hsi_hz = msi_hz();
     const double hz = wanted == 1 ? kHsi16_hz : wanted == 2 ? clocks().hse_hz : pll_hz(kPllCfgr, 24, 25);
-    select(wanted, bit(cr, kSwitch[wanted]), hz);
+    select(wanted, hz);
     ClockState state = buses(sysclk_hz(), ahb_divider(field(cfgr, 4, 4)), apb_divider(field(cfgr, 8, 3)),
                              apb_divider(field(cfgr, 11, 3)));
     const unsigned card = field(value(kCcipr), 26, 2), adc = field(value(kCcipr), 28, 2);
@@ -103,15 +103,6 @@ class RccL4 final : public Rcc {
            : adc == 3 ? sysclk_hz()
                       : 0.0);
     return state;
-  }
-
- private:
-  static void kernel(ClockState& state, Bus which, double hz) {
-    if (hz > 0.0) {
-      state.of(which) = ratio(hz, state.hclk_hz);
-    } else {
-      state.off |= 1u << static_cast<unsigned>(which);
-    }
   }
 };
 }  // namespace
