@@ -114,7 +114,7 @@ std::uint32_t Flash::load(std::uint32_t offset) {
 void Flash::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
   const Layout at = layout(family_);
   if (offset == at.key) {
-    key(written);
+    if (opens(keys_, written)) value(at.cr) &= ~(1u << at.lock);
   } else if (offset == at.sr) {
     value(offset) &= ~written;
     irq_.set(bit(value(at.sr), at.done) && bit(value(at.cr), at.done_enable));
@@ -125,17 +125,14 @@ void Flash::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
   }
 }
 
-void Flash::key(std::uint32_t written) {
+bool Flash::opens(unsigned& keys, std::uint32_t written) {
   constexpr std::uint32_t kKeys[] = {0x45670123u, 0xCDEF89ABu};
-  const Layout at = layout(family_);
-  if (keys_ < 2 && written == kKeys[keys_]) {
-    if (++keys_ == 2) {
-      value(at.cr) &= ~(1u << at.lock);
-      keys_ = 0;
-    }
-    return;
+  if (keys >= 2 || written != kKeys[keys]) {
+    keys = 2;  // a wrong key keeps it locked until reset
+    return false;
   }
-  keys_ = 2;  // a wrong key keeps it locked until reset
+  keys = (keys + 1) % 2;
+  return keys == 0;
 }
 
 void Flash::control(std::uint32_t written, std::uint32_t lanes) {

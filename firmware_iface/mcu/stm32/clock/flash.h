@@ -27,6 +27,8 @@ class Flash : public RegisterBlock, public FlashWrites {
   std::uint32_t load(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
+  // The next word at a key register. True: with it both keys have been given, and the lock opens.
+  static bool opens(unsigned& keys, std::uint32_t written);
   void erase(std::uint32_t from, std::uint32_t count);  // from the flash's base
   void program(std::uint32_t address, unsigned bytes, std::uint32_t value);
   std::uint32_t bytes() const { return bytes_; }
@@ -34,7 +36,6 @@ class Flash : public RegisterBlock, public FlashWrites {
 
  private:
   bool locked() const;
-  void key(std::uint32_t written);
   void control(std::uint32_t written, std::uint32_t lanes);
   void erase_sector(std::uint32_t sector);
 

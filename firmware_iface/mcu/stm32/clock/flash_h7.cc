@@ -65,7 +65,8 @@ void FlashH7::store(std::uint32_t offset, std::uint32_t written, std::uint32_t l
   const std::uint32_t bank = offset / kBank;
   switch (offset % kBank) {
     case kKeyr:
-      return key(bank, written);
+      if (opens(keys_[bank], written)) value(bank * kBank + kCr) &= ~kLock;
+      return;
     case kCr:
       return control(bank, written, lanes);
     case kCcr:
@@ -74,18 +75,6 @@ void FlashH7::store(std::uint32_t offset, std::uint32_t written, std::uint32_t l
     default:
       keep(offset, written, lanes);
   }
-}
-
-void FlashH7::key(std::uint32_t bank, std::uint32_t written) {
-  constexpr std::uint32_t kKeys[] = {0x45670123u, 0xCDEF89ABu};
-  unsigned& keys = keys_[bank];
-  if (keys < 2 && written == kKeys[keys]) {
-    if (++keys < 2) return;
-    value(bank * kBank + kCr) &= ~kLock;
-    keys = 0;
-    return;
-  }
-  keys = 2;  // a wrong key keeps it locked until reset
 }
 
 void FlashH7::control(std::uint32_t bank, std::uint32_t written, std::uint32_t lanes) {

@@ -21,7 +21,6 @@ class FlashH7 final : public Flash {
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:
-  void key(std::uint32_t bank, std::uint32_t written);
   void control(std::uint32_t bank, std::uint32_t written, std::uint32_t lanes);
   void done(std::uint32_t bank);
   void update();
