@@ -7,7 +7,7 @@
 
 #include "firmware_iface/mcu/stm32/chip_parts.h"
 #include "firmware_iface/mcu/stm32/families/timer_rows.h"
-#include "firmware_iface/mcu/stm32/fdcan.h"
+#include "firmware_iface/mcu/stm32/fdcan_g4.h"
 #include "firmware_iface/mcu/stm32/math/cordic.h"
 
 namespace omnihil::mcu {
@@ -120,9 +120,9 @@ void build_g4(Chip& chip, const G4Parts& parts) {
   add_i2c(chip, 0x40007800, {.name = "I2C3", .v2 = true, .irq_event = 92, .irq_error = 93});
   if (parts.large) add_i2c(chip, 0x40008400, {.name = "I2C4", .v2 = true, .irq_event = 82, .irq_error = 83});
   FdcanRam& ram = chip.add(0x4000A400, FdcanRam::kBytes, std::make_unique<FdcanRam>());
-  chip.add(0x40006400, 0x400, std::make_unique<Fdcan>(1, std::pair{21, 22}, ram, context));
-  if (parts.large) chip.add(0x40006800, 0x400, std::make_unique<Fdcan>(2, std::pair{86, 87}, ram, context));
-  if (parts.large) chip.add(0x40006C00, 0x400, std::make_unique<Fdcan>(3, std::pair{88, 89}, ram, context));
+  chip.add(0x40006400, 0x400, std::make_unique<FdcanG4>(1, std::pair{21, 22}, ram, context));
+  if (parts.large) chip.add(0x40006800, 0x400, std::make_unique<FdcanG4>(2, std::pair{86, 87}, ram, context));
+  if (parts.large) chip.add(0x40006C00, 0x400, std::make_unique<FdcanG4>(3, std::pair{88, 89}, ram, context));
   add_watchdogs(chip, 11, 3);
   add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
   add_stored(chip, 0x40002000, 0x400, "CRS");
