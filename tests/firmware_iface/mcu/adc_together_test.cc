@@ -163,12 +163,11 @@ TEST(AdcTogether, PairsOfG4ConvertOnTheMastersStart) {
   for (unsigned n = 1; n <= 2; ++n) {
     const std::string name = "ADC" + std::to_string(n);
     b.chip.find<Adc>(name)->set_source(n, [n](std::int64_t) { return 0.33 * n; });
-    b.set(name, 0x08, 1u << 28);
-    b.set(name, 0x08, 1u << 28 | 1);
+    b.switch_adc_on(name);
     b.set(name, 0x30, n << 6);
   }
   b.set("ADC12", 0x08, 0b00110 | 1u << 16);
-  b.set("ADC1", 0x08, 1u << 28 | 1 | 4);
+  b.start_adc("ADC1");
   b.system.run_for(200);
   EXPECT_EQ(b.get("ADC12", 0x0C), F4Bench::code(2) << 16 | F4Bench::code(1));
   EXPECT_EQ(b.get("ADC2", 0x40), F4Bench::code(2));

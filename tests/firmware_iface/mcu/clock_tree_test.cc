@@ -100,8 +100,7 @@ TEST(FlashController, UnlocksErasesAndProgramsOnlyByItsKeys) {
   constexpr std::uint32_t kPage = 0x0801F000;
   flash.flash_write(kPage, 2, 0x1234);
   EXPECT_EQ(b.system.memory[kPage], 0u);
-  b.set("FLASH", 0x04, 0x45670123);
-  b.set("FLASH", 0x04, 0xCDEF89AB);
+  b.unlock_flash(0x04);
   EXPECT_EQ(b.get("FLASH", 0x10) >> 7 & 1, 0u);
   b.set("FLASH", 0x10, 2);
   b.set("FLASH", 0x14, kPage + 6);

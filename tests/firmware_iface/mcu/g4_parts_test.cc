@@ -25,8 +25,7 @@ TEST(G4Parts, TheSecondControllerFollowsTheFirstOnesChannels) {
   for (const auto& [chip, channel] : {std::pair{"stm32g431", 6u}, {"stm32g474", 8u}}) {
     ChipBench b(chip);
     b.chip.find<Adc>("ADC1")->set_source(1, [](std::int64_t) { return 1.65; });
-    b.set("ADC1", 0x08, 1u << 28);
-    b.set("ADC1", 0x08, 1u << 28 | 1);
+    b.switch_adc_on("ADC1");
     b.set("ADC1", 0x30, 1u << 6);
     b.set("ADC1", 0x0C, 1);
     b.set("DMAMUX", 4 * channel, 5);  // ADC1
@@ -34,7 +33,7 @@ TEST(G4Parts, TheSecondControllerFollowsTheFirstOnesChannels) {
     b.set("DMA2", 0x10, b.base("ADC1") + 0x40);
     b.set("DMA2", 0x14, 0x20000000);
     b.set("DMA2", 0x08, 1u << 10 | 1u << 8 | 1);
-    b.set("ADC1", 0x08, 1u << 28 | 1 | 4);
+    b.start_adc("ADC1");
     b.system.run_for(300);
     EXPECT_EQ(b.system.bus_read(0x20000000, 2), 2048u) << chip;
   }

@@ -125,14 +125,7 @@ TEST(H7Parts, StreamsFollowTheRequestMultiplexer) {
   b.set("DMA2", 0x18, b.base("USART3") + 0x28);
   b.set("DMA2", 0x1C, 0x24000000);
   b.set("DMA2", 0x10, 1u << 10 | 1u << 6 | 1u << 4 | 1);
-  std::string sent;
-  b.chip.find<Usart>("USART3")->on_transmit(
-      [&sent](std::uint8_t c, Cycles) { sent += static_cast<char>(c); });
-  b.set("USART3", 0x0C, 16);
-  b.set("USART3", 0x08, 1u << 7);
-  b.set("USART3", 0x00, 1u << 3 | 1);
-  b.system.run_for(3000);
-  EXPECT_EQ(sent, "ABC");
+  EXPECT_EQ(b.sent_by_dma("USART3"), "ABC");
   EXPECT_TRUE(b.system.irq_high[56]);
 }
 
@@ -143,8 +136,7 @@ TEST(H7Parts, SectorsAreErasedInTheirBankAndProgrammed) {
   b.system.memory[0x08020000] = 0x34;
   b.set("FLASH", 0x10C, 1u << 2 | 1u << 8 | 1u << 7);
   EXPECT_EQ(b.system.memory[second + 0x20000], 0x12) << "locked";
-  b.set("FLASH", 0x104, 0x45670123);
-  b.set("FLASH", 0x104, 0xCDEF89AB);
+  b.unlock_flash(0x104);
   b.set("FLASH", 0x10C, 1u << 2 | 1u << 8 | 1u << 7);
   EXPECT_EQ(b.system.memory[second + 0x20000], 0xFF);
   EXPECT_EQ(b.system.memory[0x08020000], 0x34) << "the other bank's";
@@ -163,17 +155,16 @@ TEST(H7Parts, ConvertsSixteenBits) {
   ChipBench b("stm32h743");
   b.chip.find<Adc>("ADC1")->set_source(4, [](std::int64_t) { return 1.65; });
   b.set("ADC12", 0x08, 1u << 16);
-  b.set("ADC1", 0x08, 1u << 28);
-  b.set("ADC1", 0x08, 1u << 28 | 1);
+  b.switch_adc_on("ADC1");
   b.set("ADC1", 0x30, 4u << 6);
-  b.set("ADC1", 0x08, 1u << 28 | 1 | 4);
+  b.start_adc("ADC1");
   b.system.run_for(19);
   EXPECT_EQ(b.get("ADC1", 0x00) & 4u, 0u);
   b.system.run_for(1);
   EXPECT_EQ(b.get("ADC1", 0x00) & 4u, 4u);
   EXPECT_EQ(b.get("ADC1", 0x40), 32768u);
   b.set("ADC1", 0x0C, 7u << 2);  // 8 bits
-  b.set("ADC1", 0x08, 1u << 28 | 1 | 4);
+  b.start_adc("ADC1");
   b.system.run_for(100);
   EXPECT_EQ(b.get("ADC1", 0x40), 128u);
 }

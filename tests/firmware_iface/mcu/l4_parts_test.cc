@@ -37,20 +37,13 @@ TEST(L4Parts, RunsAt80MHzFromItsPllAndGivesTheCardItsClock) {
 TEST(L4Parts, AChannelServesTheRequestThatItsSelectionSays) {
   for (const bool chosen : {true, false}) {
     ChipBench b("stm32l476");
-    std::string sent;
-    b.chip.find<Usart>("USART1")->on_transmit(
-        [&sent](std::uint8_t c, Cycles) { sent += static_cast<char>(c); });
     b.system.bus_write(0x20000000, 4, 0x00434241);
     b.set("DMA1", 0xA8, (chosen ? 2u : 3u) << 12);  // channel 4: USART1_TX or I2C2_TX
     b.set("DMA1", 0x44 + 4, 3);
     b.set("DMA1", 0x44 + 8, b.base("USART1") + 0x28);
     b.set("DMA1", 0x44 + 12, 0x20000000);
     b.set("DMA1", 0x44, 1u << 7 | 1u << 4 | 1);
-    b.set("USART1", 0x0C, 16);
-    b.set("USART1", 0x08, 1u << 7);
-    b.set("USART1", 0x00, 1u << 3 | 1);
-    b.system.run_for(3000);
-    EXPECT_EQ(sent, chosen ? "ABC" : "");
+    EXPECT_EQ(b.sent_by_dma("USART1"), chosen ? "ABC" : "");
   }
 }
 
@@ -59,8 +52,7 @@ TEST(L4Parts, PagesAreErasedInTheirBank) {
   const std::uint32_t second = 0x08080000;
   b.system.memory[second + 3 * 2048] = 1;
   b.system.memory[0x08000000 + 3 * 2048] = 2;
-  b.set("FLASH", 0x08, 0x45670123);
-  b.set("FLASH", 0x08, 0xCDEF89AB);
+  b.unlock_flash(0x08);
   b.set("FLASH", 0x14, 2u | 3u << 3 | 1u << 11 | 1u << 16);
   EXPECT_EQ(b.system.memory[second + 3 * 2048], 0xFF);
   EXPECT_EQ(b.system.memory[0x08000000 + 3 * 2048], 2);
@@ -73,10 +65,9 @@ TEST(L4Parts, ConvertsInFifteenClocks) {
   ChipBench b("stm32l476");
   b.chip.find<Adc>("ADC3")->set_source(7, [](std::int64_t) { return 3.3 / 4; });
   b.set("ADC123", 0x08, 3u << 16);
-  b.set("ADC3", 0x08, 1u << 28);
-  b.set("ADC3", 0x08, 1u << 28 | 1);
+  b.switch_adc_on("ADC3");
   b.set("ADC3", 0x30, 7u << 6);
-  b.set("ADC3", 0x08, 1u << 28 | 1 | 4);
+  b.start_adc("ADC3");
   b.system.run_for(59);
   EXPECT_EQ(b.get("ADC3", 0x00) & 4u, 0u);
   b.system.run_for(1);
