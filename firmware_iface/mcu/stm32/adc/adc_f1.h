@@ -6,7 +6,7 @@
 // Law: as adc.h; a conversion takes 12.5 clocks of PCLK2 over ADCPRE. EOC is set at the end of either sequence, by ADON
 // written again a conversion starts. Dual modes as adc_together.h, the pair's results as one word in ADC1's DR.
 #pragma once
-#include "firmware_iface/mcu/stm32/adc/adc.h"
+#include "firmware_iface/mcu/stm32/adc/adc_status.h"
 
 namespace omnihil::mcu {
 
@@ -15,35 +15,24 @@ struct AdcF1Spec {
   bool dma = false;
 };
 
-class AdcF1 final : public Adc {
+class AdcF1 final : public AdcWithStatus {
  public:
   AdcF1(const AdcF1Spec& spec, const AdcTriggers& triggers, AdcF1* master, ChipContext& context);
   void reset() override;
-  Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x4C ? 0 : kNever; }
 
  protected:
-  std::uint32_t load(std::uint32_t offset) override;
-  std::uint32_t shown(std::uint32_t offset) override { return value(offset); }
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
   unsigned length(Group group) const override;
-  unsigned channel(Group group, unsigned place) const override;
-  double sample_clocks(unsigned channel) const override;
   double convert_clocks() const override { return 12.5; }
   double clock_hz() const override { return context().clocks.bus_hz(Bus::kAdc); }
   unsigned bits() const override { return 12; }
-  bool left_aligned() const override { return bit(value(0x08), 11); }
   void result(Group group, unsigned place, std::uint32_t code, bool last) override;
-  bool continues() const override { return bit(value(0x08), 1); }
-  bool one_per_trigger() const override { return bit(value(0x04), 11); }
-  bool injected_follow() const override { return bit(value(0x04), 10); }
   std::pair<int, unsigned> trigger(Group group) const override;
-  bool armed(Group group) const override;
-  bool enabled() const override { return bit(value(0x08), 0); }
+  void ordered(std::uint32_t before, std::uint32_t written) override;
+  void update() override;
 
  private:
   std::size_t deliver(std::span<const std::uint32_t> results);
-  void control(std::uint32_t before, std::uint32_t written);
-  void update();
   AdcTogether pair_;
   IrqLine irq_;
   int dma_;  // below 0: none

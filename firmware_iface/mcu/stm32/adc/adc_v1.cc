@@ -2,40 +2,30 @@
 
 namespace omnihil::mcu {
 namespace {
-enum : std::uint16_t {
-  kSr = 0x00,
-  kCr1 = 0x04,
-  kCr2 = 0x08,
-  kSmpr1 = 0x0C,
-  kSmpr2 = 0x10,
-  kSqr1 = 0x2C,
-  kSqr3 = 0x34,
-  kJsqr = 0x38,
-  kJdr1 = 0x3C,
-  kDr = 0x4C
-};
-constexpr std::uint32_t kEoc = 1u << 1, kJeoc = 1u << 2, kJstrt = 1u << 3, kStrt = 1u << 4, kOvr = 1u << 5;
+constexpr std::uint32_t kOvr = 1u << 5;                             // SR
+constexpr std::uint32_t kJswstart = 1u << 22, kSwstart = 1u << 30;  // CR2
 
-constexpr RegisterInfo kAdc[] = {{kSr, "SR", 0, 0},
-                                 {kCr1, "CR1", 0, 0x07C0FFFF, 0x00C01240},
-                                 {kCr2, "CR2", 0, 0x7F7F0F03},
-                                 {kSmpr1, "SMPR1"},
-                                 {kSmpr2, "SMPR2"},
+constexpr RegisterInfo kAdc[] = {{0x00, "SR", 0, 0},
+                                 {0x04, "CR1", 0, 0x07C0FFFF, 0x00C01240},
+                                 {0x08, "CR2", 0, 0x7F7F0F03},
+                                 {0x0C, "SMPR1"},
+                                 {0x10, "SMPR2"},
                                  {0x14, "JOFR1", 0, 0xFFF, 0xFFF},
                                  {0x18, "JOFR2", 0, 0xFFF, 0xFFF},
                                  {0x1C, "JOFR3", 0, 0xFFF, 0xFFF},
                                  {0x20, "JOFR4", 0, 0xFFF, 0xFFF},
                                  {0x24, "HTR", 0xFFF, 0xFFF},
                                  {0x28, "LTR", 0, 0xFFF},
-                                 {kSqr1, "SQR1"},
+                                 {0x2C, "SQR1"},
                                  {0x30, "SQR2"},
-                                 {kSqr3, "SQR3"},
-                                 {kJsqr, "JSQR"},
-                                 {kJdr1, "JDR1", 0, 0},
+                                 {0x34, "SQR3"},
+                                 {0x38, "JSQR"},
+                                 {0x3C, "JDR1", 0, 0},
                                  {0x40, "JDR2", 0, 0},
                                  {0x44, "JDR3", 0, 0},
                                  {0x48, "JDR4", 0, 0},
-                                 {kDr, "DR", 0, 0}};
+                                 {0x4C, "DR", 0, 0}};
+constexpr double kSampleClocks[] = {3, 15, 28, 56, 84, 112, 144, 480};
 enum : std::uint16_t { kCcr = 0x04, kCdr = 0x08 };
 constexpr RegisterInfo kCommon[] = {{0x00, "CSR", 0, 0}, {kCcr, "CCR", 0, 0x00C3EF1F}, {kCdr, "CDR", 0, 0}};
 }  // namespace
@@ -96,7 +86,8 @@ void AdcV1Common::store(std::uint32_t offset, std::uint32_t written, std::uint32
 }
 
 AdcV1::AdcV1(int number, int irq, AdcV1Common& common, const AdcTriggers& triggers, ChipContext& context)
-    : Adc("ADC" + std::to_string(number), kAdc, triggers, context),
+    : AdcWithStatus("ADC" + std::to_string(number), {kAdc, kSampleClocks, kJswstart | kSwstart}, triggers,
+                    context),
       common_(common),
       number_(static_cast<unsigned>(number - 1)),
       irq_(context.irqs, irq),
@@ -104,47 +95,13 @@ AdcV1::AdcV1(int number, int irq, AdcV1Common& common, const AdcTriggers& trigge
   common.add(*this);
 }
 
-void AdcV1::data_was_read() {
-  value(kSr) &= ~kEoc;
-  update();
-}
-
-void AdcV1::reset() {
-  Adc::reset();
-  update();
-}
-
-unsigned AdcV1::length(Group group) const {
-  if (group == Group::kInjected) return field(value(kJsqr), 20, 2) + 1;
-  return bit(value(kCr1), 8) ? field(value(kSqr1), 20, 4) + 1 : 1;  // SCAN
-}
-
-unsigned AdcV1::channel(Group group, unsigned place) const {
-  if (group == Group::kInjected) {  // the sequence ends at JSQ4
-    return field(value(kJsqr), 5 * (4 - length(group) + place), 5);
-  }
-  return field(value(kSqr3 - 4 * (place / 6)), 5 * (place % 6), 5);
-}
-
-double AdcV1::sample_clocks(unsigned channel) const {
-  constexpr double kClocks[] = {3, 15, 28, 56, 84, 112, 144, 480};
-  return kClocks[channel < 10 ? field(value(kSmpr2), 3 * channel, 3)
-                              : field(value(kSmpr1), 3 * (channel % 10), 3)];
-}
-
 unsigned AdcV1::bits() const { return 12 - 2 * field(value(kCr1), 24, 2); }
-bool AdcV1::left_aligned() const { return bit(value(kCr2), 11); }
-bool AdcV1::continues() const { return bit(value(kCr2), 1); }
-bool AdcV1::one_per_trigger() const { return bit(value(kCr1), 11); }
-bool AdcV1::injected_follow() const { return bit(value(kCr1), 10); }
 
 std::pair<int, unsigned> AdcV1::trigger(Group group) const {
   const std::uint32_t cr2 = value(kCr2);
   if (group == Group::kRegular) return {static_cast<int>(field(cr2, 24, 4)), field(cr2, 28, 2)};
   return {static_cast<int>(field(cr2, 16, 4)), field(cr2, 20, 2)};
 }
-
-bool AdcV1::armed(Group) const { return bit(value(kCr2), 0); }
 
 void AdcV1::result(Group group, unsigned place, std::uint32_t code, bool last) {
   std::uint32_t& sr = value(kSr);
@@ -153,52 +110,24 @@ void AdcV1::result(Group group, unsigned place, std::uint32_t code, bool last) {
     if (last) sr |= kJeoc;
     return update();
   }
-  if ((sr & kEoc) != 0 && (bit(value(kCr2), 8) || bit(value(kCr2), 10))) sr |= kOvr;
+  if ((sr & kEoc) != 0 && (by_dma() || bit(value(kCr2), 10))) sr |= kOvr;
   value(kDr) = code;
   // EOCS: a flag per conversion instead of one per sequence; DMA asks for each.
-  const bool dma = bit(value(kCr2), 8);
+  const bool dma = by_dma();
   if (last || bit(value(kCr2), 10) || dma) sr |= kEoc;
   update();
   if (dma) context().dma.pulse(dma_);
 }
 
 void AdcV1::update() {
-  const std::uint32_t sr = value(kSr), cr1 = value(kCr1);
-  irq_.set(((sr & kEoc) != 0 && bit(cr1, 5)) || ((sr & kJeoc) != 0 && bit(cr1, 7)) ||
-           ((sr & kOvr) != 0 && bit(cr1, 26)));
+  const std::uint32_t sr = value(kSr);
+  irq_.set(asks() || ((sr & kOvr) != 0 && bit(value(kCr1), 26)));
   common_.set_status(number_, sr);
 }
 
-std::uint32_t AdcV1::load(std::uint32_t offset) {
-  if (offset == kDr) data_was_read();
-  return value(offset);
-}
-
-void AdcV1::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
-  constexpr std::uint32_t kJswstart = 1u << 22, kSwstart = 1u << 30;
-  if (offset == kSr) {
-    value(kSr) &= written | ~lanes;
-    return update();
-  }
-  keep(offset, written, lanes);
-  if (offset == kCr2) {
-    value(kCr2) &= ~(kJswstart | kSwstart);
-    if (!bit(value(kCr2), 0)) {
-      stop(Group::kRegular);
-      stop(Group::kInjected);
-    } else {
-      if ((written & kJswstart) != 0) {
-        value(kSr) |= kJstrt;
-        start(Group::kInjected);
-      }
-      if ((written & kSwstart) != 0) {
-        value(kSr) |= kStrt;
-        start(Group::kRegular);
-      }
-    }
-  }
-  if (offset == kCr1 || offset == kCr2) listen();
-  update();
+void AdcV1::ordered(std::uint32_t, std::uint32_t written) {
+  if ((written & kJswstart) != 0) start_with(Group::kInjected, kJstrt);
+  if ((written & kSwstart) != 0) start_with(Group::kRegular, kStrt);
 }
 
 }  // namespace omnihil::mcu
