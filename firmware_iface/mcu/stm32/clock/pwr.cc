@@ -1,5 +1,7 @@
 #include "firmware_iface/mcu/stm32/clock/pwr.h"
 
+#include "firmware_iface/mcu/stm32/register_rows.h"
+
 namespace omnihil::mcu {
 namespace {
 constexpr RegisterInfo kF0F3[] = {{0x00, "CR", 0, 0x1FF, 0x16}, {0x04, "CSR", 0, 0x700, 0x700}};
@@ -8,35 +10,21 @@ constexpr RegisterInfo kF7[] = {{0x00, "CR1", 0x0000C000, 0x000FFFF3, 0x10},
                                 {0x04, "CSR1", 0, 0x300, 0x100},
                                 {0x08, "CR2", 0, 0x3F3F, 0x3F},
                                 {0x0C, "CSR2", 0, 0x3F, 0x3F}};
-constexpr RegisterInfo kG4[] = {{0x00, "CR1", 0x200, 0x4707, 0x4007},
-                                {0x04, "CR2", 0, 0xFF, 0xFF},
-                                {0x08, "CR3", 0x8000, 0xFFFF},
-                                {0x0C, "CR4", 0, 0xFFFF, 0x1F},
-                                {0x10, "SR1", 0, 0},
-                                {0x14, "SR2", 0x100, 0},
-                                {0x18, "SCR", 0, 0},
-                                {0x20, "PUCRA"},
-                                {0x24, "PDCRA"},
-                                {0x28, "PUCRB"},
-                                {0x2C, "PDCRB"},
-                                {0x30, "PUCRC"},
-                                {0x34, "PDCRC"},
-                                {0x80, "CR5", 0x100, 0x100}};
-
-// RM0351 5.4
-constexpr RegisterInfo kL4[] = {{0x00, "CR1", 0x200, 0x4707, 0x4107},
-                                {0x04, "CR2", 0, 0x6FF, 0xFF},
-                                {0x08, "CR3", 0x8000, 0xFFFF},
-                                {0x0C, "CR4", 0, 0x31F, 0x1F},
-                                {0x10, "SR1", 0, 0},
-                                {0x14, "SR2", 0x100, 0},
-                                {0x18, "SCR", 0, 0},
-                                {0x20, "PUCRA"},
-                                {0x24, "PDCRA"},
-                                {0x28, "PUCRB"},
-                                {0x2C, "PDCRB"},
-                                {0x30, "PUCRC"},
-                                {0x34, "PDCRC"}};
+// G4; L4: RM0351 5.4
+constexpr RegisterInfo kControlOfG4[] = {{0x00, "CR1", 0x200, 0x4707, 0x4007},
+                                         {0x04, "CR2", 0, 0xFF, 0xFF},
+                                         {0x08, "CR3", 0x8000, 0xFFFF},
+                                         {0x0C, "CR4", 0, 0xFFFF, 0x1F}};
+constexpr RegisterInfo kControlOfL4[] = {{0x00, "CR1", 0x200, 0x4707, 0x4107},
+                                         {0x04, "CR2", 0, 0x6FF, 0xFF},
+                                         {0x08, "CR3", 0x8000, 0xFFFF},
+                                         {0x0C, "CR4", 0, 0x31F, 0x1F}};
+constexpr RegisterInfo kStatusAndPulls[] = {{0x10, "SR1", 0, 0}, {0x14, "SR2", 0x100, 0}, {0x18, "SCR", 0, 0},
+                                            {0x20, "PUCRA"},     {0x24, "PDCRA"},         {0x28, "PUCRB"},
+                                            {0x2C, "PDCRB"},     {0x30, "PUCRC"},         {0x34, "PDCRC"}};
+constexpr RegisterInfo kCr5[] = {{0x80, "CR5", 0x100, 0x100}};
+constexpr auto kG4 = joined(kControlOfG4, kStatusAndPulls, kCr5);
+constexpr auto kL4 = joined(kControlOfL4, kStatusAndPulls);
 // RM0433 6.8. Not followed: deep sleep, batteries, monitors, wake-up pins.
 constexpr RegisterInfo kH7[] = {{0x00, "CR1", 0xF000C000, 0x0007C3F1, 0x000701F1},
                                 {0x04, "CSR1", 0, 0},
