@@ -17,6 +17,7 @@ bool Cpu::may_pass() const {
 }
 
 // Until when the registers that the wait reads stay as they are; 0: they are not. Asked once, until the core runs again.
+// Once that instant is reached the answer is 0, asked or not: what the wait reads is another then.
 std::int64_t Cpu::steady_wait() {
   if (wait_.steady_until > now_) return wait_.steady_until;
   std::int64_t until = INT64_MAX;
