@@ -335,7 +335,15 @@ Outcome Chip::run(const Shaft& shaft) {
     begin_shaft(shaft);
     if (avr_->cycle < run_end_) avr_cycle_timer_register(avr_, run_end_ - avr_->cycle, end_of_run, nullptr);
   }
+  return go_on();
+}
+
+Outcome Chip::go_on() {
   while (why_stopped_.empty() && avr_->cycle < run_end_) {
+    if (pause_at_ == avr_->pc) {
+      pause_at_.reset();
+      return {.mean = {}, .missed_periods = missed(), .paused = true};
+    }
     const int state = avr_run(avr_);
     if (was_reset_) after_reset();
     if (state == cpu_Done) stop("it sleeps with interrupts off");

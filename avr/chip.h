@@ -11,7 +11,9 @@
 // brown-out detection, what simavr lacks (its list of peripherals).
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,7 @@ struct Shaft {
 struct Outcome {
   BridgeState mean;  // duty weighted by the time it was held, changes at their instants
   std::uint64_t missed_periods = 0;
+  bool paused = false;  // it is where pause_at() said, and the run is not over
 };
 
 class Chip {
@@ -50,6 +53,14 @@ class Chip {
   void receive(const std::vector<std::uint8_t>& bytes);
   // Until the first instruction that would start at or after end_ns.
   Outcome run(const Shaft& shaft);
+  // Once, before the instruction at this byte of the flash, the run in progress comes back paused; go_on() ends it.
+  void pause_at(std::uint32_t address) { pause_at_ = address; }
+  Outcome go_on();
+  // Bytes of data memory as they are, without what a program's own access would do. False: they are not there.
+  bool read_data(std::uint32_t address, std::span<std::uint8_t> out) const;
+  // RAM alone: behind the registers.
+  bool write_data(std::uint32_t address, std::span<const std::uint8_t> bytes);
+  std::uint32_t data_bytes() const, ram_begin() const;
   // What has been sent, a frame (what stood without a gap of two characters) at a time; false: no more.
   bool sent(std::vector<std::uint8_t>& frame);
   std::vector<std::string> take_notes();
@@ -80,6 +91,7 @@ class Chip {
   avr_t* avr_ = nullptr;
   void (*own_reset_)(avr_t*) = nullptr;
   bool started_ = false, was_reset_ = false;
+  std::optional<std::uint32_t> pause_at_;
   std::string why_stopped_;
   std::vector<std::pair<Pin, bool>> driven_;
 

@@ -1,4 +1,5 @@
 // omnihil-avr: one AVR chip behind standard input and output. The lines are described in docs/mcu-avr.md.
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <iostream>
@@ -29,7 +30,8 @@ class Server {
         {"adc", &Server::adc},         {"pwm", &Server::pwm},         {"direction", &Server::direction},
         {"enable", &Server::enable},   {"bridge", &Server::bridge},   {"encoder", &Server::encoder},
         {"serial", &Server::serial},   {"control", &Server::control}, {"start", &Server::start},
-        {"receive", &Server::receive}, {"run", &Server::run},
+        {"receive", &Server::receive}, {"run", &Server::run},         {"pause", &Server::pause},
+        {"go_on", &Server::go_on},     {"read", &Server::read},       {"write", &Server::write},
     };
     const auto found = kVerbs.find(verb);
     if (found == kVerbs.end()) words.fail("a known verb");
@@ -82,7 +84,10 @@ class Server {
     wires_.has_enable = true;
     wires_.enable = chip_->address(pin_word(words));
   }
-  void bridge(Words&) { chip_->set_bridge(wires_); }
+  void bridge(Words& words) {
+    if (wires_.ocr == 0) words.fail("\"pwm\" first");
+    chip_->set_bridge(wires_);
+  }
   void encoder(Words& words) {
     const Pin a = pin_word(words), b = pin_word(words);
     chip_->address(a), chip_->address(b);
@@ -99,19 +104,60 @@ class Server {
     std::fflush(stdout);
   }
   void receive(Words& words) { chip_->receive(words.bytes()); }
+  void pause(Words& words) { chip_->pause_at(words.address()); }
+  // All of them, or it is refused: the chip has no such bytes.
+  void read(Words& words) {
+    std::vector<std::uint8_t> bytes;
+    std::string refused;
+    do {
+      const std::uint32_t at = words.address(), count = words.address();
+      std::vector<std::uint8_t> part(std::min(count, chip_->data_bytes() + 1));
+      if (!chip_->read_data(at, part) && refused.empty()) refused = outside(at, count, 0);
+      bytes.insert(bytes.end(), part.begin(), part.end());
+    } while (refused.empty() && words.more());
+    while (words.more()) words.address();
+    say(refused.empty() ? "memory " + hex(bytes) : refused);
+  }
+  void write(Words& words) {
+    const std::uint32_t at = words.address();
+    const std::vector<std::uint8_t> bytes = words.bytes();
+    words.end();
+    say(chip_->write_data(at, bytes) ? "written" : outside(at, bytes.size(), chip_->ram_begin()));
+  }
+  std::string outside(std::uint32_t at, std::size_t count, std::uint32_t begin) const {
+    return "refused " + std::to_string(count) + " bytes at " + std::to_string(at) +
+           "; allowed: " + std::to_string(begin) + " to " + std::to_string(chip_->data_bytes() - 1);
+  }
+  static std::string hex(const std::vector<std::uint8_t>& bytes) {
+    std::string text;
+    for (const std::uint8_t byte : bytes) {
+      text += "0123456789abcdef"[byte >> 4];
+      text += "0123456789abcdef"[byte & 15u];
+    }
+    return text;
+  }
+  static void say(const std::string& line) {
+    std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+  }
   void run(Words& words) {
+    if (paused_) words.fail("\"go_on\": the run is not over");
     Shaft shaft;
     shaft.end_ns = words.integer();
     shaft.at_ns = words.integer();
     shaft.theta_rad = words.real();
     shaft.omega_rad_s = words.real();
-    const Outcome outcome = chip_->run(shaft);
+    tell(chip_->run(shaft));
+  }
+  void go_on(Words& words) {
+    if (!paused_) words.fail("a run that is paused");
+    tell(chip_->go_on());
+  }
+  void tell(const Outcome& outcome) {
+    paused_ = outcome.paused;
+    if (paused_) return say("paused");
     std::vector<std::uint8_t> frame;
-    while (chip_->sent(frame)) {
-      std::printf("sent ");
-      for (const std::uint8_t byte : frame) std::printf("%02x", byte);
-      std::printf("\n");
-    }
+    while (chip_->sent(frame)) std::printf("sent %s\n", hex(frame).c_str());
     for (const std::string& note : chip_->take_notes()) std::printf("note %s\n", note.c_str());
     if (!chip_->stopped().empty()) std::printf("stopped %s\n", chip_->stopped().c_str());
     std::printf("done %d %a %llu\n", outcome.mean.driven ? 1 : 0, outcome.mean.duty_ratio,
@@ -121,13 +167,14 @@ class Server {
 
   std::unique_ptr<Chip> chip_;
   BridgeWires wires_;
+  bool paused_ = false;
 };
 
 }  // namespace
 }  // namespace omnihil_avr
 
 int main() {
-  std::printf("omnihil-avr 1\n");
+  std::printf("omnihil-avr 2\n");
   std::fflush(stdout);
   omnihil_avr::Server server;
   std::string line;

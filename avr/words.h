@@ -32,6 +32,11 @@ class Words {
     if (error != std::errc{} || end != word.data() + word.size()) fail("a whole number, not " + word);
     return value;
   }
+  std::uint32_t address() {
+    const std::int64_t value = integer();
+    if (value < 0 || value > 0xFFFFFFFF) fail("an address, not " + std::to_string(value));
+    return static_cast<std::uint32_t>(value);
+  }
   double real() {
     const std::string word = text();
     char* end = nullptr;
@@ -51,6 +56,7 @@ class Words {
     if (word.size() % 2 != 0) fail("bytes in hexadecimal, two digits each");
     return result;
   }
+  bool more() { return !(in_ >> std::ws).eof(); }
   void end() {
     std::string word;
     if (in_ >> word) fail("nothing more, not " + word);

@@ -9,7 +9,7 @@ function(omnihil_avr_image name)
   set(hex ${CMAKE_BINARY_DIR}/images/${name}.hex)
   add_custom_command(OUTPUT ${elf} ${hex}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/images
-    COMMAND ${OMNIHIL_AVR_GCC} -mmcu=${image_CHIP} -DF_CPU=${image_HZ}UL ${image_FLAGS} -std=gnu11 -O2 -g -Wall -Wextra
+    COMMAND ${OMNIHIL_AVR_GCC} -mmcu=${image_CHIP} -DF_CPU=${image_HZ}UL ${image_FLAGS} -std=gnu11 -O2 -gdwarf-4 -Wall -Wextra
       -ffunction-sections -fdata-sections -Wl,--gc-sections ${image_SOURCES} -o ${elf} -lm
     COMMAND ${OMNIHIL_AVR_OBJCOPY} -O ihex -j .text -j .data ${elf} ${hex}
     DEPENDS ${image_SOURCES} ${image_HEADERS} VERBATIM)

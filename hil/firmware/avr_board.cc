@@ -136,13 +136,53 @@ void AvrBoard::take(const std::string& line, bool& done) {
   }
 }
 
-void AvrBoard::finish() {
+bool AvrBoard::finish() {
   std::string line;
   for (bool done = !running_; !done;) {
-    if (!process_.receive(line)) return fail("omnihil-avr " + process_.end());
+    if (!process_.receive(line)) {
+      fail("omnihil-avr " + process_.end());
+      break;
+    }
+    if (line == "paused") return false;
     take(line, done);
   }
   running_ = false;
+  return true;
+}
+
+void AvrBoard::pause_at(std::uint32_t address) { process_.send(fmt::format("pause {}", address)); }
+void AvrBoard::go_on() { process_.send("go_on"); }
+
+// One answer to one question; false: it is another one ("refused …"), or the process is no more.
+bool AvrBoard::answer(std::string_view verb, std::string& rest) {
+  std::string line;
+  if (!process_.receive(line)) {
+    if (failure_.empty()) fail("omnihil-avr " + process_.end());
+    return false;
+  }
+  if (!line.starts_with(verb)) return false;
+  rest = line.substr(std::min(line.size(), verb.size() + 1));
+  return true;
+}
+
+void AvrBoard::ask(std::span<const AvrBytes> places) {
+  std::string line = "read";
+  for (const AvrBytes& place : places) line += fmt::format(" {} {}", place.address, place.count);
+  process_.send(line);
+}
+
+bool AvrBoard::read(std::vector<std::uint8_t>& bytes) {
+  std::string text;
+  if (!answer("memory", text)) return false;
+  bytes = unhex(text);
+  return true;
+}
+
+bool AvrBoard::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return true;
+  process_.send(fmt::format("write {} {}", address, hex(bytes)));
+  std::string rest;
+  return answer("written", rest);
 }
 
 }  // namespace omnihil

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "hil/firmware/avr_board.h"
+#include "hil/firmware/avr_memory.h"
 #include "hil/firmware/image_files.h"
 #include "hil/text/merged_lines.h"
 
@@ -57,6 +58,7 @@ class AvrFirmware final : public Firmware {
     for (const auto& board : boards_) sum += board->missed_control_periods();
     return sum;
   }
+  FirmwareMemory* memory() override { return &memory_; }
   std::string_view failure() const override { return failure_; }
   std::vector<std::string> report() const override {
     std::vector<LinesOf> boards;
@@ -71,6 +73,7 @@ class AvrFirmware final : public Firmware {
   std::string name_, failure_;
   RobotConfig config_;
   std::vector<std::unique_ptr<AvrBoard>> boards_;
+  AvrMemory memory_{boards_, image_->bytes.main};
   RobotShafts exact_{};
   mcu::WorldState world_;
   std::int64_t counts_before_[kWheels]{};
@@ -109,8 +112,8 @@ RobotDrive AvrFirmware::tick(const RobotSensors& sensors) {
   feedback_ = feedback_of(exact_, sensors, config_.gear_ratio);
   const std::int64_t end_ns = world_.at_ns + control_period_ns();
   for (const auto& board : boards_) board->begin(world_, end_ns);
+  memory_.finish_all();
   for (const auto& board : boards_) {
-    board->finish();
     const auto w = static_cast<std::size_t>(board->wheel());
     drive.mode[w] = board->drive().driven ? OMNIHIL_DRIVE_DUTY : OMNIHIL_DRIVE_COAST;
     drive.duty_ratio[w] = feedback_.duty_ratio[w] = board->drive().driven ? board->drive().duty_ratio : 0.0;

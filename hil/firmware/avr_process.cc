@@ -19,7 +19,7 @@
 namespace omnihil {
 namespace {
 constexpr const char* kProgram = "omnihil-avr";
-constexpr const char* kGreeting = "omnihil-avr 1";
+constexpr const char* kGreeting = "omnihil-avr 2";
 }  // namespace
 
 AvrProcess::AvrProcess(double deadline_s) : deadline_s_(deadline_s) {

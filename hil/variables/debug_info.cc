@@ -8,12 +8,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "hil/variables/avr_space.h"
 #include "hil/variables/debug_types.h"
 
 namespace omnihil {
 namespace {
 
 constexpr int kDeepestScope = 64;
+constexpr const char* kStabs = "has debug information as stabs, which is not read: compile it with -gdwarf-4";
 constexpr std::size_t kMostVariables = 1u << 20;  // more is a broken file
 
 struct Section {
@@ -49,10 +51,11 @@ class Dwarfs final : public DebugInfo {
     int depth = 0;
   };
   void read_sections();
+  bool only_stabs() const;
   void walk(Dwarf_Die* parent, const Scope& scope, const std::string& file);
   void entry(Dwarf_Die* die, const Scope& scope, const std::string& file);
   void variable(Dwarf_Die* die, const Scope& scope, const std::string& file);
-  void locate(Dwarf_Die* die, DebugVariable& variable) const;
+  bool locate(Dwarf_Die* die, DebugVariable& variable) const;
   void locate_by(Dwarf_Attribute* location, DebugVariable& variable) const;
   void take_constant(Dwarf_Attribute* value, DebugVariable& variable) const;
   const Section* section_of(std::uint64_t address, std::uint64_t bytes) const;
@@ -63,6 +66,8 @@ class Dwarfs final : public DebugInfo {
   Elf* elf_ = nullptr;
   Dwarf* dwarf_ = nullptr;
   std::vector<Section> sections_;
+  std::optional<AvrSpace> avr_;  // of an AVR's file
+  bool stabs_ = false;
   mutable DebugTypes types_;
   std::vector<DebugVariable> variables_;
   std::map<std::string, DebugLocal, std::less<>> locals_;
@@ -74,9 +79,15 @@ class Dwarfs final : public DebugInfo {
 std::string Dwarfs::open() {
   elf_version(EV_CURRENT);
   elf_ = elf_memory(reinterpret_cast<char*>(bytes_.data()), bytes_.size());
-  if (elf_ == nullptr || elf_kind(elf_) != ELF_K_ELF) return "is no ELF file";
+  if (elf_ == nullptr || elf_kind(elf_) != ELF_K_ELF) {
+    return !bytes_.empty() && bytes_[0] == ':'
+               ? "Intel HEX has no names: give the ELF file that it was made from"
+               : "is no ELF file";
+  }
   read_sections();
+  avr_ = AvrSpace::of(elf_);
   dwarf_ = dwarf_begin_elf(elf_, DWARF_C_READ, nullptr);
+  if (dwarf_ == nullptr && stabs_) return kStabs;
   if (dwarf_ == nullptr) return "has no debug information: compile and link it with -g, and do not strip it";
   Dwarf_CU* unit = nullptr;
   Dwarf_Die die, split;
@@ -87,17 +98,27 @@ std::string Dwarfs::open() {
     ++units;
     walk(&die, {}, without_folders(name_of(&die)));
   }
+  if (only_stabs()) return kStabs;
   if (units == 0) return "has no debug information: compile and link it with -g, and do not strip it";
   sort();
   return {};
 }
 
+// avr-gcc says stabs with a plain -g, beside some DWARF of avr-libc's own.
+bool Dwarfs::only_stabs() const {
+  return stabs_ && std::ranges::none_of(variables_, [](const DebugVariable& v) { return v.why_not.empty(); });
+}
+
 void Dwarfs::read_sections() {
+  std::size_t names = 0;
+  elf_getshdrstrndx(elf_, &names);
   Elf_Scn* section = nullptr;
   while ((section = elf_nextscn(elf_, section)) != nullptr) {
     GElf_Shdr head;
-    if (gelf_getshdr(section, &head) == nullptr || (head.sh_flags & SHF_ALLOC) == 0 || head.sh_size == 0)
-      continue;
+    if (gelf_getshdr(section, &head) == nullptr) continue;
+    const char* name = elf_strptr(elf_, names, head.sh_name);
+    stabs_ = stabs_ || (name != nullptr && std::string_view(name) == ".stab");
+    if ((head.sh_flags & SHF_ALLOC) == 0 || head.sh_size == 0) continue;
     if ((head.sh_flags & SHF_TLS) != 0) continue;
     sections_.push_back({head.sh_addr, head.sh_size, (head.sh_flags & SHF_WRITE) != 0,
                          head.sh_type != SHT_NOBITS, head.sh_offset});
@@ -223,8 +244,8 @@ void Dwarfs::variable(Dwarf_Die* die, const Scope& scope, const std::string& fil
     if (known != declared_.end()) v.name = known->second;
   }
   v.type = types_.of(die);
-  locate(die, v);
-  if (!scope.function.empty() && !v.address && v.constant.empty()) {
+  const bool is_static = locate(die, v);
+  if (!scope.function.empty() && !is_static && v.constant.empty()) {
     locals_.emplace(name, DebugLocal{scope.function});
     return;
   }
@@ -232,7 +253,8 @@ void Dwarfs::variable(Dwarf_Die* die, const Scope& scope, const std::string& fil
   variables_.push_back(std::move(v));
 }
 
-void Dwarfs::locate(Dwarf_Die* die, DebugVariable& v) const {
+// Whether it is one with an address at all, be it one that is no variable's.
+bool Dwarfs::locate(Dwarf_Die* die, DebugVariable& v) const {
   Dwarf_Attribute location, value;
   if (dwarf_attr_integrate(die, DW_AT_location, &location) != nullptr) {
     locate_by(&location, v);
@@ -241,12 +263,18 @@ void Dwarfs::locate(Dwarf_Die* die, DebugVariable& v) const {
   } else {
     v.why_not = "was removed by the optimiser: it has no place in memory";
   }
-  if (!v.address || v.type < 0) return;
+  if (!v.address || v.type < 0) return v.address.has_value();
+  if (avr_) v.why_not = avr_->why_no_data(*v.address);
+  if (!v.why_not.empty()) {
+    v.address.reset();
+    return true;
+  }
   const Section* section = section_of(*v.address, std::max<std::uint64_t>(1, types_[v.type].bytes));
   v.writable = section != nullptr && section->writable;
-  if (section != nullptr || sections_.empty()) return;
+  if (section != nullptr || sections_.empty()) return true;
   v.address.reset();
   v.why_not = "was removed by the linker: nothing that is linked refers to it";
+  return true;
 }
 
 void Dwarfs::locate_by(Dwarf_Attribute* location, DebugVariable& v) const {

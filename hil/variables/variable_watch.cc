@@ -38,9 +38,8 @@ VariableWatch::VariableWatch(const std::string& firmware_file, const std::vector
     : session_(session), values_(static_cast<std::size_t>(session.robot_count())) {
   FirmwareMemory* const first = session.firmware_memory(0);
   if (first == nullptr) {
-    throw_problems(
-        {fmt::format("variables of {}: needed: an ARM image on an emulated board, or a shared object",
-                     firmware_file.empty() ? "the reference firmware" : firmware_file)});
+    throw_problems({fmt::format("variables of {}: needed: an image on an emulated board, or a shared object",
+                                firmware_file.empty() ? "the reference firmware" : firmware_file)});
   }
   variables_ = std::make_shared<VariableNames>(debug_info_of(firmware_file),
                                                VariableSpace{first->boards(), first->state_bytes()});

@@ -82,6 +82,7 @@ bool read_avr_image(std::span<const std::uint8_t> file, AvrImage& image, std::ve
   }
   ElfImage elf;
   if (!read_elf(file, elf, problems, ElfMachine::kAvr)) return false;
+  image.main = elf.address_of("main");
   for (ElfSegment& segment : elf.segments) {
     if (segment.address < kRam) {
       image.flash.push_back(std::move(segment));

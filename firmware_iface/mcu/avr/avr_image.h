@@ -8,6 +8,7 @@
 // signature are left out. HEX: flash alone, record types 0 to 5. Nothing in a file is trusted.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ namespace omnihil::mcu {
 
 struct AvrImage {
   std::vector<ElfSegment> flash, eeprom;
+  std::optional<std::uint32_t> main;  // where the function is, in bytes of the flash; HEX does not say
 };
 
 bool is_avr_image(std::span<const std::uint8_t> file);
