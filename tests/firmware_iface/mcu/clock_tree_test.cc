@@ -54,6 +54,15 @@ TEST(ClockTree, F0RunsAt48MHzFromItsOwnOscillator) {
   EXPECT_DOUBLE_EQ(b.system.core_hz(), 48e6);
 }
 
+// LSERDY follows LSEON; the bit behind BDRST, which resets the domain, says nothing.
+TEST(ClockTree, OfTheBackupDomainTheOscillatorAloneIsReady) {
+  ChipBench b("stm32f303");
+  b.set("RCC", 0x20, 1);
+  EXPECT_EQ(b.get("RCC", 0x20) & 3u, 3u);
+  b.set("RCC", 0x20, 1u << 16);
+  EXPECT_EQ(b.get("RCC", 0x20) >> 16, 1u);
+}
+
 TEST(ClockTree, G4RunsAt170MHz) {
   ChipBench b("stm32g474");
   b.set("RCC", 0x0C, 2 | 3u << 4 | 85u << 8 | 1u << 24);  // HSI16 / 4 * 85 / 2

@@ -32,7 +32,7 @@ constexpr RegisterInfo kRegisters[] = {
     {kCr2, "CR2", 0x80, 0x000100FD},
 };
 
-constexpr RccReady kReady[] = {{kCr, 0x01010001}, {kCr2, 0x00010001}, {kBdcr, 0x00010001}, {kCsr, 1}};
+constexpr RccReady kReady[] = {{kCr, 0x01010001}, {kCr2, 0x00010001}, {kBdcr, 1}, {kCsr, 1}};
 constexpr std::uint16_t kTree[] = {kCr, kCfgr, kCfgr2, kCfgr3};
 constexpr RccMap kMap{.registers = kRegisters,
                       .ready = kReady,
