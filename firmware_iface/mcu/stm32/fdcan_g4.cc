@@ -6,6 +6,7 @@ namespace omnihil::mcu {
 namespace {
 enum : std::uint16_t {
   kRxgfc = 0x80,
+  kXidam = 0x84,
   kRxf0s = 0x90,
   kRxf0a = 0x94,
   kRxf1s = 0x98,
@@ -23,7 +24,7 @@ constexpr RegisterInfo kOwn[] = {{0x54, "IE", 0, 0x00FFFFFF},
                                  {0x58, "ILS", 0, 0x7F},
                                  {0x5C, "ILE", 0, 3},
                                  {kRxgfc, "RXGFC", 0, 0x0F1F033F},
-                                 {0x84, "XIDAM", 0x1FFFFFFF, 0x1FFFFFFF},
+                                 {kXidam, "XIDAM", 0x1FFFFFFF, 0x1FFFFFFF},
                                  {0x88, "HPMS", 0, 0},
                                  {kRxf0s, "RXF0S", 0, 0},
                                  {kRxf0a, "RXF0A", 0, 7},
@@ -72,12 +73,14 @@ FdcanG4::Verdict FdcanG4::judge(const CanFrame& frame) const {
   const std::uint32_t global = value(kRxgfc);
   if (frame.remote && bit(global, frame.extended ? 0 : 1)) return {};
   const unsigned count = frame.extended ? field(global, 24, 4) : field(global, 16, 5);
+  const std::uint32_t masked = frame.extended ? frame.id & value(kXidam) : frame.id;
   for (unsigned i = 0; i < count && i < (frame.extended ? 8u : 28u); ++i) {
     const Filter by = filter(frame.extended, base_ + (frame.extended ? 0x70 : 0), i);
-    if (by.action == 0 || !by.takes(frame.id)) continue;
-    if (by.action == 3) return {};
+    if (by.action == 0 || by.action == 7) continue;             // 7: reserved, that is switched off
+    if (!by.takes(by.kind == 3 ? frame.id : masked)) continue;  // a range without the extended mask
     if (by.action == 1 || by.action == 5) return {0, i, true};
     if (by.action == 2 || by.action == 6) return {1, i, true};
+    return {};  // rejected, or its priority alone is said
   }
   const unsigned rest = field(global, frame.extended ? 2 : 4, 2);
   return {rest < 2 ? static_cast<int>(rest) : -1};

@@ -247,5 +247,62 @@ TEST(Fdcan, SendsFromMessageRamAndReceivesIntoIt) {
   EXPECT_EQ(b.get("FDCAN1", 0x90) & 0xF, 0u);
 }
 
+// Filters of G4's FDCAN1 in the message RAM, the rest rejected: where a frame goes, below 0 nowhere.
+class FdcanFilters : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kRam = 0x4000A400;
+  void standard(unsigned place, unsigned kind, unsigned action, std::uint32_t id1, std::uint32_t id2) {
+    b_.system.write(kRam + 4 * place, kind << 30 | action << 27 | id1 << 16 | id2);
+  }
+  void extended(unsigned place, unsigned kind, unsigned action, std::uint32_t id1, std::uint32_t id2) {
+    b_.system.write(kRam + 0x70 + 8 * place, action << 29 | id1);
+    b_.system.write(kRam + 0x74 + 8 * place, kind << 30 | id2);
+  }
+  void start(std::uint32_t extended_mask = 0x1FFFFFFF) {
+    b_.set("FDCAN1", 0x18, 3);
+    b_.set("FDCAN1", 0x80, 2u << 24 | 2u << 16 | 2u << 4 | 2u << 2);
+    b_.set("FDCAN1", 0x84, extended_mask);
+    b_.set("FDCAN1", 0x18, 0);
+  }
+  int fifo_of(std::uint32_t id, bool is_extended) {
+    CanFrame frame;
+    frame.id = id;
+    frame.extended = is_extended;
+    b_.chip.find<Fdcan>("FDCAN1")->receive(frame);
+    for (const int fifo : {0, 1}) {
+      const std::uint32_t status = b_.get("FDCAN1", fifo == 0 ? 0x90 : 0x98);
+      if ((status & 0xF) == 0) continue;
+      b_.set("FDCAN1", fifo == 0 ? 0x94 : 0x9C, status >> 8 & 3);
+      return fifo;
+    }
+    return -1;
+  }
+  ChipBench b_{"stm32g474"};
+};
+
+// RM0440 §44.3.8: filtering stops at the first element that matches, also where that only sets a priority.
+TEST_F(FdcanFilters, TheFirstThatMatchesDecidesWhateverItDoes) {
+  standard(0, 1, 4, 0x100, 0x101);  // set priority
+  standard(1, 0, 1, 0x100, 0x1FF);  // to FIFO 0
+  start();
+  EXPECT_EQ(fifo_of(0x100, false), -1);
+  EXPECT_EQ(fifo_of(0x102, false), 0);
+  standard(0, 1, 3, 0x100, 0x101);  // reject
+  EXPECT_EQ(fifo_of(0x101, false), -1);
+  standard(0, 1, 7, 0x100, 0x101);  // reserved: the element is disabled
+  EXPECT_EQ(fifo_of(0x101, false), 0);
+}
+
+// §44.3.4: XIDAM masks what is received before the filters see it, but of a range of kind 3.
+TEST_F(FdcanFilters, TheExtendedMaskIsAppliedBeforeTheFilters) {
+  extended(0, 1, 1, 0x00000123, 0x00000123);
+  extended(1, 3, 2, 0x10000000, 0x10000FFF);
+  start(0x000003FF);
+  EXPECT_EQ(fifo_of(0x0ABC0123, true), 0) << "but for the bits that are masked";
+  EXPECT_EQ(fifo_of(0x0ABC0124, true), -1);
+  EXPECT_EQ(fifo_of(0x10000124, true), 1) << "a range without the mask";
+  EXPECT_EQ(fifo_of(0x00000124, true), -1);
+}
+
 }  // namespace
 }  // namespace omnihil::mcu
