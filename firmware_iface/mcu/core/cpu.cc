@@ -4,6 +4,8 @@
 #include <cfenv>
 #include <cmath>
 
+#include "firmware_iface/mcu/core/plus_cycles.h"
+
 namespace omnihil::mcu {
 namespace {
 
@@ -215,7 +217,7 @@ bool ends_row(const Op& op) {
 Op Cpu::make(std::uint32_t pc, std::uint8_t it) const {
   const std::uint16_t first = halfword(pc);
   Op op = decode({pc, variant_, it}, first, is_wide(first) ? halfword(pc + 2) : std::uint16_t{0});
-  int cycles = op_cycles(op.code);
+  int cycles = op_cycles(op.code) + (variant_.plus ? more_on_plus(op.code) : 0);
   if (op.code == kLdm || op.code == kStm || op.code == kPush || op.code == kPopPc) {
     op.m = static_cast<std::uint8_t>(std::popcount(op.imm & 0xFFFF));
     cycles += op.m;

@@ -262,7 +262,7 @@ Stop Cpu::EXECUTE(std::int64_t now, std::int64_t deadline) {
   std::uint64_t count = 0;
   const void *const *codes = nullptr, *const *entries = nullptr;
   std::uint32_t target = R.r[15];
-  const std::int64_t taken = scale_ * kTakenBranchCycles;
+  const std::int64_t taken = scale_ * variant_.taken_branch_cycles();
   stop_requested_ = false;
   now_ = now;
   access_op_ = nullptr;

@@ -13,7 +13,6 @@ enum Code : std::uint16_t {
 };
 
 inline constexpr int kSubcycles = 16;  // time is counted in 16ths of a cycle, so that costs can be scaled
-inline constexpr int kTakenBranchCycles = 2;
 inline constexpr std::uint8_t kAlways = 14;
 
 // A row is what runs from an operation on without a jump. Its whole time is taken when it is entered, and

@@ -72,7 +72,7 @@ void Cpu::write_special(std::uint32_t sysm, unsigned mask, std::uint32_t value) 
     default: {
       const bool psp = reg.uses_psp();
       std::uint32_t settable = kUseProcessStack;
-      if (variant_.arch != Arch::kV6M) settable |= kUnprivileged;
+      if (variant_.arch != Arch::kV6M || variant_.plus) settable |= kUnprivileged;
       if (variant_.fpu != Fpu::kNone) settable |= kFpContextActive;
       if (reg.ipsr != 0) settable &= ~static_cast<std::uint32_t>(kUseProcessStack);
       reg.control = (reg.control & ~settable) | (value & settable);

@@ -22,9 +22,14 @@ struct Variant {
   int priority_bits;
   std::uint32_t cpuid;
   int exception_entry_cycles;
+  // Cortex-M0+: two stages of pipeline, a vector table that can be moved, an unprivileged mode.
+  bool plus = false;
+  // DDI 0484C table 3-1; else as of the M4 (op_codes.inc).
+  constexpr int taken_branch_cycles() const { return plus ? 1 : 2; }
 };
 
 inline constexpr Variant kCortexM0{"cortex-m0", Arch::kV6M, Fpu::kNone, false, 2, 0x410CC200, 16};
+inline constexpr Variant kCortexM0Plus{"cortex-m0+", Arch::kV6M, Fpu::kNone, false, 2, 0x410CC601, 15, true};
 inline constexpr Variant kCortexM3{"cortex-m3", Arch::kV7M, Fpu::kNone, false, 4, 0x412FC231, 12};
 inline constexpr Variant kCortexM4{"cortex-m4", Arch::kV7EM, Fpu::kNone, false, 4, 0x410FC241, 12};
 inline constexpr Variant kCortexM4F{"cortex-m4f", Arch::kV7EM, Fpu::kSingle, false, 4, 0x410FC241, 12};

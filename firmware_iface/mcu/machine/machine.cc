@@ -170,7 +170,7 @@ void Machine::show_at_zero(std::uint32_t base) {
   zero_wanted_.reset();
   memory_.map_at_zero(base);
   cpu_.memory_changed();
-  if (config_.variant.arch == Arch::kV6M) vtor_ = base;
+  if (config_.variant.arch == Arch::kV6M && !config_.variant.plus) vtor_ = base;
 }
 
 // ---- time

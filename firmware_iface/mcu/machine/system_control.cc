@@ -213,7 +213,8 @@ bool Machine::write_system(std::uint32_t offset, unsigned bytes, std::uint32_t v
         write_interrupt_control(value);
         break;
       case kVtor:
-        vtor_ = v7 ? value & ~0x7Fu : vtor_;
+        if (v7) vtor_ = value & ~0x7Fu;
+        if (config_.variant.plus) vtor_ = value & ~0xFFu;
         break;
       case kAircr:
         write_reset_control(value);

@@ -44,7 +44,7 @@ TEST(DebugUnit, HaltsBeforeTheInstructionAndGoesOnFromIt) {
   std::vector<std::uint32_t> r0;
   script.then = [&](DebugUnit& unit, const Halt&) { r0.push_back(unit.machine().cpu().reg.r[0]); };
   debug.set_breakpoints({kCode + 4});
-  small.machine.run_until(3 * (3 + 1 + kTakenBranchCycles));
+  small.machine.run_until(3 * (3 + 1 + kCortexM4F.taken_branch_cycles()));
   EXPECT_EQ(script.halts, (std::vector<Seen>(3, {HaltCause::kBreakpoint, kCode + 4})));
   EXPECT_EQ(r0, (std::vector<std::uint32_t>{2, 5, 8}));
   EXPECT_EQ(small.r(0), 9u);

@@ -48,7 +48,7 @@ TEST(MachineTest, TimeGoesByTheTableOfCycles) {
 TEST(MachineTest, CodeThatChangesWhatFollowsTakesTheTimeOfWhatItBecomes) {
   // 1: strh r1, [r0]; eors r1, r2; nop; ldr r3, [r4] or movs r3, #1; adds r5, #1; b 1b
   constexpr std::uint32_t kLdr = 0x6823, kMovs = 0x2301, kAt = kRamBase + 0x100;
-  constexpr Cycles kTwoRounds = 2 * (1 + 1 + 1 + 1 + (1 + kTakenBranchCycles)) + 2 + 1;
+  constexpr Cycles kTwoRounds = 2 * (1 + 1 + 1 + 1 + (1 + kCortexM4F.taken_branch_cycles())) + 2 + 1;
   for (const Cycles quantum : {Cycles{1}, Cycles{7}, 1000 * kTwoRounds}) {
     SmallMachine small({kForever});
     small.start();
@@ -200,6 +200,43 @@ TEST(MachineTest, OnACortexM0EveryFaultIsAHardFault) {
   EXPECT_EQ(report.faults[1].exception, kHardFault);
   EXPECT_EQ(report.faults[1].status, kUndefinedInstruction);
   EXPECT_EQ(small.r(15), kCode + 6);
+}
+
+// A Cortex-M0+ has a vector table that moves in steps of 256 bytes; a Cortex-M0 has none.
+TEST(MachineTest, OnACortexM0PlusTheVectorTableMoves) {
+  for (const Variant& variant : {kCortexM0Plus, kCortexM0}) {
+    MachineConfig config;
+    config.variant = variant;
+    // str r1, [r0] (VTOR); ldr r2, [r0]; udf. Handlers of HardFault: here r3 becomes 1, there 2.
+    SmallMachine small(
+        {0x6001, 0x6802, 0xDE00, kForever, /* here: */ 0x2301, kForever, /* there: */ 0x2302, kForever},
+        config);
+    small.put(kFlashBase + 4 * kHardFault, (kCode + 8) | 1);
+    small.start();
+    small.put(kRamBase + 0x100 + 4 * kHardFault, (kCode + 12) | 1);
+    small.machine.cpu().reg.r[0] = 0xE000ED08u;
+    small.machine.cpu().reg.r[1] = kRamBase + 0x1FF;
+    small.machine.run_until(200);
+    EXPECT_EQ(small.r(2), variant.plus ? kRamBase + 0x100 : kFlashBase);
+    EXPECT_EQ(small.r(3), variant.plus ? 2u : 1u);
+  }
+}
+
+// DDI 0484C table 3-1 against DDI 0439D table 3-1: a store 2 cycles instead of 1, a taken branch 2 instead of 3, BL 3.
+TEST(MachineTest, ACortexM0PlusTakesItsOwnCyclesForStoresAndBranches) {
+  for (const auto& [variant, cycles] :
+       {std::pair{kCortexM0Plus, 1 + 2 + 2 + 3}, {kCortexM4, 1 + 1 + 3 + 3}}) {
+    MachineConfig config;
+    config.variant = variant;
+    // movs r0, #0; str r0, [r1]; b +0; bl +0; movs r2, #1
+    SmallMachine small({0x2000, 0x6008, 0xE7FF, 0xF000, 0xF800, 0x2201, kForever}, config);
+    small.start();
+    small.machine.cpu().reg.r[1] = kRamBase;
+    small.machine.run_until(cycles);
+    EXPECT_EQ(small.r(2), 0u) << variant.name;
+    small.machine.run_until(cycles + 1);
+    EXPECT_EQ(small.r(2), 1u) << variant.name;
+  }
 }
 
 TEST(MachineTest, LoadOfInterruptsIsTheirCyclesWithoutWhatPreemptsThem) {
