@@ -272,6 +272,8 @@ std::span<const BlockPlace> map_of(BlockFamily family) {
       return kF446;
     case BlockFamily::kF7:
       return kF7;
+    case BlockFamily::kG0:
+      return block_map_g0();
     case BlockFamily::kL4:
       return block_map_l4();
     case BlockFamily::kH7:

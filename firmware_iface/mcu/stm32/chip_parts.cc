@@ -26,9 +26,12 @@ void add_exti(Chip& chip, std::uint32_t exti, std::uint32_t syscfg, std::vector<
   const bool large = family == SyscfgFamily::kH7;
   Syscfg& selection =
       chip.add(syscfg, large ? 0x400 : 0x30, std::make_unique<Syscfg>(chip.context(), family));
-  Exti& lines = chip.add(
-      exti, 0x400,
-      std::make_unique<Exti>(selection, std::move(vectors), large ? kExtiH7 : kExtiUsual, chip.context()));
+  Exti& lines = chip.add(exti, 0x400,
+                         std::make_unique<Exti>(selection, std::move(vectors),
+                                                large                         ? kExtiH7
+                                                : family == SyscfgFamily::kG0 ? kExtiG0
+                                                                              : kExtiUsual,
+                                                chip.context()));
   for (const Chip::Mapped& block : chip.blocks()) {
     if (auto* port = dynamic_cast<GpioPort*>(block.peripheral)) {
       port->on_level([&lines](unsigned at, unsigned pin, bool level) { lines.pin_changed(at, pin, level); });

@@ -54,6 +54,9 @@ constexpr RegisterInfo kSyscfgOfL4[] = {{0x00, "MEMRMP", 0, 0x107, 0x104},
                                         {0x1C, "CFGR2", 0, 0xF, 0xF},
                                         {0x20, "SWPR"},
                                         {0x24, "SKR", 0, 0xFF}};
+// RM0444 8.1. Not followed: boost of the analog switches, the infrared output; lines that show whose an interrupt is.
+constexpr RegisterInfo kSyscfgOfG0[] = {{0x00, "CFGR1", 0, 0xFFFFFFFF, 0x1E0},
+                                        {0x18, "CFGR2", 0, 0xFFFFFFFF, 0x7}};
 constexpr RegisterInfo kExti[] = {{0x00, "IMR"},   {0x04, "EMR"},      {0x08, "RTSR"},   {0x0C, "FTSR"},
                                   {0x10, "SWIER"}, {0x14, "PR", 0, 0}, {0x20, "IMR2"},   {0x24, "EMR2"},
                                   {0x28, "RTSR2"}, {0x2C, "FTSR2"},    {0x30, "SWIER2"}, {0x34, "PR2", 0, 0}};
@@ -68,11 +71,32 @@ constexpr RegisterInfo kExtiRegistersOfH7[] = {
     {0x84, "CPUEMR1"}, {0x88, "CPUPR1", 0, 0}, {0x90, "CPUIMR2"},
     {0x94, "CPUEMR2"}, {0x98, "CPUPR2", 0, 0}, {0xA0, "CPUIMR3"},
     {0xA4, "CPUEMR3"}, {0xA8, "CPUPR3", 0, 0}};
+// RM0444 13.5
+constexpr RegisterInfo kExtiRegistersOfG0[] = {{0x00, "RTSR1"},
+                                               {0x04, "FTSR1"},
+                                               {0x08, "SWIER1"},
+                                               {0x0C, "RPR1", 0, 0},
+                                               {0x10, "FPR1", 0, 0},
+                                               {0x20, "RTSR2"},
+                                               {0x24, "FTSR2"},
+                                               {0x28, "SWIER2"},
+                                               {0x2C, "RPR2", 0, 0},
+                                               {0x30, "FPR2", 0, 0},
+                                               {0x60, "EXTICR1"},
+                                               {0x64, "EXTICR2"},
+                                               {0x68, "EXTICR3"},
+                                               {0x6C, "EXTICR4"},
+                                               {0x80, "IMR1", 0xFFF80000},
+                                               {0x84, "EMR1"},
+                                               {0x90, "IMR2", 0xFFFFFFFF},
+                                               {0x94, "EMR2"}};
 
 std::span<const RegisterInfo> selection(SyscfgFamily family) {
   switch (family) {
     case SyscfgFamily::kF1:
       return kAfio;
+    case SyscfgFamily::kG0:
+      return kSyscfgOfG0;
     case SyscfgFamily::kH7:
       return kSyscfgOfH7;
     case SyscfgFamily::kL4:
@@ -84,6 +108,7 @@ std::span<const RegisterInfo> selection(SyscfgFamily family) {
 }  // namespace
 
 const ExtiMap kExtiUsual{kExti, 0x00, 0x04, 0x08, 0x0C, 0x10, 0x14};
+const ExtiMap kExtiG0{kExtiRegistersOfG0, 0x80, 0x84, 0x00, 0x04, 0x08, 0x0C, 0x10, 0x60};
 const ExtiMap kExtiH7{kExtiRegistersOfH7, 0x80, 0x84, 0x00, 0x04, 0x08, 0x88};
 
 Syscfg::Syscfg(ChipContext& context, SyscfgFamily family)
@@ -101,7 +126,8 @@ void Syscfg::store(std::uint32_t offset, std::uint32_t written, std::uint32_t la
   const std::uint32_t before = value(0) & 3u;
   keep(offset, written, lanes);
   const std::uint32_t mode = value(0) & 3u;
-  const bool remaps = family_ == SyscfgFamily::kUsual || family_ == SyscfgFamily::kL4;
+  const bool remaps =
+      family_ == SyscfgFamily::kUsual || family_ == SyscfgFamily::kG0 || family_ == SyscfgFamily::kL4;
   if (offset != 0 || mode == before || !remaps) return;
   constexpr std::uint32_t kShown[] = {0x08000000u, 0x1FFF0000u, 0x08000000u, 0x20000000u};
   system().map_at_zero(kShown[mode]);
@@ -123,19 +149,25 @@ void Exti::reset() {
 }
 
 void Exti::pin_changed(unsigned port, unsigned pin, bool level) {
-  if (syscfg_.port_of(pin) != port) return;
+  if (port_of(pin) != port) return;
   triggers_.fire(trigger_[pin], level);
   const std::uint32_t edges = value(level ? map_.rtsr : map_.ftsr);
-  if (bit(edges, pin)) raise(1u << pin);
+  if (bit(edges, pin)) raise(1u << pin, !level);
 }
 
-void Exti::raise(std::uint32_t lines) {
-  value(map_.pr) |= lines & (value(map_.imr) | value(map_.emr));
+unsigned Exti::port_of(unsigned line) const {
+  if (map_.ports == 0) return syscfg_.port_of(line);
+  return field(value(map_.ports + 4 * (line / 4)), 8 * (line % 4), 8);
+}
+
+void Exti::raise(std::uint32_t lines, bool fell) {
+  value(fell && map_.fallen != 0 ? map_.fallen : map_.pr) |= lines & (value(map_.imr) | value(map_.emr));
   update();
 }
 
 void Exti::update() {
-  const std::uint32_t pending = value(map_.pr) & value(map_.imr);
+  const std::uint32_t fallen = map_.fallen != 0 ? value(map_.fallen) : 0;
+  const std::uint32_t pending = (value(map_.pr) | fallen) & value(map_.imr);
   for (std::size_t i = 0; i < vectors_.size(); ++i) {
     const std::uint32_t mask = field(0xFFFFFFFFu >> (31 - vectors_[i].last), vectors_[i].first, 16);
     lines_[i].set((pending >> vectors_[i].first & mask) != 0);
@@ -146,6 +178,10 @@ void Exti::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lane
   if (offset == map_.pr) {
     value(map_.pr) &= ~written;
     value(map_.swier) &= ~written;
+  } else if (map_.fallen != 0 && offset == map_.fallen) {
+    value(map_.fallen) &= ~written;
+  } else if (map_.fallen != 0 && offset == map_.swier) {
+    raise(written);
   } else if (offset == map_.swier) {
     const std::uint32_t fresh = written & ~value(map_.swier);
     keep(offset, written, lanes);

@@ -14,7 +14,7 @@
 namespace omnihil::mcu {
 
 // Whose registers the pin selection has. kUsual: MEM_MODE is followed: 0 flash, 1 system memory, 3 SRAM at address 0.
-enum class SyscfgFamily : std::uint8_t { kUsual, kF1, kF7, kH7, kL4 };
+enum class SyscfgFamily : std::uint8_t { kUsual, kF1, kF7, kG0, kH7, kL4 };
 
 class Syscfg final : public RegisterBlock {
  public:
@@ -38,8 +38,10 @@ struct ExtiVector {
 struct ExtiMap {
   std::span<const RegisterInfo> registers;
   std::uint16_t imr, emr, rtsr, ftsr, swier, pr;
+  // G0: edges that fell are pending in a register of their own, SWIER reads 0, and the ports are chosen here.
+  std::uint16_t fallen = 0, ports = 0;
 };
-extern const ExtiMap kExtiUsual, kExtiH7;
+extern const ExtiMap kExtiUsual, kExtiG0, kExtiH7;
 
 class Exti final : public RegisterBlock {
  public:
@@ -51,7 +53,8 @@ class Exti final : public RegisterBlock {
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:
-  void raise(std::uint32_t lines);
+  void raise(std::uint32_t lines, bool fell = false);
+  unsigned port_of(unsigned line) const;
   void update();
 
   const ExtiMap& map_;

@@ -20,6 +20,8 @@ enum : std::uint16_t {
   kJdr1 = 0x80
 };
 constexpr std::uint32_t kAdrdy = 1, kEosmp = 2, kEoc = 4, kEos = 8, kOvr = 16, kJeoc = 32, kJeos = 64;
+constexpr std::uint32_t kEocal = 1u << 11,
+                        kCcrdy = 1u << 13;  // G0: calibrated; the choice of channels has come through
 constexpr std::uint32_t kAden = 1, kAddis = 2, kAdstart = 4, kJadstart = 8, kAdstp = 16, kJadstp = 32,
                         kAdcal = 1u << 31;
 
@@ -95,10 +97,26 @@ constexpr RegisterInfo kF0[] = {{kIsr, "ISR", 0, 0},
                                 {0x20, "TR", 0x0FFF0000},
                                 {kChselr, "CHSELR", 0, 0x7FFFF},
                                 {kDr, "DR", 0, 0}};
+// Not followed: WAIT, AUTOFF, watchdogs, oversampling.
+constexpr RegisterInfo kG0[] = {{kIsr, "ISR", 0, 0},
+                                {kIer, "IER", 0, 0x2B9F, 0x0380},
+                                {kCr, "CR", 0, 0x10000000},
+                                {kCfgr, "CFGR1", 0, 0x7CE1FDFF, 0x00C0C000},
+                                {kCfgr2, "CFGR2", 0, 0xE00003FD, 0x000003FD},
+                                {kSmpr1, "SMPR", 0, 0x07FFFF77},
+                                {0x20, "AWD1TR", 0x0FFF0000},
+                                {0x24, "AWD2TR", 0x0FFF0000},
+                                {kChselr, "CHSELR"},
+                                {0x2C, "AWD3TR", 0x0FFF0000},
+                                {kDr, "DR", 0, 0},
+                                {0xA0, "AWD2CR", 0, 0x7FFFF, 0x7FFFF},
+                                {0xA4, "AWD3CR", 0, 0x7FFFF, 0x7FFFF},
+                                {0xB4, "CALFACT", 0x40, 0x7F}};
 constexpr RegisterInfo kCommon[] = {{0x00, "CSR", 0, 0}, {0x08, "CCR", 0, 0x01FFEF1F}, {0x0C, "CDR", 0, 0}};
 
 std::span<const RegisterInfo> rows_of(AdcFamily family) {
   if (family == AdcFamily::kF0) return kF0;
+  if (family == AdcFamily::kG0) return kG0;
   return family == AdcFamily::kH7 ? std::span<const RegisterInfo>(kH7) : kV2;
 }
 }  // namespace
@@ -116,13 +134,19 @@ void AdcV2::reset() {
 }
 
 unsigned AdcV2::length(Group group) const {
-  if (family_ == AdcFamily::kF0)
+  if (places_chosen() && group == Group::kRegular) {  // up to the first place that names no channel
+    unsigned places = 0;
+    while (places < 8 && field(value(kChselr), 4 * places, 4) != 15) ++places;
+    return places;
+  }
+  if (regular_alone())
     return group == Group::kRegular ? static_cast<unsigned>(std::popcount(value(kChselr))) : 0;
   return group == Group::kInjected ? field(value(kJsqr), 0, 2) + 1 : field(value(kSqr1), 0, 4) + 1;
 }
 
 unsigned AdcV2::channel(Group group, unsigned place) const {
-  if (family_ == AdcFamily::kF0) {  // the selected ones, upwards or (SCANDIR) downwards
+  if (places_chosen()) return field(value(kChselr), 4 * place, 4);
+  if (regular_alone()) {  // the selected ones, upwards or (SCANDIR) downwards
     const unsigned n = bit(value(kCfgr), 2) ? length(group) - 1 - place : place;
     std::uint32_t left = value(kChselr);
     for (unsigned i = 0; i < n; ++i) left &= left - 1;
@@ -136,8 +160,11 @@ double AdcV2::sample_clocks(unsigned channel) const {
   constexpr double kF0Clocks[] = {1.5, 7.5, 13.5, 28.5, 41.5, 55.5, 71.5, 239.5};
   constexpr double kF3Clocks[] = {1.5, 2.5, 4.5, 7.5, 19.5, 61.5, 181.5, 601.5};
   constexpr double kG4Clocks[] = {2.5, 6.5, 12.5, 24.5, 47.5, 92.5, 247.5, 640.5};
+  constexpr double kG0Clocks[] = {1.5, 3.5, 7.5, 12.5, 19.5, 39.5, 79.5, 160.5};
   constexpr double kH7Clocks[] = {1.5, 2.5, 8.5, 16.5, 32.5, 64.5, 387.5, 810.5};
   if (family_ == AdcFamily::kF0) return kF0Clocks[value(kSmpr1) & 7u];
+  if (family_ == AdcFamily::kG0)  // one of two, by SMPSEL
+    return kG0Clocks[field(value(kSmpr1), bit(value(kSmpr1), 8 + channel) ? 4 : 0, 3)];
   const unsigned code =
       channel < 10 ? field(value(kSmpr1), 3 * channel, 3) : field(value(kSmpr2), 3 * (channel % 10), 3);
   if (family_ == AdcFamily::kH7) return kH7Clocks[code];
@@ -150,11 +177,13 @@ double AdcV2::clock_hz() const {
     const unsigned mode = field(value(kCfgr2), 30, 2);
     return mode == 0 ? 14e6 : clocks.bus_hz(Bus::kApb1) / (mode == 1 ? 2 : 4);  // 0: its own HSI14
   }
-  const unsigned mode = field(ccr_, 16, 2);
+  const bool own_mode = family_ == AdcFamily::kG0;
+  const unsigned mode = own_mode ? field(value(kCfgr2), 30, 2) : field(ccr_, 16, 2);
   constexpr double kAsync[] = {1, 2, 4, 6, 8, 10, 12, 16, 32, 64, 128, 256, 256, 256, 256, 256};
   const double halved = family_ == AdcFamily::kH7 ? 2.0 : 1.0;
   if (mode == 0)
     return clocks.bus_hz(Bus::kAdc) / (family_ == AdcFamily::kF3 ? 1.0 : kAsync[field(ccr_, 18, 4)]) / halved;
+  if (own_mode) return clocks.bus_hz(Bus::kApb1) / (mode == 3 ? 1 : 2 * mode);
   return clocks.bus_hz(Bus::kAhb) / (mode == 1 ? 1 : mode == 2 ? 2 : 4) / halved;
 }
 
@@ -172,6 +201,7 @@ std::pair<int, unsigned> AdcV2::trigger(Group group) const {
   const std::uint32_t cfgr = value(kCfgr), jsqr = value(kJsqr);
   switch (family_) {
     case AdcFamily::kF0:
+    case AdcFamily::kG0:
       if (group == Group::kInjected) return {-1, 0};
       return {static_cast<int>(field(cfgr, 6, 3)), field(cfgr, 10, 2)};
     case AdcFamily::kF3:
@@ -208,7 +238,10 @@ void AdcV2::result(Group group, unsigned place, std::uint32_t code, bool last) {
   if (dma) context().dma.pulse(dma_);
 }
 
-void AdcV2::update() { irq_.set((value(kIsr) & value(kIer) & 0x7Fu) != 0); }
+void AdcV2::update() {
+  const std::uint32_t all = family_ == AdcFamily::kG0 ? 0x7Fu | kEocal | kCcrdy : 0x7Fu;
+  irq_.set((value(kIsr) & value(kIer) & all) != 0);
+}
 
 std::uint32_t AdcV2::load(std::uint32_t offset) {
   if (offset == kDr) data_was_read();
@@ -230,9 +263,15 @@ void AdcV2::data_was_read() {
 void AdcV2::control(std::uint32_t written) {
   std::uint32_t& cr = value(kCr);
   // voltage regulator, deep power down, kind of calibration; H7 also boost and linearity
-  const std::uint32_t kept = family_ == AdcFamily::kH7 ? 0x7FC10300u : 0x70000000u;
+  const std::uint32_t kept = family_ == AdcFamily::kH7   ? 0x7FC10300u
+                             : family_ == AdcFamily::kG0 ? 0x10000000u
+                                                         : 0x70000000u;
   cr = (cr & ~kept) | (written & kept);
-  if ((written & kAdcal) != 0) cr &= ~kAdcal;  // calibrated at once
+  if ((written & kAdcal) != 0) {
+    cr &= ~kAdcal;  // calibrated at once
+    if (family_ == AdcFamily::kG0) value(kIsr) |= kEocal;
+    update();
+  }
   if ((written & kAddis) != 0) {
     cr &= ~(kAden | kAdstart | kJadstart);
     value(kIsr) &= ~kAdrdy;
@@ -269,6 +308,7 @@ void AdcV2::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
     control(written);
   } else {
     keep(offset, written, lanes);
+    if (family_ == AdcFamily::kG0 && (offset == kChselr || offset == kCfgr)) value(kIsr) |= kCcrdy;
   }
   if (offset == kCr || offset == kCfgr || offset == kJsqr) listen();
   update();

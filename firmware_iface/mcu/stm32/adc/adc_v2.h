@@ -1,5 +1,5 @@
 // ADC registers of F3, G4, H7 and L4 (RM0316 §15, RM0440 §21, RM0433 §25, RM0351 §18), and of F0 (RM0091 §13), which has them
-// without injected ones. H7: as revision V of the chip, which halves the clock; 16 bits.
+// without injected ones, as G0 (RM0444 §15). H7: as revision V of the chip, which halves the clock; 16 bits.
 //
 //   AdcV2 adc("ADC1", AdcFamily::kF3, irq, triggers, context);
 //
@@ -10,7 +10,7 @@
 
 namespace omnihil::mcu {
 
-enum class AdcFamily : std::uint8_t { kF0, kF3, kG4, kH7, kL4 };
+enum class AdcFamily : std::uint8_t { kF0, kF3, kG0, kG4, kH7, kL4 };
 
 class AdcV2 final : public Adc {
  public:
@@ -37,13 +37,15 @@ class AdcV2 final : public Adc {
   void result(Group group, unsigned place, std::uint32_t code, bool last) override;
   bool continues() const override { return bit(value(0x0C), 13); }
   bool one_per_trigger() const override { return bit(value(0x0C), 16); }
-  bool injected_follow() const override { return family_ != AdcFamily::kF0 && bit(value(0x0C), 25); }
+  bool injected_follow() const override { return !regular_alone() && bit(value(0x0C), 25); }
   std::pair<int, unsigned> trigger(Group group) const override;
   bool armed(Group group) const override;
   bool enabled() const override { return bit(value(0x08), 0); }
 
  private:
   void control(std::uint32_t written);
+  bool regular_alone() const { return family_ == AdcFamily::kF0 || family_ == AdcFamily::kG0; }
+  bool places_chosen() const { return family_ == AdcFamily::kG0 && bit(value(0x0C), 21); }  // CHSELRMOD
   bool old_fields() const { return family_ == AdcFamily::kF3 || family_ == AdcFamily::kL4; }
   void update();
   AdcFamily family_;

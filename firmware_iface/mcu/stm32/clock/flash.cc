@@ -39,6 +39,28 @@ constexpr RegisterInfo kG4[] = {{0x00, "ACR", 0x600, 0x47F0F},
                                 {0x28, "PCROP1ER"},
                                 {0x2C, "WRP1AR"},
                                 {0x30, "WRP1BR"}};
+// RM0444 3.7: as G4; the second bank is G0Bx's and G0Cx's
+constexpr RegisterInfo kG0[] = {{0x00, "ACR", 0x40600, 0x40F07},
+                                {0x08, "KEYR", 0, 0},
+                                {0x0C, "OPTKEYR", 0, 0},
+                                {0x10, "SR", 0, 0},
+                                {0x14, "CR", 0xC0000000, 0xCF07BFFF},
+                                {0x18, "ECCR"},
+                                {0x1C, "ECC2R"},
+                                {0x20, "OPTR", 0xFFFFFEAA},
+                                {0x24, "PCROP1ASR"},
+                                {0x28, "PCROP1AER"},
+                                {0x2C, "WRP1AR"},
+                                {0x30, "WRP1BR"},
+                                {0x34, "PCROP1BSR"},
+                                {0x38, "PCROP1BER"},
+                                {0x44, "PCROP2ASR"},
+                                {0x48, "PCROP2AER"},
+                                {0x4C, "WRP2AR"},
+                                {0x50, "WRP2BR"},
+                                {0x54, "PCROP2BSR"},
+                                {0x58, "PCROP2BER"},
+                                {0x80, "SECR"}};
 // RM0351 3.7: as G4, with the second bank's protections
 constexpr RegisterInfo kL4[] = {{0x00, "ACR", 0x600, 0x7F07},
                                 {0x04, "PDKEYR", 0, 0},
@@ -63,11 +85,13 @@ struct Layout {
 };
 Layout layout(FlashFamily family) {
   if (family == FlashFamily::kF0F3) return {0x04, 0x0C, 0x10, 7, 6, 5, 12};
-  if (family == FlashFamily::kG4 || family == FlashFamily::kL4) return {0x08, 0x10, 0x14, 31, 16, 0, 24};
+  if (family == FlashFamily::kG0 || family == FlashFamily::kG4 || family == FlashFamily::kL4)
+    return {0x08, 0x10, 0x14, 31, 16, 0, 24};
   return {0x04, 0x0C, 0x10, 31, 16, 0, 24};
 }
 std::span<const RegisterInfo> table(FlashFamily family) {
   if (family == FlashFamily::kF0F3) return kF0F3;
+  if (family == FlashFamily::kG0) return kG0;
   if (family == FlashFamily::kG4) return kG4;
   if (family == FlashFamily::kL4) return kL4;
   return family == FlashFamily::kF7 ? std::span<const RegisterInfo>(kF7) : kF4;
@@ -143,9 +167,11 @@ void Flash::control(std::uint32_t written, std::uint32_t lanes) {
   if (!bit(written, at.start)) return;
   value(at.cr) &= ~(1u << at.start);
   const std::uint32_t cr = value(at.cr);
-  if (family_ == FlashFamily::kL4 && (bit(cr, 2) || bit(cr, 15))) {  // MER1, MER2
-    if (bit(cr, 2)) erase(0, bytes_ / 2);
-    if (bit(cr, 15)) erase(bytes_ / 2, bytes_ / 2);
+  const bool banks = family_ == FlashFamily::kL4 || family_ == FlashFamily::kG0;
+  if (banks && (bit(cr, 2) || bit(cr, 15))) {  // MER1, MER2
+    const std::uint32_t first = one_bank() ? bytes_ : bytes_ / 2;
+    if (bit(cr, 2)) erase(0, first);
+    if (bit(cr, 15)) erase(first, bytes_ - first);
   } else if (bit(cr, 2)) {
     erase(0, bytes_);  // MER
   } else if (bit(cr, 1)) {
@@ -153,6 +179,8 @@ void Flash::control(std::uint32_t written, std::uint32_t lanes) {
       erase((value(0x14) - kBase) / page_bytes_ * page_bytes_, page_bytes_);
     } else if (family_ == FlashFamily::kG4) {
       erase((field(cr, 3, 7) + (bit(cr, 11) ? 128u : 0u)) * page_bytes_, page_bytes_);
+    } else if (family_ == FlashFamily::kG0) {
+      erase(field(cr, 3, 10) * page_bytes_ + (bit(cr, 13) ? bytes_ / 2 : 0u), page_bytes_);
     } else if (family_ == FlashFamily::kL4) {  // pages of a bank, which is half of it
       erase(field(cr, 3, 8) * page_bytes_ + (bit(cr, 11) ? bytes_ / 2 : 0u), page_bytes_);
     } else {

@@ -12,7 +12,7 @@
 
 namespace omnihil::mcu {
 
-enum class FlashFamily { kF0F3, kF4, kF7, kG4, kL4 };
+enum class FlashFamily { kF0F3, kF4, kF7, kG0, kG4, kL4 };
 
 class Flash : public RegisterBlock, public FlashWrites {
  public:
@@ -36,6 +36,7 @@ class Flash : public RegisterBlock, public FlashWrites {
 
  private:
   bool locked() const;
+  bool one_bank() const { return family_ == FlashFamily::kG0 && bytes_ <= 128 * 1024; }
   void control(std::uint32_t written, std::uint32_t lanes);
   void erase_sector(std::uint32_t sector);
 

@@ -25,6 +25,28 @@ constexpr RegisterInfo kStatusAndPulls[] = {{0x10, "SR1", 0, 0}, {0x14, "SR2", 0
 constexpr RegisterInfo kCr5[] = {{0x80, "CR5", 0x100, 0x100}};
 constexpr auto kG4 = joined(kControlOfG4, kStatusAndPulls, kCr5);
 constexpr auto kL4 = joined(kControlOfL4, kStatusAndPulls);
+// RM0444 4.4
+constexpr RegisterInfo kG0[] = {
+    {0x00, "CR1", 0x208, 0x473F, 0x4037},
+    {0x04, "CR2", 0, 0x7FF, 0x1FF},
+    {0x08, "CR3", 0x8000, 0xFFFF},
+    {0x0C, "CR4", 0, 0x13F, 0x3F},
+    {0x10, "SR1", 0, 0},
+    {0x14, "SR2", 0x180, 0},
+    {0x18, "SCR", 0, 0},
+    {0x20, "PUCRA"},
+    {0x24, "PDCRA"},
+    {0x28, "PUCRB"},
+    {0x2C, "PDCRB"},
+    {0x30, "PUCRC"},
+    {0x34, "PDCRC"},
+    {0x38, "PUCRD"},
+    {0x3C, "PDCRD"},
+    {0x40, "PUCRE"},
+    {0x44, "PDCRE"},
+    {0x48, "PUCRF"},
+    {0x4C, "PDCRF"},
+};
 // RM0433 6.8. Not followed: deep sleep, batteries, monitors, wake-up pins.
 constexpr RegisterInfo kH7[] = {{0x00, "CR1", 0xF000C000, 0x0007C3F1, 0x000701F1},
                                 {0x04, "CSR1", 0, 0},
@@ -44,6 +66,8 @@ std::span<const RegisterInfo> table(PwrFamily family) {
       return kF4;
     case PwrFamily::kF7:
       return kF7;
+    case PwrFamily::kG0:
+      return kG0;
     case PwrFamily::kH7:
       return kH7;
     case PwrFamily::kL4:

@@ -11,7 +11,7 @@
 
 namespace omnihil::mcu {
 
-enum class PwrFamily { kF0F3, kF4, kF7, kG4, kH7, kL4 };
+enum class PwrFamily { kF0F3, kF4, kF7, kG0, kG4, kH7, kL4 };
 std::unique_ptr<RegisterBlock> make_pwr(PwrFamily family, ChipContext& context);
 
 }  // namespace omnihil::mcu

@@ -92,6 +92,7 @@ ClockState Rcc::buses(double sysclk_hz, std::uint32_t ahb, std::uint32_t apb1, s
 std::unique_ptr<Rcc> make_rcc(RccFamily family, ChipContext& context) {
   if (family == RccFamily::kF0 || family == RccFamily::kF3) return make_rcc_f0_f3(family, context);
   if (family == RccFamily::kF1) return make_rcc_f1(context);
+  if (family == RccFamily::kG0) return make_rcc_g0(context);
   if (family == RccFamily::kG4) return make_rcc_g4(context);
   if (family == RccFamily::kH7) return make_rcc_h7(context);
   if (family == RccFamily::kL4) return make_rcc_l4(context);

@@ -2,7 +2,7 @@
 //
 //   auto rcc = make_rcc(RccFamily::kF4, context);     // writes context.clocks at every change
 //
-// Law: the clock trees of RM0091 (F0), RM0008 (F1), RM0316 (F3), RM0090 (F4), RM0410 (F7), RM0440 (G4), RM0433 (H7) and
+// Law: the clock trees of RM0091 (F0), RM0008 (F1), RM0316 (F3), RM0090 (F4), RM0410 (F7), RM0444 (G0), RM0440 (G4), RM0433 (H7) and
 // RM0351 (L4), an internal oscillator or HSE or PLL to SYSCLK, prescalers to HCLK and PCLKx. Oscillators and PLLs are ready
 // at once after they are switched on. A PLL whose input is off, or a selected source that is not ready, is reported and the
 // switch does not happen. Enable and reset bits of peripherals are kept; a peripheral works whether it is enabled or not (not
@@ -17,7 +17,7 @@
 
 namespace omnihil::mcu {
 
-enum class RccFamily { kF0, kF1, kF3, kF4, kF7, kG4, kH7, kL4 };
+enum class RccFamily { kF0, kF1, kF3, kF4, kF7, kG0, kG4, kH7, kL4 };
 
 // Ready bits that follow their switches at once: those of `switches`, `up` places further.
 struct RccReady {
@@ -96,6 +96,7 @@ std::unique_ptr<Rcc> make_rcc(RccFamily family, ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_f0_f3(RccFamily family, ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_f1(ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_f4_f7(RccFamily family, ChipContext& context);
+std::unique_ptr<Rcc> make_rcc_g0(ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_g4(ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_h7(ChipContext& context);
 std::unique_ptr<Rcc> make_rcc_l4(ChipContext& context);

@@ -9,6 +9,7 @@
 namespace omnihil::mcu {
 
 std::span<const BlockPlace> block_map_f1();
+std::span<const BlockPlace> block_map_g0();
 std::span<const BlockPlace> block_map_h7();
 std::span<const BlockPlace> block_map_l4();
 

@@ -1,6 +1,7 @@
 /* Four wheels at constant speed: PI loops at 1 kHz on encoder timers 2 to 5, PWM of timer 1 with direction
  * pins. Rotor speeds come from a page of flash that the board file presets; serial port 1 echoes what it
- * receives. For an STM32F405, with -DF103 an STM32F103 of high density, -DH743, -DL476. */
+ * receives. For an STM32F405, with -DF103 an STM32F103 of high density, -DH743, -DL476;
+ * with -DG0B1 three wheels, as it has three timers for encoders. */
 #include "image.h"
 
 #if defined(F103)
@@ -24,6 +25,14 @@
 #define TIM1 0x40012C00u
 #define USART1 0x40013800u
 #define TIMER6_MHZ 80u
+#elif defined(G0B1)
+#define RCC 0x40021000u
+#define GPIOE 0x50001000u
+#define PORT_SET (GPIOE + 0x18)
+#define TIM1 0x40012C00u
+#define USART1 0x40013800u
+#define TIMER6_MHZ 64u
+#define WHEELS 3
 #else
 #define RCC 0x40023800u
 #define GPIOE 0x40021000u
@@ -33,6 +42,9 @@
 #define TIMER6_MHZ 84u
 #endif
 #define TIM6 0x40001000u
+#ifndef WHEELS
+#define WHEELS 4
+#endif
 #define PARAMETERS 0x08060000u /* counts per turn, then the four speeds in rad/s of the rotor */
 
 static const uint32_t encoders[4] = {0x40000000u, 0x40000400u, 0x40000800u, 0x40000C00u};
@@ -78,6 +90,20 @@ static void start_clock(void) {
   while ((REG(RCC + 0x10) >> 3 & 7) != 3) {
   }
 }
+#elif defined(G0B1)
+static void start_clock(void) {
+  REG(RCC) |= 1u << 16;
+  while (!(REG(RCC) & 1u << 17)) {
+  }
+  REG(RCC + 0x0C) = 3u | 16u << 8 | 1u << 28 | 1u << 29; /* HSE x 16 / 2 */
+  REG(RCC) |= 1u << 24;
+  while (!(REG(RCC) & 1u << 25)) {
+  }
+  REG(0x40022000u) = 0x602;
+  REG(RCC + 8) = 2u;
+  while ((REG(RCC + 8) >> 3 & 7) != 2) {
+  }
+}
 #elif defined(L476)
 static void start_clock(void) {
   REG(RCC) |= 1u << 16;
@@ -118,7 +144,7 @@ static void start_outputs(void) {
   REG(TIM1 + 0x44) = 1u << 15;
   REG(TIM1 + 0x14) = 1;
   REG(TIM1) = 1u << 7 | 1;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < WHEELS; ++i) {
     REG(encoders[i] + 0x08) = 3;
     REG(encoders[i]) = 1;
   }
@@ -129,7 +155,7 @@ static void start_outputs(void) {
   REG(TIM6) = 1;
 }
 
-#if defined(H743) || defined(L476)
+#if defined(H743) || defined(L476) || defined(G0B1)
 static void start_serial(void) {
   REG(USART1 + 0x0C) = 100;
   REG(USART1) = 1u << 3 | 1u << 2 | 1u;
@@ -158,7 +184,7 @@ int main(void) {
     while (!(REG(TIM6 + 0x10) & 1)) echo();
     REG(TIM6 + 0x10) = 0;
     ++periods;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < WHEELS; ++i) {
       uint16_t count = (uint16_t)REG(encoders[i] + 0x24);
       float speed = (float)(int16_t)(count - last[i]) * (6.2831853f / parameters[0] / control_period_s);
       last[i] = count;
