@@ -159,6 +159,8 @@ double McuBoard::analog_value(const AnalogEntry& entry) const {
       return world_.phase_current_A[wheel][phase];
     case AnalogSignal::kPhaseVoltage:
       return phase_voltage_V(entry.wheel, phase);
+    case AnalogSignal::kShuntCurrent:
+      return shunt_current_A(entry.wheel, phase);
     case AnalogSignal::kConstant:
       break;
   }
@@ -177,6 +179,22 @@ double McuBoard::phase_voltage_V(int wheel, std::size_t phase) const {
   if (leg[phase] == OMNIHIL_LEG_OFF)
     return 0.5 * world_.bus_voltage_V + world_.phase_back_emf_V[static_cast<std::size_t>(wheel)][phase];
   return duty[phase] * world_.bus_voltage_V;
+}
+
+// Of a shunt between the lower switch and the bus's minus: the phase's current while that switch or its diode carries it.
+double McuBoard::shunt_current_A(int wheel, std::size_t phase) const {
+  const MotorWire* motor = this->wire(wheel);
+  if (motor == nullptr || !motor->phases()) return 0.0;
+  const double current_A = world_.phase_current_A[static_cast<std::size_t>(wheel)][phase];
+  switch (motor->path(phase)) {
+    case CurrentPath::kLower:
+      return current_A;
+    case CurrentPath::kDiodes:
+      return std::max(current_A, 0.0);
+    case CurrentPath::kUpper:
+      break;
+  }
+  return 0.0;
 }
 
 void McuBoard::wire_analog() {

@@ -71,6 +71,7 @@ class McuBoard {
   void wire_analog();
   double analog_value(const AnalogEntry& entry) const;
   double phase_voltage_V(int wheel, std::size_t phase) const;
+  double shunt_current_A(int wheel, std::size_t phase) const;
   void wire_radio();
   void wire_commands();
   DeviceWorld device_world(const DeviceEntry& entry);

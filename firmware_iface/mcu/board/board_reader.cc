@@ -300,8 +300,9 @@ void Reader::read_analog(const toml::table& t, const std::string& path) {
   analog.channel = static_cast<unsigned>(keys_.whole(t, path, "channel", 0, 31).value_or(0));
   if (!t.contains("channel")) keys_.missing(t, path, "channel", "0 to 31");
   const auto signal =  // in the order of AnalogSignal
-      keys_.word(t, path, "signal",
-                 {"constant", "bus_voltage", "motor_current", "phase_current", "phase_voltage"});
+      keys_.word(
+          t, path, "signal",
+          {"constant", "bus_voltage", "motor_current", "phase_current", "phase_voltage", "shunt_current"});
   analog.signal = static_cast<AnalogSignal>(signal.value_or(0));
   analog.phase = static_cast<int>(keys_.whole(t, path, "phase", 0, kLegs - 1).value_or(0));
   analog.wheel = static_cast<int>(keys_.whole(t, path, "wheel", 0, kWheels - 1).value_or(0));

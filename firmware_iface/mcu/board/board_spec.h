@@ -76,7 +76,8 @@ enum class AnalogSignal : std::uint8_t {
   kBusVoltage,
   kMotorCurrent,
   kPhaseCurrent,
-  kPhaseVoltage
+  kPhaseVoltage,
+  kShuntCurrent
 };
 
 struct AnalogEntry {

@@ -132,4 +132,23 @@ void MotorWire::legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) c
   std::swap(duty_ratio[1], duty_ratio[2]);
 }
 
+CurrentPath MotorWire::path(std::size_t phase) const {
+  if (!enabled()) return CurrentPath::kDiodes;
+  if (braked()) return CurrentPath::kLower;
+  const std::size_t x = entry_.sign < 0 && phase > 0 ? kLegs - 1 - phase : phase;  // as the leads are swapped
+  const auto driven = [this](Timer& timer, const ChannelName& channel) {
+    return pin(timer, channel).drive != TimerPin::Drive::kOff;
+  };
+  constexpr std::uint32_t kCount = 0x24;  // a timer knows where it is when that is asked for
+  timers_[x]->peek(kCount);
+  if (!low_timers_.empty()) low_timers_[x]->peek(kCount);
+  const bool high = driven(*timers_[x], entry_.pwm[x]);
+  const bool upper = high && level(*timers_[x], entry_.pwm[x]);
+  if (upper) return CurrentPath::kUpper;
+  const bool lower = low_timers_.empty() ? high
+                                         : driven(*low_timers_[x], entry_.pwm_low[x]) &&
+                                               level(*low_timers_[x], entry_.pwm_low[x]);
+  return lower ? CurrentPath::kLower : CurrentPath::kDiodes;
+}
+
 }  // namespace omnihil::mcu

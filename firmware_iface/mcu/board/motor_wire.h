@@ -31,6 +31,10 @@ struct BridgeDrive {
   double duty_ratio = 0.0;  // -1 .. 1 of the bus voltage
 };
 
+// What carries a phase's current at an instant, dead time left out; diodes: the lower one what goes into the motor, the
+// upper one what comes out of it.
+enum class CurrentPath : std::uint8_t { kDiodes, kUpper, kLower };
+
 class MotorWire {
  public:
   MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int64_t()> now_ns);
@@ -48,6 +52,7 @@ class MotorWire {
   void gate_by(Device& driver);
   // The legs of a three-phase bridge, as omnihil_motor_drive has them.
   void legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) const;
+  CurrentPath path(std::size_t phase) const;  // now
 
  private:
   void changed(std::int64_t at_ns);
@@ -56,6 +61,9 @@ class MotorWire {
   bool still() const;
   void pass(std::int64_t at_ns);
   TimerPin pin(Timer& timer, const ChannelName& channel) const;
+  bool level(Timer& timer, const ChannelName& channel) const {
+    return timer.level(channel.channel, channel.complement) != entry_.inverted;
+  }
   TimerPin pin(std::size_t i) const { return pin(*timers_[i], entry_.pwm[i]); }
   bool enabled() const {
     return (!enable_ || enable_->output(entry_.enable->pin)) && (!driver_ || driver_->drives_bridge());

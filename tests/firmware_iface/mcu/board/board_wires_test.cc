@@ -89,6 +89,44 @@ TEST(MotorWire, LegsFollowTheGatesOfBothSwitches) {
   EXPECT_EQ(leg[2], static_cast<std::uint32_t>(OMNIHIL_LEG_OFF));
 }
 
+// 168 MHz: 1000 counts a period, of which the upper switch is on for the first 250.
+TEST(MotorWire, ItsLowerSwitchConductsWhileItsOwnGateIsHigh) {
+  WireBench b;
+  const auto wire = b.wire(three_half_bridges());
+  b.set("TIM1", 0x34, 250);
+  b.set("TIM1", 0x38, 1000);
+  b.set("TIM1", 0x20, 0x5 | 0x4 << 4);
+  b.set("TIM1", 0x18, 0x5060);
+  b.set("TIM1", 0x24, 0);
+  EXPECT_EQ(wire->path(0), CurrentPath::kUpper);
+  EXPECT_EQ(wire->path(1), CurrentPath::kLower) << "its lower gate is forced high";
+  EXPECT_EQ(wire->path(2), CurrentPath::kDiodes) << "both gates are off";
+  b.system.run_for(600);
+  EXPECT_EQ(wire->path(0), CurrentPath::kLower);
+  b.set("TIM1", 0x44, 0);
+  EXPECT_EQ(wire->path(0), CurrentPath::kDiodes);
+}
+
+TEST(MotorWire, ADriverOfOneInputALegClosesTheOtherSwitch) {
+  WireBench b;
+  MotorEntry entry;
+  entry.pwm = kPhases;
+  entry.brake = PinName{'E', 1};
+  entry.inverted = true;
+  const auto wire = b.wire(entry);
+  b.set("GPIOE", 0x00, 4);
+  b.set("TIM1", 0x34, 250);
+  b.set("TIM1", 0x20, 0x1);
+  b.set("TIM1", 0x24, 0);
+  EXPECT_EQ(wire->path(0), CurrentPath::kLower) << "braked";
+  b.set("GPIOE", 0x18, 2);
+  b.set("TIM1", 0x24, 0);
+  EXPECT_EQ(wire->path(0), CurrentPath::kLower) << "its input is active low";
+  EXPECT_EQ(wire->path(1), CurrentPath::kDiodes);
+  b.system.run_for(600);
+  EXPECT_EQ(wire->path(0), CurrentPath::kUpper);
+}
+
 TEST(MotorWire, TheBrakePinClosesTheLowerSwitchesWhateverTheTimerSays) {
   WireBench b;
   MotorEntry entry;
