@@ -15,23 +15,6 @@ namespace {
 
 constexpr int kRobot = 3;
 
-std::vector<std::uint8_t> rem_command(double v_forward_m_s, double v_left_m_s, double omega_rad_s,
-                                      bool state = false) {
-  const RadioFormat* format = find_radio_format("roboteam-rem-v8");
-  Values values;
-  values.message = format->find("REM_RobotCommand");
-  values.set("toRobotId", kRobot);
-  values.set("toColor", 1);
-  values.set("fromPC", 1);
-  values.set("rho", std::hypot(v_forward_m_s, v_left_m_s));
-  values.set("theta", std::atan2(v_left_m_s, v_forward_m_s));
-  values.set("angularVelocity", omega_rad_s);
-  values.set("sendStateInfo", state ? 1 : 0);
-  std::vector<std::uint8_t> bytes;
-  EXPECT_EQ(format->encode(values, bytes).error, PacketError::kNone);
-  return bytes;
-}
-
 struct RoboteamTop : ThirdPartyImage {
   RoboteamTop() : ThirdPartyImage("roboteam-top-f767.elf", "roboteam_top_f767.toml") {}
   void SetUp() override {
@@ -110,7 +93,7 @@ struct Move {
 TEST_F(RoboteamTop, AnswersEachCommandWithItsSensorsAsTheyAre) {
   std::size_t commands = 0;
   for (const Move& m : {Move{1.0, 0, 0}, Move{0, 0, 5.0}}) {
-    const auto command = rem_command(m.v_forward_m_s, m.v_left_m_s, m.omega_body_rad_s, true);
+    const auto command = rem_command(kRobot, m.v_forward_m_s, m.v_left_m_s, m.omega_body_rad_s, true);
     run(1.0, command);
     answers_.bytes.clear();
     std::array<double, kWheels> wheel_rad_s{};
@@ -145,10 +128,10 @@ TEST_F(RoboteamTop, AnswersEachCommandWithItsSensorsAsTheyAre) {
 // Wherever it looks: its yaw is the gyro's sum, and it turns what it is told into its own frame.
 TEST_F(RoboteamTop, DrivesInTheDirectionThatTheHostSays) {
   for (const Move& m : {Move{1.0, 0, 0}, Move{0, 1.0, 0}, Move{-0.8, -0.6, 0}}) {
-    run(0.5, rem_command(0, 0, 3.0));
+    run(0.5, rem_command(kRobot, 0, 0, 3.0));
     run(3.0);  // silence: it brakes
     const PlanarState from = session_->plant().planar_state(0);
-    run(0.8, rem_command(m.v_forward_m_s, m.v_left_m_s, m.omega_body_rad_s));
+    run(0.8, rem_command(kRobot, m.v_forward_m_s, m.v_left_m_s, m.omega_body_rad_s));
     const PlanarState to = session_->plant().planar_state(0);
     const double way_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
     const double along_m = (to.x_m - from.x_m) * m.v_forward_m_s + (to.y_m - from.y_m) * m.v_left_m_s;
@@ -167,7 +150,7 @@ struct RoboteamTopWithItsFriction : RoboteamTop {
 
 TEST_F(RoboteamTopWithItsFriction, ReachesTheSpeedThatTheHostSays) {
   for (const Move& m : {Move{1.0, 0, 0}, Move{0, 0.8, 0}, Move{0, 0, 5.0}}) {
-    const auto command = rem_command(m.v_forward_m_s, m.v_left_m_s, m.omega_body_rad_s);
+    const auto command = rem_command(kRobot, m.v_forward_m_s, m.v_left_m_s, m.omega_body_rad_s);
     run(2.0);
     run(1.0, command);
     Move mean{0, 0, 0};

@@ -8,6 +8,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -54,17 +55,34 @@ void put_bytes(std::vector<std::uint8_t>& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-// What the host writes to its dongle for robot 0.
-inline std::vector<std::uint8_t> hermes_packet(
-    const std::string& name, const std::vector<std::pair<std::string, double>>& fields = {}) {
-  const RadioFormat* format = find_radio_format("ulaval-hermes");
+// What the host writes to its dongle.
+inline std::vector<std::uint8_t> host_packet(std::string_view radio, std::string_view name,
+                                             const std::vector<std::pair<std::string, double>>& fields) {
+  const RadioFormat* format = find_radio_format(radio);
   Values values;
   values.message = format->find(name);
-  values.set("robot", 0);
   for (const auto& [field, value] : fields) values.set(field, value);
   std::vector<std::uint8_t> bytes;
   EXPECT_EQ(format->encode(values, bytes).error, PacketError::kNone) << name;
   return bytes;
+}
+
+inline std::vector<std::uint8_t> hermes_packet(  // for robot 0
+    std::string_view name, std::vector<std::pair<std::string, double>> fields = {}) {
+  fields.emplace_back("robot", 0);
+  return host_packet("ulaval-hermes", name, fields);
+}
+
+inline std::vector<std::uint8_t> rem_command(int robot, double v_forward_m_s, double v_left_m_s,
+                                             double omega_rad_s, bool state = false) {
+  return host_packet("roboteam-rem-v8", "REM_RobotCommand",
+                     {{"toRobotId", robot},
+                      {"toColor", 1},
+                      {"fromPC", 1},
+                      {"rho", std::hypot(v_forward_m_s, v_left_m_s)},
+                      {"theta", std::atan2(v_left_m_s, v_forward_m_s)},
+                      {"angularVelocity", omega_rad_s},
+                      {"sendStateInfo", state ? 1 : 0}});
 }
 
 class ThirdPartyImage : public testing::Test {
