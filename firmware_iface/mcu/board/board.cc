@@ -201,9 +201,14 @@ void McuBoard::wire_analog() {
   for (const std::string& name : chip_.names<Adc>())
     chip_.find<Adc>(name)->reference_V = spec_.adc_reference_V;
   for (const AnalogEntry& entry : spec_.analog) {
-    chip_.find<Adc>(entry.adc)->set_source(entry.channel, [this, entry](std::int64_t) {
-      return entry.offset_V + entry.volts_per_unit * analog_value(entry);
-    });
+    Adc* adc = chip_.find<Adc>(entry.adc);
+    const bool of_timers =
+        entry.signal == AnalogSignal::kPhaseVoltage || entry.signal == AnalogSignal::kShuntCurrent;
+    adc->set_source(
+        entry.channel,
+        [this, entry](std::int64_t) { return entry.offset_V + entry.volts_per_unit * analog_value(entry); },
+        !of_timers);
+    if (std::find(adcs_.begin(), adcs_.end(), adc) == adcs_.end()) adcs_.push_back(adc);
   }
 }
 
@@ -236,6 +241,7 @@ void McuBoard::run_to_due(std::int64_t end_ns) {
 
 void McuBoard::set_world(const WorldState& world) {
   if (watcher_) watcher_(world);
+  for (Adc* adc : adcs_) adc->take_samples();
   world_ = world;
   for (const auto& hall : halls_) hall->world_changed();
   for (const Wired& wired : devices_) wired.device->world_changed();

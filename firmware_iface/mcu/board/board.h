@@ -27,6 +27,7 @@
 
 namespace omnihil::mcu {
 
+class Adc;
 class Usart;
 
 class McuBoard {
@@ -83,6 +84,7 @@ class McuBoard {
   std::vector<std::unique_ptr<MotorWire>> wires_;
   std::vector<std::unique_ptr<HallLines>> halls_;
   std::vector<Wired> devices_;
+  std::vector<Adc*> adcs_;  // that something of the world is wired to
   Device* radio_ = nullptr;
   Usart* serial_ = nullptr;
   std::vector<std::uint8_t> sent_;  // bytes of a serial radio, not yet a frame

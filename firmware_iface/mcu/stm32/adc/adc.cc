@@ -23,12 +23,15 @@ void Adc::reset() {
   active_ = Group::kNone;
   suspended_ = false;
   regular_place_ = place_ = 0;
+  held_ = false;
   phase_end_ = kNever;
   listen();
 }
 
-void Adc::set_source(unsigned channel, AnalogSource source) {
-  sources_[channel % sources_.size()] = std::move(source);
+void Adc::set_source(unsigned channel, AnalogSource source, bool steady) {
+  const unsigned at = channel % sources_.size();
+  sources_[at] = std::move(source);
+  steady_ = (steady_ & ~(1u << at)) | (steady ? 1u << at : 0u);
 }
 
 void Adc::follow(bool injected, double delay_clocks) {
@@ -70,6 +73,7 @@ void Adc::stop(Group group) {
   }
   if (active_ != group) return;
   active_ = Group::kNone;
+  held_ = false;
   phase_end_ = kNever;
   if (suspended_) {
     suspended_ = false;
@@ -79,21 +83,37 @@ void Adc::stop(Group group) {
   }
 }
 
+Cycles Adc::cycles(double clocks) const {
+  return std::max<Cycles>(1, static_cast<Cycles>(std::llround(clocks * system().core_hz() / clock_hz())));
+}
+
 // Starts sampling the channel at place_.
 void Adc::begin() {
-  const double clocks = sample_clocks(channel(active_, place_)) + late_clocks_;
+  const unsigned input = channel(active_, place_);
   sampling_ = true;
-  phase_end_ = now() + std::max<Cycles>(
-                           1, static_cast<Cycles>(std::llround(clocks * system().core_hz() / clock_hz())));
+  phase_end_ = sampled_at_ = now() + cycles(sample_clocks(input) + late_clocks_);
+  held_ = (steady_ >> input & 1u) != 0;
+  if (held_) phase_end_ += cycles(convert_clocks());
 }
 
 void Adc::run_events() {
   if (phase_end_ > now()) return;
-  if (!sampling_) return finish();
+  if (sampling_) {
+    const bool ends_too = held_;
+    sample();
+    if (!ends_too) {
+      phase_end_ += cycles(convert_clocks());
+      return;
+    }
+  }
+  finish();
+}
+
+void Adc::sample() {
   const unsigned input = channel(active_, place_);
   double volts = 0.0;
   if (sources_[input]) {
-    volts = sources_[input](system().to_ns(phase_end_));
+    volts = sources_[input](system().to_ns(sampled_at_));
   } else {
     system().report_unmodelled(name(), fmt::format("input {} converted; nothing is connected to it", input));
   }
@@ -101,9 +121,7 @@ void Adc::run_events() {
   const double code = std::floor(volts / reference_V * full + 0.5);
   code_ = code > 0.0 ? static_cast<std::uint32_t>(std::min(code, full - 1.0)) : 0u;
   if (left_aligned()) code_ <<= bits() == 6 ? 2 : 16 - bits();
-  sampling_ = false;
-  phase_end_ += std::max<Cycles>(
-      1, static_cast<Cycles>(std::llround(convert_clocks() * system().core_hz() / clock_hz())));
+  sampling_ = held_ = false;
 }
 
 void Adc::finish() {

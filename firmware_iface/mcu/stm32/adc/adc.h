@@ -34,13 +34,24 @@ class Adc : public RegisterBlock, public TriggerSink {
   void reset() override;
   void run_events() override;
   void triggered(int source, bool rising) override;
+  void clock_changed() override { registers_change(); }
 
-  void set_source(unsigned channel, AnalogSource source);
+  // Steady: nothing that the chip does changes what it tells, and who else changes it calls take_samples() first. It may
+  // then be asked at the end of the conversion, which saves the event at the end of its sampling.
+  void set_source(unsigned channel, AnalogSource source, bool steady = false);
+  void take_samples() {  // those whose instant has come
+    if (held_ && sampled_at_ <= now()) sample();
+  }
   double reference_V = 3.3;
   // For the group that it belongs to.
   void join(AdcTogether& group) { group_ = &group; }
   void follow(bool injected, double delay_clocks);  // a slave's start, by the master's
   // How long after this one's begin another may sample: its own sampling and two clocks.
+  // Before anything changes that a conversion under way is measured by: registers, clocks.
+  void registers_change() {
+    take_samples();
+    if (std::exchange(held_, false)) phase_end_ = sampled_at_;
+  }
   double sampling_clocks() const { return sample_clocks(channel(Group::kRegular, place_)) + 2.0; }
 
  protected:
@@ -72,6 +83,8 @@ class Adc : public RegisterBlock, public TriggerSink {
 
  private:
   void begin();
+  void sample();
+  Cycles cycles(double clocks) const;
   void finish();
   bool goes_on() const {
     return in_group() && group_->is_slave(*this) ? group_->master().continues() : continues();
@@ -80,12 +93,15 @@ class Adc : public RegisterBlock, public TriggerSink {
 
   ChipContext& context_;
   std::array<AnalogSource, 32> sources_;
+  std::uint32_t steady_ = 0;  // a bit for each source that is
   std::vector<int> regular_lines_, injected_lines_;
   AdcTogether* group_ = nullptr;
   double late_clocks_ = 0.0;  // of the next begin() alone
   Group active_ = Group::kNone;
   bool suspended_ = false;  // a regular sequence waits for injected ones
   bool sampling_ = false;
+  bool held_ = false;  // phase_end_ is the end of a conversion whose source has not been asked yet
+  Cycles sampled_at_ = 0;
   unsigned place_ = 0, regular_place_ = 0;
   std::uint32_t code_ = 0;
   Cycles phase_end_ = kNever;

@@ -34,6 +34,7 @@ std::uint32_t AdcWithStatus::load(std::uint32_t offset) {
 }
 
 void AdcWithStatus::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  registers_change();
   if (offset == kSr) {
     value(kSr) &= written | ~lanes;
     return update();

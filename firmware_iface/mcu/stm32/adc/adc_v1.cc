@@ -79,6 +79,8 @@ void AdcV1Common::set_status(unsigned adc, std::uint32_t status) {
 }
 
 void AdcV1Common::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  for (AdcV1* adc : adcs_) adc->registers_change();
+  system().reschedule();
   keep(offset, written, lanes);
   if (offset != kCcr) return;
   group_.set(field(value(kCcr), 0, 5), field(value(kCcr), 8, 4) + 5);

@@ -302,6 +302,7 @@ void AdcV2::control(std::uint32_t written) {
 }
 
 void AdcV2::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
+  registers_change();
   if (offset == kIsr) {
     value(kIsr) &= ~written;
   } else if (offset == kCr) {
@@ -358,6 +359,7 @@ std::uint32_t AdcV2Common::shown(std::uint32_t offset) {
 void AdcV2Common::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
   keep(offset, written, lanes);
   for (AdcV2* adc : adcs_) adc->set_common(value(0x08));
+  system().reschedule();
   if (offset != 0x08) return;
   group_.set(field(value(0x08), 0, 5), field(value(0x08), 8, 4) + 1);
   if (!group_.known()) system().report_unmodelled(name(), "CCR: a DUAL that is reserved");

@@ -20,7 +20,10 @@ class AdcV2 final : public Adc {
   Cycles stable_until(std::uint32_t offset) const override { return (offset & ~3u) == 0x40 ? 0 : kNever; }
   std::uint32_t status() const { return value(0); }
   // CKMODE and PRESC of the common block.
-  void set_common(std::uint32_t ccr) { ccr_ = ccr; }
+  void set_common(std::uint32_t ccr) {
+    registers_change();
+    ccr_ = ccr;
+  }
   void data_was_read();  // by the common data register
 
  protected:

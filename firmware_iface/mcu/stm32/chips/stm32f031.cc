@@ -45,8 +45,10 @@ void build(Chip& chip) {
   add_timer(chip, 0x40014800, {.number = 17, .bus = apb, .channels = 1, .advanced = true, .irq_update = 22});
   const AdcTriggers triggers{{"TIM1_TRGO", "TIM1_CC4", "TIM2_TRGO", "TIM3_TRGO", "TIM15_TRGO"}, {}};
   auto adc = std::make_unique<AdcV2>("ADC1", AdcFamily::kF0, 12, triggers, context);
-  adc->set_source(16, [](std::int64_t) { return 1.43; });
-  adc->set_source(17, [](std::int64_t) { return 1.23; });
+  adc->set_source(
+      16, [](std::int64_t) { return 1.43; }, true);
+  adc->set_source(
+      17, [](std::int64_t) { return 1.23; }, true);
   AdcV2& kept = chip.add(0x40012400, 0x300, std::move(adc));
   chip.add(0x40012700, 0x100, std::make_unique<AdcV2Common>("ADC common", std::vector{&kept}, context));
   add_usart(chip, 0x40013800, {.number = 1, .name = "USART1", .v2 = true, .bus = apb, .irq = 27});
