@@ -56,7 +56,7 @@ void add_effects(ModelBundle& bundle, const std::vector<std::string>& with,
   const ModelReading reading = read_bundle(bundle);
   if (!reading.model || !reading.model->robot) return;
   const DriveParams<double> drive = wheel_drive_params(*reading.model->robot);
-  const EffectContext context{.drive = &drive, .linear = false};
+  const EffectContext context{.drive = &drive, .linear = false, .wheels = reading.model->robot->wheels};
   std::vector<EffectUse> uses = uses_of(*reading.model, context);
   const std::size_t before = faults.size();
   for (const std::string& text : with) {

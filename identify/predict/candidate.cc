@@ -280,10 +280,18 @@ Candidate with_known(const Candidate& candidate, std::span<const std::pair<std::
   return out;
 }
 
+std::size_t wheels_of(const Candidate& candidate) {
+  return candidate.file.robot ? candidate.file.robot->wheels : kAllWheels;
+}
+
+EffectUse neutral_use(const EffectEntry& entry, const Candidate& of) {
+  const DriveParams<double> drive = drive_of(of);
+  return neutral_use(entry, &drive, wheels_of(of));
+}
+
 Candidate with_effect(const Candidate& candidate, const EffectEntry& entry) {
   Candidate out = candidate;
-  const DriveParams<double> drive = drive_of(candidate);
-  out.effects.push_back(neutral_use(entry, &drive));
+  out.effects.push_back(neutral_use(entry, candidate));
   return out;
 }
 

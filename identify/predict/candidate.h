@@ -73,6 +73,11 @@ std::string set_value(Candidate& candidate, std::string_view path, double value)
 // set_value refuses is left as it was: the dataset's reader has said so.
 Candidate with_known(const Candidate& candidate, std::span<const std::pair<std::string, double>> known);
 
+// How many wheels its robot has; kAllWheels: it has none.
+std::size_t wheels_of(const Candidate& candidate);
+// An effect with its strengths neutral and its shapes at their starts, in this drive, on these wheels.
+EffectUse neutral_use(const EffectEntry& entry, const Candidate& of);
+
 // With one more effect, all its strengths neutral.
 Candidate with_effect(const Candidate& candidate, const EffectEntry& entry);
 Candidate with_effect(const Candidate& candidate, EffectUse use);  // a user's formula

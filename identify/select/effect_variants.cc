@@ -109,10 +109,10 @@ std::size_t order_row_of(const EffectInfo& info) {
   return row;
 }
 
-std::vector<std::size_t> rows_of_role(const EffectInfo& info, ParamRole role) {
+std::vector<std::size_t> rows_of_role(const EffectUse& use, ParamRole role) {
   std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < info.params.size(); ++i) {
-    if (info.params[i].role == role) rows.push_back(i);
+  for (std::size_t i = 0; i < use.values.size(); ++i) {
+    if (use.entry->info->params[i].role == role) rows.push_back(i);
   }
   return rows;
 }
@@ -146,9 +146,9 @@ double visible_size(const EffectParam& row, const Candidate& candidate) {
 std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate& candidate,
                                        const DataScale& scale) {
   const EffectInfo& info = *entry.info;
-  const DriveParams<double> drive = drive_of(candidate);
-  std::vector<EffectVariant> variants{{.shape = neutral_use(entry, &drive), .columns = {}}};
-  for (const std::size_t i : rows_of_role(info, ParamRole::kShape)) {
+  const EffectUse neutral = neutral_use(entry, candidate);
+  std::vector<EffectVariant> variants{{.shape = neutral, .columns = {}}};
+  for (const std::size_t i : rows_of_role(neutral, ParamRole::kShape)) {
     if (belongs_to_detail(info, i)) continue;
     const std::vector<double> grid =
         shape_grid(info.params[i], variants.front().shape.values[i], candidate, scale);
@@ -162,7 +162,7 @@ std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate
     variants = std::move(more);
   }
   for (EffectVariant& v : variants) {
-    for (const std::size_t row : rows_of_role(info, ParamRole::kStrength)) {
+    for (const std::size_t row : rows_of_role(neutral, ParamRole::kStrength)) {
       add_columns(info, row, candidate, v);
     }
   }
@@ -175,7 +175,7 @@ std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& 
   std::vector<EffectVariant> variants;
   const EffectInfo& info = *use.entry->info;
   const HarmonicSeries series = series_of(info);
-  for (const std::size_t row : rows_of_role(info, ParamRole::kDetail)) {
+  for (const std::size_t row : rows_of_role(use, ParamRole::kDetail)) {
     if (use.values[row] != info.params[row].neutral) continue;
     if (const int k = harmonic_of(series, row); k > 0) {
       // the first two, and those whose order shows in the residual
@@ -203,14 +203,13 @@ std::vector<EffectVariant> series_variants(const EffectEntry& entry, const Candi
     }
   }
   std::vector<EffectVariant> variants;
-  const DriveParams<double> drive = drive_of(candidate);
   for (std::size_t count = 2; count <= orders.size(); ++count) {
     int common = 0;
     for (std::size_t i = 0; i < count; ++i) common = std::gcd(common, orders[i]);
     const int highest =
         *std::max_element(orders.begin(), orders.begin() + static_cast<std::ptrdiff_t>(count));
     if (highest > (series.count + 1) * common) continue;
-    EffectVariant v{.shape = neutral_use(entry, &drive), .columns = {}};
+    EffectVariant v{.shape = neutral_use(entry, candidate), .columns = {}};
     v.shape.values[order_row_of(*entry.info)] = common;
     for (std::size_t i = 0; i < count; ++i) {
       const int k = orders[i] / common;

@@ -124,8 +124,7 @@ class Trial {
  public:
   Trial(const NoiseSearch& search, const EffectEntry& entry) : search_(search), entry_(entry) {
     const EffectInfo& info = *entry.info;
-    const DriveParams<double> drive = drive_of(*search.model);
-    shape_ = neutral_use(entry, &drive);
+    shape_ = neutral_use(entry, *search.model);
     for (std::size_t i = 0; i < info.params.size(); ++i) {
       if (info.params[i].role == ParamRole::kStrength) row_ = i;
     }

@@ -1,22 +1,20 @@
 // Motors that are not alike: each wheel's torque constant apart from the model's.
-#include <cmath>
-#include <iterator>
-
 #include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {
 
-// Wheel k = 1 … 4 of the robot.
+// Wheel k of the robot.
 #define RATIO(k, size)                                                                             \
   {                                                                                                \
     .name = "ratio_" #k, .unit = "1", .neutral = 1.0, .typical = size, .lower = 0.5, .upper = 1.5, \
     .prior_scale = 0.05, .what = "torque constant of motor " #k " over the model's",               \
-    .how = "all four lifted at one duty: no-load speeds, as one over the ratio"                    \
+    .how = "all lifted at one duty: no-load speeds, as one over the ratio", .wheel = k             \
   }
 
 struct MotorMismatch {
-  static constexpr EffectParam kParams[] = {RATIO(1, 1.04), RATIO(2, 0.97), RATIO(3, 0.98), RATIO(4, 1.03)};
+  static constexpr EffectParam kParams[] = {RATIO(1, 1.04), RATIO(2, 0.97), RATIO(3, 0.98),
+                                            RATIO(4, 1.03), RATIO(5, 1.02), RATIO(6, 0.99)};
 #undef RATIO
   static constexpr EffectInfo kInfo{
       .id = "motor_mismatch",
@@ -25,11 +23,11 @@ struct MotorMismatch {
       .source =
           "production spread of data sheets, +-3 to 8 %; 4 to 9 % between two motors measured on a "
           "micromouse",
-      .cannot = "friction or resistance that differ between motors, a fifth and sixth wheel",
+      .cannot = "friction or resistance that differ between motors",
       .place = Place::kWinding,
       .twins = {"wheel_radius_mismatch"},
       .reveals =
-          "the same duty on four lifted wheels: speeds apart by the ratios; on the floor a yaw drift that "
+          "the same duty on all wheels, lifted: speeds apart by the ratios; on the floor a yaw drift that "
           "stays with the motor when wheels are swapped",
       .visible = "speed of one second's mean at one count per sample, of 300 rad/s",
       .min_visible =
@@ -44,7 +42,6 @@ struct MotorMismatch {
 
   template <typename T>
   static void apply(const T* p, T*, WindingPort<T>& port) {
-    if (port.wheel >= static_cast<int>(std::size(kParams))) return;
     // k = ratio_k k_model
     port.torque_constant_Nm_per_A *= p[port.wheel];
     port.back_emf_V_s_per_rad *= p[port.wheel];

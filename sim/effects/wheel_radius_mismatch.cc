@@ -1,22 +1,22 @@
 // Wheels of unequal radius: worn rings, another batch.
 #include <cmath>
-#include <iterator>
 
 #include "sim/law/effect_entry.h"
 
 namespace omnihil {
 namespace {
 
-// Wheel k = 1 … 4 of the robot.
-#define RATIO(k, size)                                                                              \
-  {                                                                                                 \
-    .name = "ratio_" #k, .unit = "1", .neutral = 1.0, .typical = size, .lower = 0.8, .upper = 1.25, \
-    .prior_scale = 0.01, .what = "radius of wheel " #k " over the model's",                         \
-    .how = "calliper; or counts of a turn on the spot and of straight drives against the camera"    \
+// Wheel k of the robot.
+#define RATIO(k, size)                                                                                       \
+  {                                                                                                          \
+    .name = "ratio_" #k, .unit = "1", .neutral = 1.0, .typical = size, .lower = 0.8, .upper = 1.25,          \
+    .prior_scale = 0.01, .what = "radius of wheel " #k " over the model's",                                  \
+    .how = "calliper; or counts of a turn on the spot and of straight drives against the camera", .wheel = k \
   }
 
 struct WheelRadiusMismatch {
-  static constexpr EffectParam kParams[] = {RATIO(1, 1.01), RATIO(2, 0.99), RATIO(3, 1.005), RATIO(4, 0.995)};
+  static constexpr EffectParam kParams[] = {RATIO(1, 1.01),  RATIO(2, 0.99),  RATIO(3, 1.005),
+                                            RATIO(4, 0.995), RATIO(5, 1.008), RATIO(6, 0.992)};
 #undef RATIO
   static constexpr EffectInfo kInfo{
       .id = "wheel_radius_mismatch",
@@ -26,7 +26,7 @@ struct WheelRadiusMismatch {
           "Borenstein and Feng, IEEE Trans. Robotics and Automation 12(6), 1996 (systematic odometry errors)",
       .cannot =
           "wheels that are not round, a robot that leans on its smaller wheels (loads are those of equal "
-          "wheels), a fifth and sixth wheel",
+          "wheels)",
       .place = Place::kContact,
       .twins = {"motor_mismatch"},
       .reveals =
@@ -44,7 +44,6 @@ struct WheelRadiusMismatch {
 
   template <typename T>
   static void apply(const T* p, T*, ContactPort<T>& port) {
-    if (port.wheel >= static_cast<int>(std::size(kParams))) return;
     // r_k = ratio_k r
     port.wheel_radius_m *= p[port.wheel];
   }

@@ -7,6 +7,7 @@
 // One effect is one file in sim/effects/; how to write one: docs/effects/README.md.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -118,6 +119,17 @@ struct EffectInfo {
 
 // A user's formula: no effect that a search may name.
 constexpr bool is_formula(const EffectInfo& info) { return !info.target.empty(); }
+
+inline constexpr std::size_t kAllWheels = ~std::size_t{0};  // of a rig that is no robot, or not known
+
+// The rows that a robot of so many wheels has: all but those of further wheels.
+constexpr std::span<const EffectParam> rows_of(const EffectInfo& info, std::size_t wheels) {
+  std::size_t rows = info.params.size();
+  while (rows > 0 && info.params[rows - 1].wheel > 0 &&
+         static_cast<std::size_t>(info.params[rows - 1].wheel) > wheels)
+    --rows;
+  return info.params.first(rows);
+}
 
 // The row that an effect's size is told by: its first strength.
 constexpr std::size_t first_strength(const EffectInfo& info) {

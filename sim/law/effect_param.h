@@ -81,6 +81,7 @@ struct EffectParam {
   ParamTrait trait = ParamTrait::kPlain;
   SearchGrid grid{};
   HarmonicSeries series{};  // kOrder
+  int wheel = 0;  // of a row that is a wheel's: 1, 2 … as many as a robot may have; they stand last
 };
 
 constexpr bool is_whole(const EffectParam& row) {

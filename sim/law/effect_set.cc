@@ -12,7 +12,7 @@ namespace {
 
 template <typename T>
 bool absent(const EffectInfo& info, std::span<const T> values) {
-  for (std::size_t i = 0; i < info.params.size(); ++i) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
     const EffectParam& row = info.params[i];
     if (row.role != ParamRole::kShape && !is_exactly(values[i], row.neutral)) return false;
   }
@@ -28,17 +28,17 @@ double start_of(const EffectParam& row, const DriveParams<double>* drive) {
   return linear_speed ? row.typical * kTravelOverAngle_m_per_rad : row.typical;
 }
 
-EffectUse neutral_use(const EffectEntry& entry, const DriveParams<double>* drive) {
+EffectUse neutral_use(const EffectEntry& entry, const DriveParams<double>* drive, std::size_t wheels) {
   EffectUse use{.entry = &entry, .values = {}, .tolerances = {}, .name = {}, .owner = {}};
-  for (const EffectParam& row : entry.info->params) {
+  for (const EffectParam& row : rows_of(*entry.info, wheels)) {
     use.values.push_back(row.role == ParamRole::kShape ? start_of(row, drive) : row.neutral);
   }
   return use;
 }
 
-EffectUse typical_use(const EffectEntry& entry, const DriveParams<double>* drive) {
+EffectUse typical_use(const EffectEntry& entry, const DriveParams<double>* drive, std::size_t wheels) {
   EffectUse use{.entry = &entry, .values = {}, .tolerances = {}, .name = {}, .owner = {}};
-  for (const EffectParam& row : entry.info->params) {
+  for (const EffectParam& row : rows_of(*entry.info, wheels)) {
     use.values.push_back(row.role == ParamRole::kDetail ? row.neutral : start_of(row, drive));
   }
   return use;
@@ -73,7 +73,7 @@ EffectSet<T>::EffectSet(std::span<const EffectUse> uses, std::span<const T> valu
   std::size_t first = 0;
   for (const EffectUse& use : uses) {
     if (use.owner != nullptr) owners_.push_back(use.owner);
-    const auto own = values.subspan(first, use.entry->info->params.size());
+    const auto own = values.subspan(first, use.values.size());
     first += own.size();
     const bool wanted = std::any_of(uses.begin(), uses.end(), [&](const EffectUse& other) {
       return other.entry->info->needs == use.entry->info->id;
@@ -106,7 +106,10 @@ template <typename T>
 void EffectSet<T>::add(const EffectEntry& entry, std::span<const T> values) {
   const int first_param = static_cast<int>(values_.size());
   const int first_state = static_cast<int>(initial_states_.size());
-  const std::vector<T> params = law_params(entry, values);
+  std::vector<T> given(values.begin(), values.end());
+  // A law finds its rows where they always are: wheels that the robot lacks are as the model has them.
+  for (const EffectParam& row : entry.info->params.subspan(given.size())) given.push_back(T(row.neutral));
+  const std::vector<T> params = law_params<T>(entry, given);
   values_.insert(values_.end(), params.begin(), params.end());
   for (const EffectState& state : entry.info->states) initial_states_.push_back(T(state.initial));
   assert(initial_states_.size() <= kMaxEffectStates);

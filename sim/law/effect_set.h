@@ -21,7 +21,7 @@ namespace omnihil {
 // One effect with its numbers, as read from a model file.
 struct EffectUse {
   const EffectEntry* entry = nullptr;
-  std::vector<double> values;                     // one per row of entry->info->params
+  std::vector<double> values;                     // one per row that the rig has (rows_of)
   std::vector<std::optional<double>> tolerances;  // relative 1-sigma, as given; empty: none given
   std::string name;                               // of a user's formula; empty: the effect's id
   std::shared_ptr<const void> owner;  // keeps alive what `entry` points into where it was made at run time
@@ -35,10 +35,12 @@ struct EffectUse {
 // Where a shape starts, which size of a strength is visible, within its bounds; of a linear axis only where
 // it is a speed or the drive is asked (a force: param_range).
 double start_of(const EffectParam& row, const DriveParams<double>* drive);
-// With every strength at its neutral value and every shape at its start.
-EffectUse neutral_use(const EffectEntry& entry, const DriveParams<double>* drive = nullptr);
+// With every strength at its neutral value and every shape at its start; `wheels`: of the robot.
+EffectUse neutral_use(const EffectEntry& entry, const DriveParams<double>* drive = nullptr,
+                      std::size_t wheels = kAllWheels);
 // With every strength at its typical, visible size.
-EffectUse typical_use(const EffectEntry& entry, const DriveParams<double>* drive = nullptr);
+EffectUse typical_use(const EffectEntry& entry, const DriveParams<double>* drive = nullptr,
+                      std::size_t wheels = kAllWheels);
 bool is_neutral(const EffectUse& use);
 // Parameters as a law takes them: with what it derives from them behind.
 template <typename T>

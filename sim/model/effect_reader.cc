@@ -17,22 +17,30 @@ std::string hint(std::string_view near) {
   return near.empty() ? "" : fmt::format("did you mean \"{}\"?", near);
 }
 
-int find_key(const EffectInfo& info, std::string_view key, bool linear) {
-  for (std::size_t i = 0; i < info.params.size(); ++i) {
-    if (param_key(info.params[i], linear) == key) return static_cast<int>(i);
-  }
-  return -1;
-}
+struct FoundKey {
+  std::size_t row = 0;
+  std::string wrong = "";  // what is wrong with the key; empty: nothing
+  std::string allowed = "";
+};
 
-std::string unknown_param_hint(const EffectInfo& info, std::string_view key, bool linear) {
+FoundKey find_key(const EffectInfo& info, std::string_view key, const EffectContext& context) {
+  const std::span<const EffectParam> rows = rows_of(info, context.wheels);
   std::vector<std::string> keys;
-  for (const EffectParam& row : info.params) keys.push_back(param_key(row, linear));
-  const std::vector<std::string_view> names(keys.begin(), keys.end());
-  const std::string near = hint(nearest_spelling(key, names));
-  if (!near.empty()) return near;
+  for (const EffectParam& row : rows) keys.push_back(param_key(row, context.linear));
+  if (const auto at = std::find(keys.begin(), keys.end(), key); at != keys.end())
+    return {.row = static_cast<std::size_t>(at - keys.begin())};
   std::string allowed;
   for (std::size_t i = 0; i < keys.size() && i < 8; ++i) allowed += (i > 0 ? ", " : "allowed: ") + keys[i];
-  return keys.size() > 8 ? allowed + " …" : allowed;
+  if (keys.size() > 8) allowed += " …";
+  for (const EffectParam& row : info.params.subspan(rows.size())) {
+    if (param_key(row, context.linear) == key)
+      return {.wrong = fmt::format("is of wheel {}, and the robot has {}", row.wheel, context.wheels),
+              .allowed = allowed};
+  }
+  const std::string near =
+      hint(nearest_spelling(key, std::vector<std::string_view>(keys.begin(), keys.end())));
+  return {.wrong = fmt::format("{} has no such parameter", info.id),
+          .allowed = near.empty() ? allowed : near};
 }
 
 std::string unknown_effect_hint(std::string_view id) {
@@ -52,19 +60,18 @@ class SectionReader {
       : document_(document), context_(context), problems_(problems) {}
 
   EffectUse read(const EffectEntry& entry, const toml::table& table) {
-    EffectUse use = neutral_use(entry, context_.drive);
+    EffectUse use = neutral_use(entry, context_.drive, context_.wheels);
     use.tolerances.resize(use.values.size());
     use.notes.resize(use.values.size());
     for (const auto& [key, node] : table) {
       const std::string name(key.str());
       const std::string path = fmt::format("effects.{}.{}", entry.info->id, name);
-      const int index = find_key(*entry.info, name, context_.linear);
-      if (index < 0) {
-        add(key.source(), path, "", fmt::format("{} has no such parameter", entry.info->id),
-            unknown_param_hint(*entry.info, name, context_.linear));
+      const FoundKey found = find_key(*entry.info, name, context_);
+      if (!found.wrong.empty()) {
+        add(key.source(), path, "", found.wrong, found.allowed);
         continue;
       }
-      const auto i = static_cast<std::size_t>(index);
+      const std::size_t i = found.row;
       NumberBelief belief;
       read_value(entry.info->params[i], path, node, use.values[i], belief);
       use.tolerances[i] = belief.tolerance;
@@ -173,7 +180,7 @@ std::string add_override(std::string_view text, const EffectContext& context, st
   }
   auto use = std::find_if(uses.begin(), uses.end(), [&](const EffectUse& u) { return u.entry == entry; });
   if (whole) {
-    EffectUse typical = typical_use(*entry, context.drive);
+    EffectUse typical = typical_use(*entry, context.drive, context.wheels);
     if (use == uses.end()) {
       uses.push_back(std::move(typical));
     } else {
@@ -182,12 +189,9 @@ std::string add_override(std::string_view text, const EffectContext& context, st
     return "";
   }
   const std::string_view key = path.substr(dot + 1);
-  const int index = find_key(*entry->info, key, context.linear);
-  if (index < 0) {
-    return fmt::format("{}: {} has no such parameter; {}", path, id,
-                       unknown_param_hint(*entry->info, key, context.linear));
-  }
-  const EffectParam& row = entry->info->params[static_cast<std::size_t>(index)];
+  const FoundKey found = find_key(*entry->info, key, context);
+  if (!found.wrong.empty()) return fmt::format("{}: {}; {}", path, found.wrong, found.allowed);
+  const EffectParam& row = entry->info->params[found.row];
   const std::string_view number = text.substr(equals + 1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
@@ -198,9 +202,9 @@ std::string add_override(std::string_view text, const EffectContext& context, st
   if (!in_range(row, value, context.linear))
     return fmt::format("{} = {}: is out of range; allowed: {}", path, number,
                        allowed_range(row, context.linear));
-  if (use == uses.end()) use = uses.insert(uses.end(), neutral_use(*entry, context.drive));
-  use->values[static_cast<std::size_t>(index)] = value;
-  if (static_cast<std::size_t>(index) < use->notes.size()) use->notes[static_cast<std::size_t>(index)] = {};
+  if (use == uses.end()) use = uses.insert(uses.end(), neutral_use(*entry, context.drive, context.wheels));
+  use->values[found.row] = value;
+  if (found.row < use->notes.size()) use->notes[found.row] = {};
   return "";
 }
 

@@ -5,8 +5,9 @@
 //   std::string fault = add_override("cogging.amplitude_Nm=0.004", {.drive = &drive}, uses);   // what is wrong, or ""
 //
 // [effects.ID] holds numbers, bare, believed or fitted (fitted_number.h). Strengths that are not given are
-// neutral, shapes start from the motor at hand where they can. A linear axis has _N, _m in place of _Nm, _rad. All
-// problems are reported, each with file, line and column; the effects come in alphabetical order.
+// neutral, shapes start from the motor at hand where they can. A linear axis has _N, _m in place of _Nm, _rad. A number
+// of a wheel that the robot has not is a problem. All problems are reported, each with file, line and column; the effects
+// come in alphabetical order.
 #pragma once
 #include <string>
 #include <string_view>
@@ -21,6 +22,7 @@ namespace omnihil {
 struct EffectContext {
   const DriveParams<double>* drive = nullptr;  // for start values; may be null
   bool linear = false;
+  std::size_t wheels = kAllWheels;  // of the robot
 };
 
 std::vector<EffectUse> read_effects(const ModelDocument& document, const EffectContext& context,

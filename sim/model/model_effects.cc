@@ -23,7 +23,8 @@ std::vector<EffectUse> read_robot_effects(const ModelDocument& document, const M
                                           const RobotModel* robot, std::vector<ModelProblem>& problems) {
   DriveParams<double> drive;
   if (robot != nullptr) drive = wheel_drive_params(*robot);
-  const EffectContext context{.drive = robot != nullptr ? &drive : nullptr, .linear = false};
+  EffectContext context;
+  if (robot != nullptr) context = {.drive = &drive, .linear = false, .wheels = robot->wheels};
   std::vector<ModelProblem> found;
   std::vector<EffectUse> uses;
   for (const ModelDocument* source : {&document, motor}) {

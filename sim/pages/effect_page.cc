@@ -10,6 +10,8 @@
 namespace omnihil {
 namespace {
 
+constexpr std::size_t kUsualWheels = 4;  // of the robot in an example: a choice
+
 std::string rigs_of(const EffectInfo& info) {
   if (info.rigs == kOnBoth) return "axis, robot";
   return info.rigs == kOnAxis ? "axis" : "robot";
@@ -69,6 +71,8 @@ std::string params_of(const EffectInfo& info) {
     out += fmt::format("\nAnd so on up to `{}`, `{}`.\n", info.params[info.params.size() - 2].name,
                        info.params.back().name);
   }
+  if (!info.params.empty() && info.params.back().wheel > 0)
+    out += "\nOf a robot of n wheels the rows of wheels 1 to n; another one in its file is an error.\n";
   return out;
 }
 
@@ -129,7 +133,7 @@ std::string effect_page(const EffectEntry& entry) {
   const std::string claims = claims_of(info);
   if (!claims.empty()) out += "Tested for it:\n\n" + claims + "\n";
   const DriveParams<double> drive = demonstration_drive();
-  const std::vector<EffectUse> uses{typical_use(entry, &drive)};
+  const std::vector<EffectUse> uses{typical_use(entry, &drive, kUsualWheels)};
   const EffectParam& row = info.params[first_strength(info)];
   out +=
       fmt::format("## In a model file\n\n```toml{}```\n\nOn a command line: `--with {}.{}={:g}`\n",

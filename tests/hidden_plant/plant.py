@@ -10,8 +10,8 @@ RAW = ("command", "bus", "current", "angle", "speed", "out_angle", "out_speed", 
 SEEN = ("counts", "bus", "current", "speed", "angle")
 BOT = (
     "bus",
-    *(f"current_{k}" for k in range(1, 5)),
-    *(f"counts_{k}" for k in range(1, 5)),
+    *(f"current_{k}" for k in range(1, 7)),
+    *(f"counts_{k}" for k in range(1, 7)),
     "gyro",
     "ax",
     "ay",
@@ -120,12 +120,16 @@ def raw_columns(raw):
     return Columns.split(raw, RAW)
 
 
+def _row(row):
+    return [*row[:-1], *[0.0] * (7 - len(row)), row[-1]]
+
+
 def run_robot(params, asked, change=None):
-    """`asked`: rows of four duties and the dribbler's speed. Returns the columns of BOT; NaN where a camera cell is empty.
+    """`asked`: rows of a duty for each wheel (at least four numbers) and the dribbler's speed. Returns the columns of BOT; NaN where a camera cell is empty.
 
     `change`: (row, parameters) from which on it is another robot in the same state."""
     n = len(asked)
-    flat, out = array.array("d", [x for row in asked for x in row]), _doubles(n * len(BOT))
+    flat, out = array.array("d", [x for row in asked for x in _row(row)]), _doubles(n * len(BOT))
     row, then = (change[0], ROBOT.pack(change[1])) if change else (0, None)
     if _lib.robot_run_changed(ROBOT.pack(params), then, row, _pointer(flat), n, _pointer(out)):
         raise ArithmeticError("the hidden robot stopped being finite")

@@ -216,13 +216,14 @@ def asked_of(rng, kind, robot, rows=ROWS):
 def record(robot, params, asked, seed):
     c = plant.run_robot({**params, "seed": seed % 100000}, asked)
     out = {"time_s": [round(k * DT, 6) for k in range(len(asked))]}
-    for k in range(4):
+    wheels = len(asked[0]) - 1
+    for k in range(wheels):
         out[f"duty_{k + 1}"] = [row[k] for row in asked]
     if robot.sensors["dribbler"]:
-        out["dribbler_rad_s"] = [row[4] for row in asked]
+        out["dribbler_rad_s"] = [row[-1] for row in asked]
     if robot.sensors["bus"]:
         out["bus_V"] = list(c["bus"])
-    for k in range(1, 5):
+    for k in range(1, wheels + 1):
         out[f"current_{k}"] = list(c[f"current_{k}"])
         out[f"ticks_{k}"] = list(c[f"counts_{k}"])
     out["gyro_z"] = list(c["gyro"])
@@ -233,18 +234,18 @@ def record(robot, params, asked, seed):
     return out
 
 
-def channels_of(robot):
+def channels_of(robot, wheels=4):
     t = robot.true
     sigma = (lambda x: {"sigma": f"{x:.3g}"}) if robot.sensors["sigma"] else (lambda x: {})
     out = {"time": {"column": '"time_s"'}}
-    out.update({f"duty_{k}": {"column": f'"duty_{k}"'} for k in range(1, 5)})
+    out.update({f"duty_{k}": {"column": f'"duty_{k}"'} for k in range(1, wheels + 1)})
     if robot.sensors["dribbler"]:
         out["dribbler"] = {"column": '"dribbler_rad_s"'}
     if robot.sensors["bus"]:
         out["bus_voltage"] = {"column": '"bus_V"', **sigma(0.02)}
-    for k in range(1, 5):
+    for k in range(1, wheels + 1):
         out[f"motor_current_{k}"] = {"column": f'"current_{k}"', **sigma(t["current_noise_A"])}
-    for k in range(1, 5):
+    for k in range(1, wheels + 1):
         out[f"encoder_{k}"] = {
             "column": f'"ticks_{k}"',
             "counts_per_rev": f'{t["encoder_cpr"]:.0f}',

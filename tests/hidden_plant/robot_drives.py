@@ -93,14 +93,14 @@ POOL = {f.__name__: f for f in (random_drive, directions, hard_starts, crawl, mi
 PLAIN = {name: f.__doc__.rstrip(".").split(",")[0].lower() for name, f in POOL.items()}
 
 
-def duties(twists, believed):
+def duties(twists, believed, angles=ANGLES):
     """Open loop: the duty that would hold each wheel's speed without load, by what the owner believes, and a bit for friction."""
     k, volt, gear, r, base = (believed[x] for x in ("flux_Vs", "supply_V", "gear", "wheel_m", "base_m"))
     lift = believed["dry_Nm"] / believed["flux_Vs"] * believed["resistance_ohm"] / volt
     out = []
     for vx, vy, w in twists:
         row = []
-        for a in ANGLES:
+        for a in angles:
             a = math.radians(a)
             rim = -math.sin(a) * vx + math.cos(a) * vy + base * w
             row.append(round(rim / r * gear * k / volt + lift * math.tanh(rim / 0.02), 6))

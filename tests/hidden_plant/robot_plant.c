@@ -1,4 +1,4 @@
-// The hidden robot: four omni wheels on the floor.
+// The hidden robot: omni wheels on the floor, four unless `wheels` says two to six.
 //
 // Written in the field's frame, with momentum of the centre of mass. Time stepping after Moreau: windings and
 // forces first, then each wheel's speed with the impulse of dry friction that is at most what friction can
@@ -15,11 +15,11 @@
 typedef struct {
   const RobotParams *p;
   double x, y, turn, vx, vy, w;    // centre of mass in the field; body's angle and turning speed
-  double rim[4], phi[4], amps[4];  // wheels' turning speed and angle, windings' currents
-  double sin_a[4], cos_a[4], radius[4], flux[4];
-  double push[4], rub[4], counts[4];
-  int dead[4];
-  double load[4], inverse[3][3];  // wheel loads; inverse of the load's equations
+  double rim[6], phi[6], amps[6];  // wheels' turning speed and angle, windings' currents
+  double sin_a[6], cos_a[6], radius[6], flux[6];
+  double push[6], rub[6], counts[6];
+  int wheels, dead[6];
+  double load[6], inverse[3][3];  // wheel loads; inverse of the load's equations
   double mass, yaw, keep[2];  // keep: share of a winding's current left after a step, contact closed and open
   double bus, rc_V;
   double ax, ay;  // specific force at the geometric centre, body frame
@@ -49,14 +49,15 @@ static double brush(double x, double peak) {
 
 static void prepare(Robot *r) {
   const RobotParams *p = r->p;
-  const double angle[4] = {p->angle_1, p->angle_2, p->angle_3, p->angle_4};
-  const double radius[4] = {p->radius_1, p->radius_2, p->radius_3, p->radius_4};
-  const double flux[4] = {p->flux_1, p->flux_2, p->flux_3, p->flux_4};
-  const double push[4] = {p->push_1, p->push_2, p->push_3, p->push_4};
-  const double rub[4] = {p->rub_1_Nm, p->rub_2_Nm, p->rub_3_Nm, p->rub_4_Nm};
-  const double dead[4] = {p->dead_1, p->dead_2, p->dead_3, p->dead_4};
+  const double angle[6] = {p->angle_1, p->angle_2, p->angle_3, p->angle_4, p->angle_5, p->angle_6};
+  const double radius[6] = {p->radius_1, p->radius_2, p->radius_3, p->radius_4, p->radius_5, p->radius_6};
+  const double flux[6] = {p->flux_1, p->flux_2, p->flux_3, p->flux_4, p->flux_5, p->flux_6};
+  const double push[6] = {p->push_1, p->push_2, p->push_3, p->push_4, 1, 1};
+  const double rub[6] = {p->rub_1_Nm, p->rub_2_Nm, p->rub_3_Nm, p->rub_4_Nm, 0, 0};
+  const double dead[6] = {p->dead_1, p->dead_2, p->dead_3, p->dead_4, 0, 0};
   double m[3][3] = {{0}};
-  for (int k = 0; k < 4; k++) {
+  r->wheels = (int)p->wheels;
+  for (int k = 0; k < r->wheels; k++) {
     const double a = angle[k] * M_PI / 180;
     r->sin_a[k] = sin(a);
     r->cos_a[k] = cos(a);
@@ -64,6 +65,12 @@ static void prepare(Robot *r) {
     r->flux[k] = p->flux_Vs * flux[k];
     r->push[k] = push[k], r->rub[k] = rub[k], r->dead[k] = dead[k] != 0;
     const double row[3] = {1, p->base_m * r->cos_a[k], p->base_m * r->sin_a[k]};
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) m[i][j] += row[i] * row[j];
+  }
+  // Two wheels on one axle hold no moment about it: a caster without load does, as if it stood ahead of them.
+  if (r->wheels == 2) {
+    const double row[3] = {0, -p->base_m * r->sin_a[0], p->base_m * r->cos_a[0]};
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) m[i][j] += row[i] * row[j];
   }
@@ -93,7 +100,7 @@ static void share_load(Robot *r, double fx, double fy) {
   double plane[3];
   for (int i = 0; i < 3; i++)
     plane[i] = r->inverse[i][0] * right[0] + r->inverse[i][1] * right[1] + r->inverse[i][2] * right[2];
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < r->wheels; k++)
     r->load[k] = largest(0, plane[0] + p->base_m * (plane[1] * r->cos_a[k] + plane[2] * r->sin_a[k]));
 }
 
@@ -132,7 +139,7 @@ static void step(Robot *r, const double *duty, double dribbler, double h) {
                by = -s * r->vx + c * r->vy - r->w * p->offset_x_m;
   double fx = 0, fy = 0, moment = 0, bus_A = 0;
   const double wheel_kgm2 = p->wheel_kgm2 + p->gear * p->gear * p->rotor_kgm2;
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < r->wheels; k++) {
     const double along = -r->sin_a[k] * bx + r->cos_a[k] * by + p->base_m * r->w;
     const double across = r->cos_a[k] * bx + r->sin_a[k] * by;
     const double rim = r->radius[k] * r->rim[k], load = r->load[k];
@@ -201,7 +208,7 @@ static void centre_of(const Robot *r, double *pose) {  // pose of the geometric 
 static void write_row(Robot *r, const double *charge, double *row) {
   const RobotParams *p = r->p;
   row[BOT_BUS] = r->bus + p->bus_noise_V * gauss(&r->noise);
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < r->wheels; k++) {
     row[BOT_CURRENT + k] =
         round((charge[k] / p->sample_s + p->current_noise_A * gauss(&r->noise)) / 0.01) * 0.01;
     if (!r->dead[k]) r->counts[k] = floor(r->phi[k] * p->gear * p->encoder_cpr / (2 * M_PI));
@@ -231,7 +238,7 @@ static void add_camera(Robot *r, int n, double *out) {
   }
 }
 
-// Runs n samples. `asked`: n x 5, four duties (or vx, vy, w and nothing) and the dribbler's speed. `out`: n x BOT_COLUMNS. 1 when not
+// Runs n samples. `asked`: n x 7, six duties (or vx, vy, w and nothing) and the dribbler's speed. `out`: n x BOT_COLUMNS. 1 when not
 // finite.
 // From row `change` on it is the robot of `q` (null: never).
 int robot_run_changed(const RobotParams *p, const RobotParams *q, int change, const double *asked, int n,
@@ -240,10 +247,10 @@ int robot_run_changed(const RobotParams *p, const RobotParams *q, int change, co
   prepare(&r);
   share_load(&r, 0, 0);
   const int substeps = (int)lround(p->sample_s / p->step_s);
-  double charge[4] = {0};
+  double charge[6] = {0};
   r.x = p->offset_x_m, r.y = p->offset_y_m;
   r.contact_next_s = p->contact_s;
-  double sag = 0, duty[4] = {0};
+  double sag = 0, duty[6] = {0};
   Firmware firmware;
   memset(&firmware, 0, sizeof firmware);
   for (int k = 0; k < n; k++) {
@@ -262,7 +269,7 @@ int robot_run_changed(const RobotParams *p, const RobotParams *q, int change, co
     if (p->radio) {
       const double none[3] = {0};
       const int heard = (int)floor(k - p->late_radio_s / p->sample_s + 1e-9);
-      firmware_tick(&firmware, p, heard < 0 ? none : asked + 5 * heard, out + k * BOT_COLUMNS + BOT_COUNTS,
+      firmware_tick(&firmware, p, heard < 0 ? none : asked + BOT_ASKED * heard, out + k * BOT_COLUMNS + BOT_COUNTS,
                     r.bus, duty);
       for (int i = 0; i < 4; i++) out[k * BOT_COLUMNS + BOT_SPEED + i] = firmware.speed[i] / p->gear;
     }
@@ -270,13 +277,13 @@ int robot_run_changed(const RobotParams *p, const RobotParams *q, int change, co
     for (int j = 0; j < substeps; j++) {
       const double h = p->step_s, late = (t + (j + 0.5) * h - p->late_command_s) / p->sample_s;
       const int row = late < 0 ? -1 : (int)floor(late + 1e-9);
-      const double still[5] = {0}, *ask = row < 0 ? still : asked + 5 * row;
-      double before[4];
+      const double still[BOT_ASKED] = {0}, *ask = row < 0 ? still : asked + BOT_ASKED * row;
+      double before[6];
       memcpy(before, r.amps, sizeof before);
       r.bus = source + sag;
-      step(&r, p->radio ? duty : ask, ask[4], h);
+      step(&r, p->radio ? duty : ask, ask[BOT_ASKED - 1], h);
       sag = r.bus;
-      for (int i = 0; i < 4; i++) charge[i] += 0.5 * h * (before[i] + r.amps[i]);
+      for (int i = 0; i < r.wheels; i++) charge[i] += 0.5 * h * (before[i] + r.amps[i]);
     }
     if (!isfinite(r.vx + r.rim[0] + r.amps[0])) return 1;
   }
@@ -293,7 +300,7 @@ typedef struct {
   RobotParams p;
   Robot r;
   Firmware firmware;
-  double charge[4], duty[4], sag;
+  double charge[6], duty[6], sag;
 } Live;
 
 void *robot_open(const RobotParams *p) {
@@ -327,12 +334,12 @@ int robot_row(void *live, const double *heard, double *out) {
   memset(l->charge, 0, sizeof l->charge);
   const int substeps = (int)lround(p->sample_s / p->step_s);
   for (int j = 0; j < substeps; j++) {
-    double before[4];
+    double before[6];
     memcpy(before, r->amps, sizeof before);
     r->bus = p->supply_V + l->sag;
     step(r, l->duty, 0, p->step_s);
     l->sag = r->bus;
-    for (int i = 0; i < 4; i++) l->charge[i] += 0.5 * p->step_s * (before[i] + r->amps[i]);
+    for (int i = 0; i < r->wheels; i++) l->charge[i] += 0.5 * p->step_s * (before[i] + r->amps[i]);
   }
   return !isfinite(r->vx + r->rim[0] + r->amps[0]);
 }

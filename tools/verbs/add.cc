@@ -44,7 +44,8 @@ EffectUse use_of(const Arguments& a, const Candidate& nominal) {
   }
   const DriveParams<double> drive = drive_of(nominal);
   std::vector<EffectUse> uses;
-  const std::string fault = add_override(a.effect, {.drive = &drive, .linear = nominal.file.linear}, uses);
+  const EffectContext context{.drive = &drive, .linear = nominal.file.linear, .wheels = wheels_of(nominal)};
+  const std::string fault = add_override(a.effect, context, uses);
   if (!fault.empty()) std::fprintf(stderr, "omnihil add: %s\n", fault.c_str());
   return uses.empty() ? EffectUse{} : uses.front();
 }

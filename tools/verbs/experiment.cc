@@ -105,7 +105,8 @@ Rival rival_of(const std::string& name, const Candidate& nominal, const Predicto
   if (name != kBase && !has) plain = with_effect(nominal, *find_effect(name));
   Candidate typical = plain;
   const DriveParams<double> drive = drive_of(nominal);
-  if (name != kBase && !has) typical.effects.back() = typical_use(*find_effect(name), &drive);
+  if (name != kBase && !has)
+    typical.effects.back() = typical_use(*find_effect(name), &drive, wheels_of(nominal));
   if (predictor == nullptr) return {name, typical};
   std::optional<FitResult> best;
   for (const Candidate& start : {plain, typical}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "identify/estimate/fit.h"
+#include "sim/law/effect_registry.h"
 #include "tests/identify/simulated_robot.h"
 
 namespace omnihil::test {
@@ -99,6 +100,29 @@ TEST(WheelNumber, DerivativesAreExact) {
     }
     EXPECT_GT(size, 0.0) << w.count;
     EXPECT_LT(std::sqrt(error), 0.01 * std::sqrt(size)) << w.count;
+  }
+}
+
+// As many unknowns as there are wheels, and the fit of them finds the one that differs.
+TEST(WheelNumber, OneWheelThatIsNotLikeTheOthersIsFound) {
+  for (const Wheels& w : kWheelNumbers) {
+    for (const auto& [id, ratio] :
+         {std::pair{"motor_mismatch", 0.93}, std::pair{"wheel_radius_mismatch", 0.985}}) {
+      const Candidate nominal = candidate_with(w), with = with_effect(nominal, *find_effect(id));
+      const std::string which = std::string(id) + ".ratio_" + std::to_string(w.count);
+      Candidate truth = with;
+      ASSERT_EQ(set_value(truth, which, ratio), "");
+      EXPECT_NE(set_value(truth, std::string(id) + ".ratio_" + std::to_string(w.count + 1), ratio), "")
+          << w.count;
+      std::vector<Unknown> unknowns = unknowns_of(with);
+      std::erase_if(unknowns, [&](const Unknown& u) { return !u.path.starts_with(id); });
+      ASSERT_EQ(unknowns.size(), static_cast<std::size_t>(w.count));
+      const auto measured = make_predictor(blank_with(w, 4.0), nominal, {})->simulated(truth, 7);
+      const FitResult result = fit(*measured, with, unknowns, {});
+      for (const ParameterEstimate& p : result.parameters)
+        EXPECT_NEAR(p.value, p.path == which ? ratio : 1.0, 4.0 * p.sigma) << p.path << " of " << w.count;
+      EXPECT_NEAR(*value_at(result.model, which), ratio, 0.2 * (1.0 - ratio)) << w.count;
+    }
   }
 }
 

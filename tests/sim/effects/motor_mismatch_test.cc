@@ -14,6 +14,30 @@ TEST(MotorMismatch, ScalesTorqueAndBackEmfOfItsWheelAlike) {
   EXPECT_EQ(out.torque_constant_Nm_per_A, out.back_emf_V_s_per_rad) << "energy is kept";
 }
 
+// What a robot of fewer wheels lacks is as the model has it: four numbers and six of which two are neutral are one law.
+TEST(MotorMismatch, HasARowForEachWheelThatARobotMayHave) {
+  for (const char* id : {"motor_mismatch", "wheel_radius_mismatch"}) {
+    const EffectInfo& info = *find_effect(id)->info;
+    ASSERT_EQ(info.params.size(), kMaxWheels) << id;
+    for (std::size_t i = 0; i < kMaxWheels; ++i) EXPECT_EQ(info.params[i].wheel, static_cast<int>(i) + 1);
+    for (std::size_t wheels = kMinWheels; wheels <= kMaxWheels; ++wheels)
+      EXPECT_EQ(neutral_use(*find_effect(id), nullptr, wheels).values.size(), wheels);
+    EffectUse four = neutral_use(*find_effect(id), nullptr, 4), six = neutral_use(*find_effect(id));
+    four.values = {1.1, 0.9, 1.05, 0.97};
+    six.values = {1.1, 0.9, 1.05, 0.97, 1.0, 1.0};
+    const EffectSet<double> of_four(std::vector{four}), of_six(std::vector{six});
+    EXPECT_EQ(std::vector(of_four.values(), of_four.values() + 6),
+              std::vector(of_six.values(), of_six.values() + 6));
+  }
+}
+
+TEST(MotorMismatch, ReachesTheSixthWheel) {
+  WindingPort<double> port;
+  port.wheel = 5;
+  port.torque_constant_Nm_per_A = 0.025;
+  EXPECT_DOUBLE_EQ(called("motor_mismatch", {1, 1, 1, 1, 1, 0.9}, port).torque_constant_Nm_per_A, 0.0225);
+}
+
 // Signature: the same duty turns the robot; swapped left to right, it turns the other way.
 TEST(MotorMismatch, ShowsAsYawDriftThatFollowsTheMotor) {
   const RobotModel m = symmetric_robot();  // wheels 1 and 2 on the left, 3 and 4 mirror them

@@ -10,6 +10,7 @@
 #include "sim/law/effect_registry.h"
 #include "sim/law/effect_set.h"
 #include "sim/law/random.h"
+#include "sim/robot/per_wheel.h"
 
 namespace omnihil::test {
 
@@ -78,7 +79,7 @@ void fill(WindingPort<T>& p, const Draw& draw, double sign, CommandHistory&) {
   p.theta_rotor_rad = T(draw(-10, 10));
   p.heat_W = T(draw(0, 30));
   p.pole_pairs = 8;
-  p.wheel = static_cast<int>(draw(0, 4));
+  p.wheel = static_cast<int>(draw(0, kMaxWheels));
   p.dt_s = 5e-5;
   p.resistance_ohm = T(draw(0.3, 2));
   p.inductance_H = T(draw(1e-4, 1e-3));
@@ -128,7 +129,7 @@ std::vector<Changed<T>> changes(const ShaftPort<T>& p) {
 
 template <typename T>
 void fill(ContactPort<T>& p, const Draw& draw, double sign, CommandHistory&) {
-  p.wheel = static_cast<int>(draw(0, 4));
+  p.wheel = static_cast<int>(draw(0, kMaxWheels));
   p.wheel_radius_m = T(draw(0.02, 0.04));
   p.omega_wheel_rad_s = T(sign * draw(-100, 100));
   p.theta_wheel_rad = T(draw(-10, 10));

@@ -94,6 +94,50 @@ TEST(EffectReader, RefusesOverridesWithAReason) {
   EXPECT_TRUE(uses.empty());
 }
 
+constexpr const char* kKiwi = R"(
+format = "omnihil-model/1"
+rig = "robot"
+[motor]
+resistance_ohm = 0.464
+inductance_H = 0.0003
+torque_constant_Nm_per_A = 0.0335
+rotor_inertia_kg_m2 = 1.35e-5
+[gear]
+ratio = 3.0
+[supply]
+voltage_V = 22.2
+[robot]
+mass_kg = 2.4
+yaw_inertia_kg_m2 = 0.012
+center_of_mass_height_m = 0.045
+wheel_center_radius_m = 0.0805
+wheel_radius_m = 0.027
+wheel_inertia_kg_m2 = 2.2e-5
+wheel_angle_deg = [150, 270, 30]
+[effects.motor_mismatch]
+ratio_1 = 0.93
+)";
+
+TEST(EffectReader, RefusesANumberOfAWheelThatTheRobotLacks) {
+  const ModelReading good = read_model(kKiwi, "kiwi.toml", nullptr);
+  for (const ModelProblem& p : good.problems) ADD_FAILURE() << p.text();
+  ASSERT_TRUE(good.model);
+  EXPECT_EQ(good.model->robot->effects->front().values, (std::vector{0.93, 1.0, 1.0}));
+  EXPECT_EQ(write_effects(*good.model->robot->effects, false),
+            "\n[effects.motor_mismatch]\nratio_1 = 0.93\nratio_2 = 1\nratio_3 = 1\n");
+
+  const ModelReading bad = read_model(std::string(kKiwi) + "ratio_4 = 1.1\n", "kiwi.toml", nullptr);
+  ASSERT_EQ(bad.problems.size(), 1u);
+  EXPECT_EQ(bad.problems[0].text(),
+            "kiwi.toml:23:1: effects.motor_mismatch.ratio_4: is of wheel 4, and the robot has 3; "
+            "allowed: ratio_1, ratio_2, ratio_3");
+  std::vector<EffectUse> uses;
+  const std::string fault = add_override("motor_mismatch.ratio_4=1.1", {.wheels = 3}, uses);
+  EXPECT_NE(fault.find("is of wheel 4, and the robot has 3"), std::string::npos) << fault;
+  EXPECT_EQ(add_override("wheel_radius_mismatch", {.wheels = 3}, uses), "");
+  EXPECT_EQ(uses.at(0).values.size(), 3u);
+}
+
 TEST(EffectReader, ReadsBackWhatItWrites) {
   std::vector<EffectUse> uses{use_of("cogging", {0.0031, 48, 0.1}), use_of("dead_time", {0.1 + 0.2, 0.2})};
   const AxisReading r = read(write_effects(uses, false));
