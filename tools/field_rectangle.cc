@@ -9,6 +9,7 @@
 #include "hil/dataset/dataset_reader.h"
 #include "hil/field_play/path_test.h"
 #include "hil/text/dataset_files.h"
+#include "identify/record/rig.h"
 #include "sim/model/params.h"
 #include "tools/exit_codes.h"
 #include "tools/field_verbs.h"
@@ -26,7 +27,7 @@ int run_rectangle(const RectangleArguments& a) {
   for (const ModelProblem& p : reading.problems)
     fmt::print(stderr, "omnihil field rectangle: {}\n", p.text());
   if (!reading.dataset) return kExitBadInput;
-  if (reading.dataset->rig != Rig::kRobot) {
+  if (!reading.dataset->rig->whole_robot) {
     fmt::print(stderr, "omnihil field rectangle: needs a dataset of rig \"robot\"\n");
     return kExitBadInput;
   }

@@ -98,6 +98,11 @@ KINDS = {
         "into": [("docs/motor-buses.md", "bus.md.in", before("## What is tested"))],
         "then": ["test_firmware_iface_motor_bus sends it frames at random, too"],
     },
+    "rig": {
+        "files": {"rig.cc.in": "identify/rigs/@name@.cc", "rig_test.cc.in": "tests/identify/rigs/@name@_test.cc"},
+        "into": [("docs/rigs.md", "rig.md.in", end_of_table("## The rigs that come with the program"))],
+        "then": ["docs/rigs.md says what the table's words mean"],
+    },
     "chip": {
         "files": {"chip.cc.in": "firmware_iface/mcu/stm32/chips/@name@.cc",
                   "chip_test.cc.in": "tests/firmware_iface/mcu/@name@_test.cc"},

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "hil/text/toml_keys.h"
-#include "identify/record/signal_list.h"
+#include "identify/record/rig.h"
 
 namespace omnihil {
 namespace {
@@ -59,9 +59,11 @@ class PlanReader {
     keys_.word(top, "", "format", kFormats, 0);
     if (top.get("format") == nullptr) keys_.missing(top, "", "format", "format = \"omnihil-dataset/1\"");
     plan_.dataset.title = keys_.text(top, "", "title").value_or("");
-    if (top.get("rig") == nullptr) keys_.missing(top, "", "rig", "rig = \"axis\", \"robot\" or \"wheel\"");
-    if (const auto rig = keys_.word(top, "", "rig", kRigNames, std::nullopt)) {
-      plan_.dataset.rig = static_cast<Rig>(*rig);
+    if (top.get("rig") == nullptr) keys_.missing(top, "", "rig", "rig = " + rig_choice());
+    std::vector<std::string_view> rigs;
+    for (const Rig* rig : all_rigs()) rigs.push_back(rig->name);
+    if (const auto rig = keys_.word(top, "", "rig", rigs, std::nullopt)) {
+      plan_.dataset.rig = all_rigs()[*rig];
       plan_.rig_known = true;
     }
     plan_.model = keys_.text(top, "", "model").value_or("");
@@ -77,11 +79,11 @@ class PlanReader {
   void read_channel(const toml::key& key, const toml::node& node) {
     const std::string name(key.str());
     const std::string path = "channels." + name;
-    const SignalRow* row = find_signal(plan_.dataset.rig, name);
+    const SignalRow* row = find_signal(*plan_.dataset.rig, name);
     if (row == nullptr && plan_.rig_known) {
-      const auto names = signal_names(plan_.dataset.rig);
+      const auto names = signal_names(*plan_.dataset.rig);
       keys_.wrong_key(key, path,
-                      fmt::format("there is no such signal on rig \"{}\"", rig_name(plan_.dataset.rig)),
+                      fmt::format("there is no such signal on rig \"{}\"", plan_.dataset.rig->name),
                       spelling_hint(name, names));
     }
     if (!node.is_table()) {
@@ -136,7 +138,7 @@ class PlanReader {
                                            "allowed: more than 0 up to 1e9, counts after quadrature")
                                    .value_or(1.0);
       static constexpr std::string_view kShafts[] = {"rotor", "output"};
-      const std::size_t shafts = row.rig == Rig::kRobot ? 1 : 2;
+      const std::size_t shafts = plan_.dataset.rig->whole_robot ? 1 : 2;
       channel.on_output =
           keys_.word(table, path, "shaft", std::span(kShafts).first(shafts), 0).value_or(0) == 1;
     } else {
@@ -149,10 +151,8 @@ class PlanReader {
     channel.unit = keys_.text(table, path, "unit").value_or("");  // held against the signal's own later
     static constexpr std::string_view kRoles[] = {"measured", "imposed"};
     channel.imposed = keys_.word(table, path, "role", kRoles, 0).value_or(0) == 1;
-    const bool can = row.rig == Rig::kAxis && (row.name == "velocity" || row.name == "position" ||
-                                               row.name == "motor_current" || row.role == SignalRole::kDrive);
-    channel.imposed = channel.imposed || is_always_imposed(row);
-    if (channel.imposed && !can && !is_always_imposed(row)) {
+    if (row.imposed == Imposed::kAlways) channel.imposed = true;
+    if (channel.imposed && row.imposed == Imposed::kNever) {
       keys_.wrong(*table.get("role"), path + ".role", "a bench cannot impose this signal",
                   "allowed: velocity, position or motor_current of rig \"axis\"");
     }

@@ -11,7 +11,7 @@
 #include "hil/text/text_file.h"
 #include "hil/text/toml_keys.h"
 #include "identify/predict/torque_scale.h"
-#include "identify/record/signal_list.h"
+#include "identify/record/rig.h"
 #include "sim/model/axis_model.h"
 #include "sim/model/model_rows.h"
 #include "sim/model/rolling_model.h"
@@ -87,17 +87,17 @@ class DatasetReader {
     for (ModelProblem& p : reading.problems) out_.problems.push_back(std::move(p));
     if (!reading.candidate) return;
     const bool robot = reading.candidate->file.rig == "robot";
-    if (robot == (plan_.dataset.rig == Rig::kAxis)) {
+    if (robot != plan_.dataset.rig->of_robot) {
       problem(plan_.model_at, "model", fmt::format("\"{}\"", model_file_),
               fmt::format("is a model of rig \"{}\"", reading.candidate->file.rig),
-              fmt::format("the dataset's rig is \"{}\"", rig_name(plan_.dataset.rig)));
+              fmt::format("the dataset's rig is \"{}\"", plan_.dataset.rig->name));
       return;
     }
     out_.nominal = std::move(reading.candidate);
   }
 
   std::uint32_t rig_bit() const {
-    if (dataset_.rig != Rig::kAxis) return kRigRobot;
+    if (dataset_.rig->of_robot) return kRigRobot;
     return dataset_.linear ? kRigLinearAxis : kRigAxis;
   }
 
@@ -143,7 +143,7 @@ class DatasetReader {
 
   void settle_units() {
     for (Channel& channel : dataset_.channels) {
-      const SignalRow& row = *find_signal(dataset_.rig, channel.signal);
+      const SignalRow& row = *find_signal(*dataset_.rig, channel.signal);
       const std::string_view unit = signal_unit(row, dataset_.linear);
       const TextPlace at{channel.line, 1};
       if (unit.empty()) {
@@ -164,7 +164,7 @@ class DatasetReader {
       const Run& run = dataset_.runs[r];
       bool motion = false, compared = false;
       for (const auto& [name, values] : run.signals) {
-        const SignalRow& row = *find_signal(dataset_.rig, name);
+        const SignalRow& row = *find_signal(*dataset_.rig, name);
         const bool moves = row.role == SignalRole::kMotion || row.role == SignalRole::kCounts;
         motion = motion || moves;
         compared = compared || ((moves || name == "load_torque") && !dataset_.channel(name)->imposed);
@@ -172,11 +172,7 @@ class DatasetReader {
       const TextPlace at = plan_.runs[r].at;
       if (!motion && !run.steady) {
         problem(at, "runs", fmt::format("\"{}\"", run.file), "has no motion signal",
-                dataset_.rig == Rig::kAxis ? "one of encoder, position, velocity is needed"
-                : dataset_.rig == Rig::kWheel
-                    ? "encoder or wheel_speed is needed"
-                    : "encoder_1 to encoder_4, wheel_speed_1 to wheel_speed_4, gyro_z "
-                      "or vision_x, vision_y, vision_theta");
+                std::string(dataset_.rig->motion_needed));
       } else if (!compared && !run.steady) {
         problem(at, "runs", fmt::format("\"{}\"", run.file), "leaves nothing to compare",
                 "where the speed is imposed, load_torque must be measured");
@@ -210,7 +206,7 @@ class DatasetReader {
   }
 
   bool by_radio() const {
-    return dataset_.rig == Rig::kRobot &&
+    return dataset_.rig->whole_robot &&
            std::any_of(dataset_.runs.begin(), dataset_.runs.end(),
                        [](const Run& run) { return run.signal("duty_1") == nullptr; });
   }
@@ -265,15 +261,15 @@ class DatasetReader {
 
   // What the drive input needs of the model.
   void check_model() {
-    if (dataset_.rig == Rig::kRobot) return check_robot_drive();
-    if (dataset_.rig == Rig::kWheel) {
+    if (dataset_.rig->whole_robot) return check_robot_drive();
+    for (const GivenSignal& given : dataset_.rig->given) {
       for (std::size_t r = 0; r < dataset_.runs.size(); ++r) {
-        if (dataset_.runs[r].signal("body_vx") == nullptr)
-          problem(plan_.runs[r].at, "runs", fmt::format("\"{}\"", dataset_.runs[r].file), "has no body_vx",
-                  "the velocity that the bench gave the wheel's body, 0 where it stood");
+        if (dataset_.runs[r].signal(given.signal) == nullptr)
+          problem(plan_.runs[r].at, "runs", fmt::format("\"{}\"", dataset_.runs[r].file),
+                  fmt::format("has no {}", given.signal), std::string(given.what));
       }
-      return;
     }
+    if (dataset_.rig->of_robot) return;
     const ParameterTable& table = out_.nominal->file.parameters;
     const auto has = [&](const char* path) { return table.value_or(path, 0.0) > 0.0; };
     const bool constant = has("motor.torque_constant_Nm_per_A") || has("motor.torque_constant_N_per_A");

@@ -10,7 +10,7 @@
 #include "hil/dataset/dataset_notes.h"
 #include "hil/text/csv_table.h"
 #include "hil/text/toml_keys.h"
-#include "identify/record/signal_list.h"
+#include "identify/record/rig.h"
 #include "sim/model/rolling_model.h"
 
 namespace omnihil {
@@ -111,7 +111,7 @@ class RunsReader {
 
   void note_values(const Channel& channel, const std::vector<double>& values, std::size_t measured,
                    const CsvTable& table, const std::string& path, const Run& run) {
-    const SignalRow* row = find_signal(dataset_.rig, channel.signal);
+    const SignalRow* row = find_signal(*dataset_.rig, channel.signal);
     if (row->role == SignalRole::kFlag) {
       const auto bad = std::find_if(values.begin(), values.end(),
                                     [](double v) { return !std::isnan(v) && v != 0.0 && v != 1.0; });
@@ -168,7 +168,7 @@ class RunsReader {
     std::string_view chosen;
     std::vector<std::string> incomplete;
     for (const Channel& channel : dataset_.channels) {
-      const SignalRow* row = find_signal(dataset_.rig, channel.signal);
+      const SignalRow* row = find_signal(*dataset_.rig, channel.signal);
       const bool current = channel.signal == "motor_current" && channel.imposed;
       if ((row->role != SignalRole::kDrive && !current) || run.signal(channel.signal) == nullptr) continue;
       const std::string_view group = current ? channel.signal : row->drive_group;
@@ -194,17 +194,12 @@ class RunsReader {
                          .key = "runs",
                          .value = "",
                          .what = std::move(what),
-                         .allowed = dataset_.rig == Rig::kWheel ? "duty is needed"
-                                    : dataset_.rig == Rig::kAxis
-                                        ? "one of duty, motor_voltage, motor_torque, position_target, or "
-                                          "motor_current with role = \"imposed\" is needed"
-                                        : "duty_1 to duty_4, or command_vx, command_vy and command_w, or "
-                                          "command_wheel_1 to command_wheel_4 are needed (one per wheel)"});
+                         .allowed = std::string(dataset_.rig->drive_needed)});
   }
 
   std::vector<std::string_view> group_of(std::string_view group) const {
     if (group == "motor_current") return {group};
-    std::vector<std::string_view> names = drive_group_signals(dataset_.rig, group);
+    std::vector<std::string_view> names = drive_group_signals(*dataset_.rig, group);
     // Of signals per wheel, up to the last that the dataset has: how many wheels there are is the model's to say.
     const auto wanted = [&](std::string_view name) { return dataset_.channel(name) != nullptr; };
     while (names.size() > kMinWheels && names.back().back() > '0' + static_cast<int>(kMinWheels) &&

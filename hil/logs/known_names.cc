@@ -5,6 +5,8 @@
 #include <iterator>
 #include <span>
 
+#include "identify/record/rig.h"
+
 namespace omnihil {
 namespace {
 
@@ -246,9 +248,9 @@ const KnownName* known_name(LogFormat format, std::string_view column) {
   return nullptr;
 }
 
-std::vector<std::string> ambiguous_signals(std::string_view name, Rig rig) {
+std::vector<std::string> ambiguous_signals(std::string_view name, const Rig& rig) {
   std::vector<std::string> out;
-  if (rig != Rig::kAxis || of_supply(name)) return out;
+  if (rig.of_robot || of_supply(name)) return out;
   const std::string word = plain(last_word(name));
   for (const Ambiguous& a : kAmbiguous) {
     if (a.name != word) continue;
@@ -258,12 +260,12 @@ std::vector<std::string> ambiguous_signals(std::string_view name, Rig rig) {
   return out;
 }
 
-std::string usual_signal(std::string_view name, Rig rig) {
+std::string usual_signal(std::string_view name, const Rig& rig) {
   const std::string word = plain(last_word(name));
   if (of_supply(name))
     return word == "voltage" || word == "volts" || word.starts_with("voltage") ? "bus_voltage" : "";
   if (const std::string_view any = look_up(kAnyRig, word); !any.empty()) return std::string(any);
-  if (rig == Rig::kAxis) return std::string(look_up(kOfAxis, word));
+  if (!rig.of_robot) return std::string(look_up(kOfAxis, word));
   if (const std::string_view whole = look_up(kOfRobot, word); !whole.empty()) return std::string(whole);
   if (word.empty() || word.back() < '1' || word.back() > '4') return "";
   const std::string_view wheel = look_up(kOfWheel, std::string_view(word).substr(0, word.size() - 1));

@@ -1,7 +1,7 @@
 // Names of columns whose meaning is known: those that a format's documents define, and those that are usual.
 //
 //   const KnownName* k = known_name(LogFormat::kVesc, "erpm");        // {"erpm", "velocity", "erpm", …}
-//   usual_signal("Motor Current", Rig::kAxis);                        // "motor_current"
+//   usual_signal("Motor Current", rig_axis());                        // "motor_current"
 //
 // Sources: ODrive: docs.odriverobotics.com (API reference: turns, turns/s, A, V, N m). moteus: mjbots.github.io/moteus
 // (registers: revolutions, revolutions/s at the output, A, V, N m) and its diagnostic names. VESC: the columns of VESC
@@ -30,8 +30,8 @@ const KnownName* known_name(LogFormat format, std::string_view column);
 
 // The signal of a usual name (letters and digits alone count); "": none. Of rig "robot" names end in the wheel's number
 // 1 to 4.
-std::string usual_signal(std::string_view name, Rig rig);
+std::string usual_signal(std::string_view name, const Rig& rig);
 // The signals that go by one name: "voltage" may be the motor's or the supply's. Empty: it is none of those.
-std::vector<std::string> ambiguous_signals(std::string_view name, Rig rig);
+std::vector<std::string> ambiguous_signals(std::string_view name, const Rig& rig);
 
 }  // namespace omnihil

@@ -10,7 +10,7 @@
 
 #include "hil/logs/log_rows.h"
 #include "hil/text/line_chart.h"
-#include "identify/record/signal_list.h"
+#include "identify/record/rig.h"
 #include "sim/bench/dataset_text.h"
 
 namespace omnihil {
@@ -56,7 +56,7 @@ std::string picture_of(const LogRows& rows, const LogDatasetOptions& o, const st
       .title = title, .x = rows.time_s, .x_label = "time in s", .panels = {}, .shade = {}, .mark = {}};
   for (std::size_t k = 0; k < rows.meaning.size(); ++k) {
     const ColumnMeaning& m = *rows.meaning[k];
-    const std::string unit(signal_unit(*find_signal(o.context.rig, m.signal), o.context.linear));
+    const std::string unit(signal_unit(*find_signal(*o.context.rig, m.signal), o.context.linear));
     ChartCurve curve{m.signal, {}};
     double last = std::numeric_limits<double>::quiet_NaN();
     for (const double v : rows.columns[k]) {
@@ -93,7 +93,7 @@ std::vector<std::string> table_of(const LogRun& run, const LogMeaning& meaning, 
   for (const ColumnMeaning& m : meaning.columns) {
     const LogSeries& s = run.table.series[m.series];
     const auto [low, high] = range_of_values(s.value);
-    const SignalRow* row = m.signal.empty() ? nullptr : find_signal(o.context.rig, m.signal);
+    const SignalRow* row = m.signal.empty() ? nullptr : find_signal(*o.context.rig, m.signal);
     out.push_back(fmt::format("{:<{}}  {:<20} {:<8} {:<8} {:>8} {:>22}  {}", s.name, wide,
                               (m.signal.empty() ? "(left out)" : m.signal) + (m.imposed ? ", imposed" : ""),
                               m.signal.empty() ? "" : m.unit,
@@ -146,7 +146,7 @@ class Channels {
     std::string line = fmt::format("{} = {{ column = {}", m.signal, toml_text(column));
     if (m.scale.scale != 1.0) line += fmt::format(", scale = {}", m.scale.scale);
     if (m.scale.offset != 0.0) line += fmt::format(", offset = {}", m.scale.offset);
-    if (find_signal(o_.context.rig, m.signal)->role == SignalRole::kCounts) {
+    if (find_signal(*o_.context.rig, m.signal)->role == SignalRole::kCounts) {
       if (!(o_.counts_per_rev > 0.0) && !said_)
         out_.doubts.push_back(
             "an encoder's counts per turn are not known; give --counts-per-rev N (after quadrature), and "
@@ -262,8 +262,7 @@ LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOp
     run_text += run_lines(csv.back().name, split_name(kValidation));
   }
   if (!made.doubts.empty()) return made;
-  std::string toml =
-      dataset_head(o.title, o.context.rig == Rig::kAxis ? "axis" : "robot") + channels.text() + run_text;
+  std::string toml = dataset_head(o.title, std::string(o.context.rig->name)) + channels.text() + run_text;
   if (!made.doubts.empty()) return made;
   made.files = {{"dataset.toml", std::move(toml)},
                 {"model.toml", o.model_text},

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kEmpty = std::numeric_limits<double>::quiet_NaN();
 
-bool is_held(const ColumnMeaning& m, Rig rig) {
+bool is_held(const ColumnMeaning& m, const Rig& rig) {
   const SignalRole role = find_signal(rig, m.signal)->role;
   return role == SignalRole::kDrive || role == SignalRole::kFlag || m.imposed;
 }
@@ -60,7 +60,7 @@ LogRows rows_of_table(const LogTable& log, const LogMeaning& meaning, const Mean
 }
 
 // The motion with the most samples.
-const LogSeries& clock_of(const LogTable& log, const LogMeaning& meaning, Rig rig) {
+const LogSeries& clock_of(const LogTable& log, const LogMeaning& meaning, const Rig& rig) {
   const LogSeries* best = nullptr;
   for (const ColumnMeaning& m : meaning.columns) {
     if (m.signal.empty()) continue;
@@ -110,7 +110,7 @@ std::vector<double> nearest_at(const std::vector<double>& time_s, const LogSerie
 LogRows rows_of_topics(const LogTable& log, const LogMeaning& meaning, const MeaningContext& context,
                        const std::string& name) {
   LogRows out;
-  const LogSeries& clock = clock_of(log, meaning, context.rig);
+  const LogSeries& clock = clock_of(log, meaning, *context.rig);
   std::size_t repeated = 0;
   for (const double t : *clock.time_s) {
     if (!out.time_s.empty() && t < out.time_s.back())
@@ -133,7 +133,7 @@ LogRows rows_of_topics(const LogTable& log, const LogMeaning& meaning, const Mea
     out.meaning.push_back(&m);
     if (!std::is_sorted(s.time_s->begin(), s.time_s->end()))
       throw BadLog(fmt::format("{}: {}: time goes backwards", name, s.name));
-    if (is_held(m, context.rig)) {
+    if (is_held(m, *context.rig)) {
       double late_s = 0.0;
       out.columns.push_back(held_at(out.time_s, s, late_s));
       if (late_s > 0.0)

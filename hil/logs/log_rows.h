@@ -1,6 +1,6 @@
 // The chosen series of a log on one clock.
 //
-//   LogRows rows = log_rows(log, meaning, {.rig = Rig::kAxis}, "run.csv");
+//   LogRows rows = log_rows(log, meaning, {.rig = &rig_axis()}, "run.csv");
 //   rows.time_s[i];  rows.columns[k][i];               // of meaning.columns that are signals, time apart, in their order
 //
 // How topics come on one clock: log_dataset.h.

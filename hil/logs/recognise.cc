@@ -9,7 +9,7 @@
 
 #include "hil/logs/known_names.h"
 #include "hil/text/toml_keys.h"
-#include "identify/record/signal_list.h"
+#include "identify/record/rig.h"
 
 namespace omnihil {
 namespace {
@@ -27,7 +27,7 @@ double largest_of(const std::vector<double>& values) {
 }
 
 std::string unit_of_signal(const std::string& signal, const MeaningContext& c) {
-  const SignalRow* row = find_signal(c.rig, signal);
+  const SignalRow* row = find_signal(*c.rig, signal);
   return row == nullptr ? "" : std::string(signal_unit(*row, c.linear));
 }
 
@@ -77,7 +77,7 @@ class Recogniser {
   const std::string& name(const ColumnMeaning& m) const { return log_.series[m.series].name; }
 
   void check_asked() {
-    std::vector<std::string_view> names, signals = signal_names(context_.rig);
+    std::vector<std::string_view> names, signals = signal_names(*context_.rig);
     for (const LogSeries& s : log_.series) names.push_back(s.name);
     for (const ColumnMap& a : asked_) {
       if (std::find(names.begin(), names.end(), a.column) == names.end())
@@ -93,7 +93,7 @@ class Recogniser {
     for (const ColumnMap& a : asked_) {
       if (a.column != name(m)) continue;
       m.because = "--map";
-      if (a.signal != "-" && find_signal(context_.rig, a.signal) != nullptr) m.signal = a.signal;
+      if (a.signal != "-" && find_signal(*context_.rig, a.signal) != nullptr) m.signal = a.signal;
       m.unit = a.unit;
       ranks_[m.series] = -1;
       return true;
@@ -103,8 +103,8 @@ class Recogniser {
 
   bool by_document(ColumnMeaning& m) {
     const KnownName* known = known_name(log_.format, name(m));
-    if (known == nullptr || (context_.rig == Rig::kRobot && known->signal != "time" &&
-                             !known->signal.empty() && find_signal(context_.rig, known->signal) == nullptr))
+    if (known == nullptr || (context_.rig->of_robot && known->signal != "time" && !known->signal.empty() &&
+                             find_signal(*context_.rig, known->signal) == nullptr))
       return false;
     m.because =
         known->signal.empty() ? std::string(known->why) : "a known column of " + log_format_name(log_.format);
@@ -117,10 +117,10 @@ class Recogniser {
 
   void by_name(ColumnMeaning& m) {
     const auto [base, unit] = split_unit(name(m));
-    m.signal = usual_signal(base, context_.rig);
+    m.signal = usual_signal(base, *context_.rig);
     m.unit = !unit.empty() ? unit : log_.series[m.series].unit;
     if (m.signal.empty()) {
-      std::vector<std::string> may = ambiguous_signals(base, context_.rig);
+      std::vector<std::string> may = ambiguous_signals(base, *context_.rig);
       std::erase_if(may, [&](const std::string& signal) { return !has_unit(signal, m.unit); });
       if (may.size() == 1) m.signal = may.front();  // volts are no duty
       if (may.size() > 1) ambiguous_.emplace_back(m.series, may);
@@ -227,14 +227,14 @@ class Recogniser {
       out_.doubts.push_back(
           "no column is the time; give --map \"COLUMN=time:s\" (or ms, us), or --period SECONDS for rows of "
           "equal spacing");
-    const auto role = [&](const ColumnMeaning& m) { return find_signal(context_.rig, m.signal)->role; };
+    const auto role = [&](const ColumnMeaning& m) { return find_signal(*context_.rig, m.signal)->role; };
     const auto any = [&](auto want) {
       return std::any_of(out_.columns.begin(), out_.columns.end(),
                          [&](const ColumnMeaning& m) { return !m.signal.empty() && want(m); });
     };
     if (!any([&](const ColumnMeaning& m) { return role(m) == SignalRole::kDrive || m.imposed; }))
       out_.doubts.push_back(
-          context_.rig == Rig::kRobot
+          context_.rig->of_robot
               ? "no column is what was asked of the robot; give --map \"COLUMN=duty_1:1\" to duty_4, or "
                 "command_vx, _vy, _w"
               : "no column is what was asked of the drive; give --map \"COLUMN=duty:1\" (or motor_voltage:V, "
@@ -254,7 +254,7 @@ class Recogniser {
     std::map<std::string_view, const ColumnMeaning*> groups;
     for (const ColumnMeaning& m : out_.columns) {
       if (m.signal.empty()) continue;
-      const SignalRow* row = find_signal(context_.rig, m.signal);
+      const SignalRow* row = find_signal(*context_.rig, m.signal);
       if (row->role == SignalRole::kDrive) groups.try_emplace(row->drive_group, &m);
     }
     if (groups.size() < 2) return;

@@ -2,7 +2,7 @@
 //
 //   std::vector<std::string> faults;
 //   const std::vector<ColumnMap> asked = {parse_map("speed=velocity:rpm", faults)};
-//   LogMeaning m = recognise(log, {.rig = Rig::kAxis}, asked);
+//   LogMeaning m = recognise(log, {.rig = &rig_axis()}, asked);
 //   for (const std::string& d : m.doubts) std::puts(d.c_str());     // a line each, with the flags to give
 //
 // In this order: what the user says; what the format's own documents say (ODrive, moteus, VESC, SimpleFOC); names that
@@ -42,7 +42,7 @@ struct LogMeaning {
 };
 
 struct MeaningContext {
-  Rig rig = Rig::kAxis;
+  const Rig* rig = &rig_axis();
   bool linear = false;
   double pole_pairs = 0.0;  // of the model; 0: not known
   double period_s = 0.0;    // of rows without a time column; 0: none was given

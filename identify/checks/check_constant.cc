@@ -23,7 +23,7 @@ void check_constant(const CheckContext& data, std::vector<DataFinding>& findings
     const Run& run = *view.run;
     if (run.steady || run.time_s.size() < 20) continue;
     for (const auto& [name, values] : run.signals) {
-      const SignalRow& row = *find_signal(data.dataset.rig, name);
+      const SignalRow& row = *find_signal(*data.dataset.rig, name);
       if (!is_constant(values)) continue;
       const double value =
           *std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });

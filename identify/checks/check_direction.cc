@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/checks/check_list.h"
+#include "identify/record/rig.h"
 
 namespace omnihil {
 namespace {
@@ -167,7 +168,7 @@ void check_direction(const CheckContext& data, std::vector<DataFinding>& finding
       }
       position_against_velocity(view, drive, findings);
     }
-    if (data.dataset.rig == Rig::kRobot) gyro_against_wheels(data, view, findings);
+    if (data.dataset.rig->whole_robot) gyro_against_wheels(data, view, findings);
   }
 }
 

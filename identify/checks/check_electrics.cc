@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "identify/checks/check_list.h"
+#include "identify/record/rig.h"
 #include "identify/record/statistics.h"
 
 namespace omnihil {
@@ -151,8 +152,7 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
                      "scale or unit{}",
                      name, current_ratio, thousand ? " (milliamperes, mA, in place of A)" : "")});
   }
-  const double confirmed =
-      data.dataset.rig == Rig::kAxis ? acceleration_ratio(data, wheel) : constant / (-b / a);
+  const double confirmed = data.dataset.rig->of_robot ? constant / (-b / a) : acceleration_ratio(data, wheel);
   say_speed(data, wheel, constant / (-b / a), confirmed, "voltage, current", findings);
   return true;
 }

@@ -5,6 +5,7 @@
 
 #include "identify/checks/check_list.h"
 #include "identify/record/quantum.h"
+#include "identify/record/rig.h"
 #include "identify/record/statistics.h"
 #include "sim/law/symmetric.h"
 #include "sim/model/rolling_model.h"
@@ -32,7 +33,7 @@ void add_position(const Dataset& dataset, const Candidate& nominal, const Run& r
 
 std::vector<DriveView> drives_of(const Dataset& dataset, const Candidate& nominal, const Run& run) {
   std::vector<DriveView> views;
-  const std::vector<std::string> suffixes = dataset.rig == Rig::kRobot
+  const std::vector<std::string> suffixes = dataset.rig->whole_robot
                                                 ? per_wheel("", wheel_count(nominal.file.parameters))
                                                 : std::vector<std::string>{""};
   for (const std::string& suffix : suffixes) {

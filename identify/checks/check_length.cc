@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "identify/checks/check_list.h"
+#include "identify/record/rig.h"
 
 namespace omnihil {
 
@@ -9,7 +10,7 @@ void check_length(const CheckContext& data, std::vector<DataFinding>& findings) 
   constexpr std::size_t kFewRows = 30;       // not twice the base model's dozen parameters; a choice
   constexpr double kFewTimeConstants = 5.0;  // a first-order step has settled to 1 - e^-5 = 99.3 %: derived
   const DriveParams<double> drive =
-      data.dataset.rig == Rig::kAxis ? drive_of(data.nominal) : DriveParams<double>{};
+      data.dataset.rig->of_robot ? DriveParams<double>{} : drive_of(data.nominal);
   const double k = drive.torque_constant_Nm_per_A;
   // mechanical time constant J R / k^2 of a voltage drive
   const double settle_s = k > 0.0 ? inertia_at_rotor(drive) * drive.resistance_ohm / (k * k) : 0.0;

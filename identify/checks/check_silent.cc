@@ -5,12 +5,13 @@
 
 #include "identify/checks/check_list.h"
 #include "identify/predict/robot_record.h"
+#include "identify/record/rig.h"
 #include "sim/model/rolling_model.h"
 
 namespace omnihil {
 
 void check_silent(const CheckContext& data, std::vector<DataFinding>& findings) {
-  if (data.dataset.rig != Rig::kRobot) return;
+  if (!data.dataset.rig->whole_robot) return;
   const RollingParams<double> nominal = rolling_params(data.nominal.file.parameters);
   for (const RunView& view : data.runs) {
     const Run& run = *view.run;

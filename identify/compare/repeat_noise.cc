@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/record/signal_list.h"
+#include "identify/record/rig.h"
 
 namespace omnihil {
 namespace {
 
 bool is_drive(std::string_view name) {
-  return std::any_of(signal_rows().begin(), signal_rows().end(), [&](const SignalRow& row) {
-    return row.name == name && row.role == SignalRole::kDrive;
+  return std::any_of(all_rigs().begin(), all_rigs().end(), [&](const Rig* rig) {
+    const SignalRow* row = find_signal(*rig, name);
+    return row != nullptr && row->role == SignalRole::kDrive;
   });
 }
 

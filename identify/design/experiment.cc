@@ -12,6 +12,7 @@
 #include "identify/design/experiment_truth.h"
 #include "identify/estimate/fit_problem.h"
 #include "identify/record/parallel.h"
+#include "identify/record/rig.h"
 #include "sim/model/rolling_model.h"
 #include "sim/robot/rolling_params.h"
 
@@ -146,11 +147,11 @@ void Planner::prepare_menu() {
   const double rate_Hz = std::min(options_.rate_Hz, own_Hz);
   const auto count = static_cast<std::size_t>(std::llround(duration_s * rate_Hz));
   for (std::size_t k = 0; k <= count; ++k) time_s_.push_back(static_cast<double>(k) / rate_Hz);
-  const RollingParams<double> wheels = dataset_.rig == Rig::kRobot
+  const RollingParams<double> wheels = dataset_.rig->whole_robot
                                            ? rolling_params(rivals_.front().model.file.parameters)
                                            : RollingParams<double>();
   menu_ = bench_.inputs.front() == "command_vx" ? body_menu(time_s_, options_.seed)
-          : dataset_.rig == Rig::kRobot
+          : dataset_.rig->whole_robot
               ? robot_menu(time_s_, std::span(wheels.wheel_angle_rad).first(wheels.wheels), options_.seed)
               : axis_menu(time_s_, options_.seed);
 }
@@ -178,7 +179,7 @@ std::string Planner::broken_limit(const MotionExtremes& m) const {
   ExperimentLimits l = options_.limits;
   if (bench_.imposed && l.travel <= 0.0)
     l.travel = bench_.most_travel;  // what the bench has room for, as far as is known
-  const bool linear = dataset_.linear, robot = dataset_.rig == Rig::kRobot;
+  const bool linear = dataset_.linear, robot = dataset_.rig->whole_robot;
   if (!m.finite) return "the simulated run diverges";
   if (l.current_A > 0.0 && m.current_A > l.current_A)
     return fmt::format("{:.3g} A, allowed are {:.3g} A", m.current_A, l.current_A);
@@ -275,9 +276,9 @@ void Planner::describe(const Trial& best) {
   const double duration_s = time_s_.back();
   plan_.run = PlannedRun{.excitation = run.excitation,
                          .words = fmt::format("{}; up to {}, {:.3g} s", run.words, level, duration_s),
-                         .input = by_command()                  ? bench_.inputs.front()
-                                  : dataset_.rig == Rig::kRobot ? "duty"
-                                                                : bench_.inputs.front(),
+                         .input = by_command()                ? bench_.inputs.front()
+                                  : dataset_.rig->whole_robot ? "duty"
+                                                              : bench_.inputs.front(),
                          .time_s = time_s_,
                          .duty = bench_.imposed
                                      ? std::vector<std::vector<double>>{imposed_speed(bench_, inputs(best))}

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "identify/predict/robot_motion.h"
-#include "identify/record/signal_list.h"
+#include "identify/record/rig.h"
 #include "identify/record/statistics.h"
 #include "sim/model/axis_model.h"
 #include "sim/model/rolling_model.h"
@@ -78,7 +78,7 @@ Run blank_run(const PlannedBench& bench, const PlannedInputs& inputs) {
   const std::size_t n = run.time_s.size();
   const double bus_V = bus_of(bench);
   for (const auto& [name, values] : bench.example.signals) {
-    const SignalRow* row = find_signal(bench.like.rig, name);
+    const SignalRow* row = find_signal(*bench.like.rig, name);
     const bool drive = row != nullptr && row->role == SignalRole::kDrive;
     if (drive && name != "dribbler") continue;
     double level = name == "enable" ? 1.0 : 0.0;
@@ -141,7 +141,7 @@ Run imposed_run(const PlannedBench& bench, const PlannedInputs& inputs) {
   Run run = blank_run(bench, inputs);
   const std::vector<double> speed = imposed_speed(bench, inputs);
   for (const auto& [name, values] : bench.example.signals) {
-    const SignalRow* row = find_signal(bench.like.rig, name);
+    const SignalRow* row = find_signal(*bench.like.rig, name);
     if (row != nullptr && row->role == SignalRole::kDrive) run.signals[name].assign(run.time_s.size(), 0.0);
   }
   if (auto own = run.signals.find("velocity"); own != run.signals.end()) own->second = speed;
@@ -198,12 +198,12 @@ PlannedBench planned_bench(const Dataset& given, const Candidate& nominal, const
       bench.problem = "no run of use \"fit\" is a time series in which this bench moves";
     return bench;
   }
-  if (given.rig == Rig::kWheel) {
-    bench.problem = "of a wheel on a bench no drive is planned: the bench gives half of it";
+  if (!given.rig->no_plan.empty()) {
+    bench.problem = given.rig->no_plan;
     return bench;
   }
   bench.supply_V = nominal.file.parameters.value_or("supply.voltage_V", 0.0);
-  const bool robot = given.rig == Rig::kRobot;
+  const bool robot = given.rig->whole_robot;
   const bool by_duty = bench.example.signal("duty_1") != nullptr;
   if (robot && !by_duty && bench.example.signal("command_vx") != nullptr) {
     bench.inputs = {"command_vx", "command_vy", "command_w"};
@@ -252,7 +252,7 @@ std::unique_ptr<Predictor> simulated_truth(const PlannedBench& bench, const Plan
   if (bench.imposed)
     return make_predictor(with_run(bench.like, imposed_run(bench, inputs)), bench.nominal, {});
   Run run = blank_run(bench, inputs);
-  if (bench.like.rig == Rig::kRobot) {
+  if (bench.like.rig->whole_robot) {
     return make_predictor(with_run(bench.like, run), bench.nominal, {})->simulated(truth, seed);
   }
   const auto free = make_predictor(with_run(bench.like, run), bench.nominal, {.slave_angle = false});
@@ -263,7 +263,7 @@ std::unique_ptr<Predictor> simulated_truth(const PlannedBench& bench, const Plan
 MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& inputs,
                                 const Candidate& model) {
   MotionExtremes out;
-  if (bench.like.rig == Rig::kRobot) {
+  if (bench.like.rig->whole_robot) {
     const Dataset dataset = with_run(bench.like, blank_run(bench, inputs));
     const RobotRecord record =
         robot_record(dataset, dataset.runs[0], rolling_params(bench.nominal.file.parameters));

@@ -8,7 +8,7 @@
 namespace omnihil {
 namespace {
 
-// A robot's model takes measured heading and position as inputs (predictor_robot.h). In a null replicate they
+// A robot's model takes measured heading and position as inputs (identify/rigs/robot.cc). In a null replicate they
 // must come from the simulated truth; with the recording's, the fitted model's error of path would be counted
 // as noise (DECISIONS 41).
 bool has_pose_inputs(const Predictor& predictor) {

@@ -2,9 +2,7 @@
 
 #include <cmath>
 
-#include "identify/predict/predictor_axis.h"
-#include "identify/predict/predictor_robot.h"
-#include "identify/predict/predictor_wheel.h"
+#include "identify/record/rig.h"
 
 namespace omnihil {
 
@@ -74,15 +72,7 @@ double averaged_sigma(const ComparedSignal& signal) {
 
 std::unique_ptr<Predictor> make_predictor(const Dataset& dataset, const Candidate& nominal,
                                           const PredictOptions& options) {
-  switch (dataset.rig) {
-    case Rig::kAxis:
-      return make_axis_predictor(dataset, nominal, options);
-    case Rig::kWheel:
-      return make_wheel_predictor(dataset, nominal, options);
-    case Rig::kRobot:
-      break;
-  }
-  return make_robot_predictor(dataset, nominal, options);
+  return dataset.rig->make_predictor(dataset, nominal, options);
 }
 
 }  // namespace omnihil

@@ -9,19 +9,11 @@
 #include "identify/predict/counted_setups.h"
 #include "identify/predict/predictor_rig.h"
 #include "sim/law/random.h"
-#include "sim/model/axis_model.h"
 
 namespace omnihil {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-Jet* number_of(DriveParams<Jet>& params, std::string_view path) {
-  for (const DriveParamPath& at : drive_param_paths()) {
-    if ((params.linear ? at.linear_path : at.path) == path) return &(params.*at.jet);
-  }
-  return nullptr;
-}
 
 // A delay whose derivative a limit behind it hides (predictor_axis.h).
 bool is_hidden_delay(const Candidate& c, const Unknown& u) {
@@ -66,7 +58,7 @@ class AxisRig {
   RigOutputs<T> outputs(const RigModel& model, std::size_t n, double step_s) const {
     const AxisSetup& s = setups_[n];
     if (s.input.time_s.empty()) return {.values = std::vector<std::vector<T>>(s.seen.size())};
-    const auto m = rig_values<T>(model, drive_params_as<T>(drive_of(model.candidate)), number_of);
+    const auto m = axis_values<T>(model);
     return {.values = axis_outputs<T>(s, m.params, EffectSet<T>(m.uses, m.values), step_s)};
   }
 

@@ -172,4 +172,11 @@ class RigPredictor final : public Predictor {
   Rig rig_;
 };
 
+// Of a rig's table (identify/record/rig.h).
+template <PredictedRig Rig>
+std::unique_ptr<Predictor> make_rig_predictor(const Dataset& dataset, const Candidate& nominal,
+                                              const PredictOptions& options) {
+  return std::make_unique<RigPredictor<Rig>>(dataset, nominal, options);
+}
+
 }  // namespace omnihil

@@ -52,4 +52,16 @@ RigValues<T, Params> rig_values(const RigModel& model, Params<T> params, Number 
   return out;
 }
 
+// Of a model of one drive.
+template <typename T>
+RigValues<T, DriveParams> axis_values(const RigModel& model) {
+  return rig_values<T>(model, drive_params_as<T>(drive_of(model.candidate)),
+                       [](DriveParams<Jet>& params, std::string_view path) -> Jet* {
+                         for (const DriveParamPath& at : drive_param_paths()) {
+                           if ((params.linear ? at.linear_path : at.path) == path) return &(params.*at.jet);
+                         }
+                         return nullptr;
+                       });
+}
+
 }  // namespace omnihil

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/record/rig.h"
 #include "sim/law/param_range.h"
 
 namespace omnihil {
@@ -18,7 +19,7 @@ struct TorqueColumn {
 };
 
 TorqueColumn torque_column(const Dataset& dataset, const Candidate& nominal) {
-  if (dataset.rig != Rig::kAxis || dataset.linear) return {};
+  if (dataset.rig->of_robot || dataset.linear) return {};
   if (dataset.channel("motor_torque") != nullptr) return {"motor_torque", 1.0};
   const Channel* current = dataset.channel("motor_current");
   if (current == nullptr || !current->imposed) return {};

@@ -16,10 +16,8 @@
 
 namespace omnihil {
 
-// What is driven: one drive on a bench, a robot on the floor, one of its wheels under a body that the bench moves.
-enum class Rig : std::uint8_t { kAxis, kRobot, kWheel };
-inline constexpr std::string_view kRigNames[] = {"axis", "robot", "wheel"};  // as the file format has them
-inline std::string_view rig_name(Rig rig) { return kRigNames[static_cast<std::size_t>(rig)]; }
+struct Rig;  // what is driven: identify/record/rig.h
+const Rig& rig_axis();
 
 // Which part a run plays in cross-validation. The file format calls them "fit", "holdout", "extrapolation".
 // Unscoped on purpose: a split is also the index of arrays that hold one thing per split.
@@ -65,7 +63,7 @@ class FirmwareSource;  // identify/predict/firmware_source.h
 struct Dataset {
   std::string name;  // as it was asked for
   std::string title;
-  Rig rig = Rig::kAxis;
+  const Rig* rig = &rig_axis();
   bool linear = false;  // of its model
   std::vector<Channel> channels;
   std::vector<Run> runs;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "identify/record/rig.h"
 #include "sim/law/effect_registry.h"
 
 namespace omnihil {
@@ -73,7 +74,7 @@ std::string sweep_over(std::string_view against) {
 std::string command_for(const Dataset& dataset, const std::vector<std::string>& members) {
   std::vector<std::string> rivals;
   std::copy_if(members.begin(), members.end(), std::back_inserter(rivals), is_effect);
-  if (rivals.empty() || dataset.rig == Rig::kWheel) return "";  // half of a wheel's drive is its bench's
+  if (rivals.empty() || !dataset.rig->no_plan.empty()) return "";
   if (rivals.size() == 1) rivals.push_back("base");
   return fmt::format("omnihil experiment {} --separate {} --out next", dataset.name, fmt::join(rivals, ","));
 }

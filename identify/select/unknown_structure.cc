@@ -8,6 +8,7 @@
 #include "identify/compare/order_spectrum.h"
 #include "identify/estimate/linear_base.h"
 #include "identify/record/parallel.h"
+#include "identify/record/rig.h"
 #include "identify/select/diagnose_summary.h"
 #include "identify/select/unknown_terms.h"
 #include "sim/law/effect_registry.h"
@@ -212,7 +213,7 @@ UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last
   }
   out.where = where_of(comparison, data.orders.empty() ? 0.0 : data.orders.front());
   const bool no_formulas =
-      task.dataset->rig != Rig::kAxis || !task.predictor->applies(example_expression()->entry).empty();
+      task.dataset->rig->of_robot || !task.predictor->applies(example_expression()->entry).empty();
   if (no_formulas) return out;
   std::vector<Eigen::VectorXd> noise;
   for (const Eigen::VectorXd& n : task.null->fit_noise) noise.push_back(n.cwiseProduct(base.weights()));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/record/signal_list.h"
+#include "identify/record/rig.h"
 #include "sim/model/rolling_model.h"
 
 namespace omnihil {
@@ -13,9 +13,9 @@ constexpr double kLevel_s = 10.0;  // a battery's charge moves in minutes, its s
 
 Dataset told_by(const Run& piece) {
   Dataset d;
-  d.rig = Rig::kRobot;
+  d.rig = &rig_robot();
   for (const auto& [name, values] : piece.signals) {
-    const SignalRow* row = find_signal(Rig::kRobot, name);
+    const SignalRow* row = find_signal(rig_robot(), name);
     if (row == nullptr || name.starts_with("vision") || name.starts_with("encoder")) continue;
     // sigma: any; the twin finds the noise itself. Of a bus voltage none, so that it is taken as it is.
     d.channels.push_back({.signal = name,

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "identify/predict/robot_record.h"
+#include "identify/record/rig.h"
 #include "identify/tyre/motion_smoother.h"
 #include "sim/model/rolling_model.h"
 #include "sim/robot/rolling_robot.h"
@@ -263,7 +264,7 @@ RollingRadius rolling_radius(const std::vector<Raw>& raw, double most_N, double 
 
 TyrePoints tyre_points(const Dataset& dataset, const Candidate& nominal, std::vector<std::string>& faults) {
   TyrePoints points;
-  if (dataset.rig != Rig::kRobot) {
+  if (!dataset.rig->whole_robot) {
     faults.push_back(
         "a tyre is a robot's: needed is a dataset of rig \"robot\" (omnihil sim ROBOT --rig robot)");
     return points;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "identify/record/rig.h"
 #include "tests/identify/simulated_robot.h"
 
 namespace omnihil::test {
@@ -28,7 +29,7 @@ wheel_center_radius_m = 0.0805
 // Rows at 60 Hz: a command, four wheel speeds, gyro and camera in each.
 inline Dataset blank_radio(double duration_s, bool wheels_commanded = false) {
   Dataset d;
-  d.rig = Rig::kRobot;
+  d.rig = &rig_robot();
   Run run;
   run.file = "drive.csv";
   const auto channel = [&](const std::string& signal, const char* unit, double sigma) {

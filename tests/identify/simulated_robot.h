@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "identify/predict/predictor.h"
+#include "identify/record/rig.h"
 #include "sim/law/effect_registry.h"
 
 namespace omnihil::test {
@@ -49,7 +50,7 @@ inline Candidate robot_candidate() {
 // Random-looking duties, smooth within 80 ms; measured signals zero, camera frames every 16 ms.
 inline Dataset blank_robot(double duration_s, bool bus) {
   Dataset d;
-  d.rig = Rig::kRobot;
+  d.rig = &rig_robot();
   Run run;
   run.file = "drive.csv";
   const auto channel = [&](const std::string& signal, const char* unit, double sigma, double counts = 0.0) {

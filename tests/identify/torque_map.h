@@ -29,7 +29,7 @@ class TorqueMap {
   static constexpr double kPeriod_s = 0.5;
 
   explicit TorqueMap(const TorqueMapRecipe& recipe) {
-    dataset.rig = Rig::kAxis;
+    dataset.rig = &rig_axis();
     dataset.channels = {
         {.signal = "motor_torque", .column = "torque", .unit = "N m", .sigma = recipe.sigma_Nm},
         {.signal = "velocity", .column = "speed", .unit = "rad/s", .imposed = true},

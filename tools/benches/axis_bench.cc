@@ -4,32 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hil/loop/model_store.h"
-#include "hil/text/program_files.h"
 #include "sim/bench/axis_dataset.h"
 #include "sim/bench/axis_signal.h"
 #include "sim/law/effect_registry.h"
 #include "sim/law/random.h"
-#include "sim/model/effect_reader.h"
 #include "tools/benches/virtual_bench.h"
 
 namespace omnihil {
 namespace {
-
-std::optional<AxisModel> open_model(const std::string& name, std::vector<std::string>& faults) {
-  const StoredModel stored = load_model(name, {data_folder("models")});
-  if (stored.bundle.robot_text.empty()) {
-    for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
-    return std::nullopt;
-  }
-  const auto motor = [&](const std::string&) {
-    return MotorFileText{
-        .shown_name = stored.bundle.motor_file, .text = stored.bundle.motor_text, .error = ""};
-  };
-  AxisReading reading = read_axis_model(stored.bundle.robot_text, stored.bundle.robot_file, motor);
-  for (const ModelProblem& p : reading.problems) faults.push_back(p.text());
-  return std::move(reading.model);
-}
 
 std::optional<CommandKind> kind_of(const BenchOptions& options, const AxisModel& model,
                                    std::vector<std::string>& faults) {
@@ -72,16 +54,10 @@ std::string divergence(const AxisBenchRun& run) {
 }  // namespace
 
 std::optional<VirtualBench> make_axis_bench(const BenchOptions& options, std::vector<std::string>& faults) {
-  check_bench_numbers(options, faults);
-  std::optional<AxisModel> model = open_model(options.model, faults);
-  if (!model) return std::nullopt;
-  const std::optional<CommandKind> kind = kind_of(options, *model, faults);
-  std::vector<EffectUse> effects = model->effects;
-  for (const std::string& text : options.with) {
-    const std::string fault =
-        add_override(text, {.drive = &model->drive, .linear = model->drive.linear}, effects);
-    if (!fault.empty()) faults.push_back("--with " + fault);
-  }
+  const std::optional<BenchAxis> opened = open_axis(options, faults);
+  if (!opened) return std::nullopt;
+  const auto& [model, effects] = *opened;
+  const std::optional<CommandKind> kind = kind_of(options, model, faults);
   if (!faults.empty()) return std::nullopt;
   const auto excited = [&](Excitation e, double scale, std::uint64_t seed) {
     return bench_rows(options, [&](double t) {
@@ -94,7 +70,7 @@ std::optional<VirtualBench> make_axis_bench(const BenchOptions& options, std::ve
     return read_bench_rows(path, kOne, "what is asked", faults);
   });
   if (!faults.empty()) return std::nullopt;
-  AxisBench bench{.title = "simulated: " + options.model, .model = *model, .runs = {}, .noise = {}};
+  AxisBench bench{.title = "simulated: " + options.model, .model = model, .runs = {}, .noise = {}};
   bench.noise.bus_voltage_V *= options.noise_scale;
   bench.noise.motor_current_A *= options.noise_scale;
   bench.noise.position_rad *= options.noise_scale;
@@ -117,9 +93,9 @@ std::optional<VirtualBench> make_axis_bench(const BenchOptions& options, std::ve
     }
     run.seed = mix_bits(seed++);
     run.input.kind = *kind;
-    run.input.encoder_counts_per_turn = model->encoder_counts_per_turn;
+    run.input.encoder_counts_per_turn = model.encoder_counts_per_turn;
     run.input.noise_seed = run.seed;
-    run.samples = run_axis(model->drive, set, run.input, {.step_s = options.step_s});
+    run.samples = run_axis(model.drive, set, run.input, {.step_s = options.step_s});
     if (out.diverged.empty()) out.diverged = divergence(run);
     out.rows += run.samples.size();
   }

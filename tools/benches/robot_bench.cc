@@ -8,6 +8,7 @@
 #include "hil/loop/effect_overrides.h"
 #include "hil/text/program_files.h"
 #include "sim/law/random.h"
+#include "sim/model/full_speed.h"
 #include "sim/model/model_writer.h"
 #include "sim/robot/plant.h"
 #include "tools/benches/virtual_bench.h"

@@ -13,6 +13,7 @@
 #include "hil/text/recording_text.h"
 #include "sim/bench/dataset_text.h"
 #include "sim/drive/sensor_chain.h"
+#include "sim/model/effect_reader.h"
 
 namespace omnihil {
 namespace {
@@ -96,10 +97,6 @@ std::vector<BenchRun> bench_runs(
   return runs;
 }
 
-double full_speed_m_s(const RobotModel& m) {
-  return m.bus_voltage_V / (m.motor.torque_constant_Nm_per_A * m.gear_ratio) * m.wheel_radius_m;
-}
-
 void check_bench_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
   for (const std::string& e : o.excitations) {
     if (const std::string fault = excitation_fault(e); !fault.empty()) faults.push_back(fault);
@@ -112,6 +109,21 @@ void check_bench_numbers(const BenchOptions& o, std::vector<std::string>& faults
 }
 
 namespace {
+
+std::optional<AxisModel> open_model(const std::string& name, std::vector<std::string>& faults) {
+  const StoredModel stored = load_model(name, {data_folder("models")});
+  if (stored.bundle.robot_text.empty()) {
+    for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
+    return std::nullopt;
+  }
+  const auto motor = [&](const std::string&) {
+    return MotorFileText{
+        .shown_name = stored.bundle.motor_file, .text = stored.bundle.motor_text, .error = ""};
+  };
+  AxisReading reading = read_axis_model(stored.bundle.robot_text, stored.bundle.robot_file, motor);
+  for (const ModelProblem& p : reading.problems) faults.push_back(p.text());
+  return std::move(reading.model);
+}
 
 void check_robot_numbers(const BenchOptions& o, std::vector<std::string>& faults) {
   check_bench_numbers(o, faults);
@@ -136,6 +148,19 @@ std::optional<BenchRobot> open_robot(const BenchOptions& options, std::vector<st
   out.driven = read_bundle(bundle);
   if (!out.driven.model || !faults.empty()) return std::nullopt;
   return out;
+}
+
+std::optional<BenchAxis> open_axis(const BenchOptions& options, std::vector<std::string>& faults) {
+  check_bench_numbers(options, faults);
+  std::optional<AxisModel> model = open_model(options.model, faults);
+  if (!model) return std::nullopt;
+  std::vector<EffectUse> driven = model->effects;
+  for (const std::string& text : options.with) {
+    const std::string fault =
+        add_override(text, {.drive = &model->drive, .linear = model->drive.linear}, driven);
+    if (!fault.empty()) faults.push_back("--with " + fault);
+  }
+  return BenchAxis{.nominal = std::move(*model), .driven = std::move(driven)};
 }
 
 std::string bench_dataset(const std::string& title, const std::string& rig,

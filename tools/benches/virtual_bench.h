@@ -18,7 +18,9 @@
 
 #include "hil/dataset/dataset_export.h"
 #include "hil/loop/model_store.h"
+#include "identify/record/rig.h"
 #include "sim/bench/excitation.h"
+#include "sim/model/axis_model.h"
 
 namespace omnihil {
 
@@ -49,10 +51,9 @@ std::optional<VirtualBench> make_axis_bench(const BenchOptions& options, std::ve
 // they are. An excitation by name drives forward, sideways and turn at once, each by a pattern of its own. Sensors have
 // white noise of a known size on top; a camera frame comes 60 times a second.
 std::optional<VirtualBench> make_robot_bench(const BenchOptions& options, std::vector<std::string>& faults);
-// One wheel of a robot, its body moved forward and sideways by patterns of their own, no faster than half of the tyre's grip
-// would; the duty is the one that rolls with it, and a push by the excitation on top: --amplitude of the duty that slips the
-// tyre at standstill. The motion is the rig's own (predictor_wheel.h): what it cannot, these data do not show.
-std::optional<VirtualBench> make_wheel_bench(const BenchOptions& options, std::vector<std::string>& faults);
+// Any rig whose table has a bench (identify/record/rig.h).
+std::optional<VirtualBench> make_rig_bench(const Rig& rig, const BenchOptions& options,
+                                           std::vector<std::string>& faults);
 
 // ---- What they share
 
@@ -80,9 +81,6 @@ std::vector<BenchRun> bench_runs(
     const std::function<std::vector<BenchRow>(Excitation, double, std::uint64_t)>& excited,
     const std::function<std::vector<BenchRow>(const std::string&)>& read);
 
-// Speed of the rim at full duty, at no load.
-double full_speed_m_s(const RobotModel& robot);
-
 // Names of excitations, and numbers.
 void check_bench_numbers(const BenchOptions& options, std::vector<std::string>& faults);
 // The robot's model of a bench of it, or of one of its wheels, nominal and with the effects of --with in it; the numbers are
@@ -92,6 +90,13 @@ struct BenchRobot {
   ModelReading driven;  // has one
 };
 std::optional<BenchRobot> open_robot(const BenchOptions& options, std::vector<std::string>& faults);
+
+// An axis' model, nominal, and the effects that drive it: its own and those of --with. None, or faults: as above.
+struct BenchAxis {
+  AxisModel nominal;
+  std::vector<EffectUse> driven;
+};
+std::optional<BenchAxis> open_axis(const BenchOptions& options, std::vector<std::string>& faults);
 
 // A column of a bench's runs: its line in [channels], and how its numbers are written.
 struct BenchColumn {

@@ -15,6 +15,7 @@
 #include "hil/text/dataset_files.h"
 #include "hil/text/program_files.h"
 #include "identify/checks/check_data.h"
+#include "identify/record/rig.h"
 #include "tools/exit_codes.h"
 #include "tools/options/capture_options.h"
 
@@ -58,7 +59,7 @@ bool take_model(const ImportDatasetWords& words, LogDatasetOptions& options) {
   for (const ModelProblem& p : model.problems) std::fprintf(stderr, "omnihil import: %s\n", p.text().c_str());
   if (!model.candidate) return false;
   const ModelFile& file = model.candidate->file;
-  options.context.rig = file.rig == "robot" ? Rig::kRobot : Rig::kAxis;
+  options.context.rig = file.rig == "robot" ? &rig_robot() : &rig_axis();
   options.context.linear = file.linear;
   options.context.pole_pairs = file.parameters.value_or("motor.pole_pairs", 0.0);
   if (file.robot) {

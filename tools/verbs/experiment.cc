@@ -13,6 +13,7 @@
 #include "hil/serve/serve_signals.h"
 #include "hil/text/dataset_files.h"
 #include "identify/estimate/fit_note.h"
+#include "identify/record/rig.h"
 #include "identify/select/refit.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/params.h"
@@ -186,7 +187,7 @@ int run(Arguments a) {
   if (reading.dataset) {
     predictor = make_predictor(*reading.dataset, *reading.nominal, {});
     for (std::string& fault : check_names(names, *predictor)) faults.push_back(std::move(fault));
-    if (format != nullptr && reading.dataset->rig != Rig::kRobot) {
+    if (format != nullptr && !reading.dataset->rig->whole_robot) {
       faults.push_back("--radio: this is a single axis; only a robot has a radio to send packets to");
     }
   }

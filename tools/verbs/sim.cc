@@ -36,11 +36,19 @@ std::string rig_of(const Arguments& arguments) {
   return "robot";
 }
 
+// Axis and robot have virtual benches of their own, on the simulators that they have.
+bool has_bench(const Rig& rig) { return rig.bench != nullptr || &rig == &rig_axis() || &rig == &rig_robot(); }
+
+std::optional<VirtualBench> bench_of(const Rig& rig, const BenchOptions& options,
+                                     std::vector<std::string>& faults) {
+  if (rig.bench != nullptr) return make_rig_bench(rig, options, faults);
+  return rig.whole_robot ? make_robot_bench(options, faults) : make_axis_bench(options, faults);
+}
+
 int run(const Arguments& arguments) {
   const std::string rig = rig_of(arguments);
   std::vector<std::string> faults;
-  const auto make = rig == "robot" ? make_robot_bench : rig == "wheel" ? make_wheel_bench : make_axis_bench;
-  const std::optional<VirtualBench> bench = make(arguments.bench, faults);
+  const std::optional<VirtualBench> bench = bench_of(*find_rig(rig), arguments.bench, faults);
   for (const std::string& fault : faults) std::fprintf(stderr, "omnihil sim: %s\n", fault.c_str());
   if (!bench) return kExitBadInput;
   if (!bench->diverged.empty()) {
@@ -65,11 +73,14 @@ void add_verb_sim(Verb& program, VerbResult& result) {
           "--excite", a->bench.excitations,
           "steps, ramp, chirp, prbs, creep, or a CSV file of time and command; several give several runs")
       .required();
-  verb.add_option("--rig", a->rig,
-                  "axis: one drive; robot: the whole robot on the floor; wheel: one of its wheels on the "
-                  "floor, its body "
-                  "moved by the bench; without it: what the model is")
-      .one_of({"axis", "robot", "wheel"});
+  std::vector<std::string> rigs;
+  std::string said;
+  for (const Rig* rig : all_rigs()) {
+    if (!has_bench(*rig)) continue;
+    rigs.emplace_back(rig->name);
+    said += fmt::format("{}: {}; ", rig->name, rig->what);
+  }
+  verb.add_option("--rig", a->rig, said + "without it: what the model is").one_of(rigs);
   verb.add_option("--out", a->out, "new folder of the dataset").required();
   verb.add_option("--with", a->bench.with,
                   "add an effect: ID.parameter=value, or ID for its typical size; several allowed");

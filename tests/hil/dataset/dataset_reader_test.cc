@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hil/text/csv_table.h"
+#include "identify/record/rig.h"
 #include "tests/identify/dataset_folder.h"
 
 namespace omnihil {
@@ -40,7 +41,7 @@ class DatasetReaderTest : public Test {
 TEST_F(DatasetReaderTest, ReadsChannelsRunsAndModel) {
   const DatasetReading r = read_dataset(folder.path());
   ASSERT_TRUE(r.dataset) << all_text(r.problems);
-  EXPECT_EQ(r.dataset->rig, Rig::kAxis);
+  EXPECT_EQ(r.dataset->rig, &rig_axis());
   EXPECT_EQ(r.dataset->name, folder.path());
   ASSERT_EQ(r.dataset->runs.size(), 2u);
   EXPECT_EQ(r.dataset->runs[0].split, Split::kTraining);

@@ -9,6 +9,7 @@
 #include "hil/logs/known_names.h"
 #include "hil/logs/log_rows.h"
 #include "hil/logs/recognise.h"
+#include "identify/record/rig.h"
 
 namespace omnihil {
 namespace {
@@ -199,8 +200,8 @@ TEST(Meaning, ANameOfTwoSignalsIsInDoubt) {
   EXPECT_NE(meaning(text).doubts[0].find("may be motor_voltage or bus_voltage"), std::string::npos)
       << meaning(text).doubts[0];
   EXPECT_TRUE(meaning(text, {{"voltage_V", "motor_voltage", "V"}}).doubts.empty());
-  EXPECT_EQ(usual_signal("battery_status.voltage", Rig::kAxis), "bus_voltage");
-  EXPECT_EQ(usual_signal("battery.current", Rig::kAxis), "");
+  EXPECT_EQ(usual_signal("battery_status.voltage", rig_axis()), "bus_voltage");
+  EXPECT_EQ(usual_signal("battery.current", rig_axis()), "");
 }
 
 TEST(Meaning, TwoDriveInputsAreInDoubt) {
@@ -211,12 +212,12 @@ TEST(Meaning, TwoDriveInputsAreInDoubt) {
 }
 
 TEST(Meaning, OfARobotNamesEndInTheWheel) {
-  EXPECT_EQ(usual_signal("duty_3", Rig::kRobot), "duty_3");
-  EXPECT_EQ(usual_signal("enc1", Rig::kRobot), "encoder_1");
-  EXPECT_EQ(usual_signal("enc0", Rig::kRobot), "");
-  EXPECT_EQ(usual_signal("enc5", Rig::kRobot), "");
-  EXPECT_EQ(usual_signal("Motor Current 4", Rig::kRobot), "motor_current_4");
-  EXPECT_EQ(usual_signal("/drive/velocity", Rig::kAxis), "velocity");
+  EXPECT_EQ(usual_signal("duty_3", rig_robot()), "duty_3");
+  EXPECT_EQ(usual_signal("enc1", rig_robot()), "encoder_1");
+  EXPECT_EQ(usual_signal("enc0", rig_robot()), "");
+  EXPECT_EQ(usual_signal("enc5", rig_robot()), "");
+  EXPECT_EQ(usual_signal("Motor Current 4", rig_robot()), "motor_current_4");
+  EXPECT_EQ(usual_signal("/drive/velocity", rig_axis()), "velocity");
 }
 
 TEST(Units, LeadToTheSignalsOwn) {

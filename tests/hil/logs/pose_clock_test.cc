@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hil/logs/pose_join.h"
+#include "identify/record/rig.h"
 #include "sim/law/random.h"
 
 namespace omnihil {
@@ -153,7 +154,7 @@ struct Drive {
   }
   JoinedPose joined() const {
     MeaningContext context;
-    context.rig = Rig::kRobot;
+    context.rig = &rig_robot();
     return join_pose(table(log), table(pose), asked, g, context, "drive.csv", "video.csv");
   }
   // Within two rows of 0.4 m/s, and as many of them as there are.

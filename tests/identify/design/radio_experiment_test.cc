@@ -3,6 +3,7 @@
 
 #include "identify/design/experiment_menu.h"
 #include "identify/design/experiment_truth.h"
+#include "identify/record/rig.h"
 #include "tests/identify/simulated_radio.h"
 
 namespace omnihil::test {
@@ -11,7 +12,7 @@ namespace {
 // Two seconds at 60 Hz of 0.8 m/s ahead; or of 20 rad/s of each wheel.
 Dataset given(bool wheels) {
   Dataset d;
-  d.rig = Rig::kRobot;
+  d.rig = &rig_robot();
   Run run;
   run.file = "drive.csv";
   for (int k = 0; k < 120; ++k) run.time_s.push_back(k / 60.0);

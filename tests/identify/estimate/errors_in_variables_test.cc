@@ -18,7 +18,7 @@ constexpr std::size_t kSamples = 20000;
 class TorqueDriven {
  public:
   TorqueDriven(const std::string& sensor, double sigma) {
-    dataset_.rig = Rig::kAxis;
+    dataset_.rig = &rig_axis();
     dataset_.channels = {{.signal = "motor_torque", .column = "tau", .unit = "N m", .sigma = 1e-4},
                          {.signal = sensor, .column = "y", .unit = "rad/s", .sigma = sigma}};
     Run run;

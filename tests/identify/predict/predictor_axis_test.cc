@@ -60,7 +60,7 @@ std::vector<double> steps(std::size_t n, double size) {
 Dataset bench(const Candidate& truth, std::size_t n, double size = 0.3) {
   constexpr double dt = 1e-3;
   Dataset d;
-  d.rig = Rig::kAxis;
+  d.rig = &rig_axis();
   d.channels = {{.signal = "duty", .column = "", .unit = "1"},
                 {.signal = "encoder", .column = "", .unit = "counts", .counts_per_rev = 4096},
                 {.signal = "motor_current", .column = "", .unit = "A", .sigma = 0.03}};
@@ -453,7 +453,7 @@ TEST(AxisPredictor, ARecordThatStartsInAStepStartsAtRest) {
   constexpr double dt = 1e-3, sigma = 0.1;
   const Candidate truth = model();
   Dataset d;
-  d.rig = Rig::kAxis;
+  d.rig = &rig_axis();
   d.channels = {{.signal = "duty", .column = "", .unit = "1"},
                 {.signal = "velocity", .column = "", .unit = "rad/s", .sigma = sigma}};
   omnihil::Run run = run_of("step.csv");

@@ -1,12 +1,11 @@
 // What the robot's model says its sensors would have shown.
-#include "identify/predict/predictor_robot.h"
-
 #include <cstdlib>
 
 #include "hil/dataset/dataset_reader.h"
 #include "identify/compare/comparison.h"
 #include "identify/estimate/fit.h"
 #include "identify/estimate/null_model.h"
+#include "identify/predict/predictor.h"
 #include "tests/identify/simulated_robot.h"
 
 namespace omnihil::test {

@@ -5,7 +5,7 @@
 #include "hil/dataset/dataset_reader.h"
 #include "identify/checks/check_data.h"
 #include "identify/estimate/fit.h"
-#include "identify/predict/predictor_robot.h"
+#include "identify/predict/predictor.h"
 #include "identify/predict/robot_motion.h"
 #include "sim/law/random.h"
 #include "sim/model/rolling_model.h"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "identify/record/rig.h"
+
 namespace omnihil {
 namespace {
 
@@ -37,14 +39,15 @@ TEST(NextExperimentTest, PlansTheRunThatShowsWhatTheseDataCouldNot) {
             "omnihil experiment run/bench --separate cogging,base --out next");
 }
 
-// Of a wheel on a bench no drive is planned.
-TEST(NextExperimentTest, AsksForNoPlanOfAWheelWhoseBenchGivesHalfOfIt) {
+TEST(NextExperimentTest, AsksForNoPlanOfARigThatHasNone) {
   Diagnosis d;
   d.confounded = {{.members = {"cogging", "imbalance"}, .sentence = {}}};
-  Dataset wheel = bench();
-  wheel.rig = Rig::kWheel;
-  EXPECT_EQ(next_experiment(wheel, d).command, "");
-  EXPECT_FALSE(next_experiment(wheel, d).what.empty());
+  Rig half = rig_axis();
+  half.no_plan = "half of its drive is the bench's";
+  Dataset given = bench();
+  given.rig = &half;
+  EXPECT_EQ(next_experiment(given, d).command, "");
+  EXPECT_FALSE(next_experiment(given, d).what.empty());
 }
 
 // Nobody sweeps time slowly in both directions.

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "identify/predict/predictor_robot.h"
+#include "identify/predict/predictor.h"
+#include "identify/record/rig.h"
 #include "identify/twin/twin_watch.h"
 #include "sim/model/rolling_model.h"
 #include "tests/identify/simulated_radio.h"
@@ -75,7 +76,7 @@ class Drive {
   }
   void simulate(const Candidate& healthy, const Candidate& broken, double at_s) {
     Dataset d;
-    d.rig = Rig::kRobot;
+    d.rig = &rig_robot();
     const auto nominal = rolling_params(healthy.file.parameters);
     const auto before = robot_values<double>(healthy, {}, 0), after = robot_values<double>(broken, {}, 0);
     RobotCarry<double> carry;

@@ -1,12 +1,11 @@
 // One wheel under a body that the bench moves.
-#include "identify/predict/predictor_wheel.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "identify/compare/comparison.h"
 #include "identify/estimate/fit.h"
+#include "identify/record/rig.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/rolling_model.h"
 #include "tests/identify/simulated_robot.h"
@@ -38,7 +37,7 @@ Candidate model(bool tyre) {
 
 Dataset bench(double duration_s, double (*duty)(double), double (*vx)(double), double vy) {
   Dataset d;
-  d.rig = Rig::kWheel;
+  d.rig = find_rig("wheel");
   Run run;
   run.file = "drive.csv";
   const auto n = static_cast<std::size_t>(duration_s * 1000.0);
