@@ -28,12 +28,14 @@ std::optional<double> force_error(const Predictor& predictor, std::span<const Pr
       const ComparedSignal& signal = predictor.compared(r)[s];
       if (signal.name != "motor_torque") continue;
       const std::vector<double>& model = predictions[static_cast<std::size_t>(r)].values[s];
+      const std::vector<double>& force_all =
+          signal.with_undetermined.empty() ? signal.measured : signal.with_undetermined;
       std::vector<double> residual, measured;
       for (std::size_t k = 0; k <= model.size(); ++k) {
-        const double e = k < model.size() ? signal.measured[k] - model[k] : NAN;
+        const double e = k < model.size() ? force_all[k] - model[k] : NAN;
         if (std::isfinite(e)) {
           residual.push_back(e);
-          measured.push_back(signal.measured[k]);
+          measured.push_back(force_all[k]);
           continue;
         }
         if (residual.size() >= kLeastSamples) {

@@ -6,6 +6,7 @@
 // force follows is the predictor's (inverse method): position low-passed with a Butterworth filter of order 4
 // at a fifth of the Nyquist frequency, forward and backward, differentiated by central differences, the ends
 // left out (A. Janot, M. Gautier, M. Brunot, Data Set and Reference Models of EMPS, 2019).
+// Over all rows, those at rest as well, where the motion does not say which force it needs: the makers' figures are.
 // None where no run of that split compares a motor_torque. `predictions`: one per run of the predictor.
 #pragma once
 #include <optional>

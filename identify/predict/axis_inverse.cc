@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "identify/predict/axis_outputs.h"
+#include "identify/predict/band_noise.h"
 #include "identify/predict/interpolation.h"
+#include "identify/predict/undetermined.h"
 #include "identify/record/statistics.h"
 #include "identify/record/wiener.h"
 #include "sim/bench/axis_signal.h"
@@ -23,6 +25,7 @@ constexpr double kMotionShareOfNyquist = 0.8;  // where a low pass of that cutof
 constexpr double kEndsInPeriods = 5.0;  // of the cutoff, left out at either end: the filter settles; a choice
 
 double cutoff_for(double rate_Hz) { return std::min(kHighestCutoff_Hz, kShareOfNyquist * 0.5 * rate_Hz); }
+constexpr double kLeastBand = 0.1;  // of that cutoff, however noisy the motion is; a choice
 LowPass filter_for(double rate_Hz) { return butterworth(kOrder, cutoff_for(rate_Hz), rate_Hz); }
 
 // An even clock of the record's median period.
@@ -48,35 +51,16 @@ std::vector<double> at_interval_end(const std::vector<double>& x) {
   return out;
 }
 
-// Mean of a linearly interpolated signal from each sample to the next.
-std::vector<double> interval_means(std::vector<double> x) {
-  for (std::size_t k = 0; k + 1 < x.size(); ++k) x[k] = 0.5 * (x[k] + x[k + 1]);
-  return x;
-}
-
-double band_noise(const std::vector<double>& raw, const std::vector<double>& low, double cutoff_Hz,
-                  double rate_Hz) {
-  // white above the cutoff, so as strong below: sigma^2 in band = sigma^2 above * fc / (f_N - fc)
-  std::vector<double> above;
-  for (std::size_t i = 0; i < raw.size(); ++i) above.push_back(std::abs(raw[i] - low[i]));
-  if (above.empty()) return 0.0;
-  return sigma_by_mad(std::move(above)) * std::sqrt(cutoff_Hz / (0.5 * rate_Hz - cutoff_Hz));
-}
-
-// What the imposed motion's own error moves the torque that it needs by, 1-sigma in the filter's band: sigma^2 = J^2 mean
-// over frequency of S_e(f) |2 sin(pi f T) / T|^2 |M(f) F(f)|^2, the inertia times the rate of change from sample to sample.
-// S_e: error of the smoothed speed (wiener.h), (rad/s)^2; M, F: low passes of the motion and of what it needs.
-double needed_torque_sigma(const std::vector<double>& speed_error, double inertia_kg_m2,
-                           const LowPass& motion, const LowPass& filter, double rate_Hz) {
-  double square = 0.0;
-  const double count = static_cast<double>(speed_error.size());
-  for (std::size_t k = 0; k < speed_error.size(); ++k) {
-    const double share = static_cast<double>(k) / (count - 1.0);
-    const double slope = 2.0 * rate_Hz * std::sin(0.5 * std::numbers::pi * share);
-    const double gain = zero_phase_gain(motion, share) * zero_phase_gain(filter, share);
-    square += speed_error[k] * std::pow(slope * gain, 2) / count;
+// Mean of a sampled signal from each sample to the next, of the cubic through four samples: that of the line loses 3 % of
+// what turns once in ten samples, where the compared band ends. The line at either end.
+std::vector<double> interval_means(const std::vector<double>& x) {
+  std::vector<double> out = x;
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    const double line = 0.5 * (x[k] + x[k + 1]);
+    const bool inside = k > 0 && k + 2 < x.size();
+    out[k] = inside ? (13.0 * (x[k] + x[k + 1]) - x[k - 1] - x[k + 2]) / 24.0 : line;
   }
-  return inertia_kg_m2 * std::sqrt(square);
+  return out;
 }
 
 // A law that is not linear (friction at a reversal) does not commute with a filter: the motion keeps what stands out of
@@ -115,6 +99,36 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
   c.noise_is_stated = stated;
   c.measured = std::move(measured);
   s.seen.push_back({.quantity = quantity});
+}
+
+// Of the needed input: samples of which the motion, or the record, does not say what it was (undetermined.h).
+struct Undetermined {
+  std::vector<bool> still, jumps;
+};
+
+// The same and `samples` to either side.
+std::vector<bool> widened(const std::vector<bool>& x, std::size_t samples) {
+  std::vector<bool> out(x.size(), false);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!x[k]) continue;
+    const std::size_t from = k - std::min(k, samples), to = std::min(x.size(), k + samples + 1);
+    std::fill(out.begin() + static_cast<std::ptrdiff_t>(from), out.begin() + static_cast<std::ptrdiff_t>(to),
+              true);
+  }
+  return out;
+}
+
+void leave_out_undetermined(const Undetermined& u, ComparedSignal& c) {
+  std::size_t still = 0, jumps = 0;
+  c.with_undetermined = c.measured;
+  for (std::size_t k = 0; k < c.measured.size(); ++k) {
+    const bool at_rest = k < u.still.size() && u.still[k], at_jump = k < u.jumps.size() && u.jumps[k];
+    if (!at_rest && !at_jump) continue;
+    c.measured[k] = kMissing;
+    ++(at_rest ? still : jumps);
+  }
+  if (still > 0) c.left_out += fmt::format(", {} samples at rest (friction takes what is asked)", still);
+  if (jumps > 0) c.left_out += fmt::format(", {} samples at jumps between two rows", jumps);
 }
 
 // Leaves out the ends, where the filter has transients, and the gaps, where samples are interpolated.
@@ -168,8 +182,6 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   const Channel* speed_channel = dataset.channel("velocity");
   const bool speed_imposed = speed_channel != nullptr && speed_channel->imposed;
   const double rate = 1.0 / r.period_s;
-  const double cutoff = cutoff_for(rate);
-  s.filter = filter_for(rate);
   AxisInput& in = s.input;
   in.kind = kind;
   in.time_s = even_clock(r);
@@ -194,8 +206,12 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     for (double& v : velocity) v *= rate;
     position = wiener_smoothed(position, NoiseSpectrum::kWhite).value;
   }
-  const LowPass motion = motion_filter(s.filter, velocity.size(), rate);
   const WienerEstimate smoothed = wiener_smoothed(velocity, spectrum);
+  // What the sensor does not resolve of the motion the torque still has: it is compared as far as both have it.
+  const double cutoff =
+      std::clamp(smoothed.resolved * 0.5 * rate, kLeastBand * cutoff_for(rate), cutoff_for(rate));
+  s.filter = butterworth(kOrder, cutoff, rate);
+  const LowPass motion = motion_filter(s.filter, velocity.size(), rate);
   const double inertia_sigma_Nm = needed_torque_sigma(
       smoothed.error_spectrum, inertia_at_rotor(drive) * drive.gear_ratio, motion, s.filter, rate);
   velocity = motion.sections.empty() ? smoothed.value : zero_phase(motion, smoothed.value);
@@ -209,11 +225,14 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   const auto add_filtered = [&](std::string_view name, std::string unit, Quantity quantity,
                                 const std::vector<double>& raw) {
     const Channel* channel = dataset.channel(name);
-    const bool stated = channel != nullptr && channel->sigma > 0.0 && quantity != Quantity::kNeededInput;
+    const bool is_input = quantity == Quantity::kNeededInput;
+    const bool stated = channel != nullptr && channel->sigma > 0.0 && (!is_input || by_torque);
     std::vector<double> low = zero_phase(s.filter, raw);
-    // white noise of the channel, in the filter's band
-    double sigma =
-        stated ? channel->sigma * std::sqrt(cutoff / (0.5 * rate)) : band_noise(raw, low, cutoff, rate);
+    // white noise of the channel, in the filter's band; a torque's is compared as the mean of two samples
+    const double band = cutoff / (0.5 * rate);
+    const bool of_means = is_input && by_torque;
+    double sigma = stated ? channel->sigma : white_noise(of_means ? linear(r.command) : raw, s.filter, band);
+    sigma *= std::sqrt(of_means ? kept_of_means(band) : kept_of_samples(band));
     if (quantity == Quantity::kLoadTorque) sigma = std::hypot(sigma, drive.gear_ratio * inertia_sigma_Nm);
     if (quantity == Quantity::kNeededInput) {
       const double bus_V = in.bus_voltage_V.empty() ? 0.0 : median(in.bus_voltage_V);
@@ -221,6 +240,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     }
     add(s, name, std::move(unit), quantity, std::move(low), sigma, stated);
   };
+  Undetermined undetermined;
   if (bench_torque) {
     add_filtered("load_torque", torque_unit(dataset), Quantity::kLoadTorque, linear(r.load_torque_Nm));
   } else if (!speed_imposed || by_torque || r.current.empty()) {
@@ -228,12 +248,21 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     in.command_is_compared = true;
     s.given = zero_phase(s.filter, input);
     add_filtered(command_name(needed_kind(kind)), needed_unit(dataset, kind), Quantity::kNeededInput, input);
+    const double speed_sigma = rms_of_spectrum(smoothed.error_spectrum);
+    const auto of_filter = static_cast<std::size_t>(rate / cutoff + 0.5);  // samples of its time
+    undetermined.still = widened(standing_still(velocity, speed_sigma, of_filter), of_filter / 2);
+    if (by_torque)
+      undetermined.jumps = unresolved_jumps(linear(r.command), cutoff / (0.5 * rate),
+                                            s.compared.back().noise_sigma, of_filter);
   }
   if (!r.current.empty() && !by_torque)
     add_filtered("motor_current", "A", Quantity::kCurrent, s.measured_current);
   if (!r.temperature.empty() && !by_torque)
     add_filtered("winding_temperature", "degC", Quantity::kTemperature, s.measured_temperature);
   leave_out(r, kEndsInPeriods / cutoff, s);
+  for (ComparedSignal& c : s.compared) {
+    if (c.name == command_name(needed_kind(kind))) leave_out_undetermined(undetermined, c);
+  }
 }
 
 void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {

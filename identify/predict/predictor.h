@@ -54,6 +54,9 @@ struct ComparedSignal {
   // its own period.
   double averaging_s = 0.0;
   std::string left_out;  // how many samples were left out and why; empty: none
+  // `measured` with the samples of which the imposed motion does not say what they should be (undetermined.h): for figures that
+  // others took over all rows. Empty: there are none.
+  std::vector<double> with_undetermined;
 };
 
 // A regime variable at each compared sample, along which errors are sorted into bins: measured, else the

@@ -83,7 +83,11 @@ std::vector<double> central_differences(std::span<const double> x) {
   const std::size_t n = x.size();
   std::vector<double> d(n, 0.0);
   if (n < 2) return d;
-  for (std::size_t i = 1; i + 1 < n; ++i) d[i] = 0.5 * (x[i + 1] - x[i - 1]);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    d[i] = 0.5 * (x[i + 1] - x[i - 1]);
+    // -x'''/6 of it, by the samples beyond
+    if (i > 1 && i + 2 < n) d[i] += (2.0 * (x[i + 1] - x[i - 1]) - (x[i + 2] - x[i - 2])) / 12.0;
+  }
   d[0] = x[1] - x[0];
   d[n - 1] = x[n - 1] - x[n - 2];
   return d;

@@ -34,7 +34,8 @@ std::vector<double> zero_phase(const LowPass& filter, std::span<const double> x)
 // Every column of [n samples x m] by itself.
 Eigen::MatrixXd zero_phase(const LowPass& filter, const Eigen::MatrixXd& columns);
 
-// Slope per sample (x's unit) by central differences, one-sided at the ends; n samples to n.
+// Slope per sample (x's unit) by central differences of the fourth order, one-sided at the ends; n samples to n. Gain over
+// that of a slope: (8 sin w - sin 2w) / (6 w), w = 2 pi f T; 0.5 % are lost at a tenth of the rate.
 std::vector<double> central_differences(std::span<const double> x);
 
 }  // namespace omnihil

@@ -56,19 +56,23 @@ Periodogram welch(std::span<const double> x, std::size_t length) {
 }
 
 double shape_of(NoiseSpectrum noise, double share_of_nyquist) {
-  const double s = std::sin(std::numbers::pi * share_of_nyquist);
-  return noise == NoiseSpectrum::kWhite ? 1.0 : s * s;
+  const double turn = std::numbers::pi * share_of_nyquist;
+  const double slope = (8.0 * std::sin(turn) - std::sin(2.0 * turn)) / 6.0;
+  return noise == NoiseSpectrum::kWhite ? 1.0 : slope * slope;
 }
 
 // The noise's power at the frequencies of the periodogram.
-std::vector<double> noise_of(const std::vector<double>& power, NoiseSpectrum noise) {
+std::vector<double> noise_of(const Periodogram& periodogram, NoiseSpectrum noise) {
+  const std::vector<double>& power = periodogram.power;
   const double top = static_cast<double>(power.size() - 1);
   std::vector<double> level;
   for (std::size_t k = 0; k < power.size(); ++k) {
     const double share = static_cast<double>(k) / top;
     if (share >= kNoiseFrom && share <= kNoiseTo) level.push_back(power[k] / shape_of(noise, share));
   }
-  const double size = median(std::move(level));
+  // median over mean of a chi-square of n degrees, (1 - 2 / (9 n))^3 (Wilson, Hilferty 1931); n from the relative deviation above
+  const double degrees = 2.0 * periodogram.segments / (1.03 * 1.03);
+  const double size = median(std::move(level)) / std::pow(1.0 - 2.0 / (9.0 * degrees), 3);
   std::vector<double> out;
   for (std::size_t k = 0; k < power.size(); ++k)
     out.push_back(size * shape_of(noise, static_cast<double>(k) / top));
@@ -113,10 +117,19 @@ WienerEstimate wiener_smoothed(std::span<const double> x, NoiseSpectrum noise) {
     return out;
   }
   const Periodogram periodogram = welch(x, segment_length(n));
-  const std::vector<double> noise_power = noise_of(periodogram.power, noise);
+  const std::vector<double> noise_power = noise_of(periodogram, noise);
   const std::vector<double> gain = gain_of(periodogram, noise_power);
-  for (std::size_t k = 0; k < gain.size(); ++k)
-    out.error_spectrum.push_back(gain[k] * noise_power[k] / periodogram.window_square);
+  for (std::size_t k = 0; k < gain.size(); ++k) {
+    // on average the motion there; above, where the noise is looked for, none
+    const double share = static_cast<double>(k) / static_cast<double>(gain.size() - 1);
+    const double lost = share < kNoiseFrom ? periodogram.power[k] - noise_power[k] : 0.0;
+    out.error_spectrum.push_back((gain[k] > 0.0 ? gain[k] * noise_power[k] : lost) /
+                                 periodogram.window_square);
+  }
+  auto last = static_cast<std::size_t>(
+      kNoiseTo * static_cast<double>(gain.size() - 1));  // differences have no noise beyond
+  while (last > 1 && gain[last] < 0.5) --last;
+  out.resolved = static_cast<double>(last) / static_cast<double>(gain.size() - 1);
   const std::vector<double> h = kernel_of(gain);
   const std::size_t pad = h.size() - 1;
   // continued point-symmetrically at either end

@@ -290,6 +290,8 @@ TEST(AxisPredictor, SimulatedIsTheTruthThroughTheSensors) {
 // Linear motor: 95 kg, 200 N s/m, driven by a smooth force; its position read with white noise.
 struct ForceRecipe {
   double position_sigma_m = 0.0, period_s = 1e-3;
+  double force_Hz = 2.0, force_sigma_N = 0.0;
+  bool force_sigma_stated = false;
   std::string more = {};  // of the model file
 };
 struct ForceDriven {
@@ -311,21 +313,25 @@ ForceDriven force_driven(const ForceRecipe& recipe) {
                 {.signal = "position", .column = "", .unit = "m"}};
   AxisInput in;
   in.kind = CommandKind::kMotorTorque;
-  std::vector<double> sampled;
-  for (int k = 0; k < 3000; ++k) {
-    in.time_s.push_back(recipe.period_s * k);
-    const auto force_N = [](double t) { return 40.0 * std::sin(2.0 * std::numbers::pi * 2.0 * t); };
-    sampled.push_back(force_N(recipe.period_s * k));
-    in.command.push_back(
-        force_N(recipe.period_s * (k + 0.5)));  // what acts until the next sample, on average
+  const auto force_N = [&](double t) {
+    return 40.0 * std::sin(2.0 * std::numbers::pi * recipe.force_Hz * t);
+  };
+  constexpr int kRows = 3000, kSteps = 10;  // a held force is no sine: steps between the rows
+  const double step_s = recipe.period_s / kSteps;
+  for (int n = 0; n < kRows * kSteps; ++n) {
+    in.time_s.push_back(step_s * n);
+    in.command.push_back(force_N(step_s * (n + 0.5)));  // what acts until the next step, on average
   }
   omnihil::Run run = run_of("f.csv");
-  run.time_s = in.time_s;
-  run.signals["motor_torque"] = sampled;
-  for (const auto& s : run_axis<double>(drive_of(out.truth), EffectSet<double>(out.truth.effects), in)) {
-    const std::size_t k = run.signals["position"].size();
-    run.signals["position"].push_back(s.position_rad + recipe.position_sigma_m * gaussian(3, 1, k));
+  const auto moved = run_axis<double>(drive_of(out.truth), EffectSet<double>(out.truth.effects), in);
+  for (std::size_t k = 0; k < kRows; ++k) {
+    const double time_s = recipe.period_s * static_cast<double>(k);
+    run.time_s.push_back(time_s);
+    run.signals["motor_torque"].push_back(force_N(time_s) + recipe.force_sigma_N * gaussian(3, 2, k));
+    run.signals["position"].push_back(moved[k * kSteps].position_rad +
+                                      recipe.position_sigma_m * gaussian(3, 1, k));
   }
+  if (recipe.force_sigma_stated) d.channels[0].sigma = recipe.force_sigma_N;
   d.runs = {run};
   out.predictor = make_predictor(d, out.truth, {});
   return out;
@@ -341,6 +347,13 @@ TEST(AxisPredictor, ATorqueDrivenMotionNeedsTheTorqueThatMadeIt) {
   EXPECT_GT(rms(p->compared(0)[0].measured, p->predict(light, 0).values[0]), 0.01 * 40.0);
 }
 
+// The force between two rows, where the compared band ends (a tenth of the rate): a line from row to row lacks 3 % of it.
+TEST(AxisPredictor, ATorqueBetweenRowsIsThatOfACurveThroughThem) {
+  const auto [truth, p] = force_driven({.period_s = 1e-2, .force_Hz = 9.0});
+  EXPECT_LT(rms(p->compared(0)[0].measured, p->predict(truth, 0).values[0]),
+            0.005 * 40.0 / std::numbers::sqrt2);
+}
+
 // A command has no noise of its own: what the right model leaves is the position's noise, by the mass.
 TEST(AxisPredictor, TheNoiseOfANeededTorqueIsThatOfTheMotionTimesTheInertia) {
   for (const double sigma_m : {1e-6, 3e-6, 1e-5}) {
@@ -348,6 +361,21 @@ TEST(AxisPredictor, TheNoiseOfANeededTorqueIsThatOfTheMotionTimesTheInertia) {
     const ComparedSignal& force = p->compared(0)[0];
     const double left_N = rms(force.measured, p->predict(truth, 0).values[0]);
     EXPECT_NEAR(force.noise_sigma / left_N, 1.0, 0.3) << sigma_m << " m: " << left_N << " N";
+  }
+}
+
+// A torque that is measured (a drive's own current) has noise, of which the compared band keeps its share, be it stated or not.
+TEST(AxisPredictor, TheNoiseOfAMeasuredTorqueIsWhatItsBandKeeps) {
+  for (const bool stated : {false, true}) {
+    for (const double period_s : {1e-3, 1e-2}) {
+      const auto [truth, p] =
+          force_driven({.period_s = period_s, .force_sigma_N = 0.5, .force_sigma_stated = stated});
+      const ComparedSignal& force = p->compared(0)[0];
+      const double left_N = rms(force.measured, p->predict(truth, 0).values[0]);
+      EXPECT_NEAR(force.noise_sigma / left_N, 1.0, 0.1)
+          << stated << " " << period_s << ": " << left_N << " N";
+      EXPECT_EQ(force.noise_is_stated, stated);
+    }
   }
 }
 

@@ -87,12 +87,12 @@ TEST(Wiener, TakesMostOfWhiteNoise) {
   EXPECT_LT(mean_square(y), 0.01);
 }
 
-// The noise of the slope, sigma / (sqrt(2) T), is as large as the slope itself: least squares give half the coefficient.
+// The noise of the slope, sqrt(130 / 144) sigma / T by the four samples' weights, is as large as the slope itself: least squares give half the coefficient.
 TEST(Wiener, TheCoefficientOfASlopeIsNotPulledLow) {
   double power = 0.0;
   for (int i = 0; i < 3; ++i)
     power += 0.5 * std::pow(Motion::kSize[i] * 2.0 * std::numbers::pi * Motion::kHz[i], 2);
-  const double sigma = std::sqrt(2.0 * power) * kPeriod_s;
+  const double sigma = std::sqrt(144.0 / 130.0 * power) * kPeriod_s;
   const std::vector<double> measured = motion_with(white(sigma));
   EXPECT_NEAR(coefficient(slope_of(measured)), 0.5, 0.02);
   EXPECT_NEAR(coefficient(slope_of(wiener_smoothed(measured, NoiseSpectrum::kWhite).value)), 1.0, 0.01);
@@ -130,6 +130,18 @@ TEST(Wiener, TheErrorThatIsSaidIsTheErrorThatIsLeft) {
     const double said = mean(wiener_smoothed(measured, NoiseSpectrum::kWhite).error_spectrum);
     EXPECT_NEAR(std::sqrt(said / left), 1.0, 0.3) << sigma;
   }
+}
+
+// A motion that nowhere stands out of the noise is lost, and that is said.
+TEST(Wiener, TheErrorThatIsSaidHasTheMotionThatIsLost) {
+  // below 100 Hz half of the noise's power
+  const std::vector<double> truth = zero_phase(butterworth(4, 100.0, 1.0 / kPeriod_s), white(0.7));
+  std::vector<double> measured = truth;
+  for (std::size_t k = 0; k < kSamples; ++k) measured[k] += gaussian(5, 2, k);
+  const WienerEstimate estimate = wiener_smoothed(measured, NoiseSpectrum::kWhite);
+  std::vector<double> off = estimate.value;
+  for (std::size_t k = 0; k < kSamples; ++k) off[k] -= truth[k];
+  EXPECT_NEAR(mean(estimate.error_spectrum) / mean_square({off.begin() + 1000, off.end() - 1000}), 1.0, 0.3);
 }
 
 TEST(Wiener, AShortRecordStaysAsItIs) {

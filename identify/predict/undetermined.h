@@ -1,0 +1,24 @@
+// Where an imposed motion does not say which torque it needs.
+//
+//   std::vector<bool> still = standing_still(speed, 0.01, 10);         // true: ten samples or more within 4 sigma of zero
+//   std::vector<bool> jumps = unresolved_jumps(torque, 0.2, 1e-4, 10);  // true: within ten samples of such a jump
+//
+// At rest dry friction takes whatever is asked, up to what holds: no law of the motion says how much. And a torque that jumps
+// between two rows may have acted from any instant between them: the mean from row to row is known to the jump over sqrt(12)
+// (uniform), of which a low pass of band b (share of half the rate) shows b at most.
+// Cannot: say what holds (a breakaway torque shows where the motion begins); see a jump that the rows around it follow.
+#pragma once
+#include <span>
+#include <vector>
+
+namespace omnihil {
+
+// [n] from n speeds in any unit; `sigma`: their 1-sigma error in that unit; runs of `samples` and more.
+std::vector<bool> standing_still(std::span<const double> speed, double sigma, std::size_t samples);
+
+// [n] from n torques; `band` as above, 0 to 1; `sigma`: 1-sigma of the compared torque in the torque's unit; `samples`: of the
+// low pass to either side of a jump. None where that would be more than half of the record: its input is made of jumps.
+std::vector<bool> unresolved_jumps(std::span<const double> torque, double band, double sigma,
+                                   std::size_t samples);
+
+}  // namespace omnihil
