@@ -107,6 +107,7 @@ def classes():
     import outside
     import radio_case
     import robot_case
+    import torque_case
 
     strange, broken = outside.names(), list(faults.KINDS)
     bots = [e.id for e in robot_effects.EFFECTS]
@@ -135,6 +136,16 @@ def classes():
             "closed-loop record, no hidden effect",
             [()] * 12,
             lambda c, f: axis_case.make_control_case(f, c.key, closed_loop=True),
+        ),
+        "torque": Class(
+            "torque-driven record, one hidden effect",
+            [(torque_case.IDS[k % len(torque_case.IDS)],) for k in range(4 * len(torque_case.IDS))],
+            lambda c, f: torque_case.make_case(f, c.key, c.what, _shares(c)),
+        ),
+        "torque-control": Class(
+            "torque-driven record, no hidden effect",
+            [()] * 24,
+            lambda c, f: torque_case.make_case(f, c.key, (), 0),
         ),
         "outside": Class(
             "something no list of effects has",

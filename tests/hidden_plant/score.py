@@ -220,6 +220,11 @@ def summary(rows):
         "robot false alarm": rate(get("robot-control"), alarm),
         "closed-loop false alarm": rate(get("loop-control"), alarm),
         "closed-loop first": rate(large(get("loop")), lambda r: r["first"]),
+        "torque-driven first": rate(large(get("torque")), lambda r: r["first"]),
+        "torque-driven false alarm": rate(get("torque-control"), alarm),
+        "torque-driven extra names": statistics.fmean([r["extra"] for r in get("torque")])
+        if get("torque")
+        else math.nan,
         "pair both": rate(large(get("pair")), lambda r: r["all"]),
         "pair one": rate(large(get("pair")), lambda r: r["first"] or r["extra"] < len(r["named"])),
         "outside unknown": rate(get("outside"), lambda r: r["verdict"] == "unknown"),

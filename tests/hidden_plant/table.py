@@ -69,7 +69,7 @@ def confusion(rows):
     for r in rows:
         if (
             len(r["true"]) == 1
-            and r["class"] in ("single", "generic", "loop", "robot", "radio")
+            and r["class"] in ("single", "generic", "loop", "torque", "robot", "radio")
             and r["shares"][0] >= 0.15
         ):
             said = r["named"][0] if r["named"] else f"({r['verdict'] or 'no answer'})"
@@ -88,7 +88,7 @@ def confusion(rows):
 def others(rows):
     """What was said where nothing of the catalogue was hidden, and about pairs."""
     lines = []
-    for cls in ("control", "loop-control", "robot-control", "outside", "fault", "pair"):
+    for cls in ("control", "loop-control", "torque-control", "robot-control", "outside", "fault", "pair"):
         for r in rows:
             if r["class"] != cls:
                 continue
