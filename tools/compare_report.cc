@@ -187,6 +187,7 @@ std::string compare_json(const CompareReport& r) {
                             {"sentence", w.sentence}});
   }
   out["runs"] = runs_json(r);
+  if (!r.left_out.empty()) out["left_out"] = r.left_out;
   for (const auto& [split, error] : r.force_errors)
     out["relative_force_error"][std::string(split_name(split))] = number(error);
   for (const auto& [signal, offset] : r.offsets) {

@@ -170,6 +170,8 @@ def section(name, facts, readme, results):
     comparison_path = results / f"{name}.compare.json"
     comparison = json.loads(comparison_path.read_text()) if comparison_path.exists() else {}
     beside, misses = beside_best_known(section_of(readme, name), name, comparison)
+    if left_out := comparison.get("left_out"):
+        lines += ["Not compared: " + "; ".join(left_out) + ".", ""]
     lines += [*beside, "", *unexplained(d)]
     missed = ", ".join(f"{use} by {by:.0f} %" for use, by in misses.items())
     reached = any(line.endswith("| reached |") for line in beside)

@@ -15,7 +15,7 @@ from share import size_for, solve
 
 RUN_S = 16.0
 CONTROL_S = 0.5e-3
-REST_RAD_S = 0.05
+REST_RAD_S, JUMP = 0.05, 0.1  # the latter a share of the largest torque
 SETPOINT_S = 0.03  # time constant of the controller's filter of its targets
 PERIODS_S = (1e-3, 2e-3, 5e-3, 10e-3)  # of a row: 1 kHz of a drive's own log, 100 Hz of a host that asks
 IDS = (
@@ -27,7 +27,6 @@ IDS = (
     "gear_efficiency",
     "quadratic_drag",
     "cogging",
-    "torque_ripple",
     "gravity_load",
     "imbalance",
     "constant_load",
@@ -121,9 +120,13 @@ class Ruler:
         rows = drive(rig, quiet, self.asked, self.period_s, self.gain_per_s)
         angle = [2 * math.pi * counts / 1e9 for _, counts, _ in rows]
         h, columns, left = self.period_s, [[], [], []], []
-        for before, now, after, row in zip(angle, angle[1:], angle[2:], rows[1:]):
+        torque = [amps * t["flux_Vs"] for amps, _, _ in rows]
+        jump = [abs(b - a) > JUMP * 32e-3 * rig.torque_scale for a, b in zip(torque, torque[1:] + torque[-1:])]
+        near = smooth(jump, 2)
+        for before, now, after, row, jumps in zip(angle, angle[1:], angle[2:], rows[1:], near[1:]):
             speed, acceleration = (after - before) / (2 * h), (after - 2 * now + before) / h**2
-            moves = abs(speed) > REST_RAD_S  # at rest dry friction takes what is asked
+            # at rest dry friction takes what is asked; a jump between two rows may have been at any time between them
+            moves = abs(speed) > REST_RAD_S and jumps == 0
             terms = (inertia(t, rig) * acceleration, t["viscous_Nms"] * speed, t["dry_Nm"] * math.copysign(1, speed))
             left.append(row[0] * t["flux_Vs"] - sum(terms) if moves else 0.0)
             for column, term in zip(columns, terms):
