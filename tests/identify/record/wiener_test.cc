@@ -87,7 +87,8 @@ TEST(Wiener, TakesMostOfWhiteNoise) {
   EXPECT_LT(mean_square(y), 0.01);
 }
 
-// The noise of the slope, sqrt(130 / 144) sigma / T by the four samples' weights, is as large as the slope itself: least squares give half the coefficient.
+// The noise of the slope, sqrt(130 / 144) sigma / T by the four samples' weights, is as large as the slope
+// itself: least squares give half the coefficient.
 TEST(Wiener, TheCoefficientOfASlopeIsNotPulledLow) {
   double power = 0.0;
   for (int i = 0; i < 3; ++i)
