@@ -101,6 +101,9 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
   s.seen.push_back({.quantity = quantity});
 }
 
+constexpr std::size_t kLeastRest =
+    3;  // samples: a motion that turns round is within its error for one or two; a choice
+
 // Of the needed input: samples of which the motion, or the record, does not say what it was (undetermined.h).
 struct Undetermined {
   std::vector<bool> still, jumps;
@@ -250,7 +253,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     add_filtered(command_name(needed_kind(kind)), needed_unit(dataset, kind), Quantity::kNeededInput, input);
     const double speed_sigma = rms_of_spectrum(smoothed.error_spectrum);
     const auto of_filter = static_cast<std::size_t>(rate / cutoff + 0.5);  // samples of its time
-    undetermined.still = widened(standing_still(velocity, speed_sigma, of_filter), of_filter / 2);
+    undetermined.still = widened(standing_still(velocity, speed_sigma, kLeastRest), of_filter / 2);
     if (by_torque)
       undetermined.jumps = unresolved_jumps(linear(r.command), cutoff / (0.5 * rate),
                                             s.compared.back().noise_sigma, of_filter);
