@@ -101,8 +101,24 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
   s.seen.push_back({.quantity = quantity});
 }
 
-constexpr std::size_t kLeastRest =
-    3;  // samples: a motion that turns round is within its error for one or two; a choice
+// Rows over which a sensor is asked whether anything moves: half of the filter's time, and three, for a motion that turns
+// round is within the sensor's error for one or two. A choice.
+constexpr std::size_t kLeastRest = 3;
+constexpr double kRest_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
+
+// Where the sensor sees no motion: a position, or else the sum of the speeds, that changes by no more than its noise.
+std::vector<bool> rest_of(const AxisRecord& r, const std::vector<double>& clock, std::size_t of_filter) {
+  const std::size_t window = std::max(kLeastRest, of_filter / 2);
+  if (const std::vector<double> x = resampled(r.time_s, position_of(r), clock); !x.empty()) {
+    const NoiseEstimate noise = estimate_noise(position_of(r));
+    return standing_still(x, std::max(noise.quantum, kRest_sigmas * std::numbers::sqrt2 * noise.sigma),
+                          window);
+  }
+  std::vector<double> sum = resampled(r.time_s, r.velocity, clock);
+  const double sigma = estimate_noise(r.velocity).sigma;
+  for (std::size_t k = 1; k < sum.size(); ++k) sum[k] += sum[k - 1];
+  return standing_still(sum, kRest_sigmas * sigma * std::sqrt(static_cast<double>(window)), window);
+}
 
 // Of the needed input: samples of which the motion, or the record, does not say what it was (undetermined.h).
 struct Undetermined {
@@ -251,9 +267,8 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     in.command_is_compared = true;
     s.given = zero_phase(s.filter, input);
     add_filtered(command_name(needed_kind(kind)), needed_unit(dataset, kind), Quantity::kNeededInput, input);
-    const double speed_sigma = rms_of_spectrum(smoothed.error_spectrum);
     const auto of_filter = static_cast<std::size_t>(rate / cutoff + 0.5);  // samples of its time
-    undetermined.still = widened(standing_still(velocity, speed_sigma, kLeastRest), of_filter / 2);
+    undetermined.still = widened(rest_of(r, in.time_s, of_filter), of_filter / 2);
     if (by_torque)
       undetermined.jumps = unresolved_jumps(linear(r.command), cutoff / (0.5 * rate),
                                             s.compared.back().noise_sigma, of_filter);

@@ -36,10 +36,4 @@ double needed_torque_sigma(const std::vector<double>& speed_error, double inerti
   return inertia_kg_m2 * std::sqrt(std::max(0.0, square));
 }
 
-double rms_of_spectrum(const std::vector<double>& spectrum) {
-  double sum = 0.0;
-  for (const double v : spectrum) sum += v;
-  return spectrum.empty() ? 0.0 : std::sqrt(std::max(0.0, sum / static_cast<double>(spectrum.size())));
-}
-
 }  // namespace omnihil

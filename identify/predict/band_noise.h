@@ -25,7 +25,4 @@ double kept_of_means(double band);
 double needed_torque_sigma(const std::vector<double>& speed_error, double inertia_kg_m2,
                            const LowPass& motion, const LowPass& filter, double rate_Hz);
 
-// Root of the mean, of a spectrum whose mean is a variance; 0 where chance makes that negative.
-double rms_of_spectrum(const std::vector<double>& spectrum);
-
 }  // namespace omnihil

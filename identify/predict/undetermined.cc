@@ -5,16 +5,12 @@
 
 namespace omnihil {
 
-std::vector<bool> standing_still(std::span<const double> speed, double sigma, std::size_t samples) {
-  constexpr double kWithin_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
-  std::vector<bool> out(speed.size(), false);
-  for (std::size_t from = 0; from < speed.size();) {
-    std::size_t to = from;
-    while (to < speed.size() && std::abs(speed[to]) <= kWithin_sigmas * sigma) ++to;
-    if (to - from >= std::max<std::size_t>(samples, 1))
-      std::fill(out.begin() + static_cast<std::ptrdiff_t>(from),
-                out.begin() + static_cast<std::ptrdiff_t>(to), true);
-    from = to + 1;
+std::vector<bool> standing_still(std::span<const double> position, double limit, std::size_t window) {
+  std::vector<bool> out(position.size(), false);
+  for (std::size_t k = 0; k + window < position.size(); ++k) {
+    if (std::abs(position[k + window] - position[k]) > limit) continue;
+    const auto from = out.begin() + static_cast<std::ptrdiff_t>(k);
+    std::fill(from, from + static_cast<std::ptrdiff_t>(window + 1), true);
   }
   return out;
 }

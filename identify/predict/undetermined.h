@@ -1,6 +1,6 @@
 // Where an imposed motion does not say which torque it needs.
 //
-//   std::vector<bool> still = standing_still(speed, 0.01, 10);         // true: ten samples or more within 4 sigma of zero
+//   std::vector<bool> still = standing_still(position, 1.5e-3, 10);    // true: within ten rows it moves a count at most
 //   std::vector<bool> jumps = unresolved_jumps(torque, 0.2, 1e-4, 10);  // true: within ten samples of such a jump
 //
 // At rest dry friction takes whatever is asked, up to what holds: no law of the motion says how much. And a torque that jumps
@@ -13,8 +13,8 @@
 
 namespace omnihil {
 
-// [n] from n speeds in any unit; `sigma`: their 1-sigma error in that unit; runs of `samples` and more.
-std::vector<bool> standing_still(std::span<const double> speed, double sigma, std::size_t samples);
+// [n] from n positions in any unit: rows of a window of `window` steps between whose ends it changes by `limit` at most.
+std::vector<bool> standing_still(std::span<const double> position, double limit, std::size_t window);
 
 // [n] from n torques; `band` as above, 0 to 1; `sigma`: 1-sigma of the compared torque in the torque's unit; `samples`: of the
 // low pass to either side of a jump. None where that would be more than half of the record: its input is made of jumps.

@@ -119,13 +119,8 @@ WienerEstimate wiener_smoothed(std::span<const double> x, NoiseSpectrum noise) {
   const Periodogram periodogram = welch(x, segment_length(n));
   const std::vector<double> noise_power = noise_of(periodogram, noise);
   const std::vector<double> gain = gain_of(periodogram, noise_power);
-  for (std::size_t k = 0; k < gain.size(); ++k) {
-    // on average the motion there; above, where the noise is looked for, none
-    const double share = static_cast<double>(k) / static_cast<double>(gain.size() - 1);
-    const double lost = share < kNoiseFrom ? periodogram.power[k] - noise_power[k] : 0.0;
-    out.error_spectrum.push_back((gain[k] > 0.0 ? gain[k] * noise_power[k] : lost) /
-                                 periodogram.window_square);
-  }
+  for (std::size_t k = 0; k < gain.size(); ++k)
+    out.error_spectrum.push_back(gain[k] * noise_power[k] / periodogram.window_square);
   auto last = static_cast<std::size_t>(
       kNoiseTo * static_cast<double>(gain.size() - 1));  // differences have no noise beyond
   while (last > 1 && gain[last] < 0.5) --last;
