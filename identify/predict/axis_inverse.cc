@@ -101,23 +101,15 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
   s.seen.push_back({.quantity = quantity});
 }
 
-// Rows over which a sensor is asked whether anything moves: half of the filter's time, and three, for a motion that turns
-// round is within the sensor's error for one or two. A choice.
-constexpr std::size_t kLeastRest = 3;
-constexpr double kRest_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
-
-// Where the sensor sees no motion: a position, or else the sum of the speeds, that changes by no more than its noise.
+// Where the sensor sees no motion: a count that stays within one step (less than two) for half of the filter's time. (By a sensor without steps a rest
+// cannot be told from a motion that turns round.)
 std::vector<bool> rest_of(const AxisRecord& r, const std::vector<double>& clock, std::size_t of_filter) {
-  const std::size_t window = std::max(kLeastRest, of_filter / 2);
-  if (const std::vector<double> x = resampled(r.time_s, position_of(r), clock); !x.empty()) {
-    const NoiseEstimate noise = estimate_noise(position_of(r));
-    return standing_still(x, std::max(noise.quantum, kRest_sigmas * std::numbers::sqrt2 * noise.sigma),
-                          window);
-  }
-  std::vector<double> sum = resampled(r.time_s, r.velocity, clock);
-  const double sigma = estimate_noise(r.velocity).sigma;
-  for (std::size_t k = 1; k < sum.size(); ++k) sum[k] += sum[k - 1];
-  return standing_still(sum, kRest_sigmas * sigma * std::sqrt(static_cast<double>(window)), window);
+  const std::vector<double> x = resampled(r.time_s, position_of(r), clock);
+  const bool counted = r.position.empty() && !r.counts.empty();
+  const double quantum = x.empty() ? 0.0
+                         : counted ? 1.0 / std::abs(r.counts_per_output_rad)
+                                   : estimate_noise(r.position).quantum;
+  return quantum > 0.0 ? standing_still(x, 1.5 * quantum, of_filter / 2) : std::vector<bool>();
 }
 
 // Of the needed input: samples of which the motion, or the record, does not say what it was (undetermined.h).

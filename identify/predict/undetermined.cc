@@ -8,7 +8,8 @@ namespace omnihil {
 std::vector<bool> standing_still(std::span<const double> position, double limit, std::size_t window) {
   std::vector<bool> out(position.size(), false);
   for (std::size_t k = 0; k + window < position.size(); ++k) {
-    if (std::abs(position[k + window] - position[k]) > limit) continue;
+    const auto [low, high] = std::ranges::minmax(position.subspan(k, window + 1));
+    if (!(high - low <= limit)) continue;
     const auto from = out.begin() + static_cast<std::ptrdiff_t>(k);
     std::fill(from, from + static_cast<std::ptrdiff_t>(window + 1), true);
   }

@@ -13,7 +13,7 @@
 
 namespace omnihil {
 
-// [n] from n positions in any unit: rows of a window of `window` steps between whose ends it changes by `limit` at most.
+// [n] from n positions in any unit: rows of a window of `window` steps in which it stays within `limit`.
 std::vector<bool> standing_still(std::span<const double> position, double limit, std::size_t window);
 
 // [n] from n torques; `band` as above, 0 to 1; `sigma`: 1-sigma of the compared torque in the torque's unit; `samples`: of the
