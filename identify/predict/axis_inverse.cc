@@ -101,8 +101,8 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
   s.seen.push_back({.quantity = quantity});
 }
 
-// Where the sensor sees no motion: a count that stays within one step (less than two) for half of the filter's time. (By a sensor without steps a rest
-// cannot be told from a motion that turns round.)
+// Where the sensor sees no motion: a count that stays within one step (less than two) for half of the filter's time. (By a sensor
+// without steps a rest cannot be told from a motion that turns round.)
 std::vector<bool> rest_of(const AxisRecord& r, const std::vector<double>& clock, std::size_t of_filter) {
   const std::vector<double> x = resampled(r.time_s, position_of(r), clock);
   const bool counted = r.position.empty() && !r.counts.empty();
