@@ -269,8 +269,8 @@ int robot_run_changed(const RobotParams *p, const RobotParams *q, int change, co
     if (p->radio) {
       const double none[3] = {0};
       const int heard = (int)floor(k - p->late_radio_s / p->sample_s + 1e-9);
-      firmware_tick(&firmware, p, heard < 0 ? none : asked + BOT_ASKED * heard, out + k * BOT_COLUMNS + BOT_COUNTS,
-                    r.bus, duty);
+      firmware_tick(&firmware, p, heard < 0 ? none : asked + BOT_ASKED * heard,
+                    out + k * BOT_COLUMNS + BOT_COUNTS, r.bus, duty);
       for (int i = 0; i < 4; i++) out[k * BOT_COLUMNS + BOT_SPEED + i] = firmware.speed[i] / p->gear;
     }
     memset(charge, 0, sizeof charge);
