@@ -101,15 +101,22 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
   s.seen.push_back({.quantity = quantity});
 }
 
-// Where the sensor sees no motion: a count that stays within one step (less than two) for half of the filter's time. (By a sensor
-// without steps a rest cannot be told from a motion that turns round.)
+// Where the sensor sees no motion for half of the filter's time: a count that stays within one step (less than two), or without
+// a position every speed within four sigmas of zero. (By a position without steps a rest cannot be told from a turn.)
 std::vector<bool> rest_of(const AxisRecord& r, const std::vector<double>& clock, std::size_t of_filter) {
-  const std::vector<double> x = resampled(r.time_s, position_of(r), clock);
-  const bool counted = r.position.empty() && !r.counts.empty();
-  const double quantum = x.empty() ? 0.0
-                         : counted ? 1.0 / std::abs(r.counts_per_output_rad)
-                                   : estimate_noise(r.position).quantum;
-  return quantum > 0.0 ? standing_still(x, 1.5 * quantum, of_filter / 2) : std::vector<bool>();
+  constexpr double kWithin_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
+  const std::size_t window = of_filter / 2;
+  if (const std::vector<double> x = resampled(r.time_s, position_of(r), clock); !x.empty()) {
+    const bool counted = r.position.empty() && !r.counts.empty();
+    const double quantum =
+        counted ? 1.0 / std::abs(r.counts_per_output_rad) : estimate_noise(r.position).quantum;
+    return quantum > 0.0 ? standing_still(x, 1.5 * quantum, window) : std::vector<bool>();
+  }
+  const double limit = kWithin_sigmas * estimate_noise(r.velocity).sigma;
+  std::vector<double> moving = resampled(r.time_s, r.velocity, clock);  // rows so far that do
+  double rows = 0.0;
+  for (double& v : moving) v = rows += std::abs(v) > limit ? 1.0 : 0.0;
+  return standing_still(moving, 0.0, window);
 }
 
 // Of the needed input: samples of which the motion, or the record, does not say what it was (undetermined.h).
