@@ -1,5 +1,4 @@
 """One axis record with its answer: a bench is drawn, something is hidden in it or nothing, three runs are recorded."""
-import dataclasses
 import hashlib
 import random
 
@@ -8,7 +7,7 @@ import plant
 from axis_effects import BY_ID, EFFECTS, same_law, size_range
 from axis_rig import MODEL_KEY, draw_rig, model_sections
 from excitation import LOOP_POOL, PLAIN, POOL, SERVO_POOL
-from share import Ruler, size_for
+from share import Ruler, hidden_at
 
 DT = 1e-3
 ROWS = 20000
@@ -18,15 +17,6 @@ def source(*key):
     """A random source that depends on nothing but its key."""
     digest = hashlib.sha256("/".join(["omnihil hidden plant", *map(str, key)]).encode()).digest()
     return random.Random(int.from_bytes(digest[:8], "big"))
-
-
-@dataclasses.dataclass
-class Hidden:
-    """Something hidden: plant parameters, and what the answer says about it."""
-
-    id: str
-    params: dict
-    answer: dict
 
 
 def draw_kinds(rng, shows, rig, generic, closed_loop=False):
@@ -56,30 +46,15 @@ def asked_of(rng, kind, rows=ROWS):
     return {**POOL, **SERVO_POOL, **LOOP_POOL}[kind](rng, rows, DT)
 
 
-def hide_effect(effect, rng, rig, asked, share, params=None):
-    shape = effect.shape(rng, rig)
-    ruler = Ruler(rig, asked, params)
-    size, reached = size_for(ruler, lambda m: effect.hide(m, shape, rig), size_range(effect, rig), share)
-    oracle = effect.oracle(size, shape, rig)
-    return Hidden(
-        effect.id,
-        effect.hide(size, shape, rig),
-        {
-            "id": effect.id,
-            "same_law": same_law(effect, rig),
-            "size": size,
-            "share": reached,
-            "parameters": oracle,
-            "equal_law": list(effect.equal_law),
-        },
-    )
-
-
 def channels_of(rig):
     s = rig.sensors
     sigma = (lambda x: {"sigma": f"{x:.3g}"}) if s.get("sigma") else (lambda x: {})
     drive = "position_target" if rig.kind == "servo" else "duty"
-    out = {"time": {"column": '"time_s"'}, drive: {"column": f'"{drive}"'}}
+    out = {"time": {"column": '"time_s"'}}
+    if s.get("torque"):
+        out["motor_torque"] = {"column": '"torque_Nm"', **sigma(0.5 * rig.true["current_noise_A"] * rig.true["flux_Vs"])}
+    else:
+        out[drive] = {"column": f'"{drive}"'}
     if s.get("bus"):
         out["bus_voltage"] = {"column": '"bus_V"', **sigma(rig.true["bus_noise_V"])}
     if s.get("current"):
@@ -167,10 +142,14 @@ def make_effects_case(folder, key, effects, share, generic=False, closed_loop=Fa
     else:
         kinds = draw_kinds(rng, wanted[0].shows, rig, generic, closed_loop)
     asked = asked_of(source(*key, "run", "fit"), kinds[0])
-    hidden = [hide_effect(e, rng, rig, asked, share) for e in wanted]
-    params = {k: v for h in hidden for k, v in h.params.items()}
+    params, answers = {}, []
+    for e in wanted:
+        shape = e.shape(rng, rig)
+        hidden, answer = hidden_at(e, shape, rig, Ruler(rig, asked), size_range(e, rig), share, same_law(e, rig))
+        params.update(hidden)
+        answers.append(answer)
     write_case(folder, rig, kinds, params, key)
-    return answer_of(rig, kinds, [h.answer for h in hidden])
+    return answer_of(rig, kinds, answers)
 
 
 def make_control_case(folder, key, closed_loop=False):

@@ -11,7 +11,7 @@ import robot_case
 import robot_drives
 from axis_case import DT, ROWS, source
 from robot_effects import BY_ID
-from share import size_for
+from share import hidden_at
 
 PERIOD = 16  # rows of 1 ms between two packets, both ways
 SPEED_STEP = 0.05  # rad/s at the wheel, of the telemetry
@@ -157,18 +157,9 @@ def make_case(folder, key, effects, share):
         shape = effect.shape(rng, robot)
         heard = asked_of(source(*key, "run", "fit"), main, robot, ROWS // 2)[1]
         ruler = robot_case.Ruler(robot, heard, signals_of)
-        size, reached = size_for(ruler, lambda m: effect.hide(m, shape, robot), effect.size, share)
-        params.update(effect.hide(size, shape, robot))
-        answers.append(
-            {
-                "id": effect.id,
-                "same_law": list(effect.same),
-                "size": size,
-                "share": reached,
-                "parameters": effect.oracle(size, shape, robot),
-                "equal_law": list(effect.equal_law),
-            }
-        )
+        hidden, answer = hidden_at(effect, shape, robot, ruler, effect.size, share, effect.same)
+        params.update(hidden)
+        answers.append(answer)
     folder.mkdir(parents=True, exist_ok=True)
     dataset.write_model(folder / "model.toml", "robot", model_sections(robot))
     runs = []

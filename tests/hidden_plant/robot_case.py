@@ -7,7 +7,7 @@ import plant
 import robot_drives
 from axis_case import DT, ROWS, source
 from robot_effects import BY_ID
-from share import size_for, solve
+from share import hidden_at, solve
 
 # How far off the truth is (from, to) and the relative 1-sigma the model file states; None: known.
 BASE = {
@@ -277,18 +277,9 @@ def make_case(folder, key, effects, share, outside=None):
     for effect in wanted:
         shape = effect.shape(rng, robot)
         ruler = Ruler(robot, asked_of(source(*key, "run", "fit"), main, robot, ROWS // 2))
-        size, reached = size_for(ruler, lambda m: effect.hide(m, shape, robot), effect.size, share)
-        params.update(effect.hide(size, shape, robot))
-        answers.append(
-            {
-                "id": effect.id,
-                "same_law": list(effect.same),
-                "size": size,
-                "share": reached,
-                "parameters": effect.oracle(size, shape, robot),
-                "equal_law": list(effect.equal_law),
-            }
-        )
+        hidden, answer = hidden_at(effect, shape, robot, ruler, effect.size, share, effect.same)
+        params.update(hidden)
+        answers.append(answer)
     params.update(outside or {})
     folder.mkdir(parents=True, exist_ok=True)
     dataset.write_model(folder / "model.toml", "robot", model_sections(robot))

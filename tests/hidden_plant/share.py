@@ -120,6 +120,19 @@ def size_for(ruler, hide, limits, share):
     return best[:2]
 
 
+def hidden_at(effect, shape, bench, ruler, limits, share, same_law):
+    """(plant parameters, answer) of an effect at the size, within the limits, at which it takes about this share."""
+    size, reached = size_for(ruler, lambda m: effect.hide(m, shape, bench), limits, share)
+    return effect.hide(size, shape, bench), {
+        "id": effect.id,
+        "same_law": list(same_law),
+        "size": size,
+        "share": reached,
+        "parameters": effect.oracle(size, shape, bench),
+        "equal_law": list(effect.equal_law),
+    }
+
+
 def spread_share(rng: random.Random, index):
     """Around 5, 15 and 50 % and above, in turn; one in eight below the limit from which an effect is to be named."""
     return (0.18, 0.5, 0.05, 0.25, 0.7, 0.18, 0.5, 0.9)[index % 8] * rng.uniform(0.95, 1.1)

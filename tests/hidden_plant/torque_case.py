@@ -8,10 +8,10 @@ import random
 
 import dataset
 import plant
-from axis_case import answer_of, source
+from axis_case import answer_of, channels_of, source
 from axis_effects import BY_ID, same_law, size_range
 from axis_rig import TOLERANCE, draw_rig, model_sections
-from share import size_for, solve
+from share import hidden_at, solve
 
 RUN_S = 16.0
 CONTROL_S = 0.5e-3
@@ -174,18 +174,6 @@ def record(rng, rig, rows, period_s):
     return out
 
 
-def channels_of(rig):
-    t = rig.true
-    sigma = (lambda x: {"sigma": f"{x:.3g}"}) if rig.sensors["sigma"] else (lambda x: {})
-    out = {"time": {"column": '"time_s"'}}
-    out["motor_torque"] = {"column": '"torque_Nm"', **sigma(0.5 * t["current_noise_A"] * t["flux_Vs"])}
-    if rig.sensors["encoder"]:
-        out["encoder"] = {"column": '"ticks"', "counts_per_rev": f"{t['encoder_cpr']:.0f}", "shaft": '"rotor"'}
-    else:
-        out["velocity"] = {"column": '"speed_rad_s"', **sigma(t["speed_noise_rad_s"])}
-    return out
-
-
 def make_case(folder, key, effects, share):
     """A torque-driven bench with these effects hidden (none, one). Returns the answer."""
     rng = source(*key)
@@ -198,18 +186,9 @@ def make_case(folder, key, effects, share):
         shape = effect.shape(rng, rig)
         asked = speeds(source(*key, "run", "fit"), rig, rows, period_s, FIT)
         ruler = Ruler(rig, asked, period_s, gain_per_s, rig.true)
-        size, reached = size_for(ruler, lambda m: effect.hide(m, shape, rig), size_range(effect, rig), share)
-        params.update(effect.hide(size, shape, rig))
-        answers.append(
-            {
-                "id": effect.id,
-                "same_law": same_law(effect, rig),
-                "size": size,
-                "share": reached,
-                "parameters": effect.oracle(size, shape, rig),
-                "equal_law": list(effect.equal_law),
-            }
-        )
+        hidden, answer = hidden_at(effect, shape, rig, ruler, size_range(effect, rig), share, same_law(effect, rig))
+        params.update(hidden)
+        answers.append(answer)
     folder.mkdir(parents=True, exist_ok=True)
     dataset.write_model(folder / "model.toml", "axis", model_sections(rig))
     kinds, runs = (FIT, FIT, OTHER), []
