@@ -101,52 +101,22 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
   s.seen.push_back({.quantity = quantity});
 }
 
-// Where the sensor sees no motion for half of the filter's time: a count that stays within one step (less than two), or without
+// Where the sensor sees no motion for half of the filter's time, and that to either side: a count that stays within one step (less than two), or without
 // a position every speed within four sigmas of zero. (By a position without steps a rest cannot be told from a turn.)
 std::vector<bool> rest_of(const AxisRecord& r, const std::vector<double>& clock, std::size_t of_filter) {
   constexpr double kWithin_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
-  const std::size_t window = of_filter / 2;
+  const std::size_t half = of_filter / 2;
   if (const std::vector<double> x = resampled(r.time_s, position_of(r), clock); !x.empty()) {
     const bool counted = r.position.empty() && !r.counts.empty();
     const double quantum =
         counted ? 1.0 / std::abs(r.counts_per_output_rad) : estimate_noise(r.position).quantum;
-    return quantum > 0.0 ? standing_still(x, 1.5 * quantum, window) : std::vector<bool>();
+    return quantum > 0.0 ? standing_still(x, 1.5 * quantum, half, half) : std::vector<bool>();
   }
   const double limit = kWithin_sigmas * estimate_noise(r.velocity).sigma;
   std::vector<double> moving = resampled(r.time_s, r.velocity, clock);  // rows so far that do
   double rows = 0.0;
   for (double& v : moving) v = rows += std::abs(v) > limit ? 1.0 : 0.0;
-  return standing_still(moving, 0.0, window);
-}
-
-// Of the needed input: samples of which the motion, or the record, does not say what it was (undetermined.h).
-struct Undetermined {
-  std::vector<bool> still, jumps;
-};
-
-// The same and `samples` to either side.
-std::vector<bool> widened(const std::vector<bool>& x, std::size_t samples) {
-  std::vector<bool> out(x.size(), false);
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (!x[k]) continue;
-    const std::size_t from = k - std::min(k, samples), to = std::min(x.size(), k + samples + 1);
-    std::fill(out.begin() + static_cast<std::ptrdiff_t>(from), out.begin() + static_cast<std::ptrdiff_t>(to),
-              true);
-  }
-  return out;
-}
-
-void leave_out_undetermined(const Undetermined& u, ComparedSignal& c) {
-  std::size_t still = 0, jumps = 0;
-  c.with_undetermined = c.measured;
-  for (std::size_t k = 0; k < c.measured.size(); ++k) {
-    const bool at_rest = k < u.still.size() && u.still[k], at_jump = k < u.jumps.size() && u.jumps[k];
-    if (!at_rest && !at_jump) continue;
-    c.measured[k] = kMissing;
-    ++(at_rest ? still : jumps);
-  }
-  if (still > 0) c.left_out += fmt::format(", {} samples at rest (friction takes what is asked)", still);
-  if (jumps > 0) c.left_out += fmt::format(", {} samples at jumps between two rows", jumps);
+  return standing_still(moving, 0.0, half, half);
 }
 
 // Leaves out the ends, where the filter has transients, and the gaps, where samples are interpolated.
@@ -209,7 +179,8 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     return resampled_steps(r.time_s, x, in.time_s, kLate * r.period_s);
   };
   const bool by_torque = kind == CommandKind::kMotorTorque || kind == CommandKind::kMotorCurrent;
-  in.command = by_torque ? interval_means(linear(r.command)) : steps(r.command);
+  const std::vector<double> command = by_torque ? linear(r.command) : steps(r.command);
+  in.command = by_torque ? interval_means(command) : command;
   for (const double e : steps(r.enable)) in.enable.push_back(e != 0.0 ? 1 : 0);
   if (!by_torque) in.bus_voltage_V = steps(r.bus.input_V);
   const bool bench_torque = speed_imposed && !r.load_torque_Nm.empty();
@@ -228,6 +199,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   // What the sensor does not resolve of the motion the torque still has: it is compared as far as both have it.
   const double cutoff =
       std::clamp(smoothed.resolved * 0.5 * rate, kLeastBand * cutoff_for(rate), cutoff_for(rate));
+  const double band = cutoff / (0.5 * rate);
   s.filter = butterworth(kOrder, cutoff, rate);
   const LowPass motion = motion_filter(s.filter, velocity.size(), rate);
   const double inertia_sigma_Nm = needed_torque_sigma(
@@ -246,10 +218,12 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     const bool is_input = quantity == Quantity::kNeededInput;
     const bool stated = channel != nullptr && channel->sigma > 0.0 && (!is_input || by_torque);
     std::vector<double> low = zero_phase(s.filter, raw);
-    // white noise of the channel, in the filter's band; a torque's is compared as the mean of two samples
-    const double band = cutoff / (0.5 * rate);
+    // White noise of the channel, in the filter's band; of a torque, which is compared as the mean of two samples, that of
+    // its samples.
     const bool of_means = is_input && by_torque;
-    double sigma = stated ? channel->sigma : white_noise(of_means ? linear(r.command) : raw, s.filter, band);
+    double sigma = stated     ? channel->sigma
+                   : of_means ? white_noise(command, zero_phase(s.filter, command), band)
+                              : white_noise(raw, low, band);
     sigma *= std::sqrt(of_means ? kept_of_means(band) : kept_of_samples(band));
     if (quantity == Quantity::kLoadTorque) sigma = std::hypot(sigma, drive.gear_ratio * inertia_sigma_Nm);
     if (quantity == Quantity::kNeededInput) {
@@ -258,7 +232,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     }
     add(s, name, std::move(unit), quantity, std::move(low), sigma, stated);
   };
-  Undetermined undetermined;
+  std::vector<bool> still, jumps;  // of the needed input
   if (bench_torque) {
     add_filtered("load_torque", torque_unit(dataset), Quantity::kLoadTorque, linear(r.load_torque_Nm));
   } else if (!speed_imposed || by_torque || r.current.empty()) {
@@ -267,10 +241,8 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     s.given = zero_phase(s.filter, input);
     add_filtered(command_name(needed_kind(kind)), needed_unit(dataset, kind), Quantity::kNeededInput, input);
     const auto of_filter = static_cast<std::size_t>(rate / cutoff + 0.5);  // samples of its time
-    undetermined.still = widened(rest_of(r, in.time_s, of_filter), of_filter / 2);
-    if (by_torque)
-      undetermined.jumps = unresolved_jumps(linear(r.command), cutoff / (0.5 * rate),
-                                            s.compared.back().noise_sigma, of_filter);
+    still = rest_of(r, in.time_s, of_filter);
+    if (by_torque) jumps = unresolved_jumps(command, band, s.compared.back().noise_sigma, of_filter);
   }
   if (!r.current.empty() && !by_torque)
     add_filtered("motor_current", "A", Quantity::kCurrent, s.measured_current);
@@ -278,7 +250,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     add_filtered("winding_temperature", "degC", Quantity::kTemperature, s.measured_temperature);
   leave_out(r, kEndsInPeriods / cutoff, s);
   for (ComparedSignal& c : s.compared) {
-    if (c.name == command_name(needed_kind(kind))) leave_out_undetermined(undetermined, c);
+    if (c.name == command_name(needed_kind(kind))) leave_out_undetermined(still, jumps, c);
   }
 }
 

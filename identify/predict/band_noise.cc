@@ -8,8 +8,7 @@
 
 namespace omnihil {
 
-double white_noise(const std::vector<double>& samples, const LowPass& filter, double band) {
-  const std::vector<double> low = zero_phase(filter, samples);
+double white_noise(const std::vector<double>& samples, const std::vector<double>& low, double band) {
   std::vector<double> above;
   for (std::size_t i = 0; i < samples.size(); ++i) above.push_back(std::abs(samples[i] - low[i]));
   return above.empty() ? 0.0 : sigma_by_mad(std::move(above)) / std::sqrt(1.0 - band);

@@ -1,6 +1,6 @@
 // 1-sigma of what sensors leave in the band that an imposed motion is compared in.
 //
-//   double torque = white_noise(samples, filter, 0.2) * std::sqrt(kept_of_means(0.2));        // of a measured torque
+//   double torque = white_noise(samples, low, 0.2) * std::sqrt(kept_of_means(0.2));        // of a measured torque
 //   double motion = needed_torque_sigma(error_spectrum, inertia_kg_m2, {}, filter, 1000.0);  // by the motion's own error
 //
 // Validity: white noise of the channel; the spectrum as wiener.h gives it. `band`: cutoff as a share of half the rate, 0 to 1.
@@ -11,8 +11,8 @@
 
 namespace omnihil {
 
-// Of a channel's samples, by what stands above the filter's cutoff, in the channel's unit.
-double white_noise(const std::vector<double>& samples, const LowPass& filter, double band);
+// Of a channel's samples, by what stands above the cutoff, in the channel's unit; `low`: the samples through the filter.
+double white_noise(const std::vector<double>& samples, const std::vector<double>& low, double band);
 
 // Share of white noise's variance that the band keeps: of samples, and of means from each to the next (interpolated by a cubic:
 // the integral over the band of their gain's square, (13 cos(pi f T) - cos(3 pi f T)) / 12).

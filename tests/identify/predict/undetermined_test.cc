@@ -18,12 +18,14 @@ TEST(Undetermined, StandingStillIsAWindowInWhichThePositionStays) {
   std::vector<double> position;
   for (int k = 0; k < 40; ++k) position.push_back(0.1 * std::clamp(k, 10, 15));
   for (int k = 0; k < 40; ++k) position.push_back(0.5 - 0.02 * (k - 20.5) * (k - 20.5));
-  const std::vector<bool> still = standing_still(position, 0.01, 5);
+  const std::vector<bool> still = standing_still(position, 0.01, 5, 0);
   EXPECT_TRUE(still[0] && still[10]);    // before it begins
   EXPECT_FALSE(still[11] || still[14]);  // it moves
   EXPECT_TRUE(still[15] && still[39]);
   EXPECT_EQ(std::count(still.begin() + 50, still.end(), true), 0);  // the turn
-  EXPECT_EQ(count(standing_still(std::vector<double>(50, 1.0), 0.0, 5)), 50u);
+  EXPECT_EQ(count(standing_still(position, 0.01, 5, 2)),
+            count(still) + 6);  // two behind 10, before 15, behind 39
+  EXPECT_EQ(count(standing_still(std::vector<double>(50, 1.0), 0.0, 5, 0)), 50u);
 }
 
 TEST(Undetermined, AJumpBetweenTwoRowsIsUnresolvedAndACurveIsNot) {
