@@ -101,8 +101,9 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
   s.seen.push_back({.quantity = quantity});
 }
 
-// Where the sensor sees no motion for half of the filter's time, and that to either side: a count that stays within one step (less than two), or without
-// a position every speed within four sigmas of zero. (By a position without steps a rest cannot be told from a turn.)
+// Where the sensor sees no motion for half of the filter's time, and as much to either side: a count that stays within one
+// step (less than two), or without a position every speed within four sigmas of zero. (By a position without steps a rest
+// cannot be told from a turn.)
 std::vector<bool> rest_of(const AxisRecord& r, const std::vector<double>& clock, std::size_t of_filter) {
   constexpr double kWithin_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
   const std::size_t half = of_filter / 2;
