@@ -11,16 +11,18 @@
 namespace omnihil {
 namespace {
 
-// A choice: what a thread needs to fall asleep and to be woken again is of this order.
-constexpr std::chrono::microseconds kAwake{30};
+using Clock = std::chrono::steady_clock;
+// Choices. What a thread needs to fall asleep and to be woken again is of the first's order, and several times that on a
+// virtual machine; what a bench does between two turns by itself (the physics of six robots) is within the second.
+constexpr std::chrono::microseconds kAwake{30}, kLongAwake{500};
 constexpr std::uint64_t kClosed = 0xFFFFFFFF;  // a place that no count reaches
 
 // True as soon as `done` is; false when it has not become so in that time.
 template <class Done>
-bool comes_soon(Done done) {
-  const auto end = std::chrono::steady_clock::now() + kAwake;
+bool comes_soon(Done done, std::chrono::microseconds patience) {
+  const auto end = Clock::now() + patience;
   while (!done()) {
-    if (std::chrono::steady_clock::now() >= end) return false;
+    if (Clock::now() >= end) return false;
   }
   return true;
 }
@@ -49,9 +51,13 @@ ThreadPool::~ThreadPool() {
   for (std::thread& thread : threads_) thread.join();
 }
 
+// Stays awake as long as the last turn would have been worth it: a bench that sleeps until its next step lets it sleep, too.
 void ThreadPool::wait_for_work() {
+  std::chrono::microseconds patience = kAwake;
   for (std::uint32_t seen = 0;;) {
-    if (!comes_soon([&] { return turn_.load() != seen; })) turn_.wait(seen);
+    const Clock::time_point idle_from = Clock::now();
+    if (!comes_soon([&] { return turn_.load() != seen; }, patience)) turn_.wait(seen);
+    patience = Clock::now() - idle_from < kLongAwake ? kLongAwake : kAwake;
     seen = turn_.load();
     if (ended_) return;
     take_pieces(seen);
@@ -96,7 +102,7 @@ void ThreadPool::run(std::size_t count, Piece piece, void* of) {
   if (count > 1) turn_.notify_all();
   take_pieces(turn);
   const auto all_done = [&] { return done_.load() == count; };
-  while (!all_done() && !comes_soon(all_done)) {
+  while (!all_done() && !comes_soon(all_done, kLongAwake)) {
     const std::size_t so_far = done_.load();
     if (so_far != count) done_.wait(so_far);
   }
