@@ -117,6 +117,40 @@ Fdcan::Filter Fdcan::filter(bool extended, std::uint32_t list, unsigned index) c
   return {field(f, 16, 11), field(f, 0, 11), kind == 3 ? 0 : field(f, 27, 3), kind};
 }
 
+// The first filter that matches decides.
+Fdcan::Verdict Fdcan::judge(const CanFrame& frame) const {
+  const std::uint32_t global = value(map_.filtering);
+  if (frame.remote && bit(global, frame.extended ? 0 : 1)) return {};
+  const Filters list = filters(frame.extended);
+  const std::uint32_t masked = frame.extended ? frame.id & value(map_.xidam) : frame.id;
+  for (unsigned i = 0; i < list.count; ++i) {
+    const Filter by = filter(frame.extended, list.at, i);
+    if (by.action == 0 || (by.action == 7 && !map_.to_buffers)) continue;
+    const std::uint32_t id = by.kind == 3 ? frame.id : masked;  // a range without the extended mask
+    // action 7: into a buffer, no other kind there
+    if (!(by.action == 7 ? id == by.id1 : by.takes(id))) continue;
+    Verdict verdict{.index = i, .matched = true};  // rejected, or its priority alone is said, but for
+    if (by.action == 7) verdict.buffer = static_cast<int>(by.id2 & 63u);
+    if (by.action == 1 || by.action == 5) verdict.fifo = 0;
+    if (by.action == 2 || by.action == 6) verdict.fifo = 1;
+    return verdict;
+  }
+  const unsigned rest = field(global, frame.extended ? 2 : 4, 2);
+  return {.fifo = rest < 2 ? static_cast<int>(rest) : -1};
+}
+
+void Fdcan::take(const CanFrame& frame) {
+  if (!running() || (frame.fd && !bit(value(kCccr), 8))) return off_bus(now());
+  const Verdict verdict = judge(frame);
+  if (verdict.buffer >= 0) {
+    put_in_buffer(frame, verdict);
+    update();
+    return system().reschedule();
+  }
+  if (verdict.fifo < 0) return unwanted(now());
+  put_in_fifo(frame, verdict);
+}
+
 void Fdcan::write_element(std::uint32_t at, const CanFrame& frame, const Verdict& verdict, unsigned room) {
   ram_.write(at, 4, (frame.extended ? 1u << 30 | frame.id : frame.id << 18) | (frame.remote ? 1u << 29 : 0u));
   ram_.write(at + 4, 4,
@@ -125,24 +159,25 @@ void Fdcan::write_element(std::uint32_t at, const CanFrame& frame, const Verdict
   for (unsigned i = 0; i < frame.bytes && i < room; ++i) ram_.write(at + 8 + i, 1, frame.data[i]);
 }
 
-void Fdcan::put_in_fifo(const Place& place, const CanFrame& frame, const Verdict& verdict) {
+void Fdcan::put_in_fifo(const CanFrame& frame, const Verdict& verdict) {
   const auto which = static_cast<unsigned>(verdict.fifo), shift = map_.fifo_shift * which;
+  const Place place = fifo(which);
   if (place.places == 0) return unwanted(now());
-  Fifo& fifo = fifos_[which];
-  if (fifo.fill >= place.places) {
-    fifo.lost = true;
+  Fifo& its = fifos_[which];
+  if (its.fill >= place.places) {
+    its.lost = true;
     overflow(now());
     value(kIr) |= map_.fifo_lost << shift;
     if (!place.overwrites) return update();  // blocking; else the oldest goes
-    fifo.get = (fifo.get + 1) % place.places;
-    --fifo.fill;
+    its.get = (its.get + 1) % place.places;
+    --its.fill;
   }
-  write_element(place.at + (8 + place.room) * ((fifo.get + fifo.fill) % place.places), frame, verdict,
+  write_element(place.at + (8 + place.room) * ((its.get + its.fill) % place.places), frame, verdict,
                 place.room);
-  ++fifo.fill;
+  ++its.fill;
   value(kIr) |=
-      (map_.fifo_new | (place.watermark != 0 && fifo.fill == place.watermark ? map_.fifo_watermark : 0u) |
-       (fifo.fill == place.places ? map_.fifo_full : 0u))
+      (map_.fifo_new | (place.watermark != 0 && its.fill == place.watermark ? map_.fifo_watermark : 0u) |
+       (its.fill == place.places ? map_.fifo_full : 0u))
       << shift;
   update();
   system().reschedule();

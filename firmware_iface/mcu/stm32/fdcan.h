@@ -34,6 +34,8 @@ class FdcanRam final : public Peripheral {
 
 // Where a family has what the law speaks of: offsets of registers, bits of IR and TXBC.
 struct FdcanMap {
+  std::uint16_t filtering, xidam;  // GFC or RXGFC, whose bits 0 to 5 are alike; the extended mask
+  bool to_buffers;                 // a filter's action 7, else it is reserved: the filter is switched off
   std::uint16_t txbrp, txbto, txbcf, txbtie, txbcie;
   std::uint32_t sent, cancelled, empty;  // IR: transmission completed, cancelled; transmit FIFO empty
   std::uint32_t fifo_new, fifo_watermark, fifo_full, fifo_lost;  // IR, of receive FIFO 0
@@ -69,6 +71,10 @@ class Fdcan : public RegisterBlock, public CanPort {
     unsigned places = 0, room = kMostRoom, watermark = 0;
     bool overwrites = false;  // where it is full; else what comes is lost
   };
+  struct Filters {  // a list in the RAM
+    std::uint32_t at = 0;
+    unsigned count = 0;
+  };
   struct Filter {
     std::uint32_t id1 = 0, id2 = 0;
     unsigned action = 0, kind = 0;
@@ -80,7 +86,7 @@ class Fdcan : public RegisterBlock, public CanPort {
     }
   };
   struct Verdict {
-    int fifo = -1;  // below 0: none
+    int fifo = -1, buffer = -1;  // below 0: none
     unsigned index = 0;
     bool matched = false;
   };
@@ -89,9 +95,13 @@ class Fdcan : public RegisterBlock, public CanPort {
         std::pair<int, int> irqs, FdcanRam& ram, ChipContext& context);
   double bit_cycles() const override { return core_cycles(bit_clocks()); }
   Cycles present() const override { return now(); }
+  void take(const CanFrame& frame) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
-  virtual double divider() const { return 1.0; }                     // of the kernel clock
+  virtual double divider() const { return 1.0; }  // of the kernel clock
+  virtual Filters filters(bool extended) const = 0;
+  virtual Place fifo(unsigned which) const = 0;
+  virtual void put_in_buffer(const CanFrame& /*frame*/, const Verdict& /*verdict*/) {}
   virtual std::uint32_t second_line() const = 0;                     // flags of IR that ask by line 1
   virtual std::uint32_t transmit_element(unsigned place) const = 0;  // where it is in the RAM
   virtual unsigned transmit_room() const { return kMostRoom; }
@@ -99,11 +109,8 @@ class Fdcan : public RegisterBlock, public CanPort {
   virtual void transmitted(unsigned /*place*/) {}
 
   bool running() const { return (value(kCccr) & 1u) == 0; }
-  bool takes_part(const CanFrame& frame) const { return running() && (!frame.fd || bit(value(kCccr), 8)); }
   CanFrame buffer(unsigned place) const;
-  Filter filter(bool extended, std::uint32_t list, unsigned index) const;
   void write_element(std::uint32_t at, const CanFrame& frame, const Verdict& verdict, unsigned room);
-  void put_in_fifo(const Place& place, const CanFrame& frame, const Verdict& verdict);
   static std::uint32_t status(const Fifo& fifo, unsigned places);
   static void acknowledge(Fifo& fifo, unsigned up_to, unsigned places);
   std::uint32_t request(std::uint32_t wanted, unsigned places);  // those that did not wait yet
@@ -116,6 +123,9 @@ class Fdcan : public RegisterBlock, public CanPort {
   std::vector<unsigned> asked_;  // buffers waiting, in the order of the requests
 
  private:
+  Filter filter(bool extended, std::uint32_t list, unsigned index) const;
+  Verdict judge(const CanFrame& frame) const;
+  void put_in_fifo(const CanFrame& frame, const Verdict& verdict);
   double bit_clocks() const;  // of the nominal rate, behind the divider
   double core_cycles(double clocks) const;
 

@@ -1,5 +1,7 @@
 #include "firmware_iface/mcu/stm32/fdcan_g4.h"
 
+#include <algorithm>
+
 #include "firmware_iface/mcu/stm32/register_rows.h"
 
 namespace omnihil::mcu {
@@ -43,7 +45,10 @@ constexpr RegisterInfo kOwn[] = {{0x54, "IE", 0, 0x00FFFFFF},
                                  {0xE8, "TXEFA", 0, 3},
                                  {kCkdiv, "CKDIV", 0, 0xF}};
 constexpr auto kRegisters = joined(kFdcanControl, kOwn);
-constexpr FdcanMap kMap{.txbrp = kTxbrp,
+constexpr FdcanMap kMap{.filtering = kRxgfc,
+                        .xidam = kXidam,
+                        .to_buffers = false,
+                        .txbrp = kTxbrp,
                         .txbto = kTxbto,
                         .txbcf = kTxbcf,
                         .txbtie = kTxbtie,
@@ -69,31 +74,16 @@ double FdcanG4::divider() const {
   return code == 0 ? 1.0 : 2.0 * code;
 }
 
-FdcanG4::Verdict FdcanG4::judge(const CanFrame& frame) const {
+FdcanG4::Filters FdcanG4::filters(bool extended) const {
   const std::uint32_t global = value(kRxgfc);
-  if (frame.remote && bit(global, frame.extended ? 0 : 1)) return {};
-  const unsigned count = frame.extended ? field(global, 24, 4) : field(global, 16, 5);
-  const std::uint32_t masked = frame.extended ? frame.id & value(kXidam) : frame.id;
-  for (unsigned i = 0; i < count && i < (frame.extended ? 8u : 28u); ++i) {
-    const Filter by = filter(frame.extended, base_ + (frame.extended ? 0x70 : 0), i);
-    if (by.action == 0 || by.action == 7) continue;             // 7: reserved, that is switched off
-    if (!by.takes(by.kind == 3 ? frame.id : masked)) continue;  // a range without the extended mask
-    if (by.action == 1 || by.action == 5) return {0, i, true};
-    if (by.action == 2 || by.action == 6) return {1, i, true};
-    return {};  // rejected, or its priority alone is said
-  }
-  const unsigned rest = field(global, frame.extended ? 2 : 4, 2);
-  return {rest < 2 ? static_cast<int>(rest) : -1};
+  return extended ? Filters{base_ + 0x70, std::min(field(global, 24, 4), 8u)}
+                  : Filters{base_, std::min(field(global, 16, 5), 28u)};
 }
 
-void FdcanG4::take(const CanFrame& frame) {
-  if (!takes_part(frame)) return off_bus(now());
-  const Verdict verdict = judge(frame);
-  if (verdict.fifo < 0) return unwanted(now());
-  put_in_fifo({.at = base_ + (verdict.fifo == 0 ? 0xB0u : 0x188u),
-               .places = kPlaces,
-               .overwrites = bit(value(kRxgfc), verdict.fifo == 0 ? 9 : 8)},
-              frame, verdict);
+FdcanG4::Place FdcanG4::fifo(unsigned which) const {
+  return {.at = base_ + (which == 0 ? 0xB0u : 0x188u),
+          .places = kPlaces,
+          .overwrites = bit(value(kRxgfc), which == 0 ? 9 : 8)};
 }
 
 // ILS: groups of IR that go to line 1: FIFO 0, FIFO 1, messages, transmit FIFO, …

@@ -16,15 +16,15 @@ class FdcanG4 final : public Fdcan {
   FdcanG4(int number, std::pair<int, int> irqs, FdcanRam& ram, ChipContext& context);
 
  protected:
-  void take(const CanFrame& frame) override;
   std::uint32_t load(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
   double divider() const override;
+  Filters filters(bool extended) const override;
+  Place fifo(unsigned which) const override;
   std::uint32_t second_line() const override;
   std::uint32_t transmit_element(unsigned place) const override { return base_ + 0x278 + 72 * place; }
 
  private:
-  Verdict judge(const CanFrame& frame) const;
   std::uint32_t base_;
 };
 

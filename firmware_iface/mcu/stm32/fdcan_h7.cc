@@ -66,7 +66,10 @@ constexpr RegisterInfo kOwn[] = {{0x54, "IE", 0, 0x3FFFFFFF},
                                  {kTxefs, "TXEFS", 0, 0},
                                  {kTxefa, "TXEFA", 0, 0x1F}};
 constexpr auto kRegisters = joined(kFdcanControl, kOwn);
-constexpr FdcanMap kMap{.txbrp = kTxbrp,
+constexpr FdcanMap kMap{.filtering = kGfc,
+                        .xidam = kXidam,
+                        .to_buffers = true,
+                        .txbrp = kTxbrp,
                         .txbto = kTxbto,
                         .txbcf = kTxbcf,
                         .txbtie = kTxbtie,
@@ -129,51 +132,25 @@ void FdcanH7::transmitted(unsigned place) {
   value(kIr) |= kTefn | (events_.fill == places ? kTeff : 0u);
 }
 
-FdcanH7::Judged FdcanH7::judge(const CanFrame& frame) const {
-  const std::uint32_t global = value(kGfc);
-  Judged verdict;
-  if (frame.remote && bit(global, frame.extended ? 0 : 1)) return verdict;
-  const std::uint32_t list = value(frame.extended ? kXidfc : kSidfc);
-  const unsigned count = frame.extended ? field(list, 16, 7) : field(list, 16, 8);
-  const std::uint32_t masked = frame.extended ? frame.id & value(kXidam) : frame.id;
-  for (unsigned i = 0; i < count; ++i) {
-    const Filter by = filter(frame.extended, list & 0xFFFCu, i);
-    const std::uint32_t id = by.kind == 3 ? frame.id : masked;  // a range without the extended mask
-    // action 7: into a buffer, no other kind there
-    if (by.action == 0 || !(by.action == 7 ? id == by.id1 : by.takes(id))) continue;
-    verdict.index = i;
-    verdict.matched = true;
-    if (by.action == 7) verdict.buffer = static_cast<int>(by.id2 & 63u);
-    if (by.action == 1 || by.action == 5) verdict.fifo = 0;
-    if (by.action == 2 || by.action == 6) verdict.fifo = 1;
-    return verdict;
-  }
-  const unsigned rest = field(global, frame.extended ? 2 : 4, 2);
-  if (rest < 2) verdict.fifo = static_cast<int>(rest);
-  return verdict;
+FdcanH7::Filters FdcanH7::filters(bool extended) const {
+  const std::uint32_t list = value(extended ? kXidfc : kSidfc);
+  return {list & 0xFFFCu, field(list, 16, extended ? 7 : 8)};
 }
 
-void FdcanH7::take(const CanFrame& frame) {
-  if (!takes_part(frame)) return off_bus(now());
-  const Judged verdict = judge(frame);
-  if (verdict.buffer >= 0) {
-    const unsigned room = data_room(field(value(kRxesc), 8, 3)),
-                   place = static_cast<unsigned>(verdict.buffer);
-    write_element(part(kRxbc) + (8 + room) * place, frame, verdict, room);
-    value(place < 32 ? kNdat1 : kNdat2) |= 1u << place % 32;
-    value(kIr) |= kDrx;
-    update();
-    return system().reschedule();
-  }
-  if (verdict.fifo < 0) return unwanted(now());
-  const auto which = static_cast<unsigned>(verdict.fifo);
+FdcanH7::Place FdcanH7::fifo(unsigned which) const {
   const std::uint32_t config = value(which == 0 ? kRxf0c : kRxf1c);
-  put_in_fifo({.at = config & 0xFFFCu,
-               .places = fifo_places(which),
-               .room = data_room(field(value(kRxesc), 4 * which, 3)),
-               .watermark = field(config, 24, 7),
-               .overwrites = bit(config, 31)},
-              frame, verdict);
+  return {.at = config & 0xFFFCu,
+          .places = fifo_places(which),
+          .room = data_room(field(value(kRxesc), 4 * which, 3)),
+          .watermark = field(config, 24, 7),
+          .overwrites = bit(config, 31)};
+}
+
+void FdcanH7::put_in_buffer(const CanFrame& frame, const Verdict& verdict) {
+  const unsigned room = data_room(field(value(kRxesc), 8, 3)), place = static_cast<unsigned>(verdict.buffer);
+  write_element(part(kRxbc) + (8 + room) * place, frame, verdict, room);
+  value(place < 32 ? kNdat1 : kNdat2) |= 1u << place % 32;
+  value(kIr) |= kDrx;
 }
 
 std::uint32_t FdcanH7::second_line() const { return value(kIls); }

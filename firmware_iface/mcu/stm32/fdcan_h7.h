@@ -19,9 +19,11 @@ class FdcanH7 final : public Fdcan {
   void reset() override;
 
  protected:
-  void take(const CanFrame& frame) override;
   std::uint32_t load(std::uint32_t offset) override;
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
+  Filters filters(bool extended) const override;
+  Place fifo(unsigned which) const override;
+  void put_in_buffer(const CanFrame& frame, const Verdict& verdict) override;
   std::uint32_t second_line() const override;
   std::uint32_t transmit_element(unsigned place) const override;
   unsigned transmit_room() const override;
@@ -29,9 +31,6 @@ class FdcanH7 final : public Fdcan {
   void transmitted(unsigned place) override;
 
  private:
-  struct Judged : Verdict {
-    int buffer = -1;  // a dedicated one
-  };
   std::uint32_t part(std::uint16_t reg) const {
     return value(reg) & 0xFFFCu;
   }  // where a part of the RAM begins
@@ -39,7 +38,6 @@ class FdcanH7 final : public Fdcan {
   unsigned queue_places() const;  // behind the dedicated buffers
   unsigned first_free() const;    // of the queue; all of them: none
   std::uint32_t queue_status() const;
-  Judged judge(const CanFrame& frame) const;
 
   Fifo events_;
   unsigned last_queued_ = 0;  // place of the FIFO asked for last
