@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "firmware_iface/mcu/stm32/chip_parts.h"
+#include "firmware_iface/mcu/stm32/families/timer_rows.h"
 
 namespace omnihil::mcu {
 namespace {
@@ -20,29 +21,7 @@ void build(Chip& chip) {
       {"TIM16_UP", 3},  {"TIM1_CH4", 4}, {"TIM1_TRIG", 4}, {"TIM1_COM", 4}, {"TIM2_CH4", 4}, {"TIM3_CH1", 4},
       {"TIM3_TRIG", 4}, {"TIM1_CH3", 5}, {"TIM1_UP", 5},   {"TIM2_CH1", 5}};
   add_dma(chip, 0x40020000, "DMA1", {9, 10, 10, 11, 11}, kDma);
-  using Itr = std::vector<std::string>;
-  const Bus apb = Bus::kApb1;  // one APB, two address ranges
-  add_timer(chip, 0x40012C00,
-            {.number = 1,
-             .bus = apb,
-             .advanced = true,
-             .irq_update = 13,
-             .irq_compare = 14,
-             .internal_triggers = Itr{"TIM15_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM17_CC1"}});
-  add_timer(chip, 0x40000000,
-            {.number = 2,
-             .bus = apb,
-             .bits32 = true,
-             .irq_update = 15,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM15_TRGO", "TIM3_TRGO", "TIM14_CC1"}});
-  add_timer(chip, 0x40000400,
-            {.number = 3,
-             .bus = apb,
-             .irq_update = 16,
-             .internal_triggers = Itr{"TIM1_TRGO", "TIM2_TRGO", "TIM15_TRGO", "TIM14_CC1"}});
-  add_timer(chip, 0x40002000, {.number = 14, .bus = apb, .channels = 1, .irq_update = 19});
-  add_timer(chip, 0x40014400, {.number = 16, .bus = apb, .channels = 1, .advanced = true, .irq_update = 21});
-  add_timer(chip, 0x40014800, {.number = 17, .bus = apb, .channels = 1, .advanced = true, .irq_update = 22});
+  add_timers(chip, timers_of_f0());
   const AdcTriggers triggers{{"TIM1_TRGO", "TIM1_CC4", "TIM2_TRGO", "TIM3_TRGO", "TIM15_TRGO"}, {}};
   auto adc = std::make_unique<AdcV2>("ADC1", AdcFamily::kF0, 12, triggers, context);
   adc->set_source(
@@ -51,6 +30,7 @@ void build(Chip& chip) {
       17, [](std::int64_t) { return 1.23; }, true);
   AdcV2& kept = chip.add(0x40012400, 0x300, std::move(adc));
   chip.add(0x40012700, 0x100, std::make_unique<AdcV2Common>("ADC common", std::vector{&kept}, context));
+  const Bus apb = Bus::kApb1;  // one APB, two address ranges
   add_usart(chip, 0x40013800, {.number = 1, .name = "USART1", .v2 = true, .bus = apb, .irq = 27});
   add_spi(chip, 0x40013000, {.name = "SPI1", .v2 = true, .bus = apb, .irq = 25});
   add_i2c(chip, 0x40005400, {.name = "I2C1", .v2 = true, .from_hsi = true, .irq_event = 23});

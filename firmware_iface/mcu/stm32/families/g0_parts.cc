@@ -46,27 +46,9 @@ void add_dmas(Chip& chip, const G0Parts& parts) {
       .use_mux(chooser, channels);
 }
 
-// Internal triggers as F0 has them at the same places (RM0091 tables 74, 82, 87); those of TIM4 are not known here: none.
+// Internal triggers of TIM4 are not known here: none.
 std::vector<TimerRow> timers(const G0Parts& parts) {
-  std::vector<TimerRow> rows = {
-      {0x40012C00,
-       {.number = 1,
-        .advanced = true,
-        .irq_update = 13,
-        .irq_compare = 14,
-        .internal_triggers = {"TIM15_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM17_CC1"}}},
-      {0x40000000,
-       {.number = 2,
-        .bits32 = true,
-        .irq_update = 15,
-        .internal_triggers = {"TIM1_TRGO", "TIM15_TRGO", "TIM3_TRGO", "TIM14_CC1"}}},
-      {0x40000400,
-       {.number = 3,
-        .irq_update = 16,
-        .internal_triggers = {"TIM1_TRGO", "TIM2_TRGO", "TIM15_TRGO", "TIM14_CC1"}}},
-      {0x40002000, {.number = 14, .channels = 1, .irq_update = 19}},
-      {0x40014400, {.number = 16, .channels = 1, .advanced = true, .irq_update = 21}},
-      {0x40014800, {.number = 17, .channels = 1, .advanced = true, .irq_update = 22}}};
+  std::vector<TimerRow> rows = timers_of_f0();
   if (parts.size >= G0Size::k05) {
     rows.push_back({0x40001000, {.number = 6, .channels = 0, .irq_update = 17}});
     rows.push_back({0x40001400, {.number = 7, .channels = 0, .irq_update = 18}});

@@ -58,6 +58,27 @@ std::vector<TimerRow> timers_15_to_17(int irq, std::vector<std::string> internal
       {0x40014000, std::move(two_channels)}, {0x40014400, one_channel(16)}, {0x40014800, one_channel(17)}};
 }
 
+std::vector<TimerRow> timers_of_f0() {
+  return {{0x40012C00,
+           {.number = 1,
+            .advanced = true,
+            .irq_update = 13,
+            .irq_compare = 14,
+            .internal_triggers = {"TIM15_TRGO", "TIM2_TRGO", "TIM3_TRGO", "TIM17_CC1"}}},
+          {0x40000000,
+           {.number = 2,
+            .bits32 = true,
+            .irq_update = 15,
+            .internal_triggers = {"TIM1_TRGO", "TIM15_TRGO", "TIM3_TRGO", "TIM14_CC1"}}},
+          {0x40000400,
+           {.number = 3,
+            .irq_update = 16,
+            .internal_triggers = {"TIM1_TRGO", "TIM2_TRGO", "TIM15_TRGO", "TIM14_CC1"}}},
+          {0x40002000, {.number = 14, .channels = 1, .irq_update = 19}},
+          {0x40014400, {.number = 16, .channels = 1, .advanced = true, .irq_update = 21}},
+          {0x40014800, {.number = 17, .channels = 1, .advanced = true, .irq_update = 22}}};
+}
+
 void add_timers(Chip& chip, std::span<const TimerRow> rows) {
   for (const TimerRow& row : rows) add_timer(chip, row.base, row.spec);
 }

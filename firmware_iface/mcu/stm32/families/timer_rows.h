@@ -31,6 +31,9 @@ std::vector<TimerRow> timers_1_to_8(const FirstTimers& first);
 std::vector<TimerRow> timers_12_to_14();
 // `irq`: of TIM15; the next two are those of 16 and 17.
 std::vector<TimerRow> timers_15_to_17(int irq, std::vector<std::string> internal_triggers_of_15);
+// TIM1, 2, 3, 14, 16, 17 of F0 and G0, which have one APB, of two address ranges. Internal triggers: RM0091 tables 74, 82,
+// 87; G0 has them at the same places.
+std::vector<TimerRow> timers_of_f0();
 void add_timers(Chip& chip, std::span<const TimerRow> rows);
 
 }  // namespace omnihil::mcu
