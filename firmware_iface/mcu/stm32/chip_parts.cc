@@ -174,10 +174,8 @@ void add_adcs_f4(Chip& chip, const AdcTriggers& triggers) {
   for (int n = 1; n <= 3; ++n) {
     auto adc = std::make_unique<AdcV1>(n, 18, common, triggers, chip.context());
     if (n == 1) {
-      adc->set_source(
-          16, [](std::int64_t) { return 0.76; }, true);  // temperature sensor at 25 degC
-      adc->set_source(
-          17, [](std::int64_t) { return 1.21; }, true);  // VREFINT
+      adc->set_voltage(16, 0.76);  // temperature sensor at 25 degC
+      adc->set_voltage(17, 1.21);  // VREFINT
     }
     chip.add(0x40012000u + 0x100u * static_cast<unsigned>(n - 1), 0x100, std::move(adc));
   }

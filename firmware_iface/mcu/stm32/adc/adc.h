@@ -1,5 +1,5 @@
 // Analogue to digital converters: the sequence and its timing here, the registers of a family in adc_v1,
-// adc_v2, adc_f0.
+// adc_v2, adc_f1.
 //
 //   adc.set_source(5, [](std::int64_t at_ns) { return 1.65; });   // volts at input 5, as a function of time
 //
@@ -39,6 +39,11 @@ class Adc : public RegisterBlock, public TriggerSink {
   // Steady: nothing that the chip does changes what it tells, and who else changes it calls take_samples() first. It may
   // then be asked at the end of the conversion, which saves the event at the end of its sampling.
   void set_source(unsigned channel, AnalogSource source, bool steady = false);
+  // A source that always tells the same.
+  void set_voltage(unsigned channel, double volts) {
+    set_source(
+        channel, [volts](std::int64_t) { return volts; }, true);
+  }
   void take_samples() {  // those whose instant has come
     if (held_ && sampled_at_ <= now()) sample();
   }
@@ -46,12 +51,12 @@ class Adc : public RegisterBlock, public TriggerSink {
   // For the group that it belongs to.
   void join(AdcTogether& group) { group_ = &group; }
   void follow(bool injected, double delay_clocks);  // a slave's start, by the master's
-  // How long after this one's begin another may sample: its own sampling and two clocks.
   // Before anything changes that a conversion under way is measured by: registers, clocks.
   void registers_change() {
     take_samples();
     if (std::exchange(held_, false)) phase_end_ = sampled_at_;
   }
+  // How long after this one's begin another may sample: its own sampling and two clocks.
   double sampling_clocks() const { return sample_clocks(channel(Group::kRegular, place_)) + 2.0; }
 
  protected:

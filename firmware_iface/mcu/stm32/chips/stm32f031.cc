@@ -24,10 +24,8 @@ void build(Chip& chip) {
   add_timers(chip, timers_of_f0());
   const AdcTriggers triggers{{"TIM1_TRGO", "TIM1_CC4", "TIM2_TRGO", "TIM3_TRGO", "TIM15_TRGO"}, {}};
   auto adc = std::make_unique<AdcV2>("ADC1", AdcFamily::kF0, 12, triggers, context);
-  adc->set_source(
-      16, [](std::int64_t) { return 1.43; }, true);
-  adc->set_source(
-      17, [](std::int64_t) { return 1.23; }, true);
+  adc->set_voltage(16, 1.43);  // temperature at 25 degC
+  adc->set_voltage(17, 1.23);  // VREFINT
   AdcV2& kept = chip.add(0x40012400, 0x300, std::move(adc));
   chip.add(0x40012700, 0x100, std::make_unique<AdcV2Common>("ADC common", std::vector{&kept}, context));
   const Bus apb = Bus::kApb1;  // one APB, two address ranges

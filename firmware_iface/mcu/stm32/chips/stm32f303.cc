@@ -47,11 +47,8 @@ void add_adcs(Chip& chip) {
       const int irq = pair == 0 ? 18 : n == 0 ? 47 : 61;
       auto adc = std::make_unique<AdcV2>("ADC" + std::to_string(2 * pair + n + 1), AdcFamily::kF3, irq,
                                          triggers, context);
-      adc->set_source(
-          18, [](std::int64_t) { return 1.23; }, true);  // VREFINT
-      if (pair == 0 && n == 0)
-        adc->set_source(
-            16, [](std::int64_t) { return 1.43; }, true);  // temperature at 25 degC
+      adc->set_voltage(18, 1.23);                           // VREFINT
+      if (pair == 0 && n == 0) adc->set_voltage(16, 1.43);  // temperature at 25 degC
       two.push_back(&chip.add(base + 0x100 * n, 0x100, std::move(adc)));
     }
     chip.add(base + 0x300, 0x100, std::make_unique<AdcV2Common>(pair == 0 ? "ADC12" : "ADC34", two, context));

@@ -48,12 +48,8 @@ void add_adcs(Chip& chip) {
   for (unsigned n = 0; n < 3; ++n) {
     auto adc = std::make_unique<AdcV2>("ADC" + std::to_string(n + 1), AdcFamily::kL4, n < 2 ? 18 : 47,
                                        adc_triggers_f3(), chip.context());
-    if (n == 0)
-      adc->set_source(
-          0, [](std::int64_t) { return 1.212; }, true);  // VREFINT
-    if (n == 0)
-      adc->set_source(
-          17, [](std::int64_t) { return 0.76; }, true);  // temperature at 30 degC
+    if (n == 0) adc->set_voltage(0, 1.212);  // VREFINT
+    if (n == 0) adc->set_voltage(17, 0.76);  // temperature at 30 degC
     all.push_back(&chip.add(0x50040000 + 0x100 * n, 0x100, std::move(adc)));
   }
   chip.add(0x50040300, 0x100, std::make_unique<AdcV2Common>("ADC123", all, chip.context()));

@@ -50,8 +50,8 @@ void add_adcs(Chip& chip, const F1Parts& parts) {
       {"TIM3_CC1", "TIM2_CC3", "TIM1_CC3", "TIM8_CC1", "TIM8_TRGO", "TIM5_CC1", "TIM5_CC3"},
       {"TIM1_TRGO", "TIM1_CC4", "TIM4_CC3", "TIM8_CC2", "TIM8_CC4", "TIM5_TRGO", "TIM5_CC4"}};
   auto adc = std::make_unique<AdcF1>(AdcF1Spec{.number = 1, .irq = 18, .dma = true}, first, nullptr, context);
-  adc->set_source(16, [](std::int64_t) { return 1.43; });  // temperature sensor at 25 degC (DS5319 5.3.19)
-  adc->set_source(17, [](std::int64_t) { return 1.20; });  // VREFINT (DS5319 5.3.4)
+  adc->set_voltage(16, 1.43);  // temperature sensor at 25 degC (DS5319 5.3.19)
+  adc->set_voltage(17, 1.20);  // VREFINT (DS5319 5.3.4)
   AdcF1& master = chip.add(0x40012400, 0x400, std::move(adc));
   chip.add(0x40012800, 0x400,
            std::make_unique<AdcF1>(AdcF1Spec{.number = 2, .irq = 18}, first, &master, context));

@@ -70,8 +70,8 @@ void add_adc(Chip& chip) {
       {"TIM1_TRGO2", "TIM1_CC4", "TIM2_TRGO", "TIM3_TRGO", "TIM15_TRGO", "TIM6_TRGO", "TIM4_TRGO", "EXTI11"},
       {}};
   auto adc = std::make_unique<AdcV2>("ADC1", AdcFamily::kG0, 12, triggers, context);
-  adc->set_source(12, [](std::int64_t) { return 0.76; });   // temperature at 30 degC
-  adc->set_source(13, [](std::int64_t) { return 1.212; });  // VREFINT
+  adc->set_voltage(12, 0.76);   // temperature at 30 degC
+  adc->set_voltage(13, 1.212);  // VREFINT
   AdcV2& kept = chip.add(0x40012400, 0x300, std::move(adc));
   chip.add(0x40012700, 0x100, std::make_unique<AdcV2Common>("ADC common", std::vector{&kept}, context));
 }

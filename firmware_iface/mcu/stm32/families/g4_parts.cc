@@ -71,8 +71,8 @@ void add_adcs(Chip& chip, const G4Parts& parts) {
     const AdcTriggers triggers = row.number <= 2 ? adc_triggers_f3() : adc_triggers_f3_second();
     auto adc = std::make_unique<AdcV2>("ADC" + std::to_string(row.number), AdcFamily::kG4, row.irq, triggers,
                                        context);
-    adc->set_source(18, [](std::int64_t) { return 1.212; });  // VREFINT
-    if (row.number == 1) adc->set_source(16, [](std::int64_t) { return 0.76; });
+    adc->set_voltage(18, 1.212);  // VREFINT
+    if (row.number == 1) adc->set_voltage(16, 0.76);
     (row.number <= 2 ? first : second).push_back(&chip.add(row.base, 0x100, std::move(adc)));
   }
   chip.add(0x50000300, 0x100, std::make_unique<AdcV2Common>("ADC12", first, context));

@@ -99,8 +99,8 @@ void add_adcs(Chip& chip, const H7Parts& parts) {
   chip.add(0x40022300, 0x100, std::make_unique<AdcV2Common>("ADC12", pair, context));
   auto third =
       std::make_unique<AdcV2>("ADC3", parts.newer ? AdcFamily::kG4 : AdcFamily::kH7, 127, triggers, context);
-  third->set_source(18 - (parts.newer ? 1 : 0), [](std::int64_t) { return 0.62; });  // temperature at 30 degC
-  third->set_source(19 - (parts.newer ? 1 : 0), [](std::int64_t) { return 1.216; });  // VREFINT
+  third->set_voltage(18 - (parts.newer ? 1 : 0), 0.62);   // temperature at 30 degC
+  third->set_voltage(19 - (parts.newer ? 1 : 0), 1.216);  // VREFINT
   AdcV2& kept = chip.add(0x58026000, 0x100, std::move(third));
   chip.add(0x58026300, 0x100, std::make_unique<AdcV2Common>("ADC3 common", std::vector{&kept}, context));
 }
