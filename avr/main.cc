@@ -100,8 +100,7 @@ class Server {
   }
   void start(Words&) {
     chip_->start();
-    std::printf("ready\n");
-    std::fflush(stdout);
+    say("ready");
   }
   void receive(Words& words) { chip_->receive(words.bytes()); }
   void pause(Words& words) { chip_->pause_at(words.address()); }

@@ -3,31 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
+
+#include "hil/text/recording_text.h"
 
 namespace omnihil {
 namespace {
 
 std::string pin_text(const mcu::PinName& pin) { return fmt::format("P{}{}", pin.port, pin.pin); }
-
-std::string hex(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
-  return text;
-}
-
-std::vector<std::uint8_t> unhex(std::string_view text) {
-  std::vector<std::uint8_t> bytes;
-  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
-    std::uint8_t value = 0;
-    std::from_chars(text.data() + i, text.data() + i + 2, value, 16);
-    bytes.push_back(value);
-  }
-  return bytes;
-}
 
 }  // namespace
 
@@ -47,17 +32,17 @@ AvrBoard::AvrBoard(const mcu::AvrBoardSpec& spec, const mcu::AvrMotor& motor, co
 
 void AvrBoard::program(const mcu::AvrImage& image, const mcu::AvrBoardSpec& spec) {
   for (const mcu::ElfSegment& part : image.flash) {
-    process_.send(fmt::format("flash {} {}", part.address, hex(part.bytes)));
+    process_.send(fmt::format("flash {} {}", part.address, to_hex(part.bytes)));
   }
   for (const mcu::ElfSegment& part : image.eeprom) {
-    process_.send(fmt::format("eeprom {} {}", part.address, hex(part.bytes)));
+    process_.send(fmt::format("eeprom {} {}", part.address, to_hex(part.bytes)));
   }
   for (const mcu::FlashEntry& entry : spec.eeprom) {
     std::vector<std::uint8_t> bytes;
     for (const std::uint32_t word : entry.words) {
       for (unsigned i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(word >> (8 * i)));
     }
-    process_.send(fmt::format("eeprom {} {}", entry.address, hex(bytes)));
+    process_.send(fmt::format("eeprom {} {}", entry.address, to_hex(bytes)));
   }
 }
 
@@ -89,7 +74,7 @@ void AvrBoard::wire(const mcu::AvrBoardSpec& spec, const RobotConfig& config) {
 }
 
 void AvrBoard::receive(std::span<const std::uint8_t> frame) {
-  if (!frame.empty()) process_.send("receive " + hex(frame));
+  if (!frame.empty()) process_.send("receive " + to_hex(frame));
 }
 
 void AvrBoard::begin(const mcu::WorldState& world, std::int64_t end_ns) {
@@ -121,7 +106,7 @@ void AvrBoard::take(const std::string& line, bool& done) {
   const std::string verb = line.substr(0, space);
   const std::string rest = space == std::string::npos ? "" : line.substr(space + 1);
   if (verb == "sent") {
-    sent_.push_back(unhex(rest));
+    parse_hex(rest, sent_.emplace_back());
   } else if (verb == "note") {
     notes_.push_back(rest);
   } else if (verb == "stopped" || verb == "error") {
@@ -173,14 +158,12 @@ void AvrBoard::ask(std::span<const AvrBytes> places) {
 
 bool AvrBoard::read(std::vector<std::uint8_t>& bytes) {
   std::string text;
-  if (!answer("memory", text)) return false;
-  bytes = unhex(text);
-  return true;
+  return answer("memory", text) && parse_hex(text, bytes);
 }
 
 bool AvrBoard::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return true;
-  process_.send(fmt::format("write {} {}", address, hex(bytes)));
+  process_.send(fmt::format("write {} {}", address, to_hex(bytes)));
   std::string rest;
   return answer("written", rest);
 }

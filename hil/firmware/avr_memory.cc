@@ -3,16 +3,12 @@
 #include <algorithm>
 
 namespace omnihil {
-namespace {
-constexpr std::uint64_t kData = 0x800000, kData_bytes = 0x10000;  // as avr-gcc has it
-}  // namespace
-
 std::optional<AvrBytes> AvrMemory::place_of(const MemoryPiece& piece) {
-  const std::uint64_t at = piece.address - kData;
-  if (piece.space != MemorySpace::kImage || piece.address < kData || at > kData_bytes ||
-      piece.bytes > kData_bytes - at)
+  if (piece.space != MemorySpace::kImage || piece.address < mcu::kAvrData ||
+      piece.address > mcu::kAvrEeprom || piece.bytes > mcu::kAvrEeprom - piece.address)
     return std::nullopt;
-  return AvrBytes{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(piece.bytes)};
+  return AvrBytes{static_cast<std::uint32_t>(piece.address - mcu::kAvrData),
+                  static_cast<std::uint32_t>(piece.bytes)};
 }
 
 bool AvrMemory::read(std::span<const MemoryPiece> pieces, std::span<std::uint8_t> out) {

@@ -8,7 +8,6 @@
 namespace omnihil::mcu {
 namespace {
 
-constexpr std::uint32_t kRam = 0x800000, kEeprom = 0x810000, kFuses = 0x820000;
 constexpr std::size_t kMostFlash = 256 * 1024;
 
 bool is_elf(std::span<const std::uint8_t> file) {
@@ -84,10 +83,10 @@ bool read_avr_image(std::span<const std::uint8_t> file, AvrImage& image, std::ve
   if (!read_elf(file, elf, problems, ElfMachine::kAvr)) return false;
   image.main = elf.address_of("main");
   for (ElfSegment& segment : elf.segments) {
-    if (segment.address < kRam) {
+    if (segment.address < kAvrData) {
       image.flash.push_back(std::move(segment));
-    } else if (segment.address >= kEeprom && segment.address < kFuses) {
-      segment.address -= kEeprom;
+    } else if (segment.address >= kAvrEeprom && segment.address < kAvrFuses) {
+      segment.address -= kAvrEeprom;
       image.eeprom.push_back(std::move(segment));
     }
   }

@@ -17,6 +17,9 @@
 
 namespace omnihil::mcu {
 
+// What avr-gcc adds in an ELF file to addresses of memories that each count from 0; nothing to those of the flash.
+inline constexpr std::uint32_t kAvrData = 0x800000, kAvrEeprom = 0x810000, kAvrFuses = 0x820000;
+
 struct AvrImage {
   std::vector<ElfSegment> flash, eeprom;
   std::optional<std::uint32_t> main;  // where the function is, in bytes of the flash; HEX does not say
