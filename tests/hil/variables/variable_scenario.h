@@ -5,6 +5,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,18 @@ inline std::string failures(const ScenarioOutcome& outcome) {
   std::string text;
   for (const CheckResult& r : outcome.results) text += r.passed ? "" : failure_line(r) + "\n";
   return text;
+}
+
+// What is said where `run` is refused.
+template <typename Run>
+std::string refusal_of(Run run) {
+  try {
+    run();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return {};
 }
 
 }  // namespace omnihil
