@@ -6,40 +6,18 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "serve"))
-import bench as benches  # noqa: E402
+from board_bench import benches, board_text, on_board
 
-BUILD, SOURCE = os.environ["OMNIHIL_BUILD"], os.path.join(os.path.dirname(__file__), "..", "..", "..")
-IMAGE = os.path.join(BUILD, "images", "ports.elf")
+IMAGE = os.path.join(os.environ["OMNIHIL_BUILD"], "images", "ports.elf")
 
 
 def served(ports, *arguments):
     """A bench whose robots' boards have these ports; {folder} stands for the bench's own folder."""
     if not os.path.exists(IMAGE):
         raise benches.Skip("no arm-none-eabi-gcc: the image was not built")
-
-    class Served(benches.Bench):
-        def __init__(self):
-            import tempfile
-            self.boards = tempfile.mkdtemp(prefix="omnihil-ports-")
-            with open(os.path.join(SOURCE, "boards", "four_wheels_f405.toml"), encoding="utf-8") as file:
-                text = file.read()
-            board = os.path.join(self.boards, "board.toml")
-            with open(board, "w", encoding="utf-8") as file:
-                file.write(text + ports.replace("{folder}", self.boards))
-                if "semihosting" not in ports:  # the image says something by it; without a console that is a fault
-                    file.write('\n[[port]]\nof = "semihosting"\nconsole = true\n')
-            super().__init__(["--physics", "planar", "--firmware", IMAGE, "--board", board, *arguments])
-
-        def at(self, name):
-            return os.path.join(self.boards, name)
-
-        def __exit__(self, *what):
-            import shutil
-            super().__exit__(*what)
-            shutil.rmtree(self.boards, ignore_errors=True)
-
-    return Served()
+    if "semihosting" not in ports:  # the image says something by it; without a console that is a fault
+        ports += '\n[[port]]\nof = "semihosting"\nconsole = true\n'
+    return on_board(IMAGE, board_text("four_wheels_f405.toml") + ports, *arguments)
 
 
 class Line:
@@ -93,7 +71,7 @@ def a_serial_port_is_a_terminal_both_ways():
     import serial
     with served('\n[[port]]\nof = "USART2"\nas = "pty:{folder}/console{id}"\n', "--robots", "0-1") as bench:
         for robot in (0, 1):
-            with serial.Serial(bench.at(f"console{robot}"), 115200, timeout=benches.DEADLINE_S) as port:
+            with serial.Serial(bench.path(f"console{robot}"), 115200, timeout=benches.DEADLINE_S) as port:
                 wake_serial(port)
                 port.write(b"hello, board")
                 answer = b""
@@ -129,7 +107,7 @@ def a_socket_carries_a_flood_at_the_line_rate():
 def can_frames_come_and_go():
     import can
     with served('\n[[port]]\nof = "CAN1"\nas = "slcan:{folder}/can"\n', "--robots", "0") as bench:
-        with can.interface.Bus(bench.at("can"), interface="slcan", bitrate=1000000, ttyBaudrate=115200,
+        with can.interface.Bus(bench.path("can"), interface="slcan", bitrate=1000000, ttyBaudrate=115200,
                                sleep_after_open=0) as bus:
             wake_can(bus)
             for n in range(20):
@@ -145,7 +123,7 @@ def can_frames_come_and_go():
 def a_motor_turns_as_its_can_is_told():
     import can
     with served('\n[[port]]\nof = "CAN1"\nas = "slcan:{folder}/can"\n', "--robots", "0") as bench:
-        with can.interface.Bus(bench.at("can"), interface="slcan", bitrate=1000000, ttyBaudrate=115200,
+        with can.interface.Bus(bench.path("can"), interface="slcan", bitrate=1000000, ttyBaudrate=115200,
                                sleep_after_open=0) as bus:
             def count(duty):
                 bus.send(can_message(0x100, struct.pack("<h", duty)))

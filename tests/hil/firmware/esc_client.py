@@ -2,42 +2,22 @@
 import os
 import struct
 import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "serve"))
-import bench as benches  # noqa: E402
-
-SOURCE = os.path.join(os.path.dirname(__file__), "..", "..", "..")
-
+from board_bench import benches, board_text, on_board
 
 DAMPING = 0.05  # N m s/rad: what the rolling wheel asks for over this is missing of its speed
 
 
-class Served(benches.Bench):
+def served(image, board, ports, keep_ports=True):
     """A robot with this controller at one wheel; `ports` are added to its board, {folder} is the bench's own."""
-
-    def __init__(self, image, board, ports, keep_ports=True):
-        path = os.path.join(os.environ.get("OMNIHIL_IMAGES", ""), image)
-        if "OMNIHIL_IMAGES" not in os.environ or not os.path.exists(path):
-            raise benches.Skip(f"no {image} in OMNIHIL_IMAGES (docs/mcu-third-party.md)")
-        self.scratch = tempfile.TemporaryDirectory(prefix="omnihil-esc-")
-        with open(os.path.join(SOURCE, "boards", board), encoding="utf-8") as file:
-            text = file.read()
-        if not keep_ports:  # its last lines: a pty of the caller's place instead
-            text = text[:text.rindex("[[port]]")]
-        toml = os.path.join(self.scratch.name, "board.toml")
-        with open(toml, "w", encoding="utf-8") as file:
-            file.write(text + ports.replace("{folder}", self.scratch.name))
-        super().__init__(["--physics", "planar", "--robot", "omni_foc", "--firmware", path, "--board", toml, "--robots", "0",
-                          "--clock", "free"])
-
-    def at(self, name):
-        return os.path.join(self.scratch.name, name)
-
-    def __exit__(self, *what):
-        super().__exit__(*what)
-        self.scratch.cleanup()
+    path = os.path.join(os.environ.get("OMNIHIL_IMAGES", ""), image)
+    if "OMNIHIL_IMAGES" not in os.environ or not os.path.exists(path):
+        raise benches.Skip(f"no {image} in OMNIHIL_IMAGES (docs/mcu-third-party.md)")
+    text = board_text(board)
+    if not keep_ports:  # its last lines: a pty of the caller's place instead
+        text = text[:text.rindex("[[port]]")]
+    return on_board(path, text + ports, "--robot", "omni_foc", "--robots", "0", "--clock", "free")
 
 
 def mini_cheetah_command(speed_rad_s, damping):
@@ -51,8 +31,8 @@ def mini_cheetah_command(speed_rad_s, damping):
 
 def mini_cheetah_turns_as_python_can_says():
     import can
-    with Served("mini-cheetah-f446.elf", "mini_cheetah_f446.toml", '\n[[port]]\nof = "CAN1"\nas = "slcan:{folder}/can"\n') as bench:
-        with can.interface.Bus(bench.at("can"), interface="slcan", bitrate=1000000, ttyBaudrate=115200,
+    with served("mini-cheetah-f446.elf", "mini_cheetah_f446.toml", '\n[[port]]\nof = "CAN1"\nas = "slcan:{folder}/can"\n') as bench:
+        with can.interface.Bus(bench.path("can"), interface="slcan", bitrate=1000000, ttyBaudrate=115200,
                                sleep_after_open=0) as bus:
             def told(data):
                 bus.send(can.Message(arbitration_id=1, data=data, is_extended_id=False))
@@ -78,9 +58,9 @@ def mini_cheetah_turns_as_python_can_says():
 
 def an_odrive_says_by_pyserial_who_it_is():
     import serial
-    with Served("odrive-36-f405.elf", "odrive_36_f405.toml", '[[port]]\nof = "UART4"\nas = "pty:{folder}/odrive"\n',
+    with served("odrive-36-f405.elf", "odrive_36_f405.toml", '[[port]]\nof = "UART4"\nas = "pty:{folder}/odrive"\n',
                 keep_ports=False) as bench:
-        with serial.Serial(bench.at("odrive"), 115200, timeout=0.5) as port:
+        with serial.Serial(bench.path("odrive"), 115200, timeout=0.5) as port:
             def asked(line):
                 end = time.monotonic() + benches.DEADLINE_S
                 while time.monotonic() < end:  # it does not answer before it has booted
@@ -109,9 +89,9 @@ def a_vesc_says_by_pyserial_who_it_is():
     import serial
     asks = b"\x00"  # COMM_FW_VERSION
     packet = b"\x02" + bytes([len(asks)]) + asks + struct.pack(">H", crc16(asks)) + b"\x03"
-    with Served("vesc-410-f405.elf", "vesc_410_f405.toml", '[[port]]\nof = "USART6"\nas = "pty:{folder}/vesc"\n',
+    with served("vesc-410-f405.elf", "vesc_410_f405.toml", '[[port]]\nof = "USART6"\nas = "pty:{folder}/vesc"\n',
                 keep_ports=False) as bench:
-        with serial.Serial(bench.at("vesc"), 115200, timeout=0.5) as port:
+        with serial.Serial(bench.path("vesc"), 115200, timeout=0.5) as port:
             end, answer = time.monotonic() + benches.DEADLINE_S, b""
             while len(answer) < 5 and time.monotonic() < end:
                 port.write(packet)

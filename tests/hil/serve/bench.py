@@ -53,9 +53,13 @@ class Report:
 
 
 class Bench:
-    def __init__(self, arguments=(), columns=None, device=None):
-        """columns: the bench sees a terminal that wide instead of a pipe. device: a wire instead of a path."""
+    def __init__(self, arguments=(), columns=None, device=None, files=None):
+        """columns: the bench sees a terminal that wide instead of a pipe. device: a wire instead of a path.
+        files: texts by name, in its folder before it starts; {folder} in them is that."""
         self.folder = tempfile.mkdtemp(prefix="omnihil-serve-")
+        for name, text in (files or {}).items():
+            with open(self.path(name), "w", encoding="utf-8") as file:
+                file.write(text.replace("{folder}", self.folder))
         self.device = device or self.path("dongle")
         self.program = os.environ["OMNIHIL_PROGRAM"]
         arguments = [argument.replace("{folder}", self.folder) for argument in arguments]
