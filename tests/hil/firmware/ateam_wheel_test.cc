@@ -4,10 +4,8 @@
 #include <cstdio>
 
 #include "hil/firmware/image_firmware.h"
-#include "hil/loop/model_store.h"
 #include "hil/recording/session_setup.h"
-#include "tests/hil/firmware/motor_on_board.h"
-#include "tests/hil/firmware/third_party.h"
+#include "tests/hil/firmware/esc_image.h"
 
 namespace omnihil {
 namespace {
@@ -87,15 +85,12 @@ TEST_F(AteamWheel, GivesTheRegistersAndRepliesOfTheOtherEmulatorRowByRow) {
 // Its filter and gains leave a ripple of some rad/s on a rotor without a wheel, here as on the other
 // emulator: reached is what holds on the mean of the last second.
 TEST_F(AteamWheel, SlowClosesItsSpeedLoopOnTheThreePhaseMotor) {
-  const StoredModel df45 = load_model("nanotec_df45", {OMNIHIL_SOURCE_DIR "/models"});
-  ASSERT_TRUE(df45.model);
   const auto board = this->board();
   const Inverter bridge{.pwm_frequency_Hz = 48e6 / (2 * 999),
                         .dead_time_s = 7 / 48e6,
                         .switch_resistance_ohm = 0.012,
                         .diode_forward_V = 0.8};
-  const PhaseMotor<double> windings =
-      phase_motor_of(df45.model->motor, Commutation::kBlock, {.shape = BackEmfShape::kTrapezoid});
+  const PhaseMotor<double> windings = df45_windings(BackEmfShape::kTrapezoid);
   MotorsOnBoard bench(*board, 24.0, 4000);
   bench.add({.wheel = 0, .drive = make_switched_drive(windings, bridge, {}), .load_Nm = 0.01});
   const MotorOnBoard& motor = bench.motors[0];

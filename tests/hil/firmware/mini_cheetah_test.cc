@@ -3,14 +3,11 @@
 #include <cstdio>
 
 #include "firmware_iface/mcu/stm32/can.h"
-#include "hil/loop/model_store.h"
-#include "tests/hil/firmware/motor_on_board.h"
-#include "tests/hil/firmware/third_party.h"
+#include "tests/hil/firmware/esc_image.h"
 
 namespace omnihil {
 namespace {
 
-constexpr double kTurn_rad = 2 * std::numbers::pi;
 // Its scales: position, speed, both gains, torque. Torque by its settings: 40 A at 0.0363 N m/A.
 constexpr double kPosition_rad = 12.5, kSpeed_rad_s = 65.0, kStiffness = 500.0, kDamping = 5.0,
                  kTorque_Nm = 1.452;
@@ -40,24 +37,19 @@ mcu::CanFrame mode(std::uint8_t last) {
   return frame;
 }
 
-struct MiniCheetah : ThirdPartyImage {
-  MiniCheetah() : ThirdPartyImage("mini-cheetah-f446.elf", "mini_cheetah_f446.toml") {}
+struct MiniCheetah : EscImage {
+  MiniCheetah()
+      : EscImage("mini-cheetah-f446.elf", "mini_cheetah_f446.toml",
+                 {.pwm_frequency_Hz = 180e6 / (2 * 2250),
+                  .dead_time_s = 50e-9,
+                  .switch_resistance_ohm = 0.002,
+                  .diode_forward_V = 0.8},
+                 {}) {}
   void SetUp() override {
-    ThirdPartyImage::SetUp();
-    if (IsSkipped()) return;
-    const StoredModel df45 = load_model("nanotec_df45", {OMNIHIL_SOURCE_DIR "/models"});
-    ASSERT_TRUE(df45.model);
-    const PhaseMotor<double> windings =
-        phase_motor_of(df45.model->motor, Commutation::kBlock, {.shape = BackEmfShape::kSine});
-    board_ = board();
+    EscImage::SetUp();
+    if (!bench_) return;
     can_ = board_->chip().find<mcu::CanPort>("CAN1");
     can_->on_transmit([this](const mcu::CanFrame& frame, mcu::Cycles) { replies_.push_back(frame); });
-    bench_ = std::make_unique<MotorsOnBoard>(*board_, 24.0, 4000);
-    const Inverter bridge{.pwm_frequency_Hz = 180e6 / (2 * 2250),
-                          .dead_time_s = 50e-9,
-                          .switch_resistance_ohm = 0.002,
-                          .diode_forward_V = 0.8};
-    bench_->add({.wheel = 0, .drive = make_switched_drive(windings, bridge, {}), .load_Nm = kFriction_Nm});
   }
   // The command every 5 ms; the mean speed of the last half.
   double run(double duration_s, const mcu::CanFrame& frame) {
@@ -70,22 +62,14 @@ struct MiniCheetah : ThirdPartyImage {
       }
       bench_->period();
       if (half_s == 0.0 && board_->now_ns() - from_ns > (end_ns - from_ns) / 2) {
-        half_s = 1e-9 * static_cast<double>(board_->now_ns());
-        half_rad = bench_->motors[0].theta_rad();
+        half_s = now_s();
+        half_rad = motor().theta_rad();
       }
     }
-    return (bench_->motors[0].theta_rad() - half_rad) /
-           (1e-9 * static_cast<double>(board_->now_ns()) - half_s);
-  }
-  void wait(double duration_s) {
-    const std::int64_t end_ns = board_->now_ns() + std::llround(duration_s * 1e9);
-    while (board_->now_ns() < end_ns) bench_->period();
+    return (motor().theta_rad() - half_rad) / (now_s() - half_s);
   }
 
-  static constexpr double kFriction_Nm = 0.01;
-  std::unique_ptr<mcu::McuBoard> board_;
   mcu::CanPort* can_ = nullptr;
-  std::unique_ptr<MotorsOnBoard> bench_;
   std::vector<mcu::CanFrame> replies_;
   std::int64_t next_ns_ = 0;
 };
@@ -133,7 +117,7 @@ TEST_F(MiniCheetah, ForgetsItsCommandAndLeavesItsModeWhenTold) {
   can_->receive(mode(0xFC));
   run(0.4, command(20.0, 0.02));
   wait(0.3);
-  EXPECT_LT(std::abs(bench_->motors[0].omega_rad_s()), 5.0) << "friction brakes it";
+  EXPECT_LT(std::abs(motor().omega_rad_s()), 5.0) << "friction brakes it";
   EXPECT_TRUE(board_->device("driver")->drives_bridge());
   can_->receive(mode(0xFD));
   wait(0.01);

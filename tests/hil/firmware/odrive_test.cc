@@ -1,15 +1,12 @@
 // An ODrive 3.6, unmodified, told by lines of text over its serial port and by CAN: it measures the motor, finds where its
 // encoder is and turns the motor.
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/usart.h"
-#include "hil/loop/model_store.h"
-#include "tests/hil/firmware/motor_on_board.h"
-#include "tests/hil/firmware/third_party.h"
+#include "tests/hil/firmware/esc_image.h"
 
 namespace omnihil {
 namespace {
@@ -18,32 +15,26 @@ constexpr double kIdle = 1, kMeasureMotor = 4, kFindEncoder = 7, kClosedLoop = 8
 constexpr unsigned kCanEstimates = 9, kCanSpeed = 13;                              // of axis 0
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 
-struct Odrive : ThirdPartyImage {
-  Odrive() : ThirdPartyImage("odrive-36-f405.elf", "odrive_36_f405.toml") {}
+struct Odrive : EscImage {
+  Odrive()
+      : EscImage("odrive-36-f405.elf", "odrive_36_f405.toml",
+                 {.pwm_frequency_Hz = 24e3,
+                  .dead_time_s = 20 / 168e6,
+                  .switch_resistance_ohm = 0.002,
+                  .diode_forward_V = 0.8},
+                 {.extra_inertia_kg_m2 = 1e-4}) {}
   void SetUp() override {
-    ThirdPartyImage::SetUp();
-    if (IsSkipped()) return;
-    const StoredModel df45 = load_model("nanotec_df45", {OMNIHIL_SOURCE_DIR "/models"});
-    ASSERT_TRUE(df45.model);
-    windings_ = phase_motor_of(df45.model->motor, Commutation::kBlock, {.shape = BackEmfShape::kSine});
-    board_ = board();
+    EscImage::SetUp();
+    if (!bench_) return;
     board_->chip().find<mcu::Usart>("UART4")->on_transmit(
         [this](std::uint8_t byte, mcu::Cycles) { line_ += static_cast<char>(byte); });
     can_ = board_->chip().find<mcu::CanPort>("CAN1");
     can_->on_transmit([this](const mcu::CanFrame& frame, mcu::Cycles) {
       if (frame.id == kCanEstimates) estimates_ = frame;
     });
-    bench_ = std::make_unique<MotorsOnBoard>(*board_, kBus_V, kCounts);
-    bench_->add({.wheel = 0,
-                 .drive = make_switched_drive(windings_, kBridge, {.extra_inertia_kg_m2 = 1e-4}),
-                 .load_Nm = 0.01});
     // Offsets of its current amplifiers are taken for 1.5 s before its axes answer.
     wait(1.7);
     ASSERT_TRUE(comes_to(kIdle, 2.0));
-  }
-  void wait(double duration_s) {
-    const std::int64_t end_ns = board_->now_ns() + std::llround(duration_s * 1e9);
-    while (board_->now_ns() < end_ns) bench_->period();
   }
   void say(const std::string& text) {
     const std::string line = text + "\n";
@@ -81,25 +72,13 @@ struct Odrive : ThirdPartyImage {
     mcu::CanFrame frame;
     frame.id = kCanSpeed;
     frame.bytes = 8;
-    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(turns_per_s));
-    for (unsigned i = 0; i < 4; ++i) frame.data[i] = static_cast<std::uint8_t>(bits >> 8 * i);
+    put_bytes(frame.data, 0, static_cast<float>(turns_per_s));
     can_->receive(frame);
   }
-  float said_by_can() const {  // turns a second
-    std::uint32_t bits = 0;
-    for (unsigned i = 0; i < 4; ++i) bits |= std::uint32_t{estimates_.data[4 + i]} << 8 * i;
-    return std::bit_cast<float>(bits);
-  }
+  float said_by_can() const { return from_bytes<float>(estimates_.data, 4); }  // turns a second
 
-  static constexpr double kBus_V = 24.0, kCounts = 4000, kCalibration_A = 5.0;
-  static constexpr Inverter kBridge{.pwm_frequency_Hz = 24e3,
-                                    .dead_time_s = 20 / 168e6,
-                                    .switch_resistance_ohm = 0.002,
-                                    .diode_forward_V = 0.8};
-  PhaseMotor<double> windings_;
-  std::unique_ptr<mcu::McuBoard> board_;
+  static constexpr double kCalibration_A = 5.0;
   mcu::CanPort* can_ = nullptr;
-  std::unique_ptr<MotorsOnBoard> bench_;
   std::string line_;
   mcu::CanFrame estimates_;
 };
@@ -137,9 +116,9 @@ TEST_F(Odrive, SlowMeasuresTheMotorFindsItsEncoderAndTurnsAsItIsTold) {
   ASSERT_TRUE(comes_to(kIdle, 6.0));
   EXPECT_EQ(get("axis0.motor.is_calibrated"), 1.0) << errors();
   const double measured_ohm = get("axis0.motor.config.phase_resistance");
-  const double dead_V = kBridge.dead_time_s * kBridge.pwm_frequency_Hz * kBus_V;
+  const double dead_V = bridge_.dead_time_s * bridge_.pwm_frequency_Hz * kBus_V;
   const double ohm =
-      windings_.resistance_ohm + kBridge.switch_resistance_ohm + 4.0 / 3.0 * dead_V / kCalibration_A;
+      windings_.resistance_ohm + bridge_.switch_resistance_ohm + 4.0 / 3.0 * dead_V / kCalibration_A;
   std::printf("measured %.4f ohm (%.4f)\n", measured_ohm, ohm);
   EXPECT_NEAR(measured_ohm, ohm, 0.01 * ohm);
   // Alternating pulses, which this bridge does not follow: its own measurement of this one is not used.
@@ -147,7 +126,7 @@ TEST_F(Odrive, SlowMeasuresTheMotorFindsItsEncoderAndTurnsAsItIsTold) {
 
   set("axis0.requested_state", kFindEncoder);
   wait(2.5);  // a second to settle, then it turns the field
-  const auto& phase_A = bench_->motors[0].phase_A;
+  const auto& phase_A = motor().phase_A;
   const double amplitude_A =
       std::sqrt(2.0 / 3.0 * (phase_A[0] * phase_A[0] + phase_A[1] * phase_A[1] + phase_A[2] * phase_A[2]));
   EXPECT_NEAR(amplitude_A, kCalibration_A, 0.05 * kCalibration_A) << "its current loop holds what it reads";
@@ -163,11 +142,9 @@ TEST_F(Odrive, SlowMeasuresTheMotorFindsItsEncoderAndTurnsAsItIsTold) {
       say("v 0 " + std::to_string(told));
     }
     wait(1.5);
-    const double from_rad = bench_->motors[0].theta_rad(),
-                 from_s = 1e-9 * static_cast<double>(board_->now_ns());
+    const double from_rad = motor().theta_rad(), from_s = now_s();
     wait(0.5);
-    const double reached = (bench_->motors[0].theta_rad() - from_rad) / kTurn_rad /
-                           (1e-9 * static_cast<double>(board_->now_ns()) - from_s);
+    const double reached = (motor().theta_rad() - from_rad) / kTurn_rad / (now_s() - from_s);
     const std::string reply = ask("f 0");  // position and speed
     const double said = by_can ? said_by_can() : std::strtod(reply.c_str() + reply.find(' '), nullptr);
     std::printf("told %g turns/s by %s: reached %.3f, it says %.3f\n", told, by_can ? "CAN" : "text", reached,

@@ -15,6 +15,7 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,14 +45,14 @@ inline std::string third_party_vectors(const std::string& name) {
 }
 
 template <typename T>
-T from_bytes(const std::vector<std::uint8_t>& bytes, std::size_t at) {
+T from_bytes(std::span<const std::uint8_t> bytes, std::size_t at) {
   T value{};
   if (at + sizeof value <= bytes.size()) std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
 
 template <typename T>
-void put_bytes(std::vector<std::uint8_t>& bytes, std::size_t at, T value) {
+void put_bytes(std::span<std::uint8_t> bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 

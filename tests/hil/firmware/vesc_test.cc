@@ -7,9 +7,7 @@
 
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/usart.h"
-#include "hil/loop/model_store.h"
-#include "tests/hil/firmware/motor_on_board.h"
-#include "tests/hil/firmware/third_party.h"
+#include "tests/hil/firmware/esc_image.h"
 
 namespace omnihil {
 namespace {
@@ -65,33 +63,23 @@ Bytes framed(const Bytes& payload) {
   return bytes;
 }
 
-struct Vesc : ThirdPartyImage {
-  Vesc() : ThirdPartyImage("vesc-410-f405.elf", "vesc_410_f405.toml") {}
+struct Vesc : EscImage {
+  // Its own bridge is switched at 12.5 kHz, and at 5 kHz while it measures, where it takes off the voltage of 0.12 us of
+  // dead time: the same voltage as of 48 ns at this frequency, which does not follow it.
+  Vesc()
+      : EscImage("vesc-410-f405.elf", "vesc_410_f405.toml",
+                 {.pwm_frequency_Hz = 25e3,
+                  .dead_time_s = 48e-9,
+                  .switch_resistance_ohm = kSwitch_ohm,
+                  .diode_forward_V = 0.8},
+                 {.extra_inertia_kg_m2 = 1e-4}) {}
   void SetUp() override {
-    ThirdPartyImage::SetUp();
-    if (IsSkipped()) return;
-    const StoredModel df45 = load_model("nanotec_df45", {OMNIHIL_SOURCE_DIR "/models"});
-    ASSERT_TRUE(df45.model);
-    windings_ = phase_motor_of(df45.model->motor, Commutation::kBlock, {.shape = BackEmfShape::kSine});
-    board_ = board();
+    EscImage::SetUp();
+    if (!bench_) return;
     serial_ = board_->chip().find<mcu::Usart>("USART6");
     serial_->on_transmit([this](std::uint8_t byte, mcu::Cycles) { line_.push_back(byte); });
-    bench_ = std::make_unique<MotorsOnBoard>(*board_, 24.0, 4000);
-    // Its own bridge is switched at 12.5 kHz, and at 5 kHz while it measures, where it takes off the voltage of 0.12 us of
-    // dead time: the same voltage as of 48 ns at this frequency, which does not follow it.
-    const Inverter bridge{.pwm_frequency_Hz = 25e3,
-                          .dead_time_s = 48e-9,
-                          .switch_resistance_ohm = kSwitch_ohm,
-                          .diode_forward_V = 0.8};
-    bench_->add({.wheel = 0,
-                 .drive = make_switched_drive(windings_, bridge, {.extra_inertia_kg_m2 = 1e-4}),
-                 .load_Nm = 0.01});
     // Its supply has to be still for two seconds before it takes its offsets, and its serial port opens then.
     for (int i = 0; i < 20 && ask({kVersion}, 0.5).empty(); ++i) continue;
-  }
-  void wait(double duration_s) {
-    const std::int64_t end_ns = board_->now_ns() + std::llround(duration_s * 1e9);
-    while (board_->now_ns() < end_ns) bench_->period();
   }
   void say(const Bytes& payload) { serial_->feed(framed(payload), board_->now_ns()); }
   // The payload of the next answer of this kind; what else comes is passed over. Empty: none in time.
@@ -125,10 +113,7 @@ struct Vesc : ThirdPartyImage {
   }
 
   static constexpr double kSwitch_ohm = 0.002;
-  PhaseMotor<double> windings_;
-  std::unique_ptr<mcu::McuBoard> board_;
   mcu::Usart* serial_ = nullptr;
-  std::unique_ptr<MotorsOnBoard> bench_;
   Bytes line_;
 };
 
@@ -193,7 +178,7 @@ TEST_F(Vesc, SlowTurnsTheMotorAtTheSpeedThatItsPacketsSay) {
     number.insert(number.begin(), kSpeed);
     double from_rad = 0.0;
     for (int tenth = 0; tenth < 40; ++tenth) {
-      if (tenth == 30) from_rad = bench_->motors[0].theta_rad();
+      if (tenth == 30) from_rad = motor().theta_rad();
       if (asked_rad_s == 300.0) {
         can->receive(frame);
       } else {
@@ -201,7 +186,7 @@ TEST_F(Vesc, SlowTurnsTheMotorAtTheSpeedThatItsPacketsSay) {
       }
       wait(0.1);
     }
-    const double reached_rad_s = bench_->motors[0].theta_rad() - from_rad;  // in the last second
+    const double reached_rad_s = motor().theta_rad() - from_rad;  // in the last second
     const double said_erpm = get_big(ask({kValues}), 23);
     std::printf("told %d ERPM by %s: reached %.0f, it says %.0f\n", told,
                 asked_rad_s == 300.0 ? "CAN" : "UART", erpm(reached_rad_s), said_erpm);
