@@ -197,6 +197,14 @@ void add_sensor_noise(const RigRun& run, std::size_t s, std::uint64_t seed, std:
   }
 }
 
+void keep_sensors(const RigRun& from, RigRun& to) {
+  for (std::size_t s = 0; s < to.seen.size(); ++s) {
+    to.seen[s].channel_sigma = from.seen[s].channel_sigma;
+    to.compared[s].noise_sigma = from.compared[s].noise_sigma;
+    to.compared[s].whitened_sigma = from.compared[s].whitened_sigma;
+  }
+}
+
 void share_noise(std::span<RigRun* const> runs) {
   std::map<std::string, std::vector<std::pair<ComparedSignal*, Observation*>>> by_name;
   for (RigRun* const run : runs) {

@@ -103,6 +103,9 @@ double distance(const RigRun& run, const Prediction& a, const Prediction& b);
 void add_sensor_noise(const RigRun& run, std::size_t signal, std::uint64_t seed, std::uint64_t stream,
                       std::vector<double>& values);
 
+// The sensors of `to` are those of `from`: sigmas are not estimated anew.
+void keep_sensors(const RigRun& from, RigRun& to);
+
 // A signal has one noise in all runs: where it is neither stated nor whitened, the median of the runs'.
 void share_noise(std::span<RigRun* const> runs);
 

@@ -127,14 +127,8 @@ void RollingRig<Kind>::measure(const Candidate& truth, std::uint64_t seed) {
   }
   RollingRig null(made, nominal_, options_);
   for (std::size_t n = 0; n < made->runs.size(); ++n) {
-    RobotRun& run = null.runs_[n];
-    // the sensors are those of the recording: sigmas are not estimated anew
-    for (std::size_t s = 0; s < run.seen.size(); ++s) {
-      run.seen[s].channel_sigma = runs_[n].seen[s].channel_sigma;
-      run.compared[s].noise_sigma = runs_[n].compared[s].noise_sigma;
-      run.compared[s].whitened_sigma = runs_[n].compared[s].whitened_sigma;
-    }
-    measure_compared_bus(motions[n], own_seed(n), run);
+    keep_sensors(runs_[n], null.runs_[n]);
+    measure_compared_bus(motions[n], own_seed(n), null.runs_[n]);
   }
   *this = std::move(null);
 }

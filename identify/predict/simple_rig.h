@@ -100,14 +100,7 @@ class SimpleRig {
       }
     }
     SimpleRig null(made, nominal_, options_);
-    // the sensors are those of the recording: sigmas are not estimated anew
-    for (std::size_t n = 0; n < runs_.size(); ++n) {
-      for (std::size_t s = 0; s < runs_[n].seen.size(); ++s) {
-        null.runs_[n].seen[s].channel_sigma = runs_[n].seen[s].channel_sigma;
-        null.runs_[n].compared[s].noise_sigma = runs_[n].compared[s].noise_sigma;
-        null.runs_[n].compared[s].whitened_sigma = runs_[n].compared[s].whitened_sigma;
-      }
-    }
+    for (std::size_t n = 0; n < runs_.size(); ++n) keep_sensors(runs_[n], null.runs_[n]);
     *this = std::move(null);
   }
 
