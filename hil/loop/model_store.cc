@@ -44,6 +44,14 @@ ModelProblem unknown_name(const std::string& name, const std::vector<std::string
   return problem;
 }
 
+MotorFileLoader motor_of(const ModelBundle& bundle) {
+  return [&bundle](const std::string& file) {
+    MotorFileText motor{.shown_name = file, .text = bundle.motor_text, .error = ""};
+    if (file != bundle.motor_file) motor.error = fmt::format("{}: not in the bundle", file);
+    return motor;
+  };
+}
+
 }  // namespace
 
 std::vector<std::string> model_folders(const std::vector<std::string>& folders) {
@@ -108,11 +116,11 @@ StoredModel load_robot_model(const std::string& path_or_name, const std::vector<
 }
 
 ModelReading read_bundle(const ModelBundle& bundle) {
-  return read_model(bundle.robot_text, bundle.robot_file, [&](const std::string& file) {
-    MotorFileText motor{.shown_name = file, .text = bundle.motor_text, .error = ""};
-    if (file != bundle.motor_file) motor.error = fmt::format("{}: not in the bundle", file);
-    return motor;
-  });
+  return read_model(bundle.robot_text, bundle.robot_file, motor_of(bundle));
+}
+
+AxisReading read_axis_bundle(const ModelBundle& bundle) {
+  return read_axis_model(bundle.robot_text, bundle.robot_file, motor_of(bundle));
 }
 
 std::vector<ModelListing> list_models(const std::vector<std::string>& folders) {

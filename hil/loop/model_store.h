@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/axis_model.h"
 #include "sim/model/model_file.h"
 
 namespace omnihil {
@@ -44,6 +45,7 @@ StoredModel load_model(const std::string& path_or_name, const std::vector<std::s
 StoredModel load_robot_model(const std::string& path_or_name, const std::vector<std::string>& folders);
 
 ModelReading read_bundle(const ModelBundle& bundle);
+AxisReading read_axis_bundle(const ModelBundle& bundle);  // a robot's, a motor's too (axis_model.h)
 
 struct ModelListing {
   std::string name;

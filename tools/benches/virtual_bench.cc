@@ -116,11 +116,7 @@ std::optional<AxisModel> open_model(const std::string& name, std::vector<std::st
     for (const ModelProblem& p : stored.problems) faults.push_back(p.text());
     return std::nullopt;
   }
-  const auto motor = [&](const std::string&) {
-    return MotorFileText{
-        .shown_name = stored.bundle.motor_file, .text = stored.bundle.motor_text, .error = ""};
-  };
-  AxisReading reading = read_axis_model(stored.bundle.robot_text, stored.bundle.robot_file, motor);
+  AxisReading reading = read_axis_bundle(stored.bundle);
   for (const ModelProblem& p : reading.problems) faults.push_back(p.text());
   return std::move(reading.model);
 }

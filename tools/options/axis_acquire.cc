@@ -30,11 +30,7 @@ struct OpenedModel {
 OpenedModel open_model(const std::string& name) {
   const StoredModel stored = load_model(name, {data_folder("models")});
   if (stored.bundle.robot_text.empty()) throw std::invalid_argument(lines_of(stored.problems));
-  AxisReading reading =
-      read_axis_model(stored.bundle.robot_text, stored.bundle.robot_file, [&](const std::string&) {
-        return MotorFileText{
-            .shown_name = stored.bundle.motor_file, .text = stored.bundle.motor_text, .error = ""};
-      });
+  AxisReading reading = read_axis_bundle(stored.bundle);
   if (!reading.model) throw std::invalid_argument(lines_of(reading.problems));
   const bool alone = stored.bundle.motor_text.empty() && reading.model->file.rig == "axis";
   std::string text = alone ? stored.bundle.robot_text : axis_model_text(*reading.model);
