@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -36,19 +37,23 @@ std::string rig_of(const Arguments& arguments) {
   return "robot";
 }
 
-// Axis and robot have virtual benches of their own, on the simulators that they have.
-bool has_bench(const Rig& rig) { return rig.bench != nullptr || &rig == &rig_axis() || &rig == &rig_robot(); }
+using MakeBench = std::function<std::optional<VirtualBench>(const BenchOptions&, std::vector<std::string>&)>;
 
-std::optional<VirtualBench> bench_of(const Rig& rig, const BenchOptions& options,
-                                     std::vector<std::string>& faults) {
-  if (rig.bench != nullptr) return make_rig_bench(rig, options, faults);
-  return rig.whole_robot ? make_robot_bench(options, faults) : make_axis_bench(options, faults);
+// Axis and robot have virtual benches of their own, on the simulators that they have. Empty: there is none.
+MakeBench bench_of(const Rig& rig) {
+  if (rig.bench != nullptr)
+    return [&rig](const BenchOptions& o, std::vector<std::string>& faults) {
+      return make_rig_bench(rig, o, faults);
+    };
+  if (&rig == &rig_axis()) return make_axis_bench;
+  if (&rig == &rig_robot()) return make_robot_bench;
+  return {};
 }
 
 int run(const Arguments& arguments) {
   const std::string rig = rig_of(arguments);
   std::vector<std::string> faults;
-  const std::optional<VirtualBench> bench = bench_of(*find_rig(rig), arguments.bench, faults);
+  const std::optional<VirtualBench> bench = bench_of(*find_rig(rig))(arguments.bench, faults);
   for (const std::string& fault : faults) std::fprintf(stderr, "omnihil sim: %s\n", fault.c_str());
   if (!bench) return kExitBadInput;
   if (!bench->diverged.empty()) {
@@ -76,7 +81,7 @@ void add_verb_sim(Verb& program, VerbResult& result) {
   std::vector<std::string> rigs;
   std::string said;
   for (const Rig* rig : all_rigs()) {
-    if (!has_bench(*rig)) continue;
+    if (!bench_of(*rig)) continue;
     rigs.emplace_back(rig->name);
     said += fmt::format("{}: {}; ", rig->name, rig->what);
   }
