@@ -147,13 +147,14 @@ void Planner::prepare_menu() {
   const double rate_Hz = std::min(options_.rate_Hz, own_Hz);
   const auto count = static_cast<std::size_t>(std::llround(duration_s * rate_Hz));
   for (std::size_t k = 0; k <= count; ++k) time_s_.push_back(static_cast<double>(k) / rate_Hz);
-  const RollingParams<double> wheels = dataset_.rig->whole_robot
-                                           ? rolling_params(rivals_.front().model.file.parameters)
-                                           : RollingParams<double>();
-  menu_ = bench_.inputs.front() == "command_vx" ? body_menu(time_s_, options_.seed)
-          : dataset_.rig->whole_robot
-              ? robot_menu(time_s_, std::span(wheels.wheel_angle_rad).first(wheels.wheels), options_.seed)
-              : axis_menu(time_s_, options_.seed);
+  if (bench_.inputs.front() == "command_vx") {
+    menu_ = body_menu(time_s_, options_.seed);
+  } else if (dataset_.rig->whole_robot) {
+    const RollingParams<double> p = rolling_params(rivals_.front().model.file.parameters);
+    menu_ = robot_menu(time_s_, std::span(p.wheel_angle_rad).first(p.wheels), options_.seed);
+  } else {
+    menu_ = axis_menu(time_s_, options_.seed);
+  }
 }
 
 double Planner::largest_level() const {
@@ -276,9 +277,7 @@ void Planner::describe(const Trial& best) {
   const double duration_s = time_s_.back();
   plan_.run = PlannedRun{.excitation = run.excitation,
                          .words = fmt::format("{}; up to {}, {:.3g} s", run.words, level, duration_s),
-                         .input = by_command()                ? bench_.inputs.front()
-                                  : dataset_.rig->whole_robot ? "duty"
-                                                              : bench_.inputs.front(),
+                         .input = dataset_.rig->whole_robot && !by_command() ? "duty" : bench_.inputs.front(),
                          .time_s = time_s_,
                          .duty = bench_.imposed
                                      ? std::vector<std::vector<double>>{imposed_speed(bench_, inputs(best))}
