@@ -66,6 +66,7 @@ struct OneWheel {
 // ---- Its virtual bench
 
 constexpr double kShareOfSpeed = 0.4;  // of the robot's full speed, that the bench moves at: a choice
+constexpr double kShareOfGrip = 0.5;   // of what the tyre could accelerate the body by: a choice
 // 1-sigma of usual sensors: a shunt, a small load cell. Guesses, +-50 %.
 constexpr double kCurrent_A = 0.03, kForce_N = 0.05;  // as above
 
@@ -81,7 +82,7 @@ double slipping_duty(const RobotModel& m) {
 std::function<std::vector<double>(double)> driven(const Candidate& model, const BenchDrive& asked) {
   const RobotModel& m = *model.file.robot;
   const double full_m_s = full_speed_m_s(m), push = asked.scale * asked.amplitude * slipping_duty(m);
-  const double most_m_s = 0.5 * m.tyre_longitudinal.extremum_value * kGravity_m_s2 / asked.rate_Hz;
+  const double most_m_s = kShareOfGrip * m.tyre_longitudinal.extremum_value * kGravity_m_s2 / asked.rate_Hz;
   return [=, vx = 0.0, vy = 0.0](double t) mutable {
     const auto pattern = [&](std::uint64_t which) {
       return excitation_at(which == 0 ? asked.excitation : Excitation::kSteps, t,
@@ -96,18 +97,17 @@ std::function<std::vector<double>(double)> driven(const Candidate& model, const 
 }
 
 std::vector<Channel> channels(const Candidate& model) {
-  std::vector<Channel> out;
-  for (const auto& [name, sigma] :
-       std::initializer_list<std::pair<const char*, double>>{{"duty", 0.0},
-                                                             {"body_vx", 0.0},
-                                                             {"body_vy", 0.0},
-                                                             {"motor_current", kCurrent_A},
-                                                             {"encoder", 0.0},
-                                                             {"force_x", kForce_N},
-                                                             {"force_y", kForce_N}})
-    out.push_back({.signal = name, .column = name, .unit = {}, .sigma = sigma});
-  out[4].counts_per_rev = model.file.robot->encoder.counts_per_turn;
-  return out;
+  const auto channel = [](const char* name, double sigma = 0.0, double counts_per_rev = 0.0) {
+    return Channel{
+        .signal = name, .column = name, .unit = {}, .sigma = sigma, .counts_per_rev = counts_per_rev};
+  };
+  return {channel("duty"),
+          channel("body_vx"),
+          channel("body_vy"),
+          channel("motor_current", kCurrent_A),
+          channel("encoder", 0.0, model.file.robot->encoder.counts_per_turn),
+          channel("force_x", kForce_N),
+          channel("force_y", kForce_N)};
 }
 
 constexpr RigBench kBench{.channels = channels, .given = driven};
