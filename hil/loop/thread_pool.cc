@@ -15,6 +15,7 @@ using Clock = std::chrono::steady_clock;
 // Choices. What a thread needs to fall asleep and to be woken again is of the first's order, and several times that on a
 // virtual machine; what a bench does between two turns by itself (the physics of six robots) is within the second.
 constexpr std::chrono::microseconds kAwake{30}, kLongAwake{500};
+constexpr int kProving = 32;                   // waits: several steps of a bench; a choice
 constexpr std::uint64_t kClosed = 0xFFFFFFFF;  // a place that no count reaches
 
 // True as soon as `done` is; false when it has not become so in that time.
@@ -51,13 +52,15 @@ ThreadPool::~ThreadPool() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-// Stays awake as long as the last turn would have been worth it: a bench that sleeps until its next step lets it sleep, too.
+// Stays awake for long only while nothing else ever happens: one wait in the last few that was longer (a bench that sleeps
+// until its next step) would be lost each time.
 void ThreadPool::wait_for_work() {
-  std::chrono::microseconds patience = kAwake;
+  int short_waits = 0;
   for (std::uint32_t seen = 0;;) {
     const Clock::time_point idle_from = Clock::now();
+    const auto patience = short_waits >= kProving ? kLongAwake : kAwake;
     if (!comes_soon([&] { return turn_.load() != seen; }, patience)) turn_.wait(seen);
-    patience = Clock::now() - idle_from < kLongAwake ? kLongAwake : kAwake;
+    short_waits = Clock::now() - idle_from < kLongAwake ? std::min(short_waits + 1, kProving) : 0;
     seen = turn_.load();
     if (ended_) return;
     take_pieces(seen);

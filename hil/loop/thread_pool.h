@@ -4,8 +4,8 @@
 //   pool.each(24, [&](std::size_t n) { boards[n]->run_until_ns(end_ns); });
 //
 // Whoever is free takes the next piece, so which thread does which differs from run to run: pieces share nothing that
-// changes. Between two calls threads stay awake for a moment (30 us; 500 us where the last call came within that, as the next
-// then does), then sleep.
+// changes. Between two calls threads stay awake for a moment (30 us; 500 us where the last 32 calls came within that: a bench
+// that never sleeps), then sleep.
 // Signals are left to the caller's thread. One call of each() at a time, and none from within a piece.
 #pragma once
 #include <atomic>
