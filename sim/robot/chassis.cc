@@ -25,7 +25,7 @@ struct Robot {
   ContactLaw<double> law;
   MobilizedBody chassis;
   PerWheel<MobilizedBody> wheel;
-  SimTK::UIndex first_u;
+  int first_wheel_u = 0, first_body = 0;  // its wheels' speeds, its chassis and wheels follow one another
   double gear_ratio = 1.0;
   double wheel_viscous_Nm_s_per_rad = 0.0;
   double weight_chassis_N = 0.0, weight_wheel_N = 0.0;
@@ -34,7 +34,6 @@ struct Robot {
   // at the current state
   WheelContacts<double> contacts;
   PerWheel<Vec3> f_wheel_W;
-  WheelTorques torques;
   const FloorEffects* effects = nullptr;
   FloorForces more;
   Vec3 f_body_W;  // of effects, level
@@ -81,54 +80,11 @@ Masses split_masses(const RobotModel& m, const WheelGeometry<double>& g, Chassis
   return s;
 }
 
-// Applies what the robots' plain memory holds; no state of its own.
-class FloorAndMotors : public SimTK::Force::Custom::Implementation {
- public:
-  FloorAndMotors(const std::vector<Robot>& robots, const StepPart& part_of_step, bool gravity)
-      : robots_(robots), part_of_step_(part_of_step), gravity_(gravity) {}
-  void calcForce(const SimTK::State& state, SimTK::Vector_<SpatialVec>& body_forces, SimTK::Vector_<Vec3>&,
-                 SimTK::Vector& mobility_forces) const override {
-    for (const Robot& r : robots_) {
-      if (gravity_) {
-        const Vec3 arm_W = r.chassis.getBodyRotation(state) * r.p_BoCm_B;
-        const Vec3 weight(0, 0, -r.weight_chassis_N);
-        body_forces[r.chassis.getMobilizedBodyIndex()] += SpatialVec(arm_W % weight, weight);
-      }
-      if (r.effects != nullptr) {
-        const Vec3 moment(0, 0, r.more.body_moment_z_Nm);
-        body_forces[r.chassis.getMobilizedBodyIndex()] += SpatialVec(moment, r.f_body_W);
-      }
-      for (std::size_t i = 0; i < r.law.geometry.wheels; ++i) {
-        const Vec3 p_WheelContact(0, 0, -r.radius_m(i));
-        const MobilizedBody& wheel = r.wheel[i];
-        Vec3 f_W = r.f_wheel_W[i];
-        const Vec3 moment_W = p_WheelContact % f_W;
-        if (gravity_) f_W[2] -= r.weight_wheel_N;
-        body_forces[wheel.getMobilizedBodyIndex()] += SpatialVec(moment_W, f_W);
-        const double omega_wheel_rad_s = wheel.getOneU(state, 0);
-        double torque_Nm = r.gear_ratio * r.torques[i].at(part_of_step_, r.gear_ratio * omega_wheel_rad_s) -
-                           r.wheel_viscous_Nm_s_per_rad * omega_wheel_rad_s;
-        // static friction answers the floor
-        if (r.torques[i].locked) torque_Nm = r.radius_m(i) * r.contacts.force_longitudinal_N[i];
-        mobility_forces[wheel.getFirstUIndex(state)] += torque_Nm;
-      }
-    }
-  }
-  SimTK::Real calcPotentialEnergy(const SimTK::State&) const override { return 0; }
-  bool dependsOnlyOnPositions() const override { return false; }
-
- private:
-  const std::vector<Robot>& robots_;
-  const StepPart& part_of_step_;
-  const bool gravity_;
-};
-
 }  // namespace
 
 struct Chassis::Impl {
   Impl(const std::vector<RobotModel>& models, Joint joint_, const std::vector<const FloorEffects*>& effects)
       : matter(system),
-        forces(system),
         joint(joint_),
         layout(joint_ == Joint::kPlanar ? planar_layout(most_wheels(models))
                                         : free_layout(most_wheels(models))) {
@@ -136,11 +92,17 @@ struct Chassis::Impl {
     robots.reserve(models.size());
     for (const RobotModel& m : models) add(m);
     for (std::size_t n = 0; n < effects.size(); ++n) robots[n].effects = effects[n];
-    SimTK::Force::Custom(forces, new FloorAndMotors(robots, part_of_step, joint == Joint::kFree));
     system.realizeTopology();
     state = system.getDefaultState();
     system.realizeModel(state);
-    for (Robot& r : robots) r.first_u = r.chassis.getFirstUIndex(state);
+    for (Robot& r : robots) {
+      r.first_wheel_u = r.wheel[0].getFirstUIndex(state);
+      r.first_body = r.chassis.getMobilizedBodyIndex();
+    }
+    mobility_forces.resize(state.getNU()) = 0.0;  // the chassis' own freedoms have none
+    udot.resize(state.getNU());
+    body_forces.resize(matter.getNumBodies()) = SpatialVec(Vec3(0), Vec3(0));  // nor has the ground
+    body_accelerations.resize(matter.getNumBodies());
   }
 
   void add(const RobotModel& m) {
@@ -181,8 +143,10 @@ struct Chassis::Impl {
     WheelMotion<double> motion;
     PerWheel<Vec3> drive_W, outward_W;
     PerWheel<double> load_N{};
+    const SimTK::Vector& speeds = state.getU();
     for (std::size_t i = 0; i < r.law.geometry.wheels; ++i) {
-      const Vec3 axle = r.wheel[i].getBodyRotation(state).z();
+      const SimTK::Transform& x_WWheel = r.wheel[i].getBodyTransform(state);
+      const Vec3 axle = x_WWheel.R().z();
       const double level = 1.0 / std::sqrt(axle[0] * axle[0] + axle[1] * axle[1]);
       outward_W[i] = Vec3(-axle[0] * level, -axle[1] * level, 0);
       drive_W[i] = Vec3(axle[1] * level, -axle[0] * level, 0);  // axle x z
@@ -190,9 +154,9 @@ struct Chassis::Impl {
       const Vec3 v_contact_W = v_W + w_WB % p_WheelContact;
       motion.drive_speed_m_s[i] = dot(v_contact_W, drive_W[i]);
       motion.roller_speed_m_s[i] = dot(v_contact_W, outward_W[i]);
-      motion.rim_speed_m_s[i] = radius * r.wheel[i].getOneU(state, 0);
+      motion.rim_speed_m_s[i] = radius * speeds[r.first_wheel_u + static_cast<int>(i)];
       if (joint == Joint::kFree) {
-        const double depth_m = radius - r.wheel[i].getBodyOriginLocation(state)[2];
+        const double depth_m = radius - x_WWheel.p()[2];
         load_N[i] = depth_m > 0 ? std::max(0.0, r.floor_N_per_m * depth_m - r.floor_N_s_per_m * v_W[2]) : 0.0;
       }
     }
@@ -228,14 +192,42 @@ struct Chassis::Impl {
     r.f_body_W = Vec3(c * x - s * y, s * x + c * y, 0);
   }
 
+  // What the floor, the motors and the weight do to a robot's bodies and pins.
+  void apply_forces(const Robot& r, const WheelTorques& torques, StepPart part) {
+    const bool gravity = joint == Joint::kFree;
+    SpatialVec on_chassis(Vec3(0), Vec3(0));
+    if (gravity) {
+      const Vec3 arm_W = r.chassis.getBodyRotation(state) * r.p_BoCm_B;
+      const Vec3 weight(0, 0, -r.weight_chassis_N);
+      on_chassis += SpatialVec(arm_W % weight, weight);
+    }
+    if (r.effects != nullptr) on_chassis += SpatialVec(Vec3(0, 0, r.more.body_moment_z_Nm), r.f_body_W);
+    body_forces[r.first_body] = on_chassis;
+    const SimTK::Vector& speeds = state.getU();
+    for (std::size_t i = 0; i < r.law.geometry.wheels; ++i) {
+      const int n = static_cast<int>(i);
+      const Vec3 p_WheelContact(0, 0, -r.radius_m(i));
+      Vec3 f_W = r.f_wheel_W[i];
+      const Vec3 moment_W = p_WheelContact % f_W;
+      if (gravity) f_W[2] -= r.weight_wheel_N;
+      body_forces[r.first_body + 1 + n] = SpatialVec(moment_W, f_W);
+      const double omega_wheel_rad_s = speeds[r.first_wheel_u + n];
+      double torque_Nm = r.gear_ratio * torques[i].at(part, r.gear_ratio * omega_wheel_rad_s) -
+                         r.wheel_viscous_Nm_s_per_rad * omega_wheel_rad_s;
+      // static friction answers the floor
+      if (torques[i].locked) torque_Nm = r.radius_m(i) * r.contacts.force_longitudinal_N[i];
+      mobility_forces[r.first_wheel_u + n] = torque_Nm;
+    }
+  }
+
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter;
-  SimTK::GeneralForceSubsystem forces;
   Joint joint;
   StateLayout layout;
   std::vector<Robot> robots;
-  StepPart part_of_step = StepPart::kHeld;
   SimTK::State state;
+  SimTK::Vector mobility_forces, udot;
+  SimTK::Vector_<SpatialVec> body_forces, body_accelerations;
 };
 
 Chassis::Chassis(const std::vector<RobotModel>& robots, Joint joint,
@@ -266,12 +258,11 @@ const FloorForces& Chassis::floor_forces(std::size_t robot) const { return impl_
 void Chassis::accelerations(const std::vector<WheelTorques>& torques, StepPart part,
                             std::vector<double>& udot) {
   Impl& c = *impl_;
-  for (std::size_t n = 0; n < c.robots.size(); ++n) c.robots[n].torques = torques[n];
-  c.part_of_step = part;
-  c.state.invalidateAllCacheAtOrAbove(SimTK::Stage::Dynamics);
-  c.system.realize(c.state, SimTK::Stage::Acceleration);
-  const SimTK::Vector& result = c.state.getUDot();
-  std::copy_n(&result[0], udot.size(), udot.begin());
+  c.system.realize(c.state, SimTK::Stage::Dynamics);
+  for (std::size_t n = 0; n < c.robots.size(); ++n) c.apply_forces(c.robots[n], torques[n], part);
+  c.matter.calcAccelerationIgnoringConstraints(c.state, c.mobility_forces, c.body_forces, c.udot,
+                                               c.body_accelerations);
+  std::copy_n(&c.udot[0], udot.size(), udot.begin());
   const StateLayout& l = layout();
   for (std::size_t n = 0; n < c.robots.size(); ++n) {
     for (std::size_t i = 0; i < c.robots[n].law.geometry.wheels; ++i) {

@@ -1,4 +1,5 @@
-// Mechanics back end on Simbody: all robots in one multibody system, each a chassis and its wheels on pins.
+// Mechanics back end on Simbody: all robots in one multibody system, each a chassis and its wheels on pins. Forces and torques
+// are ours; Simbody solves M udot = f (articulated bodies).
 //
 //   Chassis back(robots, Chassis::Joint::kPlanar);   // see mechanics.h for the calls
 //
