@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "identify/predict/robot_motion.h"
@@ -15,7 +14,6 @@
 namespace omnihil {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double median_or(const std::vector<double>& values, double otherwise) {
@@ -39,7 +37,7 @@ double camera_period(const Run& run) {
   for (const char* name : {"vision_x", "vision_y", "vision_theta"}) {
     const std::vector<double>* pose = run.signal(name);
     if (pose == nullptr) continue;
-    double first = kNaN, last = kNaN;
+    double first = kMissing, last = kMissing;
     int frames = 0;
     for (std::size_t k = 0; k < pose->size(); ++k) {
       if (!std::isfinite((*pose)[k])) continue;
@@ -88,7 +86,7 @@ Run blank_run(const PlannedBench& bench, const PlannedInputs& inputs) {
     double next_s = run.time_s.front();
     for (std::size_t k = 0; k < n; ++k) {
       const bool frame = run.time_s[k] >= next_s - 1e-9;
-      run.signals[name][k] = frame ? 0.0 : kNaN;
+      run.signals[name][k] = frame ? 0.0 : kMissing;
       if (frame) next_s += bench.camera_period_s;
     }
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "identify/predict/axis_outputs.h"
@@ -17,7 +16,6 @@
 namespace omnihil {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kOrder = 4;                      // with the cutoff's share: source as below
 constexpr double kShareOfNyquist = 0.2;        // source: Janot, Gautier, Brunot 2019
 constexpr double kHighestCutoff_Hz = 100.0;    // of faster records: beyond a drive's mechanics; a choice

@@ -1,12 +1,9 @@
 #include "identify/predict/axis_outputs.h"
 
 #include <cmath>
-#include <limits>
 
 namespace omnihil {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 double bus_at(const AxisInput& in, std::size_t k) {
   return in.bus_voltage_V.empty() ? 0.0 : in.bus_voltage_V[k];

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "identify/predict/axis_setup.h"
@@ -12,7 +11,6 @@
 namespace omnihil {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kHalfBusWindow[] = {kBusWindow / 2};  // to either side: derived
 
 }  // namespace

@@ -1,14 +1,11 @@
 // Regime variables of an axis.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "identify/predict/predictor_axis.h"
 
 namespace omnihil {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> slope(const std::vector<double>& t, const std::vector<double>& x) {
   std::vector<double> out(x.size(), kMissing);

@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "identify/record/bus_voltage.h"
 #include "identify/record/quantum.h"
@@ -13,8 +12,6 @@
 
 namespace omnihil {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Of a signal that never changes: so that an error of it counts as one. A choice.
 constexpr double kNoNoise = 1e-12;  // as above

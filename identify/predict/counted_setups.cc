@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "sim/law/effect_registry.h"
@@ -24,7 +23,7 @@ Speeds speeds_of(std::vector<AxisSetup>& setups) {
       if (s.steady || s.method != Method::kForward || s.seen[c].quantity != Quantity::kSpeed) continue;
       ComparedSignal& signal = s.compared[c];
       out.signals.push_back(&signal);
-      out.readings.push_back(std::numeric_limits<double>::quiet_NaN());
+      out.readings.push_back(kMissing);
       out.readings.insert(out.readings.end(), signal.measured.begin(), signal.measured.end());
       if (signal.quantum > 0.0)
         out.quantum = out.quantum > 0.0 ? std::min(out.quantum, signal.quantum) : signal.quantum;

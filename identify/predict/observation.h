@@ -85,7 +85,7 @@ std::vector<T> observed(const Observation& how, const std::vector<double>& time_
     } else if (const std::size_t from = how.from[k]; from < k) {
       out.push_back((quantity(k) - quantity(from)) / (how.per_unit * (time_s[k] - time_s[from])));
     } else {
-      out.push_back(T(std::nan("")));
+      out.push_back(T(kMissing));
     }
   }
   return out;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "identify/predict/axis_outputs.h"
 #include "identify/predict/axis_substep.h"
@@ -12,8 +11,6 @@
 
 namespace omnihil {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // A delay whose derivative a limit behind it hides (predictor_axis.h).
 bool is_hidden_delay(const Candidate& c, const Unknown& u) {

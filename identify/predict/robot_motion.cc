@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "identify/predict/firmware_loop.h"
@@ -16,7 +15,6 @@ namespace {
 // Time constant of the model path's correction towards the camera: an error of speed dv appears as 0.5 s dv,
 // above a camera's millimetres for 10 mm/s. A choice; sensitivity not measured.
 constexpr double kFollow_s = 0.5;  // a choice
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Everything true at a sample, beside what RollingSample keeps of it.
 template <typename T>
@@ -211,11 +209,11 @@ class Runner {
     // samples after a divergence; `finite` marks the run as diverged
     while (truth_.size() < record_.size()) {
       keep();
-      out_.samples.back().velocity.fill(T(kNaN));
-      truth_.back().velocity.fill(T(kNaN));
-      truth_.back().theta_rotor_rad.fill(T(kNaN));
-      truth_.back().charge_C.fill(T(kNaN));
-      truth_.back().accel_x = truth_.back().accel_y = T(kNaN);
+      out_.samples.back().velocity.fill(T(kMissing));
+      truth_.back().velocity.fill(T(kMissing));
+      truth_.back().theta_rotor_rad.fill(T(kMissing));
+      truth_.back().charge_C.fill(T(kMissing));
+      truth_.back().accel_x = truth_.back().accel_y = T(kMissing);
     }
   }
 
@@ -346,10 +344,10 @@ class Runner {
       });
     };
     for (std::size_t k = 0; k < path.size(); ++k)
-      out_.samples[k].*coordinate = options_.follow_camera ? T(kNaN) : there_at(k);
+      out_.samples[k].*coordinate = options_.follow_camera ? T(kMissing) : there_at(k);
     if (!options_.follow_camera) return;
     T correction = T(0);
-    double last_s = kNaN, frames = 0.0;
+    double last_s = kMissing, frames = 0.0;
     for (const CameraFrame& f : record_.frames) {
       if (!std::isfinite(f.*seen)) continue;
       const double now_s = record_.time_s[f.sample];

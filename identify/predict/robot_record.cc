@@ -99,9 +99,9 @@ void read_frames(const Run& run, RobotRecord& r) {
   const auto *x = run.signal("vision_x"), *y = run.signal("vision_y"), *theta = run.signal("vision_theta");
   if (x == nullptr && y == nullptr && theta == nullptr) return;
   const auto at = [](const std::vector<double>* s, std::size_t k) {
-    return s != nullptr ? (*s)[k] : std::nan("");
+    return s != nullptr ? (*s)[k] : kMissing;
   };
-  double last_theta = std::nan("");
+  double last_theta = kMissing;
   for (std::size_t k = 0; k < r.size(); ++k) {
     CameraFrame f{k, at(x, k), at(y, k), at(theta, k)};
     if (!std::isfinite(f.x_m) && !std::isfinite(f.y_m) && !std::isfinite(f.theta_rad)) continue;
@@ -127,7 +127,7 @@ void read_imposed(const Run& run, RobotRecord& r) {
 // Unwraps the camera's heading: whole turns between two frames from the gyro's integral.
 void unwrap_by_gyro(RobotRecord& r) {
   if (r.turned_rad.empty()) return;
-  double offset = std::nan("");
+  double offset = kMissing;
   for (CameraFrame& f : r.frames) {
     if (!std::isfinite(f.theta_rad)) continue;
     const double turned = r.turned_rad[f.sample];

@@ -10,7 +10,6 @@
 namespace omnihil {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kAnyGap_s = std::numeric_limits<double>::infinity();
 
@@ -88,7 +87,7 @@ void add_encoder(const Channel& channel, Observation how, const std::string& nam
 
 // The first frame is the origin of the path, and is not compared.
 void add_frames(const Channel& channel, Observation how, std::string_view unit, RobotRun& r) {
-  std::vector<double> seen, at_rows(r.record.size(), kNaN);
+  std::vector<double> seen, at_rows(r.record.size(), kMissing);
   for (const CameraFrame& f : r.record.frames) {
     const double v = f.*frame_member(how.quantity);
     if (!std::isfinite(v)) continue;
@@ -187,7 +186,7 @@ std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, con
   const std::vector<double> since = time_since_step(r), heading = headings(r, 0.0);
   add("speed", "m/s", [&](std::size_t, const Sample& s) { return speed(s); });
   add("direction", "rad", [&](std::size_t, const Sample& s) {
-    return speed(s) > kMoving_m_s ? std::atan2(s.velocity[1], s.velocity[0]) : kNaN;
+    return speed(s) > kMoving_m_s ? std::atan2(s.velocity[1], s.velocity[0]) : kMissing;
   });
   add("turn_rate", "rad/s", [](std::size_t, const Sample& s) { return s.velocity[2]; });
   add("acceleration", "m/s2",
@@ -210,7 +209,7 @@ std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, con
     add("heading", "rad", [&](std::size_t k, const Sample&) { return std::remainder(heading[k], kTurn); });
   for (std::size_t i = 0; i < r.wheels; ++i) {
     add(numbered("wheel_speed", i, r.wheels), "rad/s", [&](std::size_t k, const Sample& s) {
-      if (k == 0) return kNaN;
+      if (k == 0) return kMissing;
       return (s.encoder_rad[i] - m.samples[k - 1].encoder_rad[i]) / (r.time_s[k] - r.time_s[k - 1]);
     });
     if (r.counts_per_rotor_turn[i] <= 0.0) continue;
@@ -232,10 +231,10 @@ void measure_robot(const RobotRun& run, const RobotMotion<double>& m, std::uint6
       const bool both = silent.signal == "vision_x" && s.channel == "vision_y";
       if (silent.signal != s.channel && !both) continue;
       std::fill(out.begin() + static_cast<std::ptrdiff_t>(silent.from),
-                out.begin() + static_cast<std::ptrdiff_t>(silent.to) + 1, kNaN);
+                out.begin() + static_cast<std::ptrdiff_t>(silent.to) + 1, kMissing);
     }
     const double counts_per_rad = r.counts_per_rotor_turn[s.wheel] / kTurn;
-    double origin = s.view == View::kFrames ? kNaN : 0.0;  // of the camera, from the simulation's
+    double origin = s.view == View::kFrames ? kMissing : 0.0;  // of the camera, from the simulation's
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;
       const double normal = gaussian(seed, stream, k), value = quantity_of(m.samples[k], s);

@@ -84,7 +84,6 @@ void drop_silent_frames(const Run& run, const RollingParams<double>& nominal, Ro
   const auto rows = [&](std::size_t first, std::size_t last) {
     return std::pair(r.frames[first].sample, r.frames[last].sample);
   };
-  const double nan = std::nan("");
   for_stretches(
       r, [](const CameraFrame& a, const CameraFrame& b) { return a.theta_rad == b.theta_rad; },
       [&](std::size_t first, std::size_t last) {
@@ -92,7 +91,7 @@ void drop_silent_frames(const Run& run, const RollingParams<double>& nominal, Ro
         const auto [turned, sure] = moved(r, speed[2], sigma[2], from, to);
         if (std::abs(turned) < std::max(kTurned_rad, sure)) return;
         r.silent.push_back({"vision_theta", from, to, r.frames[first].theta_rad, turned});
-        for (std::size_t n = first; n <= last; ++n) r.frames[n].theta_rad = nan;
+        for (std::size_t n = first; n <= last; ++n) r.frames[n].theta_rad = kMissing;
       });
   for_stretches(
       r, [](const CameraFrame& a, const CameraFrame& b) { return a.x_m == b.x_m && a.y_m == b.y_m; },
@@ -102,7 +101,7 @@ void drop_silent_frames(const Run& run, const RollingParams<double>& nominal, Ro
         const auto [y, sure_y] = moved(r, speed[1], sigma[1], from, to);
         if (std::hypot(x, y) < std::max(kDriven_m, std::hypot(sure_x, sure_y))) return;
         r.silent.push_back({"vision_x", from, to, r.frames[first].x_m, std::hypot(x, y)});
-        for (std::size_t n = first; n <= last; ++n) r.frames[n].x_m = r.frames[n].y_m = nan;
+        for (std::size_t n = first; n <= last; ++n) r.frames[n].x_m = r.frames[n].y_m = kMissing;
       });
   std::erase_if(r.frames, [](const CameraFrame& f) {
     return !std::isfinite(f.x_m) && !std::isfinite(f.y_m) && !std::isfinite(f.theta_rad);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace omnihil {
 namespace {
@@ -50,7 +49,7 @@ void leave_out_undetermined(const std::vector<bool>& still, const std::vector<bo
   for (std::size_t k = 0; k < c.measured.size(); ++k) {
     const bool rest = k < still.size() && still[k], jump = k < jumps.size() && jumps[k];
     if (!rest && !jump) continue;
-    c.measured[k] = std::numeric_limits<double>::quiet_NaN();
+    c.measured[k] = kMissing;
     ++(rest ? at_rest : at_jumps);
   }
   if (at_rest > 0) c.left_out += fmt::format(", {} samples at rest (friction takes what is asked)", at_rest);

@@ -1,7 +1,6 @@
 #include "identify/record/bus_voltage.h"
 
-#include <limits>
-
+#include "identify/record/dataset.h"
 #include "identify/record/statistics.h"
 
 namespace omnihil {
@@ -13,7 +12,7 @@ std::vector<double> plausible_bus_voltage(std::vector<double> measured_V) {
   const double median_V = median(finite_values(measured_V));
   if (median_V <= 0.0) return measured_V;
   for (double& v : measured_V) {
-    if (v > kHighest * median_V) v = std::numeric_limits<double>::quiet_NaN();
+    if (v > kHighest * median_V) v = kMissing;
   }
   return measured_V;
 }

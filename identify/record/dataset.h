@@ -4,9 +4,10 @@
 //   const Run& run = dataset.runs[0];
 //   const std::vector<double>* w = run.signal("velocity");      // null: not measured in this run
 //
-// A missing sample is NaN. Values are as measured: scaled by the channel, neither filtered nor repaired.
+// Values are as measured: scaled by the channel, neither filtered nor repaired.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -15,6 +16,8 @@
 #include <vector>
 
 namespace omnihil {
+
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  // a sample that there is not
 
 struct Rig;  // what is driven: identify/record/rig.h
 const Rig& rig_axis();

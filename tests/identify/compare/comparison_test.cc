@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "sim/law/random.h"
 #include "tests/identify/fake_predictor.h"
 
 namespace omnihil {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Comparison, ErrorsOfTwoSamplesByHand) {
   FakePredictor fake;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "identify/predict/predictor.h"
@@ -17,8 +16,6 @@
 
 namespace omnihil {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 omnihil::Run run_of(const std::string& file, bool steady = false) {
   omnihil::Run run;
