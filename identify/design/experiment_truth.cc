@@ -268,7 +268,7 @@ MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& 
     RobotMotionOptions options;
     options.slave_angle = options.follow_camera = false;
     options.firmware = bench.like.firmware.get();
-    const RobotMotion<double> m = run_robot(robot_values<double>(model, {}, 0), record, options);
+    const RobotMotion<double> m = run_robot(rolling_values<double>({model}), record, options);
     out.finite = m.finite;
     for (std::size_t k = 1; k < record.size(); ++k) {
       const RollingSample<double>&now = m.samples[k], &before = m.samples[k - 1];

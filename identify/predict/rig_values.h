@@ -11,6 +11,7 @@
 
 #include "identify/predict/candidate.h"
 #include "sim/law/scalar.h"
+#include "sim/model/rolling_model.h"
 
 namespace omnihil {
 
@@ -62,6 +63,13 @@ RigValues<T, DriveParams> axis_values(const RigModel& model) {
                          }
                          return nullptr;
                        });
+}
+
+// Of a model of a robot.
+template <typename T>
+RigValues<T, RollingParams> rolling_values(const RigModel& model) {
+  return rig_values<T>(model, rolling_params_as<T>(rolling_params(model.candidate.file.parameters)),
+                       rolling_number<Jet>);
 }
 
 }  // namespace omnihil

@@ -7,7 +7,6 @@
 #include "identify/predict/firmware_loop.h"
 #include "identify/predict/interpolation.h"
 #include "sim/law/random.h"
-#include "sim/model/rolling_model.h"
 
 namespace omnihil {
 namespace {
@@ -383,20 +382,11 @@ class Runner {
 }  // namespace
 
 template <typename T>
-RobotModelValues<T> robot_values(const Candidate& candidate, std::span<const Unknown> unknowns,
-                                 std::size_t first) {
-  return rig_values<T>({candidate, unknowns, first},
-                       rolling_params_as<T>(rolling_params(candidate.file.parameters)), rolling_number<Jet>);
-}
-
-template <typename T>
 RobotMotion<T> run_robot(const RobotModelValues<T>& model, const RobotRecord& record,
                          const RobotMotionOptions& options, RobotCarry<T>* carry) {
   return Runner<T>(model, record, options, carry).run();
 }
 
-template RobotModelValues<double> robot_values(const Candidate&, std::span<const Unknown>, std::size_t);
-template RobotModelValues<Jet> robot_values(const Candidate&, std::span<const Unknown>, std::size_t);
 template RobotMotion<double> run_robot(const RobotModelValues<double>&, const RobotRecord&,
                                        const RobotMotionOptions&, RobotCarry<double>*);
 template RobotMotion<Jet> run_robot(const RobotModelValues<Jet>&, const RobotRecord&,

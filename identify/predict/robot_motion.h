@@ -1,7 +1,7 @@
 // Simulated motion of a robot's run: the record's inputs through rolling_robot.h, sample by sample, and the
 // outputs of its sensors.
 //
-//   RobotModelValues<Jet> m = robot_values<Jet>(candidate, unknowns, 0);      // unknown n is the Jet's component n
+//   RobotModelValues<Jet> m = rolling_values<Jet>({candidate, unknowns});     // unknown n is the Jet's component n
 //   RobotMotion<Jet> y = run_robot(m, record, {});
 //   y.samples[k].encoder_rad[i], y.samples[k].gyro_rad_s, y.samples[k].x_m …
 //
@@ -23,12 +23,6 @@ namespace omnihil {
 
 template <typename T>
 using RobotModelValues = RigValues<T, RollingParams>;
-
-// For Jet: unknown `first` + n is the Jet's component n. Parameters that a run states as known have no
-// derivative.
-template <typename T>
-RobotModelValues<T> robot_values(const Candidate& candidate, std::span<const Unknown> unknowns,
-                                 std::size_t first);
 
 struct RobotMotionOptions {
   bool slave_angle = true;    // laws of the angle take the measured angle

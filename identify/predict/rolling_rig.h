@@ -11,7 +11,6 @@
 #include "identify/predict/robot_motion.h"
 #include "identify/predict/robot_signals.h"
 #include "sim/law/random.h"
-#include "sim/model/rolling_model.h"
 
 namespace omnihil {
 
@@ -85,7 +84,7 @@ class RollingRig {
  private:
   template <typename T>
   static RobotModelValues<T> values_of(const RigModel& model) {
-    auto values = robot_values<T>(model.candidate, model.unknowns, model.first);
+    auto values = rolling_values<T>(model);
     values.params = Kind::params(values.params);
     return values;
   }

@@ -47,7 +47,7 @@ std::string twin_refusal(const Candidate& model) {
 
 TwinModel::TwinModel(TwinBank bank) : bank_(std::move(bank)), unknowns_(bank_.unknowns()) {
   for (std::size_t first = 0; first < unknowns_.size(); first += kJetWidth)
-    models_.push_back(robot_values<Jet>(bank_.model, unknowns_, first));
+    models_.push_back(rolling_values<Jet>({bank_.model, unknowns_, first}));
   restart();
 }
 

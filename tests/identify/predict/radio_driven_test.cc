@@ -119,7 +119,7 @@ TEST(RadioDriven, AMotionInPiecesIsTheWholeOne) {
   const Candidate model = radio_candidate();
   const Dataset d = blank_radio(6.0);
   const std::vector<Unknown> unknowns = unknowns_of(model);
-  const auto values = robot_values<Jet>(model, unknowns, 0);
+  const auto values = rolling_values<Jet>({model, unknowns});
   const auto nominal = rolling_params(model.file.parameters);
   const RobotMotionOptions options{.slave_angle = false, .follow_camera = false, .noise_seed = {}};
   const RobotMotion<Jet> whole = run_robot(values, robot_record(d, d.runs[0], nominal), options);

@@ -78,7 +78,7 @@ class Drive {
     Dataset d;
     d.rig = &rig_robot();
     const auto nominal = rolling_params(healthy.file.parameters);
-    const auto before = robot_values<double>(healthy, {}, 0), after = robot_values<double>(broken, {}, 0);
+    const auto before = rolling_values<double>({healthy}), after = rolling_values<double>({broken});
     RobotCarry<double> carry;
     std::mt19937_64 random(7);
     std::normal_distribution<double> noise;
