@@ -272,7 +272,7 @@ MotionExtremes planned_extremes(const PlannedBench& bench, const PlannedInputs& 
     out.finite = m.finite;
     for (std::size_t k = 1; k < record.size(); ++k) {
       const RollingSample<double>&now = m.samples[k], &before = m.samples[k - 1];
-      out.travel = std::max(out.travel, std::hypot(now.x_m, now.y_m));
+      out.travel = std::max(out.travel, std::hypot(now.pose[0], now.pose[1]));
       const double dt_s = record.time_s[k] - record.time_s[k - 1];
       for (std::size_t i = 0; i < record.wheels; ++i) {
         out.current_A = std::max(out.current_A, std::abs(now.current_A[i]));

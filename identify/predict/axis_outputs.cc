@@ -81,13 +81,9 @@ std::vector<std::vector<T>> axis_outputs(const AxisSetup& setup, const DrivePara
                                          const EffectSet<T>& effects, double step_s) {
   if (setup.steady) return steady_outputs(setup, params, effects);
   const std::vector<AxisSample<T>> samples = run_axis(params, effects, setup.input, {.step_s = step_s});
-  std::vector<std::vector<T>> out;
-  for (const Observation& how : setup.seen) {
-    out.push_back(observed<T>(how, setup.input.time_s, [&](std::size_t k) {
-      return quantity_of(setup, params, how.quantity, samples, k);
-    }));
-  }
-  return out;
+  return observed<T>(setup, setup.input.time_s, [&](const Observation& how, std::size_t k) {
+    return quantity_of(setup, params, how.quantity, samples, k);
+  });
 }
 
 template std::vector<std::vector<double>> axis_outputs(const AxisSetup&, const DriveParams<double>&,

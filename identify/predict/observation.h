@@ -27,13 +27,9 @@ enum class Quantity : std::uint8_t {
   kLoadTorque,
   kNeededInput,  // drive input that an imposed motion takes
   kGyro,
-  kAccelX,
-  kAccelY,
-  kVisionX,
-  kVisionY,
-  kVisionTheta,
-  kForceX,
-  kForceY,
+  kAccelerometer,  // along x, along y
+  kPose,           // x, y, heading
+  kForce,          // x, y
 };
 
 enum class View : std::uint8_t {
@@ -48,8 +44,8 @@ struct Observation {
   Quantity quantity = Quantity::kSpeed;
   View view = View::kPoint;
   std::string channel = {};  // of the dataset
-  std::size_t wheel = 0;
-  double per_unit = 1.0;  // of a difference: the quantity's units in one of the compared signal's, times s
+  std::size_t part = 0;      // of a quantity that has several: the wheel, or the axis
+  double per_unit = 1.0;     // of a difference: the quantity's units in one of the compared signal's, times s
   double channel_sigma = 0.0;  // of the channel's own noise, in its unit: stated, or estimated
   std::vector<std::size_t> from =
       {};  // of a difference, per sample: the earlier one, or itself where there is none
@@ -91,10 +87,23 @@ std::vector<T> observed(const Observation& how, const std::vector<double>& time_
   return out;
 }
 
+// Of all of a run's signals: quantity(how, k).
+template <typename T, typename Get>
+std::vector<std::vector<T>> observed(const RigRun& run, const std::vector<double>& time_s, Get quantity) {
+  std::vector<std::vector<T>> out;
+  for (const Observation& how : run.seen)
+    out.push_back(observed<T>(how, time_s, [&](std::size_t k) { return quantity(how, k); }));
+  return out;
+}
+
 // What is linear in values and derivatives alike: levels and filters. A measured sample that is not predicted is a
 // divergence.
 void complete(const RigRun& run, Prediction& p);
 void complete(const RigRun& run, std::size_t signal, bool is_value, Eigen::Ref<Eigen::VectorXd> column);
+inline void complete(const RigRun& run, std::size_t signal, bool is_value, std::vector<double>& column) {
+  complete(run, signal, is_value,
+           Eigen::Map<Eigen::VectorXd>(column.data(), static_cast<Eigen::Index>(column.size())));
+}
 
 // Root mean square of (a - b) / noise, the largest of the run's signals, unweighted and whitened.
 double distance(const RigRun& run, const Prediction& a, const Prediction& b);

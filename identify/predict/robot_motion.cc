@@ -20,7 +20,7 @@ template <typename T>
 struct Truth {
   PerWheel<T> theta_rotor_rad{}, omega_rotor_rad_s{}, reported_rad_s{}, charge_C{};
   std::array<T, 3> velocity{};
-  T accel_x{}, accel_y{}, force_x{}, force_y{};
+  std::array<T, 2> accel_m_s2{}, force_N{};
 };
 
 bool is_finite(double x) { return std::isfinite(x); }
@@ -206,14 +206,12 @@ class Runner {
     at_.begun = out_.finite;
     if (carry_ != nullptr) *carry_ = at_;
     // samples after a divergence; `finite` marks the run as diverged
-    while (truth_.size() < record_.size()) {
-      keep();
-      out_.samples.back().velocity.fill(T(kMissing));
-      truth_.back().velocity.fill(T(kMissing));
-      truth_.back().theta_rotor_rad.fill(T(kMissing));
-      truth_.back().charge_C.fill(T(kMissing));
-      truth_.back().accel_x = truth_.back().accel_y = T(kMissing);
-    }
+    RollingState<T>& x = at_.state;
+    x.velocity.fill(T(kMissing));
+    x.theta_rotor_rad.fill(T(kMissing));
+    x.charge_C.fill(T(kMissing));
+    x.accel_x_m_s2 = x.accel_y_m_s2 = T(kMissing);
+    while (truth_.size() < record_.size()) keep();
   }
 
   void keep() {
@@ -224,10 +222,8 @@ class Runner {
          .reported_rad_s = speeds(),
          .charge_C = x.charge_C,
          .velocity = x.velocity,
-         .accel_x = x.accel_x_m_s2,
-         .accel_y = x.accel_y_m_s2,
-         .force_x = x.floor_x_N,
-         .force_y = x.floor_y_N};
+         .accel_m_s2 = {x.accel_x_m_s2, x.accel_y_m_s2},
+         .force_N = {x.floor_x_N, x.floor_y_N}};
     std::array<double, kWheels> told;
     const bool tells = firmware_ && firmware_->tells(told);
     RollingSample<T>& s = out_.samples.emplace_back();
@@ -252,27 +248,27 @@ class Runner {
       if (!timing().empty()) seen_s -= age(Stamped::kDriveSensors, k, timing_states_);
       const bool now = timing().empty() || record_.size() < 2;
       const Instant<T> at = now ? Instant<T>{} : instant(record_.time_s, seen_s);
-      const auto seen = [&](auto get) {
-        return now ? T(get(truth_[k])) : at.of([&](std::size_t j) { return get(truth_[j]); });
+      const auto seen = [&](auto what, std::size_t part) {
+        return now ? (truth_[k].*what)[part] : at.of([&](std::size_t j) { return (truth_[j].*what)[part]; });
       };
       const T span_s = seen_s - last_s;
       RollingSample<T>& s = out_.samples[k];
       for (std::size_t i = 0; i < record_.wheels; ++i) {
-        const T theta = seen([i](const Truth<T>& t) { return t.theta_rotor_rad[i]; });
-        const T omega = seen([i](const Truth<T>& t) { return t.omega_rotor_rad_s[i]; });
-        const T charge = seen([i](const Truth<T>& t) { return t.charge_C[i]; });
-        s.wheel_rad_s[i] = seen([i](const Truth<T>& t) { return t.reported_rad_s[i]; }) * inverse_gear;
+        const T theta = seen(&Truth<T>::theta_rotor_rad, i);
+        const T omega = seen(&Truth<T>::omega_rotor_rad_s, i);
+        const T charge = seen(&Truth<T>::charge_C, i);
+        s.wheel_rad_s[i] = seen(&Truth<T>::reported_rad_s, i) * inverse_gear;
         s.encoder_rad[i] = encoder(k, i, theta, omega, T(theta - last_theta[i]), states[i]);
         if (value_of(span_s) > 0.0) s.current_A[i] = (charge - last_charge[i]) / span_s;
         last_theta[i] = theta;
         last_charge[i] = charge;
       }
       last_s = seen_s;
-      s.gyro_rad_s = seen([](const Truth<T>& t) { return t.velocity[2]; });
-      s.accel_x_m_s2 = seen([](const Truth<T>& t) { return t.accel_x; });
-      s.accel_y_m_s2 = seen([](const Truth<T>& t) { return t.accel_y; });
-      s.force_x_N = seen([](const Truth<T>& t) { return t.force_x; });
-      s.force_y_N = seen([](const Truth<T>& t) { return t.force_y; });
+      s.gyro_rad_s = seen(&Truth<T>::velocity, 2);
+      for (std::size_t a = 0; a < 2; ++a) {
+        s.accel_m_s2[a] = seen(&Truth<T>::accel_m_s2, a);
+        s.force_N[a] = seen(&Truth<T>::force_N, a);
+      }
     }
   }
 
@@ -304,38 +300,36 @@ class Runner {
     using std::sin;
     const std::vector<double>& t = record_.time_s;
     T vx = T(0), vy = T(0);
-    if (!options_.follow_camera) out_.samples[0].theta_rad = T(first_heading());
+    if (!options_.follow_camera) out_.samples[0].pose[2] = T(first_heading());
     for (std::size_t k = 0; k < record_.size(); ++k) {
       RollingSample<T>& s = out_.samples[k];
       const RollingSample<T>& before = out_.samples[k > 0 ? k - 1 : 0];
       const double half_s = k > 0 ? 0.5 * (t[k] - t[k - 1]) : 0.0;
-      if (k > 0) s.theta_rad = before.theta_rad + half_s * (before.velocity[2] + s.velocity[2]);
-      const T& heading = heading_.empty() ? s.theta_rad : heading_[k];
+      if (k > 0) s.pose[2] = before.pose[2] + half_s * (before.velocity[2] + s.velocity[2]);
+      const T& heading = heading_.empty() ? s.pose[2] : heading_[k];
       const T cosine = cos(heading), sine = sin(heading);
       const T wx = cosine * s.velocity[0] - sine * s.velocity[1];
       const T wy = sine * s.velocity[0] + cosine * s.velocity[1];
-      s.x_m = before.x_m + half_s * (vx + wx);
-      s.y_m = before.y_m + half_s * (vy + wy);
+      s.pose[0] = before.pose[0] + half_s * (vx + wx);
+      s.pose[1] = before.pose[1] + half_s * (vy + wy);
       vx = wx;
       vy = wy;
     }
-    report(&RollingSample<T>::x_m, &CameraFrame::x_m);
-    report(&RollingSample<T>::y_m, &CameraFrame::y_m);
-    report(&RollingSample<T>::theta_rad, &CameraFrame::theta_rad);
+    for (std::size_t axis = 0; axis < 3; ++axis) report(axis);
   }
 
   double first_heading() const {
     for (const CameraFrame& f : record_.frames) {
-      if (std::isfinite(f.theta_rad)) return f.theta_rad;
+      if (std::isfinite(f.pose[2])) return f.pose[2];
     }
     return 0.0;
   }
 
   // One coordinate of the path as the camera says it: as old as its frames, and at the frames alone (NaN between),
   // corrected by the camera's earlier ones where they are followed: first order filter of its difference to the path.
-  void report(T RollingSample<T>::*coordinate, double CameraFrame::*seen) {
+  void report(std::size_t axis) {
     std::vector<T> path;
-    for (const RollingSample<T>& s : out_.samples) path.push_back(s.*coordinate);
+    for (const RollingSample<T>& s : out_.samples) path.push_back(s.pose[axis]);
     const auto there_at = [&](std::size_t k) {
       if (is_exactly(camera_age_s_, 0.0)) return path[k];
       return instant(record_.time_s, T(record_.time_s[k] - camera_age_s_)).of([&](std::size_t j) {
@@ -343,22 +337,22 @@ class Runner {
       });
     };
     for (std::size_t k = 0; k < path.size(); ++k)
-      out_.samples[k].*coordinate = options_.follow_camera ? T(kMissing) : there_at(k);
+      out_.samples[k].pose[axis] = options_.follow_camera ? T(kMissing) : there_at(k);
     if (!options_.follow_camera) return;
     T correction = T(0);
     double last_s = kMissing, frames = 0.0;
     for (const CameraFrame& f : record_.frames) {
-      if (!std::isfinite(f.*seen)) continue;
+      if (!std::isfinite(f.pose[axis])) continue;
       const double now_s = record_.time_s[f.sample];
       const T there = there_at(f.sample);
-      T& out = out_.samples[f.sample].*coordinate;
+      T& out = out_.samples[f.sample].pose[axis];
       if (!std::isfinite(last_s)) {
-        correction = f.*seen - there;  // the first frame is the path's origin, and is not compared
+        correction = f.pose[axis] - there;  // the first frame is the path's origin, and is not compared
       } else {
         out = there + correction;
         // at first the mean of the frames so far, so that the first one's noise is averaged out
         const double gain = std::max(-std::expm1(-(now_s - last_s) / kFollow_s), 1.0 / (frames + 1.0));
-        correction += (f.*seen - out) * gain;
+        correction += (f.pose[axis] - out) * gain;
       }
       last_s = now_s;
       frames += 1.0;

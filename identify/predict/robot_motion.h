@@ -3,7 +3,7 @@
 //
 //   RobotModelValues<Jet> m = rolling_values<Jet>({candidate, unknowns});     // unknown n is the Jet's component n
 //   RobotMotion<Jet> y = run_robot(m, record, {});
-//   y.samples[k].encoder_rad[i], y.samples[k].gyro_rad_s, y.samples[k].x_m …
+//   y.samples[k].encoder_rad[i], y.samples[k].gyro_rad_s, y.samples[k].pose[0] …
 //
 // A record that goes on where another ended is run from where that one's motion was, by a RobotCarry: its first row is the
 // last row of the one before, on the same clock. Cut anywhere, the motion is the whole record's (but for states of
@@ -50,11 +50,11 @@ struct RollingSample {
   PerWheel<T> encoder_rad{};  // unrounded, at the rotor
   PerWheel<T> wheel_rad_s{};  // at the wheel; of a controller: as it measures them
   PerWheel<T> current_A{};    // mean over the period that ends at the sample
-  T gyro_rad_s = T(0), accel_x_m_s2 = T(0), accel_y_m_s2 = T(0);
-  T force_x_N = T(0), force_y_N = T(0);  // of the floor on the wheels
-  // Pose as the camera reports it, the corrections of follow_camera included; NaN between frames
-  // (follow_camera) or where the record has none.
-  T x_m = T(0), y_m = T(0), theta_rad = T(0);
+  T gyro_rad_s = T(0);
+  std::array<T, 2> accel_m_s2{}, force_N{};  // along x and y; force: of the floor on the wheels
+  // x and y in m, heading in rad as the camera reports them, the corrections of follow_camera included; NaN between
+  // frames (follow_camera) or where the record has none.
+  std::array<T, 3> pose{};
   // true
   T bus_voltage_V = T(0), supply_voltage_V = T(0);  // RollingState
   T temperature_rise_K = T(0);                      // mean of the windings

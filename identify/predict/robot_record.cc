@@ -27,18 +27,13 @@ constexpr NoiseWindows kBusWindows = {.half = kHalfWindows,
 
 // A command is new where its cells are filled; all of a group together.
 void read_radio(const Run& run, RobotRecord& r) {
-  const bool body = run.signal("command_vx") != nullptr;
-  PerWheel<const std::vector<double>*> said{};
-  if (body) {
-    said = {run.signal("command_vx"), run.signal("command_vy"), run.signal("command_w")};
-  } else {
-    for (std::size_t i = 0; i < r.wheels; ++i) said[i] = run.signal(numbered("command_wheel", i, r.wheels));
-  }
+  constexpr const char* kBody[] = {"command_vx", "command_vy", "command_w"};
+  const bool body = run.signal(kBody[0]) != nullptr;
   r.radio = {.frame = body ? CommandFrame::kBodyVelocity : CommandFrame::kWheelSpeeds, .value = {}};
   r.radio->value.resize(r.size());
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    for (std::size_t a = 0; a < said.size(); ++a)
-      r.radio->value[k][a] = said[a] != nullptr ? (*said[a])[k] : 0.0;
+  for (std::size_t a = 0; a < (body ? std::size(kBody) : r.wheels); ++a) {
+    const std::vector<double>* said = run.signal(body ? kBody[a] : numbered("command_wheel", a, r.wheels));
+    for (std::size_t k = 0; k < r.size() && said != nullptr; ++k) r.radio->value[k][a] = (*said)[k];
   }
 }
 
@@ -95,32 +90,29 @@ void read_encoders(const Dataset& dataset, const Run& run, double gear_ratio, Ro
   }
 }
 
+// The angle, by whole turns, that is nearest to another; where that is not known, itself.
+double unwrapped(double angle_rad, double near_rad) {
+  return std::isfinite(near_rad) ? near_rad + std::remainder(angle_rad - near_rad, kTurn) : angle_rad;
+}
+
 void read_frames(const Run& run, RobotRecord& r) {
-  const auto *x = run.signal("vision_x"), *y = run.signal("vision_y"), *theta = run.signal("vision_theta");
-  if (x == nullptr && y == nullptr && theta == nullptr) return;
-  const auto at = [](const std::vector<double>* s, std::size_t k) {
-    return s != nullptr ? (*s)[k] : kMissing;
-  };
-  double last_theta = kMissing;
+  const std::vector<double>* seen[] = {run.signal("vision_x"), run.signal("vision_y"),
+                                       run.signal("vision_theta")};
+  double last_rad = kMissing;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    CameraFrame f{k, at(x, k), at(y, k), at(theta, k)};
-    if (!std::isfinite(f.x_m) && !std::isfinite(f.y_m) && !std::isfinite(f.theta_rad)) continue;
-    if (std::isfinite(f.theta_rad)) {
-      if (std::isfinite(last_theta))
-        f.theta_rad = last_theta + std::remainder(f.theta_rad - last_theta, kTurn);
-      last_theta = f.theta_rad;
-    }
-    r.frames.push_back(f);
+    CameraFrame f{.sample = k};
+    for (std::size_t a = 0; a < 3; ++a) f.pose[a] = seen[a] != nullptr ? (*seen[a])[k] : kMissing;
+    if (std::isfinite(f.pose[2])) last_rad = f.pose[2] = unwrapped(f.pose[2], last_rad);
+    if (f.sees()) r.frames.push_back(f);
   }
 }
 
 void read_imposed(const Run& run, RobotRecord& r) {
-  const std::vector<double> v[] = {held(run.signal("body_vx")), held(run.signal("body_vy")),
-                                   held(run.signal("body_w"))};
-  if (std::all_of(std::begin(v), std::end(v), [](const auto& axis) { return axis.empty(); })) return;
-  r.imposed_velocity.resize(r.size());
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    for (std::size_t a = 0; a < 3; ++a) r.imposed_velocity[k][a] = v[a].empty() ? 0.0 : v[a][k];
+  constexpr const char* kBody[] = {"body_vx", "body_vy", "body_w"};
+  for (std::size_t a = 0; a < std::size(kBody); ++a) {
+    const std::vector<double> speed = held(run.signal(kBody[a]));
+    if (!speed.empty()) r.imposed_velocity.resize(r.size());
+    for (std::size_t k = 0; k < speed.size(); ++k) r.imposed_velocity[k][a] = speed[k];
   }
 }
 
@@ -129,11 +121,11 @@ void unwrap_by_gyro(RobotRecord& r) {
   if (r.turned_rad.empty()) return;
   double offset = kMissing;
   for (CameraFrame& f : r.frames) {
-    if (!std::isfinite(f.theta_rad)) continue;
+    if (!std::isfinite(f.pose[2])) continue;
     const double turned = r.turned_rad[f.sample];
     if (std::isfinite(offset))
-      f.theta_rad = turned + offset + std::remainder(f.theta_rad - turned - offset, kTurn);
-    offset = f.theta_rad - turned;
+      f.pose[2] = turned + offset + std::remainder(f.pose[2] - turned - offset, kTurn);
+    offset = f.pose[2] - turned;
   }
 }
 
@@ -267,9 +259,9 @@ template <typename T>
 std::vector<T> headings(const RobotRecord& r, const T& camera_age_s) {
   std::vector<double> seen_s, seen_rad;
   for (const CameraFrame& f : r.frames) {
-    if (!std::isfinite(f.theta_rad)) continue;
+    if (!std::isfinite(f.pose[2])) continue;
     seen_s.push_back(r.time_s[f.sample]);
-    seen_rad.push_back(f.theta_rad);
+    seen_rad.push_back(f.pose[2]);
   }
   const auto at = [](const std::vector<double>& clock_s, const T& at_s, const auto& values) {
     return instant(clock_s, at_s).of([&](std::size_t k) { return T(values[k]); });

@@ -8,7 +8,9 @@
 // Signals of one wheel alone have no number ("duty"), those of several have theirs ("duty_1").
 // An empty duty is a bridge that is off. A missing sample of an input holds the one before.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,7 +24,10 @@ namespace omnihil {
 
 struct CameraFrame {
   std::size_t sample = 0;
-  double x_m = 0.0, y_m = 0.0, theta_rad = 0.0;  // NaN: not seen; theta is unwrapped
+  std::array<double, 3> pose{};  // x and y in m, heading in rad, unwrapped; NaN: not seen
+  bool sees() const {
+    return std::any_of(pose.begin(), pose.end(), [](double v) { return std::isfinite(v); });
+  }
 };
 
 // What the radio said, where the record has no duties: NaN where nothing new was said.

@@ -13,71 +13,37 @@ namespace {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kAnyGap_s = std::numeric_limits<double>::infinity();
 
+constexpr std::size_t kEachWheel = kMaxWheels;  // beyond all parts
 struct Source {
   Quantity quantity;
   View view;
   std::string_view channel;  // without the wheel's index
   std::string_view unit;
-  bool per_wheel;
+  std::size_t part = 0;
 };
 constexpr Source kSources[] = {
-    {Quantity::kCounts, View::kDifference, "encoder", "rad/s", true},
-    {Quantity::kWheelSpeed, View::kPoint, "wheel_speed", "rad/s", true},
-    {Quantity::kCurrent, View::kMean, "motor_current", "A", true},
-    {Quantity::kGyro, View::kPoint, "gyro_z", "rad/s", false},
-    {Quantity::kAccelX, View::kPoint, "accel_x", "m/s2", false},
-    {Quantity::kAccelY, View::kPoint, "accel_y", "m/s2", false},
-    {Quantity::kVisionX, View::kFrames, "vision_x", "m", false},
-    {Quantity::kVisionY, View::kFrames, "vision_y", "m", false},
-    {Quantity::kVisionTheta, View::kFrames, "vision_theta", "rad", false},
-    {Quantity::kForceX, View::kMean, "force_x", "N", false},
-    {Quantity::kForceY, View::kMean, "force_y", "N", false},
-    {Quantity::kBusVoltage, View::kLevel, "bus_voltage", "V", false},
+    {Quantity::kCounts, View::kDifference, "encoder", "rad/s", kEachWheel},
+    {Quantity::kWheelSpeed, View::kPoint, "wheel_speed", "rad/s", kEachWheel},
+    {Quantity::kCurrent, View::kMean, "motor_current", "A", kEachWheel},
+    {Quantity::kGyro, View::kPoint, "gyro_z", "rad/s"},
+    {Quantity::kAccelerometer, View::kPoint, "accel_x", "m/s2", 0},
+    {Quantity::kAccelerometer, View::kPoint, "accel_y", "m/s2", 1},
+    {Quantity::kPose, View::kFrames, "vision_x", "m", 0},
+    {Quantity::kPose, View::kFrames, "vision_y", "m", 1},
+    {Quantity::kPose, View::kFrames, "vision_theta", "rad", 2},
+    {Quantity::kForce, View::kMean, "force_x", "N", 0},
+    {Quantity::kForce, View::kMean, "force_y", "N", 1},
+    {Quantity::kBusVoltage, View::kLevel, "bus_voltage", "V"},
 };
-
-template <typename T>
-const T& quantity_of(const RollingSample<T>& s, const Observation& how) {
-  switch (how.quantity) {
-    case Quantity::kCounts:
-      return s.encoder_rad[how.wheel];
-    case Quantity::kWheelSpeed:
-      return s.wheel_rad_s[how.wheel];
-    case Quantity::kCurrent:
-      return s.current_A[how.wheel];
-    case Quantity::kGyro:
-      return s.gyro_rad_s;
-    case Quantity::kAccelX:
-      return s.accel_x_m_s2;
-    case Quantity::kAccelY:
-      return s.accel_y_m_s2;
-    case Quantity::kVisionX:
-      return s.x_m;
-    case Quantity::kVisionY:
-      return s.y_m;
-    case Quantity::kVisionTheta:
-      return s.theta_rad;
-    case Quantity::kForceX:
-      return s.force_x_N;
-    case Quantity::kForceY:
-      return s.force_y_N;
-    default:
-      return s.supply_voltage_V;
-  }
-}
-
-double CameraFrame::*frame_member(Quantity quantity) {
-  if (quantity == Quantity::kVisionX) return &CameraFrame::x_m;
-  return quantity == Quantity::kVisionY ? &CameraFrame::y_m : &CameraFrame::theta_rad;
-}
 
 // Not whitened (predictor.h): random forces of the floor integrate to more angle than the counts' rounding, and would be
 // taken for a law of motion.
 void add_encoder(const Channel& channel, Observation how, const std::string& name, RobotRun& r) {
   const RobotRecord& record = r.record;
-  if (record.counts_per_rotor_turn[how.wheel] <= 0.0) return;
+  if (record.counts_per_rotor_turn[how.part] <= 0.0) return;
   std::vector<double> angle;
-  for (const PerWheel<double>& counted : record.encoder_rotor_rad) angle.push_back(counted[how.wheel]);
-  const double rad_per_count = kTurn / record.counts_per_rotor_turn[how.wheel];
+  for (const PerWheel<double>& counted : record.encoder_rotor_rad) angle.push_back(counted[how.part]);
+  const double rad_per_count = kTurn / record.counts_per_rotor_turn[how.part];
   // of one reading: rounding, uniform over a count, and the channel's own noise
   const double sigma = std::hypot(1.0 / std::sqrt(12.0), channel.sigma) * rad_per_count;
   add_difference(r, std::move(how), name, "rad/s", record.time_s, angle, kAnyGap_s, sigma, rad_per_count,
@@ -89,7 +55,7 @@ void add_encoder(const Channel& channel, Observation how, const std::string& nam
 void add_frames(const Channel& channel, Observation how, std::string_view unit, RobotRun& r) {
   std::vector<double> seen, at_rows(r.record.size(), kMissing);
   for (const CameraFrame& f : r.record.frames) {
-    const double v = f.*frame_member(how.quantity);
+    const double v = f.pose[how.part];
     if (!std::isfinite(v)) continue;
     if (!seen.empty()) at_rows[f.sample] = v;
     seen.push_back(v);
@@ -107,12 +73,13 @@ RobotRun robot_run(const Dataset& dataset, const Run& run, const RollingParams<d
   RobotRun r;
   r.record = robot_record(dataset, run, nominal);
   for (const Source& source : kSources) {
-    for (std::size_t i = 0; i < (source.per_wheel ? r.record.wheels : 1u); ++i) {
-      const std::string name =
-          source.per_wheel ? numbered(source.channel, i, r.record.wheels) : std::string(source.channel);
+    const bool each = source.part == kEachWheel;
+    for (std::size_t i = 0; i < (each ? r.record.wheels : 1u); ++i) {
+      const std::string name = numbered(source.channel, i, each ? r.record.wheels : 1);
       const Channel* channel = dataset.channel(name);
       if (channel == nullptr || channel->imposed || run.signal(name) == nullptr) continue;
-      const Observation how{.quantity = source.quantity, .view = source.view, .channel = name, .wheel = i};
+      const Observation how{
+          .quantity = source.quantity, .view = source.view, .channel = name, .part = each ? i : source.part};
       if (source.view == View::kDifference) {
         add_encoder(*channel, how, numbered("velocity", i, r.record.wheels), r);
       } else if (source.view == View::kFrames) {
@@ -128,15 +95,6 @@ RobotRun robot_run(const Dataset& dataset, const Run& run, const RollingParams<d
   return r;
 }
 
-template <typename T>
-std::vector<T> robot_signal_values(const RobotRun& r, std::size_t signal, const RobotMotion<T>& m) {
-  const Observation& how = r.seen[signal];
-  return observed<T>(how, r.record.time_s, [&](std::size_t k) { return quantity_of(m.samples[k], how); });
-}
-
-template std::vector<double> robot_signal_values(const RobotRun&, std::size_t, const RobotMotion<double>&);
-template std::vector<Jet> robot_signal_values(const RobotRun&, std::size_t, const RobotMotion<Jet>&);
-
 void add_input_noise(const RobotMotion<double>& m, const RobotMotion<double>& perturbed, RobotRun& r) {
   const auto mean_square = [](const std::vector<double>& d) {
     double sum = 0.0, count = 0.0;
@@ -145,11 +103,12 @@ void add_input_noise(const RobotMotion<double>& m, const RobotMotion<double>& pe
     }
     return count > 0.0 ? sum / count : 0.0;
   };
+  std::vector<std::vector<double>> differences = robot_outputs(r, perturbed);
+  const std::vector<std::vector<double>> plain = robot_outputs(r, m);
   for (std::size_t s = 0; s < r.compared.size(); ++s) {
-    std::vector<double> d = robot_signal_values(r, s, perturbed);
-    const std::vector<double> plain = robot_signal_values(r, s, m);
-    for (std::size_t k = 0; k < d.size(); ++k) d[k] -= plain[k];
-    complete(r, s, false, Eigen::Map<Eigen::VectorXd>(d.data(), static_cast<Eigen::Index>(d.size())));
+    std::vector<double>& d = differences[s];
+    for (std::size_t k = 0; k < d.size(); ++k) d[k] -= plain[s][k];
+    complete(r, s, false, d);
     ComparedSignal& c = r.compared[s];
     c.noise_sigma = std::sqrt(c.noise_sigma * c.noise_sigma + mean_square(d));
     c.whitened_sigma = std::sqrt(c.whitened_sigma * c.whitened_sigma + mean_square(whitened(c, d)));
@@ -190,7 +149,7 @@ std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, con
   });
   add("turn_rate", "rad/s", [](std::size_t, const Sample& s) { return s.velocity[2]; });
   add("acceleration", "m/s2",
-      [](std::size_t, const Sample& s) { return std::hypot(s.accel_x_m_s2, s.accel_y_m_s2); });
+      [](std::size_t, const Sample& s) { return std::hypot(s.accel_m_s2[0], s.accel_m_s2[1]); });
   add("abs_current", "A", [&](std::size_t, const Sample& s) {
     double sum = 0.0;
     for (std::size_t i = 0; i < r.wheels; ++i)
@@ -233,7 +192,7 @@ void measure_robot(const RobotRun& run, const RobotMotion<double>& m, std::uint6
       std::fill(out.begin() + static_cast<std::ptrdiff_t>(silent.from),
                 out.begin() + static_cast<std::ptrdiff_t>(silent.to) + 1, kMissing);
     }
-    const double counts_per_rad = r.counts_per_rotor_turn[s.wheel] / kTurn;
+    const double counts_per_rad = s.view == View::kDifference ? r.counts_per_rotor_turn[s.part] / kTurn : 0.0;
     double origin = s.view == View::kFrames ? kMissing : 0.0;  // of the camera, from the simulation's
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;
@@ -254,9 +213,9 @@ void measure_compared_bus(const RobotMotion<double>& m, std::uint64_t seed, Robo
   const std::uint64_t stream = stream_of("bus_voltage compared");
   for (std::size_t n = 0; n < r.seen.size(); ++n) {
     if (r.seen[n].view != View::kLevel) continue;
-    std::vector<double> values = robot_signal_values(r, n, m);
-    complete(r, n, true,
-             Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+    std::vector<double> values;
+    for (const RollingSample<double>& s : m.samples) values.push_back(quantity_of(s, r.seen[n]));
+    complete(r, n, true, values);
     for (std::size_t k = 0; k < values.size(); ++k) {
       double& out = r.compared[n].measured[k];
       if (std::isfinite(out)) out = values[k] + r.seen[n].channel_sigma * gaussian(seed, stream, k);

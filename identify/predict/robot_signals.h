@@ -2,7 +2,7 @@
 // simulated motion.
 //
 //   RobotRun r = robot_run(dataset, run, nominal);
-//   std::vector<double> y = robot_signal_values(r, 0, motion);    // on the clock of r.compared[0], before complete()
+//   std::vector<std::vector<double>> y = robot_outputs(r, motion);    // [signal][row], before complete()
 //
 // bus_voltage, where measured, is an input of the model; its drop is compared with the model supply's, means
 // made equal (the level drifts with the battery). velocity_i is the difference of the encoder's counts, on the rotor, on
@@ -23,7 +23,32 @@ RobotRun robot_run(const Dataset& dataset, const Run& run, const RollingParams<d
 void add_input_noise(const RobotMotion<double>& motion, const RobotMotion<double>& perturbed, RobotRun& run);
 
 template <typename T>
-std::vector<T> robot_signal_values(const RobotRun& run, std::size_t signal, const RobotMotion<T>& motion);
+const T& quantity_of(const RollingSample<T>& s, const Observation& how) {
+  switch (how.quantity) {
+    case Quantity::kCounts:
+      return s.encoder_rad[how.part];
+    case Quantity::kWheelSpeed:
+      return s.wheel_rad_s[how.part];
+    case Quantity::kCurrent:
+      return s.current_A[how.part];
+    case Quantity::kGyro:
+      return s.gyro_rad_s;
+    case Quantity::kAccelerometer:
+      return s.accel_m_s2[how.part];
+    case Quantity::kPose:
+      return s.pose[how.part];
+    case Quantity::kForce:
+      return s.force_N[how.part];
+    default:
+      return s.supply_voltage_V;
+  }
+}
+template <typename T>
+std::vector<std::vector<T>> robot_outputs(const RobotRun& run, const RobotMotion<T>& motion) {
+  return observed<T>(run, run.record.time_s, [&](const Observation& how, std::size_t k) {
+    return quantity_of(motion.samples[k], how);
+  });
+}
 
 std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& record,
                                        const RobotMotion<double>& motion);

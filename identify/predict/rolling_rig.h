@@ -61,10 +61,7 @@ class RollingRig {
   template <typename T>
   RigOutputs<T> outputs(const RigModel& model, std::size_t n, double) const {
     const RobotMotion<T> motion = run_robot(values_of<T>(model), runs_[n].record, motion_);
-    RigOutputs<T> out{.values = {}, .finite = motion.finite};
-    for (std::size_t s = 0; s < runs_[n].seen.size(); ++s)
-      out.values.push_back(robot_signal_values(runs_[n], s, motion));
-    return out;
+    return {.values = robot_outputs(runs_[n], motion), .finite = motion.finite};
   }
 
   // A firmware counts its encoders in whole counts and rounds its duties, so that a prediction is a staircase of a

@@ -85,27 +85,28 @@ void drop_silent_frames(const Run& run, const RollingParams<double>& nominal, Ro
     return std::pair(r.frames[first].sample, r.frames[last].sample);
   };
   for_stretches(
-      r, [](const CameraFrame& a, const CameraFrame& b) { return a.theta_rad == b.theta_rad; },
+      r, [](const CameraFrame& a, const CameraFrame& b) { return a.pose[2] == b.pose[2]; },
       [&](std::size_t first, std::size_t last) {
         const auto [from, to] = rows(first, last);
         const auto [turned, sure] = moved(r, speed[2], sigma[2], from, to);
         if (std::abs(turned) < std::max(kTurned_rad, sure)) return;
-        r.silent.push_back({"vision_theta", from, to, r.frames[first].theta_rad, turned});
-        for (std::size_t n = first; n <= last; ++n) r.frames[n].theta_rad = kMissing;
+        r.silent.push_back({"vision_theta", from, to, r.frames[first].pose[2], turned});
+        for (std::size_t n = first; n <= last; ++n) r.frames[n].pose[2] = kMissing;
       });
   for_stretches(
-      r, [](const CameraFrame& a, const CameraFrame& b) { return a.x_m == b.x_m && a.y_m == b.y_m; },
+      r,
+      [](const CameraFrame& a, const CameraFrame& b) {
+        return a.pose[0] == b.pose[0] && a.pose[1] == b.pose[1];
+      },
       [&](std::size_t first, std::size_t last) {
         const auto [from, to] = rows(first, last);
         const auto [x, sure_x] = moved(r, speed[0], sigma[0], from, to);
         const auto [y, sure_y] = moved(r, speed[1], sigma[1], from, to);
         if (std::hypot(x, y) < std::max(kDriven_m, std::hypot(sure_x, sure_y))) return;
-        r.silent.push_back({"vision_x", from, to, r.frames[first].x_m, std::hypot(x, y)});
-        for (std::size_t n = first; n <= last; ++n) r.frames[n].x_m = r.frames[n].y_m = kMissing;
+        r.silent.push_back({"vision_x", from, to, r.frames[first].pose[0], std::hypot(x, y)});
+        for (std::size_t n = first; n <= last; ++n) r.frames[n].pose[0] = r.frames[n].pose[1] = kMissing;
       });
-  std::erase_if(r.frames, [](const CameraFrame& f) {
-    return !std::isfinite(f.x_m) && !std::isfinite(f.y_m) && !std::isfinite(f.theta_rad);
-  });
+  std::erase_if(r.frames, [](const CameraFrame& f) { return !f.sees(); });
 }
 
 }  // namespace omnihil

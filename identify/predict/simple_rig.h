@@ -64,12 +64,10 @@ class SimpleRig {
   template <typename T>
   RigOutputs<T> outputs(const RigModel& model, std::size_t n, double step_s) const {
     const auto motion = Kind::template motion<T>(model, dataset_->runs[n], step_s);
-    RigOutputs<T> out;
-    for (const Observation& how : runs_[n].seen)
-      out.values.push_back(observed<T>(how, dataset_->runs[n].time_s, [&](std::size_t k) {
-        return Kind::quantity(motion[k], how.quantity);
-      }));
-    return out;
+    return {.values =
+                observed<T>(runs_[n], dataset_->runs[n].time_s, [&](const Observation& how, std::size_t k) {
+                  return Kind::quantity(motion[k], how.quantity);
+                })};
   }
 
   // Along time, and where a speed is seen along that, as the model has it.

@@ -67,7 +67,7 @@ TwinWindow TwinModel::advance(const Run& piece) {
   for (std::size_t m = 0; m < models_.size(); ++m) {
     const RobotMotion<Jet> motion = run_robot(models_[m], record, options, &carries_[m]);
     out.finite = out.finite && motion.finite;
-    for (std::size_t s = 0; s < run.seen.size(); ++s) expected.push_back(robot_signal_values(run, s, motion));
+    for (std::vector<Jet>& y : robot_outputs(run, motion)) expected.push_back(std::move(y));
   }
   if (!out.finite) {
     restart();

@@ -57,9 +57,9 @@ Body body_of(const Dataset& dataset, const Run& run, const RobotRecord& record) 
     y[k].acceleration = s * (*ax)[k] + c * (*ay)[k];
   }
   for (const CameraFrame& f : record.frames) {
-    if (std::isfinite(f.x_m)) x[f.sample].place = f.x_m;
-    if (std::isfinite(f.y_m)) y[f.sample].place = f.y_m;
-    if (std::isfinite(f.theta_rad)) turn[f.sample].place = f.theta_rad;
+    if (std::isfinite(f.pose[0])) x[f.sample].place = f.pose[0];
+    if (std::isfinite(f.pose[1])) y[f.sample].place = f.pose[1];
+    if (std::isfinite(f.pose[2])) turn[f.sample].place = f.pose[2];
   }
   const SmoothedMotion sx = smooth_motion(x), sy = smooth_motion(y);
   SmoothedMotion st;

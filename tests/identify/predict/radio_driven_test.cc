@@ -98,8 +98,8 @@ TEST(RadioDriven, AHeadingThatWentSilentIsNotMeasured) {
   EXPECT_EQ(record.silent[0].from, 300u);
   EXPECT_NEAR(record.silent[0].moved, 1.5 * (8.0 - 5.0), 0.3);
   for (const CameraFrame& f : record.frames) {
-    EXPECT_TRUE(std::isfinite(f.x_m));
-    EXPECT_EQ(std::isfinite(f.theta_rad), f.sample < 300) << f.sample;
+    EXPECT_TRUE(std::isfinite(f.pose[0]));
+    EXPECT_EQ(std::isfinite(f.pose[2]), f.sample < 300) << f.sample;
   }
   const auto p = make_predictor(d, truth, {}), null = make_predictor(d, truth, {})->simulated(truth, 4);
   for (std::size_t s = 0; s < p->compared(0).size(); ++s) {
