@@ -35,13 +35,6 @@ std::vector<double> even_clock(const AxisRecord& r) {
   return t;
 }
 
-std::vector<double> position_of(const AxisRecord& r) {
-  if (!r.position.empty() || r.counts.empty()) return r.position;
-  std::vector<double> x = r.counts;
-  for (double& v : x) v /= r.counts_per_output_rad;
-  return x;
-}
-
 // A value held from k to k + 1, at the end of its interval.
 std::vector<double> at_interval_end(const std::vector<double>& x) {
   std::vector<double> out(x.size());
@@ -68,13 +61,6 @@ LowPass motion_filter(const LowPass& compared, std::size_t samples, double rate_
   if (samples < kLeastSmoothed) return compared;
   if (kHighestCutoff_Hz >= kMotionShareOfNyquist * 0.5 * rate_Hz) return {};
   return butterworth(kOrder, kHighestCutoff_Hz, rate_Hz);
-}
-
-double rms_about_mean(const std::vector<double>& x) {
-  double mean = 0.0, square = 0.0;
-  for (const double v : x) mean += v / static_cast<double>(x.size());
-  for (const double v : x) square += (v - mean) * (v - mean) / static_cast<double>(x.size());
-  return std::sqrt(square);
 }
 
 // What a needed input is named after; a servo's target is no input of the winding.
@@ -105,7 +91,7 @@ void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantit
 std::vector<bool> rest_of(const AxisRecord& r, const std::vector<double>& clock, std::size_t of_filter) {
   constexpr double kWithin_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
   const std::size_t half = of_filter / 2;
-  if (const std::vector<double> x = resampled(r.time_s, position_of(r), clock); !x.empty()) {
+  if (const std::vector<double> x = resampled(r.time_s, r.position_or_counts(), clock); !x.empty()) {
     const bool counted = r.position.empty() && !r.counts.empty();
     const double quantum =
         counted ? 1.0 / std::abs(r.counts_per_output_rad) : estimate_noise(r.position).quantum;
@@ -155,7 +141,7 @@ std::vector<double> smoothed_velocity(const AxisRecord& record) {
   if (!record.velocity.empty()) {
     speed = zero_phase(filter, resampled(record.time_s, record.velocity, clock));
   } else {
-    const std::vector<double> x = resampled(record.time_s, position_of(record), clock);
+    const std::vector<double> x = resampled(record.time_s, record.position_or_counts(), clock);
     if (x.empty()) return {};
     speed = central_differences(zero_phase(filter, x));
     for (double& v : speed) v *= rate;
@@ -184,7 +170,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   if (!by_torque) in.bus_voltage_V = steps(r.bus.input_V);
   const bool bench_torque = speed_imposed && !r.load_torque_Nm.empty();
   if (!bench_torque) in.load_torque_Nm = steps(r.load_torque_Nm);
-  std::vector<double> position = linear(position_of(r));
+  std::vector<double> position = linear(r.position_or_counts());
   std::vector<double> velocity = linear(r.velocity);
   // The motion is the regressor here: its noise would make the inertia small (wiener.h).
   NoiseSpectrum spectrum = NoiseSpectrum::kWhite;
@@ -262,7 +248,7 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
   in.command_is_compared = true;
   in.bus_voltage_V = r.bus.input_V;
   in.load_torque_Nm = r.load_torque_Nm;
-  s.position = position_of(r);
+  s.position = r.position_or_counts();
   in.measured_position_rad = s.position;
   in.imposed_velocity_rad_s.assign(r.size(), 0.0);
   for (std::size_t k = 0; k < r.velocity.size(); ++k) {

@@ -20,14 +20,18 @@ double AxisRecord::longest_gap_s() const {
   return kGapPeriods * period_s;
 }
 
-std::vector<double> AxisRecord::angle() const {
-  constexpr double kLeastCountsPerRotorTurn = 200.0;  // four per period of an order of 48 (cogging); derived
+std::vector<double> AxisRecord::position_or_counts() const {
   if (!position.empty()) return position;
-  const double per_rotor_turn = counts_per_output_rad * 2.0 * std::numbers::pi / gear_ratio;
-  if (counts.empty() || per_rotor_turn < kLeastCountsPerRotorTurn) return {};
-  std::vector<double> out(counts);
+  std::vector<double> out = counts;
   for (double& v : out) v /= counts_per_output_rad;
   return out;
+}
+
+std::vector<double> AxisRecord::angle() const {
+  constexpr double kLeastCountsPerRotorTurn = 200.0;  // four per period of an order of 48 (cogging); derived
+  const double per_rotor_turn = counts_per_output_rad * 2.0 * std::numbers::pi / gear_ratio;
+  const bool coarse = position.empty() && per_rotor_turn < kLeastCountsPerRotorTurn;
+  return coarse ? std::vector<double>() : position_or_counts();
 }
 
 // theta_k = sum (t_i - t_{i-1}) (v_i + v_{i-1}) / 2; white noise of the speed makes it wander off by

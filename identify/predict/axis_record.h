@@ -36,8 +36,9 @@ struct AxisRecord {
   std::size_t size() const { return time_s.size(); }
   double longest_gap_s() const;  // that is bridged
   bool gap_before(std::size_t k) const { return k > 0 && time_s[k] - time_s[k - 1] > longest_gap_s(); }
-  // Position of the output from its sensor or its encoder; empty where it is not measured, or too coarse for
-  // laws of the angle (fewer than 200 counts per rotor turn).
+  // Position of the output from its sensor, else from its encoder; empty: not measured.
+  std::vector<double> position_or_counts() const;
+  // The same; empty as well where it is too coarse for laws of the angle (fewer than 200 counts per rotor turn).
   std::vector<double> angle() const;
   // Where no angle is measured: angle of the output since the first sample, by integrating the measured
   // speed. NaN from the first gap on; empty where the speed is not measured, or its integrated noise exceeds

@@ -30,39 +30,36 @@ std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model
   const double gear = drive.gear_ratio;
   std::vector<AxisSample<double>> samples;
   if (!s.steady) samples = run_axis(drive, EffectSet<double>(model.effects), in, {.step_s = step_s});
-  const auto modelled = [&](auto get) {
-    std::vector<double> v;
-    for (const AxisSample<double>& sample : samples) v.push_back(get(sample));
-    return v;
+  // As measured, else as the model has it.
+  const auto known = [&](std::vector<double> measured, auto modelled) {
+    for (std::size_t k = measured.size(); k < samples.size(); ++k) measured.push_back(modelled(samples[k]));
+    return measured;
   };
   const auto add = [&](const char* name, const char* unit, std::vector<double> value) {
     if (value.size() == in.time_s.size()) out.push_back({name, unit, std::move(value)});
   };
-  const bool linear = drive.linear;
-  std::vector<double> speed = s.velocity;
-  if (speed.empty()) speed = modelled([&](const auto& x) { return x.omega_rotor_rad_s / gear; });
-  std::vector<double> angle = s.position;
-  if (angle.empty()) angle = modelled([&](const auto& x) { return x.theta_rotor_rad / gear; });
-  std::vector<double> current = s.measured_current;
+  const auto size = [](double v) { return std::abs(v); };
+  const char *way = drive.linear ? "m" : "rad", *per_s = drive.linear ? "m/s" : "rad/s";
+  const std::vector<double> speed =
+      known(s.velocity, [&](const auto& x) { return x.omega_rotor_rad_s / gear; });
+  const std::vector<double> angle =
+      known(s.position, [&](const auto& x) { return x.theta_rotor_rad / gear; });
+  std::vector<double> current = s.measured_current, warm = s.measured_temperature;
   if (current.empty() && in.kind == CommandKind::kMotorCurrent) current = in.command;
-  if (current.empty() && drive.resistance_ohm > 0.0)
-    current = modelled([](const auto& x) { return x.motor_current_A; });
-  add("speed", linear ? "m/s" : "rad/s", mapped(speed, [](double v) { return std::abs(v); }));
-  add("velocity", linear ? "m/s" : "rad/s", speed);
+  if (drive.resistance_ohm > 0.0) current = known(current, [](const auto& x) { return x.motor_current_A; });
+  if (!samples.empty() && samples.back().winding_rise_K != 0.0)
+    warm = known(warm, [&](const auto& x) { return x.winding_rise_K + s.first_temperature_degC; });
+  add("speed", per_s, mapped(speed, size));
+  add("velocity", per_s, speed);
   add("direction", "1", mapped(speed, [](double v) { return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0); }));
-  if (!s.steady) add("acceleration", linear ? "m/s2" : "rad/s2", slope(in.time_s, speed));
-  add("abs_current", "A", mapped(current, [](double v) { return std::abs(v); }));
-  add("rotor_angle", linear ? "m" : "rad", mapped(angle, [&](double v) { return v * gear; }));
-  add("output_angle", linear ? "m" : "rad", angle);
-  add("position", linear ? "m" : "rad", angle);
+  if (!s.steady) add("acceleration", drive.linear ? "m/s2" : "rad/s2", slope(in.time_s, speed));
+  add("abs_current", "A", mapped(current, size));
+  add("rotor_angle", way, mapped(angle, [&](double v) { return v * gear; }));
+  add("output_angle", way, angle);
+  add("position", way, angle);
   if (!s.steady) add("time", "s", in.time_s);
   if (!s.steady) add("time_since_step", "s", since_step(in.time_s, {in.command}));
-  std::vector<double> command = mapped(in.command, [](double v) { return std::abs(v); });
-  add("abs_command", "", command);
-  std::vector<double> warm = s.measured_temperature;
-  if (warm.empty() && !samples.empty() && samples.back().winding_rise_K != 0.0) {
-    warm = modelled([&](const auto& x) { return x.winding_rise_K + s.first_temperature_degC; });
-  }
+  add("abs_command", "", mapped(in.command, size));
   add("temperature", "degC", warm);
   add("bus_voltage", "V", in.bus_voltage_V);
   return out;

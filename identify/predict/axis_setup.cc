@@ -41,48 +41,39 @@ void set_drive(const Dataset& dataset, const AxisRecord& r, AxisInput& in) {
 void compare_forward(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
   const bool servo = s.input.kind == CommandKind::kPositionTarget;
   const bool fast = !r.velocity.empty(), counted = !r.counts.empty(), placed = !r.position.empty();
-  const char *position_unit = dataset.linear ? "m" : "rad", *speed_unit = dataset.linear ? "m/s" : "rad/s";
-  const auto stated = [&](const std::string& name) {
-    const Channel* channel = dataset.channel(name);
-    return channel != nullptr ? channel->sigma : 0.0;
-  };
-  const auto add = [&](Quantity quantity, View view, const std::string& name, const char* unit,
-                       std::vector<double> measured, double sigma) -> ComparedSignal& {
-    return add_signal(s, {.quantity = quantity, .view = view, .channel = name}, name, unit, r.time_s,
-                      std::move(measured), sigma);
+  const auto add = [&](Quantity quantity, View view, const char* signal,
+                       const std::vector<double>& measured) {
+    if (!measured.empty())
+      add_channel(s, {.quantity = quantity, .view = view}, *dataset.channel(signal), r.time_s, measured);
   };
   const auto differences = [&](Quantity quantity, const std::vector<double>& x, double per_unit, double sigma,
                                double quantum) {
     add_difference(s, {.quantity = quantity, .view = View::kDifference, .per_unit = per_unit},
-                   fast ? "encoder_velocity" : "velocity", speed_unit, r.time_s, x, r.longest_gap_s(), sigma,
-                   quantum, kWhitening_s);
+                   fast ? "encoder_velocity" : "velocity", dataset.linear ? "m/s" : "rad/s", r.time_s, x,
+                   r.longest_gap_s(), sigma, quantum, kWhitening_s);
   };
   // rounding of counts: uniform, sigma = 1 / sqrt(12) count
   const double per_rad = r.counts_per_output_rad;
-  const double count_sigma = std::hypot(1.0 / std::sqrt(12.0), stated("encoder")) / per_rad;
-  if (servo ? !placed && !counted : fast)
-    add(Quantity::kSpeed, View::kPoint, "velocity", speed_unit, r.velocity, stated("velocity"));
+  const double count_sigma =
+      counted ? std::hypot(1.0 / std::sqrt(12.0), dataset.channel("encoder")->sigma) / per_rad : 0.0;
+  if (servo ? !placed && !counted : fast) add(Quantity::kSpeed, View::kPoint, "velocity", r.velocity);
   if (servo && placed) {
-    add(Quantity::kPosition, View::kPoint, "position", position_unit, r.position, stated("position"));
+    add(Quantity::kPosition, View::kPoint, "position", r.position);
   } else if (servo && counted) {
     std::vector<double> angle = r.counts;
     for (double& v : angle) v = (v + 0.5) / per_rad;  // the middle of a count
-    add(Quantity::kPosition, View::kPoint, "position", position_unit, std::move(angle), count_sigma).quantum =
-        1.0 / per_rad;
+    add_signal(s, {.quantity = Quantity::kPosition}, "position", dataset.linear ? "m" : "rad", r.time_s,
+               std::move(angle), count_sigma)
+        .quantum = 1.0 / per_rad;
   } else if (!servo && counted) {
     differences(Quantity::kCounts, r.counts, per_rad, count_sigma, 1.0 / per_rad);
   } else if (!servo && placed && !fast) {
-    const NoiseEstimate own = estimate_noise(r.position);
-    differences(Quantity::kPosition, r.position, 1.0,
-                stated("position") > 0.0 ? stated("position") : own.sigma, own.quantum);
+    differences(Quantity::kPosition, r.position, 1.0, noise_sigma_of(dataset, "position", r.position),
+                estimate_noise(r.position).quantum);
   }
-  if (!r.current.empty())
-    add(Quantity::kCurrent, View::kMean, "motor_current", "A", r.current, stated("motor_current"));
-  if (!r.temperature.empty())
-    add(Quantity::kTemperature, View::kPoint, "winding_temperature", "degC", r.temperature,
-        stated("winding_temperature"));
-  if (!r.bus.measured_V.empty() && r.bus.input_V.size() > 2)
-    add(Quantity::kBusVoltage, View::kLevel, "bus_voltage", "V", r.bus.measured_V, stated("bus_voltage"));
+  add(Quantity::kCurrent, View::kMean, "motor_current", r.current);
+  add(Quantity::kTemperature, View::kPoint, "winding_temperature", r.temperature);
+  if (r.bus.input_V.size() > 2) add(Quantity::kBusVoltage, View::kLevel, "bus_voltage", r.bus.measured_V);
   for (ComparedSignal& c : s.compared) {
     std::size_t after_gap = 0;
     for (std::size_t k = 1; k < r.size(); ++k) {

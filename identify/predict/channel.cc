@@ -41,10 +41,7 @@ NoiseEstimate estimate_noise(const std::vector<double>& values) {
   double robust = sigma_by_mad(std::move(second)) / std::sqrt(6.0);
   const double unbent = sigma_by_mad(std::move(third)) / std::sqrt(20.0);
   if (has_third && unbent < robust * (1.0 - chance)) robust = unbent;
-  double mean = 0.0, square = 0.0;
-  for (const double v : known) mean += v / static_cast<double>(known.size());
-  for (const double v : known) square += (v - mean) * (v - mean) / static_cast<double>(known.size());
-  out.sigma = std::max({robust, out.quantum / std::sqrt(12.0), kLeastNoiseShare * std::sqrt(square)});
+  out.sigma = std::max({robust, out.quantum / std::sqrt(12.0), kLeastNoiseShare * rms_about_mean(known)});
   return out;
 }
 

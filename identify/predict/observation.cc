@@ -90,6 +90,13 @@ ComparedSignal& add_signal(RigRun& run, Observation how, std::string name, std::
   return c;
 }
 
+ComparedSignal& add_channel(RigRun& run, Observation how, const Channel& channel,
+                            const std::vector<double>& time_s, std::vector<double> measured) {
+  how.channel = channel.signal;
+  return add_signal(run, std::move(how), channel.signal, channel.unit, time_s, std::move(measured),
+                    channel.sigma);
+}
+
 ComparedSignal& add_difference(RigRun& run, Observation how, std::string name, std::string unit,
                                const std::vector<double>& time_s, const std::vector<double>& x, double gap_s,
                                double sigma, double quantum, double whitening_s) {

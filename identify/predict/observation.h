@@ -64,6 +64,10 @@ ComparedSignal& add_signal(RigRun& run, Observation how, std::string name, std::
                            const std::vector<double>& time_s, std::vector<double> measured,
                            double stated_sigma);
 
+// Of a channel as it is: with its name, its unit and its stated noise.
+ComparedSignal& add_channel(RigRun& run, Observation how, const Channel& channel,
+                            const std::vector<double>& time_s, std::vector<double> measured);
+
 // Differences of successive known values of `x` over the time between them, but for gaps longer than `gap_s`; its sigma
 // and quantum in the compared signal's unit times s. whitening_s: ComparedSignal.
 ComparedSignal& add_difference(RigRun& run, Observation how, std::string name, std::string unit,

@@ -90,11 +90,6 @@ void read_encoders(const Dataset& dataset, const Run& run, double gear_ratio, Ro
   }
 }
 
-// The angle, by whole turns, that is nearest to another; where that is not known, itself.
-double unwrapped(double angle_rad, double near_rad) {
-  return std::isfinite(near_rad) ? near_rad + std::remainder(angle_rad - near_rad, kTurn) : angle_rad;
-}
-
 void read_frames(const Run& run, RobotRecord& r) {
   const std::vector<double>* seen[] = {run.signal("vision_x"), run.signal("vision_y"),
                                        run.signal("vision_theta")};
@@ -102,7 +97,9 @@ void read_frames(const Run& run, RobotRecord& r) {
   for (std::size_t k = 0; k < r.size(); ++k) {
     CameraFrame f{.sample = k};
     for (std::size_t a = 0; a < 3; ++a) f.pose[a] = seen[a] != nullptr ? (*seen[a])[k] : kMissing;
-    if (std::isfinite(f.pose[2])) last_rad = f.pose[2] = unwrapped(f.pose[2], last_rad);
+    if (std::isfinite(f.pose[2] + last_rad))
+      f.pose[2] = last_rad + std::remainder(f.pose[2] - last_rad, kTurn);
+    if (std::isfinite(f.pose[2])) last_rad = f.pose[2];
     if (f.sees()) r.frames.push_back(f);
   }
 }

@@ -192,7 +192,7 @@ void measure_robot(const RobotRun& run, const RobotMotion<double>& m, std::uint6
       std::fill(out.begin() + static_cast<std::ptrdiff_t>(silent.from),
                 out.begin() + static_cast<std::ptrdiff_t>(silent.to) + 1, kMissing);
     }
-    const double counts_per_rad = s.view == View::kDifference ? r.counts_per_rotor_turn[s.part] / kTurn : 0.0;
+    const double counts_per_rad = r.counts_per_rotor_turn[s.part] / kTurn;
     double origin = s.view == View::kFrames ? kMissing : 0.0;  // of the camera, from the simulation's
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;

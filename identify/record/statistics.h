@@ -61,6 +61,14 @@ inline double sigma_by_mad(std::vector<double> absolute_deviations) {
   return kSigmaPerMad * median_in_place(absolute_deviations);
 }
 
+// Root mean square about the mean; 0 of no values.
+inline double rms_about_mean(std::span<const double> values) {
+  double mean = 0.0, square = 0.0;
+  for (const double v : values) mean += v / static_cast<double>(values.size());
+  for (const double v : values) square += (v - mean) * (v - mean) / static_cast<double>(values.size());
+  return std::sqrt(square);
+}
+
 inline std::vector<double> finite_values(std::span<const double> values) {
   std::vector<double> out;
   for (const double v : values) {
