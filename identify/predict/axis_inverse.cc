@@ -75,14 +75,10 @@ std::string needed_unit(const Dataset& dataset, CommandKind kind) {
 
 void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantity,
          std::vector<double> measured, double sigma, bool stated) {
-  ComparedSignal& c = s.compared.emplace_back();
-  c.name = name;
-  c.unit = std::move(unit);
-  c.time_s = s.input.time_s;
-  c.noise_sigma = c.whitened_sigma = std::max(sigma, kLeastNoiseShare * rms_about_mean(measured));
+  ComparedSignal& c = add_signal(s, {.quantity = quantity}, std::string(name), std::move(unit),
+                                 s.input.time_s, std::move(measured));
+  c.noise_sigma = c.whitened_sigma = std::max(sigma, kLeastNoiseShare * rms_about_mean(c.measured));
   c.noise_is_stated = stated;
-  c.measured = std::move(measured);
-  s.seen.push_back({.quantity = quantity});
 }
 
 // Where the sensor sees no motion for half of the filter's time, and as much to either side: a count that stays within one
@@ -151,12 +147,11 @@ std::vector<double> smoothed_velocity(const AxisRecord& record) {
 
 void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive, const AxisRecord& r,
                         AxisSetup& s) {
-  const CommandKind kind = axis_command_kind(dataset);
+  const CommandKind kind = s.input.kind;
   const Channel* speed_channel = dataset.channel("velocity");
   const bool speed_imposed = speed_channel != nullptr && speed_channel->imposed;
   const double rate = 1.0 / r.period_s;
   AxisInput& in = s.input;
-  in.kind = kind;
   in.time_s = even_clock(r);
   const auto linear = [&](const std::vector<double>& x) { return resampled(r.time_s, x, in.time_s); };
   const auto steps = [&](const std::vector<double>& x) {
@@ -242,12 +237,8 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
 void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
   constexpr double kShareOfRange = 1e-3;  // hysteresis of the approach's direction; a choice (axis_setup.h)
   AxisInput& in = s.input;
-  in.kind = axis_command_kind(dataset);
-  in.time_s = r.time_s;
-  in.command = s.given = r.command;
+  s.given = in.command;
   in.command_is_compared = true;
-  in.bus_voltage_V = r.bus.input_V;
-  in.load_torque_Nm = r.load_torque_Nm;
   s.position = r.position_or_counts();
   in.measured_position_rad = s.position;
   in.imposed_velocity_rad_s.assign(r.size(), 0.0);

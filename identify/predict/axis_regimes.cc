@@ -1,6 +1,7 @@
 // Regime variables of an axis.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "identify/predict/predictor_axis.h"
 
@@ -32,7 +33,8 @@ std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model
   if (!s.steady) samples = run_axis(drive, EffectSet<double>(model.effects), in, {.step_s = step_s});
   // As measured, else as the model has it.
   const auto known = [&](std::vector<double> measured, auto modelled) {
-    for (std::size_t k = measured.size(); k < samples.size(); ++k) measured.push_back(modelled(samples[k]));
+    if (measured.empty())
+      std::transform(samples.begin(), samples.end(), std::back_inserter(measured), modelled);
     return measured;
   };
   const auto add = [&](const char* name, const char* unit, std::vector<double> value) {

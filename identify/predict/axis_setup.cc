@@ -12,13 +12,8 @@ namespace {
 
 bool finite(double v) { return std::isfinite(v); }
 
-void set_drive(const Dataset& dataset, const AxisRecord& r, AxisInput& in) {
-  in.kind = axis_command_kind(dataset);
-  in.time_s = r.time_s;
-  in.command = r.command;
+void set_motion(const Dataset& dataset, const AxisRecord& r, AxisInput& in) {
   for (const double e : r.enable) in.enable.push_back(e != 0.0 ? 1 : 0);
-  in.bus_voltage_V = r.bus.input_V;
-  in.load_torque_Nm = r.load_torque_Nm;
   if (const Channel* encoder = dataset.channel("encoder"); encoder != nullptr) {
     in.encoder_counts_per_turn = encoder->counts_per_rev;
     in.encoder_on_output = encoder->on_output;
@@ -109,12 +104,18 @@ AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, cons
   const AxisRecord record = make_axis_record(dataset, nominal, run);
   setup.first_temperature_degC = first_known(record.temperature, 0.0);
   if (record.size() < 2) return setup;
+  AxisInput& in = setup.input;
+  in.kind = axis_command_kind(dataset);
+  if (run.steady || setup.method == Method::kForward) {  // else an even clock's
+    in.time_s = record.time_s, in.command = record.command;
+    in.bus_voltage_V = record.bus.input_V, in.load_torque_Nm = record.load_torque_Nm;
+  }
   if (run.steady) {
     make_steady_setup(dataset, record, setup);
   } else if (setup.method == Method::kInverse) {
     make_inverse_setup(dataset, drive_of(nominal), record, setup);
   } else {
-    set_drive(dataset, record, setup.input);
+    set_motion(dataset, record, in);
     compare_forward(dataset, record, setup);
     setup.velocity = smoothed_velocity(record);
     setup.position = record.angle();

@@ -75,8 +75,7 @@ double resolving_time(const Dataset& dataset, std::span<RigRun* const> runs, con
 }  // namespace
 
 ComparedSignal& add_signal(RigRun& run, Observation how, std::string name, std::string unit,
-                           const std::vector<double>& time_s, std::vector<double> measured,
-                           double stated_sigma) {
+                           const std::vector<double>& time_s, std::vector<double> measured) {
   const bool mean = how.view == View::kMean || how.view == View::kLevel;
   if (mean && !measured.empty()) measured.front() = kMissing;
   ComparedSignal& c = run.compared.emplace_back();
@@ -84,9 +83,17 @@ ComparedSignal& add_signal(RigRun& run, Observation how, std::string name, std::
   c.unit = std::move(unit);
   c.time_s = time_s;
   c.measured = std::move(measured);
-  set_noise(stated_sigma, estimate_noise(c.measured), c);
-  how.channel_sigma = c.noise_sigma;
   run.seen.push_back(std::move(how));
+  return c;
+}
+
+ComparedSignal& add_signal(RigRun& run, Observation how, std::string name, std::string unit,
+                           const std::vector<double>& time_s, std::vector<double> measured,
+                           double stated_sigma) {
+  ComparedSignal& c =
+      add_signal(run, std::move(how), std::move(name), std::move(unit), time_s, std::move(measured));
+  set_noise(stated_sigma, estimate_noise(c.measured), c);
+  run.seen.back().channel_sigma = c.noise_sigma;
   return c;
 }
 
@@ -112,8 +119,7 @@ ComparedSignal& add_difference(RigRun& run, Observation how, std::string name, s
     }
     last = k;
   }
-  ComparedSignal& c =
-      add_signal(run, std::move(how), std::move(name), std::move(unit), time_s, std::move(v), 0.0);
+  ComparedSignal& c = add_signal(run, std::move(how), std::move(name), std::move(unit), time_s, std::move(v));
   const double dt_s = median_period_s(time_s);
   c.noise_is_stated = sigma > 0.0;
   c.quantum = quantum / dt_s;

@@ -59,7 +59,9 @@ struct RigRun {
   std::vector<double> given;      // of a needed input: the one that was given, filtered alike
 };
 
-// A mean's first sample is taken out of `measured`. stated_sigma: 0: estimated.
+// A mean's first sample is taken out of `measured`. stated_sigma: 0: estimated. Without it the noise is the caller's to set.
+ComparedSignal& add_signal(RigRun& run, Observation how, std::string name, std::string unit,
+                           const std::vector<double>& time_s, std::vector<double> measured);
 ComparedSignal& add_signal(RigRun& run, Observation how, std::string name, std::string unit,
                            const std::vector<double>& time_s, std::vector<double> measured,
                            double stated_sigma);

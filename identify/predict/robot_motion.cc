@@ -27,13 +27,6 @@ bool is_finite(double x) { return std::isfinite(x); }
 bool is_finite(const Jet& x) { return std::isfinite(x.a) && x.v.allFinite(); }
 
 template <typename T>
-std::array<T, kMaxEffectStates> initial_states(const EffectSet<T>& effects) {
-  std::array<T, kMaxEffectStates> states{};
-  std::copy(effects.initial_states().begin(), effects.initial_states().end(), states.begin());
-  return states;
-}
-
-template <typename T>
 class Runner {
  public:
   Runner(const RobotModelValues<T>& model, const RobotRecord& record, const RobotMotionOptions& options,
@@ -42,8 +35,8 @@ class Runner {
         record_(record),
         options_(options),
         carry_(carry),
-        robot_(model.params, model.uses, model.values),
-        timing_states_(initial_states(robot_.effects())) {
+        robot_(model.params, model.uses, model.values) {
+    std::ranges::copy(robot_.effects().initial_states(), initial_states_.begin());
     if (record.radio && options.firmware != nullptr) {
       firmware_.emplace(*options.firmware, value_of(model.params.controller.latency_s), record.time_s[0]);
     } else if (record.radio) {
@@ -54,11 +47,9 @@ class Runner {
   }
 
   RobotMotion<T> run() {
-    if (!timing().empty() && record_.size() > 1) {
-      // ages of the camera do not change along a run, but for jitter, which has no expected value
-      auto states = timing_states_;
+    // ages of the camera do not change along a run, but for jitter, which has no expected value
+    if (auto states = initial_states_; !timing().empty() && record_.size() > 1)
       camera_age_s_ = age(Stamped::kVision, 0, states);
-    }
     if (options_.follow_camera) heading_ = headings(record_, camera_age_s_);
     simulate();
     sense();
@@ -67,9 +58,10 @@ class Runner {
   }
 
  private:
+  using EffectStates = std::array<T, kMaxEffectStates>;
   const EffectChain<T, TimingPort<T>>& timing() const { return robot_.effects().timing; }
 
-  T age(Stamped what, std::size_t k, std::array<T, kMaxEffectStates>& states) const {
+  T age(Stamped what, std::size_t k, EffectStates& states) const {
     TimingPort<T> port;
     NoiseKey key{options_.noise_seed.value_or(0), stream_of("timing"), k};
     port.what = what;
@@ -239,13 +231,14 @@ class Runner {
 
   void sense() {
     const T inverse_gear = 1.0 / model_.params.drive.gear_ratio;
-    PerWheel<std::array<T, kMaxEffectStates>> states;
-    states.fill(initial_states(robot_.effects()));
+    EffectStates timing_states = initial_states_;
+    PerWheel<EffectStates> states;
+    states.fill(initial_states_);
     PerWheel<T> last_theta = truth_[0].theta_rotor_rad, last_charge{};
     T last_s = T(record_.time_s[0]);
     for (std::size_t k = 0; k < record_.size(); ++k) {
       T seen_s = T(record_.time_s[k]);
-      if (!timing().empty()) seen_s -= age(Stamped::kDriveSensors, k, timing_states_);
+      if (!timing().empty()) seen_s -= age(Stamped::kDriveSensors, k, timing_states);
       const bool now = timing().empty() || record_.size() < 2;
       const Instant<T> at = now ? Instant<T>{} : instant(record_.time_s, seen_s);
       const auto seen = [&](auto what, std::size_t part) {
@@ -273,7 +266,7 @@ class Runner {
   }
 
   T encoder(std::size_t k, std::size_t i, const T& theta, const T& omega, const T& travel,
-            std::array<T, kMaxEffectStates>& states) const {
+            EffectStates& states) const {
     const EffectSet<T>& effects = robot_.effects();
     if (effects.sensor.empty()) return theta;
     SensorPort<T> port;
@@ -364,7 +357,7 @@ class Runner {
   const RobotMotionOptions& options_;
   RobotCarry<T>* carry_;
   RollingRobot<T> robot_;
-  std::array<T, kMaxEffectStates> timing_states_;
+  EffectStates initial_states_{};
   RobotCarry<T> at_;
   std::optional<FirmwareLoop> firmware_;
   T camera_age_s_ = T(0);

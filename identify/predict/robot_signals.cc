@@ -134,45 +134,42 @@ std::vector<double> time_since_step(const RobotRecord& r) {
 }  // namespace
 
 std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, const RobotMotion<double>& m) {
-  using Sample = RollingSample<double>;
+  const std::vector<RollingSample<double>>& s = m.samples;
   std::vector<RegimeTrack> tracks;
-  // value(k, sample k)
-  const auto add = [&](std::string name, std::string unit, auto value) {
+  const auto add = [&](std::string name, std::string unit, auto value) {  // value(row)
     RegimeTrack& t = tracks.emplace_back(RegimeTrack{std::move(name), std::move(unit), {}});
-    for (std::size_t k = 0; k < r.size(); ++k) t.value.push_back(value(k, m.samples[k]));
+    for (std::size_t k = 0; k < r.size(); ++k) t.value.push_back(value(k));
   };
-  const auto speed = [](const Sample& s) { return std::hypot(s.velocity[0], s.velocity[1]); };
+  const auto speed = [&](std::size_t k) { return std::hypot(s[k].velocity[0], s[k].velocity[1]); };
   const std::vector<double> since = time_since_step(r), heading = headings(r, 0.0);
-  add("speed", "m/s", [&](std::size_t, const Sample& s) { return speed(s); });
-  add("direction", "rad", [&](std::size_t, const Sample& s) {
-    return speed(s) > kMoving_m_s ? std::atan2(s.velocity[1], s.velocity[0]) : kMissing;
+  add("speed", "m/s", speed);
+  add("direction", "rad", [&](std::size_t k) {
+    return speed(k) > kMoving_m_s ? std::atan2(s[k].velocity[1], s[k].velocity[0]) : kMissing;
   });
-  add("turn_rate", "rad/s", [](std::size_t, const Sample& s) { return s.velocity[2]; });
+  add("turn_rate", "rad/s", [&](std::size_t k) { return s[k].velocity[2]; });
   add("acceleration", "m/s2",
-      [](std::size_t, const Sample& s) { return std::hypot(s.accel_m_s2[0], s.accel_m_s2[1]); });
-  add("abs_current", "A", [&](std::size_t, const Sample& s) {
+      [&](std::size_t k) { return std::hypot(s[k].accel_m_s2[0], s[k].accel_m_s2[1]); });
+  add("abs_current", "A", [&](std::size_t k) {
     double sum = 0.0;
     for (std::size_t i = 0; i < r.wheels; ++i)
-      sum += (1.0 / static_cast<double>(r.wheels)) * std::abs(s.current_A[i]);
+      sum += (1.0 / static_cast<double>(r.wheels)) * std::abs(s[k].current_A[i]);
     return sum;
   });
-  add("time", "s", [&](std::size_t k, const Sample&) { return r.time_s[k]; });
-  add("time_since_step", "s", [&](std::size_t k, const Sample&) { return since[k]; });
-  add("bus_voltage", "V", [&](std::size_t k, const Sample& s) {
-    return r.bus.input_V.empty() ? s.bus_voltage_V : r.bus.input_V[k];
-  });
-  if (std::any_of(m.samples.begin(), m.samples.end(),
-                  [](const Sample& s) { return s.temperature_rise_K > 0.0; }))
-    add("temperature", "K", [](std::size_t, const Sample& s) { return s.temperature_rise_K; });
+  add("time", "s", [&](std::size_t k) { return r.time_s[k]; });
+  add("time_since_step", "s", [&](std::size_t k) { return since[k]; });
+  add("bus_voltage", "V",
+      [&](std::size_t k) { return r.bus.input_V.empty() ? s[k].bus_voltage_V : r.bus.input_V[k]; });
+  if (std::any_of(s.begin(), s.end(), [](const auto& at) { return at.temperature_rise_K > 0.0; }))
+    add("temperature", "K", [&](std::size_t k) { return s[k].temperature_rise_K; });
   if (!heading.empty() && (!r.frames.empty() || run.signal("vision_theta") != nullptr))
-    add("heading", "rad", [&](std::size_t k, const Sample&) { return std::remainder(heading[k], kTurn); });
+    add("heading", "rad", [&](std::size_t k) { return std::remainder(heading[k], kTurn); });
   for (std::size_t i = 0; i < r.wheels; ++i) {
-    add(numbered("wheel_speed", i, r.wheels), "rad/s", [&](std::size_t k, const Sample& s) {
+    add(numbered("wheel_speed", i, r.wheels), "rad/s", [&](std::size_t k) {
       if (k == 0) return kMissing;
-      return (s.encoder_rad[i] - m.samples[k - 1].encoder_rad[i]) / (r.time_s[k] - r.time_s[k - 1]);
+      return (s[k].encoder_rad[i] - s[k - 1].encoder_rad[i]) / (r.time_s[k] - r.time_s[k - 1]);
     });
     if (r.counts_per_rotor_turn[i] <= 0.0) continue;
-    add(numbered("rotor_angle", i, r.wheels), "rad", [&](std::size_t k, const Sample&) {
+    add(numbered("rotor_angle", i, r.wheels), "rad", [&](std::size_t k) {
       const double turns = r.theta_rotor_rad[k][i] / kTurn;
       return kTurn * (turns - std::floor(turns));
     });
