@@ -19,41 +19,38 @@ bool is_hidden_delay(const Candidate& c, const Unknown& u) {
   return (info.numerics & kDelays) != 0 && static_cast<std::size_t>(u.row) == first_strength(info);
 }
 
-class AxisRig {
+class AxisRig : public RigRuns<AxisSetup> {
  public:
   AxisRig(std::shared_ptr<const Dataset> dataset, std::shared_ptr<const Candidate> nominal,
           const PredictOptions& options)
-      : dataset_(std::move(dataset)), nominal_(std::move(nominal)), options_(options) {
+      : RigRuns(std::move(dataset), std::move(nominal), options) {
     for (const Run& run : dataset_->runs) {
-      setups_.push_back(make_axis_setup(*dataset_, *nominal_, run));
-      if (!options_.slave_angle) setups_.back().input.measured_position_rad.clear();
+      runs_.push_back(make_axis_setup(*dataset_, *nominal_, run));
+      if (!options_.slave_angle) runs_.back().input.measured_position_rad.clear();
     }
-    counter_ = find_counted_speed(setups_, drive_of(*nominal_));
-    std::vector<RigRun*> all, series;
-    for (AxisSetup& s : setups_) {
-      all.push_back(&s);
+    counter_ = find_counted_speed(runs_, drive_of(*nominal_));
+    std::vector<RigRun*> series;
+    for (AxisSetup& s : runs_) {
       if (!s.steady) series.push_back(&s);
     }
     share_noise(series);
-    choose_averaging(*dataset_, all);
+    choose_averaging(*dataset_, all_runs());
     choose_step();
   }
 
-  const Dataset& dataset() const { return *dataset_; }
   Method method() const { return axis_method(*dataset_); }
-  const RigRun& run(std::size_t n) const { return setups_[n]; }
   bool shows_signature_of(const EffectEntry& effect) const { return counter_ == &effect; }
   Capabilities capabilities() const { return axis_capabilities(*dataset_, *nominal_); }
   double step_s(const Candidate& own, std::size_t n) const { return substep_.of(own, static_cast<int>(n)); }
   // Between parts that meet and leave exact derivatives hold for no finite step.
   bool is_exact(const Candidate& own, std::size_t) const { return !acts(own, kImpacts); }
   std::vector<RegimeTrack> regimes(const Candidate& own, std::size_t n) const {
-    return axis_regimes(setups_[n], own, step_s(own, n));
+    return axis_regimes(runs_[n], own, step_s(own, n));
   }
 
   template <typename T>
   RigOutputs<T> outputs(const RigModel& model, std::size_t n, double step_s) const {
-    const AxisSetup& s = setups_[n];
+    const AxisSetup& s = runs_[n];
     if (s.input.time_s.empty()) return {.values = std::vector<std::vector<T>>(s.seen.size())};
     const auto m = axis_values<T>(model);
     return {.values = axis_outputs<T>(s, m.params, EffectSet<T>(m.uses, m.values), step_s)};
@@ -63,10 +60,10 @@ class AxisRig {
                 const Prediction& p) const {
     constexpr double kStep_s = 4e-3;  // four of the longest sub-steps; a choice
     constexpr double kWidth = 0.1;    // of Unknown::scale (DECISIONS 29): a choice; sensitivity not measured
-    if (setups_[n].input.time_s.empty()) return {};
+    if (runs_[n].input.time_s.empty()) return {};
     if (is_hidden_delay(own, unknown)) return {.width = kStep_s};
     const double width = kWidth * unknown.scale;
-    if (is_exact(own, n)) return {.width = explodes(setups_[n], unknown, u, p) ? width : 0.0};
+    if (is_exact(own, n)) return {.width = explodes(runs_[n], unknown, u, p) ? width : 0.0};
     const bool of_the_play =
         unknown.effect >= 0 &&
         (own.effects[static_cast<std::size_t>(unknown.effect)].entry->info->numerics & kImpacts) != 0;
@@ -75,8 +72,8 @@ class AxisRig {
   }
 
   void measure(const Candidate& truth, std::uint64_t seed) {
-    for (std::size_t n = 0; n < setups_.size(); ++n) {
-      AxisSetup& s = setups_[n];
+    for (std::size_t n = 0; n < runs_.size(); ++n) {
+      AxisSetup& s = runs_[n];
       Prediction p = ground_truth_prediction(with_known(truth, dataset_->runs[n].known), n, seed);
       for (std::size_t c = 0; c < s.compared.size(); ++c) {
         add_sensor_noise(s, c, seed, stream_of(s.compared[c].name) + std::uint64_t{n} * 1000003, p.values[c]);
@@ -107,11 +104,11 @@ class AxisRig {
   void choose_step() {
     constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
     auto trial = std::make_shared<AxisRig>(*this);
-    for (AxisSetup& s : trial->setups_) shorten(s, kTrial_s);
+    for (AxisSetup& s : trial->runs_) shorten(s, kTrial_s);
     substep_ =
-        AxisSubstep(*nominal_, setups_, options_.step_s, [trial](const Candidate& model, int run, double h) {
+        AxisSubstep(*nominal_, runs_, options_.step_s, [trial](const Candidate& model, int run, double h) {
           const auto n = static_cast<std::size_t>(run);
-          const AxisSetup& s = trial->setups_[n];
+          const AxisSetup& s = trial->runs_[n];
           const Run& of = trial->dataset_->runs[n];
           if (of.split != Split::kTraining || s.steady || s.input.time_s.size() < 2) return kMissing;
           const Candidate own = with_known(model, of.known);
@@ -138,7 +135,7 @@ class AxisRig {
   // differs from it by the mean of the sensor's noise over that window, which integrates into speed and
   // position.
   Prediction ground_truth_prediction(const Candidate& truth, std::size_t n, std::uint64_t seed) {
-    AxisSetup& s = setups_[n];
+    AxisSetup& s = runs_[n];
     const auto bus = std::find_if(s.compared.begin(), s.compared.end(),
                                   [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
     s.input.noise_seed = random_bits(seed, stream_of("effects"), std::uint64_t{n});
@@ -158,7 +155,7 @@ class AxisRig {
   // Prediction with the random draws of its effects; the seed is cleared afterwards. The noise of a counted
   // speed is added by add_counting_noise(): that of the effect behind it is left out here, its delay is kept.
   Prediction as_drawn(const Candidate& truth, std::size_t n) {
-    AxisSetup& s = setups_[n];
+    AxisSetup& s = runs_[n];
     const auto predict = [&](const Candidate& own) { return predicted(*this, own, n, step_s(own, n)); };
     Candidate others = truth;
     const bool counts =
@@ -177,10 +174,6 @@ class AxisRig {
     return p;
   }
 
-  std::shared_ptr<const Dataset> dataset_;
-  std::shared_ptr<const Candidate> nominal_;
-  PredictOptions options_;
-  std::vector<AxisSetup> setups_;
   AxisSubstep substep_;
   const EffectEntry* counter_ = nullptr;  // the effect that made a counted speed; null: none did
 };
@@ -189,7 +182,7 @@ class AxisRig {
 
 std::unique_ptr<Predictor> make_axis_predictor(const Dataset& dataset, const Candidate& nominal,
                                                const PredictOptions& options) {
-  return std::make_unique<RigPredictor<AxisRig>>(dataset, nominal, options);
+  return make_rig_predictor<AxisRig>(dataset, nominal, options);
 }
 
 }  // namespace omnihil

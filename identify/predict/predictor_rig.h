@@ -44,6 +44,44 @@ concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, con
   made.measure(own, std::uint64_t{1});
 };
 
+// What a rig has of its dataset, run by run. If it does not say otherwise, it is run forward with exact derivatives.
+template <std::derived_from<RigRun> Kept>
+class RigRuns {
+ public:
+  RigRuns(std::shared_ptr<const Dataset> dataset, std::shared_ptr<const Candidate> nominal,
+          const PredictOptions& options)
+      : dataset_(std::move(dataset)), nominal_(std::move(nominal)), options_(options) {}
+
+  const Dataset& dataset() const { return *dataset_; }
+  const RigRun& run(std::size_t n) const { return runs_[n]; }
+  Method method() const { return Method::kForward; }
+  double step_s(const Candidate&, std::size_t) const { return options_.step_s; }
+  bool is_exact(const Candidate&, std::size_t) const { return true; }
+  Secant secant(const Candidate&, const Unknown&, Eigen::Index, std::size_t, const Prediction&) const {
+    return {};
+  }
+  bool shows_signature_of(const EffectEntry&) const { return false; }
+
+ protected:
+  std::vector<RigRun*> all_runs() {
+    std::vector<RigRun*> all;
+    for (Kept& run : runs_) all.push_back(&run);
+    return all;
+  }
+  // The same rig on what its sensors recorded of another motion.
+  template <class Rig>
+  Rig on(std::shared_ptr<const Dataset> made) const {
+    Rig rig(std::move(made), nominal_, options_);
+    for (std::size_t n = 0; n < runs_.size(); ++n) keep_sensors(runs_[n], rig.runs_[n]);
+    return rig;
+  }
+
+  std::shared_ptr<const Dataset> dataset_;
+  std::shared_ptr<const Candidate> nominal_;
+  PredictOptions options_;
+  std::vector<Kept> runs_;
+};
+
 template <class Rig>
 Prediction predicted(const Rig& rig, const Candidate& own, std::size_t run, double step_s) {
   RigOutputs<double> y = rig.template outputs<double>({own}, run, step_s);

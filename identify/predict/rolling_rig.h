@@ -24,11 +24,11 @@ concept RollingKind = requires(const RollingParams<double>& robot, const Rolling
 };
 
 template <RollingKind Kind>
-class RollingRig {
+class RollingRig : public RigRuns<RobotRun> {
  public:
   RollingRig(std::shared_ptr<const Dataset> dataset, std::shared_ptr<const Candidate> nominal,
              const PredictOptions& options)
-      : dataset_(std::move(dataset)), nominal_(std::move(nominal)), options_(options) {
+      : RigRuns(std::move(dataset), std::move(nominal), options) {
     motion_.slave_angle = options.slave_angle;
     motion_.firmware = dataset_->firmware.get();
     if (dataset_->firmware)
@@ -37,17 +37,11 @@ class RollingRig {
       const Candidate model = with_known(*nominal_, run.known);
       runs_.push_back(robot_run(*dataset_, run, Kind::params(rolling_params(model.file.parameters))));
     }
-    std::vector<RigRun*> all;
-    for (RobotRun& r : runs_) all.push_back(&r);
-    share_noise(all);
+    share_noise(all_runs());
     for (std::size_t n = 0; n < runs_.size(); ++n)
       add_input_noise(with_known(*nominal_, dataset_->runs[n].known), runs_[n]);
   }
 
-  const Dataset& dataset() const { return *dataset_; }
-  Method method() const { return Method::kForward; }
-  const RigRun& run(std::size_t n) const { return runs_[n]; }
-  bool shows_signature_of(const EffectEntry&) const { return false; }
   double step_s(const Candidate&, std::size_t) const { return kRollingStep_s; }
   // Of a loop that is closed by a firmware nothing is known but its answers.
   bool is_exact(const Candidate&, std::size_t n) const {
@@ -96,12 +90,8 @@ class RollingRig {
   // Any: the draw is used for the rms of the noise floor alone.
   static constexpr std::uint64_t kNoiseSeed = 1;  // as above
 
-  std::shared_ptr<const Dataset> dataset_;
-  std::shared_ptr<const Candidate> nominal_;
-  PredictOptions options_;
   RobotMotionOptions motion_;
   double tick_s_ = 0.0;  // of the firmware
-  std::vector<RobotRun> runs_;
 };
 
 template <RollingKind Kind>
@@ -121,12 +111,8 @@ void RollingRig<Kind>::measure(const Candidate& truth, std::uint64_t seed) {
     motions.push_back(run_robot(values_of<double>({own}), true_input, free));
     measure_robot(runs_[n], motions.back(), own_seed(n), made->runs[n]);
   }
-  RollingRig null(made, nominal_, options_);
-  for (std::size_t n = 0; n < made->runs.size(); ++n) {
-    keep_sensors(runs_[n], null.runs_[n]);
-    measure_compared_bus(motions[n], own_seed(n), null.runs_[n]);
-  }
-  *this = std::move(null);
+  *this = on<RollingRig>(std::move(made));
+  for (std::size_t n = 0; n < runs_.size(); ++n) measure_compared_bus(motions[n], own_seed(n), runs_[n]);
 }
 
 inline bool has_channel(const Dataset& dataset, std::string_view prefix) {

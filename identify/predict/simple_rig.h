@@ -39,26 +39,15 @@ concept SimpleKind = requires(const RigModel& model, const Run& run, const Datas
 };
 
 template <SimpleKind Kind>
-class SimpleRig {
+class SimpleRig : public RigRuns<RigRun> {
  public:
   SimpleRig(std::shared_ptr<const Dataset> dataset, std::shared_ptr<const Candidate> nominal,
             const PredictOptions& options)
-      : dataset_(std::move(dataset)), nominal_(std::move(nominal)), options_(options) {
+      : RigRuns(std::move(dataset), std::move(nominal), options) {
     for (const Run& run : dataset_->runs) add_run(run);
-    std::vector<RigRun*> all;
-    for (RigRun& run : runs_) all.push_back(&run);
-    share_noise(all);
+    share_noise(all_runs());
   }
 
-  const Dataset& dataset() const { return *dataset_; }
-  Method method() const { return Method::kForward; }
-  const RigRun& run(std::size_t n) const { return runs_[n]; }
-  double step_s(const Candidate&, std::size_t) const { return options_.step_s; }
-  bool is_exact(const Candidate&, std::size_t) const { return true; }
-  Secant secant(const Candidate&, const Unknown&, Eigen::Index, std::size_t, const Prediction&) const {
-    return {};
-  }
-  bool shows_signature_of(const EffectEntry&) const { return false; }
   Capabilities capabilities() const { return Kind::capabilities(*dataset_); }
 
   template <typename T>
@@ -97,9 +86,7 @@ class SimpleRig {
         run.signals[channel] = std::move(p.values[s]);
       }
     }
-    SimpleRig null(made, nominal_, options_);
-    for (std::size_t n = 0; n < runs_.size(); ++n) keep_sensors(runs_[n], null.runs_[n]);
-    *this = std::move(null);
+    *this = on<SimpleRig>(std::move(made));
   }
 
  private:
@@ -108,16 +95,10 @@ class SimpleRig {
     for (const SeenSignal& seen : Kind::kSeen) {
       const std::vector<double>* values = run.signal(seen.signal);
       if (values == nullptr) continue;
-      const Channel& channel = *dataset_->channel(seen.signal);
-      add_signal(made, {.quantity = seen.quantity, .view = seen.view, .channel = channel.signal},
-                 channel.signal, channel.unit, run.time_s, *values, channel.sigma);
+      add_channel(made, {.quantity = seen.quantity, .view = seen.view}, *dataset_->channel(seen.signal),
+                  run.time_s, *values);
     }
   }
-
-  std::shared_ptr<const Dataset> dataset_;
-  std::shared_ptr<const Candidate> nominal_;
-  PredictOptions options_;
-  std::vector<RigRun> runs_;
 };
 
 }  // namespace omnihil
