@@ -87,12 +87,11 @@ class Runner {
   void hear(std::size_t k) {
     const RadioCommands& radio = *record_.radio;
     const auto& value = radio.value[k];
-    const std::size_t count = radio.frame == CommandFrame::kBodyVelocity ? 3 : record_.wheels;
-    if (std::all_of(value.begin(), value.begin() + static_cast<std::ptrdiff_t>(count),
-                    [](double v) { return std::isfinite(v); })) {
-      if (firmware_) firmware_->hear(record_.time_s[k], value, radio.frame);
-      if (at_.controller) at_.controller->hear(record_.time_s[k], value, radio.frame);
+    for (std::size_t i = 0; i < record_.inputs(); ++i) {
+      if (!std::isfinite(value[i])) return;
     }
+    if (firmware_) firmware_->hear(record_.time_s[k], value, radio.frame);
+    if (at_.controller) at_.controller->hear(record_.time_s[k], value, radio.frame);
   }
   void run_firmware(RollingInput<T>& in, double now_s, double step_s) {
     const RollingState<T>& x = at_.state;

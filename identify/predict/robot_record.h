@@ -63,6 +63,7 @@ struct RobotRecord {
   BodyVelocity<double> start_velocity;
 
   std::size_t size() const { return time_s.size(); }
+  std::size_t inputs() const { return radio && radio->frame == CommandFrame::kBodyVelocity ? 3 : wheels; }
 };
 
 // "encoder" of a wheel alone, else "encoder_1" of wheel 0 …

@@ -62,7 +62,7 @@ void add_frames(const Channel& channel, Observation how, std::string_view unit, 
   }
   const std::string name = how.channel;
   ComparedSignal& c =
-      add_signal(r, std::move(how), name, std::string(unit), r.record.time_s, std::move(at_rows), 0.0);
+      add_signal(r, std::move(how), name, std::string(unit), r.record.time_s, std::move(at_rows));
   set_noise(channel.sigma, estimate_noise(seen), c);  // from frame to frame
   r.seen.back().channel_sigma = c.noise_sigma;
 }
@@ -115,25 +115,8 @@ void add_input_noise(const RobotMotion<double>& m, const RobotMotion<double>& pe
   }
 }
 
-// ------------------------------------------------------------------------------------------- regimes
-
-namespace {
-
-// Least speed with a direction of travel: above the speeds' noise.
-constexpr double kMoving_m_s = 0.02;  // a choice
-std::vector<double> time_since_step(const RobotRecord& r) {
-  const std::size_t axes = r.radio && r.radio->frame == CommandFrame::kBodyVelocity ? 3 : r.wheels;
-  std::vector<std::vector<double>> inputs(axes);
-  for (std::size_t i = 0; i < axes; ++i) {
-    for (std::size_t k = 0; k < r.size(); ++k)
-      inputs[i].push_back(r.radio ? r.radio->value[k][i] : r.duty_ratio[k][i]);
-  }
-  return since_step(r.time_s, inputs);
-}
-
-}  // namespace
-
 std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, const RobotMotion<double>& m) {
+  constexpr double kMoving_m_s = 0.02;  // that has a direction: above the speeds' noise; a choice
   const std::vector<RollingSample<double>>& s = m.samples;
   std::vector<RegimeTrack> tracks;
   const auto add = [&](std::string name, std::string unit, auto value) {  // value(row)
@@ -141,7 +124,11 @@ std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, con
     for (std::size_t k = 0; k < r.size(); ++k) t.value.push_back(value(k));
   };
   const auto speed = [&](std::size_t k) { return std::hypot(s[k].velocity[0], s[k].velocity[1]); };
-  const std::vector<double> since = time_since_step(r), heading = headings(r, 0.0);
+  std::vector<std::vector<double>> asked(r.inputs());
+  for (const PerWheel<double>& row : r.radio ? r.radio->value : r.duty_ratio) {
+    for (std::size_t i = 0; i < asked.size(); ++i) asked[i].push_back(row[i]);
+  }
+  const std::vector<double> since = since_step(r.time_s, asked), heading = headings(r, 0.0);
   add("speed", "m/s", speed);
   add("direction", "rad", [&](std::size_t k) {
     return speed(k) > kMoving_m_s ? std::atan2(s[k].velocity[1], s[k].velocity[0]) : kMissing;
