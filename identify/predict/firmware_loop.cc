@@ -32,7 +32,7 @@ void FirmwareLoop::hear(double now_s, std::span<const double> value, CommandFram
   packets_.push_back({now_s + latency_s_, c});
 }
 
-void FirmwareLoop::tick(double now_s, const FirmwareSees& sees) {
+void FirmwareLoop::tick(double now_s, const RobotInstant& sees) {
   constexpr double kSame_s = 1e-9;  // rounding of sums of periods; a choice
   while (!packets_.empty() && packets_.front().due_s <= now_s + kSame_s) {
     firmware_->command(packets_.front().command, clock_ns(now_s));
@@ -47,7 +47,7 @@ void FirmwareLoop::tick(double now_s, const FirmwareSees& sees) {
     last_charge_C_[i] = sees.charge_C[i];
   }
   s.bus_voltage_V = sees.bus_voltage_V;
-  s.gyro_z_rad_s = sees.gyro_z_rad_s;
+  s.gyro_z_rad_s = sees.gyro_rad_s;
   s.accel_x_m_s2 = sees.accel_x_m_s2;
   s.accel_y_m_s2 = sees.accel_y_m_s2;
   const RobotDrive drive = firmware_->tick(s);

@@ -16,14 +16,9 @@
 
 #include "identify/predict/firmware_source.h"
 #include "sim/robot/radio_controller.h"
+#include "sim/robot/robot_history.h"
 
 namespace omnihil {
-
-// What its board can measure now; of the rotors, since whenever.
-struct FirmwareSees {
-  std::array<double, kWheels> theta_rotor_rad{}, charge_C{};
-  double bus_voltage_V = 0.0, gyro_z_rad_s = 0.0, accel_x_m_s2 = 0.0, accel_y_m_s2 = 0.0;
-};
 
 class FirmwareLoop {
  public:
@@ -32,7 +27,8 @@ class FirmwareLoop {
   // Of a body three numbers, of wheels four.
   void hear(double now_s, std::span<const double> value, CommandFrame frame);
   bool due(double now_s, double step_s) const { return now_s >= next_s_ - 0.5 * step_s; }
-  void tick(double now_s, const FirmwareSees& sees);
+  // Of what its sensors see: rotor angles, charges (since whenever), bus voltage, turn rate, acceleration.
+  void tick(double now_s, const RobotInstant& sees);
 
   double period_s() const { return period_s_; }
   const std::array<double, kWheels>& duty() const { return duty_; }

@@ -96,10 +96,10 @@ class Runner {
   void run_firmware(RollingInput<T>& in, double now_s, double step_s) {
     const RollingState<T>& x = at_.state;
     if (firmware_->due(now_s, step_s)) {
-      FirmwareSees sees{.bus_voltage_V = value_of(bus_or_supply(in)),
-                        .gyro_z_rad_s = value_of(x.velocity[2]),
+      RobotInstant sees{.gyro_rad_s = value_of(x.velocity[2]),
                         .accel_x_m_s2 = value_of(x.accel_x_m_s2),
-                        .accel_y_m_s2 = value_of(x.accel_y_m_s2)};
+                        .accel_y_m_s2 = value_of(x.accel_y_m_s2),
+                        .bus_voltage_V = value_of(bus_or_supply(in))};
       for (std::size_t i = 0; i < kWheels; ++i) {
         sees.theta_rotor_rad[i] = value_of(x.theta_rotor_rad[i]);
         sees.charge_C[i] = value_of(x.charge_C[i]);

@@ -101,7 +101,7 @@ TEST(FirmwareLoop, BridgesAreWhatItAsksAndOffWhereItLetsGo) {
 TEST(FirmwareLoop, EncodersCountDownRoundedAndCurrentsAreMeansSinceTheTickBefore) {
   Noted noted;
   FirmwareLoop loop(Stubs(noted), 0.0, 10.0);
-  FirmwareSees sees{.bus_voltage_V = 20.0, .gyro_z_rad_s = 1.5};
+  RobotInstant sees{.gyro_rad_s = 1.5, .bus_voltage_V = 20.0};
   sees.theta_rotor_rad = {-0.001, 0.0, 0.019 * std::numbers::pi, 2.0 * std::numbers::pi + 1e-9};
   loop.tick(10.0, sees);
   sees.charge_C[2] = 0.006;
