@@ -188,9 +188,10 @@ typedef struct omnihil_motor_sensors {
   uint64_t now_ns; /* of the sample */
   double bus_voltage_V;
   double phase_current_A[OMNIHIL_WHEELS][OMNIHIL_LEGS]; /* into the motor, through shunt and ADC */
-  double theta_elec_rad[OMNIHIL_WHEELS];  /* 0 .. 2 pi: the d axis before phase a, by the angle sensor */
-  int64_t encoder_counts[OMNIHIL_WHEELS]; /* as in omnihil_sensors */
-  uint32_t hall_code[OMNIHIL_WHEELS];     /* H1 + 2 H2 + 4 H3 */
+  double theta_elec_rad[OMNIHIL_WHEELS];      /* 0 .. 2 pi: the d axis before phase a, by the angle sensor */
+  int64_t encoder_counts[OMNIHIL_WHEELS];     /* as in omnihil_sensors */
+  uint32_t hall_code[OMNIHIL_WHEELS];         /* H1 + 2 H2 + 4 H3 */
+  double leg_V[OMNIHIL_WHEELS][OMNIHIL_LEGS]; /* against the bus's minus, mean of the period; appended */
 } omnihil_motor_sensors;
 
 /* The legs of the four bridges from the next PWM period on, where omnihil_drive.mode is PHASES. */

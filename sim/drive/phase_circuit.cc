@@ -85,19 +85,46 @@ std::size_t first_zero(const PhaseState& s, const Conduction& on, const Part& p,
   return first;
 }
 
-void book(const PhaseState& s, const Conduction& on, const Three& constant, const PhaseInput& in,
-          const Part& p, PhaseFlow& flow) {
+// Of the star point against the bus's minus.
+double star_of(const Conduction& on, const std::array<Leg, 3>& legs, const Three& emf_V, double bus_V) {
+  if (on.count > 0) return mean_of(on, on.volt_V) - mean_of(on, emf_V);
+  double lowest_V = legs[0].forward.volt_V - emf_V[0], highest_V = legs[0].backward.volt_V - emf_V[0];
+  for (std::size_t x = 1; x < 3; ++x) {
+    lowest_V = std::max(lowest_V, legs[x].forward.volt_V - emf_V[x]);
+    highest_V = std::min(highest_V, legs[x].backward.volt_V - emf_V[x]);
+  }
+  return std::max(lowest_V, std::min(highest_V, 0.5 * bus_V - (emf_V[0] + emf_V[1] + emf_V[2]) / 3.0));
+}
+
+// What floats follows the star point; what conducts is its source behind R_on.
+void book_voltages(const PhaseCircuit& c, const std::array<Leg, 3>& legs, const Conduction& on,
+                   const Three& constant, const PhaseInput& in, const Part& p, const Three& charge_C,
+                   PhaseFlow& flow) {
+  const double w = p.omega_mid_rad_s;
+  const Three emf_V = {constant[0] * w, constant[1] * w, constant[2] * w};
+  const double star_V = on.count == 3 ? 0.0 : star_of(on, legs, emf_V, in.bus_voltage_V);
+  each_phase([&](auto x) {
+    flow.leg_V_s[x] +=
+        on.on[x] != 0.0 ? on.volt_V[x] * p.h_s - c.device_ohm * charge_C[x] : (star_V + emf_V[x]) * p.h_s;
+  });
+}
+
+void book(const PhaseCircuit& c, const std::array<Leg, 3>& legs, const PhaseState& s, const Conduction& on,
+          const Three& constant, const PhaseInput& in, const Part& p, PhaseFlow& flow) {
   // integral of (i_inf + d exp(-t / tau))^2 = i_inf^2 h + 2 i_inf d phi h + d^2 (1 + decay) phi h / 2
   const double ring_s = p.mean_decay * p.h_s, ring2_s = 0.5 * (1.0 + p.decay) * ring_s;
   double square = 0.0, torque = 0.0, bus_A = 0.0, drop_W = 0.0;
+  Three charge_C;
   each_phase([&](auto x) {
     const double d = s.current_A[x] - p.settled_A[x], mean_A = p.settled_A[x] + d * p.mean_decay;
     square += p.settled_A[x] * (p.settled_A[x] * p.h_s + 2.0 * d * ring_s) + d * d * ring2_s;
     torque += constant[x] * mean_A;
-    flow.charge_C[x] += mean_A * p.h_s;
+    charge_C[x] = mean_A * p.h_s;
+    flow.charge_C[x] += charge_C[x];
     bus_A += on.source[x]->bus_share * mean_A;
     drop_W += on.source[x]->drop_V * mean_A;
   });
+  book_voltages(c, legs, on, constant, in, p, charge_C, flow);
   const double bus_C = bus_A * p.h_s, impulse_Nm_s = torque * p.h_s;
   flow.time_s += p.h_s;
   flow.square_A2_s += square;
@@ -163,6 +190,9 @@ bool advance_pair(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>
   flow.time_s += p.h_s;
   flow.charge_C[h] += charge_C;
   flow.charge_C[l] -= charge_C;
+  flow.leg_V_s[h] += from.volt_V * p.h_s - c.device_ohm * charge_C;
+  flow.leg_V_s[l] += to.volt_V * p.h_s + c.device_ohm * charge_C;
+  flow.leg_V_s[f] += floating_V * p.h_s;
   flow.square_A2_s +=
       2.0 * (settled_A * (settled_A * p.h_s + 2.0 * d * ring_s) + 0.5 * d * d * (1.0 + p.decay) * ring_s);
   flow.bus_charge_C += bus_C;
@@ -236,7 +266,7 @@ void advance_circuit(const PhaseCircuit& c, PhaseState& s, const std::array<Leg,
       if (zero_s <= 0.0) break;
     }
     if (p.h_s > 0.0) {
-      book(s, on, constant, in, p, flow);
+      book(c, legs, s, on, constant, in, p, flow);
       finish(s, in, p);
     }
     if (zero == kNone) return;

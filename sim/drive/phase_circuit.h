@@ -9,7 +9,8 @@
 //   L di_x/dt = V_x - v_star - K_x omega - (R + R_on) i_x,     v_star = mean of (V_x - K_x omega)
 //   J domega/dt = sum K_x i_x - b omega - tau_load
 //   a phase that carries no current floats at v_star + K_x omega until a diode of its leg conducts; a diode
-//   conducts until its current is exactly zero.
+//   conducts until its current is exactly zero. Where none conducts, a board's own high resistances
+//   decide where v_star is; here the mean of the three phases is half of the bus, as far as the diodes let it.
 // With V, K and the speed of mid step held, every current is one exponential of time constant L / (R + R_on)
 // and its mean is linear in that speed; so winding and rotor (implicit midpoint) are solved together, in
 // closed form. Energy closes to rounding; second order in the step, by K and theta alone. Where a diode's
@@ -69,7 +70,8 @@ struct PhaseInput {
 struct PhaseFlow {
   double time_s = 0.0;
   std::array<double, 3> charge_C{};  // integral of each phase's current
-  double square_A2_s = 0.0;          // integral of the sum of their squares
+  std::array<double, 3> leg_V_s{};   // and of each leg's voltage against the bus's minus
+  double square_A2_s = 0.0;          // integral of the sum of the currents' squares
   double bus_charge_C = 0.0;         // taken from the bus; negative: given back
   double bus_J = 0.0;
   double drop_J = 0.0;        // in the diodes' forward voltage

@@ -153,13 +153,14 @@ double ElectricWheels::measured_A(const PeriodSample& sample, std::size_t wheel,
   return input_V / (s.shunt_ohm * s.amplifier_gain);
 }
 
-void ElectricWheels::see(ElectricMemory& memory, const PerWheel<PeriodSample>& samples,
+void ElectricWheels::see(ElectricMemory& memory, const PerWheel<PeriodFlow>& flows,
                          std::int64_t at_ns) const {
   MotorSensors& seen = memory.seen;
   seen.now_ns = static_cast<std::uint64_t>(at_ns);
   seen.bus_voltage_V = memory.at_bridges_V();
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    const PeriodSample& sample = samples[i];
+    const PeriodSample& sample = flows[i].sample;
+    std::copy_n(flows[i].leg_V.begin(), kLegs, seen.leg_V[i]);
     for (std::size_t x = 0; x < kLegs; ++x) seen.phase_current_A[i][x] = measured_A(sample, i, x, at_ns);
     seen.hall_code[i] = static_cast<std::uint32_t>(hall(i, sample.theta_rotor_rad, at_ns));
     if (memory.encoder_stuck[i]) continue;
@@ -182,14 +183,13 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const PerWheel<WheelDriv
     wheels_[i].keep_warm(x);
   }
   const double period_s = wheels_.front().period_s();
-  PerWheel<PeriodSample> samples;
+  PerWheel<PeriodFlow> flows;
   for (int n = 0; n < periods_; ++n) {
     const std::int64_t begin_ns = now_ns + whole_ns(n * period_s);
     double bus_charge_C = memory.other_current_A * period_s;
     memory.book.bus_J += bus_charge_C * memory.at_bridges_V();
     for (std::size_t i = 0; i < wheels_.size(); ++i) {
-      const PeriodFlow f = advance_wheel(memory, i, inputs[i], begin_ns, integrals[i]);
-      samples[i] = f.sample;
+      const PeriodFlow& f = flows[i] = advance_wheel(memory, i, inputs[i], begin_ns, integrals[i]);
       bus_charge_C += f.bus_charge_C;
       memory.book.bus_J += f.bus_charge_C * memory.at_bridges_V();
       memory.book.winding_heat_J += f.winding_heat_J;
@@ -198,7 +198,7 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const PerWheel<WheelDriv
     }
     advance_bus(memory, bus_charge_C);
     if (!electric_.three_phase()) continue;
-    see(memory, samples, begin_ns + whole_ns(electric_.current_sample_ratio * period_s));
+    see(memory, flows, begin_ns + whole_ns(electric_.current_sample_ratio * period_s));
     if (control != nullptr) memory.legs = control->motor_tick(memory.seen);
   }
   for (std::size_t i = 0; i < wheels_.size(); ++i) {

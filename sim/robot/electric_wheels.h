@@ -67,7 +67,7 @@ class ElectricWheels {
   PeriodFlow advance_wheel(ElectricMemory& memory, std::size_t wheel, const WheelDriveInput& in,
                            std::int64_t now_ns, StepIntegrals& integrals) const;
   void advance_bus(ElectricMemory& memory, double bus_charge_C) const;
-  void see(ElectricMemory& memory, const PerWheel<PeriodSample>& samples, std::int64_t at_ns) const;
+  void see(ElectricMemory& memory, const PerWheel<PeriodFlow>& flows, std::int64_t at_ns) const;
   double measured_A(const PeriodSample& sample, std::size_t wheel, std::size_t phase,
                     std::int64_t at_ns) const;
   int hall(std::size_t wheel, double theta_rotor_rad, std::int64_t at_ns) const;

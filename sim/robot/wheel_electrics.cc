@@ -43,6 +43,12 @@ Dq dq_of(const std::array<double, 3>& x, double theta_elec_rad) {
 
 bool complementary(const LegCommand& c) { return c.on == LegState::kHigh && c.off == LegState::kLow; }
 
+std::array<double, kLegs> means_of(const PhaseFlow& flow) {
+  std::array<double, kLegs> leg_V{};
+  for (std::size_t n = 0; n < kLegs; ++n) leg_V[n] = flow.leg_V_s[n] / flow.time_s;
+  return leg_V;
+}
+
 LegState leg_at(const LegCommand& c, double ratio) {
   // centred on-time; its edges belong to it
   return std::abs(ratio - 0.5) <= 0.5 * c.duty_ratio && c.duty_ratio > 0.0 ? c.on : c.off;
@@ -256,6 +262,7 @@ PeriodFlow WheelElectrics::advance_dq_legs(WheelElectricState& x, const BridgeCo
   for (std::size_t n = 0; n < 3; ++n) {
     f.bus_charge_C += source[n].bus_share * mean_A[n] * period_s_;
     drop_J += source[n].drop_V * mean_A[n] * period_s_;
+    f.leg_V[n] = source[n].volt_V - electric_.inverter.switch_resistance_ohm * mean_A[n];
   }
   const double in_switches = electric_.inverter.switch_resistance_ohm / motor_.resistance_ohm;
   f.impulse_Nm_s = r.torque_Nm * period_s_;
@@ -288,6 +295,7 @@ PeriodFlow WheelElectrics::advance_averaged_legs(WheelElectricState& x, const Br
   f.winding_heat_J = omnihil::winding_heat_J(averaged_.circuit, flow);
   f.device_heat_J = omnihil::device_heat_J(averaged_.circuit, flow);
   f.mechanical_J = flow.mechanical_J;
+  f.leg_V = means_of(flow);
   return f;
 }
 
@@ -307,6 +315,7 @@ PeriodFlow WheelElectrics::advance(WheelElectricState& x, const BridgeCommand& l
     f.winding_heat_J = omnihil::winding_heat_J(switched_.circuit, flow);
     f.device_heat_J = omnihil::device_heat_J(switched_.circuit, flow);
     f.mechanical_J = flow.mechanical_J;
+    f.leg_V = means_of(flow);
     x.omega_rotor_rad_s = x.switched.motor.omega_rotor_rad_s;
     x.theta_rotor_rad = x.switched.motor.theta_rotor_rad;
   } else {

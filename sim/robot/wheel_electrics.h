@@ -52,7 +52,8 @@ struct PeriodFlow {
   double angle_rad = 0.0;
   double bus_charge_C = 0.0;
   double winding_heat_J = 0.0, device_heat_J = 0.0, mechanical_J = 0.0;
-  PeriodSample sample;  // three phases: at the model's sampling instant
+  std::array<double, kLegs> leg_V{};  // three phases: mean of each leg's voltage against the bus's minus
+  PeriodSample sample;                // three phases: at the model's sampling instant
 };
 
 class WheelElectrics {

@@ -58,11 +58,12 @@ static_assert(sizeof(omnihil_motor_config) == 8 + 8 * 8);
 static_assert(offsetof(omnihil_motor_config, pwm_frequency_Hz) == 8);
 static_assert(offsetof(omnihil_motor_config, current_limit_A) == 64);
 // motor sensors: time, bus, 4 x 3 currents, 4 angles, 4 counts, 4 x u32
-static_assert(sizeof(omnihil_motor_sensors) == 8 + 8 + 8 * 12 + 8 * 4 + 8 * 4 + 4 * 4);
+static_assert(sizeof(omnihil_motor_sensors) == 8 + 8 + 8 * 12 + 8 * 4 + 8 * 4 + 4 * 4 + 8 * 12);
 static_assert(offsetof(omnihil_motor_sensors, phase_current_A) == 16);
 static_assert(offsetof(omnihil_motor_sensors, theta_elec_rad) == 112);
 static_assert(offsetof(omnihil_motor_sensors, encoder_counts) == 144);
 static_assert(offsetof(omnihil_motor_sensors, hall_code) == 176);
+static_assert(offsetof(omnihil_motor_sensors, leg_V) == 192);
 static_assert(sizeof(omnihil_motor_drive) == 4 * 12 + 8 * 12);
 static_assert(offsetof(omnihil_motor_drive, leg_duty_ratio) == 48);
 static_assert(offsetof(omnihil_firmware_api, init) == 32);

@@ -167,8 +167,8 @@ double McuBoard::analog_value(const AnalogEntry& entry) const {
   return 0.0;
 }
 
-// On the mean of the PWM period, against the bus's minus, as its RC filter shows it. A leg that is off floats with the
-// motor's star point, half of the bus, and its own back-EMF, where the world tells it.
+// On the mean of the PWM period, against the bus's minus, as its RC filter shows it. A leg that is off is what windings and
+// diodes have made of it in the last period.
 double McuBoard::phase_voltage_V(int wheel, std::size_t phase) const {
   const MotorWire* motor = this->wire(wheel);
   if (motor == nullptr || !motor->phases()) return 0.0;
@@ -176,8 +176,7 @@ double McuBoard::phase_voltage_V(int wheel, std::size_t phase) const {
   double duty[kLegs];
   motor->legs(leg, duty);
   if (leg[phase] == OMNIHIL_LEG_LOW) return 0.0;
-  if (leg[phase] == OMNIHIL_LEG_OFF)
-    return 0.5 * world_.bus_voltage_V + world_.phase_back_emf_V[static_cast<std::size_t>(wheel)][phase];
+  if (leg[phase] == OMNIHIL_LEG_OFF) return world_.leg_V[static_cast<std::size_t>(wheel)][phase];
   return duty[phase] * world_.bus_voltage_V;
 }
 

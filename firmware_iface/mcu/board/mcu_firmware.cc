@@ -121,6 +121,7 @@ void McuFirmware::show_world() {
       seen.omega_rotor_rad_s[i] = world_.omega_rotor_rad_s[w];
       seen.motor_current_A[i] = world_.motor_current_A[w];
       seen.phase_current_A[i] = world_.phase_current_A[w];
+      seen.leg_V[i] = world_.leg_V[w];
     }
     boards_[b]->set_world(seen);
   }
@@ -196,6 +197,7 @@ MotorDrive McuFirmware::motor_tick(const MotorSensors& sensors) {
   world_.bus_voltage_V = sensors.bus_voltage_V;
   for (std::size_t w = 0; w < kWheels; ++w) {
     std::copy_n(sensors.phase_current_A[w], kLegs, world_.phase_current_A[w].begin());
+    std::copy_n(sensors.leg_V[w], kLegs, world_.leg_V[w].begin());
   }
   show_world();
   MotorDrive drive{};

@@ -16,8 +16,9 @@ struct WorldState {
   std::int64_t at_ns = 0;
   std::array<double, kWheels> theta_rotor_rad{}, omega_rotor_rad_s{};
   std::array<double, kWheels> motor_current_A{};
-  std::array<std::array<double, kLegs>, kWheels> phase_current_A{};   // into the motor
-  std::array<std::array<double, kLegs>, kWheels> phase_back_emf_V{};  // against the star point
+  std::array<std::array<double, kLegs>, kWheels> phase_current_A{};  // into the motor
+  std::array<std::array<double, kLegs>, kWheels>
+      leg_V{};  // against the bus's minus, mean of the last PWM period
   double gear_ratio = 1.0;
   double encoder_counts_per_rotor_turn = 4096;  // below 0: counts fall with positive rotation
   double bus_voltage_V = 0.0, gyro_z_rad_s = 0.0, accel_x_m_s2 = 0.0, accel_y_m_s2 = 0.0;

@@ -27,6 +27,7 @@ struct MotorOnBoard {
   PhaseFlow flow = {};
   double shunt_A = 0.0;
   std::array<double, kLegs> phase_A = {};  // at the middle of the period
+  std::array<double, kLegs> leg_V = {};    // means of the period
   BridgeCommand command = {};
 
   double omega_rad_s() const { return x.motor.omega_rotor_rad_s; }
@@ -50,8 +51,7 @@ class MotorsOnBoard {
       world_.omega_rotor_rad_s[w] = motor.omega_rad_s();
       world_.motor_current_A[w] = motor.shunt_A;
       world_.phase_current_A[w] = motor.phase_A;
-      world_.phase_back_emf_V[w] = phase_constants(motor.drive.circuit, motor.theta_rad());
-      for (double& e : world_.phase_back_emf_V[w]) e *= motor.omega_rad_s();
+      world_.leg_V[w] = motor.leg_V;
     }
     board_.set_world(world_);
     for (MotorOnBoard& motor : motors) turn(motor);
@@ -72,14 +72,16 @@ class MotorsOnBoard {
       const LegState off = leg[n] == OMNIHIL_LEG_PWM ? LegState::kLow : LegState::kOff;
       motor.command[n] = leg[n] == OMNIHIL_LEG_OFF ? LegCommand{} : LegCommand{on, off, duty[n]};
     }
-    const double charge_C = motor.flow.bus_charge_C;
+    const PhaseFlow before = motor.flow;
     const double load_Nm = motor.load_Nm * std::tanh(motor.omega_rad_s());
     const PeriodSample sample =
         advance_period(motor.drive, motor.x, motor.command,
                        {.bus_voltage_V = world_.bus_voltage_V, .tau_load_Nm = load_Nm}, 0.5, motor.flow);
     std::copy_n(sample.current_A.begin(), kLegs, motor.phase_A.begin());
+    for (std::size_t n = 0; n < kLegs; ++n)
+      motor.leg_V[n] = (motor.flow.leg_V_s[n] - before.leg_V_s[n]) / motor.drive.period_s;
     motor.shunt_A = motor.shunt == Shunt::kBus
-                        ? (motor.flow.bus_charge_C - charge_C) / motor.drive.period_s
+                        ? (motor.flow.bus_charge_C - before.bus_charge_C) / motor.drive.period_s
                         : *std::max_element(sample.current_A.begin(), sample.current_A.end());
   }
 

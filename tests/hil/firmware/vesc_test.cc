@@ -1,67 +1,17 @@
 // A VESC, unmodified, told by its own packets over its serial port and its CAN: it measures the motor, takes its settings
 // and turns it without a sensor.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 
 #include "firmware_iface/mcu/stm32/can.h"
-#include "firmware_iface/mcu/stm32/usart.h"
 #include "tests/hil/firmware/esc_image.h"
+#include "tests/hil/firmware/vesc_line.h"
 
 namespace omnihil {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-
-enum Packet : std::uint8_t {
-  kVersion = 0,
-  kValues = 4,
-  kSpeed = 8,
-  kSetSettings = 13,
-  kSettings = 14,
-  kMeasureResistance = 25,
-  kMeasureFlux = 57
-};
-constexpr unsigned kCanSpeed = 3;
-
-void put_big(Bytes& bytes, std::int32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
-}
-
-Bytes floats(std::initializer_list<float> values) {
-  Bytes bytes;
-  for (const float value : values) put_big(bytes, std::bit_cast<std::int32_t>(value));
-  return bytes;
-}
-
-std::int32_t get_big(const Bytes& bytes, std::size_t at, std::size_t count = 4) {
-  if (at + count > bytes.size()) return 0;
-  std::uint32_t value = bytes[at] >= 0x80 ? ~0u : 0u;
-  for (std::size_t i = 0; i < count; ++i) value = value << 8u | bytes[at + i];
-  return static_cast<std::int32_t>(value);
-}
-
-// CRC-16/XMODEM.
-unsigned crc(std::span<const std::uint8_t> bytes) {
-  unsigned sum = 0;
-  for (const unsigned byte : bytes) {
-    sum ^= byte << 8u;
-    for (int bit = 0; bit < 8; ++bit) sum = (sum << 1u ^ ((sum & 0x8000u) != 0 ? 0x1021u : 0u)) & 0xFFFFu;
-  }
-  return sum;
-}
-
-// 2 and a length of one byte, or 3 and of two; the payload; its sum; 3.
-Bytes framed(const Bytes& payload) {
-  const std::size_t size = payload.size();
-  Bytes bytes = size < 255 ? Bytes{2} : Bytes{3, static_cast<std::uint8_t>(size >> 8u)};
-  bytes.push_back(static_cast<std::uint8_t>(size));
-  bytes.insert(bytes.end(), payload.begin(), payload.end());
-  const unsigned sum = crc(payload);
-  for (const unsigned byte : {sum >> 8u, sum & 0xFFu, 3u}) bytes.push_back(static_cast<std::uint8_t>(byte));
-  return bytes;
-}
+using namespace vesc;
 
 struct Vesc : EscImage {
   // Its own bridge is switched at 12.5 kHz, and at 5 kHz while it measures, where it takes off the voltage of 0.12 us of
@@ -76,45 +26,16 @@ struct Vesc : EscImage {
   void SetUp() override {
     EscImage::SetUp();
     if (!bench_) return;
-    serial_ = board_->chip().find<mcu::Usart>("USART6");
-    serial_->on_transmit([this](std::uint8_t byte, mcu::Cycles) { line_.push_back(byte); });
-    // Its supply has to be still for two seconds before it takes its offsets, and its serial port opens then.
-    for (int i = 0; i < 20 && ask({kVersion}, 0.5).empty(); ++i) continue;
+    line_ = std::make_unique<VescLine>(*board_, [this] { bench_->period(); });
   }
-  void say(const Bytes& payload) { serial_->feed(framed(payload), board_->now_ns()); }
-  // The payload of the next answer of this kind; what else comes is passed over. Empty: none in time.
-  Bytes hear(std::uint8_t kind, double patience_s) {
-    const std::int64_t end_ns = board_->now_ns() + std::llround(patience_s * 1e9);
-    for (; board_->now_ns() < end_ns; bench_->period()) {
-      Bytes payload = next_packet();
-      if (!payload.empty() && payload[0] == kind) return payload;
-    }
-    return {};
-  }
-  Bytes next_packet() {
-    const std::size_t head = line_.empty() ? 0 : line_[0];
-    if (line_.size() < 6 || line_.size() < head) return {};
-    EXPECT_TRUE(head == 2 || head == 3);
-    const std::size_t size = head == 2 ? line_[1] : line_[1] * 256u + line_[2];
-    if (line_.size() < head + size + 3) return {};
-    const auto begin = line_.begin() + static_cast<std::ptrdiff_t>(head);
-    Bytes payload(begin, begin + static_cast<std::ptrdiff_t>(size));
-    EXPECT_EQ(line_[head + size] * 256u + line_[head + size + 1], crc(payload));
-    line_.erase(line_.begin(), begin + static_cast<std::ptrdiff_t>(size + 3));
-    return payload;
-  }
-  Bytes ask(const Bytes& payload, double patience_s = 1.0) {
-    say(payload);
-    return hear(payload[0], patience_s);
-  }
+  Bytes ask(const Bytes& payload, double patience_s = 1.0) { return line_->ask(payload, patience_s); }
   // In what it calls ERPM: electrical turns a minute.
   double erpm(double omega_rotor_rad_s) const {
     return omega_rotor_rad_s * windings_.pole_pairs * 60.0 / (2 * std::numbers::pi);
   }
 
   static constexpr double kSwitch_ohm = 0.002;
-  mcu::Usart* serial_ = nullptr;
-  Bytes line_;
+  std::unique_ptr<VescLine> line_;
 };
 
 // It stores the sum of its own flash the first time, and starts again.
@@ -146,23 +67,9 @@ TEST_F(Vesc, SlowMeasuresTheMotorAsItIs) {
   EXPECT_NEAR(measured_Wb, windings_.flux_linkage_Wb, 0.01 * windings_.flux_linkage_Wb);
 }
 
-// Without a sensor, by the settings that fit the motor: its own, read and with these numbers sent back.
+// Without a sensor, by the settings that fit the motor.
 TEST_F(Vesc, SlowTurnsTheMotorAtTheSpeedThatItsPacketsSay) {
-  Bytes settings = ask({kSettings});
-  const auto change = [&settings](const Bytes& delivered, const Bytes& ours) {
-    const auto at = std::search(settings.begin(), settings.end(), delivered.begin(), delivered.end());
-    ASSERT_NE(at, settings.end()) << "another version: a setting is not as it was delivered";
-    std::copy(ours.begin(), ours.end(), at);
-  };
-  const auto ohm = static_cast<float>(windings_.resistance_ohm),
-             henry = static_cast<float>(windings_.inductance_q_H),
-             weber = static_cast<float>(windings_.flux_linkage_Wb);
-  change(floats({7e-6F, 0.0F, 0.015F, 0.00245F}), floats({henry, 0.0F, ohm, weber}));
-  constexpr float kBandwidth_rad_s = 1000.0F;  // of the current loop: what its tool suggests
-  change(floats({0.03F, 50.0F}), floats({kBandwidth_rad_s * henry, kBandwidth_rad_s * ohm}));
-  change(floats({60.0F, -60.0F}), floats({8.0F, -8.0F}));  // A
-  settings[0] = kSetSettings;
-  ASSERT_FALSE(ask(settings, 5.0).empty());
+  line_->set_motor(windings_.resistance_ohm, windings_.inductance_q_H, windings_.flux_linkage_Wb, 8.0F);
 
   const auto id = static_cast<unsigned>(ask({kValues}).at(58));
   auto* can = board_->chip().find<mcu::CanPort>("CAN1");
@@ -182,7 +89,7 @@ TEST_F(Vesc, SlowTurnsTheMotorAtTheSpeedThatItsPacketsSay) {
       if (asked_rad_s == 300.0) {
         can->receive(frame);
       } else {
-        say(number);
+        line_->say(number);
       }
       wait(0.1);
     }

@@ -251,6 +251,42 @@ TEST(ElectricPlant, LegsThatAreOpenLetTheRobotCoastAndLegsHeldLowBrakeIt) {
   }
 }
 
+// Line to line, mean of the period: the difference of two sines of the angle in its middle.
+TEST(ElectricPlant, LegsThatAreOpenShowTheBackEmfOfAWheelThatRolls) {
+  for (const DriveKind kind : {DriveKind::kDq, DriveKind::kSwitched}) {
+    RobotModel model = driven_by(kind);
+    electrics(model).back_emf = {.shape = BackEmfShape::kSine};
+    Plant plant = one_robot(model, options());
+    plant.write(0, duty_drive({0.4, 0.4, 0.4, 0.4}));
+    plant.advance(600'000'000);
+    RobotDrive phases{};
+    for (std::uint32_t& mode : phases.mode) mode = OMNIHIL_DRIVE_PHASES;
+    plant.write(0, phases);
+    plant.write_legs(0, {});
+    plant.advance(20'000'000);
+    const PhaseMotor<double> motor = phase_motor(model);
+    const double per_omega_V = motor.pole_pairs * motor.flux_linkage_Wb;
+    for (int n = 0; n < 20; ++n) {
+      plant.advance(500'000);
+      const MotorSensors s = plant.motor_sensors(0);
+      const RobotTruth t = plant.truth(0);
+      for (std::size_t i = 0; i < kWheels; ++i) {
+        const double omega_rad_s = t.omega_rotor_rad_s[i], half_period_s = 25e-6;
+        const double theta = motor.pole_pairs * (t.theta_rotor_rad[i] - half_period_s * omega_rad_s);
+        const double peak_V = per_omega_V * omega_rad_s;
+        for (int x = 0; x < 3; ++x) {
+          const auto here = static_cast<std::size_t>(x), next = static_cast<std::size_t>((x + 1) % 3);
+          const double turn = 2.0 / 3.0 * std::numbers::pi,
+                       expected_V = peak_V * (std::sin(theta - turn * (x + 1)) - std::sin(theta - turn * x));
+          EXPECT_NEAR(s.leg_V[i][here] - s.leg_V[i][next], expected_V, 0.01 * std::abs(peak_V))
+              << static_cast<int>(kind);
+        }
+        EXPECT_GT(std::abs(peak_V), 2.0);
+      }
+    }
+  }
+}
+
 TEST(ElectricPlant, ABatteryThatGivesWayToNothingIsTheConstantBus) {
   const double volt_V = 6 * 3.98;  // at 0.8 of its charge
   RobotModel stiff = on_battery(symmetric_robot(), 1e-6);

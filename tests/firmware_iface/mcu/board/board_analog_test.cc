@@ -27,6 +27,12 @@ signal = "shunt_current"
 phase = 0
 volts_per_unit = 0.1
 offset_V = 1.65
+[[analog]]
+adc = "ADC1"
+channel = 11
+signal = "phase_voltage"
+phase = 0
+volts_per_unit = 0.1
 )",
                                  "b.toml", problems);
     for (const BoardProblem& p : problems) ADD_FAILURE() << p.text();
@@ -40,7 +46,6 @@ offset_V = 1.65
     set(kTimer + 0x34, 500);  // the upper switch in the first half of a period
     set(kTimer + 0x44, 1u << 15);
     set(kTimer + 0x14, 1);
-    set(kConverter + 0x34, 10);
     set(kConverter + 0x08, 1);
   }
   void set(std::uint32_t address, std::uint32_t value) {
@@ -52,14 +57,19 @@ offset_V = 1.65
   double shunt_A(double phase_A, std::uint32_t count) {
     WorldState world;
     world.phase_current_A[0][0] = phase_A;
-    board->set_world(world);
     set(kTimer + 0x24, count);
+    return (converted_V(10, world) - 1.65) / 0.1;
+  }
+  // What phase 0 is said to be against the bus's minus.
+  double phase_V(const WorldState& world) { return converted_V(11, world) / 0.1; }
+  double converted_V(std::uint32_t channel, const WorldState& world) {
+    board->set_world(world);
+    set(kConverter + 0x34, channel);
     set(kConverter + 0x08, 1 | 1u << 30);
     board->run_until_ns(board->now_ns() + 20'000);
     std::uint8_t code[4] = {};
     board->machine().peek(kConverter + 0x4C, code);
-    const double volts = (code[0] | code[1] << 8) * 3.3 / 4096.0;
-    return (volts - 1.65) / 0.1;
+    return (code[0] | code[1] << 8) * 3.3 / 4096.0;
   }
   static constexpr std::uint32_t kTimer = 0x40010000, kConverter = 0x40012000;
   std::unique_ptr<McuBoard> board;
@@ -80,6 +90,18 @@ TEST(BoardAnalog, OfABridgeThatIsOffTheLowerDiodeIsBeforeTheShunt) {
   BridgeBoard b;
   EXPECT_NEAR(b.shunt_A(4.0, 700), 4.0, kCode_A);
   EXPECT_NEAR(b.shunt_A(-6.0, 700), 0.0, kCode_A);
+}
+
+TEST(BoardAnalog, APhaseIsItsDutysShareOfTheBusOrWhatTheWindingsMakeOfIt) {
+  constexpr double kCode_V = 3.3 / 4096.0 / 0.1;
+  BridgeBoard b;
+  WorldState world;
+  world.bus_voltage_V = 24.0;
+  world.leg_V[0][0] = 7.5;
+  EXPECT_NEAR(b.phase_V(world), 7.5, kCode_V) << "both switches are open";
+  b.set(b.kTimer + 0x20, 0x5);
+  b.set(b.kTimer, 1);
+  EXPECT_NEAR(b.phase_V(world), 12.0, kCode_V);
 }
 
 }  // namespace
