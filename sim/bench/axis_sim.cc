@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kRecordStep_s = 0.2e-3;  // of the true motion, where timing effects look back
 constexpr double kShortest_s = 1e-9;      // between two readings that a mean is taken over
+constexpr int kPortions = 8;              // of a sample's period, over each of which a swinging rotor's speed is linear; a choice
 constexpr double kRecordSpan_s = 1.0;     // longer than any delay's upper bound
 
 template <typename T>
@@ -24,7 +25,8 @@ class AxisRun {
         sim_(params, effects, step_s),
         state_(sim_.initial_state()),
         record_(kRecordSpan_s),
-        looks_back_(!effects.timing.empty()) {
+        looks_back_(!effects.timing.empty()),
+        swings_(input.imposed_at_rotor && sim_.two_masses()) {
     state_.now_s = input.time_s.front();
     state_.theta_rotor_rad = input.initial_position_rad * params.gear_ratio;
     const double speed = input.imposed_velocity_rad_s.empty() ? input.initial_velocity_rad_s
@@ -48,7 +50,9 @@ class AxisRun {
     const int steps = std::max(1, static_cast<int>(std::ceil(period_s / step_s_ - 1e-6)));
     const double h = period_s / steps;
     if (h != sim_.step_s()) sim_.set_step(h);
-    const int portion = looks_back_ ? std::clamp(static_cast<int>(kRecordStep_s / h + 0.5), 1, steps) : steps;
+    const int portion = looks_back_ ? std::clamp(static_cast<int>(kRecordStep_s / h + 0.5), 1, steps)
+                        : swings_   ? std::max(1, steps / kPortions)
+                                    : steps;
     DriveInput<T> in = drive_input(k);
     DriveResult<T> sum;
     sum.held = true;
@@ -114,11 +118,22 @@ class AxisRun {
   void impose(std::size_t k, double from, double to, DriveInput<T>& in) const {
     if (input_.imposed_velocity_rad_s.empty()) return;
     const double gear = value_of(sim_.params().gear_ratio);
-    const double a = input_.imposed_velocity_rad_s[k] * gear, b = input_.imposed_velocity_rad_s[k + 1] * gear;
     in.speed_is_imposed = true;
+    in.rotor_is_imposed = input_.imposed_at_rotor;
     in.motor_torque_is_needed = input_.command_is_compared;
-    in.imposed_start_rad_s = a + (b - a) * from;
-    in.imposed_end_rad_s = a + (b - a) * to;
+    in.imposed_start_rad_s = gear * imposed_speed(k, from);
+    in.imposed_end_rad_s = gear * imposed_speed(k, to);
+  }
+
+  // A share of the way from sample k to the next: linear; where an output swings behind the rotor, which a line would keep from
+  // what turns within a few samples, of the cubic through four samples.
+  double imposed_speed(std::size_t k, double share) const {
+    const std::vector<double>& w = input_.imposed_velocity_rad_s;
+    const double line = w[k] + (w[k + 1] - w[k]) * share;
+    if (!swings_ || k == 0 || k + 2 >= w.size()) return line;
+    // Lagrange: line + s (s - 1) / 2 of the second difference, + (s + 1) s (s - 1) / 6 of the third
+    const double second = w[k + 1] - 2.0 * w[k] + w[k - 1], third = w[k + 2] - 3.0 * w[k + 1] + 3.0 * w[k] - w[k - 1];
+    return line + share * (share - 1.0) * (0.5 * second + (share + 1.0) / 6.0 * third);
   }
 
   static void add(const DriveResult<T>& r, double share, DriveResult<T>& sum) {
@@ -225,6 +240,7 @@ class AxisRun {
   DriveState<T> state_;
   MotionRecord<T> record_;
   bool looks_back_;
+  const bool swings_;  // the output, behind an imposed rotor
   bool alone_ = false;
   DriveResult<T> last_;
   MotionPoint<T> previous_;

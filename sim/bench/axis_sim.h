@@ -24,6 +24,7 @@ struct AxisInput {
   std::vector<std::uint8_t> enable;            // empty: always on
   std::vector<double> bus_voltage_V;           // measured at the bridge; empty: the model's supply
   std::vector<double> imposed_velocity_rad_s;  // of the output; empty: free
+  bool imposed_at_rotor = false;       // times the gear of the rotor, which a shaft parts from the output
   bool command_is_compared = false;    // inverse dynamics: torque effects see the needed motor torque instead
   std::vector<double> load_torque_Nm;  // on the output, known; empty: none
   double initial_position_rad = 0.0;   // of the output

@@ -261,7 +261,7 @@ INLINE void DriveSim<T>::torque(DriveState<T>& state, const DriveInput<T>& input
   port.dt_s = step_s_;
   port.friction_positive_Nm = port.friction_negative_Nm = friction;
   port.viscous_positive_Nm_s_per_rad = port.viscous_negative_Nm_s_per_rad = viscous;
-  if (input.motor_torque_is_needed && s.imposed && effects_.reads_motor_torque()) [[unlikely]]
+  if (input.motor_torque_is_needed && s.imposed && !two_masses_ && effects_.reads_motor_torque()) [[unlikely]]
     port.tau_motor_Nm = inverse_torque(state, s.imposed_start, s.imposed_end, s.tau_outside, port);
   effects_.torque.apply(effects_.values(), state.effects.data(), port);
   s.load.torque_Nm += port.tau_Nm;
@@ -286,7 +286,7 @@ INLINE void DriveSim<T>::join_shaft(DriveState<T>& state, const DriveInput<T>& i
   output.inertia_kg_m2 = params_.load_inertia_kg_m2;
   output.omega_rad_s = state.omega_output_rad_s;
   output.torque_Nm = s.tau_load * params_.gear_ratio;
-  output.imposed = input.speed_is_imposed;
+  output.imposed = input.speed_is_imposed && !s.imposed;
   output.imposed_mean_rad_s = T(0.5 * (s.imposed_start + s.imposed_end)) * inverse_gear_;
   s.shaft = make_shaft_step(port, output, step_s_);
   // rotor: -tau_shaft / N, a torque and a damping
@@ -302,9 +302,10 @@ template <typename T>
 INLINE void DriveSim<T>::turn_output(DriveState<T>& state, const DriveInput<T>& input, Step& s) const {
   const T torque = s.shaft.torque_Nm + s.shaft.damping_Nm_s_per_rad * s.mean_omega * inverse_gear_;
   const T& inertia = params_.load_inertia_kg_m2;
-  const T before = input.speed_is_imposed ? T(s.imposed_start * inverse_gear_) : state.omega_output_rad_s;
+  const bool imposed = input.speed_is_imposed && !s.imposed;
+  const T before = imposed ? T(s.imposed_start * inverse_gear_) : state.omega_output_rad_s;
   // J_out dw/dt = tau_shaft + tau_load N; where the speed is imposed that is what the bench must add
-  if (input.speed_is_imposed) {
+  if (imposed) {
     state.omega_output_rad_s = s.imposed_end * inverse_gear_;
     const T needed = inertia * (state.omega_output_rad_s - before) / step_s_;
     s.outside = s.tau_outside + (needed - torque) * inverse_gear_ - s.tau_load;
@@ -321,8 +322,10 @@ INLINE void DriveSim<T>::turn_output(DriveState<T>& state, const DriveInput<T>& 
 template <typename T>
 INLINE void DriveSim<T>::turn(const DriveState<T>& state, Step& s) const {
   if (s.imposed) [[unlikely]] {
-    const ImposedSpeed<T> bench =
-        impose_speed(s.imposed_start, s.imposed_end, step_s_, inertia_kg_m2_, s.tau_outside, s.load);
+    RotorLoad<T> load = s.load;
+    if (two_masses_) load.torque_Nm += s.tau_outside;  // acts on the output, what the bench adds on the rotor
+    const ImposedSpeed<T> bench = impose_speed(s.imposed_start, s.imposed_end, step_s_, load.inertia_kg_m2,
+                                               s.tau_outside, load);
     s.omega_end = T(s.imposed_end);
     s.mean_omega = T(0.5 * (s.imposed_start + s.imposed_end));
     s.outside = bench.outside_Nm;
@@ -393,7 +396,7 @@ INLINE void DriveSim<T>::limit_current(const DriveState<T>& state, Step& s) cons
 template <typename T>
 INLINE void DriveSim<T>::step(DriveState<T>& state, const DriveInput<T>& input, const Call& call, Step& s,
                               DriveResult<T>& sums) const {
-  s.imposed = input.speed_is_imposed && !two_masses_;  // of the output where that is another mass
+  s.imposed = input.speed_is_imposed && (!two_masses_ || input.rotor_is_imposed);
   s.held = false;
   T omega_start = state.omega_rotor_rad_s;
   if (s.imposed) {

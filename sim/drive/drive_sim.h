@@ -58,8 +58,9 @@ struct DriveInput {
   T tau_outside_Nm = T(0);       // at the rotor, positive accelerates; held over the call
   int wheel = 0;
   // The bench turns the shaft: speed of the rotor at the call's start and end, linear between. The torque
-  // that this takes comes back as mean_outside_torque_Nm.
-  bool speed_is_imposed = false;
+  // that this takes comes back as mean_outside_torque_Nm. Where rotor and output are two masses it turns the output (speeds
+  // over the gear), or where so said the rotor, and the output follows.
+  bool speed_is_imposed = false, rotor_is_imposed = false;
   double imposed_start_rad_s = 0.0, imposed_end_rad_s = 0.0;
   // With an imposed speed: torque effects see the motor torque that the motion needs in place of the one that
   // the setpoint makes (needed_torque.h), for whoever compares the two. Not where rotor and output are two

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/sim/effects/bench.h"
 
@@ -83,6 +84,32 @@ TEST(ShaftCompliance, ShowsAsAResonanceAtTheSameFrequencyForEveryAmplitude) {
     }
     ASSERT_GT(crossings, 20);
     EXPECT_NEAR((crossings - 1) / (last - first), expected_Hz, 2e-3 * expected_Hz) << torque;
+  }
+}
+
+// Inverse dynamics by the rotor's own sensor: the rotor's motion is given, the output follows by the spring. What the motor
+// must give is J_r a + the spring's torque, with w_o = w_r / (1 - (w / w_a)^2) at frequency w, w_a^2 = 1 / (c J_o): around w_a
+// the rotor hardly moves and the torque is large. (J_r + J_o) a, as the output's sensor would have it, is far from that.
+TEST(ShaftCompliance, OfAnImposedRotorTheOutputSwings) {
+  const DriveParams<double> p = free_masses();
+  const auto effects = with({use_of("shaft_compliance", {0.2, 2e-3})});
+  AxisInput forward = held(CommandKind::kMotorTorque, 0.0, 1.0, 10000.0);
+  for (std::size_t n = 0; n < forward.command.size(); ++n)
+    forward.command[n] = 0.02 * std::sin(2.0 * std::numbers::pi * 60.0 * forward.time_s[n]);
+  const auto moved = run_axis(p, effects, forward);
+  AxisInput inverse = held(CommandKind::kMotorTorque, 0.0, 1.0, 10000.0);
+  for (const AxisSample<double>& s : moved)
+    inverse.imposed_velocity_rad_s.push_back(s.omega_rotor_rad_s / p.gear_ratio);
+  for (const bool at_rotor : {true, false}) {
+    inverse.imposed_at_rotor = at_rotor;
+    const auto needed = run_axis(p, effects, inverse);
+    double worst_Nm = 0.0;
+    for (std::size_t n = 1; n < needed.size(); ++n)  // the mean over the period that ends at sample n
+      worst_Nm = std::max(worst_Nm, std::abs(needed[n].load_torque_Nm / p.gear_ratio - forward.command[n - 1]));
+    if (at_rotor)
+      EXPECT_LT(worst_Nm, 1e-3 * 0.02);
+    else
+      EXPECT_GT(worst_Nm, 0.1 * 0.02);
   }
 }
 
