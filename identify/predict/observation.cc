@@ -218,6 +218,7 @@ void keep_sensors(const RigRun& from, RigRun& to) {
 void share_noise(std::span<RigRun* const> runs) {
   std::map<std::string, std::vector<std::pair<ComparedSignal*, Observation*>>> by_name;
   for (RigRun* const run : runs) {
+    if (!run->filter.sections.empty()) continue;
     for (std::size_t s = 0; s < run->compared.size(); ++s) {
       ComparedSignal& c = run->compared[s];
       if (!c.noise_is_stated && c.whitening_s <= 0.0) by_name[c.name].emplace_back(&c, &run->seen[s]);

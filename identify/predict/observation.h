@@ -121,7 +121,8 @@ void add_sensor_noise(const RigRun& run, std::size_t signal, std::uint64_t seed,
 // The sensors of `to` are those of `from`: sigmas are not estimated anew.
 void keep_sensors(const RigRun& from, RigRun& to);
 
-// A signal has one noise in all runs: where it is neither stated nor whitened, the median of the runs'.
+// A signal has one noise in all runs: where it is neither stated nor whitened, the median of the runs'. Not of a run that is
+// compared in a band: what the band keeps depends on how far the motion stands out, which each run decides for itself.
 void share_noise(std::span<RigRun* const> runs);
 
 // Gives differenced signals the shortest time, by doubling, over which their displacement is kResolved_sigmas times the

@@ -30,6 +30,20 @@ TEST(Observation, ASensorHasOneNoiseInAllRunsUnlessItIsStated) {
   EXPECT_DOUBLE_EQ(runs[3].compared[0].noise_sigma, 9.0);
 }
 
+// What a band keeps of a sensor's noise is the run's own.
+TEST(Observation, ARunThatIsComparedInABandHasItsOwnNoise) {
+  std::vector<RigRun> runs(3);
+  std::vector<RigRun*> all;
+  for (RigRun& run : runs) {
+    add_signal(run, {}, "motor_torque", "N m", {}, {}, 0.0).noise_sigma = 1.0 + static_cast<double>(all.size());
+    all.push_back(&run);
+  }
+  runs[2].filter = butterworth(4, 10.0, 100.0);
+  share_noise(all);
+  EXPECT_DOUBLE_EQ(runs[2].compared[0].noise_sigma, 3.0);
+  EXPECT_DOUBLE_EQ(runs[0].compared[0].noise_sigma, runs[1].compared[0].noise_sigma);
+}
+
 // v_k = (x_k - x_j) / (u (t_k - t_j)), j the last known sample; one that is missing costs itself alone.
 TEST(Observation, ADifferenceSpansAMissingSampleButNoGap) {
   const double per_unit = 2.0;
