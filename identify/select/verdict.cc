@@ -31,13 +31,14 @@ Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& n
   return out;
 }
 
-std::string unit_of(const Predictor& predictor, const std::string& channel) {
+// The channel as the first run that has it compares it; null: none does.
+const ComparedSignal* signal_of(const Predictor& predictor, const std::string& channel) {
   for (int run = 0; run < predictor.run_count(); ++run) {
     for (const ComparedSignal& s : predictor.compared(run)) {
-      if (s.name == channel) return s.unit;
+      if (s.name == channel) return &s;
     }
   }
-  return "";
+  return nullptr;
 }
 
 // "2.1 rad/s RMS of velocity on held-out runs, 9 times the sensors' noise"
@@ -45,37 +46,39 @@ std::string remainder(const ResidualExcess& excess) {
   constexpr double kAtNoise =
       1.05;  // of its root mean square: the replicates' own scatter is of that order; a choice
   const double ratio = std::sqrt(std::max(0.0, 1.0 + excess.excess));
-  return fmt::format("{:.3g} {} RMS of {} on {} runs, {}", excess.rms, excess.unit, excess.signal,
-                     excess.held_out ? "held-out" : "fit",
+  const std::string_view runs = excess.split == Split::kTraining     ? "fit"
+                                : excess.split == Split::kValidation ? "held-out"
+                                                                     : "extrapolation";
+  return fmt::format("{:.3g} {} RMS of {} on {} runs, {}", excess.rms, excess.unit, excess.signal, runs,
                      ratio < kAtNoise ? "as the sensors' noise alone would leave"
-                                      : fmt::format("{:.3g} times the sensors' noise", ratio));
+                     : excess.noise_level_sigma > 0.0
+                         ? fmt::format("{:.3g} times the sensors' noise, which is known to {:.0f} %", ratio,
+                                       50.0 * excess.noise_level_sigma)  // a variance's is twice its root's
+                         : fmt::format("{:.3g} times the sensors' noise", ratio));
 }
 
-}  // namespace
-
-ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChannels& channels,
-                                  const Candidate& baseline, const Candidate& last, std::uint64_t seed,
-                                  int jobs) {
-  constexpr int kReplicates = 8;  // by cost: a simulation of all runs each
+ResidualExcess excess_on(const WhitenedResiduals& residuals, const NullModel& null, const Predictor& predictor,
+                         const ComparedChannels& channels, const Candidate& baseline, const Candidate& last,
+                         int jobs) {
   ResidualExcess out;
-  const Splits splits{WhitenedResiduals(predictor, channels, Split::kTraining, Weighing::kUnweighted),
-                      WhitenedResiduals(predictor, channels, Split::kValidation, Weighing::kUnweighted),
-                      WhitenedResiduals(predictor, channels, Split::kExtrapolation, Weighing::kUnweighted)};
-  const std::size_t u = splits[kValidation].empty() ? kTraining : kValidation;
-  const Eigen::VectorXd first = splits[u].residual(baseline, jobs), now = splits[u].residual(last, jobs);
-  if (splits[u].empty() || first.size() == 0 || now.size() == 0) return out;
-  const NullModel null = simulate_null(predictor, last, splits, seed, kReplicates, jobs);
-  const Eigen::VectorXd before = excess_of(splits[u], null, channels, first);
-  const Eigen::VectorXd after = excess_of(splits[u], null, channels, now);
+  out.split = residuals.split();
+  if (residuals.empty()) return out;
+  const Eigen::VectorXd first = residuals.residual(baseline, jobs), now = residuals.residual(last, jobs);
+  if (first.size() == 0 || now.size() == 0) return out;
+  const Eigen::VectorXd before = excess_of(residuals, null, channels, first);
+  const Eigen::VectorXd after = excess_of(residuals, null, channels, now);
   Eigen::Index worst = 0;
   out.excess = after.maxCoeff(&worst);
   out.excess_before = before[worst];
   out.signal = channels.name[static_cast<std::size_t>(worst)];
-  out.rms = std::sqrt(splits[u].mean_square(now)[worst]);
-  out.unit = unit_of(predictor, out.signal);
-  out.held_out = u == kValidation;
-  const double floor = null.floor(splits[u].split())[worst];
-  out.spread = floor > 0.0 ? null.spread(splits[u].split())[worst] / floor : 0.0;
+  out.rms = std::sqrt(residuals.mean_square(now)[worst]);
+  const double floor = null.floor(out.split)[worst];
+  out.spread = floor > 0.0 ? null.spread(out.split)[worst] / floor : 0.0;
+  if (const ComparedSignal* const signal = signal_of(predictor, out.signal); signal != nullptr) {
+    out.unit = signal->unit;
+    out.noise_level_sigma = signal->noise_level_sigma;
+    out.spread = std::hypot(out.spread, signal->noise_level_sigma);
+  }
   double remaining = 0.0, all = 0.0;
   for (Eigen::Index k = 0; k < after.size(); ++k) {
     if (before[k] <= 0.0) continue;
@@ -85,6 +88,33 @@ ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChan
   }
   out.unexplained = all > 0.0 ? remaining / all : 0.0;
   return out;
+}
+
+}  // namespace
+
+ResidualExcesses residual_excesses_of(const Predictor& predictor, const ComparedChannels& channels,
+                                      const Candidate& baseline, const Candidate& last, std::uint64_t seed,
+                                      int jobs) {
+  constexpr int kReplicates = 8;  // by cost: a simulation of all runs each
+  const Splits splits{WhitenedResiduals(predictor, channels, Split::kTraining, Weighing::kUnweighted),
+                      WhitenedResiduals(predictor, channels, Split::kValidation, Weighing::kUnweighted),
+                      WhitenedResiduals(predictor, channels, Split::kExtrapolation, Weighing::kUnweighted)};
+  const NullModel null = simulate_null(predictor, last, splits, seed, kReplicates, jobs);
+  const auto on = [&](Split split) {
+    return excess_on(splits[split], null, predictor, channels, baseline, last, jobs);
+  };
+  return {.alike = on(splits[kValidation].empty() ? kTraining : kValidation), .another = on(kExtrapolation)};
+}
+
+Candidate fitted_to_all_runs(const Dataset& dataset, const RefitSetup& setup, const Candidate& model) {
+  Dataset all = dataset;
+  for (Run& run : all.runs) {
+    if (run.split == kExtrapolation) run.split = kTraining;
+  }
+  const std::unique_ptr<Predictor> predictor = make_predictor(all, *setup.nominal, {});
+  return fit(*predictor, model, unknowns_with_priors(model, *setup.nominal),
+             {.jobs = setup.jobs, .max_iterations = setup.max_iterations, .seed = setup.seed, .stop = setup.stop})
+      .model;
 }
 
 bool structure_remains(const ResidualExcess& excess, bool effects_added) {
@@ -104,13 +134,24 @@ bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, con
   return false;
 }
 
+std::string parameters_sentence(const ResidualExcess& excess) {
+  return fmt::format(
+      " Other numbers of this model explain what these do not, {}: the fit runs do not tell them; let a run of that kind be one.",
+      remainder(excess));
+}
+
 std::string residual_sentence(const ResidualExcess& excess, bool effects_added) {
   const std::string left = remainder(excess);
   if (structure_remains(excess, effects_added)) {
-    if (!effects_added) return fmt::format("Structure remains that no known effect explains: {}.", left);
+    const std::string_view elsewhere =
+        excess.split == Split::kExtrapolation
+            ? " The fit runs, by which effects are found, do not show it: let a run of that kind be one."
+            : "";
+    if (!effects_added)
+      return fmt::format("Structure remains that no known effect explains: {}.{}", left, elsewhere);
     return fmt::format(
-        "More remains that no known effect explains: {}; {:.0f} % of what the base model left.", left,
-        100.0 * excess.unexplained);
+        "More remains that no known effect explains: {}; {:.0f} % of what the base model left.{}", left,
+        100.0 * excess.unexplained, elsewhere);
   }
   if (!effects_added)
     return fmt::format("Nothing that matters is missing as far as these data show: {}.", left);

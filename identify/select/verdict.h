@@ -1,16 +1,19 @@
 // Residual energy above the simulated null once no effect is accepted any more, and what it means.
 //
-//   ResidualExcess e = residual_excess_of(predictor, channels, baseline, last, seed, jobs);
-//   structure_remains(e, effects_added);  residual_sentence(e, effects_added);
+//   ResidualExcesses e = residual_excesses_of(predictor, channels, baseline, last, seed, jobs);
+//   structure_remains(e.alike, effects_added);  residual_sentence(e.alike, effects_added);
 //
 // Structure remains where the residual's energy is above the null by several standard deviations of its
 // replicates AND by a share that matters; beside an added effect also more than a share of what the baseline
-// left has to remain. The shares are tuned (verdict.cc), held by the hidden-effect tests.
+// left has to remain. The shares are tuned (verdict.cc), held by the hidden-effect tests. What is above the null on
+// runs of another kind (extrapolation) may be parameters that the fit runs do not tell: it is structure when a fit to all runs
+// leaves it, too.
 #pragma once
 #include <string>
 
 #include "identify/select/acceptance.h"
 #include "identify/select/diagnosis.h"
+#include "identify/select/refit.h"
 
 namespace omnihil {
 
@@ -18,18 +21,25 @@ namespace omnihil {
 struct ResidualExcess {
   double excess = 0.0;         // energy over the null's mean, less 1
   double excess_before = 0.0;  // the same of the refitted baseline
-  double spread = 0.0;         // standard deviation of the null's replicates, over their mean
+  double spread = 0.0;         // standard deviation of the null's replicates over their mean, and of the noise's level
   double unexplained = 0.0;    // fraction of the baseline's excess that remains, mean over all channels
+  double noise_level_sigma = 0.0;  // ComparedSignal; part of spread
   std::string signal{};
   double rms = 0.0;  // of that signal's residual, in its unit
   std::string unit{};
-  bool held_out = false;  // on held-out runs; else on the fit runs
+  Split split = kTraining;  // the runs
+};
+struct ResidualExcesses {
+  ResidualExcess alike;    // on held-out runs, of the fit runs' kind; without any on the fit runs
+  ResidualExcess another;  // on extrapolation runs; without any no excess
 };
 
-// On held-out runs, else on fit runs.
-ResidualExcess residual_excess_of(const Predictor& predictor, const ComparedChannels& channels,
-                                  const Candidate& baseline, const Candidate& last, std::uint64_t seed,
-                                  int jobs);
+ResidualExcesses residual_excesses_of(const Predictor& predictor, const ComparedChannels& channels,
+                                      const Candidate& baseline, const Candidate& last, std::uint64_t seed,
+                                      int jobs);
+
+// The model with its numbers fitted to all runs, those of another kind included, from where it is. setup: of the dataset.
+Candidate fitted_to_all_runs(const Dataset& dataset, const RefitSetup& setup, const Candidate& model);
 
 bool structure_remains(const ResidualExcess& excess, bool effects_added);
 // The same question of a whitened residual: what a coarse sensor's noise hides in the unweighted one may show
@@ -37,5 +47,7 @@ bool structure_remains(const ResidualExcess& excess, bool effects_added);
 bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, const ComparedChannels& channels,
                   const Eigen::VectorXd& residual);
 std::string residual_sentence(const ResidualExcess& excess, bool effects_added);
+// Of an excess on the extrapolation runs that a fit to all runs does not leave.
+std::string parameters_sentence(const ResidualExcess& excess);
 
 }  // namespace omnihil

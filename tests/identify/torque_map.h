@@ -20,6 +20,9 @@ struct TorqueMapRecipe {
   double coulomb_Nm = 0.0;
   double grease_Nm = 0.0;
   double grease_speed_rad_s = 30.0;
+  double share_of_speed = 1.0;  // that the fit and held-out runs reach
+  bool another = false;         // an extrapolation run, to the fastest
+  double swing_Nm = 0.0;        // in that alone: a torque that no law of a drive has, seven times up and down over its points
 };
 
 class TorqueMap {
@@ -36,6 +39,7 @@ class TorqueMap {
         {.signal = "load_torque", .column = "brake", .unit = "N m", .imposed = true}};
     if (!recipe.braked) dataset.channels.pop_back();
     for (const Split split : {kTraining, kValidation}) dataset.runs.push_back(run(recipe, split));
+    if (recipe.another) dataset.runs.push_back(run(recipe, kExtrapolation));
   }
 
   static double speed_rad_s(int point) { return kFastest_rad_s * (2.0 * point / (kPoints - 1) - 1.0); }
@@ -59,11 +63,13 @@ class TorqueMap {
  private:
   static omnihil::Run run(const TorqueMapRecipe& recipe, Split split) {
     omnihil::Run out;
-    out.file = split == kTraining ? "fit.csv" : "held.csv";
+    out.file = split == kTraining ? "fit.csv" : split == kValidation ? "held.csv" : "another.csv";
     out.split = split;
     out.steady = true;
     for (int i = 0; i < kPoints; ++i) {
-      const double w = speed_rad_s(i);
+      const double w = (split == kExtrapolation ? 1.0 : recipe.share_of_speed) * speed_rad_s(i);
+      const double swing =
+          split == kExtrapolation ? recipe.swing_Nm * std::sin(14.0 * M_PI * (i + 0.5) / kPoints) : 0.0;
       const double noise = recipe.sigma_Nm * gaussian(7, split, static_cast<std::uint64_t>(i));
       const double grease = recipe.grease_Nm * -std::expm1(-std::abs(w) / recipe.grease_speed_rad_s);
       out.time_s.push_back(kPeriod_s * i);
@@ -72,7 +78,7 @@ class TorqueMap {
       if (recipe.braked) out.signals["load_torque"].push_back(brake_Nm(i));
       out.signals["motor_torque"].push_back(recipe.friction_Nm_s_per_rad * w +
                                             std::copysign(recipe.coulomb_Nm + grease, w) - brake -
-                                            recipe.load_Nm + noise);
+                                            recipe.load_Nm + swing + noise);
     }
     return out;
   }

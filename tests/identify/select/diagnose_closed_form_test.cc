@@ -51,5 +51,31 @@ TEST(DiagnoseTest, NamesNoLossThatExplainsTheMeasurementByItself) {
   EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
 }
 
+// Held-out runs are of the fit runs' kind. What only another kind of run shows is no less missing.
+TEST(DiagnoseTest, WhatOnlyRunsOfAnotherKindShowIsSaid) {
+  const TorqueMap map({.another = true, .swing_Nm = 1e-3});
+  const Diagnosis d = diagnose(map.dataset, map.nominal, {});
+  EXPECT_EQ(d.effects, std::vector<std::string>{}) << reasons(d);
+  EXPECT_EQ(d.verdict, Verdict::kUnknown) << reasons(d);
+  // sqrt(1e-4^2 + 1e-3^2 / 2) = 7.14e-4 N m
+  EXPECT_NE(d.unknown.sentence.find("0.000713 N m RMS of motor_torque on extrapolation runs"), std::string::npos)
+      << reasons(d);
+}
+
+TEST(DiagnoseTest, ARunOfAnotherKindThatTheModelExplainsChangesNothing) {
+  const TorqueMap map({.another = true});
+  const Diagnosis d = diagnose(map.dataset, map.nominal, {});
+  EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
+  EXPECT_EQ(d.unknown.sentence.find("extrapolation"), std::string::npos) << reasons(d);
+}
+
+// At a thousandth of the speed friction is not seen (1.3e-5 x 0.3 rad/s against 1e-4 N m), at full speed the belief's error is.
+TEST(DiagnoseTest, AParameterThatTheFitRunsDoNotTellIsNoStructure) {
+  const TorqueMap map({.friction_Nm_s_per_rad = 1.6e-5, .braked = false, .share_of_speed = 1e-3, .another = true});
+  const Diagnosis d = diagnose(map.dataset, map.nominal, {});
+  EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
+  EXPECT_NE(d.unknown.sentence.find("the fit runs do not tell them"), std::string::npos) << reasons(d);
+}
+
 }  // namespace
 }  // namespace omnihil

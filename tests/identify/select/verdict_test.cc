@@ -16,7 +16,7 @@ ResidualExcess excess(double now, double before, double spread, double unexplain
           .signal = "velocity",
           .rms = 2.0,
           .unit = "rad/s",
-          .held_out = true};
+          .split = kValidation};
 }
 
 TEST(Verdict, StructureIsATenthAboveTheNull) {
