@@ -26,7 +26,7 @@ double cutoff_for(double rate_Hz) { return std::min(kHighestCutoff_Hz, kShareOfN
 // Standard deviation of (error / estimated noise)^2 over 24 benches of the hidden plant with nothing hidden: how far the noise of
 // a motion's second derivative in a band is known.
 constexpr double kLevelSigma = 0.2;  // measured, as above
-constexpr double kLeastBand = 0.1;  // of that cutoff, however noisy the motion is; a choice
+constexpr double kLeastBand = 0.1;   // of that cutoff, however noisy the motion is; a choice
 LowPass filter_for(double rate_Hz) { return butterworth(kOrder, cutoff_for(rate_Hz), rate_Hz); }
 
 // An even clock of the record's median period.

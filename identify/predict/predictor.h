@@ -45,7 +45,8 @@ struct ComparedSignal {
   double noise_sigma =
       0.0;  // 1-sigma per sample in `unit`, after the chain's own filters: stated, or estimated
   bool noise_is_stated = false;
-  double noise_level_sigma = 0.0;  // of the noise's variance, over it: how well the level itself is known; 0: exactly
+  double noise_level_sigma =
+      0.0;                 // of the noise's variance, over it: how well the level itself is known; 0: exactly
   double quantum = 0.0;    // of a counting sensor, in the signal's unit; 0: none
   CountedSpeed counted{};  // of a speed that is pulses over a window
   // The noise of differenced counts or positions is blue: successive errors cancel. See whitened().

@@ -57,9 +57,9 @@ std::string remainder(const ResidualExcess& excess) {
                          : fmt::format("{:.3g} times the sensors' noise", ratio));
 }
 
-ResidualExcess excess_on(const WhitenedResiduals& residuals, const NullModel& null, const Predictor& predictor,
-                         const ComparedChannels& channels, const Candidate& baseline, const Candidate& last,
-                         int jobs) {
+ResidualExcess excess_on(const WhitenedResiduals& residuals, const NullModel& null,
+                         const Predictor& predictor, const ComparedChannels& channels,
+                         const Candidate& baseline, const Candidate& last, int jobs) {
   ResidualExcess out;
   out.split = residuals.split();
   if (residuals.empty()) return out;
@@ -113,7 +113,10 @@ Candidate fitted_to_all_runs(const Dataset& dataset, const RefitSetup& setup, co
   }
   const std::unique_ptr<Predictor> predictor = make_predictor(all, *setup.nominal, {});
   return fit(*predictor, model, unknowns_with_priors(model, *setup.nominal),
-             {.jobs = setup.jobs, .max_iterations = setup.max_iterations, .seed = setup.seed, .stop = setup.stop})
+             {.jobs = setup.jobs,
+              .max_iterations = setup.max_iterations,
+              .seed = setup.seed,
+              .stop = setup.stop})
       .model;
 }
 
@@ -136,7 +139,8 @@ bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, con
 
 std::string parameters_sentence(const ResidualExcess& excess) {
   return fmt::format(
-      " Other numbers of this model explain what these do not, {}: the fit runs do not tell them; let a run of that kind be one.",
+      " Other numbers of this model explain what these do not, {}: the fit runs do not tell them; let a run "
+      "of that kind be one.",
       remainder(excess));
 }
 

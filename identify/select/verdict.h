@@ -21,8 +21,9 @@ namespace omnihil {
 struct ResidualExcess {
   double excess = 0.0;         // energy over the null's mean, less 1
   double excess_before = 0.0;  // the same of the refitted baseline
-  double spread = 0.0;         // standard deviation of the null's replicates over their mean, and of the noise's level
-  double unexplained = 0.0;    // fraction of the baseline's excess that remains, mean over all channels
+  double spread =
+      0.0;  // standard deviation of the null's replicates over their mean, and of the noise's level
+  double unexplained = 0.0;        // fraction of the baseline's excess that remains, mean over all channels
   double noise_level_sigma = 0.0;  // ComparedSignal; part of spread
   std::string signal{};
   double rms = 0.0;  // of that signal's residual, in its unit

@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kRecordStep_s = 0.2e-3;  // of the true motion, where timing effects look back
 constexpr double kShortest_s = 1e-9;      // between two readings that a mean is taken over
-constexpr int kPortions = 8;              // of a sample's period, over each of which a swinging rotor's speed is linear; a choice
-constexpr double kRecordSpan_s = 1.0;     // longer than any delay's upper bound
+constexpr int kPortions =
+    8;  // of a sample's period, over each of which a swinging rotor's speed is linear; a choice
+constexpr double kRecordSpan_s = 1.0;  // longer than any delay's upper bound
 
 template <typename T>
 class AxisRun {
@@ -132,7 +133,8 @@ class AxisRun {
     const double line = w[k] + (w[k + 1] - w[k]) * share;
     if (!swings_ || k == 0 || k + 2 >= w.size()) return line;
     // Lagrange: line + s (s - 1) / 2 of the second difference, + (s + 1) s (s - 1) / 6 of the third
-    const double second = w[k + 1] - 2.0 * w[k] + w[k - 1], third = w[k + 2] - 3.0 * w[k + 1] + 3.0 * w[k] - w[k - 1];
+    const double second = w[k + 1] - 2.0 * w[k] + w[k - 1],
+                 third = w[k + 2] - 3.0 * w[k + 1] + 3.0 * w[k] - w[k - 1];
     return line + share * (share - 1.0) * (0.5 * second + (share + 1.0) / 6.0 * third);
   }
 

@@ -324,8 +324,8 @@ INLINE void DriveSim<T>::turn(const DriveState<T>& state, Step& s) const {
   if (s.imposed) [[unlikely]] {
     RotorLoad<T> load = s.load;
     if (two_masses_) load.torque_Nm += s.tau_outside;  // acts on the output, what the bench adds on the rotor
-    const ImposedSpeed<T> bench = impose_speed(s.imposed_start, s.imposed_end, step_s_, load.inertia_kg_m2,
-                                               s.tau_outside, load);
+    const ImposedSpeed<T> bench =
+        impose_speed(s.imposed_start, s.imposed_end, step_s_, load.inertia_kg_m2, s.tau_outside, load);
     s.omega_end = T(s.imposed_end);
     s.mean_omega = T(0.5 * (s.imposed_start + s.imposed_end));
     s.outside = bench.outside_Nm;

@@ -22,7 +22,8 @@ struct TorqueMapRecipe {
   double grease_speed_rad_s = 30.0;
   double share_of_speed = 1.0;  // that the fit and held-out runs reach
   bool another = false;         // an extrapolation run, to the fastest
-  double swing_Nm = 0.0;        // in that alone: a torque that no law of a drive has, seven times up and down over its points
+  double swing_Nm =
+      0.0;  // in that alone: a torque that no law of a drive has, seven times up and down over its points
 };
 
 class TorqueMap {

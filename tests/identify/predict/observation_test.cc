@@ -35,7 +35,8 @@ TEST(Observation, ARunThatIsComparedInABandHasItsOwnNoise) {
   std::vector<RigRun> runs(3);
   std::vector<RigRun*> all;
   for (RigRun& run : runs) {
-    add_signal(run, {}, "motor_torque", "N m", {}, {}, 0.0).noise_sigma = 1.0 + static_cast<double>(all.size());
+    add_signal(run, {}, "motor_torque", "N m", {}, {}, 0.0).noise_sigma =
+        1.0 + static_cast<double>(all.size());
     all.push_back(&run);
   }
   runs[2].filter = butterworth(4, 10.0, 100.0);

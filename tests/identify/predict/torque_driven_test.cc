@@ -92,7 +92,11 @@ double left_of_a_soft_shaft_Nm(bool seen_on_output, bool said_on_output) {
   const auto moved = run_axis<double>(drive_of(truth), EffectSet<double>(truth.effects), in);
   Dataset d;
   d.channels = {{.signal = "motor_torque", .column = "", .unit = "N m"},
-                {.signal = "encoder", .column = "", .unit = "", .counts_per_rev = kCounts, .on_output = said_on_output}};
+                {.signal = "encoder",
+                 .column = "",
+                 .unit = "",
+                 .counts_per_rev = kCounts,
+                 .on_output = said_on_output}};
   omnihil::Run run;
   run.file = "f.csv";
   for (std::size_t k = 0; k < kRows; ++k) {

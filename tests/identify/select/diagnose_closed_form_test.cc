@@ -58,7 +58,8 @@ TEST(DiagnoseTest, WhatOnlyRunsOfAnotherKindShowIsSaid) {
   EXPECT_EQ(d.effects, std::vector<std::string>{}) << reasons(d);
   EXPECT_EQ(d.verdict, Verdict::kUnknown) << reasons(d);
   // sqrt(1e-4^2 + 1e-3^2 / 2) = 7.14e-4 N m
-  EXPECT_NE(d.unknown.sentence.find("0.000713 N m RMS of motor_torque on extrapolation runs"), std::string::npos)
+  EXPECT_NE(d.unknown.sentence.find("0.000713 N m RMS of motor_torque on extrapolation runs"),
+            std::string::npos)
       << reasons(d);
 }
 
@@ -71,7 +72,8 @@ TEST(DiagnoseTest, ARunOfAnotherKindThatTheModelExplainsChangesNothing) {
 
 // At a thousandth of the speed friction is not seen (1.3e-5 x 0.3 rad/s against 1e-4 N m), at full speed the belief's error is.
 TEST(DiagnoseTest, AParameterThatTheFitRunsDoNotTellIsNoStructure) {
-  const TorqueMap map({.friction_Nm_s_per_rad = 1.6e-5, .braked = false, .share_of_speed = 1e-3, .another = true});
+  const TorqueMap map(
+      {.friction_Nm_s_per_rad = 1.6e-5, .braked = false, .share_of_speed = 1e-3, .another = true});
   const Diagnosis d = diagnose(map.dataset, map.nominal, {});
   EXPECT_EQ(d.verdict, Verdict::kAdequate) << reasons(d);
   EXPECT_NE(d.unknown.sentence.find("the fit runs do not tell them"), std::string::npos) << reasons(d);

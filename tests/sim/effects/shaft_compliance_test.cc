@@ -105,7 +105,8 @@ TEST(ShaftCompliance, OfAnImposedRotorTheOutputSwings) {
     const auto needed = run_axis(p, effects, inverse);
     double worst_Nm = 0.0;
     for (std::size_t n = 1; n < needed.size(); ++n)  // the mean over the period that ends at sample n
-      worst_Nm = std::max(worst_Nm, std::abs(needed[n].load_torque_Nm / p.gear_ratio - forward.command[n - 1]));
+      worst_Nm =
+          std::max(worst_Nm, std::abs(needed[n].load_torque_Nm / p.gear_ratio - forward.command[n - 1]));
     if (at_rotor)
       EXPECT_LT(worst_Nm, 1e-3 * 0.02);
     else
