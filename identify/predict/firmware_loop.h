@@ -2,8 +2,8 @@
 //
 //   FirmwareLoop loop(source, latency_s, record.time_s[0]);
 //   loop.hear(now_s, std::array{0.5, 0.0, 1.0}, CommandFrame::kBodyVelocity);      // m/s, m/s, rad/s: acts latency_s later
-//   if (loop.due(now_s, step_s)) loop.tick(now_s, sees);
-//   loop.duty(), loop.enabled();                                         // until the next
+//   if (loop.due(now_s)) loop.tick(now_s, sees);
+//   loop.duty(), loop.enabled();                                         // until loop.next_s()
 //
 // Each loop has a firmware that was just switched on, at the record's first row: a record should begin at rest. Commands arrive
 // between its ticks as radio packets do, the newest that is due. Its encoders count down-rounded, its current is the mean
@@ -20,14 +20,18 @@
 
 namespace omnihil {
 
+// As its radio says it. Of a body three numbers, of wheels four.
+RobotCommand radio_command(std::span<const double> value, CommandFrame frame);
+
 class FirmwareLoop {
  public:
   FirmwareLoop(const FirmwareSource& source, double latency_s, double start_s);
 
-  // Of a body three numbers, of wheels four.
   void hear(double now_s, std::span<const double> value, CommandFrame frame);
-  bool due(double now_s, double step_s) const { return now_s >= next_s_ - 0.5 * step_s; }
-  // Of what its sensors see: rotor angles, charges (since whenever), bus voltage, turn rate, acceleration.
+  bool due(double now_s) const { return now_s >= next_s_ - kSame_s; }
+  double next_s() const { return next_s_; }  // of the next tick
+  // Of what its sensors see: rotor angles, charges (since whenever), bus voltage, turn rate, acceleration. The rotors' speeds
+  // are for firmware whose sensors are emulated.
   void tick(double now_s, const RobotInstant& sees);
 
   double period_s() const { return period_s_; }
@@ -39,6 +43,7 @@ class FirmwareLoop {
   bool failed() const { return !firmware_->failure().empty(); }
 
  private:
+  static constexpr double kSame_s = 1e-9;  // rounding of sums of periods; a choice
   struct Packet {
     double due_s;
     RobotCommand command;
@@ -51,7 +56,7 @@ class FirmwareLoop {
   std::array<double, kWheels> last_charge_C_{}, duty_{};
   std::array<bool, kWheels> enabled_{};
   double last_s_;
-  bool ran_ = false;
+  std::int64_t ticks_ = 0;
 };
 
 }  // namespace omnihil

@@ -86,30 +86,37 @@ class Runner {
   // Commands are heard at their samples; the loop runs once per period, on the mean speed since it last ran.
   void hear(std::size_t k) {
     const RadioCommands& radio = *record_.radio;
-    const auto& value = radio.value[k];
-    for (std::size_t i = 0; i < record_.inputs(); ++i) {
-      if (!std::isfinite(value[i])) return;
-    }
-    if (firmware_) firmware_->hear(record_.time_s[k], value, radio.frame);
-    if (at_.controller) at_.controller->hear(record_.time_s[k], value, radio.frame);
+    if (!radio.said(k)) return;
+    if (firmware_) firmware_->hear(record_.time_s[k], radio.value[k], radio.frame);
+    if (at_.controller) at_.controller->hear(record_.time_s[k], radio.value[k], radio.frame);
   }
-  void run_firmware(RollingInput<T>& in, double now_s, double step_s) {
+  void run_firmware(RollingInput<T>& in, double now_s) {
     const RollingState<T>& x = at_.state;
-    if (firmware_->due(now_s, step_s)) {
+    if (firmware_->due(now_s)) {
       RobotInstant sees{.gyro_rad_s = value_of(x.velocity[2]),
                         .accel_x_m_s2 = value_of(x.accel_x_m_s2),
                         .accel_y_m_s2 = value_of(x.accel_y_m_s2),
                         .bus_voltage_V = value_of(bus_or_supply(in))};
       for (std::size_t i = 0; i < kWheels; ++i) {
         sees.theta_rotor_rad[i] = value_of(x.theta_rotor_rad[i]);
+        sees.omega_rotor_rad_s[i] = value_of(x.omega_rotor_rad_s(i));
         sees.charge_C[i] = value_of(x.charge_C[i]);
       }
       firmware_->tick(now_s, sees);
+      report_speeds();
     }
     for (std::size_t i = 0; i < kWheels; ++i) {
       in.duty_ratio[i] = T(firmware_->duty()[i]);
       in.enabled[i] = firmware_->enabled()[i];
     }
+  }
+  // Of a firmware that tells none: the shafts' own, as its telemetry would filter them.
+  void report_speeds() {
+    const double filter_s = model_.params.controller.report_filter_s;
+    if (filter_s <= 0.0) return;
+    const double share = -std::expm1(-firmware_->period_s() / filter_s);
+    for (std::size_t i = 0; i < record_.wheels; ++i)
+      reported_[i] += (at_.state.omega_rotor_rad_s(i) - reported_[i]) * share;
   }
   void control(RollingInput<T>& in, double now_s, double step_s) {
     if (now_s >= at_.next_control_s - 0.5 * step_s) {
@@ -142,54 +149,81 @@ class Runner {
       return;
     }
     at_.state = robot_.start(record_.start_velocity, record_.theta_rotor_rad[0]);
+    reported_ = speeds();
     if (!at_.controller) return;
     at_.last_control_s = at_.next_control_s = record_.time_s[0];
     at_.controller->begin(record_.start_velocity, speeds(), model_.params.drive.torque_constant_Nm_per_A,
                           record_.radio->frame);
   }
 
-  // One of the equal steps that the period after sample k is parted into.
-  void step(std::size_t k, int j, int steps, RollingInput<T> in) {
-    const double period_s = record_.time_s[k + 1] - record_.time_s[k], h = period_s / steps;
-    const double now_s = record_.time_s[k] + period_s * j / steps;
+  // What of the period after sample k a step is, in any unit.
+  struct Part {
+    double from, to, whole;
+  };
+  void step(std::size_t k, const Part& part, RollingInput<T> in) {
+    const double period_s = record_.time_s[k + 1] - record_.time_s[k];
+    const double h = period_s * (part.to - part.from) / part.whole;
+    const double now_s = record_.time_s[k] + period_s * part.from / part.whole;
     RollingState<T>& x = at_.state;
     PerWheel<double> angle;
     std::array<double, 3> imposed;
-    const auto between = [&](const auto& values, std::size_t i, int part) {
-      return values[k][i] + (values[k + 1][i] - values[k][i]) * part / steps;
+    const auto between = [&](const auto& values, std::size_t i, double at) {
+      return values[k][i] + (values[k + 1][i] - values[k][i]) * at / part.whole;
     };
     for (std::size_t i = 0; i < record_.wheels && in.theta_rotor_rad != nullptr; ++i)
-      angle[i] = between(record_.theta_rotor_rad, i, j);
+      angle[i] = between(record_.theta_rotor_rad, i, part.from);
     if (in.theta_rotor_rad != nullptr) in.theta_rotor_rad = &angle;
     for (std::size_t a = 0; a < 3 && !record_.imposed_velocity.empty(); ++a) {
-      imposed[a] = between(record_.imposed_velocity, a, j + 1);
+      imposed[a] = between(record_.imposed_velocity, a, part.to);
       in.imposed_velocity = &imposed;
     }
     x.yaw_rad = heading_.empty() ? at_.heading : heading_[k];
     const T turn_rate = x.velocity[2];
     const PerWheel<T> omega = at_.controller ? speeds() : PerWheel<T>{};
     if (at_.controller) control(in, now_s, h);
-    if (firmware_) run_firmware(in, now_s, h);
     robot_.advance(x, in, h);
     for (std::size_t i = 0; i < record_.wheels && at_.controller; ++i)
       at_.turned_rad[i] += (omega[i] + x.omega_rotor_rad_s(i)) * (0.5 * h);
     at_.heading += 0.5 * (turn_rate + x.velocity[2]) * h;
   }
 
+  // The period after sample k in steps of the same length, longest_s at most.
+  void pass(std::size_t k, double longest_s) {
+    const double period_s = record_.time_s[k + 1] - record_.time_s[k];
+    const RollingInput<T> in = input(k);
+    const int steps = parts_of(period_s, longest_s);
+    for (int j = 0; j < steps; ++j)
+      step(k, {static_cast<double>(j), j + 1.0, static_cast<double>(steps)}, in);
+  }
+  // The same where a firmware drives: each stretch of it ends where the firmware runs next.
+  void pass_by_firmware(std::size_t k, double longest_s) {
+    const double start_s = record_.time_s[k], period_s = record_.time_s[k + 1] - start_s;
+    constexpr double kSame_s = 1e-9;  // rounding of sums of periods; a choice
+    RollingInput<T> in = input(k);
+    for (double at_s = 0.0, until_s; at_s < period_s; at_s = until_s) {
+      run_firmware(in, start_s + at_s);
+      until_s = firmware_->next_s() - start_s;
+      if (until_s <= at_s || until_s > period_s - kSame_s) until_s = period_s;
+      const double stretch_s = until_s - at_s;
+      const int steps = parts_of(stretch_s, longest_s);
+      for (int j = 0; j < steps; ++j)
+        step(k, {at_s + stretch_s * j / steps, at_s + stretch_s * (j + 1) / steps, period_s}, in);
+    }
+  }
+  static int parts_of(double time_s, double longest_s) {
+    constexpr double kOff = 1e-6;  // of a step: clocks are sums; a choice
+    return std::max(1, static_cast<int>(std::ceil(time_s / longest_s - kOff)));
+  }
+
   void simulate() {
     begin();
     double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
     if (at_.controller) step_s = std::min(step_s, at_.controller->period_s());
-    if (firmware_) step_s = std::min(step_s, firmware_->period_s());
     for (std::size_t k = 0; out_.finite; ++k) {
       keep();
       if (k + 1 >= record_.size()) break;
-      const RollingInput<T> in = input(k);
       if (record_.radio) hear(k);
-      const double dt_s = record_.time_s[k + 1] - record_.time_s[k];
-      constexpr double kOff = 1e-6;  // of a step: clocks are sums; a choice
-      const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / step_s - kOff)));
-      for (int j = 0; j < steps; ++j) step(k, j, steps, in);
+      firmware_ ? pass_by_firmware(k, step_s) : pass(k, step_s);
       const RollingState<T>& x = at_.state;
       out_.finite = !(firmware_ && firmware_->failed()) && is_finite(x.velocity[0]) &&
                     is_finite(x.omega_rotor_rad_s(0)) && is_finite(x.charge_C[0]);
@@ -217,12 +251,14 @@ class Runner {
          .force_N = {x.floor_x_N, x.floor_y_N}};
     std::array<double, kWheels> told;
     const bool tells = firmware_ && firmware_->tells(told);
+    const bool filtered = firmware_ && model_.params.controller.report_filter_s > 0.0;
     RollingSample<T>& s = out_.samples.emplace_back();
     s.bus_voltage_V = x.bus_voltage_V;
     s.supply_voltage_V = x.supply_voltage_V;
     s.velocity = x.velocity;
     for (std::size_t i = 0; i < record_.wheels; ++i) {
       if (at_.controller) t.reported_rad_s[i] = at_.controller->reported_rad_s(i);
+      if (filtered) t.reported_rad_s[i] = reported_[i];
       if (tells) t.reported_rad_s[i] = T(told[i] * value_of(model_.params.drive.gear_ratio));
       s.temperature_rise_K += (1.0 / static_cast<double>(record_.wheels)) * x.drive[i].temperature_rise_K;
     }
@@ -359,6 +395,7 @@ class Runner {
   EffectStates initial_states_{};
   RobotCarry<T> at_;
   std::optional<FirmwareLoop> firmware_;
+  PerWheel<T> reported_{};  // by report_speeds()
   T camera_age_s_ = T(0);
   std::vector<T> heading_;
   std::vector<Truth<T>> truth_;

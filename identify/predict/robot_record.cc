@@ -25,22 +25,10 @@ constexpr std::size_t kHalfWindows[] = {250, 50, 10};  // as above
 constexpr NoiseWindows kBusWindows = {.half = kHalfWindows,
                                       .tolerated = 1.2};  // a choice; sensitivity not measured
 
-// A command is new where its cells are filled; all of a group together.
-void read_radio(const Run& run, RobotRecord& r) {
-  constexpr const char* kBody[] = {"command_vx", "command_vy", "command_w"};
-  const bool body = run.signal(kBody[0]) != nullptr;
-  r.radio = {.frame = body ? CommandFrame::kBodyVelocity : CommandFrame::kWheelSpeeds, .value = {}};
-  r.radio->value.resize(r.size());
-  for (std::size_t a = 0; a < (body ? std::size(kBody) : r.wheels); ++a) {
-    const std::vector<double>* said = run.signal(body ? kBody[a] : numbered("command_wheel", a, r.wheels));
-    for (std::size_t k = 0; k < r.size() && said != nullptr; ++k) r.radio->value[k][a] = (*said)[k];
-  }
-}
-
 void read_drive(const Run& run, RobotRecord& r) {
   const std::vector<double>* enable = run.signal("enable");
   const bool by_duty = run.signal(numbered("duty", 0, r.wheels)) != nullptr;
-  if (!by_duty) read_radio(run, r);
+  if (!by_duty) r.radio = radio_commands(run, r.wheels);
   for (std::size_t i = 0; i < r.wheels; ++i) {
     const std::vector<double>* duty = run.signal(numbered("duty", i, r.wheels));
     for (std::size_t k = 0; k < r.size(); ++k) {
@@ -177,6 +165,20 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const Dataset& dataset
 }
 
 }  // namespace
+
+RadioCommands radio_commands(const Run& run, std::size_t wheels) {
+  constexpr const char* kBody[] = {"command_vx", "command_vy", "command_w"};
+  const bool body = run.signal(kBody[0]) != nullptr;
+  RadioCommands out{.frame = body ? CommandFrame::kBodyVelocity : CommandFrame::kWheelSpeeds,
+                    .count = body ? std::size(kBody) : wheels,
+                    .value = {}};
+  out.value.resize(run.time_s.size());
+  for (std::size_t a = 0; a < out.count; ++a) {
+    const std::vector<double>* said = run.signal(body ? kBody[a] : numbered("command_wheel", a, wheels));
+    for (std::size_t k = 0; k < out.value.size() && said != nullptr; ++k) out.value[k][a] = (*said)[k];
+  }
+  return out;
+}
 
 std::string numbered(std::string_view name, std::size_t wheel, std::size_t wheels) {
   return wheels == 1 ? std::string(name) : std::string(name) + "_" + std::to_string(wheel + 1);

@@ -30,11 +30,18 @@ struct CameraFrame {
   }
 };
 
-// What the radio said, where the record has no duties: NaN where nothing new was said.
+// What the radio said, where the record has no duties: NaN where nothing new was said; all numbers of a command together.
 struct RadioCommands {
   CommandFrame frame = CommandFrame::kBodyVelocity;
+  std::size_t count = 3;                // of numbers in a command
   std::vector<PerWheel<double>> value;  // n samples; of a body three: m/s, m/s, rad/s; of wheels rad/s
+
+  bool said(std::size_t k) const {
+    return std::all_of(value[k].begin(), value[k].begin() + static_cast<std::ptrdiff_t>(count),
+                       [](double v) { return std::isfinite(v); });
+  }
 };
+RadioCommands radio_commands(const Run& run, std::size_t wheels);
 
 // Rows of a sensor that repeated its last value while the robot drove on (silent_frames.h): not among the frames.
 struct SilentStretch {
@@ -63,7 +70,7 @@ struct RobotRecord {
   BodyVelocity<double> start_velocity;
 
   std::size_t size() const { return time_s.size(); }
-  std::size_t inputs() const { return radio && radio->frame == CommandFrame::kBodyVelocity ? 3 : wheels; }
+  std::size_t inputs() const { return radio ? radio->count : wheels; }
 };
 
 // "encoder" of a wheel alone, else "encoder_1" of wheel 0 …

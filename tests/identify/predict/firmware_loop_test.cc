@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "identify/predict/predictor.h"
+#include "tests/identify/simulated_radio.h"
+
 namespace omnihil {
 namespace {
 
@@ -13,6 +16,7 @@ namespace {
 struct Noted {
   std::vector<double> heard_v, heard_at_s;
   std::vector<RobotSensors> seen;
+  std::vector<RobotShafts> shafts;
 };
 class Stub final : public Firmware {
  public:
@@ -28,6 +32,7 @@ class Stub final : public Firmware {
   std::size_t radio_transmit(std::span<std::uint8_t>) override { return 0; }
   bool set_gains(const RobotGains&) override { return false; }
   RobotGains gains() const override { return {}; }
+  void shafts(const RobotShafts& exact) override { noted_.shafts.push_back(exact); }
   RobotDrive tick(const RobotSensors& s) override {
     noted_.seen.push_back(s);
     RobotDrive d{};
@@ -56,7 +61,7 @@ void run(FirmwareLoop& loop, int n) {
   int ran = 0;
   for (int k = 0; ran < n; ++k) {
     const double now_s = 10.0 + 0.0005 * k;
-    if (!loop.due(now_s, 0.0005)) continue;
+    if (!loop.due(now_s)) continue;
     loop.tick(now_s, {});
     EXPECT_NEAR(now_s, 10.0 + 0.002 * ran, 1e-9);
     ++ran;
@@ -104,6 +109,7 @@ TEST(FirmwareLoop, EncodersCountDownRoundedAndCurrentsAreMeansSinceTheTickBefore
   RobotInstant sees{.gyro_rad_s = 1.5, .bus_voltage_V = 20.0};
   sees.theta_rotor_rad = {-0.001, 0.0, 0.019 * std::numbers::pi, 2.0 * std::numbers::pi + 1e-9};
   loop.tick(10.0, sees);
+  sees.omega_rotor_rad_s[2] = 7.0;
   sees.charge_C[2] = 0.006;
   loop.tick(10.002, sees);
   ASSERT_EQ(noted.seen.size(), 2U);
@@ -115,7 +121,24 @@ TEST(FirmwareLoop, EncodersCountDownRoundedAndCurrentsAreMeansSinceTheTickBefore
   EXPECT_NEAR(noted.seen[1].motor_current_A[2], 3.0, 1e-9);  // 6 mC in 2 ms
   EXPECT_EQ(noted.seen[1].bus_voltage_V, 20.0);
   EXPECT_EQ(noted.seen[1].gyro_z_rad_s, 1.5);
+  ASSERT_EQ(noted.shafts.size(), 2U);  // unrounded, for sensors that are emulated
+  EXPECT_EQ(noted.shafts[1].theta_rotor_rad[2], sees.theta_rotor_rad[2]);
+  EXPECT_EQ(noted.shafts[1].omega_rotor_rad_s[2], 7.0);
   EXPECT_EQ(noted.seen[1].now_us - noted.seen[0].now_us, 2000U);
+}
+
+// Rows at 60 Hz, ticks at 500 Hz: no whole number of ticks in a row.
+TEST(FirmwareLoop, TicksAreAPeriodApartWhateverTheRowsAre) {
+  Noted noted;
+  Dataset d = test::blank_radio(2.0);
+  d.firmware = std::make_shared<Stubs>(noted);
+  const auto predictor = make_predictor(d, test::radio_candidate(), {});
+  noted = {};
+  ASSERT_TRUE(predictor->predict(test::radio_candidate(), 0).finite);
+  const std::size_t n = noted.seen.size();
+  EXPECT_NEAR(static_cast<double>(n), (2.0 - 1.0 / 60.0) / 0.002, 1.0);
+  for (std::size_t i = 1; i < n; ++i)  // but for the microsecond that it is rounded to
+    EXPECT_NEAR(static_cast<double>(noted.seen[i].now_us - noted.seen[i - 1].now_us), 2000.0, 1.0);
 }
 
 }  // namespace
