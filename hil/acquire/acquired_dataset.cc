@@ -106,8 +106,8 @@ std::map<std::string, double> steady_noise(const AcquirePlan& plan, const std::v
 }
 
 std::string acquired_dataset_text(const AcquirePlan& plan, const std::vector<AcquiredRun>& runs,
-                                  const std::map<std::string, double>& noise) {
-  std::string text = dataset_head(plan.title.empty() ? "acquired" : plan.title, "robot");
+                                  const std::map<std::string, double>& noise, std::string_view radio) {
+  std::string text = dataset_head(plan.title.empty() ? "acquired" : plan.title, "robot", radio);
   for (const Signal& s : kSignals) {
     const bool there = std::any_of(runs.begin(), runs.end(), [&](const AcquiredRun& one) {
       return one.rows.column(s.column) != nullptr;

@@ -101,9 +101,10 @@ DatasetExport tapped_dataset(const Recording& recording, const RadioFormat& form
     runs.push_back({&run, run_rows(log, plan.drive)});
   }
   DatasetExport made;
-  made.files = {{"dataset.toml",
-                 acquired_dataset_text(plan, runs, steady_noise(plan, runs, wheel_speed_step_rad_s(format)))},
-                {"model.toml", o.model_text}};
+  made.files = {
+      {"dataset.toml", acquired_dataset_text(
+                           plan, runs, steady_noise(plan, runs, wheel_speed_step_rad_s(format)), format.id)},
+      {"model.toml", o.model_text}};
   for (const AcquiredRun& one : runs) {
     made.rows += one.rows.time_s.size();
     made.files.push_back({one.run->name + ".csv", rows_csv(one.rows)});

@@ -3,21 +3,19 @@
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <vector>
 
 #include "firmware_iface/host_firmware.h"
+#include "hil/dataset/dataset_image.h"
+#include "hil/dataset/firmware_trial.h"
 #include "hil/firmware/guarded_firmware.h"
+#include "hil/firmware/open_firmware.h"
 
 namespace omnihil {
 namespace {
-
-// A prime: a counter that a library keeps from one trial to the next would otherwise stand where it stood.
-constexpr int kTrialTicks = 997;
 
 class LibrarySource final : public FirmwareSource {
  public:
@@ -32,56 +30,9 @@ class LibrarySource final : public FirmwareSource {
   RobotConfig config_;
 };
 
-// A second or so of a robot on a stand: wheels that follow their duty as a first order lag, told of every 20 ticks.
-class Trial {
- public:
-  Trial(Firmware& firmware, const RobotConfig& config, double level)
-      : firmware_(firmware), config_(config), level_(level) {}
-
-  void step() {
-    constexpr double kFree_rad_s = 300.0, kLag = 0.02;  // of a rotor at full duty, and per tick: any
-    const std::int64_t period_ns = firmware_.control_period_ns(), now_ns = ++ticks_ * period_ns;
-    if (ticks_ % 20 == 1) {
-      RobotCommand c{};
-      c.mode = OMNIHIL_MODE_BODY_VELOCITY;
-      c.v_forward_m_s = level_ * std::sin(0.01 * ticks_);
-      c.v_left_m_s = 0.5 * level_;
-      c.omega_body_rad_s = level_ * std::cos(0.013 * ticks_);
-      firmware_.command(c, now_ns);
-    }
-    RobotSensors s{};
-    s.now_us = static_cast<std::uint64_t>(now_ns / 1000);
-    s.bus_voltage_V = config_.bus_voltage_nominal_V;
-    const double counts_per_rad = config_.encoder_counts_per_rotor_turn / 6.283185307179586;
-    for (std::size_t i = 0; i < kWheels; ++i) {
-      turned_rad_[i] += 1e-9 * static_cast<double>(period_ns) * omega_rad_s_[i];
-      s.encoder_counts[i] = static_cast<std::int64_t>(std::floor(counts_per_rad * turned_rad_[i]));
-    }
-    const RobotDrive d = firmware_.tick(s);
-    for (std::size_t i = 0; i < kWheels; ++i) {
-      const double duty = d.mode[i] == OMNIHIL_DRIVE_DUTY ? d.duty_ratio[i] : 0.0;
-      omega_rad_s_[i] += kLag * (kFree_rad_s * duty - omega_rad_s_[i]);
-      asked_.push_back(duty);
-    }
-  }
-  std::vector<double> run() {
-    for (int n = 0; n < kTrialTicks; ++n) step();
-    return asked_;
-  }
-  const std::vector<double>& asked() const { return asked_; }
-
- private:
-  Firmware& firmware_;
-  const RobotConfig& config_;
-  double level_;
-  int ticks_ = 0;
-  std::array<double, kWheels> turned_rad_{}, omega_rad_s_{};
-  std::vector<double> asked_;
-};
-
 std::vector<double> tried(const FirmwareSource& source, const RobotConfig& config) {
   const std::unique_ptr<Firmware> firmware = source.fresh();
-  return Trial(*firmware, config, 1.0).run();
+  return FirmwareTrial(*firmware, config, 1.0).run();
 }
 
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
@@ -91,7 +42,7 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
 // In a process of its own.
 std::vector<double> tried_apart(const std::string& file, const RobotConfig& config, std::string& problem) {
   GuardedFirmware firmware({.library = file}, config);
-  std::vector<double> asked = Trial(firmware, config, 1.0).run();
+  std::vector<double> asked = FirmwareTrial(firmware, config, 1.0).run();
   problem = firmware.failure();
   return asked;
 }
@@ -110,12 +61,11 @@ std::shared_ptr<const FirmwareSource> load(const std::string& file, const RobotC
 
 std::string why_not(const std::vector<double>& apart, const FirmwareSource& source,
                     const RobotConfig& config) {
-  if (std::all_of(apart.begin(), apart.end(), [](double v) { return v == 0.0; }))
-    return "asks nothing of the bridges when it is commanded to drive";
+  if (asks_nothing(apart)) return "asks nothing of the bridges when it is commanded to drive";
   const std::unique_ptr<Firmware> one = source.fresh(), two = source.fresh();
-  Trial in_turn(*one, config, 1.0), other(*two, config, -0.7);
+  FirmwareTrial in_turn(*one, config, 1.0), other(*two, config, -0.7);
   const std::vector<double> alone = tried(source, config);
-  for (int n = 0; n < kTrialTicks; ++n) in_turn.step(), other.step();
+  for (int n = 0; n < FirmwareTrial::kTicks; ++n) in_turn.step(), other.step();
   const bool repeats =
       same(apart, alone) && same(apart, tried(source, config)) && same(apart, in_turn.asked());
   return repeats ? ""
@@ -124,11 +74,8 @@ std::string why_not(const std::vector<double>& apart, const FirmwareSource& sour
                    "not do what the first did; put them into the block (docs/firmware.md)";
 }
 
-}  // namespace
-
-std::shared_ptr<const FirmwareSource> open_dataset_firmware(const std::string& file,
-                                                            const RobotConfig& config, std::string& problem) {
-  problem.clear();
+std::shared_ptr<const FirmwareSource> open_library(const std::string& file, const RobotConfig& config,
+                                                   std::string& problem) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(file, code)) {
     problem = "there is no such file";
@@ -140,10 +87,36 @@ std::shared_ptr<const FirmwareSource> open_dataset_firmware(const std::string& f
     std::shared_ptr<const FirmwareSource> source = load(file, config);
     problem = why_not(apart, *source, config);
     return problem.empty() ? source : nullptr;
-  } catch (const std::invalid_argument& refused) {
-    problem = refused.what();
+  } catch (const std::invalid_argument& not_loaded) {
+    problem = not_loaded.what();
     return nullptr;
   }
+}
+
+}  // namespace
+
+std::shared_ptr<const FirmwareSource> open_dataset_firmware(const DatasetFirmware& firmware,
+                                                            const RobotConfig& config,
+                                                            std::span<const Run> runs,
+                                                            std::vector<FirmwareRefusal>& refused) {
+  if (is_image(firmware.file)) {
+    if (!firmware.board.empty()) return open_dataset_image(firmware, config, runs, refused);
+    refused.push_back({"board", "is missing: the firmware is a microcontroller image",
+                       "the board file that it runs on (docs/mcu-boards.md), or --board"});
+    return nullptr;
+  }
+  std::string problem;
+  auto source = open_library(firmware.file, config, problem);
+  if (!problem.empty())
+    refused.push_back({"firmware", problem,
+                       "a library of this computer with omnihil_firmware_get (docs/firmware.md), or a "
+                       "microcontroller image with its board"});
+  if (!firmware.board.empty()) {
+    refused.push_back(
+        {"board", "has nothing to do: the firmware is no microcontroller image", "an image beside it"});
+    source = nullptr;
+  }
+  return source;
 }
 
 }  // namespace omnihil

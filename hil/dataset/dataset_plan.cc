@@ -31,8 +31,8 @@ class PlanReader {
       : document_(document), keys_(document, problems) {}
 
   DatasetPlan read() {
-    static constexpr std::string_view kTop[] = {"format",   "title",    "rig", "model",
-                                                "firmware", "channels", "runs"};
+    static constexpr std::string_view kTop[] = {"format", "title", "rig",    "model",    "firmware",
+                                                "board",  "radio", "boot_s", "channels", "runs"};
     const toml::table& top = document_.table;
     keys_.only(top, "", kTop);
     read_head(top);
@@ -72,8 +72,20 @@ class PlanReader {
     } else {
       keys_.missing(top, "", "model", "model = \"model.toml\", the nominal model");
     }
-    plan_.firmware = keys_.text(top, "", "firmware").value_or("");
-    if (const toml::node* firmware = top.get("firmware")) plan_.firmware_at = place_of(*firmware);
+    read_firmware(top);
+  }
+
+  void read_firmware(const toml::table& top) {
+    const auto read = [&](const char* key, std::string& text, TextPlace& at) {
+      text = keys_.text(top, "", key).value_or("");
+      if (const toml::node* node = top.get(key)) at = place_of(*node);
+    };
+    read("firmware", plan_.firmware, plan_.firmware_at);
+    read("board", plan_.board, plan_.board_at);
+    read("radio", plan_.radio, plan_.radio_at);
+    constexpr double kLongest_s = 60.0;  // a minute of emulation per simulation; a choice
+    plan_.boot_s = keys_.number(top, "", "boot_s", 0.0, kLongest_s, false,
+                                "seconds that an image runs before a record begins, up to 60");
   }
 
   void read_channel(const toml::key& key, const toml::node& node) {

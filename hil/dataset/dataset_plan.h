@@ -5,6 +5,7 @@
 //
 // Problems are collected; what is wrong is left out of the plan.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,8 +38,10 @@ struct DatasetPlan {
   bool rig_known = false;
   std::string model;  // as the file names it
   TextPlace model_at;
-  std::string firmware;  // likewise; empty: none
-  TextPlace firmware_at;
+  std::string firmware, board;  // likewise; empty: none
+  std::string radio;            // format; empty: not said
+  std::optional<double> boot_s;
+  TextPlace firmware_at, board_at, radio_at;
   TextPlace channels_at;
   std::vector<RunPlan> runs;
 };

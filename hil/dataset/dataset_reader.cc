@@ -7,6 +7,7 @@
 
 #include "hil/dataset/dataset_firmware.h"
 #include "hil/dataset/dataset_runs.h"
+#include "hil/firmware/open_firmware.h"
 #include "hil/loop/session_checks.h"
 #include "hil/text/text_file.h"
 #include "hil/text/toml_keys.h"
@@ -23,8 +24,8 @@ namespace fs = std::filesystem;
 
 class DatasetReader {
  public:
-  DatasetReader(const std::string& path, const std::string& model, const std::string& firmware)
-      : asked_(path), other_model_(model), other_firmware_(firmware) {
+  DatasetReader(const std::string& path, const std::string& model, OtherFirmware firmware)
+      : asked_(path), other_model_(model), other_firmware_(std::move(firmware)) {
     std::error_code code;
     toml_ =
         fs::is_directory(path, code) ? (fs::path(path) / "dataset.toml").lexically_normal().string() : path;
@@ -211,35 +212,52 @@ class DatasetReader {
                        [](const Run& run) { return run.signal("duty_1") == nullptr; });
   }
 
+  // Of the command line, else the dataset's own. A board belongs to its image: another firmware may be a library.
+  DatasetFirmware chosen_firmware() const {
+    const auto beside = [this](const std::string& file) {
+      return file.empty() ? file : (fs::path(folder_) / file).lexically_normal().string();
+    };
+    DatasetFirmware chosen{
+        .file = other_firmware_.file, .board = other_firmware_.board, .radio = plan_.radio};
+    if (chosen.file.empty()) chosen.file = beside(plan_.firmware);
+    const bool own = other_firmware_.file.empty() || is_image(chosen.file);
+    if (chosen.board.empty() && own) chosen.board = beside(plan_.board);
+    chosen.boot_s = plan_.boot_s.value_or(chosen.boot_s);
+    return chosen;
+  }
+
   void read_firmware() {
-    if (plan_.firmware.empty() && other_firmware_.empty()) return;
-    const std::string file = other_firmware_.empty()
-                                 ? (fs::path(folder_) / plan_.firmware).lexically_normal().string()
-                                 : other_firmware_;
-    const std::string shown = fmt::format("\"{}\"", file);
-    if (!by_radio()) {
-      problem(plan_.firmware_at, "firmware", shown, "has nothing to do",
-              "a robot's commands without duties, for which a firmware makes them");
+    const DatasetFirmware chosen = chosen_firmware();
+    const auto refuse = [&](const std::string& key, std::string what, std::string allowed) {
+      const bool board = key == "board", radio = key == "radio";
+      const std::string& value = board ? chosen.board : radio ? chosen.radio : chosen.file;
+      problem(board && !plan_.board.empty() ? plan_.board_at
+              : radio                       ? plan_.radio_at
+                                            : plan_.firmware_at,
+              key, fmt::format("\"{}\"", value), std::move(what), std::move(allowed));
+    };
+    if (chosen.file.empty()) {
+      if (!chosen.board.empty()) refuse("board", "has nothing to do", "a firmware beside it, an image");
       return;
     }
-    if (wheel_count(out_.nominal->file.parameters) != kWheels) {
-      problem(plan_.firmware_at, "firmware", shown, "drives four wheels", "a model with four wheels");
-      return;
-    }
-    std::string why;
-    dataset_.firmware = open_dataset_firmware(file, robot_config(*out_.nominal->file.robot, 0), why);
-    if (!dataset_.firmware) {
-      problem(plan_.firmware_at, "firmware", shown, why,
-              "a library of this computer with omnihil_firmware_get (docs/firmware.md)");
-      return;
-    }
-    dataset_.notes.push_back(fmt::format("{} makes the duties; of [controller] the latency alone counts",
-                                         dataset_.firmware->fresh()->name()));
+    if (!by_radio())
+      return refuse("firmware", "has nothing to do",
+                    "a robot's commands without duties, for which a firmware makes them");
+    if (wheel_count(out_.nominal->file.parameters) != kWheels)
+      return refuse("firmware", "drives four wheels", "a model with four wheels");
+    std::vector<FirmwareRefusal> refused;
+    dataset_.firmware =
+        open_dataset_firmware(chosen, robot_config(*out_.nominal->file.robot, 0), dataset_.runs, refused);
+    for (FirmwareRefusal& r : refused) refuse(r.key, std::move(r.what), std::move(r.allowed));
+    if (!dataset_.firmware) return;
+    dataset_.notes.push_back(fmt::format(
+        "{} makes the duties; of [controller] {}", dataset_.firmware->fresh()->name(),
+        chosen.board.empty() ? "the latency alone counts" : "latency_s and report_filter_s count"));
   }
 
   // Duties of radio commands are made by the firmware, or by the model's [controller].
   void check_robot_drive() {
-    if (dataset_.firmware) return;
+    if (!chosen_firmware().file.empty()) return;
     const ParameterTable& table = out_.nominal->file.parameters;
     const auto given = [&](const char* path) { return table.value_or(path, 0.0) > 0.0; };
     bool by_radio = false, by_body = false;
@@ -305,7 +323,9 @@ class DatasetReader {
                              .allowed = std::move(why)});
   }
 
-  std::string asked_, other_model_, other_firmware_, toml_, folder_, model_file_;
+  std::string asked_, other_model_;
+  OtherFirmware other_firmware_;
+  std::string toml_, folder_, model_file_;
   DatasetPlan plan_;
   Dataset dataset_;
   DatasetReading out_;
@@ -313,7 +333,8 @@ class DatasetReader {
 
 }  // namespace
 
-DatasetReading read_dataset(const std::string& path, const std::string& model, const std::string& firmware) {
+DatasetReading read_dataset(const std::string& path, const std::string& model,
+                            const OtherFirmware& firmware) {
   return DatasetReader(path, model, firmware).read();
 }
 

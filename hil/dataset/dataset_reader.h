@@ -28,10 +28,14 @@ struct DatasetReading {
   std::vector<ModelProblem> problems;
 };
 
-// `model`: path of another model to take in place of the dataset's own; empty: its own. `firmware`: likewise, the library that a
-// robot under commands is predicted with.
+// What a robot under commands is predicted with, in place of what the dataset names; empty: as it does.
+struct OtherFirmware {
+  std::string file{}, board{};
+};
+
+// `model`: path of another model to take in place of the dataset's own; empty: its own.
 DatasetReading read_dataset(const std::string& path, const std::string& model = "",
-                            const std::string& firmware = "");
+                            const OtherFirmware& firmware = {});
 
 // A model for a dataset, alone.
 struct CandidateReading {

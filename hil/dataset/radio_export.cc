@@ -138,7 +138,7 @@ std::string radio_dataset_text(const RecordingHeader& header, bool wheels,
                                const std::vector<std::pair<std::string, const char*>>& runs) {
   std::string text = dataset_head("simulated " + header.robot_model + " by radio, " + header.radio_format +
                                       ", " + header.firmware + ", commit " + header.commit,
-                                  "robot");
+                                  "robot", header.radio_format);
   const auto channel = [&](const std::string& signal, const std::string& column) {
     text += channel_line(signal, column);
   };

@@ -24,6 +24,7 @@ using CardWriters = std::map<std::string, std::pair<std::uint32_t, int>>;
 
 class CardFiles {
  public:
+  // `writers`: null: whatever the board file says, no file is written.
   CardFiles(std::string board_file, std::uint32_t robot_id, std::shared_ptr<CardWriters> writers)
       : board_file_(std::move(board_file)), robot_id_(robot_id), writers_(std::move(writers)) {}
   // Throws std::invalid_argument naming board file and device.

@@ -29,7 +29,7 @@ class ImageFirmware final : public Firmware {
       : image_(std::move(image)),
         listeners_(listeners),
         observer_(std::move(observer)),
-        cards_(image_->board_file, config.robot_id, image_->card_writers),
+        cards_(image_->board_file, config.robot_id, listeners.ports ? image_->card_writers : nullptr),
         mcu_(image_->board, image_->elf, config,
              [this](const mcu::DeviceEntry& entry, int board) { return cards_.open(entry, board); }),
         memory_(mcu_, image_->elf),

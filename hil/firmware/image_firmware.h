@@ -29,7 +29,7 @@ using BoardListener = std::function<void(const MadeBoard&)>;
 struct ImageListeners {
   BoardListener on_board = {};
   ConsoleListener on_line = {};
-  bool ports = true;  // false: ports that lead out are not opened
+  bool ports = true;  // false: nothing leads out: ports are not opened, cards not written
 };
 
 // `served`: the radio format that the session serves, which the board's must be; empty: any that there is.

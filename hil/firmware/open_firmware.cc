@@ -117,6 +117,8 @@ Session::FirmwareMaker library_maker(const FirmwareChoice& choice, const Session
 
 }  // namespace
 
+bool is_image(const std::string& file) { return image_kind(file) != ImageKind::kNone; }
+
 std::vector<HashedFile> firmware_files(const FirmwareChoice& choice) {
   if (is_reference(choice)) return {};
   if (looks_like_wire(choice.file)) return {{choice.file, ""}};

@@ -33,6 +33,9 @@ struct FirmwareChoice {
 // Throws std::invalid_argument, all problems in one text; the maker does, too, when a robot is refused.
 Session::FirmwareMaker open_firmware(const FirmwareChoice& choice, const SessionConfig& session);
 
+// A microcontroller image, which needs a board file. False too where the file cannot be read.
+bool is_image(const std::string& file);
+
 // What stands in for it where a bench is measured before it runs: an ARM image as it is, its ports closed and nobody
 // listening; the reference firmware for all else, whose work is another process's or computer's.
 Session::FirmwareMaker open_firmware_for_load(FirmwareChoice choice, const SessionConfig& session);

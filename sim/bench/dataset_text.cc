@@ -6,11 +6,12 @@
 
 namespace omnihil {
 
-std::string dataset_head(std::string_view title, std::string_view rig) {
+std::string dataset_head(std::string_view title, std::string_view rig, std::string_view radio) {
+  const std::string sent = radio.empty() ? "" : fmt::format("radio = {}\n", toml_text(radio));
   return fmt::format(
              "format = \"omnihil-dataset/1\"\ntitle = {}\nrig = \"{}\"\nmodel = "
-             "\"model.toml\"\n\n[channels]\n",
-             toml_text(title), rig) +
+             "\"model.toml\"\n{}\n[channels]\n",
+             toml_text(title), rig, sent) +
          channel_line("time", "time_s");
 }
 

@@ -9,8 +9,9 @@
 
 namespace omnihil {
 
-// Of a dataset whose model is model.toml and whose time is the column time_s: up to its further [channels].
-std::string dataset_head(std::string_view title, std::string_view rig);
+// Of a dataset whose model is model.toml and whose time is the column time_s: up to its further [channels]. `radio`: the format
+// that its commands were sent in; empty: none.
+std::string dataset_head(std::string_view title, std::string_view rig, std::string_view radio = "");
 // `more`: further keys. sigma: 0: not stated.
 std::string channel_line(std::string_view signal, std::string_view column, double sigma = 0.0,
                          std::string_view more = "");

@@ -1,9 +1,13 @@
-// Help of options that all verbs have which hold a model against a measurement.
+// Options of all verbs that hold a model against a measurement.
+//
+//   add_dataset_firmware_options(verb, a->firmware);                  // --firmware, --board
+//   DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
 #pragma once
+#include "hil/dataset/dataset_reader.h"
+#include "tools/command_line.h"
 
 namespace omnihil {
 
-inline constexpr const char* kFirmwareSays =
-    "library (.so) that makes duties of a robot's commands in the prediction, in place of the dataset's own";
+void add_dataset_firmware_options(Verb& verb, OtherFirmware& firmware);
 
 }  // namespace omnihil

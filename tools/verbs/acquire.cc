@@ -75,7 +75,7 @@ int drive(const RobotWords& words, const AcquirePlan& plan, const RadioFormat& f
   fmt::print("{}", clock_words(acquirer.cameras(), acquirer.unix_start_s()));
   return finish_measurement(plan, folder, [&](const auto& runs, const auto& notes) {
     const auto noise = steady_noise(plan, runs, wheel_speed_step_rad_s(format));
-    return Described{acquired_dataset_text(plan, runs, noise), readme_text(about, plan, notes)};
+    return Described{acquired_dataset_text(plan, runs, noise, format.id), readme_text(about, plan, notes)};
   });
 }
 

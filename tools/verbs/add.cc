@@ -18,6 +18,7 @@
 #include "tools/formula_argument.h"
 #include "tools/guarded.h"
 #include "tools/options/dataset_options.h"
+#include "tools/options/firmware_cost.h"
 #include "tools/progress_line.h"
 #include "tools/verbs/verbs.h"
 
@@ -27,7 +28,8 @@ namespace {
 struct Arguments {
   std::string dataset;
   std::string effect;
-  std::string model, firmware;
+  std::string model;
+  OtherFirmware firmware;
   std::string write;
   std::uint64_t seed = 1;
   int jobs = 2;
@@ -83,7 +85,7 @@ int report(const Arguments& a, const Dataset& dataset, const Addition& addition,
 }
 
 int run(const Arguments& a) {
-  const DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
+  DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
   for (const ModelProblem& p : reading.problems) std::fprintf(stderr, "omnihil add: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
   const EffectUse use = use_of(a, *reading.nominal);
@@ -94,6 +96,7 @@ int run(const Arguments& a) {
     std::fprintf(stderr, "omnihil add: the model has %s already\n", name.c_str());
     return kExitBadInput;
   }
+  const FirmwareMeter meter(*reading.dataset);
   StopSignals stop;
   AddOptions options;
   options.seed = a.seed;
@@ -107,6 +110,7 @@ int run(const Arguments& a) {
     };
     addition = add_effect(*reading.dataset, *reading.nominal, use, options);
   }
+  say_firmware_cost("add", meter);
   if (StopSignals::requested()) return kExitInterrupted;
   if (!addition.applies || addition.after.errors.empty()) {
     std::fprintf(stderr, "omnihil add: %s: %s\n", name.c_str(), addition.why.c_str());
@@ -125,7 +129,7 @@ void add_verb_add(Verb& program, VerbResult& result) {
                   "id of an effect, or a formula: \"torque_Nm += -a*omega_rotor_rad_s; a = 2e-6\"")
       .required();
   verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
-  verb.add_option("--firmware", a->firmware, kFirmwareSays);
+  add_dataset_firmware_options(verb, a->firmware);
   verb.add_option("--write", a->write, "the model with it; a file that is there is kept as FILE.1");
   verb.add_flag("--force", a->force, "write it even when it is not useful");
   verb.add_option("--seed", a->seed, "of the simulated null and of the bootstrap").capture_default_str();

@@ -16,13 +16,15 @@
 #include "tools/exit_codes.h"
 #include "tools/guarded.h"
 #include "tools/options/dataset_options.h"
+#include "tools/options/firmware_cost.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
 namespace {
 
 struct Arguments {
-  std::string dataset, model, firmware, json;
+  std::string dataset, model, json;
+  OtherFirmware firmware;
   std::vector<std::string> tubes;
   bool runs = false;
 };
@@ -73,6 +75,7 @@ int run(const Arguments& a) {
   for (const ModelProblem& p : reading.problems)
     std::fprintf(stderr, "omnihil compare: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
+  const FirmwareMeter meter(*reading.dataset);
   const auto predictor = make_predictor(*reading.dataset, *reading.nominal, {});
   const std::vector<std::string> names = compared_names(*predictor);
   std::vector<std::string> faults;
@@ -108,6 +111,7 @@ int run(const Arguments& a) {
     std::fputs(compare_text(report).c_str(), stdout);
     if (!a.json.empty()) replace_file(a.json, compare_json(report));
   }
+  say_firmware_cost("compare", meter);
   if (!report.comparison.diverged.empty()) return kExitDiverged;
   return report.outside() ? kExitDiffers : kExitOk;
 }
@@ -120,7 +124,7 @@ void add_verb_compare(Verb& program, VerbResult& result) {
       program.add_subcommand("compare", "how far a model is from a measurement, and where it is worst");
   verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
   verb.add_option("--model", a->model, "model file in place of the dataset's own");
-  verb.add_option("--firmware", a->firmware, kFirmwareSays);
+  add_dataset_firmware_options(verb, a->firmware);
   verb.add_option(
       "--tube", a->tubes,
       "SIGNAL=TOLERANCE[%][/SECONDS]: exit with 1 when a sample is farther from the model (%: of the "

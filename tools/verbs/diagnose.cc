@@ -17,6 +17,7 @@
 #include "tools/fitted_model.h"
 #include "tools/guarded.h"
 #include "tools/options/dataset_options.h"
+#include "tools/options/firmware_cost.h"
 #include "tools/program_commit.h"
 #include "tools/progress_line.h"
 #include "tools/verbs/verbs.h"
@@ -26,7 +27,8 @@ namespace {
 
 struct Arguments {
   std::string dataset;
-  std::string model, firmware;
+  std::string model;
+  OtherFirmware firmware;
   std::string json;
   std::string report;
   std::string write;
@@ -49,10 +51,14 @@ void write_report(const Arguments& a, const DatasetReading& reading, const Diagn
 }
 
 int run(const Arguments& a) {
-  const DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
+  DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
   for (const ModelProblem& p : reading.problems)
     std::fprintf(stderr, "omnihil diagnose: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
+  const FirmwareMeter meter(*reading.dataset);
+  if (reading.dataset->firmware)
+    say_firmware_ahead("diagnose", meter, *make_predictor(*reading.dataset, *reading.nominal, {}),
+                       *reading.nominal, unknowns_of(*reading.nominal).size());
   StopSignals stop;
   Diagnosis diagnosis;
   double elapsed_s = 0.0;
@@ -68,6 +74,7 @@ int run(const Arguments& a) {
     diagnosis = diagnose(*reading.dataset, *reading.nominal, options);
     elapsed_s = line.elapsed_s();
   }
+  say_firmware_cost("diagnose", meter);
   const std::string model_text =
       diagnosis.final_fit.model.effects.empty() && diagnosis.final_fit.parameters.empty()
           ? reading.model_text
@@ -95,7 +102,7 @@ void add_verb_diagnose(Verb& program, VerbResult& result) {
       program.add_subcommand("diagnose", "which physical effect a model lacks, and what to measure next");
   verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
   verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
-  verb.add_option("--firmware", a->firmware, kFirmwareSays);
+  add_dataset_firmware_options(verb, a->firmware);
   verb.add_option("--json", a->json,
                   "diagnosis as JSON (omnihil-diagnosis/1); - : to stdout, in place of the text");
   verb.add_option("--report", a->report, "diagnosis as one HTML file");

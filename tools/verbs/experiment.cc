@@ -32,7 +32,8 @@ namespace {
 constexpr std::string_view kBase = "base";
 
 struct Arguments {
-  std::string dataset, model, firmware, out, radio, write;
+  std::string dataset, model, out, radio, write;
+  OtherFirmware firmware;
   bool usual = false;
   BodyDriveOptions body;
   std::vector<std::string> separate;
@@ -235,7 +236,7 @@ void add_verb_experiment(Verb& program, VerbResult& result) {
   verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml");
   verb.add_option("--model", a->model,
                   "model in place of the dataset's own; without a DATASET: a simulated bench");
-  verb.add_option("--firmware", a->firmware, kFirmwareSays);
+  add_dataset_firmware_options(verb, a->firmware);
   verb.add_option("--separate", a->separate, "effects to tell apart, or \"base\" for none: A,B");
   verb.add_option("--shrink", a->question.shrink, "number to know better: its path in the model")
       .type_name("PATH");

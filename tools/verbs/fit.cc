@@ -18,13 +18,15 @@
 #include "tools/fitted_model.h"
 #include "tools/guarded.h"
 #include "tools/options/dataset_options.h"
+#include "tools/options/firmware_cost.h"
 #include "tools/verbs/verbs.h"
 
 namespace omnihil {
 namespace {
 
 struct Arguments {
-  std::string dataset, model, firmware, write, json;
+  std::string dataset, model, write, json;
+  OtherFirmware firmware;
   std::vector<std::string> free, freeze, with;
   FitOptions options;
 };
@@ -78,12 +80,13 @@ std::vector<Unknown> chosen(const Candidate& c, const Arguments& a, std::vector<
 }
 
 int run(const Arguments& a) {
-  const DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
+  DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
   for (const ModelProblem& p : reading.problems) std::fprintf(stderr, "omnihil fit: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
   std::vector<std::string> faults;
   const Candidate start = with_effects(*reading.nominal, a.with, faults);
   const std::vector<Unknown> unknowns = chosen(start, a, faults);
+  const FirmwareMeter meter(*reading.dataset);
   const auto predictor = make_predictor(*reading.dataset, *reading.nominal, {});
   for (const EffectUse& use : start.effects) {
     const std::string why = faults.empty() ? predictor->applies(*use.entry) : "";
@@ -96,12 +99,14 @@ int run(const Arguments& a) {
   FitOptions options = a.options;
   options.profile = true;
   options.stop = [] { return StopSignals::requested(); };
+  say_firmware_ahead("fit", meter, *predictor, start, unknowns.size());
   const auto began = std::chrono::steady_clock::now();
   FitReport report{.dataset = a.dataset, .model = a.model, .fit = {}, .before = {}, .after = {}};
   report.before = compare(*predictor, *reading.nominal);
   report.fit = fit(*predictor, start, unknowns, options);
   report.after = compare(*predictor, report.fit.model);
   report.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  say_firmware_cost("fit", meter);
   if (a.json == "-") {
     std::fputs(fit_json(report).c_str(), stdout);
   } else {
@@ -122,7 +127,7 @@ void add_verb_fit(Verb& program, VerbResult& result) {
   Verb verb = program.add_subcommand("fit", "the numbers of a model that explain a measurement best");
   verb.add_option("DATASET", a->dataset, "folder of a measurement, or its dataset.toml").required();
   verb.add_option("--model", a->model, "model to start from, in place of the dataset's own");
-  verb.add_option("--firmware", a->firmware, kFirmwareSays);
+  add_dataset_firmware_options(verb, a->firmware);
   verb.add_option("--with", a->with, "add this effect, starting without influence (several)")
       .type_name("EFFECT");
   verb.add_option("--free", a->free, "move only these: a path, an effect, a section (several)")

@@ -106,7 +106,7 @@ TEST(AcquiredDataset, NoiseIsThatOfSteadyDriving) {
   const std::vector<AcquiredRun> runs{{&plan.runs[0], rows}};
   EXPECT_NEAR(steady_noise(plan, runs, 0.0).at("wheel_1"), 0.2, 0.02);  // 840 differences: 4 %
   EXPECT_NEAR(steady_noise(plan, runs, 3.0).at("wheel_1"), 3.0 / std::sqrt(12.0), 1e-12);
-  const std::string text = acquired_dataset_text(plan, runs, {{"wheel_1", 0.2}});
+  const std::string text = acquired_dataset_text(plan, runs, {{"wheel_1", 0.2}}, "ulaval-hermes");
   EXPECT_NE(text.find("wheel_speed_1 = { column = \"wheel_1\", sigma = 0.2 }"), std::string::npos) << text;
   EXPECT_EQ(text.find("vision"), std::string::npos);
 }

@@ -6,40 +6,16 @@
 
 #include "hil/dataset/dataset_reader.h"
 #include "identify/predict/predictor.h"
-#include "tests/hil/recording/real_run.h"
+#include "tests/hil/dataset/radio_recording.h"
 #include "tests/identify/dataset_folder.h"
 
 namespace omnihil {
 namespace {
 
-SessionSetup one_robot() {
-  SessionSetup setup = real::setup({"ulaval-hermes", "omni_default", Physics::kPlanar}, {3});
-  return setup;
-}
-ModelFile model() { return *read_bundle(one_robot().model).model; }
+ModelFile model() { return *read_bundle(one_radio_robot().model).model; }
 
-// Steps of the body's velocity, twelve seconds, a packet every 20 ms.
 const Recording& driven() {
-  static const Recording recording = [] {
-    const SessionSetup setup = one_robot();
-    RecordingHeader header = recording_header(setup, "abc1234");
-    header.sample_every = 1;
-    Session session(session_config(setup), make_reference_firmware);
-    header.firmware = session.firmware(0).name();
-    RecordingMemory memory(header);
-    session.set_observer(&memory);
-    const RadioFormat& format = *find_radio_format(setup.radio_format);
-    std::vector<std::uint8_t> out;
-    const double steps[][3] = {{0, 0, 0}, {0.8, 0, 0}, {0.8, 0.5, 0}, {0, 0.5, 2}, {-0.6, 0, -2}, {0, 0, 0}};
-    for (int n = 0; n < 12000; ++n) {
-      const double* v = steps[(n / 700) % 6];
-      session.step(n % 20 == 0 ? real::frame(format, "SPEED_MOVE_ADVANCE",
-                                             {{"robot", 3}, {"vx", v[0]}, {"vy", v[1]}, {"vtheta", v[2]}})
-                               : std::vector<std::uint8_t>{},
-                   out);
-    }
-    return memory.take(session.now_ns());
-  }();
+  static const Recording recording = radio_recording(one_radio_robot(), make_reference_firmware, 12.0);
   return recording;
 }
 

@@ -1,0 +1,37 @@
+// Commands to a firmware that decodes its radio's frames by itself: each as the frames that its format's dongle sends a
+// robot, all of them at the instant of the command.
+//
+//   RadioFront front(*find_radio_format("ulaval-hermes"), robot_id, wheel_radius_m);
+//   if (!front.say(command, firmware, now_ns)) …;      // the format cannot say this: nothing was sent
+//
+// What a host would write goes through the dongle of the format (Session's own, radio_link.h), on a clock of its own: how long
+// the air takes is whose command it is, who has it in a latency of his own. Packets that have to go before the first command
+// go before it. Cannot: be asked for telemetry; keep a connection up for a format that wants packets between commands.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "firmware_iface/ports.h"
+#include "protocols/radio_format.h"
+
+namespace omnihil {
+
+class RadioFront {
+ public:
+  RadioFront(const RadioFormat& format, int robot_id, double wheel_radius_m);
+  bool say(const RobotCommand& command, Firmware& firmware, std::int64_t now_ns);
+
+ private:
+  const RadioFormat& format_;
+  int robot_id_;
+  std::unique_ptr<RadioLink> link_;
+  std::int64_t clock_ns_ = 0;
+  bool set_up_ = true;
+  std::vector<std::uint8_t> bytes_;
+};
+
+// Whether a host can say this in the format.
+bool can_say(const RadioFormat& format, const RobotCommand& command);
+
+}  // namespace omnihil
