@@ -1,7 +1,7 @@
 // Options of all verbs that hold a model against a measurement.
 //
-//   add_dataset_firmware_options(verb, a->firmware);                  // --firmware, --board
-//   DatasetReading reading = read_dataset(a.dataset, a.model, a.firmware);
+//   add_dataset_firmware_options(verb, firmware);                  // --firmware, --board
+//   DatasetReading reading = read_dataset("bench/robot", "", firmware);
 #pragma once
 #include "hil/dataset/dataset_reader.h"
 #include "tools/command_line.h"
