@@ -306,7 +306,7 @@ class Diagnosing {
                              : Outcome::kFound;
     if (remains && searched && !stopped_) {
       say("looking for a formula", 0.92);
-      out_.unknown = unknown_structure(task_, current_, out_.final_comparison);
+      out_.unknown = unknown_structure(task_, current_, out_.final_comparison, stop());
     }
     if (!searched) {
       out_.unknown.sentence = "No effect was tried: " + out_.not_searched;

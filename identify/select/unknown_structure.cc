@@ -159,7 +159,8 @@ struct Found {
 };
 
 Found formula_of(const SelectionTask& task, const Fitted& last, const LinearBase& base,
-                 const Library& library, const std::vector<Eigen::VectorXd>& noise) {
+                 const Library& library, const std::vector<Eigen::VectorXd>& noise,
+                 const std::function<bool()>& stop) {
   Selection selection;
   while (selection.chosen.size() < kMostTerms && add_best(library, base, noise, selection)) {
   }
@@ -183,6 +184,7 @@ Found formula_of(const SelectionTask& task, const Fitted& last, const LinearBase
   setup.nominal = task.nominal;
   setup.seed = task.seed;
   setup.jobs = task.jobs;
+  setup.stop = stop;
   const Fitted with = refit(setup, last, start);
   const AcceptanceResult acceptance =
       test_acceptance(task.acceptance_context, last, with, start.name, kLeastSignalToNull);
@@ -196,7 +198,7 @@ Found formula_of(const SelectionTask& task, const Fitted& last, const LinearBase
 }  // namespace
 
 UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last,
-                                   const Comparison& comparison) {
+                                   const Comparison& comparison, const std::function<bool()>& stop) {
   UnknownStructure out;
   const WhitenedResiduals& fit = (*task.splits)[kTraining];
   Eigen::VectorXd scale = fit.mean_square(last.residual[kTraining]).cwiseSqrt();
@@ -218,12 +220,17 @@ UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last
   std::vector<Eigen::VectorXd> noise;
   for (const Eigen::VectorXd& n : task.null->fit_noise) noise.push_back(n.cwiseProduct(base.weights()));
   Found best;
-  const Library torque = library_of(task, last, base, "torque_Nm",
-                                    torque_terms(last.fit.model, data, torque_scale(task, last.fit.model)));
+  std::vector<UnknownTerm> of_torque =
+      torque_terms(last.fit.model, data, torque_scale(task, last.fit.model));
+  // Where the motion is imposed that torque is what the law itself makes needed (needed_torque.h), to be solved for in each
+  // sub-step: a fit of minutes, beside the catalogue's own losses of the torque.
+  if (task.predictor->method() == Method::kInverse)
+    std::erase_if(of_torque, [](const UnknownTerm& t) { return t.of_motor_torque; });
+  const Library torque = library_of(task, last, base, "torque_Nm", std::move(of_torque));
   const Library voltage = library_of(task, last, base, "voltage_V", voltage_terms(last.fit.model, data));
   for (const Library* library : {&torque, &voltage}) {
     if (library->terms.empty()) continue;
-    Found found = formula_of(task, last, base, *library, noise);
+    Found found = formula_of(task, last, base, *library, noise, stop);
     if (found.gain > best.gain) best = std::move(found);
   }
   if (best.gain > 0.0) {

@@ -61,9 +61,12 @@ std::vector<UnknownTerm> torque_terms(const Candidate& model, const DataScale& s
       {.text = fmt::format("{}*exp(-({}/{:.3g})^2)", direction, w, 0.05 * top),
        .unit = force,
        .size = torque_scale},
-      {.text = tau, .unit = "1", .size = 0.05},
-      {.text = fmt::format("abs({})*{}", tau, direction), .unit = "1", .size = 0.05},
-      {.text = fmt::format("{0}*abs({0})", tau), .unit = "1/(" + force + ")", .size = 0.02 / torque_scale},
+      {.text = tau, .unit = "1", .size = 0.05, .of_motor_torque = true},
+      {.text = fmt::format("abs({})*{}", tau, direction), .unit = "1", .size = 0.05, .of_motor_torque = true},
+      {.text = fmt::format("{0}*abs({0})", tau),
+       .unit = "1/(" + force + ")",
+       .size = 0.02 / torque_scale,
+       .of_motor_torque = true},
   };
   if (!linear) {
     add_orders(angle, orders_to_try(scale), direction, torque_scale, force, terms);

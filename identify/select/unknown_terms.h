@@ -17,6 +17,7 @@ struct UnknownTerm {
   std::string text;
   std::string unit;   // of its coefficient
   double size = 0.0;  // of its coefficient
+  bool of_motor_torque = false;
 };
 
 // What adds to the rotor's torque; `torque_scale`: a torque that matters, N m (N).
