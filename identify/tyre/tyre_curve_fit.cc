@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
@@ -95,11 +98,9 @@ double descend(Problem& problem, double law, Eigen::Vector4d& x) {
 
 double largest_ratio(std::span<const TyrePoint> points) {
   std::vector<double> sizes;
+  sizes.reserve(points.size());
   for (const TyrePoint& p : points) sizes.push_back(std::abs(p.ratio));
-  if (sizes.empty()) return 0.0;
-  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), at, sizes.end());
-  return *at;
+  return quantile(std::move(sizes), 0.99, QuantileRank::kLower);
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "identify/predict/robot_record.h"
 #include "identify/record/rig.h"
+#include "identify/record/statistics.h"
 #include "identify/tyre/motion_smoother.h"
 #include "sim/model/rolling_model.h"
 #include "sim/robot/rolling_robot.h"
@@ -202,20 +204,12 @@ class Reader {
   WheelLoadLaw<double> load_;
 };
 
-double median(std::vector<double> x) {
-  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
-  std::nth_element(x.begin(), middle, x.end());
-  return *middle;
-}
-
 // But for the largest hundredth: instants at which a wheel's acceleration jumps.
 double largest_force_N(const std::vector<Raw>& raw) {
   std::vector<double> sizes;
+  sizes.reserve(raw.size());
   for (const Raw& r : raw) sizes.push_back(std::abs(r.force_N));
-  if (sizes.empty()) return 0.0;
-  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), at, sizes.end());
-  return *at;
+  return quantile(std::move(sizes), 0.99, QuantileRank::kLower);
 }
 
 struct RollingRadius {
@@ -251,7 +245,7 @@ RollingRadius rolling_radius(const std::vector<Raw>& raw, double most_N, double 
       const Raw& r = *light[i];
       off[i] = std::abs(r.hub_m_s - radius_m * r.omega_rad_s + soft_m * r.omega_rad_s * r.force_N / most_N);
     }
-    const double scale = 1.4826 * median(off) + 1e-9;  // of a normal distribution
+    const double scale = sigma_by_mad(off) + 1e-9;
     for (std::size_t i = 0; i < off.size(); ++i) weight[i] = std::min(1.0, 1.345 * scale / (off[i] + 1e-12));
     sigma_m = scale * std::sqrt(c / determinant) * std::sqrt(kHangTogether);
   }
