@@ -220,8 +220,7 @@ UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last
   std::vector<Eigen::VectorXd> noise;
   for (const Eigen::VectorXd& n : task.null->fit_noise) noise.push_back(n.cwiseProduct(base.weights()));
   Found best;
-  std::vector<UnknownTerm> of_torque =
-      torque_terms(last.fit.model, data, torque_scale(task, last.fit.model));
+  std::vector<UnknownTerm> of_torque = torque_terms(last.fit.model, data, torque_scale(task, last.fit.model));
   // Where the motion is imposed that torque is what the law itself makes needed (needed_torque.h), to be solved for in each
   // sub-step: a fit of minutes, beside the catalogue's own losses of the torque.
   if (task.predictor->method() == Method::kInverse)
