@@ -148,7 +148,7 @@ void McuBoard::wire_device_pins(Device& device, const DeviceEntry& entry) {
   });
 }
 
-double McuBoard::analog_value(const AnalogEntry& entry) const {
+double McuBoard::analog_value(const AnalogEntry& entry, std::int64_t at_ns) const {
   const auto wheel = static_cast<std::size_t>(entry.wheel), phase = static_cast<std::size_t>(entry.phase);
   switch (entry.signal) {
     case AnalogSignal::kBusVoltage:
@@ -156,11 +156,11 @@ double McuBoard::analog_value(const AnalogEntry& entry) const {
     case AnalogSignal::kMotorCurrent:
       return world_.motor_current_A[wheel];
     case AnalogSignal::kPhaseCurrent:
-      return world_.phase_current_A[wheel][phase];
+      return world_.phase_A(entry.wheel, phase, at_ns);
     case AnalogSignal::kPhaseVoltage:
       return phase_voltage_V(entry.wheel, phase);
     case AnalogSignal::kShuntCurrent:
-      return shunt_current_A(entry.wheel, phase);
+      return shunt_current_A(entry.wheel, phase, at_ns);
     case AnalogSignal::kConstant:
       break;
   }
@@ -181,10 +181,10 @@ double McuBoard::phase_voltage_V(int wheel, std::size_t phase) const {
 }
 
 // Of a shunt between the lower switch and the bus's minus: the phase's current while that switch or its diode carries it.
-double McuBoard::shunt_current_A(int wheel, std::size_t phase) const {
+double McuBoard::shunt_current_A(int wheel, std::size_t phase, std::int64_t at_ns) const {
   const MotorWire* motor = this->wire(wheel);
   if (motor == nullptr || !motor->phases()) return 0.0;
-  const double current_A = world_.phase_current_A[static_cast<std::size_t>(wheel)][phase];
+  const double current_A = world_.phase_A(wheel, phase, at_ns);
   switch (motor->path(phase)) {
     case CurrentPath::kLower:
       return current_A;
@@ -205,7 +205,9 @@ void McuBoard::wire_analog() {
         entry.signal == AnalogSignal::kPhaseVoltage || entry.signal == AnalogSignal::kShuntCurrent;
     adc->set_source(
         entry.channel,
-        [this, entry](std::int64_t) { return entry.offset_V + entry.volts_per_unit * analog_value(entry); },
+        [this, entry](std::int64_t at_ns) {
+          return entry.offset_V + entry.volts_per_unit * analog_value(entry, at_ns);
+        },
         !of_timers);
     if (std::find(adcs_.begin(), adcs_.end(), adc) == adcs_.end()) adcs_.push_back(adc);
   }

@@ -70,9 +70,9 @@ class McuBoard {
   void wire_device(const DeviceEntry& entry);
   void wire_device_pins(Device& device, const DeviceEntry& entry);
   void wire_analog();
-  double analog_value(const AnalogEntry& entry) const;
+  double analog_value(const AnalogEntry& entry, std::int64_t at_ns) const;
   double phase_voltage_V(int wheel, std::size_t phase) const;
-  double shunt_current_A(int wheel, std::size_t phase) const;
+  double shunt_current_A(int wheel, std::size_t phase, std::int64_t at_ns) const;
   void wire_radio();
   void wire_commands();
   DeviceWorld device_world(const DeviceEntry& entry);

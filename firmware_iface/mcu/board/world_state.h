@@ -1,6 +1,6 @@
 // What the plant tells a board at one instant; between two such instants shafts turn on as they did.
 //
-// Law: theta(t) = theta0 + omega0 (t - t0), everything else held. Measured with an 8 kHz speed loop on a
+// Law: theta(t) = theta0 + omega0 (t - t0), phase currents alike, everything else held. Measured with an 8 kHz speed loop on a
 // 4096-count encoder: held counts of a 1 ms step give 12 % speed error, extrapolated ones 0.01 % up to steps
 // of 5 ms. Cannot represent: acceleration within a step, ripple of currents within it.
 #pragma once
@@ -16,7 +16,9 @@ struct WorldState {
   std::int64_t at_ns = 0;
   std::array<double, kWheels> theta_rotor_rad{}, omega_rotor_rad_s{};
   std::array<double, kWheels> motor_current_A{};
-  std::array<std::array<double, kLegs>, kWheels> phase_current_A{};  // into the motor
+  std::int64_t phases_at_ns = 0;
+  std::array<std::array<double, kLegs>, kWheels> phase_current_A{};  // into the motor, at phases_at_ns
+  std::array<std::array<double, kLegs>, kWheels> phase_rate_A_s{};   // and how they go on from there
   std::array<std::array<double, kLegs>, kWheels>
       leg_V{};  // against the bus's minus, mean of the last PWM period
   double gear_ratio = 1.0;
@@ -26,6 +28,11 @@ struct WorldState {
   double rotor_rad(int wheel, std::int64_t now_ns) const {
     const auto w = static_cast<std::size_t>(wheel);
     return theta_rotor_rad[w] + omega_rotor_rad_s[w] * 1e-9 * static_cast<double>(now_ns - at_ns);
+  }
+  double phase_A(int wheel, std::size_t phase, std::int64_t now_ns) const {
+    const auto w = static_cast<std::size_t>(wheel);
+    return phase_current_A[w][phase] +
+           phase_rate_A_s[w][phase] * 1e-9 * static_cast<double>(now_ns - phases_at_ns);
   }
   std::int64_t encoder_counts(int wheel, std::int64_t now_ns) const {
     constexpr double kTwoPi = 6.283185307179586;

@@ -35,6 +35,7 @@ struct Odrive : EscImage {
     // Offsets of its current amplifiers are taken for 1.5 s before its axes answer.
     wait(1.7);
     ASSERT_TRUE(comes_to(kIdle, 2.0));
+    bench_->align("TIM1");
   }
   void say(const std::string& text) {
     const std::string line = text + "\n";
@@ -121,8 +122,13 @@ TEST_F(Odrive, SlowMeasuresTheMotorFindsItsEncoderAndTurnsAsItIsTold) {
       windings_.resistance_ohm + bridge_.switch_resistance_ohm + 4.0 / 3.0 * dead_V / kCalibration_A;
   std::printf("measured %.4f ohm (%.4f)\n", measured_ohm, ohm);
   EXPECT_NEAR(measured_ohm, ohm, 0.01 * ohm);
-  // Alternating pulses, which this bridge does not follow: its own measurement of this one is not used.
-  set("axis0.motor.config.phase_inductance", windings_.inductance_q_H);
+  // Of pulses that alternate every T = 125 us it takes V T / (change of the current); with the winding's own decay that
+  // change is 2 V / R tanh(R T / 2 L).
+  const double measured_H = get("axis0.motor.config.phase_inductance"), L = windings_.inductance_q_H;
+  const double half_decay = 125e-6 * (windings_.resistance_ohm + bridge_.switch_resistance_ohm) / (2 * L);
+  const double henry = L * half_decay / std::tanh(half_decay);
+  std::printf("measured %.1f uH (%.1f)\n", 1e6 * measured_H, 1e6 * henry);
+  EXPECT_NEAR(measured_H, henry, 0.03 * henry);
 
   set("axis0.requested_state", kFindEncoder);
   wait(2.5);  // a second to settle, then it turns the field
