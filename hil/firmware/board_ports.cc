@@ -42,6 +42,13 @@ std::string_view as_text(std::span<const std::uint8_t> bytes) {
 // The others come to us.
 const WireQuery kUsual = {{"listen", "1"}};
 
+std::unique_ptr<BufferedWire> byte_wire(const mcu::PortEntry& entry, const BoardPortsOptions& options,
+                                        WireProblem& problem) {
+  if (entry.as.empty()) return nullptr;
+  std::unique_ptr<ByteWire> wire = open_byte_wire(url_of(entry, options), kUsual, problem);
+  return wire ? std::make_unique<BufferedWire>(std::move(wire), kQueueBytes) : nullptr;
+}
+
 }  // namespace
 
 struct BoardPorts::Port {
@@ -52,36 +59,58 @@ struct BoardPorts::Port {
   mcu::PortEntry is;
 };
 
-struct BoardPorts::SerialPort final : Port {
-  SerialPort(const mcu::PortEntry& entry, mcu::McuBoard& on, ConsoleText console)
-      : Port(entry), board(on), usart(*on.chip().find<mcu::Usart>(entry.of)), text(std::move(console)) {
-    usart.on_transmit([this](std::uint8_t byte, mcu::Cycles) {
-      ++out;
-      if (is.console) text.add(as_text({&byte, 1}));
-      if (wire) sent.push_back(byte);
-    });
-  }
-
-  void pump() override {
-    if (!wire || wire->error()) return;
+// A byte wire and what passes it.
+struct BoardPorts::WireEnd {
+  bool open() const { return wire && !wire->error(); }
+  // What has come, at most so much: what is more waits where it is.
+  std::span<const std::uint8_t> take(std::size_t most) {
     arrived.clear();
-    // Not more than the line carries in that time: what is more waits where it is.
-    const double per_run = usart.baud() / 10.0 * 1e-9 * static_cast<double>(board.spec().coupling_ns);
-    wire->read(arrived, static_cast<std::size_t>(std::clamp(per_run, 1.0, 4096.0)));
+    wire->read(arrived, most);
     in += arrived.size();
-    if (!arrived.empty()) usart.feed(arrived, board.now_ns());
+    return arrived;
+  }
+  void send() {
     static_cast<void>(wire->take_peer_closed());
     wire->flush();
     if (!sent.empty() && (!wire->peer_present() || !wire->write(sent))) lost += sent.size();
     sent.clear();
   }
+  void say(std::span<const std::uint8_t> bytes) {
+    out += bytes.size();
+    if (wire) sent.insert(sent.end(), bytes.begin(), bytes.end());
+  }
+  void add_report(std::vector<std::string>& lines, const mcu::PortEntry& is) const {
+    if (!wire) return;
+    lines.push_back(fmt::format("{} at {}: {} bytes out{}, {} in{}{}", is.of, wire->name(), out,
+                                lost > 0 ? fmt::format(" ({} that nobody took)", lost) : "", in,
+                                wire->failure().empty() ? "" : "; ", wire->failure()));
+  }
+
+  std::unique_ptr<BufferedWire> wire;  // null: none
+  std::vector<std::uint8_t> sent, arrived;
+  std::uint64_t out = 0, in = 0, lost = 0;
+};
+
+struct BoardPorts::SerialPort final : Port {
+  SerialPort(const mcu::PortEntry& entry, mcu::McuBoard& on, ConsoleText console)
+      : Port(entry), board(on), usart(*on.chip().find<mcu::Usart>(entry.of)), text(std::move(console)) {
+    usart.on_transmit([this](std::uint8_t byte, mcu::Cycles) {
+      if (is.console) text.add(as_text({&byte, 1}));
+      end.say({&byte, 1});
+    });
+  }
+
+  void pump() override {
+    if (!end.open()) return;
+    // Not more than the line carries in that time.
+    const double per_run = usart.baud() / 10.0 * 1e-9 * static_cast<double>(board.spec().coupling_ns);
+    const auto arrived = end.take(static_cast<std::size_t>(std::clamp(per_run, 1.0, 4096.0)));
+    if (!arrived.empty()) usart.feed(arrived, board.now_ns());
+    end.send();
+  }
 
   void add_report(std::vector<std::string>& lines) const override {
-    if (wire) {
-      lines.push_back(fmt::format("{} at {}: {} bytes out{}, {} in{}{}", is.of, wire->name(), out,
-                                  lost > 0 ? fmt::format(" ({} that nobody took)", lost) : "", in,
-                                  wire->failure().empty() ? "" : "; ", wire->failure()));
-    }
+    end.add_report(lines, is);
     add_text(lines, is, text);
   }
 
@@ -96,9 +125,7 @@ struct BoardPorts::SerialPort final : Port {
   mcu::McuBoard& board;
   mcu::Usart& usart;
   ConsoleText text;
-  std::unique_ptr<BufferedWire> wire;
-  std::vector<std::uint8_t> sent, arrived;
-  std::uint64_t out = 0, in = 0, lost = 0;
+  WireEnd end;
 };
 
 struct BoardPorts::CanLine final : Port {
@@ -148,14 +175,22 @@ struct BoardPorts::RttSource final : Port {
   RttSource(const mcu::PortEntry& entry, mcu::McuBoard& board, ConsoleText console)
       : Port(entry), rtt(board.machine()), text(std::move(console)) {}
   void pump() override {
-    rtt.pump([this](std::string_view said) { text.add(said); });
+    rtt.pump([this](std::string_view said) {
+      if (is.console) text.add(said);
+      end.say({reinterpret_cast<const std::uint8_t*>(said.data()), said.size()});
+    });
+    if (!end.open()) return;
+    if (const std::size_t room = rtt.room(); room > 0) rtt.put(end.take(room));
+    end.send();
   }
   void add_report(std::vector<std::string>& lines) const override {
     if (!rtt.found()) lines.push_back("RTT: no control block is in RAM");
+    end.add_report(lines, is);
     SerialPort::add_text(lines, is, text);
   }
   RttConsole rtt;
   ConsoleText text;
+  WireEnd end;
 };
 
 struct BoardPorts::BusLine final : Port {
@@ -189,7 +224,9 @@ BoardPorts::BoardPorts(mcu::McuBoard& board, const BoardPortsOptions& options) {
     });
     WireProblem problem;
     if (entry.source == mcu::PortSource::kRtt) {
-      ports_.push_back(std::make_unique<RttSource>(entry, board, std::move(text)));
+      auto port = std::make_unique<RttSource>(entry, board, std::move(text));
+      port->end.wire = byte_wire(entry, options, problem);
+      ports_.push_back(std::move(port));
     } else if (!entry.bus.empty()) {
       ports_.push_back(std::make_unique<BusLine>(entry, board, *options.buses));
     } else if (entry.source == mcu::PortSource::kSemihosting || entry.source == mcu::PortSource::kItm) {
@@ -199,10 +236,7 @@ BoardPorts::BoardPorts(mcu::McuBoard& board, const BoardPortsOptions& options) {
       if (wire) ports_.push_back(std::make_unique<CanLine>(entry, board, std::move(wire)));
     } else {
       auto port = std::make_unique<SerialPort>(entry, board, std::move(text));
-      if (!entry.as.empty()) {
-        std::unique_ptr<ByteWire> wire = open_byte_wire(url_of(entry, options), kUsual, problem);
-        if (wire) port->wire = std::make_unique<BufferedWire>(std::move(wire), kQueueBytes);
-      }
+      port->end.wire = byte_wire(entry, options, problem);
       ports_.push_back(std::move(port));
     }
     if (!problem.what.empty()) {

@@ -47,6 +47,7 @@ class BoardPorts {
 
  private:
   struct Port;
+  struct WireEnd;
   struct SerialPort;
   struct CanLine;
   struct TextSource;

@@ -436,6 +436,8 @@ void Reader::read_port(const toml::table& t, const std::string& path) {
   }
   if (!port.of.empty() && (port.of == spec_.radio_via || port.of == spec_.wheel_commands.via))
     keys_.wrong(t, path, "of", "the robot's commands come in by it", "another port");
+  if ((port.source == PortSource::kSemihosting || port.source == PortSource::kItm) && !port.as.empty())
+    keys_.wrong(t, path, "as", "its text leads out of the board only", "console = true");
   if (port.source == PortSource::kCan && port.console)
     keys_.wrong(t, path, "console", "a CAN has no text", "false");
   constexpr std::string_view kBus = "bus:";

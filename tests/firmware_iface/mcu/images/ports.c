@@ -1,6 +1,7 @@
 /* What the ports of a board are tested with. Serial port 2 says "boot" and gives back every letter as a capital. CAN 1
  * takes frame 0x100, a duty in 1/8400 for wheel 0, and answers 0x101 with the wheel's encoder count; any other frame
- * comes back with the next id and its bytes plus one. Words go out by semihosting, by ITM and through a buffer in RAM (RTT). */
+ * comes back with the next id and its bytes plus one. Words go out by semihosting, by ITM and through a buffer in RAM (RTT),
+ * where letters that come in through another one follow as capitals. */
 #include "image.h"
 
 #define USART2 0x40004400u
@@ -43,9 +44,9 @@ static struct {
     uint32_t size;
     volatile uint32_t written, read;
     uint32_t flags;
-  } channel[1];
+  } channel[2];
 } terminal;
-static char terminal_buffer[16];
+static char terminal_buffer[16], heard_buffer[8];
 static const char *left_to_say = "by rtt, and it is longer than the buffer\n";
 
 static void open_terminal(void) {
@@ -53,15 +54,28 @@ static void open_terminal(void) {
   terminal.channel[0].buffer = terminal_buffer;
   terminal.channel[0].size = sizeof terminal_buffer;
   terminal.up = 1;
+  terminal.channel[1].buffer = heard_buffer;
+  terminal.channel[1].size = sizeof heard_buffer;
+  terminal.down = 1;
   const char identifier[] = "SEGGER RTT";
   for (unsigned i = 0; i < sizeof identifier; ++i) terminal.identifier[i] = identifier[i];
 }
 
+static char capital_of(char c) { return (char)(c >= 'a' && c <= 'z' ? c - 32 : c); }
+
 /* As much as there is room for: nobody may read. */
 static void say_more(void) {
   const uint32_t next = (terminal.channel[0].written + 1) % sizeof terminal_buffer;
-  if (!*left_to_say || next == terminal.channel[0].read) return;
-  terminal_buffer[terminal.channel[0].written] = *left_to_say++;
+  if (next == terminal.channel[0].read) return;
+  char c = *left_to_say;
+  if (c) {
+    ++left_to_say;
+  } else {
+    if (terminal.channel[1].read == terminal.channel[1].written) return;
+    c = capital_of(heard_buffer[terminal.channel[1].read]);
+    terminal.channel[1].read = (terminal.channel[1].read + 1) % sizeof heard_buffer;
+  }
+  terminal_buffer[terminal.channel[0].written] = c;
   terminal.channel[0].written = next;
 }
 
@@ -119,8 +133,7 @@ int main(void) {
   for (;;) {
     say_more();
     if (REG(USART2) & 1u << 5) {
-      const uint8_t c = (uint8_t)REG(USART2 + 4);
-      const char capital[2] = {(char)(c >= 'a' && c <= 'z' ? c - 32 : c), 0};
+      const char capital[2] = {capital_of((char)REG(USART2 + 4)), 0};
       say(capital);
     }
     if (REG(CAN1 + 0x0C) & 3) answer();
