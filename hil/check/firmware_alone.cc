@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "firmware_iface/forwarded_firmware.h"
 #include "hil/loop/reference_firmware.h"
 #include "hil/recording/recorded_samples.h"
 
@@ -47,25 +48,10 @@ struct SensorColumns {
 using Ticks = std::vector<const RecordedChunk*>;
 
 // Hands everything on but the sensors, which are those of the recording, tick by tick.
-class FedFirmware : public Firmware {
+class FedFirmware final : public ForwardedFirmware {
  public:
   FedFirmware(std::unique_ptr<Firmware> inner, const SensorColumns& columns, Ticks ticks)
-      : inner_(std::move(inner)), columns_(columns), ticks_(std::move(ticks)) {}
-
-  std::string_view name() const override { return inner_->name(); }
-  std::string_view radio_format() const override { return inner_->radio_format(); }
-  std::int64_t control_period_ns() const override { return inner_->control_period_ns(); }
-  void command(const RobotCommand& command, std::int64_t now_ns) override {
-    inner_->command(command, now_ns);
-  }
-  void radio_receive(std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
-    inner_->radio_receive(frame, now_ns);
-  }
-  std::size_t radio_transmit(std::span<std::uint8_t> out) override { return inner_->radio_transmit(out); }
-  bool set_gains(const RobotGains& gains) override { return inner_->set_gains(gains); }
-  RobotGains gains() const override { return inner_->gains(); }
-  RobotFeedback feedback() const override { return inner_->feedback(); }
-  std::string_view failure() const override { return inner_->failure(); }
+      : ForwardedFirmware(std::move(inner)), columns_(columns), ticks_(std::move(ticks)) {}
 
   void shafts(const RobotShafts& simulated) override {
     RobotShafts fed = simulated;
@@ -75,7 +61,7 @@ class FedFirmware : public Firmware {
         fed.omega_rotor_rad_s[w] = tick->sample[columns_.omega[w]];
       }
     }
-    inner_->shafts(fed);
+    inner().shafts(fed);
   }
   RobotDrive tick(const RobotSensors& simulated) override {
     RobotSensors fed = simulated;
@@ -91,13 +77,12 @@ class FedFirmware : public Firmware {
       fed.accel_y_m_s2 = s[columns_.accel_y];
     }
     ++next_;
-    return inner_->tick(fed);
+    return inner().tick(fed);
   }
 
  private:
   const RecordedChunk* at() const { return next_ < ticks_.size() ? ticks_[next_] : nullptr; }
 
-  std::unique_ptr<Firmware> inner_;
   SensorColumns columns_;
   Ticks ticks_;
   std::size_t next_ = 0;

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <utility>
 
-#include "firmware_iface/ports.h"
+#include "firmware_iface/forwarded_firmware.h"
 #include "identify/predict/firmware_source.h"
 
 namespace omnihil {
@@ -14,10 +14,10 @@ struct FirmwareMeter::Shared {
   FirmwareUse seen;
 };
 
-class FirmwareMeter::Metered final : public Firmware {
+class FirmwareMeter::Metered final : public ForwardedFirmware {
  public:
   Metered(std::unique_ptr<Firmware> of, std::shared_ptr<Shared> shared)
-      : of_(std::move(of)), shared_(std::move(shared)) {}
+      : ForwardedFirmware(std::move(of)), shared_(std::move(shared)) {}
   Metered(const Metered&) = delete;
   Metered& operator=(const Metered&) = delete;
   ~Metered() override {
@@ -27,32 +27,18 @@ class FirmwareMeter::Metered final : public Firmware {
     FirmwareUse& seen = shared_->seen;
     ++seen.simulations;
     seen.wall_s += took.count();
-    seen.simulated_s += 1e-9 * static_cast<double>(ticks_ * of_->control_period_ns());
-    if (of_->failure().empty()) return;
-    if (seen.failed++ == 0) seen.failure = of_->failure();
+    seen.simulated_s += 1e-9 * static_cast<double>(ticks_ * inner().control_period_ns());
+    if (inner().failure().empty()) return;
+    if (seen.failed++ == 0) seen.failure = inner().failure();
   }
 
-  std::string_view name() const override { return of_->name(); }
-  std::string_view radio_format() const override { return of_->radio_format(); }
-  std::int64_t control_period_ns() const override { return of_->control_period_ns(); }
-  void command(const RobotCommand& c, std::int64_t now_ns) override { of_->command(c, now_ns); }
-  void radio_receive(std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
-    of_->radio_receive(frame, now_ns);
-  }
-  std::size_t radio_transmit(std::span<std::uint8_t> out) override { return of_->radio_transmit(out); }
-  bool set_gains(const RobotGains& gains) override { return of_->set_gains(gains); }
-  RobotGains gains() const override { return of_->gains(); }
-  void shafts(const RobotShafts& exact) override { of_->shafts(exact); }
   RobotDrive tick(const RobotSensors& sensors) override {
     if (ticks_++ == 0) began_ = std::chrono::steady_clock::now();
-    return of_->tick(sensors);
+    return inner().tick(sensors);
   }
-  RobotFeedback feedback() const override { return of_->feedback(); }
-  std::string_view failure() const override { return of_->failure(); }
-  std::vector<std::string> report() const override { return of_->report(); }
+  std::vector<std::string> report() const override { return inner().report(); }
 
  private:
-  std::unique_ptr<Firmware> of_;
   std::shared_ptr<Shared> shared_;
   std::chrono::steady_clock::time_point began_;
   std::int64_t ticks_ = 0;

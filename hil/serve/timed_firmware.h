@@ -11,7 +11,7 @@
 #include <memory>
 #include <utility>
 
-#include "hil/loop/session.h"
+#include "firmware_iface/forwarded_firmware.h"
 
 namespace omnihil {
 
@@ -22,34 +22,21 @@ inline std::int64_t thread_now_ns() {
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-class TimedFirmware final : public Firmware {
+class TimedFirmware final : public ForwardedFirmware {
  public:
   TimedFirmware(std::unique_ptr<Firmware> inner, std::int64_t& spent_ns)
-      : inner_(std::move(inner)), spent_ns_(spent_ns) {}
+      : ForwardedFirmware(std::move(inner)), spent_ns_(spent_ns) {}
 
-  std::string_view name() const override { return inner_->name(); }
-  std::string_view radio_format() const override { return inner_->radio_format(); }
-  std::int64_t control_period_ns() const override { return inner_->control_period_ns(); }
-  void command(const RobotCommand& c, std::int64_t now_ns) override { inner_->command(c, now_ns); }
-  void radio_receive(std::span<const std::uint8_t> frame, std::int64_t now_ns) override {
-    inner_->radio_receive(frame, now_ns);
-  }
-  std::size_t radio_transmit(std::span<std::uint8_t> out) override { return inner_->radio_transmit(out); }
-  bool set_gains(const RobotGains& gains) override { return inner_->set_gains(gains); }
-  RobotGains gains() const override { return inner_->gains(); }
-  void shafts(const RobotShafts& exact) override { inner_->shafts(exact); }
   RobotDrive tick(const RobotSensors& sensors) override {
     const Timed timed(spent_ns_);
-    return inner_->tick(sensors);
+    return inner().tick(sensors);
   }
-  RobotFeedback feedback() const override { return inner_->feedback(); }
-  bool drives_phases() const override { return inner_->drives_phases(); }
+  bool drives_phases() const override { return inner().drives_phases(); }
   MotorDrive motor_tick(const MotorSensors& sensors) override {
     const Timed timed(spent_ns_);
-    return inner_->motor_tick(sensors);
+    return inner().motor_tick(sensors);
   }
-  std::string_view failure() const override { return inner_->failure(); }
-  FirmwareChip* chip() override { return inner_->chip(); }
+  FirmwareChip* chip() override { return inner().chip(); }
 
  private:
   struct Timed {
@@ -61,7 +48,6 @@ class TimedFirmware final : public Firmware {
     std::int64_t since_ns = thread_now_ns();
   };
 
-  std::unique_ptr<Firmware> inner_;
   std::int64_t& spent_ns_;
 };
 
