@@ -8,7 +8,7 @@ namespace omnihil {
 namespace {
 
 // Choices of resolution; a report's curves follow from them, no verdict. Sensitivity not measured.
-constexpr int kWidths = 24;           // bins of equal width over the axis
+constexpr int kWidths = 24;           // bins of equal width over the axis; a choice
 constexpr int kShares = 24;           // quantiles that part bins further where the samples crowd; a choice
 constexpr int kAngleBins = 48;        // resolves up to 12 periods per turn with four bins each: derived
 constexpr double kLeastShare = 1e-3;  // of the samples, per bin; a choice

@@ -75,7 +75,7 @@ std::vector<std::vector<Eigen::VectorXd>> FitProblem::residuals(const Eigen::Vec
 const std::vector<Prediction>& FitProblem::predicted(const Eigen::VectorXd& x) const {
   // The start, the best point so far, the end of the last step and one trial: more are not asked for again. Derived from what
   // fit() asks.
-  constexpr std::size_t kKept = 4;
+  constexpr std::size_t kKept = 4;  // derived
   const auto same = [&](const Predicted& p) { return p.x == x; };
   const auto found = std::find_if(predicted_.begin(), predicted_.end(), same);
   if (found != predicted_.end()) {

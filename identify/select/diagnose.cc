@@ -282,9 +282,12 @@ class Diagnosing {
         out_.ladder.back().parameters = current_.fit.parameters;
       }
     }
-    ResidualExcesses excesses = residual_excesses();
-    if (!misleading() && !stopped_ && structure_in_excess(excesses.alike) && take_noise_effect())
-      excesses = residual_excesses();
+    std::optional<ResidualExcesses> excesses(excesses_of(current_.fit.model));
+    ResidualExcess alike = excesses->alike();
+    if (!misleading() && !stopped_ && structure_in_excess(alike) && take_noise_effect()) {
+      excesses.emplace(excesses_of(current_.fit.model));
+      alike = excesses->alike();
+    }
     added = !out_.effects.empty();
     out_.final_fit = current_.fit;
     out_.final_comparison =
@@ -293,10 +296,11 @@ class Diagnosing {
     const bool searched = out_.not_searched.empty();
     if (const DataFinding* fault = first_fault(out_.findings); fault != nullptr && searched)
       out_.searched_despite = fault->sentence;
-    const bool in_another = !structure_remains(excesses.alike, added) &&
-                            structure_remains(excesses.another, added) && !misleading() && !stopped_;
-    const bool by_parameters = in_another && !structure_remains(fitted_to_all().another, added);
-    const ResidualExcess& excess = in_another && !by_parameters ? excesses.another : excesses.alike;
+    const bool look_further = !structure_remains(alike, added) && !misleading() && !stopped_;
+    const ResidualExcess another = look_further ? excesses->another() : ResidualExcess();
+    const bool in_another = structure_remains(another, added);
+    const bool by_parameters = in_another && !structure_remains(fitted_to_all().another(), added);
+    const ResidualExcess& excess = in_another && !by_parameters ? another : alike;
     const bool remains = !searched || structure_remains(excess, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
@@ -315,7 +319,7 @@ class Diagnosing {
           "Structure remains, and the search was interrupted: not every effect was tried.";
     } else {
       out_.unknown.sentence = residual_sentence(excess, added);
-      if (by_parameters) out_.unknown.sentence += parameters_sentence(excesses.another);
+      if (by_parameters) out_.unknown.sentence += parameters_sentence(another);
     }
     settle_confounded(out_);
     out_.confidence = confidences(out_);
@@ -324,13 +328,11 @@ class Diagnosing {
     say("done", 1.0);
   }
 
-  ResidualExcesses residual_excesses() { return excesses_of(current_.fit.model); }
+  ResidualExcesses excesses_of(const Candidate& model) const {
+    return {context_, out_.baseline.model, model, options_.seed, options_.jobs};
+  }
   ResidualExcesses fitted_to_all() {
     return excesses_of(fitted_to_all_runs(dataset_, context_.setup(false, stop()), current_.fit.model));
-  }
-  ResidualExcesses excesses_of(const Candidate& model) {
-    return residual_excesses_of(context_.predictor(), context_.channels(), out_.baseline.model, model,
-                                options_.seed, options_.jobs);
   }
 
   // Stop when the residual is at the null level (DECISIONS 35), unless a base parameter is prior-implausible
@@ -339,7 +341,7 @@ class Diagnosing {
     const std::size_t u = context_.splits()[kValidation].empty() ? kTraining : kValidation;
     return is_implausible(current_.fit) ||
            structure_in(context_.splits()[u], context_.null(), context_.channels(), current_.residual[u]) ||
-           structure_in_excess(residual_excesses().alike);
+           structure_in_excess(excesses_of(current_.fit.model).alike());
   }
 
   // Without the allowance for the form of an effect that was added.

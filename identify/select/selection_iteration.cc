@@ -23,12 +23,12 @@ constexpr double kLeastShare = 0.002;       // tuned
 constexpr double kLeastRegimeShare = 0.05;  // tuned
 // Screened share from which a candidate beyond the shortlist is refitted if no candidate of the shortlist is accepted. A
 // choice: the share that counts as structure (verdict.cc); smaller ones would be many tests for little.
-constexpr double kWorthSecondBatch = 0.1;
+constexpr double kWorthSecondBatch = 0.1;  // a choice
 // Share of its signal in rows too far apart to know the angle (angle_resolution.h), from which a law of the angle is
 // not told from one of the mean: most of it. A choice.
-constexpr double kMostUnresolved = 0.5;
+constexpr double kMostUnresolved = 0.5;  // a choice
 // Gain over the null's from which a candidate is refitted: that of the acceptance test (DECISIONS 52).
-constexpr double kLeastSignalToNull = 2.0;
+constexpr double kLeastSignalToNull = 2.0;  // tuned, as the acceptance test's
 // An effect whose typical size would gain less than this many times the null's largest gain is not visible:
 // derived, at 1 it cannot be told from chance.
 constexpr double kVisibleSignalToNull = 1.0;  // derived

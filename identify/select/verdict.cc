@@ -57,24 +57,39 @@ std::string remainder(const ResidualExcess& excess) {
                          : fmt::format("{:.3g} times the sensors' noise", ratio));
 }
 
-ResidualExcess excess_on(const WhitenedResiduals& residuals, const NullModel& null,
-                         const Predictor& predictor, const ComparedChannels& channels,
-                         const Candidate& baseline, const Candidate& last, int jobs) {
+}  // namespace
+
+ResidualExcesses::ResidualExcesses(const SelectionContext& context, const Candidate& baseline,
+                                   Candidate model, std::uint64_t seed, int jobs)
+    : context_(context), baseline_(baseline), model_(std::move(model)), jobs_(jobs) {
+  constexpr int kReplicates = 8;  // by cost: a simulation of all runs each
+  null_ = simulate_null(context.predictor(), model_, context.unweighted(), seed, kReplicates, jobs);
+}
+
+ResidualExcess ResidualExcesses::alike() const {
+  return on(context_.unweighted()[kValidation].empty() ? kTraining : kValidation);
+}
+
+ResidualExcess ResidualExcesses::another() const { return on(kExtrapolation); }
+
+ResidualExcess ResidualExcesses::on(Split split) const {
+  const WhitenedResiduals& residuals = context_.unweighted()[split];
+  const ComparedChannels& channels = context_.channels();
   ResidualExcess out;
-  out.split = residuals.split();
+  out.split = split;
   if (residuals.empty()) return out;
-  const Eigen::VectorXd first = residuals.residual(baseline, jobs), now = residuals.residual(last, jobs);
+  const Eigen::VectorXd first = residuals.residual(baseline_, jobs_), now = residuals.residual(model_, jobs_);
   if (first.size() == 0 || now.size() == 0) return out;
-  const Eigen::VectorXd before = excess_of(residuals, null, channels, first);
-  const Eigen::VectorXd after = excess_of(residuals, null, channels, now);
+  const Eigen::VectorXd before = excess_of(residuals, null_, channels, first);
+  const Eigen::VectorXd after = excess_of(residuals, null_, channels, now);
   Eigen::Index worst = 0;
   out.excess = after.maxCoeff(&worst);
   out.excess_before = before[worst];
   out.signal = channels.name[static_cast<std::size_t>(worst)];
   out.rms = std::sqrt(residuals.mean_square(now)[worst]);
-  const double floor = null.floor(out.split)[worst];
-  out.spread = floor > 0.0 ? null.spread(out.split)[worst] / floor : 0.0;
-  if (const ComparedSignal* const signal = signal_of(predictor, out.signal); signal != nullptr) {
+  const double floor = null_.floor(split)[worst];
+  out.spread = floor > 0.0 ? null_.spread(split)[worst] / floor : 0.0;
+  if (const ComparedSignal* const signal = signal_of(context_.predictor(), out.signal); signal != nullptr) {
     out.unit = signal->unit;
     out.noise_level_sigma = signal->noise_level_sigma;
     out.spread = std::hypot(out.spread, signal->noise_level_sigma);
@@ -88,22 +103,6 @@ ResidualExcess excess_on(const WhitenedResiduals& residuals, const NullModel& nu
   }
   out.unexplained = all > 0.0 ? remaining / all : 0.0;
   return out;
-}
-
-}  // namespace
-
-ResidualExcesses residual_excesses_of(const Predictor& predictor, const ComparedChannels& channels,
-                                      const Candidate& baseline, const Candidate& last, std::uint64_t seed,
-                                      int jobs) {
-  constexpr int kReplicates = 8;  // by cost: a simulation of all runs each
-  const Splits splits{WhitenedResiduals(predictor, channels, Split::kTraining, Weighing::kUnweighted),
-                      WhitenedResiduals(predictor, channels, Split::kValidation, Weighing::kUnweighted),
-                      WhitenedResiduals(predictor, channels, Split::kExtrapolation, Weighing::kUnweighted)};
-  const NullModel null = simulate_null(predictor, last, splits, seed, kReplicates, jobs);
-  const auto on = [&](Split split) {
-    return excess_on(splits[split], null, predictor, channels, baseline, last, jobs);
-  };
-  return {.alike = on(splits[kValidation].empty() ? kTraining : kValidation), .another = on(kExtrapolation)};
 }
 
 Candidate fitted_to_all_runs(const Dataset& dataset, const RefitSetup& setup, const Candidate& model) {

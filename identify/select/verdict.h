@@ -1,7 +1,7 @@
 // Residual energy above the simulated null once no effect is accepted any more, and what it means.
 //
-//   ResidualExcesses e = residual_excesses_of(predictor, channels, baseline, last, seed, jobs);
-//   structure_remains(e.alike, effects_added);  residual_sentence(e.alike, effects_added);
+//   ResidualExcess e = ResidualExcesses(context, baseline, model, seed, jobs).alike();
+//   structure_remains(e, effects_added);  residual_sentence(e, effects_added);
 //
 // Structure remains where the residual's energy is above the null by several standard deviations of its
 // replicates AND by a share that matters; beside an added effect also more than a share of what the baseline
@@ -14,6 +14,7 @@
 #include "identify/select/acceptance.h"
 #include "identify/select/diagnosis.h"
 #include "identify/select/refit.h"
+#include "identify/select/selection_context.h"
 
 namespace omnihil {
 
@@ -30,14 +31,24 @@ struct ResidualExcess {
   std::string unit{};
   Split split = kTraining;  // the runs
 };
-struct ResidualExcesses {
-  ResidualExcess alike;    // on held-out runs, of the fit runs' kind; without any on the fit runs
-  ResidualExcess another;  // on extrapolation runs; without any no excess
-};
+// Of a model, above the null that is simulated of it; the runs themselves when they are asked for.
+class ResidualExcesses {
+ public:
+  // What `context` has by reference outlives it.
+  ResidualExcesses(const SelectionContext& context, const Candidate& baseline, Candidate model,
+                   std::uint64_t seed, int jobs);
+  ResidualExcess alike() const;    // on held-out runs, of the fit runs' kind; without any on the fit runs
+  ResidualExcess another() const;  // on extrapolation runs; without any no excess
 
-ResidualExcesses residual_excesses_of(const Predictor& predictor, const ComparedChannels& channels,
-                                      const Candidate& baseline, const Candidate& last, std::uint64_t seed,
-                                      int jobs);
+ private:
+  ResidualExcess on(Split split) const;
+
+  const SelectionContext& context_;
+  const Candidate& baseline_;
+  Candidate model_;
+  int jobs_;
+  NullModel null_;
+};
 
 // The model with its numbers fitted to all runs, those of another kind included, from where it is. setup: of the dataset.
 Candidate fitted_to_all_runs(const Dataset& dataset, const RefitSetup& setup, const Candidate& model);
