@@ -17,23 +17,16 @@ inline SessionSetup one_radio_robot() {
 // Steps of the body's velocity, a packet every 20 ms.
 inline Recording radio_recording(const SessionSetup& setup, const Session::FirmwareMaker& firmware,
                                  double duration_s) {
-  RecordingHeader header = recording_header(setup, "abc1234");
-  header.sample_every = 1;
-  Session session(session_config(setup), firmware);
-  header.firmware = session.firmware(0).name();
-  RecordingMemory memory(header);
-  session.set_observer(&memory);
   const RadioFormat& format = *find_radio_format(setup.radio_format);
-  std::vector<std::uint8_t> out;
-  const double steps[][3] = {{0, 0, 0}, {0.8, 0, 0}, {0.8, 0.5, 0}, {0, 0.5, 2}, {-0.6, 0, -2}, {0, 0, 0}};
-  for (int n = 0; n < static_cast<int>(1000.0 * duration_s); ++n) {
-    const double* v = steps[(n / 700) % 6];
-    session.step(n % 20 == 0 ? real::frame(format, "SPEED_MOVE_ADVANCE",
-                                           {{"robot", 3}, {"vx", v[0]}, {"vy", v[1]}, {"vtheta", v[2]}})
-                             : std::vector<std::uint8_t>{},
-                 out);
-  }
-  return memory.take(session.now_ns());
+  const auto host = [&](int n) -> real::Bytes {
+    constexpr double kSteps[][3] = {{0, 0, 0},   {0.8, 0, 0},   {0.8, 0.5, 0},
+                                    {0, 0.5, 2}, {-0.6, 0, -2}, {0, 0, 0}};
+    if (n % 20 != 0) return {};
+    const double* v = kSteps[(n / 700) % 6];
+    return real::frame(format, "SPEED_MOVE_ADVANCE",
+                       {{"robot", 3}, {"vx", v[0]}, {"vy", v[1]}, {"vtheta", v[2]}});
+  };
+  return real::record(setup, static_cast<int>(1000.0 * duration_s), 1, firmware, host);
 }
 
 }  // namespace omnihil

@@ -3,6 +3,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -78,8 +79,11 @@ inline Bytes host_bytes(const RadioFormat& format, const std::vector<int>& ids, 
   return bytes;
 }
 
+// `host`: what is written in each millisecond; without one host_bytes(), and a dongle that is closed once.
+using HostAt = std::function<Bytes(int millisecond)>;
 inline Recording record(const SessionSetup& setup, int milliseconds, int sample_every = 5,
-                        const Session::FirmwareMaker& firmware = make_reference_firmware) {
+                        const Session::FirmwareMaker& firmware = make_reference_firmware,
+                        const HostAt& host = {}) {
   RecordingHeader header = recording_header(setup, "abc1234");
   header.sample_every = sample_every;
   Session session(session_config(setup), firmware);
@@ -89,8 +93,8 @@ inline Recording record(const SessionSetup& setup, int milliseconds, int sample_
   const RadioFormat& format = *find_radio_format(setup.radio_format);
   Bytes out;
   for (int n = 0; n < milliseconds; ++n) {
-    if (n == 70) session.host_closed();
-    session.step(host_bytes(format, setup.robot_ids, n), out);
+    if (!host && n == 70) session.host_closed();
+    session.step(host ? host(n) : host_bytes(format, setup.robot_ids, n), out);
   }
   return memory.take(session.now_ns());
 }

@@ -15,6 +15,42 @@
 namespace omnihil {
 namespace {
 
+Candidate model_of(const std::string& text) {
+  const AxisReading r =
+      read_axis_model("format = \"omnihil-model/1\"\nrig = \"axis\"\n" + text, "m", nullptr);
+  EXPECT_TRUE(r.model);
+  return candidate_of(r.model->file, r.model->effects);
+}
+
+// Driven by a sine of torque (force): what it is, and what the axis does, at each row.
+struct SineDriven {
+  omnihil::Run run;  // motor_torque alone, without noise
+  std::vector<AxisSample<double>> moved;
+};
+SineDriven driven_by_sine(const Candidate& truth, double amplitude, double frequency_Hz, std::size_t rows,
+                          double period_s, AxisInput in = {}) {
+  constexpr std::size_t kSteps = 10;  // a held torque is no sine: steps between the rows
+  const auto torque = [&](double t) {
+    return amplitude * std::sin(2.0 * std::numbers::pi * frequency_Hz * t);
+  };
+  const double step_s = period_s / kSteps;
+  in.kind = CommandKind::kMotorTorque;
+  for (std::size_t n = 0; n < rows * kSteps; ++n) {
+    in.time_s.push_back(step_s * static_cast<double>(n));
+    in.command.push_back(
+        torque(in.time_s.back() + 0.5 * step_s));  // what acts until the next step, on average
+  }
+  const auto moved = run_axis<double>(drive_of(truth), EffectSet<double>(truth.effects), in);
+  SineDriven out;
+  out.run.file = "f.csv";
+  for (std::size_t k = 0; k < rows; ++k) {
+    out.run.time_s.push_back(period_s * static_cast<double>(k));
+    out.run.signals["motor_torque"].push_back(torque(out.run.time_s.back()));
+    out.moved.push_back(moved[k * kSteps]);
+  }
+  return out;
+}
+
 // Linear motor: 95 kg, 200 N s/m, driven by a smooth force; its position read with white noise.
 struct ForceRecipe {
   double position_sigma_m = 0.0, period_s = 1e-3;
@@ -28,42 +64,23 @@ struct ForceDriven {
   std::unique_ptr<Predictor> predictor;
 };
 ForceDriven force_driven(const ForceRecipe& recipe) {
-  const std::string text =
-      "format = \"omnihil-model/1\"\nrig = \"axis\"\nlinear = true\n[load]\n"
-      "mass_kg = { value = 95, tolerance = 0.1 }\n[motor]\n"
-      "viscous_friction_N_s_per_m = { value = 200, tolerance = 1 }\n" +
-      recipe.more;
-  const AxisReading r = read_axis_model(text, "m", nullptr);
-  EXPECT_TRUE(r.model);
-  ForceDriven out{.truth = candidate_of(r.model->file, r.model->effects), .predictor = nullptr};
+  ForceDriven out{
+      .truth = model_of("linear = true\n[load]\nmass_kg = { value = 95, tolerance = 0.1 }\n[motor]\n"
+                        "viscous_friction_N_s_per_m = { value = 200, tolerance = 1 }\n" +
+                        recipe.more),
+      .predictor = nullptr};
   Dataset d;
   d.linear = true;
   d.channels = {{.signal = "motor_torque", .column = "", .unit = "N"},
                 {.signal = "position", .column = "", .unit = "m"}};
-  AxisInput in;
-  in.kind = CommandKind::kMotorTorque;
-  const auto force_N = [&](double t) {
-    return 40.0 * std::sin(2.0 * std::numbers::pi * recipe.force_Hz * t);
-  };
-  constexpr int kRows = 3000, kSteps = 10;  // a held force is no sine: steps between the rows
-  const double step_s = recipe.period_s / kSteps;
-  for (int n = 0; n < kRows * kSteps; ++n) {
-    in.time_s.push_back(step_s * n);
-    in.command.push_back(force_N(step_s * (n + 0.5)));  // what acts until the next step, on average
-  }
-  omnihil::Run run;
-  run.file = "f.csv";
-  const auto moved = run_axis<double>(drive_of(out.truth), EffectSet<double>(out.truth.effects), in);
-  for (std::size_t k = 0; k < kRows; ++k) {
-    const double time_s = recipe.period_s * static_cast<double>(k);
-    run.time_s.push_back(time_s);
-    run.signals["motor_torque"].push_back(force_N(time_s) +
-                                          recipe.force_sigma_N * gaussian(recipe.seed, 2, k));
-    run.signals["position"].push_back(moved[k * kSteps].position_rad +
-                                      recipe.position_sigma_m * gaussian(recipe.seed, 1, k));
+  SineDriven driven = driven_by_sine(out.truth, 40.0, recipe.force_Hz, 3000, recipe.period_s);
+  for (std::size_t k = 0; k < driven.moved.size(); ++k) {
+    driven.run.signals["motor_torque"][k] += recipe.force_sigma_N * gaussian(recipe.seed, 2, k);
+    driven.run.signals["position"].push_back(driven.moved[k].position_rad +
+                                             recipe.position_sigma_m * gaussian(recipe.seed, 1, k));
   }
   if (recipe.force_sigma_stated) d.channels[0].sigma = recipe.force_sigma_N;
-  d.runs = {run};
+  d.runs = {driven.run};
   out.predictor = make_predictor(d, out.truth, {});
   return out;
 }
@@ -71,25 +88,11 @@ ForceDriven force_driven(const ForceRecipe& recipe) {
 // A shaft that gives parts rotor (1.2e-5 kg m2) and load (7e-5): the torque turns the rotor, and which of them the encoder counts
 // says which of them moves as measured. What is left of 0.02 N m at 8 Hz, by the encoder on `seen` and read as on `said`.
 double left_of_a_soft_shaft_Nm(bool seen_on_output, bool said_on_output) {
-  const std::string text =
-      "format = \"omnihil-model/1\"\nrig = \"axis\"\n[motor]\nrotor_inertia_kg_m2 = 1.2e-5\n"
-      "viscous_friction_Nm_s_per_rad = 4e-6\n[load]\ninertia_kg_m2 = 7e-5\n"
-      "[effects.shaft_compliance]\ncompliance_rad_per_Nm = 1.0\ndamping_Nm_s_per_rad = 1e-3\n";
-  const AxisReading r = read_axis_model(text, "m", nullptr);
-  EXPECT_TRUE(r.model);
-  const Candidate truth = candidate_of(r.model->file, r.model->effects);
-  constexpr double kStep_s = 5e-4, kCounts = 1e6;
-  constexpr int kRows = 2000, kSteps = 10;
-  const auto torque_Nm = [](double t) { return 0.02 * std::sin(2.0 * std::numbers::pi * 8.0 * t); };
-  AxisInput in;
-  in.kind = CommandKind::kMotorTorque;
-  in.encoder_counts_per_turn = kCounts;
-  in.encoder_on_output = seen_on_output;
-  for (int n = 0; n < kRows * kSteps; ++n) {
-    in.time_s.push_back(kStep_s * n);
-    in.command.push_back(torque_Nm(kStep_s * (n + 0.5)));
-  }
-  const auto moved = run_axis<double>(drive_of(truth), EffectSet<double>(truth.effects), in);
+  const Candidate truth = model_of(
+      "[motor]\nrotor_inertia_kg_m2 = 1.2e-5\nviscous_friction_Nm_s_per_rad = 4e-6\n[load]\ninertia_kg_m2 = "
+      "7e-5\n"
+      "[effects.shaft_compliance]\ncompliance_rad_per_Nm = 1.0\ndamping_Nm_s_per_rad = 1e-3\n");
+  constexpr double kCounts = 1e6;
   Dataset d;
   d.channels = {{.signal = "motor_torque", .column = "", .unit = "N m"},
                 {.signal = "encoder",
@@ -97,14 +100,13 @@ double left_of_a_soft_shaft_Nm(bool seen_on_output, bool said_on_output) {
                  .unit = "",
                  .counts_per_rev = kCounts,
                  .on_output = said_on_output}};
-  omnihil::Run run;
-  run.file = "f.csv";
-  for (std::size_t k = 0; k < kRows; ++k) {
-    run.time_s.push_back(kSteps * kStep_s * static_cast<double>(k));
-    run.signals["motor_torque"].push_back(torque_Nm(run.time_s.back()));
-    run.signals["encoder"].push_back(std::round(moved[k * kSteps].encoder_counts));
-  }
-  d.runs = {run};
+  AxisInput seen;
+  seen.encoder_counts_per_turn = kCounts;
+  seen.encoder_on_output = seen_on_output;
+  SineDriven driven = driven_by_sine(truth, 0.02, 8.0, 2000, 5e-3, seen);
+  for (const AxisSample<double>& s : driven.moved)
+    driven.run.signals["encoder"].push_back(std::round(s.encoder_counts));
+  d.runs = {driven.run};
   const auto p = make_predictor(d, truth, {});
   EXPECT_EQ(p->method(), Method::kInverse);
   return rms(p->compared(0)[0].measured, p->predict(truth, 0).values[0]);
