@@ -1,6 +1,10 @@
 // A firmware that hands all calls on to another one, for whoever changes or watches a few of them.
 //
-//   class Counted final : public ForwardedFirmware { using ForwardedFirmware::ForwardedFirmware; … tick(…) override … };
+//   struct Counted final : ForwardedFirmware {
+//     using ForwardedFirmware::ForwardedFirmware;
+//     RobotDrive tick(const RobotSensors& s) override { return ++ticks, inner().tick(s); }
+//     int ticks = 0;
+//   };
 //
 // Its ticks are whole, its bridges have a duty each: parts of a tick, phases, memory, chip and report are handed on by who wants
 // them.
