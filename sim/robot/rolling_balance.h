@@ -11,7 +11,7 @@
 namespace omnihil {
 
 // Equations of floor, rotors and body for one step, as values:
-//   s - (hub + A F) + lever omega+ = 0,  F = -f(s)
+//   s - (hub + A F) + lever omega+ = 0,  F = begun - end_share f(s)
 // A is symmetric but for the step's turn and positive, f and the rotors' response are increasing: one solution, but for
 // the falling part of a tyre's curve.
 // Size: room for so many wheels; those beyond the robot's own have no lever, no mobility and no grip, so that their slip is 0.
@@ -19,7 +19,8 @@ template <typename T, int Size>
 struct RollingBalance {
   using Vector = Eigen::Matrix<double, Size, 1>;
   using Square = Eigen::Matrix<double, Size, Size>;
-  static constexpr double kSolved_m_s = 1e-13;
+  // Newton's last change: by its square over a slip of 1 cm/s the solution is then off, 1e-16 m/s.
+  static constexpr double kSolved_m_s = 1e-9;
   static constexpr double kFastest_m_s = 1e3;  // no slip is faster
   static constexpr int kBisections = 60;
   static constexpr int kHalvings = 8;
@@ -29,14 +30,18 @@ struct RollingBalance {
   // per rotor: speed without floor force and friction, speed per torque, radius over gear, what friction
   // takes
   Vector hub, rotor, speed_per_torque, lever, up, down;
+  Vector end_share, begun;  // mean force of a step: begun + end_share times the force at its end
 
   const Grip<T>& grip(Eigen::Index i) const { return *grips[static_cast<std::size_t>(i)]; }
   double omega(Eigen::Index i, double force_N) const {
     return shrunk(rotor(i) - speed_per_torque(i) * lever(i) * force_N, up(i), down(i));
   }
+  double mean_force(Eigen::Index i, double slip_m_s) const {
+    return begun(i) - end_share(i) * grip(i).force(slip_m_s);
+  }
   Vector forces(const Vector& slip) const {
     Vector force;
-    for (Eigen::Index i = 0; i < Size; ++i) force(i) = -grip(i).force(slip(i));
+    for (Eigen::Index i = 0; i < Size; ++i) force(i) = mean_force(i, slip(i));
     return force;
   }
   Vector residual(const Vector& slip) const {
@@ -48,8 +53,8 @@ struct RollingBalance {
   Square slopes(const Vector& slip) const {
     Square out;
     for (Eigen::Index i = 0; i < Size; ++i) {
-      const double slope = grip(i).slope(slip(i));
-      const double turns = omega(i, -grip(i).force(slip(i))) != 0.0 ? 1.0 : 0.0;
+      const double slope = end_share(i) * grip(i).slope(slip(i));
+      const double turns = omega(i, mean_force(i, slip(i))) != 0.0 ? 1.0 : 0.0;
       out.col(i) = mobility.col(i) * slope;
       out(i, i) += 1.0 + turns * lever(i) * lever(i) * speed_per_torque(i) * slope;
     }
@@ -60,7 +65,10 @@ struct RollingBalance {
     Vector left = residual(slip);
     for (int round = 0; round < kIterations; ++round) {
       Vector change = slopes(slip).partialPivLu().solve(left);
-      if (change.cwiseAbs().maxCoeff() <= kSolved_m_s) return true;
+      if (change.cwiseAbs().maxCoeff() <= kSolved_m_s) {
+        slip -= change;
+        return true;
+      }
       Vector next = residual(slip - change);
       for (int part = 0; part < kHalvings && next.squaredNorm() > left.squaredNorm(); ++part) {
         change *= 0.5;
@@ -77,7 +85,7 @@ struct RollingBalance {
       const Vector force = forces(slip);
       const double others = hub(i) + mobility.row(i).dot(force) - mobility(i, i) * force(i);
       const auto left = [&](double at) {
-        const double own_N = -grip(i).force(at);
+        const double own_N = mean_force(i, at);
         return at - others - mobility(i, i) * own_N + lever(i) * omega(i, own_N);
       };
       double low = -kFastest_m_s, high = kFastest_m_s;

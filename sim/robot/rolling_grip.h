@@ -61,6 +61,10 @@ struct Grip {
     const double scale = value_of(full_grip_m_s);
     return value_of(load_N) * shape.values().coefficient_slope(std::abs(slip_m_s) / scale) / scale;
   }
+  // At no slip, of a curve: its steepest. kRollingStiffness_N_s_per_m where it rolls.
+  T slope_at_rest() const {
+    return rolls ? T(kRollingStiffness_N_s_per_m) : T(1.5 * load_N * shape.peak / full_grip_m_s);
+  }
   // With what the curve's numbers carry. A wheel that rolls, with an unknown compliance of value zero behind
   // it:  s = F / K + v_c f^-1(F / N)
   T force_of(const T& slip_m_s) const {

@@ -5,14 +5,9 @@
 #include <cmath>
 
 #include "sim/robot/link_effect.h"
-#include "sim/robot/rolling_balance.h"
+#include "sim/robot/rolling_step.h"
 
 namespace omnihil {
-namespace {
-
-constexpr int kSweeps = 30;
-
-}  // namespace
 
 // What the plant takes out of a drive's chain of torques: its friction, to be solved with the floor's force.
 template <typename T>
@@ -37,39 +32,9 @@ struct RollingRobot<T>::LinkEffect {
 };
 
 template <typename T>
-struct RollingRobot<T>::Wheel {
-  DriveResult<T> drive;
-  T omega_start = T(0), omega_predicted = T(0);
-  T effective_inertia = T(0), slope = T(0), end_sensitivity = T(0), mean_sensitivity = T(0);
-  T lever_m = T(0);  // radius over gear
-  T friction_up_Nm = T(0), friction_down_Nm = T(0);
-  T added_torque_Nm = T(0);  // at the rotor, by forces of effects along the drive direction
-  T added_N = T(0);          // the same forces on the body: none on wheels that roll
-  T lateral_N = T(0);
-  T hub_free_m_s = T(0);  // rim speed of the body without this step's floor forces
-  Grip<T> grip;
-};
-
-template <typename T>
-struct RollingRobot<T>::Step {
-  double h = 0.0;
-  PerWheel<Wheel> wheel;
-  Vector3 force;  // of effects and of turning, on the body
-  T cos_half = T(1), sin_half = T(0);
-  Vector3 turned, free;  // velocity carried into the end's frame; the same with `force`
-  Eigen::Matrix<T, kMaxWheels, kMaxWheels> mobility;  // h G M^-1 G': rim speeds per floor force
-  PerWheel<T> force_N, omega_end, friction_Nm;
-
-  // By half a step's turn, into the frame of the step's end.
-  Vector3 half_turned(const Vector3& v) const {
-    return Vector3(cos_half * v(0) + sin_half * v(1), cos_half * v(1) - sin_half * v(0), v(2));
-  }
-};
-
-template <typename T>
 RollingRobot<T>::RollingRobot(const RollingParams<T>& params, std::span<const EffectUse> uses,
                               std::span<const T> values)
-    : p_(params), effects_(uses, values), wheels_(params.wheels) {
+    : p_(params), effects_(uses, values), wheels_(params.wheels), step_(std::make_unique<Step>()) {
   absent_.rolls = false;
   absent_.full_grip_m_s = T(1);
   make_body();
@@ -154,13 +119,14 @@ void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput<T>& in, dou
     for (DriveSim<T>& d : drives_) d.set_step(step_s);
     step_s_ = step_s;
   }
-  Step s;
+  Step& s = *step_;
   s.h = step_s;
   ask_floor(x, in, s);
   ask_body(x, in, s);
   drives(x, in, s);
   predict(x, in, s);
-  wheels_ <= 4 ? solve<4>(x, s) : solve<kMaxWheels>(x, s);
+  solve(x, s);
+  if (transfer_load(s)) solve(x, s);
   finish(x, in, s);
 }
 
@@ -182,8 +148,7 @@ void RollingRobot<T>::ask_floor(const RollingState<T>& x, const RollingInput<T>&
         (in.theta_rotor_rad != nullptr ? T((*in.theta_rotor_rad)[i]) : x.theta_rotor_rad[i]) / gear;
     port.v_longitudinal_m_s = hub_m_s;
     port.v_lateral_m_s = lateral_m_s;
-    port.load_N = load_.at_rest_N[i] + load_.transfer(i, x.floor_x_N, x.floor_y_N);
-    if (value_of(port.load_N) < 0.0) port.load_N = T(0);
+    port.load_N = load_N(i, x.floor_x_N, x.floor_y_N);
     port.dt_s = s.h;
     port.wheel_radius_m = p_.wheel_radius_m;
     if (!effects_.contact.empty()) {
@@ -265,6 +230,7 @@ template <typename T>
 void RollingRobot<T>::winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state,
                                                 double h, Wheel& w) const {
   w.slope = p_.drive.viscous_friction_Nm_s_per_rad;
+  w.mean_sensitivity = w.end_sensitivity = T(0);
   const double used = std::abs(value_of(state.current_A)) * value_of(link.inverse_limit_per_A);
   if (!enabled || used >= 1.0 - 1e-9) return;
   const T settled = p_.drive.torque_constant_Nm_per_A / p_.drive.resistance_ohm;
@@ -317,162 +283,6 @@ void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput<T>& in, Step
     winding_speed_sensitivity(in.enabled[i], link, state, s.h, w);
     w.effective_inertia = inertia_at_rotor(p_.drive) + 0.5 * s.h * w.slope;
   }
-}
-
-// ----------------------------------------------------------------------------- what comes of it
-
-template <typename T>
-void RollingRobot<T>::predict(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const {
-  using std::cos;
-  using std::sin;
-  const T half = 0.5 * s.h * (x.velocity[2] + 0.5 * x.turn_change_rad_s);  // mid-step, looked ahead
-  s.cos_half = cos(half);
-  s.sin_half = sin(half);
-  s.turned = s.half_turned(s.half_turned(Vector3(x.velocity[0], x.velocity[1], x.velocity[2])));
-  s.free = s.turned + s.half_turned(inverse_mass_ * s.force) * T(s.h);
-  if (in.imposed_velocity != nullptr) {
-    const auto& v = *in.imposed_velocity;
-    s.free = Vector3(T(v[0]), T(v[1]), T(v[2]));
-  }
-  for (std::size_t j = 0; j < wheels_; ++j) {
-    const Vector3 moved = s.half_turned(rim_mobility_[j]) * T(in.imposed_velocity != nullptr ? 0.0 : s.h);
-    for (std::size_t i = 0; i < wheels_; ++i) {
-      s.mobility(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rim_[i].dot(moved);
-    }
-  }
-  for (std::size_t i = 0; i < wheels_; ++i) s.wheel[i].hub_free_m_s = rim_[i].dot(s.free);
-}
-
-// One rotor's end speed under a floor force, and the friction that comes with it.
-template <typename T>
-T RollingRobot<T>::rotor_end(const RollingState<T>& x, const Step& s, std::size_t i, const T& force_N,
-                             T* friction_Nm) const {
-  const Wheel& w = s.wheel[i];
-  const T speed_per_torque = s.h / w.effective_inertia;
-  const T y =
-      w.omega_predicted - speed_per_torque * (w.lever_m * (force_N - x.force_N[i]) - x.friction_Nm[i]);
-  const T omega = shrunk(y, T(speed_per_torque * w.friction_up_Nm), T(speed_per_torque * w.friction_down_Nm));
-  if (friction_Nm != nullptr) *friction_Nm = (y - omega) / speed_per_torque;
-  return omega;
-}
-
-// The slips of this step, as values; `jacobian` at the solution.
-template <typename T>
-template <int Size>
-Eigen::Matrix<double, Size, 1> RollingRobot<T>::solve_values(const RollingState<T>& x, const Step& s,
-                                                             Eigen::Matrix<double, Size, Size>& jacobian) {
-  RollingBalance<T, Size> balance;
-  Eigen::Matrix<double, Size, 1> before;
-  for (Eigen::Index i = 0; i < Size; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    before(i) = x.slip_m_s[n];
-    if (n >= wheels_) {
-      balance.grips[n] = &absent_;
-      balance.lever(i) = balance.speed_per_torque(i) = balance.up(i) = balance.down(i) = 0.0;
-      balance.hub(i) = balance.rotor(i) = 0.0;
-      balance.mobility.row(i).setZero();
-      continue;
-    }
-    const Wheel& w = s.wheel[n];
-    balance.grips[n] = &w.grip;
-    balance.lever(i) = value_of(w.lever_m);
-    balance.speed_per_torque(i) = s.h / value_of(w.effective_inertia);
-    balance.up(i) = balance.speed_per_torque(i) * value_of(w.friction_up_Nm);
-    balance.down(i) = balance.speed_per_torque(i) * value_of(w.friction_down_Nm);
-    balance.hub(i) = value_of(w.hub_free_m_s);
-    const double held_Nm = balance.lever(i) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]);
-    balance.rotor(i) = value_of(w.omega_predicted) + balance.speed_per_torque(i) * held_Nm;
-    for (Eigen::Index j = 0; j < Size; ++j) {
-      balance.mobility(i, j) = static_cast<std::size_t>(j) < wheels_ ? value_of(s.mobility(i, j)) : 0.0;
-    }
-  }
-  Eigen::Matrix<double, Size, 1> slip = before;
-  if (!balance.newton(slip)) {
-    slip = before;
-    for (int n = 0; n < kSweeps; ++n) balance.sweep(slip);
-    if (!balance.newton(slip)) unsolved_ += 1.0;
-  }
-  jacobian = balance.slopes(slip);
-  return slip;
-}
-
-template <typename T>
-template <int Size>
-void RollingRobot<T>::solve(RollingState<T>& x, Step& s) {
-  Eigen::Matrix<double, Size, Size> jacobian;
-  const Eigen::Matrix<double, Size, 1> slip = solve_values<Size>(x, s, jacobian);
-  // Newton once more on T, from the solution: exact derivatives.
-  const Eigen::Matrix<double, Size, Size> inverse = jacobian.inverse();
-  PerWheel<T> force, residual;
-  for (std::size_t i = 0; i < wheels_; ++i) {
-    force[i] = -s.wheel[i].grip.force_of(T(slip(static_cast<Eigen::Index>(i))));
-  }
-  for (std::size_t i = 0; i < wheels_; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    residual[i] =
-        slip(row) - s.wheel[i].hub_free_m_s + s.wheel[i].lever_m * rotor_end(x, s, i, force[i], nullptr);
-    for (std::size_t j = 0; j < wheels_; ++j) {
-      residual[i] -= s.mobility(row, static_cast<Eigen::Index>(j)) * force[j];
-    }
-  }
-  for (std::size_t i = 0; i < wheels_; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    T exact = T(slip(row));
-    for (std::size_t j = 0; j < wheels_; ++j)
-      exact -= inverse(row, static_cast<Eigen::Index>(j)) * residual[j];
-    x.slip_m_s[i] = value_of(exact);
-    s.force_N[i] = -s.wheel[i].grip.force_of(exact);
-    s.omega_end[i] = rotor_end(x, s, i, s.force_N[i], &s.friction_Nm[i]);
-  }
-}
-
-template <typename T>
-void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput<T>& in, Step& s) const {
-  Vector3 pushed(T(0), T(0), T(0));
-  T floor_x = T(0), floor_y = T(0);
-  for (std::size_t i = 0; i < wheels_; ++i) {
-    const Wheel& w = s.wheel[i];
-    DriveState<T>& state = x.drive[i];
-    pushed += rim_mobility_[i] * s.force_N[i];
-    const T drive_N = s.force_N[i] + w.added_N;
-    floor_x += rim_[i](0) * drive_N + rim_[i](1) * w.lateral_N;
-    floor_y += rim_[i](1) * drive_N - rim_[i](0) * w.lateral_N;
-    const T departed = s.omega_end[i] - w.omega_predicted;
-    state.current_A -= w.end_sensitivity * departed;
-    x.charge_C[i] += s.h * (w.drive.mean_current_A - 0.5 * w.mean_sensitivity * departed);
-    x.theta_rotor_rad[i] += 0.5 * s.h * (w.omega_start + s.omega_end[i]);
-    state.omega_rotor_rad_s = s.omega_end[i];
-    state.omega_change_rad_s = s.omega_end[i] - w.omega_start;
-    state.theta_rotor_rad = x.theta_rotor_rad[i];
-    state.corrected_rad = T(0);
-    x.force_N[i] = s.force_N[i];
-    x.friction_Nm[i] = s.friction_Nm[i];
-  }
-  const Vector3 end = s.free + s.half_turned(pushed) * T(in.imposed_velocity != nullptr ? 0.0 : s.h);
-  x.accel_x_m_s2 = (end(0) - s.turned(0)) / s.h;
-  x.accel_y_m_s2 = (end(1) - s.turned(1)) / s.h;
-  x.turn_change_rad_s = end(2) - x.velocity[2];
-  for (std::size_t i = 0; i < 3; ++i) x.velocity[i] = end(static_cast<Eigen::Index>(i));
-  x.floor_x_N = floor_x;
-  x.floor_y_N = floor_y;
-  supply(x, in, s);
-}
-
-template <typename T>
-void RollingRobot<T>::supply(RollingState<T>& x, const RollingInput<T>& in, const Step& s) const {
-  if (!in.bus_is_measured) {
-    x.bus_voltage_V = x.supply_voltage_V = s.wheel[0].drive.bus_voltage_V;
-    return;
-  }
-  x.bus_voltage_V = T(in.bus_voltage_V);
-  if (effects_.supply.empty()) return;
-  SupplyPort<T> port;
-  port.bus_current_A = T(0);
-  for (std::size_t i = 0; i < wheels_; ++i) port.bus_current_A += s.wheel[i].drive.mean_bus_current_A;
-  port.dt_s = s.h;
-  port.bus_voltage_V = p_.drive.supply_voltage_V;
-  effects_.supply.apply(effects_.values(), x.supply_states.data(), port);
-  x.supply_voltage_V = port.bus_voltage_V;
 }
 
 template class RollingRobot<double>;

@@ -12,14 +12,18 @@
 // wheel that rolls without slip, costs nothing:
 //     rotor   omega+ = shrink(omega_f - h/J_e (lever (F - F_0) - phi_0),  h c / J_e),  lever = r / N
 //     body    v+     = v_f + h M^-1 G' F          in the turning frame, by its mean direction over the step
-//     floor   F_i    = -f(s_i),  s_i = (G v+)_i - lever omega+_i
+//     floor   F_i    = (1 - a_i) F_0i - a_i f(s_i),  s_i = (G v+)_i - lever omega+_i,  F_0: of the step's start
+//             a_i    = (3 + z_i) / (6 + z_i), z_i: h over the time in which a slip dies out; 1 where it rolls
+//   so that such a slip shrinks by (6 - 2 z) / (6 + 4 z + z^2), the Pade approximant of e^-z that also damps what is far
+//   faster than the step (L-stable: Hairer, Wanner 1996, Solving Ordinary Differential Equations II, IV.3).
 //   omega_f: the rotor's end speed by DriveSim with the step before's floor force and friction; J_e: inertia
 //   plus half a step of the winding's speed sensitivity (wheel_drive.h); c: friction level; a
 //   slip per wheel unknown, Newton's method on the values, and one more Newton step on the scalar with derivatives,
 //   which makes them exact (implicit function theorem).
 //   Without a tyre f is a line so steep that 1 N slides 1 um/s: rolling. With wheel_slip, or a tyre, f is the
 //   tyre's curve over s / (scale + v_c), scale = extremum slip times max(|v|, |rim|, floor) for a tyre, 0 without.
-// Order 2 in the step where wheels roll, 1 where they slip. A force that an effect adds along the wheel's
+// Loads follow the floor's force within the step, by one correction. Order 2 in the step, but for what that correction
+// leaves where wheels slip and for an instant at which one begins to stick. A force that an effect adds along the wheel's
 // drive direction (roller_ripple) acts on wheel and body where there is a tyre, as in the plant. Without one
 // it turns the wheel only: on a wheel that rolls, a force at the point of contact does no work. Cannot
 // represent: what the planar plant cannot, and play or compliance between rotor and wheel.
@@ -39,8 +43,8 @@
 namespace omnihil {
 
 // As long as a step may be (tests: errors below a tenth of an encoder's noise).
-inline constexpr double kRollingStep_s = 1e-3;      // without a tyre
-inline constexpr double kSlippingStep_s = 0.25e-3;  // with one: the floor's force is of order 1 in the step
+inline constexpr double kRollingStep_s = 1e-3;     // without a tyre
+inline constexpr double kSlippingStep_s = 0.5e-3;  // with one: a slip dies out within 1 to 2 ms
 
 // Held over one call. T: duties that a controller made of simulated speeds carry derivatives.
 template <typename T = double>
@@ -122,13 +126,18 @@ class RollingRobot {
   void predict(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
   void winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state, double h,
                                  Wheel& w) const;
+  bool transfer_load(Step& s) const;
+  T load_N(std::size_t wheel, const T& floor_x_N, const T& floor_y_N) const;
+  void add_floor_force(const Step& s, std::size_t wheel, T& x_N, T& y_N) const;
+  T mean_force(const RollingState<T>& x, const Step& s, std::size_t wheel, const T& end_N) const;
   T rotor_end(const RollingState<T>& x, const Step& s, std::size_t wheel, const T& force_N,
               T* friction_Nm) const;
   template <int Size>
   Eigen::Matrix<double, Size, 1> solve_values(const RollingState<T>& x, const Step& s,
                                               Eigen::Matrix<double, Size, Size>& jacobian);
-  template <int Size>
   void solve(RollingState<T>& x, Step& s);
+  template <int Size>
+  void solve_in(RollingState<T>& x, Step& s);
   void finish(RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
   void supply(RollingState<T>& x, const RollingInput<T>& in, const Step& s) const;
 
@@ -143,6 +152,7 @@ class RollingRobot {
   PerWheel<Vector3> rim_;           // rows of G
   PerWheel<Vector3> rim_mobility_;  // M^-1 G'
   Eigen::Matrix<T, 3, 3> inverse_mass_;
+  std::unique_ptr<Step> step_;  // of the last call: every step sets all of it
   double step_s_ = 0.0;
   double unsolved_ = 0.0;
 };

@@ -257,30 +257,73 @@ TEST(RollingRobot, AgreesWithThePlantWhereRollersRipple) {
   EXPECT_LT(apart.turn_rad_s, 0.02);  // the ripple turns it by 0.09 rad/s
 }
 
+// Root mean square of the rotors' speeds, each by 1 ms of turning, against steps ten times as short.
+double off_by_steps_rad_s(const RollingParams<double>& p, const std::vector<EffectUse>& uses,
+                          int steps_per_ms) {
+  RollingRobot<double> coarse(p, uses, values_of(uses)), fine(p, uses, values_of(uses));
+  RollingState<double> x = coarse.start({}, {}), y = fine.start({}, {});
+  double square = 0.0;
+  std::vector<PerWheel<double>> fine_rad(3001);
+  drive(fine, y, 3000, 10 * steps_per_ms,
+        [&](int ms) { fine_rad[static_cast<std::size_t>(ms)] = y.theta_rotor_rad; });
+  PerWheel<double> before{};
+  drive(coarse, x, 3000, steps_per_ms, [&](int ms) {
+    const auto n = static_cast<std::size_t>(ms);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const double e = (x.theta_rotor_rad[i] - before[i] - fine_rad[n][i] + fine_rad[n - 1][i]) / 1e-3;
+      square += e * e / (4.0 * 3000);
+    }
+    before = x.theta_rotor_rad;
+  });
+  return std::sqrt(square);
+}
+
 // A sample period of 1 ms in steps as long as allowed, against ten times as many: a tenth of what an encoder
 // of 4096 counts resolves there.
 TEST(RollingRobot, StepsAsLongAsAllowedAreExactEnough) {
+  const double noise_rad_s = 2.0 * std::numbers::pi / 4096 / 1e-3 / std::sqrt(6.0);  // of counts' differences
   for (const bool tyre : {false, true}) {
-    const auto uses = effects({"coulomb_friction.torque_Nm=0.0025"});
-    const RollingParams<double> p = rolling(sample_robot(), tyre);
-    RollingRobot<double> coarse(p, uses, values_of(uses)), fine(p, uses, values_of(uses));
-    RollingState<double> x = coarse.start({}, {}), y = fine.start({}, {});
-    double square = 0.0;
-    std::vector<PerWheel<double>> fine_rad(3001);
     const int steps = static_cast<int>(std::lround(1e-3 / (tyre ? kSlippingStep_s : kRollingStep_s)));
-    drive(fine, y, 3000, 10 * steps,
-          [&](int ms) { fine_rad[static_cast<std::size_t>(ms)] = y.theta_rotor_rad; });
-    PerWheel<double> before{};
-    drive(coarse, x, 3000, steps, [&](int ms) {
-      const auto n = static_cast<std::size_t>(ms);
-      for (std::size_t i = 0; i < kWheels; ++i) {
-        const double e = (x.theta_rotor_rad[i] - before[i] - fine_rad[n][i] + fine_rad[n - 1][i]) / 1e-3;
-        square += e * e / (4.0 * 3000);
-      }
-      before = x.theta_rotor_rad;
-    });
-    const double noise = 2.0 * std::numbers::pi / 4096 / 1e-3 / std::sqrt(6.0);  // of counts' differences
-    EXPECT_LT(std::sqrt(square), 0.1 * noise) << "tyre " << tyre;
+    EXPECT_LT(off_by_steps_rad_s(rolling(sample_robot(), tyre),
+                                 effects({"coulomb_friction.torque_Nm=0.0025"}), steps),
+              0.1 * noise_rad_s)
+        << "tyre " << tyre;
+  }
+}
+
+// Where nothing sticks and no load is transferred: half the step, a quarter of the error.
+TEST(RollingRobot, IsOfOrderTwoOnATyre) {
+  RollingParams<double> p = rolling(sample_robot(), true);
+  p.has_lateral_tyre = false;  // its force is that of the step's start
+  p.center_of_mass_height_m = 0.0;
+  p.slip_speed_floor_m_s = 5.0;  // so that the slip's scale is constant
+  const double whole = off_by_steps_rad_s(p, {}, 1), half = off_by_steps_rad_s(p, {}, 2);
+  EXPECT_GT(whole / half, 3.5);
+  EXPECT_LT(whole / half, 4.5);
+}
+
+// A wheel that a bench slides over the floor: the slip dies out, m dv/dt = -k s, by (6 - 2 z) / (6 + 4 z + z^2) a step.
+TEST(RollingRobot, ASlipDiesOutByThePadeApproximant) {
+  RollingParams<double> p = rolling(sample_robot(), true);
+  p.wheels = 1;
+  p.mass_kg = 0.6;
+  p.has_lateral_tyre = false;
+  p.drive.viscous_friction_Nm_s_per_rad = 0.0;
+  p.drive.torque_constant_Nm_per_A = 1e-9;  // no back-EMF
+  const double lever_m = p.wheel_radius_m / p.drive.gear_ratio;
+  const double mass_kg = inertia_at_rotor(p.drive) / (lever_m * lever_m);
+  const double k_N_s_per_m = 1.5 * p.longitudinal.extremum_value * p.mass_kg * kGravity_m_s2 /
+                             (p.longitudinal.extremum_slip * p.slip_speed_floor_m_s);
+  for (const double z : {0.1, 1.0, 20.0}) {
+    const double h = z * mass_kg / k_N_s_per_m, slip_m_s = 1e-5;
+    RollingRobot<double> robot(p, {}, {});
+    RollingState<double> x = robot.start({}, {});
+    const std::array<double, 3> still{};
+    x.drive[0].omega_rotor_rad_s = slip_m_s / lever_m;
+    x.force_N[0] = k_N_s_per_m * slip_m_s;
+    x.slip_m_s[0] = -slip_m_s;
+    robot.advance(x, {.imposed_velocity = &still}, h);
+    EXPECT_NEAR(x.omega_rotor_rad_s(0) * lever_m / slip_m_s, (6 - 2 * z) / (6 + 4 * z + z * z), 1e-5) << z;
   }
 }
 
