@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hil/acquire/acquire_loop.h"
-#include "sim/robot/rolling_params.h"
+#include "sim/rolling/rolling_params.h"
 
 namespace omnihil {
 

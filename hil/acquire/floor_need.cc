@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/robot/rolling_robot.h"
+#include "sim/rolling/rolling_robot.h"
 
 namespace omnihil {
 

@@ -8,7 +8,7 @@
 // speeds that they end at without load: duty V / k. Integrated at 1 ms, exactly along each arc.
 #pragma once
 #include "hil/acquire/acquire_plan.h"
-#include "sim/robot/rolling_params.h"
+#include "sim/rolling/rolling_params.h"
 
 namespace omnihil {
 

@@ -14,7 +14,7 @@
 #include "identify/record/parallel.h"
 #include "identify/record/rig.h"
 #include "sim/model/rolling_model.h"
-#include "sim/robot/rolling_params.h"
+#include "sim/rolling/rolling_params.h"
 
 namespace omnihil {
 namespace {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "identify/predict/channel.h"
-#include "sim/robot/rolling_robot.h"
+#include "sim/rolling/rolling_robot.h"
 
 namespace omnihil {
 

@@ -10,8 +10,8 @@
 #include "identify/record/statistics.h"
 #include "identify/tyre/motion_smoother.h"
 #include "sim/model/rolling_model.h"
-#include "sim/robot/rolling_robot.h"
 #include "sim/robot/wheel_load.h"
+#include "sim/rolling/rolling_robot.h"
 
 namespace omnihil {
 namespace {

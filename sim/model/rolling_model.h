@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/model/params.h"
-#include "sim/robot/rolling_params.h"
+#include "sim/rolling/rolling_params.h"
 
 namespace omnihil {
 

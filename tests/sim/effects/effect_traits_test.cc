@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "sim/law/drive_params.h"
-#include "sim/robot/rolling_params.h"
+#include "sim/rolling/rolling_params.h"
 #include "tests/sim/effects/port_cases.h"
 
 namespace omnihil::test {

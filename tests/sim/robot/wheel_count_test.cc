@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "sim/robot/rolling_robot.h"
 #include "sim/robot/validate.h"
 #include "sim/robot/wheel_load.h"
+#include "sim/rolling/rolling_robot.h"
 #include "tests/sim/robot/sample_robot.h"
 
 namespace omnihil {

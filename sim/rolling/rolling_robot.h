@@ -36,9 +36,9 @@
 
 #include "sim/drive/drive_sim.h"
 #include "sim/robot/geometry.h"
-#include "sim/robot/rolling_grip.h"
-#include "sim/robot/rolling_params.h"
 #include "sim/robot/wheel_load.h"
+#include "sim/rolling/rolling_grip.h"
+#include "sim/rolling/rolling_params.h"
 
 namespace omnihil {
 

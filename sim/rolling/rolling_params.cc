@@ -1,4 +1,4 @@
-#include "sim/robot/rolling_params.h"
+#include "sim/rolling/rolling_params.h"
 
 namespace omnihil {
 namespace {

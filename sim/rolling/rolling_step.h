@@ -1,6 +1,6 @@
 // What acts over one step of a robot that rolls (rolling_robot.h), and what comes of it. For rolling_*.cc alone.
 #pragma once
-#include "sim/robot/rolling_robot.h"
+#include "sim/rolling/rolling_robot.h"
 
 namespace omnihil {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/robot/rolling_balance.h"
-#include "sim/robot/rolling_step.h"
+#include "sim/rolling/rolling_balance.h"
+#include "sim/rolling/rolling_step.h"
 
 namespace omnihil {
 namespace {

@@ -1,5 +1,5 @@
 // The robot that rolls or slips, solved implicitly: against formulas, against the plant, against itself.
-#include "sim/robot/rolling_robot.h"
+#include "sim/rolling/rolling_robot.h"
 
 #include <gtest/gtest.h>
 

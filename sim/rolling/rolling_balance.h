@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <array>
 
-#include "sim/robot/rolling_grip.h"
+#include "sim/rolling/rolling_grip.h"
 
 namespace omnihil {
 

@@ -1,11 +1,11 @@
-#include "sim/robot/rolling_robot.h"
+#include "sim/rolling/rolling_robot.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "sim/robot/link_effect.h"
-#include "sim/robot/rolling_step.h"
+#include "sim/rolling/rolling_step.h"
 
 namespace omnihil {
 
