@@ -5,7 +5,8 @@
 
 What a set is, its licence and the best known figures are read from the README of the shared data; verdicts, errors and times
 from the results. A set without a result keeps what the page says of it, else it is said to have none. Results named SET_… that
-the README does not know are another dataset of the same recordings, by an example's script.
+the README does not know are another dataset of the same recordings, by an example's script. What stands in a set's way is
+written by hand, in docs/measured-sets-remarks.toml.
 """
 import argparse
 import json
@@ -13,8 +14,10 @@ import os
 import pathlib
 import re
 import sys
+import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+REMARKS = ROOT / "docs/measured-sets-remarks.toml"
 USES = ("fit", "holdout", "extrapolation")
 TOLERATED = 1.05  # times the best known error: beyond it the page says missed
 # Words of a section of the README -> signal, field of the comparison, factor, unit. Sections with none of them measure otherwise.
@@ -196,7 +199,15 @@ def names_with_parts(sets, results, old):
             yield part, name
 
 
-def page(readme, results, old=""):
+def remarked(body, remark):
+    """A section with what was written by hand of its set, in place of what stood there."""
+    body = re.sub(r"\n\nWritten by hand\. .*\Z", "", body, flags=re.S)
+    if not remark:
+        return body
+    return f"{body}\n\nWritten by hand. In the way: {remark['in_the_way']}. It would settle it: {remark['would_settle']}."
+
+
+def page(readme, results, old="", remarks=None):
     parts, rows = [], []
     sets = sets_of(readme)
     for name, of_set in names_with_parts(sets, results, old):
@@ -208,7 +219,7 @@ def page(readme, results, old=""):
                 facts["dataset"] = made
             lines, row = section(name, facts, readme, results)
             before = "\n".join(lines).rstrip(), row
-        parts.append(before[0])
+        parts.append(remarked(before[0], (remarks or {}).get(name)))
         rows.append(before[1])
     head = f"""# What the diagnosis says of measured records
 
@@ -233,7 +244,8 @@ def main():
         return 77
     there = args.write or ROOT / "docs/measured-sets.md"
     old = there.read_text(encoding="utf-8") if there.exists() else ""
-    text = page((args.shared / "data/README.md").read_text(encoding="utf-8"), args.results, old)
+    remarks = tomllib.loads(REMARKS.read_text(encoding="utf-8"))
+    text = page((args.shared / "data/README.md").read_text(encoding="utf-8"), args.results, old, remarks)
     if args.write:
         args.write.write_text(text, encoding="utf-8")
     else:

@@ -134,6 +134,19 @@ class Page(unittest.TestCase):
         self.assertEqual(new.count("\n## arm\n"), 1)
         self.assertIn("Verdict", new.split("\n## drum_left\n")[1].split("\n## ")[0])
 
+    def test_a_remark_is_written_once_however_often_the_page_is_made(self):
+        remarks = {"arm": {"in_the_way": "nobody saw it", "would_settle": "a lamp"}}
+        once = measured_sets.page(README, self.results, "", remarks)
+        self.assertIn("In the way: nobody saw it. It would settle it: a lamp.", once)
+        with tempfile.TemporaryDirectory() as nothing:
+            again = measured_sets.page(README, Path(nothing), once, {"arm": remarks["arm"] | {"would_settle": "a day"}})
+        self.assertEqual(again, once.replace("a lamp", "a day"))
+
+    def test_every_remark_is_of_a_set_on_the_page(self):
+        remarks = measured_sets.tomllib.loads(measured_sets.REMARKS.read_text())
+        page = (measured_sets.ROOT / "docs/measured-sets.md").read_text()
+        self.assertEqual([name for name in remarks if f"\n## {name}\n" not in page], [])
+
     def test_another_dataset_of_the_same_recordings_follows_its_set(self):
         self.put("top", diagnosis("velocity", "rad/s"), {}, imported="`a.sh`, its folder `x`")
         self.put("top_spun", diagnosis("velocity", "rad/s"), {}, imported="`a.sh`, its folder `y`")
