@@ -115,12 +115,12 @@ class RigPredictor final : public Predictor {
 
   Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
                                       int n) const override {
-    if (unknowns.empty()) return predict(candidate, n);
     const Candidate own = with_known(candidate, run(n).known);
     const std::vector<Unknown> open = open_unknowns(unknowns, run(n));
     const double step_s = rig_.step_s(own, at(n));
     const bool exact = rig_.is_exact(own, at(n));
-    Prediction p = exact ? by_passes(own, open, at(n), step_s) : by_values(own, open, at(n), step_s);
+    const bool passes = exact && !open.empty();  // of no unknowns there are no columns
+    Prediction p = passes ? by_passes(own, open, at(n), step_s) : by_values(own, open, at(n), step_s);
     for (std::size_t u = 0; u < open.size() && p.finite; ++u) {
       if (open[u].path.empty()) continue;
       const Secant secant = rig_.secant(own, open[u], static_cast<Eigen::Index>(u), at(n), p);

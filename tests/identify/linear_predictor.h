@@ -62,8 +62,8 @@ class LinearPredictor final : public FakePredictor {
   std::map<std::string, std::vector<double>> patterns_;
 };
 
-// An axis one of whose numbers, viscous friction, is not known exactly (1e-5 N m s/rad, relative 1-sigma 1).
-inline Candidate axis_with_unknown_friction() {
+// An axis of which all but perhaps the viscous friction is known exactly. friction: as a model file has it, N m s/rad.
+inline Candidate axis_with_friction(const std::string& friction) {
   AxisReading r = read_axis_model(R"x(
 format = "omnihil-model/1"
 rig = "axis"
@@ -71,15 +71,16 @@ rig = "axis"
 resistance_ohm = 0.5
 torque_constant_Nm_per_A = 0.03
 rotor_inertia_kg_m2 = 1e-5
-viscous_friction_Nm_s_per_rad = { value = 1e-5, tolerance = 1 }
 pole_pairs = 7
 slots = 12
-[supply]
-voltage_V = 24
-)x",
+viscous_friction_Nm_s_per_rad = )x" + friction +
+                                      "\n[supply]\nvoltage_V = 24\n",
                                   "model.toml", nullptr);
   for (const ModelProblem& p : r.problems) ADD_FAILURE() << p.text();
   return r.model ? candidate_of(r.model->file, r.model->effects) : Candidate{};
+}
+inline Candidate axis_with_unknown_friction() {
+  return axis_with_friction("{ value = 1e-5, tolerance = 1 }");  // relative 1-sigma
 }
 
 inline constexpr const char* kFriction = "motor.viscous_friction_Nm_s_per_rad";

@@ -43,6 +43,18 @@ TEST(DiagnoseTest, NamesNothingWhereTheBaseModelIsTheTruth) {
   EXPECT_EQ(d.ladder.size(), 2u);
 }
 
+// A model of which every number is known leaves nothing to fit but the effect. The load is the mean torque, as above.
+TEST(DiagnoseTest, NamesALoadOfAModelThatIsKnownExactly) {
+  const double load_Nm = 0.004, friction_Nm_s_per_rad = 1.3e-5;
+  const TorqueMap map({.friction_Nm_s_per_rad = friction_Nm_s_per_rad, .load_Nm = load_Nm});
+  const Diagnosis d = diagnose(map.dataset, axis_with_friction("1.3e-5"), {});
+  ASSERT_EQ(d.effects, std::vector<std::string>{"constant_load"}) << reasons(d);
+  double mean = 0.0;
+  for (int i = 0; i < TorqueMap::kPoints; ++i)
+    mean += map.without_brake_Nm(kTraining, i) / TorqueMap::kPoints;
+  EXPECT_NEAR(value_at(d.final_fit.model, kLoad).value(), -mean, 1e-3 * load_Nm);
+}
+
 // Only ever driving, a loss in proportion to the measured torque would shrink the whole equation with its noise.
 TEST(DiagnoseTest, NamesNoLossThatExplainsTheMeasurementByItself) {
   const TorqueMap map({.braked = false});
