@@ -33,6 +33,7 @@ constexpr std::array kModelKeys{
     Key{"robot", "wheel_angle_deg"},
     Key{"robot", "rollers_per_wheel"},
     Key{"robot", "slip_speed_floor_m_s"},
+    Key{"encoder", "counts_per_turn"},
     Key{"tyre.longitudinal", "extremum_slip"},
     Key{"tyre.longitudinal", "extremum_value"},
     Key{"tyre.longitudinal", "asymptote_slip"},

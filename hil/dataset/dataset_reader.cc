@@ -256,6 +256,7 @@ class DatasetReader {
   }
 
   // Duties of radio commands are made by the firmware, or by the model's [controller].
+    const bool said = out_.nominal->file.parameters.find("encoder.counts_per_turn") != nullptr;
   void check_robot_drive() {
     if (!chosen_firmware().file.empty()) return;
     const ParameterTable& table = out_.nominal->file.parameters;

@@ -183,12 +183,20 @@ TEST(Dataset, ModelReadsBackWithTheSameNumbers) {
   EXPECT_EQ(read.model->robot->wheel_angle_rad, wrote.robot->wheel_angle_rad);
   EXPECT_EQ(read.model->robot->gear_ratio, wrote.robot->gear_ratio);
   EXPECT_EQ(read.model->robot->bus_voltage_V, wrote.robot->bus_voltage_V);
+  EXPECT_EQ(read.model->robot->encoder.counts_per_turn, wrote.robot->encoder.counts_per_turn);
   EXPECT_EQ(read.model->motor.torque_constant_Nm_per_A, wrote.motor.torque_constant_Nm_per_A);
   EXPECT_EQ(read.model->motor.coulomb_friction_Nm, wrote.motor.coulomb_friction_Nm);
   EXPECT_EQ(read.model->parameters.find("robot.mass_kg")->tolerance,
             wrote.parameters.find("robot.mass_kg")->tolerance);
   EXPECT_EQ(read.model->parameters.find("robot.mass_kg")->source,
             wrote.parameters.find("robot.mass_kg")->source);
+}
+
+// A firmware in the predictor counts them.
+TEST(Dataset, ModelSaysWhatItsEncodersCount) {
+  ModelFile coarse = model();
+  coarse.parameters.find("encoder.counts_per_turn")->values = {1024.0};
+  EXPECT_NE(dataset_model_text(coarse).find("\n[encoder]\ncounts_per_turn = 1024\n"), std::string::npos);
 }
 
 TEST(Dataset, ModelLeavesOutCountsThatAreNotKnown) {
