@@ -104,8 +104,8 @@ class PlanReader {
       return;
     }
     const toml::table& table = *node.as_table();
-    static constexpr std::string_view kKeys[] = {"column", "sigma",          "scale", "offset",
-                                                 "unit",   "counts_per_rev", "shaft", "role"};
+    static constexpr std::string_view kKeys[] = {"column",         "sigma", "scale", "offset",       "unit",
+                                                 "counts_per_rev", "shaft", "role",  "clock_sigma_s"};
     keys_.only(table, path, kKeys);
     Channel channel;
     channel.signal = name;
@@ -160,6 +160,7 @@ class PlanReader {
                       "only to encoder counts");
       }
     }
+    if (const toml::node* clock = table.get("clock_sigma_s")) read_clock(*clock, table, path, channel);
     channel.unit = keys_.text(table, path, "unit").value_or("");  // held against the signal's own later
     static constexpr std::string_view kRoles[] = {"measured", "imposed"};
     channel.imposed = keys_.word(table, path, "role", kRoles, 0).value_or(0) == 1;
@@ -167,6 +168,26 @@ class PlanReader {
     if (channel.imposed && row.imposed == Imposed::kNever) {
       keys_.wrong(*table.get("role"), path + ".role", "a bench cannot impose this signal",
                   "allowed: velocity, position or motor_current of rig \"axis\"");
+    }
+  }
+
+  // Of a camera's: one clock, whatever it sees.
+  void read_clock(const toml::node& node, const toml::table& table, const std::string& path,
+                  Channel& channel) {
+    constexpr double kLongest_s = 1.0;  // a second off is no lag but another drive; a choice
+    channel.clock_sigma_s =
+        keys_
+            .number(table, path, "clock_sigma_s", 0.0, kLongest_s, true,
+                    "allowed: more than 0 up to 1 s, 1-sigma of its clock's shift in a run")
+            .value_or(0.0);
+    if (!channel.signal.starts_with("vision_"))
+      keys_.wrong(node, path + ".clock_sigma_s", "does not apply to this signal",
+                  "only to vision_x, vision_y, vision_theta");
+    for (const Channel& other : plan_.dataset.channels) {
+      if (other.clock_sigma_s > 0.0 && other.clock_sigma_s != channel.clock_sigma_s)
+        keys_.wrong(node, path + ".clock_sigma_s",
+                    fmt::format("{} has another: {} s", other.signal, other.clock_sigma_s),
+                    "one clock for all that the camera sees");
     }
   }
 

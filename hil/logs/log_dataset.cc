@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "hil/logs/log_rows.h"
 #include "hil/text/line_chart.h"
@@ -123,9 +124,9 @@ class Channels {
   }
 
   // Of one run's readings; a channel has that of all, rms.
-  void add_sigma(const std::string& signal, double sigma) {
+  void add_sigma(const std::string& signal, const std::string& key, double sigma) {
     if (!(sigma > 0.0) || !std::isfinite(sigma)) return;
-    auto& [square, count] = sigmas_[signal];
+    auto& [square, count] = sigmas_[signal][key];
     square += sigma * sigma, count += 1.0;
   }
 
@@ -133,9 +134,10 @@ class Channels {
     std::string out;
     for (const std::string& signal : order_) {
       std::string line = lines_.at(signal);
-      if (const auto it = sigmas_.find(signal); it != sigmas_.end())
-        line.insert(line.size() - 2,
-                    fmt::format(", sigma = {:.3g}", std::sqrt(it->second.first / it->second.second)));
+      if (const auto it = sigmas_.find(signal); it != sigmas_.end()) {
+        for (const auto& [key, sum] : it->second)
+          line.insert(line.size() - 2, fmt::format(", {} = {:.3g}", key, std::sqrt(sum.first / sum.second)));
+      }
       out += line + "\n";
     }
     return out;
@@ -164,7 +166,8 @@ class Channels {
   LogDataset& out_;
   std::map<std::string, std::string> lines_;
   std::vector<std::string> order_;
-  std::map<std::string, std::pair<double, double>> sigmas_;  // sum of squares, count
+  // By signal, then by key: sum of squares, count.
+  std::map<std::string, std::map<std::string, std::pair<double, double>>> sigmas_;
   bool said_ = false;
 };
 
@@ -230,9 +233,10 @@ LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOp
       run.table = std::move(joined.table);
       asked = std::move(joined.asked);
       made.notes.push_back(joined.note);
-      channels.add_sigma("vision_x", joined.place_sigma_m);
-      channels.add_sigma("vision_y", joined.place_sigma_m);
-      if (joined.heading_sigma_rad > 0.0) channels.add_sigma("vision_theta", joined.heading_sigma_rad);
+      for (const ColumnMap& seen : std::span(asked).last(joined.columns.size())) {
+        if (seen.signal != "vision_theta") channels.add_sigma(seen.signal, "sigma", joined.place_sigma_m);
+        channels.add_sigma(seen.signal, "clock_sigma_s", joined.clock_sigma_s);
+      }
     }
     const LogMeaning meaning = recognise(run.table, o.context, asked);
     if (&run == &runs.front()) made.table = table_of(run, meaning, o);

@@ -90,22 +90,20 @@ MotionTrack robot_track(const LogTable& log, const LogMeaning& meaning, const Po
   return out;
 }
 
-// A place is moved by speed times the lag's sigma and by distance from the start times the angle's, half of each along an axis.
-void add_sigmas(const std::vector<double>& seen_s, const std::vector<Complex>& seen, const PoseClock& clock,
-                bool places, bool turned, JoinedPose& out) {
-  const MotionTrack way = track_of_path(seen_s, seen, kChord_s);
-  double rate2 = 0.0, far2 = 0.0;
-  for (const Complex& v : way.velocity_m_s) rate2 += std::norm(v);
+// A place is moved by distance from the start times the angle's sigma, half of its square along an axis.
+double moved_by_frame_m(const std::vector<Complex>& seen, const PoseClock& clock) {
+  double far2 = 0.0;
   for (const Complex& p : seen) far2 += std::norm(p - seen.front());
+  return clock.frame_sigma_rad * std::sqrt(0.5 * far2 / static_cast<double>(seen.size()));
+}
+// The same of the lag's: speed times it.
+double moved_by_clock_m(const std::vector<double>& seen_s, const std::vector<Complex>& seen,
+                        const PoseClock& clock) {
+  const MotionTrack way = track_of_path(seen_s, seen, kChord_s);
+  double rate2 = 0.0;
+  for (const Complex& v : way.velocity_m_s) rate2 += std::norm(v);
   rate2 /= static_cast<double>(std::max<std::size_t>(1, way.velocity_m_s.size()));
-  far2 /= static_cast<double>(seen.size());
-  const double by_lag = rate2 * clock.sigma_s * clock.sigma_s;
-  const double by_frame = turned ? far2 * clock.frame_sigma_rad * clock.frame_sigma_rad : 0.0;
-  if (places) {
-    out.place_sigma_m = std::sqrt(0.5 * (by_lag + by_frame));
-  } else {
-    out.heading_sigma_rad = std::sqrt(by_lag);
-  }
+  return clock.sigma_s * std::sqrt(0.5 * rate2);
 }
 
 std::vector<double> unwrapped(std::vector<double> angle) {
@@ -174,7 +172,8 @@ JoinedPose join_pose(const LogTable& log, const LogTable& pose, const std::vecto
   };
   if (places) add("vision_x", "m", std::move(px)), add("vision_y", "m", std::move(py));
   if (own_heading) add("vision_theta", "rad", std::move(ptheta));
-  add_sigmas(seen_s, seen, clock, places, !own_heading, out);
+  out.clock_sigma_s = clock.sigma_s;
+  if (places && !own_heading) out.place_sigma_m = moved_by_frame_m(seen, clock);
   out.note = fmt::format("{} beside {}: its clock is {:.3f} s +- {:.3f} s ahead (correlation {:.2f})",
                          pose_name, log_name, clock.offset_s, clock.sigma_s, clock.correlation);
   if (places)
@@ -183,7 +182,8 @@ JoinedPose join_pose(const LogTable& log, const LogTable& pose, const std::vecto
         "way "
         "that the wheels say; so a place is known to {:.1f} mm",
         clock.frame_rad * 360.0 / kTurn, clock.frame_sigma_rad * 360.0 / kTurn,
-        own_heading ? "" : ", turned back", clock.scale, 1000.0 * out.place_sigma_m);
+        own_heading ? "" : ", turned back", clock.scale,
+        1000.0 * std::hypot(out.place_sigma_m, moved_by_clock_m(seen_s, seen, clock)));
   return out;
 }
 

@@ -26,8 +26,9 @@ struct JoinedPose {
   LogTable table;
   std::vector<ColumnMap> asked;      // of this table
   std::vector<std::string> columns;  // of the poses
-  // Of places and headings on this clock and in this frame, rms: what the two are not known to moves them. m, rad.
-  double place_sigma_m = 0.0, heading_sigma_rad = 0.0;
+  double clock_sigma_s = 0.0;
+  // Of places in this frame, rms: what its angle is not known to moves them; 0: the frame is the poses' own.
+  double place_sigma_m = 0.0;
   std::string note;
 };
 

@@ -165,6 +165,7 @@ void complete(const RigRun& run, Prediction& p) {
       complete(run, c, false, p.derivatives[c].col(u));
     }
   }
+  if (p.finite) fit_clock(run.clock, run.compared, p);
 }
 
 double distance(const RigRun& run, const Prediction& a, const Prediction& b) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "identify/predict/channel.h"
+#include "identify/predict/own_clock.h"
 #include "identify/record/filter.h"
 
 namespace omnihil {
@@ -57,6 +58,7 @@ struct RigRun {
   std::vector<Observation> seen;  // one per compared signal
   LowPass filter;                 // of measurement and prediction alike, without delay; no sections: none
   std::vector<double> given;      // of a needed input: the one that was given, filtered alike
+  OwnClock clock;                 // of a camera beside the rig
 };
 
 // A mean's first sample is taken out of `measured`. stated_sigma: 0: estimated. Without it the noise is the caller's to set.
@@ -102,7 +104,7 @@ std::vector<std::vector<T>> observed(const RigRun& run, const std::vector<double
   return out;
 }
 
-// What is linear in values and derivatives alike: levels and filters. A measured sample that is not predicted is a
+// What is linear in values and derivatives alike: levels, filters, shifts of a clock. A measured sample that is not predicted is a
 // divergence.
 void complete(const RigRun& run, Prediction& p);
 void complete(const RigRun& run, std::size_t signal, bool is_value, Eigen::Ref<Eigen::VectorXd> column);

@@ -6,14 +6,11 @@
 
 #include "identify/predict/firmware_loop.h"
 #include "identify/predict/interpolation.h"
+#include "identify/predict/own_clock.h"
 #include "sim/law/random.h"
 
 namespace omnihil {
 namespace {
-
-// Time constant of the model path's correction towards the camera: an error of speed dv appears as 0.5 s dv,
-// above a camera's millimetres for 10 mm/s. A choice; sensitivity not measured.
-constexpr double kFollow_s = 0.5;  // a choice
 
 // Everything true at a sample, beside what RollingSample keeps of it.
 template <typename T>
@@ -378,9 +375,7 @@ class Runner {
         correction = f.pose[axis] - there;  // the first frame is the path's origin, and is not compared
       } else {
         out = there + correction;
-        // at first the mean of the frames so far, so that the first one's noise is averaged out
-        const double gain = std::max(-std::expm1(-(now_s - last_s) / kFollow_s), 1.0 / (frames + 1.0));
-        correction += (f.pose[axis] - out) * gain;
+        correction += (f.pose[axis] - out) * follow_gain(now_s - last_s, kFollowCamera_s, frames);
       }
       last_s = now_s;
       frames += 1.0;

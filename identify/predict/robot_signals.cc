@@ -65,6 +65,23 @@ void add_frames(const Channel& channel, Observation how, std::string_view unit, 
       add_signal(r, std::move(how), name, std::string(unit), r.record.time_s, std::move(at_rows));
   set_noise(channel.sigma, estimate_noise(seen), c);  // from frame to frame
   r.seen.back().channel_sigma = c.noise_sigma;
+  if (channel.clock_sigma_s > 0.0 && !seen.empty()) {
+    r.clock.sigma_s = channel.clock_sigma_s;
+    r.clock.follow_s = kFollowCamera_s;
+    r.clock.signals.push_back(r.compared.size() - 1);
+  }
+}
+
+// What a signal on a clock of its own reads, with one shift of it drawn; empty: it has none.
+std::vector<double> by_its_clock(const RobotRun& run, std::size_t signal, const RobotMotion<double>& m,
+                                 std::uint64_t seed) {
+  const std::vector<std::size_t>& with_it = run.clock.signals;
+  if (std::find(with_it.begin(), with_it.end(), signal) == with_it.end()) return {};
+  const double shift_s = run.clock.sigma_s * gaussian(seed, stream_of("clock of the camera"), 0);
+  std::vector<double> y, out;
+  for (const RollingSample<double>& s : m.samples) y.push_back(quantity_of(s, run.seen[signal]));
+  for (std::size_t k = 0; k < y.size(); ++k) out.push_back(y[k] + shift_s * rate_at(run.record.time_s, y, k));
+  return out;
 }
 
 }  // namespace
@@ -180,8 +197,10 @@ void measure_robot(const RobotRun& run, const RobotMotion<double>& m, std::uint6
     double origin = s.view == View::kFrames ? kMissing : 0.0;  // of the camera, from the simulation's
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;
-      const double normal = gaussian(seed, stream, k), value = quantity_of(m.samples[k], s);
+      const double normal = gaussian(seed, stream, k),
+                   value = late.empty() ? quantity_of(m.samples[k], s) : late[k];
       if (!std::isfinite(origin)) origin = out[k] - value;
+    const std::vector<double> late = by_its_clock(run, n, m, seed);
       if (s.view == View::kLevel) {  // an input: the true one has no sensor's noise
         out[k] = r.bus.input_V[k] + s.channel_sigma * normal;
       } else if (s.view == View::kDifference) {

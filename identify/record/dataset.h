@@ -35,8 +35,9 @@ std::string_view split_name(Split split);  // as the file format has it: "fit", 
 struct Channel {
   std::string signal;  // "velocity", "encoder_2"
   std::string column;
-  std::string unit;    // of the signal, on this rig: "rad/s", on a linear axis "m/s"
-  double sigma = 0.0;  // 1-sigma sensor noise; 0: not stated
+  std::string unit;            // of the signal, on this rig: "rad/s", on a linear axis "m/s"
+  double sigma = 0.0;          // 1-sigma sensor noise; 0: not stated
+  double clock_sigma_s = 0.0;  // of a clock of its own, by which it is off in each run; 0: the run's clock
   double scale = 1.0;
   double offset = 0.0;
   double counts_per_rev = 0.0;  // encoders
