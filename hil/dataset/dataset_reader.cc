@@ -171,6 +171,12 @@ class DatasetReader {
         compared = compared || ((moves || name == "load_torque") && !dataset_.channel(name)->imposed);
       }
       const TextPlace at = plan_.runs[r].at;
+      const bool commanded = std::any_of(run.signals.begin(), run.signals.end(), [](const auto& signal) {
+        return signal.first.starts_with("command_");
+      });
+      if (run.steady && commanded && dataset_.rig != &rig_axis())
+        problem(at, "runs", fmt::format("\"{}\"", run.file), "is of settled points under commands",
+                "duties: what a closed loop settles at is what it was told");
       if (!motion && !run.steady) {
         problem(at, "runs", fmt::format("\"{}\"", run.file), "has no motion signal",
                 std::string(dataset_.rig->motion_needed));
@@ -250,13 +256,15 @@ class DatasetReader {
         open_dataset_firmware(chosen, robot_config(*out_.nominal->file.robot, 0), dataset_.runs, refused);
     for (FirmwareRefusal& r : refused) refuse(r.key, std::move(r.what), std::move(r.allowed));
     if (!dataset_.firmware) return;
+    const bool said = out_.nominal->file.parameters.find("encoder.counts_per_turn") != nullptr;
     dataset_.notes.push_back(fmt::format(
-        "{} makes the duties; of [controller] {}", dataset_.firmware->fresh()->name(),
+        "{} makes the duties, by encoders of {:g} counts a turn{}; of [controller] {}",
+        dataset_.firmware->fresh()->name(), dataset_.firmware->counts_per_rotor_turn(),
+        said ? "" : " (the model does not say: encoder.counts_per_turn)",
         chosen.board.empty() ? "the latency alone counts" : "latency_s and report_filter_s count"));
   }
 
   // Duties of radio commands are made by the firmware, or by the model's [controller].
-    const bool said = out_.nominal->file.parameters.find("encoder.counts_per_turn") != nullptr;
   void check_robot_drive() {
     if (!chosen_firmware().file.empty()) return;
     const ParameterTable& table = out_.nominal->file.parameters;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "identify/predict/settled_points.h"
+
 namespace omnihil {
 namespace {
 
@@ -44,7 +46,6 @@ T quantity_of(const AxisSetup& s, const DriveParams<T>& p, Quantity what,
 template <typename T>
 std::vector<std::vector<T>> steady_outputs(const AxisSetup& s, const DriveParams<T>& p,
                                            const EffectSet<T>& effects) {
-  constexpr double kSettled_s = 0.5;     // a hundred electrical time constants of a small motor; a choice
   constexpr double kCreep_rad_s = 1e-6;  // slow enough that nothing but dry friction notices; a choice
   const AxisInput& in = s.input;
   const DriveSim<T> sim(p, effects, kSettled_s);

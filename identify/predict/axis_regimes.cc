@@ -54,13 +54,13 @@ std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model
   add("speed", per_s, mapped(speed, size));
   add("velocity", per_s, speed);
   add("direction", "1", mapped(speed, [](double v) { return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0); }));
-  if (!s.steady) add("acceleration", drive.linear ? "m/s2" : "rad/s2", slope(in.time_s, speed));
+  add("acceleration", drive.linear ? "m/s2" : "rad/s2", slope(in.time_s, speed));
   add("abs_current", "A", mapped(current, size));
   add("rotor_angle", way, mapped(angle, [&](double v) { return v * gear; }));
   add("output_angle", way, angle);
   add("position", way, angle);
-  if (!s.steady) add("time", "s", in.time_s);
-  if (!s.steady) add("time_since_step", "s", since_step(in.time_s, {in.command}));
+  add("time", "s", in.time_s);
+  add("time_since_step", "s", since_step(in.time_s, {in.command}));
   add("abs_command", "", mapped(in.command, size));
   add("temperature", "degC", warm);
   add("bus_voltage", "V", in.bus_voltage_V);

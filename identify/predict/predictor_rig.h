@@ -10,6 +10,7 @@
 
 #include "identify/predict/observation.h"
 #include "identify/predict/rig_values.h"
+#include "identify/predict/settled_points.h"
 
 namespace omnihil {
 
@@ -105,7 +106,9 @@ class RigPredictor final : public Predictor {
     return rig_.shows_signature_of(effect);
   }
   std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
-    return rig_.regimes(with_known(candidate, run(n).known), at(n));
+    std::vector<RegimeTrack> tracks = rig_.regimes(with_known(candidate, run(n).known), at(n));
+    if (run(n).steady) no_time(tracks);
+    return tracks;
   }
 
   Prediction predict(const Candidate& candidate, int n) const override {

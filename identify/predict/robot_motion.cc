@@ -402,7 +402,15 @@ class Runner {
 template <typename T>
 RobotMotion<T> run_robot(const RobotModelValues<T>& model, const RobotRecord& record,
                          const RobotMotionOptions& options, RobotCarry<T>* carry) {
-  return Runner<T>(model, record, options, carry).run();
+  if (record.settled.empty()) return Runner<T>(model, record, options, carry).run();
+  RobotMotion<T> out;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    const RobotRecord point = settled_point(record, k);
+    RobotMotion<T> at = Runner<T>(model, point, options, nullptr).run();
+    out.finite = out.finite && at.finite;
+    out.samples.push_back(std::move(at.samples.back()));
+  }
+  return out;
 }
 
 template RobotMotion<double> run_robot(const RobotModelValues<double>&, const RobotRecord&,

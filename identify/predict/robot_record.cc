@@ -7,6 +7,7 @@
 #include <string>
 
 #include "identify/predict/interpolation.h"
+#include "identify/predict/settled_points.h"
 #include "identify/predict/silent_frames.h"
 #include "sim/law/random.h"
 
@@ -164,6 +165,26 @@ BodyVelocity<double> start_velocity(const RobotRecord& r, const Dataset& dataset
   return body_velocity(g, omega_wheel);
 }
 
+// The body's at each row, by the wheels where they are measured; at rest where they are not.
+void read_settled(const Run& run, const WheelGeometry<double>& g, RobotRecord& r) {
+  r.settled.resize(r.size());
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    if (!r.imposed_velocity.empty()) {
+      const auto& v = r.imposed_velocity[k];
+      r.settled[k] = {v[0], v[1], v[2]};
+      continue;
+    }
+    PerWheel<double> omega{};
+    bool known = true;
+    for (std::size_t i = 0; i < r.wheels && known; ++i) {
+      const std::vector<double>* speed = run.signal(numbered("wheel_speed", i, r.wheels));
+      known = speed != nullptr && std::isfinite((*speed)[k]);
+      if (known) omega[i] = (*speed)[k];
+    }
+    if (known) r.settled[k] = body_velocity(g, omega);
+  }
+}
+
 }  // namespace
 
 RadioCommands radio_commands(const Run& run, std::size_t wheels) {
@@ -210,7 +231,24 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   unwrap_by_gyro(r);
   read_imposed(run, r);
   r.start_velocity = start_velocity(r, dataset, run, nominal);
+  if (run.steady) read_settled(run, wheel_geometry(nominal), r);
   return r;
+}
+
+RobotRecord settled_point(const RobotRecord& r, std::size_t k) {
+  constexpr double kMean_s = 0.02;  // of means: some steps of the simulation; a choice
+  RobotRecord p;
+  p.wheels = r.wheels;
+  p.time_s = {0.0, kSettled_s, kSettled_s + kMean_s};
+  p.duty_ratio.assign(p.size(), r.duty_ratio[k]);
+  p.enabled.assign(p.size(), r.enabled[k]);
+  if (!r.bus.input_V.empty()) p.bus.input_V.assign(p.size(), r.bus.input_V[k]);
+  p.dribbler_rad_s.assign(p.size(), r.dribbler_rad_s[k]);
+  p.encoder_rotor_rad.resize(p.size());
+  p.theta_rotor_rad.assign(p.size(), r.theta_rotor_rad[k]);
+  if (!r.imposed_velocity.empty()) p.imposed_velocity.assign(p.size(), r.imposed_velocity[k]);
+  p.start_velocity = r.settled[k];
+  return p;
 }
 
 RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {

@@ -68,6 +68,8 @@ struct RobotRecord {
   std::vector<std::array<double, 3>> imposed_velocity;  // of the body, by the bench; empty: it moves freely
   std::vector<SilentStretch> silent;
   BodyVelocity<double> start_velocity;
+  std::vector<BodyVelocity<double>>
+      settled;  // of settled points (settled_points.h), each row's; empty: a series in time
 
   std::size_t size() const { return time_s.size(); }
   std::size_t inputs() const { return radio ? radio->count : wheels; }
@@ -79,6 +81,9 @@ std::string numbered(std::string_view name, std::size_t wheel, std::size_t wheel
 // gear_ratio, wheel_radius_m and the wheels' places of the nominal model: for the start alone, and for
 // encoders on the wheel.
 RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal);
+
+// One of a record's settled points, as a record in time: its inputs held until all has settled, the last row after that.
+RobotRecord settled_point(const RobotRecord& record, std::size_t row);
 
 // The record with another draw of its inputs' noise: uniform rounding error of the duties, the bus sensor's
 // normal one.

@@ -95,8 +95,12 @@ RobotRun robot_run(const Dataset& dataset, const Run& run, const RollingParams<d
       const std::string name = numbered(source.channel, i, each ? r.record.wheels : 1);
       const Channel* channel = dataset.channel(name);
       if (channel == nullptr || channel->imposed || run.signal(name) == nullptr) continue;
+      const bool counted = source.view == View::kDifference || source.view == View::kFrames;
+      if (run.steady && counted) continue;  // a displacement has no settled value
+      // A settled point's mean is its value: nothing is the mean since another.
+      const View view = run.steady && source.view == View::kMean ? View::kPoint : source.view;
       const Observation how{
-          .quantity = source.quantity, .view = source.view, .channel = name, .part = each ? i : source.part};
+          .quantity = source.quantity, .view = view, .channel = name, .part = each ? i : source.part};
       if (source.view == View::kDifference) {
         add_encoder(*channel, how, numbered("velocity", i, r.record.wheels), r);
       } else if (source.view == View::kFrames) {
@@ -195,12 +199,12 @@ void measure_robot(const RobotRun& run, const RobotMotion<double>& m, std::uint6
     }
     const double counts_per_rad = r.counts_per_rotor_turn[s.part] / kTurn;
     double origin = s.view == View::kFrames ? kMissing : 0.0;  // of the camera, from the simulation's
+    const std::vector<double> late = by_its_clock(run, n, m, seed);
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;
       const double normal = gaussian(seed, stream, k),
                    value = late.empty() ? quantity_of(m.samples[k], s) : late[k];
       if (!std::isfinite(origin)) origin = out[k] - value;
-    const std::vector<double> late = by_its_clock(run, n, m, seed);
       if (s.view == View::kLevel) {  // an input: the true one has no sensor's noise
         out[k] = r.bus.input_V[k] + s.channel_sigma * normal;
       } else if (s.view == View::kDifference) {
