@@ -37,7 +37,8 @@ struct Drive {
   double damping = 0.0;  // sum emf_x^2
 };
 
-Drive drive_of(const Conduction& on, const Three& constant, const Three& current_A) {
+template <class On>
+[[gnu::always_inline]] inline Drive drive_of(const On& on, const Three& constant, const Three& current_A) {
   Drive d;
   d.constant = constant;
   const double mean_V = mean_of(on, on.volt_V), mean_K = mean_of(on, constant);
@@ -52,7 +53,8 @@ Drive drive_of(const Conduction& on, const Three& constant, const Three& current
 }
 
 // Fills speed, settled and mean currents for the part's length.
-void solve(const PhaseCircuit& c, const PhaseState& s, const Drive& d, const PhaseInput& in, Part& p) {
+[[gnu::always_inline]] inline void solve(const PhaseCircuit& c, const PhaseState& s, const Drive& d,
+                                         const PhaseInput& in, Part& p) {
   p.omega_mid_rad_s = s.omega_rotor_rad_s;
   if (!in.speed_is_imposed) {
     // mean i_x = g (volt_x - emf_x w) + phi i0_x;  torque = T0 - G w
@@ -68,7 +70,8 @@ void solve(const PhaseCircuit& c, const PhaseState& s, const Drive& d, const Pha
 }
 
 // The diode whose current reaches zero first within the part, or kNone. remaining: exp(-t / tau) there.
-std::size_t first_zero(const PhaseState& s, const Conduction& on, const Part& p, double& remaining) {
+template <class On>
+std::size_t first_zero(const PhaseState& s, const On& on, const Part& p, double& remaining) {
   Three end_A;
   each_phase([&](auto x) {
     end_A[x] = on.direction[x] * (p.settled_A[x] + (s.current_A[x] - p.settled_A[x]) * p.decay);
@@ -86,7 +89,8 @@ std::size_t first_zero(const PhaseState& s, const Conduction& on, const Part& p,
 }
 
 // Of the star point against the bus's minus.
-double star_of(const Conduction& on, const std::array<Leg, 3>& legs, const Three& emf_V, double bus_V) {
+template <class On>
+double star_of(const On& on, const std::array<Leg, 3>& legs, const Three& emf_V, double bus_V) {
   if (on.count > 0) return mean_of(on, on.volt_V) - mean_of(on, emf_V);
   double lowest_V = legs[0].forward.volt_V - emf_V[0], highest_V = legs[0].backward.volt_V - emf_V[0];
   for (std::size_t x = 1; x < 3; ++x) {
@@ -97,9 +101,10 @@ double star_of(const Conduction& on, const std::array<Leg, 3>& legs, const Three
 }
 
 // What floats follows the star point; what conducts is its source behind R_on.
-void book_voltages(const PhaseCircuit& c, const std::array<Leg, 3>& legs, const Conduction& on,
-                   const Three& constant, const PhaseInput& in, const Part& p, const Three& charge_C,
-                   PhaseFlow& flow) {
+template <class On>
+[[gnu::always_inline]] inline void book_voltages(const PhaseCircuit& c, const std::array<Leg, 3>& legs,
+                                                 const On& on, const Three& constant, const PhaseInput& in,
+                                                 const Part& p, const Three& charge_C, PhaseFlow& flow) {
   const double w = p.omega_mid_rad_s;
   const Three emf_V = {constant[0] * w, constant[1] * w, constant[2] * w};
   const double star_V = on.count == 3 ? 0.0 : star_of(on, legs, emf_V, in.bus_voltage_V);
@@ -109,8 +114,10 @@ void book_voltages(const PhaseCircuit& c, const std::array<Leg, 3>& legs, const 
   });
 }
 
-void book(const PhaseCircuit& c, const std::array<Leg, 3>& legs, const PhaseState& s, const Conduction& on,
-          const Three& constant, const PhaseInput& in, const Part& p, PhaseFlow& flow) {
+template <class On>
+[[gnu::always_inline]] inline void book(const PhaseCircuit& c, const std::array<Leg, 3>& legs,
+                                        const PhaseState& s, const On& on, const Three& constant,
+                                        const PhaseInput& in, const Part& p, PhaseFlow& flow) {
   // integral of (i_inf + d exp(-t / tau))^2 = i_inf^2 h + 2 i_inf d phi h + d^2 (1 + decay) phi h / 2
   const double ring_s = p.mean_decay * p.h_s, ring2_s = 0.5 * (1.0 + p.decay) * ring_s;
   double square = 0.0, torque = 0.0, bus_A = 0.0, drop_W = 0.0;
@@ -136,7 +143,7 @@ void book(const PhaseCircuit& c, const std::array<Leg, 3>& legs, const PhaseStat
   flow.angle_rad += p.omega_mid_rad_s * p.h_s;
 }
 
-void finish(PhaseState& s, const PhaseInput& in, const Part& p) {
+[[gnu::always_inline]] inline void finish(PhaseState& s, const PhaseInput& in, const Part& p) {
   each_phase([&](auto x) { s.current_A[x] = p.settled_A[x] + (s.current_A[x] - p.settled_A[x]) * p.decay; });
   s.theta_rotor_rad += p.omega_mid_rad_s * p.h_s;
   if (!in.speed_is_imposed) s.omega_rotor_rad_s = 2.0 * p.omega_mid_rad_s - s.omega_rotor_rad_s;
@@ -208,6 +215,41 @@ bool advance_pair(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>
   return true;
 }
 
+// What is left behind a diode's current that has reached zero in `phase`.
+struct Rest {
+  std::size_t phase = kNone;  // none has
+  double left_s = 0.0, left_decay = 1.0;
+};
+
+// The part as long as it is, or until a diode's current ends.
+template <class On>
+[[gnu::always_inline]] inline Rest advance_part(const PhaseCircuit& c, PhaseState& s,
+                                                const std::array<Leg, 3>& legs, const On& on,
+                                                const Three& constant, const PhaseInput& in, bool is_last,
+                                                Part& p, PhaseFlow& flow) {
+  const Drive drive = drive_of(on, constant, s.current_A);
+  Rest rest;
+  // First over all that is left; once more, shorter, if a diode's current ends within.
+  for (bool shortened = false;; shortened = true) {
+    solve(c, s, drive, in, p);
+    if (shortened || is_last) break;
+    double remaining = 1.0;
+    rest.phase = first_zero(s, on, p, remaining);
+    if (rest.phase == kNone) break;
+    ++flow.events;
+    const double zero_s = -c.time_constant_s * std::log(remaining);
+    rest.left_s = p.h_s - zero_s;
+    rest.left_decay = p.decay / remaining;
+    set_length(c, p, zero_s, remaining);
+    if (zero_s <= 0.0) break;
+  }
+  if (p.h_s > 0.0) {
+    book(c, legs, s, on, constant, in, p, flow);
+    finish(s, in, p);
+  }
+  return rest;
+}
+
 }  // namespace
 
 PhaseCircuit make_phase_circuit(const PhaseMotor<double>& m, double switch_resistance_ohm, double step_s,
@@ -231,49 +273,39 @@ PhaseCircuit make_phase_circuit(const PhaseMotor<double>& m, double switch_resis
   return c;
 }
 
-void advance_circuit(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
-                     const PhaseInput& in, double h_s, PhaseFlow& flow) {
+PhaseStretch stretch_of(const PhaseCircuit& c, double h_s) {
+  if (h_s == c.step_s) return {h_s, c.decay, c.mean_decay};
   Part p;
-  if (h_s == c.step_s) {
-    p.h_s = h_s;
-    p.decay = c.decay;
-    p.mean_decay = c.mean_decay;
-  } else {
-    set_length(c, p, h_s, std::exp(-h_s / c.time_constant_s));
-  }
+  set_length(c, p, h_s, std::exp(-h_s / c.time_constant_s));
+  return {p.h_s, p.decay, p.mean_decay};
+}
+
+void advance_circuit(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                     const PhaseInput& in, const PhaseStretch& stretch, PhaseFlow& flow) {
+  Part p;
+  p.h_s = stretch.h_s;
+  p.decay = stretch.decay;
+  p.mean_decay = stretch.mean_decay;
   std::size_t barred = kNone;
   for (int part = 1;; ++part) {
     const Three constant = phase_constants(c, s.theta_rotor_rad + 0.5 * p.h_s * s.omega_rotor_rad_s);
     if (barred == kNone && advance_pair(c, s, legs, constant, in, p, flow)) return;
-    const double w = s.omega_rotor_rad_s;
-    const Conduction on =
-        conduction_of(s.current_A, legs, {constant[0] * w, constant[1] * w, constant[2] * w}, barred);
-    const Drive drive = drive_of(on, constant, s.current_A);
-    std::size_t zero = kNone;
-    double left_s = 0.0, left_decay = 1.0;
-    // First over all that is left; once more, shorter, if a diode's current ends within.
-    for (bool shortened = false;; shortened = true) {
-      solve(c, s, drive, in, p);
-      if (shortened || part == kMaxParts) break;
-      double remaining = 1.0;
-      zero = first_zero(s, on, p, remaining);
-      if (zero == kNone) break;
-      ++flow.events;
-      const double zero_s = -c.time_constant_s * std::log(remaining);
-      left_s = p.h_s - zero_s;
-      left_decay = p.decay / remaining;
-      set_length(c, p, zero_s, remaining);
-      if (zero_s <= 0.0) break;
+    const bool is_last = part == kMaxParts;
+    Rest rest;
+    if (barred == kNone && all_conduct(s.current_A, legs)) {
+      const AllConduction on = all_of(s.current_A, legs);
+      rest = advance_part(c, s, legs, on, constant, in, is_last, p, flow);
+    } else {
+      const double w = s.omega_rotor_rad_s;
+      const Conduction on =
+          conduction_of(s.current_A, legs, {constant[0] * w, constant[1] * w, constant[2] * w}, barred);
+      rest = advance_part(c, s, legs, on, constant, in, is_last, p, flow);
     }
-    if (p.h_s > 0.0) {
-      book(c, legs, s, on, constant, in, p, flow);
-      finish(s, in, p);
-    }
-    if (zero == kNone) return;
-    barred = p.h_s > 0.0 ? kNone : zero;
-    extinguish(s, zero);
-    if (left_s <= 0.0) return;
-    set_length(c, p, left_s, left_decay);
+    if (rest.phase == kNone) return;
+    barred = p.h_s > 0.0 ? kNone : rest.phase;
+    extinguish(s, rest.phase);
+    if (rest.left_s <= 0.0) return;
+    set_length(c, p, rest.left_s, rest.left_decay);
   }
 }
 

@@ -84,8 +84,19 @@ struct PhaseFlow {
 PhaseCircuit make_phase_circuit(const PhaseMotor<double>& motor, double switch_resistance_ohm, double step_s,
                                 double extra_inertia_kg_m2);
 
+// A length of time with its exponential, for several steps of one length.
+struct PhaseStretch {
+  double h_s = 0.0;
+  double decay = 0.0, mean_decay = 0.0;  // as the circuit's own
+};
+PhaseStretch stretch_of(const PhaseCircuit& circuit, double h_s);
+
 void advance_circuit(const PhaseCircuit& circuit, PhaseState& x, const std::array<Leg, 3>& legs,
-                     const PhaseInput& input, double h_s, PhaseFlow& flow);
+                     const PhaseInput& input, const PhaseStretch& stretch, PhaseFlow& flow);
+inline void advance_circuit(const PhaseCircuit& circuit, PhaseState& x, const std::array<Leg, 3>& legs,
+                            const PhaseInput& input, double h_s, PhaseFlow& flow) {
+  advance_circuit(circuit, x, legs, input, stretch_of(circuit, h_s), flow);
+}
 
 inline double winding_heat_J(const PhaseCircuit& c, const PhaseFlow& f) {
   return c.winding_ohm * f.square_A2_s;

@@ -47,8 +47,23 @@ struct Conduction {
 
 inline constexpr Three kShare = {1.0, 1.0 / 2.0, 1.0 / 3.0};
 
+// All three do, which is half of what happens: what is known of it then needs no arithmetic.
+struct AllConduction {
+  std::array<const LegSource*, 3> source;
+  static constexpr Three on = {1.0, 1.0, 1.0};
+  Three volt_V, direction;
+  static constexpr double share = kShare[2];
+  static constexpr int count = 3;
+};
+
+inline bool all_conduct(const Three& current_A, const std::array<Leg, 3>& legs) {
+  return (legs[0].always || current_A[0] != 0.0) && (legs[1].always || current_A[1] != 0.0) &&
+         (legs[2].always || current_A[2] != 0.0);
+}
+
 // Over the conducting phases.
-inline double mean_of(const Conduction& c, const Three& value) {
+template <class On>
+inline double mean_of(const On& c, const Three& value) {
   return c.share * (c.on[0] * value[0] + c.on[1] * value[1] + c.on[2] * value[2]);
 }
 
@@ -89,6 +104,24 @@ inline void join_floating(Conduction& c, const std::array<Leg, 3>& legs, const T
   }
 }
 
+// Of a leg's source while it conducts, and of a diode's current: 1 or -1, 0 of switches.
+inline const LegSource& source_of(const Leg& leg, double current_A) {
+  return current_A < 0.0 ? leg.backward : leg.forward;
+}
+inline double diode_direction(const Leg& leg, double current_A) {
+  return static_cast<double>(!leg.always) * static_cast<double>((current_A > 0.0) - (current_A < 0.0));
+}
+
+inline AllConduction all_of(const Three& current_A, const std::array<Leg, 3>& legs) {
+  AllConduction c;
+  each_phase([&](auto x) {
+    c.source[x] = &source_of(legs[x], current_A[x]);
+    c.volt_V[x] = c.source[x]->volt_V;
+    c.direction[x] = diode_direction(legs[x], current_A[x]);
+  });
+  return c;
+}
+
 inline Conduction conduction_of(const Three& current_A, const std::array<Leg, 3>& legs, const Three& emf_V,
                                 std::size_t barred) {
   Conduction c;
@@ -96,10 +129,10 @@ inline Conduction conduction_of(const Three& current_A, const std::array<Leg, 3>
   each_phase([&](auto x) {
     const double i = current_A[x];
     const bool conducts = legs[x].always || i != 0.0;
-    c.source[x] = i < 0.0 ? &legs[x].backward : &legs[x].forward;
+    c.source[x] = &source_of(legs[x], i);
     c.on[x] = static_cast<double>(conducts);
     c.volt_V[x] = c.on[x] * c.source[x]->volt_V;
-    c.direction[x] = static_cast<double>(!legs[x].always) * static_cast<double>((i > 0.0) - (i < 0.0));
+    c.direction[x] = diode_direction(legs[x], i);
     c.count += conducts;
   });
   c.share = c.count > 0 ? kShare[static_cast<std::size_t>(c.count) - 1] : 0.0;

@@ -82,8 +82,8 @@ PeriodSample advance_period(const SwitchedDrive& drive, SwitchedState& state, co
     }
     if (listener) listener->piece(t, state_of, state.motor);
     const int pieces = std::max(1, static_cast<int>(std::ceil((next - t) / drive.max_step_s - 1e-9)));
-    const double h_s = (next - t) / pieces;
-    for (int k = 0; k < pieces; ++k) advance_circuit(drive.circuit, state.motor, legs, input, h_s, flow);
+    const PhaseStretch piece = stretch_of(drive.circuit, (next - t) / pieces);
+    for (int k = 0; k < pieces; ++k) advance_circuit(drive.circuit, state.motor, legs, input, piece, flow);
     t = next;
   }
   if (!sampled) take_sample();
