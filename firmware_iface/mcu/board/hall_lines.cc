@@ -46,9 +46,10 @@ void HallLines::show(unsigned code) {
 }
 
 void HallLines::world_changed() {
+  const Cycles before = next_;
   show(code(electric_rad(system_.to_ns(system_.now()))));
   plan();
-  system_.reschedule();
+  if (next_ != before) system_.event_moved(&next_, before);
 }
 
 // The next edge is half a sector away from a multiple of one: at 30, 90, 150 … electrical degrees.

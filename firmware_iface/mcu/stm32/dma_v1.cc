@@ -102,10 +102,12 @@ std::uint32_t DmaV1::wired_to(int line) const {
 }
 
 void DmaV1::update_irqs() {
-  for (unsigned c = 0; c < irqs_.size(); ++c) {
-    const std::uint32_t flags = value(kIsr) >> (4 * c) & 0xEu;
-    irqs_[c].set((flags & reg(c, kCcr) & 0xEu) != 0);
-  }
+  for (unsigned c = 0; c < irqs_.size(); ++c) update_irq(c);
+}
+
+void DmaV1::update_irq(unsigned c) {
+  const std::uint32_t flags = value(kIsr) >> (4 * c) & 0xEu;
+  if (c < irqs_.size()) irqs_[c].set((flags & reg(c, kCcr) & 0xEu) != 0);
 }
 
 void DmaV1::requested(int line) {
@@ -171,7 +173,7 @@ void DmaV1::item(unsigned c) {
   move_item(system(), transfer);
   if (last) value(kIsr) |= (kGlobal | kComplete) << (4 * c);
   if (half && !last) value(kIsr) |= (kGlobal | kHalf) << (4 * c);
-  if (last || half) update_irqs();
+  if (last || half) update_irq(c);
 }
 
 bool DmaV1::fail_transfer() {

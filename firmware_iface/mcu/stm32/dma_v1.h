@@ -59,6 +59,7 @@ class DmaV1 final : public RegisterBlock, public DmaSink, public DmaErrors {
   void item(unsigned channel);
   void fail(unsigned channel);
   void update_irqs();
+  void update_irq(unsigned channel);
 
   ChipContext& context_;
   std::vector<Channel> channels_;

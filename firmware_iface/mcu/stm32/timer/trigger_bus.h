@@ -56,7 +56,9 @@ class TriggerBus {
   std::uint32_t version() const { return version_; }  // another one: somebody began or ceased to listen
   bool heard(int source) const { return heard_[static_cast<std::size_t>(source)] != 0; }
   void fire(int source, bool rising) {
-    const auto sinks = lines_[static_cast<std::size_t>(source)].sinks;  // a sink may stop listening meanwhile
+    const auto& listening = lines_[static_cast<std::size_t>(source)].sinks;
+    if (listening.size() == 1) return listening.front()->triggered(source, rising);
+    const auto sinks = listening;  // a sink may stop listening meanwhile
     for (TriggerSink* sink : sinks) sink->triggered(source, rising);
   }
 
