@@ -142,7 +142,7 @@ TEST(G0Parts, ConvertsThePlacesOfASequenceWithTheirSamplingTimes) {
   EXPECT_EQ(b.get("ADC1", 0x00) & 8u, 8u);
 }
 
-// 1.5 and 12.5 clocks of PCLK, each in whole cycles of the core: 2 and 13.
+// 1.5 and 12.5 clocks of PCLK: 14 cycles of the core for each conversion, whatever part of it sampling is.
 TEST(G0Parts, ConvertsSelectedChannelsUpwards) {
   ChipBench b("stm32g031");
   b.chip.find<Adc>("ADC1")->set_source(4, [](std::int64_t) { return 3.3 / 8; });
@@ -150,9 +150,13 @@ TEST(G0Parts, ConvertsSelectedChannelsUpwards) {
   b.set("ADC1", 0x28, 1u << 4 | 1u << 13);
   b.switch_adc_on("ADC1");
   b.start_adc("ADC1");
-  b.system.run_for(15);
+  b.system.run_for(13);
+  EXPECT_EQ(b.get("ADC1", 0x00) & 4u, 0u);
+  b.system.run_for(1);
   EXPECT_EQ(b.get("ADC1", 0x40), 512u);
-  b.system.run_for(15);
+  b.system.run_for(13);
+  EXPECT_EQ(b.get("ADC1", 0x00) & 4u, 0u);
+  b.system.run_for(1);
   EXPECT_NEAR(b.get("ADC1", 0x40), 1.212 / 3.3 * 4096, 1.0) << "VREFINT";
 }
 

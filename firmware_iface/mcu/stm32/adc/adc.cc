@@ -83,17 +83,23 @@ void Adc::stop(Group group) {
   }
 }
 
-Cycles Adc::cycles(double clocks) const {
-  return std::max<Cycles>(1, static_cast<Cycles>(std::llround(clocks * system().core_hz() / clock_hz())));
+Cycles Adc::cycles(Lasted& before, double clocks) {
+  const double core_hz = system().core_hz(), own_hz = clock_hz();
+  if (clocks != before.clocks || core_hz != before.core_hz || own_hz != before.clock_hz) {
+    const auto cycles = static_cast<Cycles>(std::llround(clocks * core_hz / own_hz));
+    before = {clocks, core_hz, own_hz, std::max<Cycles>(1, cycles)};
+  }
+  return before.cycles;
 }
 
 // Starts sampling the channel at place_.
 void Adc::begin() {
   const unsigned input = channel(active_, place_);
   sampling_ = true;
-  phase_end_ = sampled_at_ = now() + cycles(sample_clocks(input) + late_clocks_);
+  sampling_clocks_ = sample_clocks(input) + late_clocks_;
+  phase_end_ = sampled_at_ = now() + cycles(sampling_lasted_, sampling_clocks_);
   held_ = (steady_ >> input & 1u) != 0;
-  if (held_) phase_end_ += cycles(convert_clocks());
+  if (held_) phase_end_ += conversion();
 }
 
 void Adc::run_events() {
@@ -102,7 +108,7 @@ void Adc::run_events() {
     const bool ends_too = held_;
     sample();
     if (!ends_too) {
-      phase_end_ += cycles(convert_clocks());
+      phase_end_ += conversion();
       return;
     }
   }

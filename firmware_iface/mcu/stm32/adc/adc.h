@@ -89,7 +89,17 @@ class Adc : public RegisterBlock, public TriggerSink {
  private:
   void begin();
   void sample();
-  Cycles cycles(double clocks) const;
+  // Of the core, for so many clocks of the converter; each of the two parts of a conversion has lasted so long before, mostly.
+  struct Lasted {
+    double clocks = 0.0, core_hz = 0.0, clock_hz = 0.0;
+    Cycles cycles = 0;
+  };
+  Cycles cycles(Lasted& before, double clocks);
+  // Of what follows the sampling: both together are whole cycles, not each of them.
+  Cycles conversion() {
+    return cycles(whole_lasted_, sampling_clocks_ + convert_clocks()) -
+           cycles(sampling_lasted_, sampling_clocks_);
+  }
   void finish();
   bool goes_on() const {
     return in_group() && group_->is_slave(*this) ? group_->master().continues() : continues();
@@ -110,6 +120,8 @@ class Adc : public RegisterBlock, public TriggerSink {
   unsigned place_ = 0, regular_place_ = 0;
   std::uint32_t code_ = 0;
   Cycles phase_end_ = kNever;
+  double sampling_clocks_ = 0.0;  // of the conversion under way
+  Lasted sampling_lasted_, whole_lasted_;
 };
 
 }  // namespace omnihil::mcu
