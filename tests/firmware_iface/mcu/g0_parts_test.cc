@@ -1,7 +1,9 @@
 // The G0: its clocks, edges that are pending by their direction, one request multiplexer, flash in banks, its converter (RM0444).
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
+#include <utility>
 
 #include "tests/firmware_iface/mcu/chip_bench.h"
 
@@ -174,11 +176,34 @@ TEST(G0Parts, EachSizeHasWhatTheOneBeforeItHas) {
   }
 }
 
+// RM0454: the value line lacks these of its sibling's blocks, and has nothing else elsewhere.
+TEST(G0Parts, TheValueLineHasItsSiblingsBlocksButForSome) {
+  const std::set<std::string> lacked{"TIM2",    "LPUART1", "LPUART2", "LPTIM1", "LPTIM2",
+                                     "VREFBUF", "DAC1",    "COMP",    "CEC",    "UCPD1",
+                                     "UCPD2",   "FDCAN1",  "FDCAN2",  "CRS",    "FDCAN message RAM"};
+  for (const auto& [value, full] : {std::pair{"stm32g030", "stm32g031"},
+                                    {"stm32g050", "stm32g051"},
+                                    {"stm32g070", "stm32g071"},
+                                    {"stm32g0b0", "stm32g0b1"}}) {
+    const ChipBench less(value), more(full);
+    for (const Chip::Mapped& block : more.chip.blocks()) {
+      const std::string& name = block.peripheral->name();
+      EXPECT_EQ(less.base(name), lacked.contains(name) ? 0u : block.base) << value << " " << name;
+    }
+    for (const Chip::Mapped& block : less.chip.blocks())
+      EXPECT_EQ(more.base(block.peripheral->name()), block.base) << value;
+  }
+}
+
 TEST(G0Parts, SaysWhichItIsAndHowMuchFlashItHas) {
   for (const auto& [name, id, kib] : {std::tuple{"stm32g031", 0x466u, 64u},
                                       {"stm32g051", 0x456u, 64u},
                                       {"stm32g071", 0x460u, 128u},
-                                      {"stm32g0b1", 0x467u, 512u}}) {
+                                      {"stm32g0b1", 0x467u, 512u},
+                                      {"stm32g030", 0x466u, 64u},
+                                      {"stm32g050", 0x456u, 64u},
+                                      {"stm32g070", 0x460u, 128u},
+                                      {"stm32g0b0", 0x467u, 512u}}) {
     ChipBench b(name);
     EXPECT_EQ(b.get("DBGMCU", 0) & 0xFFF, id);
     EXPECT_EQ(b.system.bus_read(0x1FFF75E0, 2), kib);

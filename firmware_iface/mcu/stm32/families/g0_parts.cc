@@ -60,15 +60,16 @@ std::vector<TimerRow> timers(const G0Parts& parts) {
                      .internal_triggers = {"TIM2_TRGO", "TIM3_TRGO", "TIM16_CC1", "TIM17_CC1"}}});
   }
   if (parts.size == G0Size::k0B) rows.push_back({0x40000800, {.number = 4, .irq_update = 16}});
+  if (parts.value_line) std::erase_if(rows, [](const TimerRow& row) { return row.spec.number == 2; });
   for (TimerRow& row : rows) row.spec.selects_inputs = true;
   return rows;
 }
 
-void add_adc(Chip& chip) {
+void add_adc(Chip& chip, const G0Parts& parts) {
   ChipContext& context = chip.context();
-  const AdcTriggers triggers{
-      {"TIM1_TRGO2", "TIM1_CC4", "TIM2_TRGO", "TIM3_TRGO", "TIM15_TRGO", "TIM6_TRGO", "TIM4_TRGO", "EXTI11"},
-      {}};
+  const AdcTriggers triggers{{"TIM1_TRGO2", "TIM1_CC4", parts.value_line ? "" : "TIM2_TRGO", "TIM3_TRGO",
+                              "TIM15_TRGO", "TIM6_TRGO", "TIM4_TRGO", "EXTI11"},
+                             {}};
   auto adc = std::make_unique<AdcV2>("ADC1", AdcFamily::kG0, 12, triggers, context);
   adc->set_voltage(12, 0.76);   // temperature at 30 degC
   adc->set_voltage(13, 1.212);  // VREFINT
@@ -93,12 +94,12 @@ void add_serials(Chip& chip, const G0Parts& parts) {
   };
   usart(0x40013800, 1, 27, true);
   usart(0x40004400, 2, 28, more);
-  low_power(0x40008000, "LPUART1", 29);
+  if (!parts.value_line) low_power(0x40008000, "LPUART1", 29);
   if (more) usart(0x40004800, 3, 29, large);
   if (more) usart(0x40004C00, 4, 29, false);
   if (large) usart(0x40005000, 5, 29, false);
   if (large) usart(0x40013C00, 6, 29, false);
-  if (large) low_power(0x40008400, "LPUART2", 28);
+  if (large && !parts.value_line) low_power(0x40008400, "LPUART2", 28);
 }
 
 void add_buses(Chip& chip, const G0Parts& parts) {
@@ -110,14 +111,14 @@ void add_buses(Chip& chip, const G0Parts& parts) {
   if (parts.size != G0Size::k0B) return;
   add_spi(chip, 0x40003C00, {.name = "SPI3", .v2 = true, .bus = kApb, .irq = 26});
   add_i2c(chip, 0x40008800, {.name = "I2C3", .v2 = true, .irq_event = 24});
+  if (parts.value_line) return;
   FdcanRam& ram = chip.add(0x4000B400, 2 * 0x350, std::make_unique<FdcanRam>(2 * 0x350));
   chip.add(0x40006400, 0x400, std::make_unique<FdcanG4>(1, std::pair{21, 22}, ram, chip.context()));
   chip.add(0x40006800, 0x400, std::make_unique<FdcanG4>(2, std::pair{21, 22}, ram, chip.context()));
 }
 
-void add_kept(Chip& chip, const G0Parts& parts) {
-  add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
-  add_stored(chip, 0x4000B000, 0x400, "TAMP");
+// Of the whole line alone.
+void add_kept_analog(Chip& chip, const G0Parts& parts) {
   add_stored(chip, 0x40007C00, 0x400, "LPTIM1");
   add_stored(chip, 0x40009400, 0x400, "LPTIM2");
   add_stored(chip, 0x40010030, 0x50, "VREFBUF", {{0, 8}});
@@ -130,11 +131,16 @@ void add_kept(Chip& chip, const G0Parts& parts) {
     add_stored(chip, 0x4000A000, 0x400, "UCPD1");
     add_stored(chip, 0x4000A400, 0x400, "UCPD2");
   }
-  if (parts.size == G0Size::k0B) {
-    add_stored(chip, 0x40005C00, 0x400, "USB");
-    add_stored(chip, 0x40009800, 0x800, "USB packet memory");
-    add_stored(chip, 0x40006C00, 0x400, "CRS");
-  }
+}
+
+void add_kept(Chip& chip, const G0Parts& parts) {
+  add_stored(chip, 0x40002800, 0x400, "RTC", {{0x0C, 0x7F}});
+  add_stored(chip, 0x4000B000, 0x400, "TAMP");
+  if (!parts.value_line) add_kept_analog(chip, parts);
+  if (parts.size != G0Size::k0B) return;
+  add_stored(chip, 0x40005C00, 0x400, "USB");
+  add_stored(chip, 0x40009800, 0x800, "USB packet memory");
+  if (!parts.value_line) add_stored(chip, 0x40006C00, 0x400, "CRS");
 }
 }  // namespace
 
@@ -147,7 +153,7 @@ void build_g0(Chip& chip, const G0Parts& parts) {
   add_exti(chip, 0x40021800, 0x40010000, {{0, 1, 5}, {2, 3, 6}, {4, 15, 7}}, SyscfgFamily::kG0);
   add_dmas(chip, parts);
   add_timers(chip, timers(parts));
-  add_adc(chip);
+  add_adc(chip, parts);
   add_buses(chip, parts);
   add_watchdogs(chip, 11, 3);
   chip.add(0x40023000, 0x400, std::make_unique<Crc>(CrcFamily::kV2, context.system));

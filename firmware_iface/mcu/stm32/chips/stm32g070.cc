@@ -1,0 +1,24 @@
+// STM32G070, of the value line (RM0454).
+#include "firmware_iface/mcu/stm32/families/g0_parts.h"
+
+namespace omnihil::mcu {
+namespace {
+constexpr std::uint32_t kFlashBytes = 128 * 1024;
+void build(Chip& chip) {
+  build_g0(chip,
+           {.size = G0Size::k07, .flash_bytes = kFlashBytes, .device_id = 0x10000460, .value_line = true});
+}
+}  // namespace
+
+const ChipSpec& chip_stm32g070() {
+  static const ChipSpec spec{
+      .name = "stm32g070",
+      .variants = {},
+      .core = kCortexM0Plus,
+      .blocks = BlockFamily::kG0,
+      .memories = {{"flash", 0x08000000, kFlashBytes, true}, {"sram", 0x20000000, 36 * 1024}},
+      .build = build};
+  return spec;
+}
+
+}  // namespace omnihil::mcu
