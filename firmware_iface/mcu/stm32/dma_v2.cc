@@ -53,9 +53,15 @@ void DmaV2::use_mux(const DmaMux& mux, unsigned first) {
   mux_first_ = first;
 }
 
+void DmaV2::announce_ends() {
+  for (unsigned s = 0; s < kStreams; ++s)
+    ends_.push_back(context_.dma.line(name() + "_TC" + std::to_string(s)));
+}
+
 void DmaV2::reset() {
   RegisterBlock::reset();
   update_irqs();
+  update_ends();
 }
 
 std::uint32_t DmaV2::flags(unsigned s) const { return value(s < 4 ? 0x00 : 0x04) >> kPlace[s % 4] & 0x3Du; }
@@ -63,6 +69,11 @@ std::uint32_t DmaV2::flags(unsigned s) const { return value(s < 4 ? 0x00 : 0x04)
 void DmaV2::flag(unsigned s, std::uint32_t flags) {
   value(s < 4 ? 0x00 : 0x04) |= flags << kPlace[s % 4];
   update_irqs();
+  update_ends();
+}
+
+void DmaV2::update_ends() {
+  for (unsigned s = 0; s < ends_.size(); ++s) context_.dma.set(ends_[s], (flags(s) & kComplete) != 0);
 }
 
 void DmaV2::update_irqs() {
@@ -175,6 +186,7 @@ void DmaV2::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
   if (offset < 0x08) return;
   if (offset < 0x10) {
     value(offset - 8) &= ~written;
+    update_ends();
     return update_irqs();
   }
   const unsigned s = (offset - 0x10) / 24, which = (offset - 0x10) % 24 / 4;

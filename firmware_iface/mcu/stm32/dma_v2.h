@@ -21,6 +21,8 @@ class DmaV2 final : public RegisterBlock, public DmaSink, public DmaErrors {
   DmaV2(int number, std::vector<int> irqs, ChipContext& context);
   void connect(std::string_view request, unsigned stream, unsigned channel);
   void use_mux(const DmaMux& mux, unsigned first);
+  // Each stream's complete flag is a request of its own, by the name DMAx_TCn: what the H7's MDMA hears.
+  void announce_ends();
   void reset() override;
   void requested(int line) override;
   bool fail_transfer() override;
@@ -46,6 +48,7 @@ class DmaV2 final : public RegisterBlock, public DmaSink, public DmaErrors {
   void flag(unsigned stream, std::uint32_t flags);
   std::uint32_t flags(unsigned stream) const;
   void update_irqs();
+  void update_ends();
 
   ChipContext& context_;
   std::vector<Row> rows_;
@@ -53,6 +56,7 @@ class DmaV2 final : public RegisterBlock, public DmaSink, public DmaErrors {
   std::vector<IrqLine> irqs_;
   const DmaMux* mux_ = nullptr;
   unsigned mux_first_ = 0;
+  std::vector<int> ends_;  // lines; empty: nobody hears
 };
 
 }  // namespace omnihil::mcu

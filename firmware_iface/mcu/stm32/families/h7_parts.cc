@@ -10,6 +10,7 @@
 #include "firmware_iface/mcu/stm32/families/timer_rows.h"
 #include "firmware_iface/mcu/stm32/fdcan_h7.h"
 #include "firmware_iface/mcu/stm32/math/cordic.h"
+#include "firmware_iface/mcu/stm32/mdma.h"
 #include "firmware_iface/mcu/stm32/watchdog.h"
 
 namespace omnihil::mcu {
@@ -49,8 +50,15 @@ void add_dma(Chip& chip) {
   first->use_mux(*mux, 0);
   second->use_mux(*mux, 8);
   chip.add(0x40020800, 0x400, std::move(mux));
+  first->announce_ends();
+  second->announce_ends();
   chip.add(0x40020000, 0x400, std::move(first));
   chip.add(0x40020400, 0x400, std::move(second));
+  std::vector<std::string> ends;  // RM0433 table 99: TSEL 0 to 15
+  for (const char* of : {"DMA1_TC", "DMA2_TC"}) {
+    for (int stream = 0; stream < 8; ++stream) ends.push_back(of + std::to_string(stream));
+  }
+  chip.add(0x52000000, 0x1000, std::make_unique<Mdma>(122, ends, context));
   // RM0433 table 124; its channels' second memory address is not followed
   auto low_mux = std::make_unique<DmaMux>("DMAMUX2",
                                           std::vector<std::pair<unsigned, std::string>>{{9, "LPUART1_RX"},
