@@ -41,7 +41,7 @@ void ThreadPool::start() {
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  for (int i = 1; i < wanted_; ++i) threads_.emplace_back([this] { wait_for_work(); });
+  for (std::size_t i = 1; i < shares_.size(); ++i) threads_.emplace_back([this, i] { wait_for_work(i); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
@@ -54,7 +54,7 @@ ThreadPool::~ThreadPool() {
 
 // Stays awake for long only while nothing else ever happens: one wait in the last few that was longer (a bench that sleeps
 // until its next step) would be lost each time.
-void ThreadPool::wait_for_work() {
+void ThreadPool::wait_for_work(std::size_t self) {
   int short_waits = 0;
   for (std::uint32_t seen = 0;;) {
     const Clock::time_point idle_from = Clock::now();
@@ -63,18 +63,23 @@ void ThreadPool::wait_for_work() {
     short_waits = Clock::now() - idle_from < kLongAwake ? std::min(short_waits + 1, kProving) : 0;
     seen = turn_.load();
     if (ended_) return;
-    take_pieces(seen);
+    take_pieces(seen, self);
   }
 }
 
-void ThreadPool::take_pieces(std::uint32_t turn) {
+void ThreadPool::take_pieces(std::uint32_t turn, std::size_t self) {
+  for (std::size_t i = 0; i < shares_.size(); ++i) take_from((self + i) % shares_.size(), turn);
+}
+
+void ThreadPool::take_from(std::size_t share, std::uint32_t turn) {
+  std::atomic<std::uint64_t>& first = shares_[share].next;
   for (;;) {
-    std::uint64_t next = next_.load();
+    std::uint64_t next = first.load();
     const std::size_t n = next & 0xFFFFFFFFu;
-    if (next >> 32 != turn || n >= count_.load()) return;
+    if (next >> 32 != turn || n >= begin_of(share + 1, count_.load())) return;
     const Piece piece = piece_.load();
     void* const of = of_.load();
-    if (!next_.compare_exchange_strong(next, next + 1)) continue;
+    if (!first.compare_exchange_strong(next, next + 1)) continue;
     try {
       piece(of, n);
     } catch (...) {
@@ -95,15 +100,17 @@ void ThreadPool::run(std::size_t count, Piece piece, void* of) {
   if (count == 0) return;
   if (count > 1 && threads_.empty()) start();
   const std::uint32_t turn = turn_.load() + 1;
-  next_ = kClosed;  // whoever still looks for pieces of the last turn finds none, whatever count_ says
+  // whoever still looks for pieces of the last turn finds none, whatever count_ says
+  for (Share& share : shares_) share.next = kClosed;
   piece_ = piece;
   of_ = of;
   done_ = 0;
   count_ = count;
-  next_ = std::uint64_t{turn} << 32;
+  for (std::size_t i = 0; i < shares_.size(); ++i)
+    shares_[i].next = std::uint64_t{turn} << 32 | begin_of(i, count);
   turn_ = turn;
   if (count > 1) turn_.notify_all();
-  take_pieces(turn);
+  take_pieces(turn, 0);
   const auto all_done = [&] { return done_.load() == count; };
   while (!all_done() && !comes_soon(all_done, kLongAwake)) {
     const std::size_t so_far = done_.load();

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace omnihil {
@@ -37,6 +38,22 @@ TEST(ThreadPoolTest, TwoPiecesRunAtOnce) {
       }
     });
     EXPECT_EQ(here, 2);
+  }
+}
+
+// The caller's first piece waits for the other thread's, which therefore is the first of its own half.
+TEST(ThreadPoolTest, EachThreadBeginsWithItsShare) {
+  ThreadPool pool(2);
+  const std::thread::id caller = std::this_thread::get_id();
+  for (int turn = 0; turn < 50; ++turn) {
+    std::atomic<int> first{-1};
+    pool.each(6, [&](std::size_t n) {
+      int none = -1;
+      if (std::this_thread::get_id() != caller) first.compare_exchange_strong(none, static_cast<int>(n));
+      while (n == 0 && first < 0) {
+      }
+    });
+    EXPECT_EQ(first, 3);
   }
 }
 
