@@ -234,7 +234,13 @@ struct Session::Impl {
       if (count == 0) continue;
       sense(i);
       firmware[i]->begin_tick(samples[i].sensors);
-      for (std::size_t part = 0; part < count; ++part) parts.emplace_back(i, part);
+      // Those that drive phases have nothing to do there: they run on in their motor ticks.
+      for (std::size_t part = 0; part < count; ++part) {
+        if (firmware[i]->drives_phases())
+          firmware[i]->run_part(part);
+        else
+          parts.emplace_back(i, part);
+      }
     }
     pool->each(parts.size(), [this](std::size_t n) { firmware[parts[n].first]->run_part(parts[n].second); });
   }

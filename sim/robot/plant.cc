@@ -97,26 +97,23 @@ void Plant::advance(std::int64_t duration_ns, StepListener* listener) {
   }
   if (!p.fault) p.look_for_fault();  // what was written since
   if (p.fault) return;
-  std::visit(
-      [&](auto& back) {
-        for (std::int64_t n = duration_ns / p.step_ns; n > 0; --n) {
-          p.step(back);
-          if (listener != nullptr) listener->after_step(*this, p.step_s);
-        }
-      },
-      p.mechanics);
+  p.regroup();
+  for (std::int64_t n = duration_ns / p.step_ns; n > 0; --n) {
+    p.step();
+    if (listener != nullptr) listener->after_step(*this, p.step_s);
+  }
   p.look_for_fault();
 }
 
 PlanarState Plant::planar_state(int robot) const {
   const Impl& p = *impl_;
   const auto n = static_cast<std::size_t>(robot);
-  const double* v = p.field_velocity(p.u, n);
+  const double* v = p.field_velocity(n);
   if (!p.free()) {
-    const double* at = &p.q[n * p.layout.q_per_robot];  // yaw, x, y
-    return {at[1], at[2], at[0], v[0], v[1], p.u[n * p.layout.u_per_robot]};
+    const double* at = p.pose(n);  // yaw, x, y
+    return {at[1], at[2], at[0], v[0], v[1], p.speeds(n)[0]};
   }
-  const BodyMotion m = std::visit([&](const auto& back) { return back.motion(p.q, p.u, n); }, p.mechanics);
+  const BodyMotion m = p.motion(n);
   return {m.x_m, m.y_m, m.yaw_rad, v[0], v[1], m.velocity.omega_body_rad_s};
 }
 
@@ -124,7 +121,7 @@ double Plant::tilt_rad(int robot) const {
   const Impl& p = *impl_;
   if (!p.free()) return 0.0;
   // The body's vertical axis against the floor's: cos = 1 - 2 (x^2 + y^2) of the unit quaternion (w, x, y, z).
-  const double* at = &p.q[static_cast<std::size_t>(robot) * p.layout.q_per_robot];
+  const double* at = p.pose(static_cast<std::size_t>(robot));
   return std::acos(std::clamp(1.0 - 2.0 * (at[1] * at[1] + at[2] * at[2]), -1.0, 1.0));
 }
 
@@ -134,10 +131,11 @@ void Plant::add_velocity(int robot, double v_x_m_s, double v_y_m_s, double omega
 
 void Plant::shift(int robot, double x_m, double y_m) {
   Impl& p = *impl_;
-  double* at = &p.q[static_cast<std::size_t>(robot) * p.layout.q_per_robot + (p.free() ? 4 : 1)];
+  const auto n = static_cast<std::size_t>(robot);
+  double* at = p.pose(n) + (p.free() ? 4 : 1);
   at[0] += x_m;
   at[1] += y_m;
-  p.state_known = false;
+  p.group(n).state_known = false;
 }
 
 void Plant::set_other_current(int robot, double current_A) {
@@ -166,8 +164,7 @@ PlantSensors Plant::sample_all(int robot) {
   mem.current_steps = 0;
   s.board.bus_voltage_V =
       p.electrics[n] ? p.electric_memory[n].at_bridges_V() : mem.faults.supply_ratio * model.bus_voltage_V;
-  s.board.gyro_z_rad_s =
-      std::visit([&](const auto& m) { return m.motion(p.q, p.u, n).velocity.omega_body_rad_s; }, p.mechanics);
+  s.board.gyro_z_rad_s = p.motion(n).velocity.omega_body_rad_s;
   s.board.accel_x_m_s2 = mem.accel_x_m_s2;
   s.board.accel_y_m_s2 = mem.accel_y_m_s2;
   return with_stuck_counts(mem, s);
@@ -177,21 +174,22 @@ RobotTruth Plant::truth(int robot) const {
   Impl& p = *impl_;
   const auto n = static_cast<std::size_t>(robot);
   RobotTruth t;
+  MechanicsGroup& of = p.group(n);
+  of.set_state();
   std::visit(
-      [&](auto& back) {
-        p.set_state(back);
-        const BodyMotion m = back.motion(p.q, p.u, n);
+      [&](const auto& back) {
+        const BodyMotion m = back.motion(of.q, of.u, n - of.first);
         t.x_m = m.x_m, t.y_m = m.y_m, t.yaw_rad = m.yaw_rad;
         t.v_forward_m_s = m.velocity.v_forward_m_s;
         t.v_left_m_s = m.velocity.v_left_m_s;
         t.omega_body_rad_s = m.velocity.omega_body_rad_s;
-        const WheelContacts<double>& c = back.contacts(n);
+        const WheelContacts<double>& c = back.contacts(n - of.first);
         t.slip_longitudinal_ratio = c.slip_longitudinal_ratio;
         t.force_longitudinal_N = c.force_longitudinal_N;
         t.force_lateral_N = c.force_lateral_N;
         t.load_N = c.load_N;
       },
-      p.mechanics);
+      of.mechanics);
   for (std::size_t i = 0; i < p.wheels(n); ++i) {
     t.theta_wheel_rad[i] = p.wheel_angles(n)[i];
     t.omega_wheel_rad_s[i] = p.wheel_speeds_of(n)[i];
@@ -206,7 +204,7 @@ RobotTruth Plant::truth(int robot) const {
 VisionPose Plant::vision(int robot) const {
   Impl& p = *impl_;
   const auto n = static_cast<std::size_t>(robot);
-  const BodyMotion m = std::visit([&](const auto& back) { return back.motion(p.q, p.u, n); }, p.mechanics);
+  const BodyMotion m = p.motion(n);
   if (!p.effects[n] || !p.effects[n]->looks_back()) return {m.x_m, m.y_m, m.yaw_rad};
   const RobotInstant seen = seen_by_camera(*p.effects[n], p.effect_memory[n], p.histories[n], p.sensing(n));
   return {seen.x_m, seen.y_m, seen.yaw_rad};
@@ -217,8 +215,8 @@ namespace {
 template <typename Impl, typename Visit>
 void each_memory(Impl& p, Visit visit) {
   visit(&p.now_ns, 1);
-  visit(p.q.data(), p.q.size());
-  visit(p.u.data(), p.u.size());
+  for (auto& of : p.groups) visit(of.q.data(), of.q.size());
+  for (auto& of : p.groups) visit(of.u.data(), of.u.size());
   visit(p.memory.data(), p.memory.size());
   for (std::size_t n = 0; n < p.models.size(); ++n) {
     if (p.electrics[n]) visit(&p.electric_memory[n], 1);
@@ -249,7 +247,7 @@ bool Plant::restore(std::span<const std::uint8_t> bytes) {
   for (std::size_t n = 0; n < p.models.size(); ++n) p.apply_faults(n, p.memory[n].faults);
   p.fault.reset();
   if (head[2] != 0) p.look_for_fault();
-  p.state_known = false;
+  p.forget_states();
   return true;
 }
 

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "sim/drive/thermal.h"
-#include "sim/robot/chassis.h"
 #include "sim/robot/electric_wheels.h"
-#include "sim/robot/integrate.h"
-#include "sim/robot/planar.h"
+#include "sim/robot/mechanics_group.h"
 #include "sim/robot/planar_law.h"
 #include "sim/robot/plant.h"
 #include "sim/robot/robot_effects.h"
@@ -22,7 +19,9 @@ namespace omnihil {
 
 inline constexpr double kSpacing_m = 0.3;              // of the robots' starting row
 inline constexpr double kDribblerFull_rad_s = 1000.0;  // at ratio 1; guess, +-50 %
-inline constexpr double kStandstill_m_s = 1e-12;       // below it a robot with held wheels stops exactly
+// Robots of one Simbody system, where systems run side by side. A choice: a system costs four fifths of a robot by itself (measured).
+inline constexpr std::size_t kGroupRobots = 3;
+inline constexpr double kStandstill_m_s = 1e-12;  // below it a robot with held wheels stops exactly
 
 // What one robot remembers besides positions and speeds; plain bytes, saved as they are.
 struct RobotMemory {
@@ -39,32 +38,18 @@ struct RobotMemory {
 };
 static_assert(std::is_trivially_copyable_v<RobotMemory>);
 
-using Mechanics = std::variant<PlanarMechanics, Chassis>;
-
-inline Mechanics make_mechanics(const std::vector<RobotModel>& robots, Physics physics,
-                                const std::vector<const FloorEffects*>& effects) {
-  if (physics == Physics::kPlanar) return PlanarMechanics(robots, effects);
-  return Chassis(robots, physics == Physics::kSimbody ? Chassis::Joint::kPlanar : Chassis::Joint::kFree,
-                 effects);
-}
-
 struct Plant::Impl {
   Impl(std::span<const RobotModel> robots_, const PlantOptions& options_)
       : options(options_),
         models(robots_.begin(), robots_.end()),
         effects(make_effects(models, options_)),
-        mechanics(make_mechanics(models_of_mechanics(models), options_.physics, floors_of(effects))),
-        layout(std::visit([](const auto& m) { return m.layout(); }, mechanics)),
-        q(models.size() * layout.q_per_robot),
-        u(models.size() * layout.u_per_robot),
-        u_before(u.size()),
-        scratch(q.size(), u.size()),
         memory(models.size()),
         electrics(models.size()),
         electric_memory(models.size()),
         controls(models.size()),
-        torques(models.size()),
         wheel_steps(models.size()) {
+    make_groups(1);
+    layout = groups.front().layout;
     step_ns = mechanics_step_ns(models, options);
     step_s = static_cast<double>(step_ns) * 1e-9;
     substeps = static_cast<int>(step_ns / options.electrical_step_ns);
@@ -89,6 +74,53 @@ struct Plant::Impl {
     for (std::size_t n = 0; n < models.size(); ++n) place(n, 0.0, kSpacing_m * static_cast<double>(n), 0.0);
   }
 
+  void make_groups(std::size_t count) {
+    const std::vector<RobotModel> moved = models_of_mechanics(models);
+    const std::vector<const FloorEffects*> floors = floors_of(effects);
+    groups.clear();
+    group_of.clear();
+    for (std::size_t g = 0; g < count; ++g) {
+      const std::size_t first = g * models.size() / count, end = (g + 1) * models.size() / count;
+      const auto part = [&](const auto& all) {
+        return std::vector(all.begin() + static_cast<std::ptrdiff_t>(first),
+                           all.begin() + static_cast<std::ptrdiff_t>(end));
+      };
+      groups.emplace_back(first, make_mechanics(part(moved), options.physics, part(floors)), end - first);
+      group_of.resize(end, g);
+    }
+  }
+
+  // The same robots in so many systems, as they are.
+  void regroup(std::size_t count) {
+    if (count == groups.size()) return;
+    std::vector<double> q, u;
+    for (const MechanicsGroup& group : groups) {
+      q.insert(q.end(), group.q.begin(), group.q.end());
+      u.insert(u.end(), group.u.begin(), group.u.end());
+    }
+    make_groups(count);
+    for (std::size_t n = 0; n < models.size(); ++n) {
+      std::copy_n(&q[n * layout.q_per_robot], layout.q_per_robot, pose(n));
+      std::copy_n(&u[n * layout.u_per_robot], layout.u_per_robot, speeds(n));
+      group(n).lift(n, memory[n].faults.lifted);
+    }
+  }
+  void regroup() {
+    const bool apart = workers != nullptr && any_aside() && options.physics != Physics::kPlanar;
+    regroup(apart ? (models.size() + kGroupRobots - 1) / kGroupRobots : 1);
+  }
+
+  MechanicsGroup& group(std::size_t n) { return groups[group_of[n]]; }
+  const MechanicsGroup& group(std::size_t n) const { return groups[group_of[n]]; }
+  double* pose(std::size_t n) { return group(n).pose(n); }
+  const double* pose(std::size_t n) const { return group(n).pose(n); }
+  double* speeds(std::size_t n) { return group(n).speeds(n); }
+  const double* speeds(std::size_t n) const { return group(n).speeds(n); }
+  BodyMotion motion(std::size_t n) const { return group(n).motion(n); }
+  void forget_states() {
+    for (MechanicsGroup& of : groups) of.state_known = false;
+  }
+
   WheelDriveLaw law_of(const RobotModel& moved) const {
     return wheel_drive_law(moved, static_cast<double>(options.electrical_step_ns) * 1e-9, substeps);
   }
@@ -110,22 +142,20 @@ struct Plant::Impl {
     }
     if (effects[n]) effects[n]->set_faults(faults);
     if (electrics[n]) electrics[n]->set_faults(faults, before, electric_memory[n]);
-    std::visit([&](auto& back) { back.lift(n, faults.lifted); }, mechanics);
-    state_known = false;
+    group(n).lift(n, faults.lifted);
   }
 
   // An impulse that changes body speeds so; the accelerometer sees it as its mean over the step.
   void add_velocity(std::size_t n, double v_x_m_s, double v_y_m_s, double omega_rad_s) {
-    double* v = &u[n * layout.u_per_robot + layout.wheel_u - (free() ? 3 : 2)];
+    double* v = field_velocity(n);
     v[0] += v_x_m_s;
     v[1] += v_y_m_s;
-    u[n * layout.u_per_robot + (free() ? 2 : 0)] += omega_rad_s;
-    const double yaw_rad =
-        std::visit([&](const auto& back) { return back.motion(q, u, n).yaw_rad; }, mechanics);
+    speeds(n)[free() ? 2 : 0] += omega_rad_s;
+    const double yaw_rad = motion(n).yaw_rad;
     const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
     memory[n].accel_x_m_s2 += (c * v_x_m_s + s * v_y_m_s) / step_s;
     memory[n].accel_y_m_s2 += (-s * v_x_m_s + c * v_y_m_s) / step_s;
-    state_known = false;
+    group(n).state_known = false;
   }
 
   // v += a h, omega += alpha h of the force alone (planar_law.h).
@@ -133,31 +163,27 @@ struct Plant::Impl {
     const RobotFaults& f = memory[n].faults;
     if (f.force_forward_N == 0.0 && f.force_left_N == 0.0 && f.moment_Nm == 0.0) return;
     const auto a = body_acceleration(bodies[n], f.force_forward_N, f.force_left_N, f.moment_Nm, 0.0);
-    double* v = &u[n * layout.u_per_robot + layout.wheel_u - (free() ? 3 : 2)];
+    double* v = field_velocity(n);
     v[0] += step_s * (std::cos(yaw_rad) * a.x_m_s2 - std::sin(yaw_rad) * a.y_m_s2);
     v[1] += step_s * (std::sin(yaw_rad) * a.x_m_s2 + std::cos(yaw_rad) * a.y_m_s2);
-    u[n * layout.u_per_robot + (free() ? 2 : 0)] += step_s * a.yaw_rad_s2;
+    speeds(n)[free() ? 2 : 0] += step_s * a.yaw_rad_s2;
   }
 
   std::size_t wheels(std::size_t robot) const { return models[robot].wheels; }
-  const double* wheel_angles(std::size_t robot) const {
-    return &q[robot * layout.q_per_robot + layout.wheel_q];
-  }
-  double* wheel_angles(std::size_t robot) { return &q[robot * layout.q_per_robot + layout.wheel_q]; }
-  const double* wheel_speeds_of(std::size_t robot) const {
-    return &u[robot * layout.u_per_robot + layout.wheel_u];
-  }
-  double* wheel_speeds_of(std::size_t robot) { return &u[robot * layout.u_per_robot + layout.wheel_u]; }
-  // Field-frame v_x of a robot in an array of speeds; v_y follows.
-  const double* field_velocity(const std::vector<double>& speeds, std::size_t robot) const {
-    return &speeds[robot * layout.u_per_robot + layout.wheel_u - (free() ? 3 : 2)];
-  }
+  const double* wheel_angles(std::size_t robot) const { return pose(robot) + layout.wheel_q; }
+  double* wheel_angles(std::size_t robot) { return pose(robot) + layout.wheel_q; }
+  const double* wheel_speeds_of(std::size_t robot) const { return speeds(robot) + layout.wheel_u; }
+  double* wheel_speeds_of(std::size_t robot) { return speeds(robot) + layout.wheel_u; }
+  // Field-frame v_x of a robot; v_y follows.
+  std::size_t field_u() const { return layout.wheel_u - (free() ? 3 : 2); }
+  const double* field_velocity(std::size_t robot) const { return speeds(robot) + field_u(); }
+  double* field_velocity(std::size_t robot) { return speeds(robot) + field_u(); }
   bool free() const { return options.physics == Physics::kSimbodyFree; }
 
   void place(std::size_t robot, double x_m, double y_m, double yaw_rad) {
     PerWheel<double> angles;
     std::copy_n(wheel_angles(robot), wheels(robot), angles.begin());
-    std::visit([&](const auto& m) { m.place(q, u, robot, x_m, y_m, yaw_rad); }, mechanics);
+    group(robot).place(robot, x_m, y_m, yaw_rad);
     std::copy_n(angles.begin(), wheels(robot),
                 wheel_angles(robot));  // turning a robot by hand turns no rotor
     const RobotMemory kept = memory[robot];
@@ -166,7 +192,6 @@ struct Plant::Impl {
     memory[robot].mode = kept.mode;
     memory[robot].duty_ratio = kept.duty_ratio;
     memory[robot].faults = kept.faults;
-    state_known = false;
     if (electrics[robot]) electric_memory[robot] = electrics[robot]->initial_memory();
     if (effects[robot]) {
       PerWheel<double> rotors{};
@@ -196,7 +221,7 @@ struct Plant::Impl {
   // What sensors could see now.
   RobotInstant instant(std::size_t n) const {
     RobotInstant p;
-    const BodyMotion m = std::visit([&](const auto& back) { return back.motion(q, u, n); }, mechanics);
+    const BodyMotion m = motion(n);
     p.time_s = now_s();
     p.x_m = m.x_m, p.y_m = m.y_m, p.yaw_rad = m.yaw_rad;
     p.gyro_rad_s = m.velocity.omega_body_rad_s;
@@ -220,19 +245,14 @@ struct Plant::Impl {
     return at;
   }
 
-  // Brings the mechanics' floor forces up to date with q and u.
-  template <typename Back>
-  void set_state(Back& back) {
-    if (!state_known) back.set_state(q, u);
-    state_known = true;
-  }
-
   BridgeInput bridge_input(std::size_t n, std::size_t i) const {
     const RobotMemory& mem = memory[n];
     const bool open = mem.faults.phase_lost[i] && !electrics[n];
     const std::uint32_t mode = open ? std::uint32_t{OMNIHIL_DRIVE_COAST} : mem.mode[i];
     return {mode, mem.duty_ratio[i], mem.faults.supply_ratio * models[n].bus_voltage_V};
   }
+
+  WheelTorques& torques_of(std::size_t n) { return group(n).torques[n - group(n).first]; }
 
   void begin_wheels(std::size_t n, const WheelContacts<double>& contacts) {
     const RobotModel& model = models[n];
@@ -244,14 +264,14 @@ struct Plant::Impl {
       const WheelStep step = begin_wheel_step(drives[n][i], mem.winding[i], bridge,
                                               model.gear_ratio * omega_wheel[i], contact_Nm);
       wheel_steps[n][i] = step;
-      torques[n][i] = step.torque;
+      torques_of(n)[i] = step.torque;
     }
   }
 
   void begin_electric_wheels(std::size_t n, const PerWheel<WheelDriveInput>& inputs) {
     electrics[n]->begin_step(electric_memory[n], inputs, now_ns, controls[n], wheel_steps[n]);
     if (effects[n]) effect_memory[n].bus_voltage_V = electric_memory[n].at_bridges_V();
-    for (std::size_t i = 0; i < wheels(n); ++i) torques[n][i] = wheel_steps[n][i].torque;
+    for (std::size_t i = 0; i < wheels(n); ++i) torques_of(n)[i] = wheel_steps[n][i].torque;
   }
 
   // `more`: of floor effects; null: none.
@@ -276,20 +296,24 @@ struct Plant::Impl {
 
   void begin_wheels_with_effects(std::size_t n, const PerWheel<WheelDriveInput>& inputs) {
     effects[n]->begin_step(healthy[n], effect_memory[n], inputs, wheel_steps[n]);
-    for (std::size_t i = 0; i < wheels(n); ++i) torques[n][i] = wheel_steps[n][i].torque;
+    for (std::size_t i = 0; i < wheels(n); ++i) torques_of(n)[i] = wheel_steps[n][i].torque;
   }
 
   // Touches nothing of another robot's.
   template <typename Back>
   void begin_robot(const Back& back, std::size_t n) {
+    const std::size_t i = n - group(n).first;
     if (electrics[n]) {
-      const FloorForces* more = effects[n] ? &back.floor_forces(n) : nullptr;
-      begin_electric_wheels(n, wheel_inputs(n, back.contacts(n), more));
+      const FloorForces* more = effects[n] ? &back.floor_forces(i) : nullptr;
+      begin_electric_wheels(n, wheel_inputs(n, back.contacts(i), more));
     } else if (effects[n]) {
-      begin_wheels_with_effects(n, wheel_inputs(n, back.contacts(n), &back.floor_forces(n)));
+      begin_wheels_with_effects(n, wheel_inputs(n, back.contacts(i), &back.floor_forces(i)));
     } else {
-      begin_wheels(n, back.contacts(n));
+      begin_wheels(n, back.contacts(i));
     }
+  }
+  void begin_robot(std::size_t n) {
+    std::visit([&](const auto& back) { begin_robot(back, n); }, group(n).mechanics);
   }
 
   // Some control runs aside, and none that there is does not.
@@ -302,30 +326,51 @@ struct Plant::Impl {
     return any;
   }
 
-  template <typename Back>
-  void step(Back& back) {
+  void each_robot(bool aside, auto&& work) {
+    if (aside) {
+      workers->each(models.size(), work);
+    } else {
+      for (std::size_t n = 0; n < models.size(); ++n) work(n);
+    }
+  }
+
+  void step() {
     for (std::size_t n = 0; n < models.size(); ++n) {
       if (effects[n]) effects[n]->floor.dribbler_rad_s = memory[n].drive.dribbler_ratio * kDribblerFull_rad_s;
     }
-    set_state(back);
-    if (workers != nullptr && any_aside()) {
-      workers->each(models.size(), [&](std::size_t n) { begin_robot(back, n); });
+    for (MechanicsGroup& of : groups) of.set_state();
+    each_robot(workers != nullptr && any_aside(), [&](std::size_t n) { begin_robot(n); });
+    if (groups.size() > 1) {
+      workers->each(groups.size(), [&](std::size_t g) { move(groups[g]); });
     } else {
-      for (std::size_t n = 0; n < models.size(); ++n) begin_robot(back, n);
+      move(groups.front());
     }
-    u_before = u;
-    integrate(options.integrator, back, torques, step_s, q, u, scratch);
-    state_known = false;
-    for (std::size_t n = 0; n < models.size(); ++n) end_robot(back, n);
     now_ns += step_ns;
     for (std::size_t n = 0; n < models.size(); ++n) {
       if (effects[n]) remember(n);
     }
   }
 
+  // Touches nothing of another group's. What no effect acts on is looked at once more by whoever comes next, and is
+  // therefore brought up to date here, where groups run side by side.
+  void move(MechanicsGroup& of) {
+    of.u_before = of.u;
+    std::visit(
+        [&](auto& back) {
+          integrate(options.integrator, back, of.torques, step_s, of.q, of.u, of.scratch);
+          for (std::size_t i = 0; i < of.robots; ++i) end_robot(back, of.first + i);
+        },
+        of.mechanics);
+    of.state_known = false;
+    if (groups.size() > 1 && std::none_of(effects.begin(), effects.end(), [](const auto& e) { return !!e; }))
+      of.set_state();
+  }
+
   template <typename Back>
   void end_robot(const Back& back, std::size_t n) {
-    const double* before = &u_before[n * layout.u_per_robot + layout.wheel_u];
+    const MechanicsGroup& of = group(n);
+    const double* u_before = &of.u_before[(n - of.first) * layout.u_per_robot];
+    const double* before = u_before + layout.wheel_u;
     double* after = wheel_speeds_of(n);
     bool held = true;
     for (std::size_t i = 0; i < wheels(n); ++i) {
@@ -346,10 +391,10 @@ struct Plant::Impl {
     }
     ++memory[n].current_steps;
     if (held && !free()) come_to_rest(n);
-    const double yaw_rad = back.motion(q, u, n).yaw_rad;
+    const double yaw_rad = back.motion(of.q, of.u, n - of.first).yaw_rad;
     disturb(n, yaw_rad);
-    const double* v0 = field_velocity(u_before, n);
-    const double* v1 = field_velocity(u, n);
+    const double* v0 = u_before + field_u();
+    const double* v1 = field_velocity(n);
     const double ax = (v1[0] - v0[0]) / step_s, ay = (v1[1] - v0[1]) / step_s;
     memory[n].accel_x_m_s2 = std::cos(yaw_rad) * ax + std::sin(yaw_rad) * ay;
     memory[n].accel_y_m_s2 = -std::sin(yaw_rad) * ax + std::cos(yaw_rad) * ay;
@@ -357,7 +402,7 @@ struct Plant::Impl {
 
   // The floor's viscous hold would let the speed fade for ever, into numbers that cost time to compute with.
   void come_to_rest(std::size_t n) {
-    double* body = &u[n * layout.u_per_robot];
+    double* body = speeds(n);
     double* omega_wheel = wheel_speeds_of(n);
     const auto stands = [](double v_m_s) { return std::abs(v_m_s) < kStandstill_m_s; };
     const bool rims_stand = std::all_of(omega_wheel, omega_wheel + wheels(n), [&](double omega) {
@@ -388,22 +433,21 @@ struct Plant::Impl {
       }
       scan(wheel_speeds_of(n), wheels(n), "omega_wheel_rad_s");
       scan(wheel_angles(n), wheels(n), "theta_wheel_rad");
-      scan(&u[n * layout.u_per_robot], layout.wheel_u, "body_velocity");
-      scan(&q[n * layout.q_per_robot], layout.wheel_q, "pose");
+      scan(speeds(n), layout.wheel_u, "body_velocity");
+      scan(pose(n), layout.wheel_q, "pose");
     }
   }
 
   PlantOptions options;
   std::vector<RobotModel> models;
   AllEffects effects;  // before the mechanics, which points into it
-  Mechanics mechanics;
+  std::vector<MechanicsGroup> groups;
+  std::vector<std::size_t> group_of;  // of each robot
   StateLayout layout;
   std::int64_t step_ns = 0;  // of the mechanics: that of the options, or a part of it
   double step_s = 0.0;
   int substeps = 1;
   std::int64_t now_ns = 0;
-  std::vector<double> q, u, u_before;
-  IntegratorScratch scratch;
   std::vector<RobotMemory> memory;
   std::vector<RobotEffectMemory> effect_memory;
   std::vector<RobotHistory> histories;
@@ -414,9 +458,7 @@ struct Plant::Impl {
   std::vector<WheelDriveLaw> healthy;           // per robot
   std::vector<PerWheel<WheelDriveLaw>> drives;  // with the faults in force
   std::vector<PlanarBody<double>> bodies;
-  std::vector<WheelTorques> torques;
   std::vector<PerWheel<WheelStep>> wheel_steps;
-  bool state_known = false;
   std::optional<PlantFault> fault;
 };
 

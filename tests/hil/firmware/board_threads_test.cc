@@ -27,6 +27,7 @@ struct Bench {
   std::string robot = "omni_default", image_file, board_file;
   std::vector<int> robots;
   int duration_ms = 0;
+  Physics physics = Physics::kPlanar;
 };
 
 // All that can be seen from outside.
@@ -62,7 +63,7 @@ Seen run(const Bench& bench, int threads, Meeting* meeting = nullptr) {
   setup.model = load_robot_model(bench.robot, {OMNIHIL_SOURCE_DIR "/models"}).bundle;
   setup.radio_format = "ulaval-hermes";
   setup.robot_ids = bench.robots;
-  setup.plant.physics = Physics::kPlanar;
+  setup.plant.physics = bench.physics;
   SessionConfig config = session_config(setup);
   config.threads = threads;
   Seen seen;
@@ -131,6 +132,18 @@ TEST_F(BoardThreads, ThreePhaseRobotsOfFourBoardsGiveTheSameBits) {
                    .board_file = board("ateam_wheel_f031"),
                    .robots = {0, 2, 3},
                    .duration_ms = 80});
+}
+
+// In Simbody's systems of a few robots each, side by side; on one thread all are in one.
+TEST_F(BoardThreads, SeveralSystemsOfSimbodyGiveTheSameBitsAsOne) {
+  for (const Physics physics : {Physics::kSimbody, Physics::kSimbodyFree}) {
+    expect_the_same({.robot = "ateam_2025",
+                     .image_file = image("polling_wheel"),
+                     .board_file = board("ateam_wheel_f031"),
+                     .robots = {0, 1, 3, 4, 7},
+                     .duration_ms = 30,
+                     .physics = physics});
+  }
 }
 
 constexpr const char* kTwoBoards =
