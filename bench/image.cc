@@ -3,6 +3,7 @@
 //   bench_image              prints the table; exit 0 when all targets are met, 1 when one is missed
 //   bench_image --count 8    runs the 8 kHz image for so many seconds alone, for an instruction count
 //   bench_image --count-polling 1   a robot of four boards that poll, likewise
+//   bench_image --count-six 1 2     six of them with Simbody, for so many seconds on so many threads; prints their wall time
 //
 // Simulated time over CPU time of this thread, the best and the median of five. Three images, all on the
 // reference firmware's board at 168 MHz: four speed loops at 8 kHz that sleep in between, the same that never
@@ -175,6 +176,14 @@ int main(int argc, char** argv) {
   }
   if (argc == 3 && std::strcmp(argv[1], "--count-polling") == 0) {
     std::printf("%s\n", omnihil::run_polling(1, omnihil::Physics::kPlanar, 1, std::atof(argv[2])).c_str());
+    return 0;
+  }
+  if (argc == 4 && std::strcmp(argv[1], "--count-six") == 0) {  // seconds, threads
+    const auto before = std::chrono::steady_clock::now();
+    const std::string hash = omnihil::run_polling(omnihil::kRobots, omnihil::Physics::kSimbody,
+                                                  std::atoi(argv[3]), std::atof(argv[2]));
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - before;
+    std::printf("%s in %.3f s\n", hash.c_str(), wall.count());
     return 0;
   }
   return omnihil::table();
