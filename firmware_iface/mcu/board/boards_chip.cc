@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "firmware_iface/mcu/stm32/dma_item.h"
+#include "firmware_iface/mcu/stm32/dma/dma_item.h"
 
 namespace omnihil::mcu {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/stm32/clock/clock_tree.h"
-#include "firmware_iface/mcu/stm32/dma_router.h"
+#include "firmware_iface/mcu/stm32/dma/dma_router.h"
 #include "firmware_iface/mcu/stm32/irq_hub.h"
 #include "firmware_iface/mcu/stm32/timer/trigger_bus.h"
 

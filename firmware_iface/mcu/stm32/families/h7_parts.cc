@@ -7,10 +7,10 @@
 
 #include "firmware_iface/mcu/stm32/chip_parts.h"
 #include "firmware_iface/mcu/stm32/clock/flash_h7.h"
+#include "firmware_iface/mcu/stm32/dma/mdma.h"
 #include "firmware_iface/mcu/stm32/families/timer_rows.h"
 #include "firmware_iface/mcu/stm32/fdcan_h7.h"
 #include "firmware_iface/mcu/stm32/math/cordic.h"
-#include "firmware_iface/mcu/stm32/mdma.h"
 #include "firmware_iface/mcu/stm32/watchdog.h"
 
 namespace omnihil::mcu {

@@ -1,4 +1,4 @@
-#include "firmware_iface/mcu/stm32/dma_v1.h"
+#include "firmware_iface/mcu/stm32/dma/dma_v1.h"
 
 #include <algorithm>
 #include <utility>

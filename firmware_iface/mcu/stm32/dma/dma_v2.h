@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "firmware_iface/mcu/stm32/chip_context.h"
-#include "firmware_iface/mcu/stm32/dma_item.h"
-#include "firmware_iface/mcu/stm32/dma_v1.h"
+#include "firmware_iface/mcu/stm32/dma/dma_item.h"
+#include "firmware_iface/mcu/stm32/dma/dma_v1.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
 
 namespace omnihil::mcu {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/stm32/chip_context.h"
-#include "firmware_iface/mcu/stm32/dma_item.h"
+#include "firmware_iface/mcu/stm32/dma/dma_item.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
 
 namespace omnihil::mcu {

@@ -1,4 +1,4 @@
-#include "firmware_iface/mcu/stm32/mdma.h"
+#include "firmware_iface/mcu/stm32/dma/mdma.h"
 
 #include <fmt/format.h>
 
