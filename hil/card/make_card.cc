@@ -12,6 +12,7 @@
 #include "hil/card/provenance.h"
 #include "hil/dataset/dataset_fingerprint.h"
 #include "hil/dataset/dataset_reader.h"
+#include "identify/estimate/heard_commands.h"
 #include "identify/select/add_effect.h"
 
 namespace omnihil {
@@ -79,13 +80,14 @@ CardData data_of(const CardRequest& request, const std::string& path, const Data
     shown.use = run.split;
     shown.duration_s = run.duration_s();
   }
-  const auto predictor = make_predictor(dataset, *reading.nominal, {});
+  const Dataset heard = heard_commands(dataset, *reading.nominal, {}).dataset;
+  const auto predictor = make_predictor(heard, *reading.nominal, {});
   std::vector<Prediction> predictions;
   for (int r = 0; r < predictor->run_count(); ++r)
     predictions.push_back(predictor->predict(*reading.nominal, r));
   out.comparison = compare(*predictor, *reading.nominal, predictions, false);
   out.findings = check_data(dataset, *reading.nominal);
-  out.notes = dataset.notes;
+  out.notes = heard.notes;
   const auto axes = request.axes[0].empty() ? validity_axes(*predictor, *reading.nominal) : request.axes;
   check_axes(request.axes, *predictor, *reading.nominal);
   std::vector<std::string> signals;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/estimate/heard_commands.h"
+
 namespace omnihil {
 namespace {
 
@@ -22,9 +24,10 @@ Screened screened_alone(const SelectionTask& task, const Fitted& parent, const E
 
 }  // namespace
 
-Addition add_effect(const Dataset& dataset, const Candidate& nominal, const EffectUse& use,
+Addition add_effect(const Dataset& recorded, const Candidate& nominal, const EffectUse& use,
                     const AddOptions& options) {
   Addition out;
+  const Dataset dataset = heard_commands(recorded, nominal, {.jobs = options.jobs}).dataset;
   SelectionContext context(dataset, nominal, {.seed = options.seed, .jobs = options.jobs});
   out.why = context.predictor().applies(*use.entry);
   out.applies = out.why.empty();

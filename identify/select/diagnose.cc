@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 
+#include "identify/estimate/heard_commands.h"
 #include "identify/select/confidence.h"
 #include "identify/select/diagnose_summary.h"
 #include "identify/select/diagnosis.h"
@@ -40,8 +41,11 @@ constexpr const char* kInterrupted = "interrupted before any effect was tried";
 
 class Diagnosing {
  public:
-  Diagnosing(const Dataset& dataset, const Candidate& nominal, const DiagnoseOptions& options)
-      : dataset_(dataset),
+  // recorded: what was measured; dataset: the same as it is compared (heard_commands.h).
+  Diagnosing(const Dataset& recorded, const Dataset& dataset, const Candidate& nominal,
+             const DiagnoseOptions& options)
+      : recorded_(recorded),
+        dataset_(dataset),
         nominal_(nominal),
         options_(options),
         context_(dataset, nominal, {.seed = options.seed, .jobs = options.jobs}) {
@@ -52,7 +56,7 @@ class Diagnosing {
   }
 
   Diagnosis run() {
-    out_.findings = check_data(dataset_, nominal_);
+    out_.findings = check_data(recorded_, nominal_);
     out_.nominal_comparison = compare(context_.predictor(), nominal_);
     add_step("nominal", {}, out_.nominal_comparison);
     if (!baseline()) return finish_early();
@@ -395,6 +399,7 @@ class Diagnosing {
         {.added = added, .comparison = comparison, .parameters = model.fit.parameters, .ranking = {}});
   }
 
+  const Dataset& recorded_;
   const Dataset& dataset_;
   const Candidate& nominal_;
   const DiagnoseOptions& options_;
@@ -446,8 +451,26 @@ std::span<const LadderStep> steps_after_first_ranking(const Diagnosis& diagnosis
                                          : std::span<const LadderStep>(first + 1, diagnosis.ladder.end());
 }
 
+namespace {
+
+std::vector<DataFinding> lost_commands(const Dataset& dataset, const HeardCommands& heard) {
+  std::vector<DataFinding> out;
+  for (std::size_t r = 0; r < heard.lost.size(); ++r) {
+    const LostPackets& lost = heard.lost[r];
+    if (std::string sentence = sentence_of(lost); !sentence.empty())
+      out.push_back({DataFinding::Grade::kNote, "lost_commands", dataset.runs[r].file, "command",
+                     static_cast<double>(lost.rows.size()), std::move(sentence)});
+  }
+  return out;
+}
+
+}  // namespace
+
 Diagnosis diagnose(const Dataset& dataset, const Candidate& nominal, const DiagnoseOptions& options) {
-  return Diagnosing(dataset, nominal, options).run();
+  const HeardCommands heard = heard_commands(dataset, nominal, {.jobs = options.jobs, .stop = options.stop});
+  Diagnosis out = Diagnosing(dataset, heard.dataset, nominal, options).run();
+  for (DataFinding& finding : lost_commands(dataset, heard)) out.findings.push_back(std::move(finding));
+  return out;
 }
 
 }  // namespace omnihil

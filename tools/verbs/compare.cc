@@ -11,6 +11,7 @@
 #include "hil/text/dataset_files.h"
 #include "hil/text/toml_keys.h"
 #include "identify/compare/force_error.h"
+#include "identify/estimate/heard_commands.h"
 #include "tools/command_line.h"
 #include "tools/compare_report.h"
 #include "tools/exit_codes.h"
@@ -76,7 +77,8 @@ int run(const Arguments& a) {
     std::fprintf(stderr, "omnihil compare: %s\n", p.text().c_str());
   if (!reading.dataset) return kExitBadInput;
   const FirmwareMeter meter(*reading.dataset);
-  const auto predictor = make_predictor(*reading.dataset, *reading.nominal, {});
+  const Dataset dataset = heard_commands(*reading.dataset, *reading.nominal, {}).dataset;
+  const auto predictor = make_predictor(dataset, *reading.nominal, {});
   const std::vector<std::string> names = compared_names(*predictor);
   std::vector<std::string> faults;
   const std::vector<Tube> tubes = read_tubes(a, names, faults);
@@ -90,7 +92,7 @@ int run(const Arguments& a) {
   report.dataset = a.dataset;
   report.model = a.model;
   report.method = predictor->method();
-  report.notes = reading.dataset->notes;
+  report.notes = dataset.notes;
   report.findings = check_data(*reading.dataset, *reading.nominal);
   for (const Run& r : reading.dataset->runs) report.run_files.push_back(r.file);
   report.comparison = compare(*predictor, *reading.nominal, predictions);

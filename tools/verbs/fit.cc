@@ -10,6 +10,7 @@
 #include "hil/dataset/dataset_reader.h"
 #include "hil/serve/serve_signals.h"
 #include "hil/text/dataset_files.h"
+#include "identify/estimate/heard_commands.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/params.h"
 #include "tools/command_line.h"
@@ -87,7 +88,13 @@ int run(const Arguments& a) {
   const Candidate start = with_effects(*reading.nominal, a.with, faults);
   const std::vector<Unknown> unknowns = chosen(start, a, faults);
   const FirmwareMeter meter(*reading.dataset);
-  const auto predictor = make_predictor(*reading.dataset, *reading.nominal, {});
+  const HeardCommands heard = heard_commands(*reading.dataset, *reading.nominal, {.jobs = a.options.jobs});
+  for (std::size_t r = 0; r < heard.lost.size(); ++r) {
+    const std::string sentence = sentence_of(heard.lost[r]);
+    if (!sentence.empty())
+      std::fprintf(stderr, "omnihil fit: %s: %s\n", heard.dataset.runs[r].file.c_str(), sentence.c_str());
+  }
+  const auto predictor = make_predictor(heard.dataset, *reading.nominal, {});
   for (const EffectUse& use : start.effects) {
     const std::string why = faults.empty() ? predictor->applies(*use.entry) : "";
     const bool asked = std::find(a.with.begin(), a.with.end(), effect_name(use)) != a.with.end();
