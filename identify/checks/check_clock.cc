@@ -43,7 +43,8 @@ std::vector<Clock> clocks_of(const RunView& view) {
   const auto rows = static_cast<double>(run.time_s.size());
   std::vector<Clock> clocks;
   for (const auto& [name, values] : run.signals) {
-    if (name.starts_with("command_")) continue;  // comes when the host asks: an event, no clock
+    // What is asked comes when the host asks, or stands in every row: no sensor's clock.
+    if (name.starts_with("command_") || name == "dribbler") continue;
     Clock clock{name, {}, 0.0};
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (std::isfinite(values[k])) clock.time_s.push_back(run.time_s[k]);

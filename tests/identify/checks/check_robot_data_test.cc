@@ -108,5 +108,16 @@ TEST(CheckDataClock, RowsOfTwoClocksAreNoLateRows) {
   }
 }
 
+// The dribbler's speed that was asked for stands in the rows of both.
+TEST(CheckDataClock, WhatIsAskedInEveryRowHasNoClock) {
+  Dataset d = two_clocks(0.0);
+  d.channels.push_back({.signal = "dribbler", .column = "dribbler", .unit = "rad/s"});
+  for (omnihil::Run& run : d.runs) run.signals["dribbler"].assign(run.time_s.size(), 0.0);
+  const auto findings = check_data(d, test::robot_candidate());
+  EXPECT_TRUE(std::none_of(findings.begin(), findings.end(), [](const DataFinding& f) {
+    return f.kind == "late_timestamps";
+  })) << text_of(findings);
+}
+
 }  // namespace
 }  // namespace omnihil
