@@ -112,19 +112,6 @@ double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& ch
   return energy_ratio((*setup.splits)[kTraining], parent.residual[kTraining], child.residual[kTraining]);
 }
 
-// Where the descent ended, a shape of the effect has no derivative: a limit that is not reached, say. No further step moves it.
-bool has_idle_shape(const Fitted& f, const Screened& effect) {
-  for (std::size_t i = 0; i < f.fit.unknowns.size() && i < f.fit.parameters.size(); ++i) {
-    const Unknown& u = f.fit.unknowns[i];
-    if (u.effect < 0) continue;
-    const EffectUse& use = f.fit.model.effects[static_cast<std::size_t>(u.effect)];
-    if (use.entry != effect.entry) continue;
-    const ParamRole role = use.entry->info->params[static_cast<std::size_t>(u.row)].role;
-    if (role == ParamRole::kShape && std::isinf(f.fit.parameters[i].data_sigma)) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 EffectUse at_typical_size(const EffectUse& use, const Candidate& model) {
@@ -183,8 +170,7 @@ Fitted refit(const RefitSetup& of_iteration, const Fitted& parent, const Screene
   };
   const EffectUse typical = at_typical_size(effect.start, with);
   if (ratio > expected && !stopped()) also_from(with_use(parent.fit.model, near_neutral(effect.start)));
-  const bool fell_short = ratio > expected && effect.share >= kWorthTypicalStart;
-  if ((fell_short || has_idle_shape(best, effect)) && !stopped())
+  if (ratio > expected && effect.share >= kWorthTypicalStart && !stopped())
     also_from(with_use(parent.fit.model, typical));
   // If the base parameters have absorbed the effect, the optimiser stays near zero strength, or leaves them
   // absorbed beside the effect: also start from the nominal base, the effect at its typical size or as

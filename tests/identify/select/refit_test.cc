@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
-
 #include "tests/identify/linear_predictor.h"
 
 namespace omnihil {
@@ -13,10 +11,17 @@ namespace {
 constexpr std::size_t kSamples = 2000;
 constexpr double kNoise = 0.01;
 
-struct Whitened {
+struct Scene {
+  Candidate nominal = axis_with_unknown_friction();
+  LinearPredictor predictor{{{kFriction, sine_pattern(kSamples, 3.0, 0.0, 1e5)},
+                             {kLoad, sine_pattern(kSamples, 3.0, 0.7, 1000.0)}}};
   std::unique_ptr<Splits> splits, unweighted;
+  RefitSetup setup;
 
-  explicit Whitened(const Predictor& predictor) {
+  Scene(double hidden_Nm, double friction) {
+    for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation})
+      predictor.add_measured(split, with_load(nominal, hidden_Nm, friction), kNoise,
+                             1 + static_cast<std::uint64_t>(split));
     const ComparedChannels channels = compared_channels(predictor);
     const auto all = [&](Weighing w) {
       return std::make_unique<Splits>(
@@ -26,32 +31,12 @@ struct Whitened {
     };
     splits = all(Weighing::kWhitened);
     unweighted = all(Weighing::kUnweighted);
-  }
-  RefitSetup setup(const Predictor& predictor, const Candidate& nominal) const {
-    RefitSetup out;
-    out.predictor = &predictor;
-    out.splits = splits.get();
-    out.unweighted = unweighted.get();
-    out.nominal = &nominal;
-    out.coarse = false;
-    out.profile = false;
-    return out;
-  }
-};
-
-struct Scene {
-  Candidate nominal = axis_with_unknown_friction();
-  LinearPredictor predictor{{{kFriction, sine_pattern(kSamples, 3.0, 0.0, 1e5)},
-                             {kLoad, sine_pattern(kSamples, 3.0, 0.7, 1000.0)}}};
-  std::optional<Whitened> whitened;
-  RefitSetup setup;
-
-  Scene(double hidden_Nm, double friction) {
-    for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation})
-      predictor.add_measured(split, with_load(nominal, hidden_Nm, friction), kNoise,
-                             1 + static_cast<std::uint64_t>(split));
-    whitened.emplace(predictor);
-    setup = whitened->setup(predictor, nominal);
+    setup.predictor = &predictor;
+    setup.splits = splits.get();
+    setup.unweighted = unweighted.get();
+    setup.nominal = &nominal;
+    setup.coarse = false;
+    setup.profile = false;
   }
   Fitted base() const { return refit_as_it_is(setup, nominal, 1); }
   Screened started_at(double torque_Nm) const {
@@ -63,42 +48,6 @@ struct Scene {
     s.share = 0.9;
     s.tried = true;
     return s;
-  }
-};
-
-// A law with two branches: below three tenths of its typical strength the shape does not act, and a little is explained.
-class PlateauPredictor final : public FakePredictor {
- public:
-  static constexpr double kPlateau = 0.3;  // of the typical strength
-  const EffectUse typical =
-      at_typical_size(neutral_use(*find_effect("grease_drag")), axis_with_unknown_friction());
-  std::vector<double> part = sine_pattern(kSamples, 3.0, 0.0, 1.0),
-                      other = sine_pattern(kSamples, 5.0, 0.0, 1.0);
-
-  double share(const Candidate& c, std::size_t row) const {
-    return c.effects.empty() ? 0.0 : c.effects.back().values[row] / typical.values[row];
-  }
-  Prediction predict_with_derivatives(const Candidate& c, std::span<const Unknown> unknowns,
-                                      int) const override {
-    const double strength = share(c, 0), shape = share(c, 1);
-    Prediction p{.values = {std::vector<double>(kSamples)}, .derivatives = {}};
-    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(kSamples, static_cast<Eigen::Index>(unknowns.size()));
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const bool flat = strength < kPlateau;
-      const double by_strength = flat ? 0.1 * part[i] + other[i] : shape * part[i];
-      p.values[0][i] = strength * by_strength;
-      for (std::size_t u = 0; u < unknowns.size(); ++u) {
-        if (unknowns[u].effect < 0) continue;
-        const auto row = static_cast<std::size_t>(unknowns[u].row);
-        d(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(u)) =
-            (row == 0 ? by_strength : (flat ? 0.0 : strength * part[i])) / typical.values[row];
-      }
-    }
-    p.derivatives.push_back(std::move(d));
-    return p;
-  }
-  Prediction predict(const Candidate& c, int run) const override {
-    return predict_with_derivatives(c, {}, run);
   }
 };
 
@@ -116,27 +65,6 @@ TEST(Refit, FindsStrengthAndBaseParameterTogether) {
   // and what it leaves is the noise: its mean square within five standard deviations (sqrt(2 / n))
   const double left = child.residual[kValidation].squaredNorm() / kSamples;
   EXPECT_NEAR(left / (kNoise * kNoise), 1.0, 5 * std::sqrt(2.0 / kSamples));
-}
-
-TEST(Refit, GoesOnFromAPlateauOnWhichAShapeDoesNotAct) {
-  PlateauPredictor predictor;
-  const Candidate nominal = axis_with_unknown_friction();
-  Candidate truth = with_effect(nominal, *find_effect("grease_drag"));
-  ASSERT_EQ(set_value(truth, "grease_drag.torque_Nm", predictor.typical.values[0]), "");
-  ASSERT_EQ(set_value(truth, "grease_drag.speed_rad_s", 1.2 * predictor.typical.values[1]), "");
-  for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation})
-    predictor.add(split, predictor.predict(truth, 0).values[0], std::vector<double>(kSamples), kNoise);
-  const Whitened whitened(predictor);
-  const RefitSetup setup = whitened.setup(predictor, nominal);
-
-  Screened start;
-  start.entry = find_effect("grease_drag");
-  start.name = "grease_drag";
-  start.start = with_effect(nominal, *start.entry).effects.back();
-  start.start.values = {0.1 * predictor.typical.values[0], predictor.typical.values[1]};
-  start.share = 0.01;  // as the screening sees it there
-  const Fitted child = refit(setup, refit_as_it_is(setup, nominal, 1), start);
-  EXPECT_LT(child.residual[kTraining].squaredNorm(), 1e-6);
 }
 
 TEST(Refit, NeverEndsAboveItsParent) {
