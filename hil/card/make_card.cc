@@ -61,7 +61,7 @@ void check_axes(const std::array<std::string, 2>& axes, const Predictor& predict
 }
 
 CardData data_of(const CardRequest& request, const std::string& path, const DatasetReading& reading,
-                 const ModelCard& card) {
+                 const Dataset& heard, const ModelCard& card) {
   CardData out;
   const Dataset& dataset = *reading.dataset;
   out.name = shown_name(path);
@@ -80,7 +80,6 @@ CardData data_of(const CardRequest& request, const std::string& path, const Data
     shown.use = run.split;
     shown.duration_s = run.duration_s();
   }
-  const Dataset heard = heard_commands(dataset, *reading.nominal, {}).dataset;
   const auto predictor = make_predictor(heard, *reading.nominal, {});
   std::vector<Prediction> predictions;
   for (int r = 0; r < predictor->run_count(); ++r)
@@ -101,8 +100,8 @@ CardData data_of(const CardRequest& request, const std::string& path, const Data
   return out;
 }
 
-EffectEvidence evidence_of(const CardRequest& request, const CardData& data, const DatasetReading& reading,
-                           const EffectUse& use, bool& interrupted) {
+EffectEvidence evidence_of(const CardRequest& request, const CardData& data, const Dataset& heard,
+                           const Candidate& model, const EffectUse& use, bool& interrupted) {
   EffectEvidence out;
   out.dataset = data.name;
   const std::string name = effect_name(use);
@@ -117,8 +116,7 @@ EffectEvidence evidence_of(const CardRequest& request, const CardData& data, con
       return !interrupted;
     };
   }
-  const Addition addition =
-      add_effect(*reading.dataset, without_effect(*reading.nominal, name), use, options);
+  const Addition addition = add_effect(heard, without_effect(model, name), use, options);
   out.why = addition.why;
   out.tested = addition.applies && !addition.after.errors.empty();
   if (!out.tested) return out;
@@ -163,13 +161,17 @@ CardOutcome make_card(const CardRequest& request) {
   card.files = files_of(request.model, model.candidate->file);
   card.numbers = card_numbers(*model.candidate);
   card.effects = card_effects(*model.candidate);
-  for (std::size_t d = 0; d < readings.size(); ++d)
-    card.data.push_back(data_of(request, request.datasets[d], readings[d], card));
+  std::vector<Dataset> heard;
+  for (std::size_t d = 0; d < readings.size(); ++d) {
+    heard.push_back(
+        heard_commands(*readings[d].dataset, *readings[d].nominal, {.jobs = request.jobs}).dataset);
+    card.data.push_back(data_of(request, request.datasets[d], readings[d], heard[d], card));
+  }
   for (std::size_t e = 0; request.evidence && e < card.effects.size(); ++e) {
     for (std::size_t d = 0; d < readings.size(); ++d) {
       const EffectUse& use = readings[d].nominal->effects[e];
       card.effects[e].evidence.push_back(
-          evidence_of(request, card.data[d], readings[d], use, out.interrupted));
+          evidence_of(request, card.data[d], heard[d], *readings[d].nominal, use, out.interrupted));
       if (out.interrupted) return out;
     }
   }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "identify/estimate/fit.h"
 #include "identify/record/rig.h"
@@ -12,20 +11,13 @@ namespace omnihil {
 namespace {
 
 constexpr int kRounds = 3;       // of fit and decisions, by cost
-constexpr int kIterations = 12;  // of a fit, as a refit of the ranking has
+constexpr int kIterations = 12;  // of a fit, by cost
 constexpr double kMostLost =
-    0.2;  // of a run's commands; a choice, four times what radios are reported to lose
-constexpr const char* kCommand = "command_";
-
-bool says_commands_alone(const Run& run) {
-  return run.signal("duty_1") == nullptr &&
-         std::any_of(run.signals.begin(), run.signals.end(),
-                     [](const auto& s) { return s.first.starts_with(kCommand); });
-}
+    0.2;  // of a run's commands: four times what radios are reported to lose; a choice
 
 void take_out(const std::vector<std::size_t>& rows, Run& run) {
   for (auto& [name, values] : run.signals) {
-    if (!name.starts_with(kCommand)) continue;
+    if (!name.starts_with("command_")) continue;
     for (const std::size_t k : rows) values[k] = kMissing;
   }
 }
@@ -42,14 +34,28 @@ FitResult fit_base(const Dataset& dataset, const Candidate& nominal, const Candi
   return fit(*make_predictor(dataset, nominal, {}), start, unknowns, o);
 }
 
-std::vector<LostPackets> decide(const Dataset& dataset, const Candidate& nominal, const Candidate& model) {
+std::vector<LostPackets> decide(const Dataset& dataset, const std::vector<RobotRun>& runs,
+                                const Candidate& model) {
   std::vector<LostPackets> out;
-  for (const Run& run : dataset.runs) {
-    const Candidate known = with_known(nominal, run.known), own = with_known(model, run.known);
-    LostPackets lost = lost_packets(rolling_values<double>({own}),
-                                    robot_run(dataset, run, rolling_params(known.file.parameters)));
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Candidate own = with_known(model, dataset.runs[r].known);
+    LostPackets lost = lost_packets(rolling_values<double>({own}), runs[r]);
     if (lost.share() > kMostLost) lost.rows.clear();
     out.push_back(std::move(lost));
+  }
+  return out;
+}
+
+// As they were sent; empty where there is no command to lose, or no motion of numbers alone to decide by.
+std::vector<RobotRun> radio_runs(const Dataset& dataset, const Candidate& nominal) {
+  std::vector<RobotRun> out;
+  if (!dataset.rig->whole_robot || dataset.firmware || dataset.heard ||
+      !rolling_params(nominal.file.parameters).has_controller)
+    return out;
+  for (const Run& run : dataset.runs) {
+    const Candidate known = with_known(nominal, run.known);
+    out.push_back(robot_run(dataset, run, rolling_params(known.file.parameters)));
+    if (!out.back().record.radio) return {};
   }
   return out;
 }
@@ -71,17 +77,15 @@ std::size_t HeardCommands::lost_packets() const {
 }
 
 HeardCommands heard_commands(const Dataset& dataset, const Candidate& nominal, const HeardOptions& options) {
-  HeardCommands out{.dataset = dataset, .lost = std::vector<LostPackets>(dataset.runs.size())};
-  if (!dataset.rig->whole_robot || dataset.firmware ||
-      !rolling_params(nominal.file.parameters).has_controller ||
-      !std::all_of(dataset.runs.begin(), dataset.runs.end(), says_commands_alone))
-    return out;
+  const std::vector<LostPackets> none(dataset.runs.size());
+  HeardCommands out{.dataset = dataset, .lost = none};
+  const std::vector<RobotRun> sent = radio_runs(dataset, nominal);
+  if (sent.empty()) return out;
   Candidate model = nominal;
   for (int round = 0; round < kRounds; ++round) {
     model = fit_base(out.dataset, nominal, model, options).model;
-    if (options.stop && options.stop())
-      return {.dataset = dataset, .lost = std::vector<LostPackets>(dataset.runs.size())};
-    std::vector<LostPackets> lost = decide(dataset, nominal, model);
+    if (options.stop && options.stop()) return {.dataset = dataset, .lost = none};
+    std::vector<LostPackets> lost = decide(dataset, sent, model);
     const bool same = std::equal(lost.begin(), lost.end(), out.lost.begin(),
                                  [](const LostPackets& a, const LostPackets& b) { return a.rows == b.rows; });
     out.lost = std::move(lost);
@@ -89,6 +93,7 @@ HeardCommands heard_commands(const Dataset& dataset, const Candidate& nominal, c
     for (std::size_t r = 0; r < out.lost.size(); ++r) take_out(out.lost[r].rows, out.dataset.runs[r]);
     if (same) break;
   }
+  out.dataset.heard = true;
   for (std::size_t r = 0; r < out.lost.size(); ++r) {
     const std::string sentence = sentence_of(out.lost[r]);
     if (!sentence.empty()) out.dataset.notes.push_back(dataset.runs[r].file + ": " + sentence);

@@ -6,8 +6,8 @@
 //
 // packet_loss.h decides which were lost by the model's wheel speeds, so the base parameters (latency first of all) are fitted
 // before: fit and decisions in turn, until they stay. Where more than a fifth would be lost in a run, the model explains too
-// little to tell: then all are taken as heard. Datasets without radio commands, or with a firmware in the loop, stay as they
-// are.
+// little to tell: then all are taken as heard. Datasets without radio commands, with a firmware in the loop, or that have been
+// through this stay as they are.
 #pragma once
 #include <functional>
 #include <string>

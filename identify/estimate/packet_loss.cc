@@ -3,49 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <utility>
+
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
 
-constexpr double kPriorLoss = 0.02;        // of the league's radios 0 to 5 % is reported; a choice
-constexpr double kAnswer_s = 0.08;         // after a command is heard its wheel has followed; a choice
-constexpr std::size_t kFollowing = 3;      // commands that may be the lost one instead; a choice
-constexpr double kMedianToSigma = 1.4826;  // of a normal distribution
-constexpr double kMostCorrelated = 0.95;   // r at most; a choice
+constexpr double kPriorLoss = 0.02;       // of the league's radios 0 to 5 % is reported; a choice
+constexpr double kAnswer_s = 0.08;        // after a command is heard its wheel has followed; a choice
+constexpr std::size_t kFollowing = 3;     // commands that may be the lost one instead; a choice
+constexpr double kMostCorrelated = 0.95;  // r at most; a choice
 
 RobotMotionOptions own_path() {
   RobotMotionOptions options;
   options.follow_camera = false;
   return options;
-}
-
-// Rows from .. to, both of them, as a record that goes on where one that ends at `from` was.
-RobotRecord rows_of(const RobotRecord& all, std::size_t from, std::size_t to) {
-  RobotRecord out;
-  const auto cut = [&](const auto& v) {
-    using List = std::remove_cvref_t<decltype(v)>;
-    if (v.size() != all.size()) return v;
-    return List(v.begin() + static_cast<std::ptrdiff_t>(from),
-                v.begin() + static_cast<std::ptrdiff_t>(to + 1));
-  };
-  out.wheels = all.wheels;
-  out.time_s = cut(all.time_s);
-  out.duty_ratio = cut(all.duty_ratio);
-  out.enabled = cut(all.enabled);
-  out.bus = all.bus;
-  out.bus.input_V = cut(all.bus.input_V);
-  out.bus.measured_V = cut(all.bus.measured_V);
-  out.dribbler_rad_s = cut(all.dribbler_rad_s);
-  out.counts_per_rotor_turn = all.counts_per_rotor_turn;
-  out.encoder_rotor_rad = cut(all.encoder_rotor_rad);
-  out.theta_rotor_rad = cut(all.theta_rotor_rad);
-  out.has_all_encoders = all.has_all_encoders;
-  out.turned_rad = cut(all.turned_rad);
-  out.imposed_velocity = cut(all.imposed_velocity);
-  out.start_velocity = all.start_velocity;
-  out.radio = all.radio;
-  out.radio->value = cut(all.radio->value);
-  return out;
 }
 
 struct Speeds {
@@ -69,8 +42,7 @@ class Decisions {
     if (speeds_.empty() || record_.size() < 2) return out;
     const RobotMotion<double> whole = run_robot(model_, record_, own_path());
     if (!whole.finite || !weigh(whole)) return out;
-    std::size_t at = 0,
-                heard = 0;  // the motion is at row `at`; `heard`: row of the last command that arrived
+    std::size_t at = 0, heard = 0;  // rows: of the motion so far, of the last command that arrived
     while (heard < record_.size() && !record_.radio->said(heard)) ++heard;
     for (std::size_t k = heard + 1; k < record_.size(); ++k) {
       if (!record_.radio->said(k)) continue;
@@ -98,10 +70,7 @@ class Decisions {
         const double r = (*s.measured)[k] - whole.samples[k].wheel_rad_s[s.wheel];
         if (std::isfinite(r)) residual.push_back(r), size.push_back(std::abs(r));
       }
-      if (size.size() < 3) return false;
-      const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-      std::nth_element(size.begin(), middle, size.end());
-      s.sigma = std::max(s.sigma, kMedianToSigma * *middle);
+      s.sigma = std::max(s.sigma, sigma_by_mad(std::move(size)));
       if (!(s.sigma > 0.0)) return false;
       for (double& r : residual)
         r = std::clamp(r / s.sigma, -3.0, 3.0);  // what was lost shall not count as correlated

@@ -235,6 +235,34 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   return r;
 }
 
+RobotRecord rows_of(const RobotRecord& all, std::size_t from, std::size_t to) {
+  RobotRecord out;
+  const auto cut = [&](const auto& v) {
+    using List = std::remove_cvref_t<decltype(v)>;
+    if (v.size() != all.size()) return v;
+    return List(v.begin() + static_cast<std::ptrdiff_t>(from),
+                v.begin() + static_cast<std::ptrdiff_t>(to + 1));
+  };
+  out.wheels = all.wheels;
+  out.time_s = cut(all.time_s);
+  out.duty_ratio = cut(all.duty_ratio);
+  out.enabled = cut(all.enabled);
+  out.bus = all.bus;
+  out.bus.input_V = cut(all.bus.input_V);
+  out.bus.measured_V = cut(all.bus.measured_V);
+  out.dribbler_rad_s = cut(all.dribbler_rad_s);
+  out.counts_per_rotor_turn = all.counts_per_rotor_turn;
+  out.encoder_rotor_rad = cut(all.encoder_rotor_rad);
+  out.theta_rotor_rad = cut(all.theta_rotor_rad);
+  out.has_all_encoders = all.has_all_encoders;
+  out.turned_rad = cut(all.turned_rad);
+  out.imposed_velocity = cut(all.imposed_velocity);
+  out.start_velocity = all.start_velocity;
+  out.radio = all.radio;
+  out.radio->value = cut(all.radio->value);
+  return out;
+}
+
 RobotRecord settled_point(const RobotRecord& r, std::size_t k) {
   constexpr double kMean_s = 0.02;  // of means: some steps of the simulation; a choice
   RobotRecord p;

@@ -82,6 +82,9 @@ std::string numbered(std::string_view name, std::size_t wheel, std::size_t wheel
 // encoders on the wheel.
 RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal);
 
+// Rows from .. to, both of them, as a record that goes on where one that ends at `from` was. Without frames of a camera.
+RobotRecord rows_of(const RobotRecord& record, std::size_t from, std::size_t to);
+
 // One of a record's settled points, as a record in time: its inputs held until all has settled, the last row after that.
 RobotRecord settled_point(const RobotRecord& record, std::size_t row);
 

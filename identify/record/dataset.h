@@ -71,6 +71,7 @@ struct Dataset {
   bool linear = false;  // of its model
   std::vector<Channel> channels;
   std::vector<Run> runs;
+  bool heard = false;  // commands are those that the robot heard, not those that were sent (heard_commands.h)
   std::vector<std::string> notes;  // what was left out, counted; what a reader should know
   // What made duties of the commands that a robot was driven by; null: the model's [controller].
   std::shared_ptr<const FirmwareSource> firmware;

@@ -27,15 +27,15 @@ Screened screened_alone(const SelectionTask& task, const Fitted& parent, const E
 Addition add_effect(const Dataset& recorded, const Candidate& nominal, const EffectUse& use,
                     const AddOptions& options) {
   Addition out;
-  const Dataset dataset = heard_commands(recorded, nominal, {.jobs = options.jobs}).dataset;
-  SelectionContext context(dataset, nominal, {.seed = options.seed, .jobs = options.jobs});
-  out.why = context.predictor().applies(*use.entry);
-  out.applies = out.why.empty();
-  if (!out.applies) return out;
   const auto say = [&](const std::string& doing, double share) {
     return !options.progress || options.progress({.doing = doing, .share = share});
   };
   const auto stop = [&] { return !say("fitting", 0.3); };
+  const Dataset dataset = heard_commands(recorded, nominal, {.jobs = options.jobs, .stop = stop}).dataset;
+  SelectionContext context(dataset, nominal, {.seed = options.seed, .jobs = options.jobs});
+  out.why = context.predictor().applies(*use.entry);
+  out.applies = out.why.empty();
+  if (!out.applies) return out;
   if (!say("refitting the base parameters", 0.0) || !context.fit_base(stop)) {
     out.why = "the model without it could not be fitted: it does not stay finite, or there are no fit runs";
     return out;

@@ -88,13 +88,11 @@ int run(const Arguments& a) {
   const Candidate start = with_effects(*reading.nominal, a.with, faults);
   const std::vector<Unknown> unknowns = chosen(start, a, faults);
   const FirmwareMeter meter(*reading.dataset);
-  const HeardCommands heard = heard_commands(*reading.dataset, *reading.nominal, {.jobs = a.options.jobs});
-  for (std::size_t r = 0; r < heard.lost.size(); ++r) {
-    const std::string sentence = sentence_of(heard.lost[r]);
-    if (!sentence.empty())
-      std::fprintf(stderr, "omnihil fit: %s: %s\n", heard.dataset.runs[r].file.c_str(), sentence.c_str());
-  }
-  const auto predictor = make_predictor(heard.dataset, *reading.nominal, {});
+  const Dataset dataset =
+      heard_commands(*reading.dataset, *reading.nominal, {.jobs = a.options.jobs}).dataset;
+  for (std::size_t n = reading.dataset->notes.size(); n < dataset.notes.size(); ++n)
+    std::fprintf(stderr, "omnihil fit: %s\n", dataset.notes[n].c_str());
+  const auto predictor = make_predictor(dataset, *reading.nominal, {});
   for (const EffectUse& use : start.effects) {
     const std::string why = faults.empty() ? predictor->applies(*use.entry) : "";
     const bool asked = std::find(a.with.begin(), a.with.end(), effect_name(use)) != a.with.end();

@@ -64,6 +64,9 @@ TEST(HeardCommands, AreThoseThatTheWheelsFollowed) {
   }
   EXPECT_EQ(heard.lost_packets(), 10u);
   EXPECT_EQ(heard.dataset.notes.size(), d.notes.size() + 2);
+  const HeardCommands again = heard_commands(heard.dataset, radio_candidate(), {});
+  EXPECT_EQ(again.lost_packets(), 0u);  // once is enough
+  EXPECT_EQ(again.dataset.notes, heard.dataset.notes);
 }
 
 TEST(HeardCommands, AreAllWhereNoneWasLost) {

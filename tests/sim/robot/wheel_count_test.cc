@@ -7,7 +7,7 @@
 #include "sim/robot/validate.h"
 #include "sim/robot/wheel_load.h"
 #include "sim/rolling/rolling_robot.h"
-#include "tests/sim/robot/sample_robot.h"
+#include "tests/sim/rolling/rolling_sample.h"
 
 namespace omnihil {
 namespace {
@@ -35,25 +35,6 @@ RobotModel differential() {
 
 const std::vector<std::vector<double>> kOmni = {
     {150, 270, 30}, {40, 140, 220, 320}, {0, 72, 144, 216, 288}, {30, 90, 150, 210, 270, 330}};
-
-RollingParams<double> rolling(const RobotModel& m) {
-  RollingParams<double> p;
-  p.drive.resistance_ohm = m.motor.resistance_ohm;
-  p.drive.inductance_H = m.motor.inductance_H;
-  p.drive.torque_constant_Nm_per_A = m.motor.torque_constant_Nm_per_A;
-  p.drive.rotor_inertia_kg_m2 = m.motor.rotor_inertia_kg_m2;
-  p.drive.gear_ratio = m.gear_ratio;
-  p.drive.load_inertia_kg_m2 = m.wheel_inertia_kg_m2;
-  p.drive.supply_voltage_V = m.bus_voltage_V;
-  p.mass_kg = m.mass_kg;
-  p.yaw_inertia_kg_m2 = m.yaw_inertia_kg_m2;
-  p.center_of_mass_height_m = m.center_of_mass_height_m;
-  p.wheel_center_radius_m = m.wheel_center_radius_m;
-  p.wheel_radius_m = m.wheel_radius_m;
-  p.wheels = m.wheels;
-  p.wheel_angle_rad = m.wheel_angle_rad;
-  return p;
-}
 
 TEST(WheelCount, ThreeWheelsTurnAsTheBodyMovesOverThem) {
   // (-sin a v_forward + cos a v_left + R_b w) / r, by hand for 150, 270 and 30 degrees
@@ -142,7 +123,7 @@ TEST(WheelCount, ARollingRobotSettlesWhereItsMotorsBalance) {
     const RobotModel m = with_wheels(angles);
     const double k = m.motor.torque_constant_Nm_per_A * m.gear_ratio / m.wheel_radius_m;
     const double pull_N_s_per_m = k * k / m.motor.resistance_ohm;
-    RollingRobot<double> robot(rolling(m), {}, {});
+    RollingRobot<double> robot(rolling(m, false), {}, {});
     RollingState<double> x = robot.start({}, {});
     RollingInput<double> in;
     for (std::size_t i = 0; i < m.wheels; ++i)
@@ -289,7 +270,7 @@ TEST(WheelCount, DerivativesAreExactForThreeAndSixWheels) {
     const RobotModel m = with_wheels(angles);
     const auto run = [&](auto scalar, double mass_kg) {
       using T = decltype(scalar);
-      RollingParams<double> at = rolling(m);
+      RollingParams<double> at = rolling(m, false);
       at.mass_kg = mass_kg;
       RollingParams<T> p = rolling_params_as<T>(at);
       if constexpr (!std::is_same_v<T, double>) p.mass_kg = T(mass_kg, 0);
