@@ -118,6 +118,9 @@ class RadioController {
   std::size_t axes() const { return frame_ == CommandFrame::kBodyVelocity ? 3 : geometry_.wheels; }
 
   PerWheel<T> references(double now_s) {
+    // The first command is as late as any other: until it is due the robot goes on as it began.
+    for (std::size_t a = 0; a < axes() && history_[a].count == 0; ++a)
+      history_[a].push(now_s - p_.period_s, followed_[a]);
     follow(!heard_ || (p_.timeout_s > 0.0 && now_s - heard_s_ > p_.timeout_s));
     PerWheel<T> asked{}, out{};
     for (std::size_t a = 0; a < axes(); ++a) {

@@ -74,6 +74,22 @@ TEST(RadioController, LatencyIsTheTimeToTheFirstDuty) {
   }
 }
 
+// A log that begins with its first command: the robot stood until then, and is as late as with any other command.
+TEST(RadioController, TheFirstCommandIsLateAsWell) {
+  RadioControllerParams<double> p = some_loop();
+  p.latency_s = 0.02;
+  RadioController<double> controller(p, kAngle, kGear);
+  controller.begin({}, {}, kK, CommandFrame::kWheelSpeeds);
+  controller.hear(0.0, {100.0, 0, 0, 0}, CommandFrame::kWheelSpeeds);
+  for (int n = 0; n < 40; ++n) {
+    const double t = n * p.period_s;
+    const double duty = controller.update(t, {}, 24.0, 1.0)[0];
+    if (std::abs(t - p.latency_s) > p.period_s) {
+      EXPECT_EQ(duty > 0.0, t > p.latency_s) << t;
+    }
+  }
+}
+
 TEST(RadioController, AtItsLimitTheIntegralDoesNotWindUp) {
   RadioControllerParams<double> p = some_loop();
   p.loop.ki_V_per_rad = 2.0;
