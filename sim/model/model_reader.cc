@@ -131,6 +131,10 @@ void ModelReader::unknown_key(const std::string& section, const toml::key& key, 
     spoil(join(section, near));
     allowed = fmt::format("did you mean \"{}\"?", near);
   }
+  for (const ParameterRow& row : model_rows()) {  // gear_ratio is the ratio of [gear]
+    if (allowed.empty() && fmt::format("{}_{}", row.section, row.key) == name)
+      allowed = fmt::format("did you mean \"{}\" in [{}]?", row.key, row.section);
+  }
   for (const ParameterRow& row : model_rows()) {  // right key, wrong section
     if (!allowed.empty()) break;
     if (row.key != name) continue;
