@@ -10,6 +10,8 @@
 #include <limits>
 #include <optional>
 
+#include "hil/logs/units.h"
+
 namespace omnihil {
 namespace {
 
@@ -170,6 +172,27 @@ void drop_wordy_columns(LogTable& log, const std::vector<std::size_t>& words, co
   log.series = std::move(kept);
 }
 
+// Lines below the header that have no number either (units, short names) belong to it. The one whose cells are units
+// for the most part says the columns' units. Lines of other widths are the table's faults, and are left to it.
+void read_further_heads(std::vector<Line>& lines, char separator, bool decimal_comma, const std::string& name,
+                        LogTable& log) {
+  std::size_t heads = 0;
+  for (; heads < lines.size(); ++heads) {
+    std::vector<std::string_view> cells = cells_of(lines[heads].text, separator);
+    if (cells.size() == log.series.size() + 1 && cells.back().empty()) cells.pop_back();
+    const auto filled = cells.size() - static_cast<std::size_t>(std::ranges::count(cells, std::string_view{}));
+    const auto is_number = [&](std::string_view c) { return !c.empty() && number_of(c, decimal_comma); };
+    if (cells.size() != log.series.size() || filled == 0 || std::ranges::any_of(cells, is_number)) break;
+    if (2 * static_cast<std::size_t>(std::ranges::count_if(cells, is_unit)) < filled) continue;
+    for (std::size_t i = 0; i < cells.size(); ++i) log.series[i].unit = is_unit(cells[i]) ? cells[i] : "";
+  }
+  if (heads > 0)
+    log.notes.push_back(fmt::format("{}: {} below the header {} no number: part of it", name,
+                                    heads > 1 ? fmt::format("{} lines", heads) : "a line",
+                                    heads > 1 ? "have" : "has"));
+  lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(heads));
+}
+
 }  // namespace
 
 bool looks_like_table(std::string_view head) {
@@ -214,6 +237,7 @@ LogTable parse_csv_log(std::string_view text, const std::string& name, const Log
     series.name = column;
     series.value.reserve(lines.size());
   }
+  if (!headless) read_further_heads(lines, separator, decimal_comma, name, log);
   std::vector<std::size_t> words(names.size());
   for (std::size_t l = 0; l < lines.size(); ++l) {
     std::vector<std::string_view> row = cells_of(lines[l].text, separator);

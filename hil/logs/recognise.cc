@@ -94,7 +94,7 @@ class Recogniser {
       if (a.column != name(m)) continue;
       m.because = "--map";
       if (a.signal != "-" && find_signal(*context_.rig, a.signal) != nullptr) m.signal = a.signal;
-      m.unit = a.unit;
+      m.unit = a.unit.empty() ? log_.series[m.series].unit : a.unit;
       ranks_[m.series] = -1;
       return true;
     }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <numbers>
 
 namespace omnihil {
@@ -106,12 +108,24 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// "-rad": the other way round.
-std::string_view without_sign(std::string_view word) { return word.starts_with('-') ? word.substr(1) : word; }
+// "-rad": the other way round; "0.0018*m": a number of metres for each of the column's.
+struct Scaled {
+  double factor = 1.0;
+  std::string_view unit;
+};
+Scaled scaled(std::string_view word) {
+  double factor = 0.0;
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), factor);
+  const auto length = static_cast<std::size_t>(end - word.data());
+  if (fault == std::errc{} && factor != 0.0 && std::isfinite(factor) && word.substr(length).starts_with('*'))
+    return {factor, word.substr(length + 1)};
+  if (word.starts_with('-')) return {-1.0, word.substr(1)};
+  return {1.0, word};
+}
 
 }  // namespace
 
-bool is_unit(std::string_view word) { return find_unit(without_sign(word)) != nullptr; }
+bool is_unit(std::string_view word) { return find_unit(scaled(word).unit) != nullptr; }
 
 std::vector<std::string> units_for(std::string_view to) {
   std::vector<std::string> out;
@@ -130,7 +144,8 @@ std::vector<std::string> units_for(std::string_view to) {
 
 std::optional<UnitScale> unit_scale(std::string_view from, std::string_view to, const UnitContext& context,
                                     std::string& fault) {
-  const Unit* a = find_unit(without_sign(from));
+  const Scaled said = scaled(from);
+  const Unit* a = find_unit(said.unit);
   const Unit* b = find_unit(to);
   if (a == nullptr || b == nullptr || a->kind != b->kind) {
     std::string allowed;
@@ -138,7 +153,7 @@ std::optional<UnitScale> unit_scale(std::string_view from, std::string_view to, 
     fault = fmt::format("\"{}\" is no unit for this; allowed: {}", from, allowed);
     return std::nullopt;
   }
-  double scale = (from.starts_with('-') ? -1.0 : 1.0) * a->factor / b->factor;
+  double scale = said.factor * a->factor / b->factor;
   if (a->electrical) {
     if (!(context.pole_pairs > 0.0)) {
       fault = fmt::format("\"{}\" needs the number of pole pairs: motor.pole_pairs in the model", from);

@@ -5,7 +5,7 @@
 //   split_unit("motor current [mA]");                                          // {"motor current", "mA"}
 //
 // Known: times, angles, speeds, currents, voltages, torques, forces, lengths, accelerations, temperatures, ratios,
-// counts. "-rad" is a radian the other way round.
+// counts. "-rad" is a radian the other way round, "0.0018*m" 1.8 mm for each of the column's own (pixels, a converter's counts).
 // Electrical speeds and angles ("erpm", "erad/s", "erad") need the number of pole pairs. Turns are full turns;
 // "Hz" of a speed is turns a second. Cannot: prefixes and products in general.
 #pragma once

@@ -59,6 +59,24 @@ TEST(CsvLog, WhatIsNotMeasuredIsMissingAndSaid) {
   EXPECT_NE(all.find("columns without a number left out: word"), std::string::npos) << all;
 }
 
+TEST(CsvLog, LinesBelowTheHeaderWithoutANumberBelongToIt) {
+  const LogTable log = parse_csv_log(
+      "Time;motor speed;camera\nms;rpm;pix;\nt;v;x\n0;60;833\n10;;834\n", "log.csv", {});
+  ASSERT_EQ(log.series.size(), 3u);
+  EXPECT_EQ(log.series[0].unit, "ms");
+  EXPECT_EQ(log.series[1].unit, "rpm");
+  EXPECT_EQ(log.series[2].unit, "");  // no unit that is known
+  EXPECT_EQ(log.series[0].value, (std::vector<double>{0, 10}));
+  ASSERT_EQ(log.notes.size(), 1u);
+  EXPECT_NE(log.notes[0].find("2 lines below the header have no number"), std::string::npos) << log.notes[0];
+  MeaningContext context;
+  const LogMeaning m = recognise(log, context, {{"motor speed", "velocity", ""}, {"camera", "-", ""}});
+  EXPECT_DOUBLE_EQ(m.of("time")->scale.scale, 1e-3);
+  EXPECT_DOUBLE_EQ(m.of("velocity")->scale.scale, kTurn / 60);
+  // A row that a logger left without numbers is a row.
+  EXPECT_EQ(parse_csv_log("t,v\n0,1\n-,-\n2,1\n", "log.csv", {}).series[0].value.size(), 3u);
+}
+
 TEST(CsvLog, BrokenTablesAreRefusedWithTheirLine) {
   EXPECT_NE(refusal("t,v\n0,1\n1,2,3\n2,3\n").find("log.csv:3: 3 cells; allowed: 2"), std::string::npos);
   EXPECT_NE(refusal("t,t\n0,1\n1,2\n").find("stands twice"), std::string::npos);
@@ -226,6 +244,11 @@ TEST(Units, LeadToTheSignalsOwn) {
   EXPECT_DOUBLE_EQ(unit_scale("deg", "rad", {}, fault)->scale, kTurn / 360);
   EXPECT_DOUBLE_EQ(unit_scale("erad/s", "rad/s", {4}, fault)->scale, 0.25);
   EXPECT_DOUBLE_EQ(unit_scale("mNm", "N m", {}, fault)->scale, 1e-3);
+  EXPECT_DOUBLE_EQ(unit_scale("-rad", "rad", {}, fault)->scale, -1.0);
+  EXPECT_DOUBLE_EQ(unit_scale("-0.0018*m", "m", {}, fault)->scale, -0.0018);  // pixels of a camera
+  EXPECT_DOUBLE_EQ(unit_scale("0.0625*rpm", "rad/s", {}, fault)->scale, 0.0625 * kTurn / 60);
+  for (const char* wrong : {"0*m", "x*m", "1e999*m", "nan*m", "2*", "2*parsec", "2m", "*m"})
+    EXPECT_FALSE(unit_scale(wrong, "m", {}, fault)) << wrong;
   EXPECT_FALSE(unit_scale("A", "rad/s", {}, fault));
   EXPECT_NE(fault.find("allowed: rad/s"), std::string::npos) << fault;
   EXPECT_EQ(split_unit("current_A").second, "A");
