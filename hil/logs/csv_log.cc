@@ -180,7 +180,8 @@ void read_further_heads(std::vector<Line>& lines, char separator, bool decimal_c
   for (; heads < lines.size(); ++heads) {
     std::vector<std::string_view> cells = cells_of(lines[heads].text, separator);
     if (cells.size() == log.series.size() + 1 && cells.back().empty()) cells.pop_back();
-    const auto filled = cells.size() - static_cast<std::size_t>(std::ranges::count(cells, std::string_view{}));
+    const auto filled =
+        cells.size() - static_cast<std::size_t>(std::ranges::count(cells, std::string_view{}));
     const auto is_number = [&](std::string_view c) { return !c.empty() && number_of(c, decimal_comma); };
     if (cells.size() != log.series.size() || filled == 0 || std::ranges::any_of(cells, is_number)) break;
     if (2 * static_cast<std::size_t>(std::ranges::count_if(cells, is_unit)) < filled) continue;

@@ -60,8 +60,8 @@ TEST(CsvLog, WhatIsNotMeasuredIsMissingAndSaid) {
 }
 
 TEST(CsvLog, LinesBelowTheHeaderWithoutANumberBelongToIt) {
-  const LogTable log = parse_csv_log(
-      "Time;motor speed;camera\nms;rpm;pix;\nt;v;x\n0;60;833\n10;;834\n", "log.csv", {});
+  const LogTable log =
+      parse_csv_log("Time;motor speed;camera\nms;rpm;pix;\nt;v;x\n0;60;833\n10;;834\n", "log.csv", {});
   ASSERT_EQ(log.series.size(), 3u);
   EXPECT_EQ(log.series[0].unit, "ms");
   EXPECT_EQ(log.series[1].unit, "rpm");
