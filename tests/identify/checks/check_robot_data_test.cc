@@ -52,6 +52,24 @@ TEST_P(SpoiltRobot, AGyroUpsideDown) {
   expect("swapped_sign", "gyro_z");
 }
 
+// A straight drive along x leaves y as it is; a camera that sees no y in any run is not connected.
+TEST_P(SpoiltRobot, ACoordinateThatNeverMoves) {
+  ASSERT_GE(dataset.runs.size(), 2u);
+  std::size_t left = dataset.runs.size();
+  for (omnihil::Run& run : dataset.runs) {
+    for (const char* signal : {"vision_y", "encoder_2"}) {
+      for (double& v : run.signals.find(signal)->second) v = std::isfinite(v) ? 17.0 : v;
+    }
+    if (--left == 0) break;
+    for (const DataFinding& f : check_data(dataset, nominal)) {
+      if (f.kind != "constant") continue;
+      EXPECT_EQ(f.grade, f.signal == "encoder_2" ? Grade::kDoubt : Grade::kNote) << f.sentence;
+    }
+  }
+  expect("constant", "vision_y");
+  expect("constant", "encoder_2");
+}
+
 TEST_P(SpoiltRobot, CountsPerTurnOfOneEncoderWrong) {
   for (Channel& channel : dataset.channels) {
     if (channel.signal == "encoder_2") channel.counts_per_rev /= 4.0;
