@@ -216,6 +216,26 @@ std::string stem_of(const std::string& path, std::map<std::string, int>& used) {
   return n == 1 ? stem : fmt::format("{}_{}", stem, n);
 }
 
+// A note begins with its file. What is said of many files is said once, with how many more there are.
+std::vector<std::string> merged(const std::vector<std::string>& notes) {
+  std::vector<std::pair<std::string, std::size_t>> out;  // a note, and how many more have its words
+  const auto words = [](const std::string& note) {
+    return note.substr(std::min(note.find(": "), note.size()));
+  };
+  for (const std::string& note : notes) {
+    const auto same = std::ranges::find(out, words(note), [&](const auto& n) { return words(n.first); });
+    if (same != out.end()) {
+      ++same->second;
+    } else {
+      out.emplace_back(note, 0);
+    }
+  }
+  std::vector<std::string> texts;
+  for (const auto& [note, more] : out)
+    texts.push_back(more == 0 ? note : fmt::format("{} (and in {} more)", note, more));
+  return texts;
+}
+
 }  // namespace
 
 LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOptions& o) {
@@ -265,6 +285,7 @@ LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOp
     csv.push_back({stem + "_holdout.csv", csv_text(run.table, rows, cut, rows.time_s.size())});
     run_text += run_lines(csv.back().name, split_name(kValidation));
   }
+  made.notes = merged(made.notes);
   if (!made.doubts.empty()) return made;
   std::string toml = dataset_head(o.title, std::string(o.context.rig->name)) + channels.text() + run_text;
   if (!made.doubts.empty()) return made;

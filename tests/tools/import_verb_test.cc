@@ -1,7 +1,11 @@
 // `omnihil import` of logs of numbers: from every format a dataset that the model of the simulated drive fits.
+#include <fmt/format.h>
+
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "tests/tools/cli.h"
 
@@ -172,6 +176,63 @@ TEST_F(ImportVerb, LiftedWheelsOfARealRobotBecomeDatasets) {
   EXPECT_EQ(ran.exit_code, 0) << ran.text;
   for (const char* signal : {"wheel_speed_1", "wheel_speed_3", "vision_x", "vision_theta"})
     EXPECT_TRUE(ran.says(signal)) << ran.text;
+}
+
+// A log as the authors of the Robotino's recordings write it: three lines of header, currents without a sign, pixels.
+std::string robotino_log(double vx_m_s, double vy_m_s) {
+  const double angle_rad[] = {std::numbers::pi / 3, std::numbers::pi, 5 * std::numbers::pi / 3};
+  std::string text =
+      "Time;Set robot speed along X axis;Set robot speed along Y axis;Set rotational robot velocity;"
+      "1st motor set speed;2st motor set speed;3st motor set speed;"
+      "1st motor position;2nd motor position;3rd motor position;"
+      "1st motor velocity;2nd motor velocity;3rd motor velocity;"
+      "1st motor current;2nd motor current;3rd motor current;X axis current;Y axis curent;Rotational current;"
+      "X axis global position;Y axis global position;Angle;\n"
+      "ms;m/s;m/s;rad/s;rad/s;rad/s;rad/s;ticks;ticks;ticks;rad/s;rad/s;rad/s;A;A;A;A;A;A;pix;pix;deg;\n"
+      "t;xsetspeed;ysetspeed;setvel;a;b;c;d;e;f;g;h;i;j;k;l;m;n;o;xpos;ypos;ang;\n";
+  double driven_s = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const double share = -std::expm1(-std::max(0.0, 0.03 * k - 0.1) / 0.05);
+    driven_s += 0.03 * share;
+    std::string speeds, currents;
+    for (const double a : angle_rad) {
+      const double motor_rad_s = 400.0 * share * (-std::sin(a) * vx_m_s + std::cos(a) * vy_m_s);
+      speeds += fmt::format("{:.5g};", motor_rad_s);
+      currents += fmt::format("{:.5g};", 0.02 * std::abs(motor_rad_s));
+    }
+    text += fmt::format("{};{};{};0;0;0;0;0;0;0;{}{}0;0;0;{:.6g};{:.6g};{:.1f};\n", 30 * k, vx_m_s, vy_m_s,
+                        speeds, currents, 800.0 - vy_m_s * driven_s / 0.00184,
+                        900.0 - vx_m_s * driven_s / 0.00184, 0.1 * (k % 3));
+  }
+  return text;
+}
+
+TEST_F(ImportVerb, TheExampleOfASlippingRobotReadsItsAuthorsLogs) {
+  const fs::path from = logs_ / "robotino";
+  for (const char* floor : {"gray_surface", "brown_surface"}) {
+    fs::create_directories(from / floor);
+    for (const int n : {0, 6, 12, 18, 24, 30, 36, 42, 48, 54, 72, 78, 84, 90, 96, 144, 150}) {
+      const double towards_rad = 5.0 * n * std::numbers::pi / 180;
+      std::ofstream(from / floor / fmt::format("exp{:02}.csv", n))
+          << robotino_log(0.1 * std::cos(towards_rad), 0.1 * std::sin(towards_rad));
+    }
+  }
+  fs::remove_all(out());
+  const fs::path said = logs_ / "robotino.txt";
+  const std::string command = "'" OMNIHIL_SOURCE_DIR "/examples/import/robotino.sh'" + shell(from) +
+                              shell(out()) + "'" OMNIHIL_PROGRAM "' </dev/null >" + shell(said) + "2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << text_of(said);
+  const std::string merged = "2 lines below the header have no number: part of it (and in 12 more)";
+  EXPECT_NE(text_of(said).find(merged), std::string::npos) << text_of(said);
+  const std::string last = text_of(out() / "gray/00.csv");  // forward: wheel 1 turns backwards
+  EXPECT_NE(last.find(",34.641,-0.69282,"), std::string::npos) << "a current has the sign of its speed\n"
+                                                               << last;
+  const Ran ran = run_omnihil("compare" + shell(out() / "gray") + "--json -");
+  const nlohmann::json j = nlohmann::json::parse(ran.text, nullptr, false);
+  ASSERT_FALSE(j.is_discarded()) << ran.text;
+  // What the guessed gain leaves of a speed without an integral, 1 - kp / (kp + k) = 9 % of 0.3 m of way.
+  EXPECT_LT(j["holdout"]["vision_x"]["rmse"].get<double>(), 0.09 * 0.3);
+  EXPECT_LT(j["holdout"]["vision_y"]["rmse"].get<double>(), 0.09 * 0.3);
 }
 
 }  // namespace
