@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware_iface/phase_period.h"
 #include "firmware_iface/robot_io.h"
 
 namespace omnihil {
@@ -80,6 +81,10 @@ class Firmware {
   virtual FirmwareChip* chip() { return nullptr; }
   // What it has to say for itself after a run (counts of its wire, of its chip), a line each.
   virtual std::vector<std::string> report() const { return {}; }
+  // Of one that drives phases: whether it runs within PWM periods. phase_period() is then called for each, in place of
+  // motor_tick().
+  virtual bool runs_in_phase_periods() const { return false; }
+  virtual PhaseLegs phase_period(const PhasePeriod&) { return {}; }
 };
 
 }  // namespace omnihil

@@ -94,7 +94,8 @@ class ImageFirmware final : public Firmware {
   }
   RobotFeedback feedback() const override { return mcu_.feedback(); }
   bool drives_phases() const override { return mcu_.drives_phases(); }
-  MotorDrive motor_tick(const MotorSensors& sensors) override { return mcu_.motor_tick(sensors); }
+  bool runs_in_phase_periods() const override { return mcu_.runs_in_phase_periods(); }
+  PhaseLegs phase_period(const PhasePeriod& period) override { return mcu_.phase_period(period); }
   std::uint64_t missed_control_periods() const override { return mcu_.missed_control_periods(); }
   FirmwareMemory* memory() override { return &memory_; }
   FirmwareChip* chip() override { return &chip_; }

@@ -25,13 +25,22 @@ constexpr int kMaxFramesPerTick = 16;  // so that a firmware that never stops se
 struct MotorPort : MotorControl {
   explicit MotorPort(Firmware& of) : firmware(of) {}
   MotorDrive motor_tick(const MotorSensors& sensors) override {
-    if (!shifted) return firmware.motor_tick(sensors);
-    MotorSensors seen = sensors;
-    seen.now_ns = static_cast<std::uint64_t>(static_cast<std::int64_t>(sensors.now_ns) + clock_offset_ns);
-    for (std::size_t w = 0; w < kWheels; ++w) seen.encoder_counts[w] += count_offsets[w];
-    return firmware.motor_tick(seen);
+    return firmware.motor_tick(shifted ? shifted_sensors(sensors) : sensors);
+  }
+  bool runs_in_periods() const override { return firmware.runs_in_phase_periods(); }
+  PhaseLegs phase_period(const PhasePeriod& period) override {
+    if (!shifted) return firmware.phase_period(period);
+    PhasePeriod seen = period;
+    seen.begin = shifted_sensors(period.begin);
+    seen.end_ns += clock_offset_ns;
+    return firmware.phase_period(seen);
   }
   bool runs_aside() const override { return firmware.tick_parts() > 0; }
+  MotorSensors shifted_sensors(MotorSensors seen) const {
+    seen.now_ns = static_cast<std::uint64_t>(static_cast<std::int64_t>(seen.now_ns) + clock_offset_ns);
+    for (std::size_t w = 0; w < kWheels; ++w) seen.encoder_counts[w] += count_offsets[w];
+    return seen;
+  }
   Firmware& firmware;
   bool shifted = false;
   std::int64_t clock_offset_ns = 0;

@@ -36,6 +36,11 @@ class TimedFirmware final : public ForwardedFirmware {
     const Timed timed(spent_ns_);
     return inner().motor_tick(sensors);
   }
+  bool runs_in_phase_periods() const override { return inner().runs_in_phase_periods(); }
+  PhaseLegs phase_period(const PhasePeriod& period) override {
+    const Timed timed(spent_ns_);
+    return inner().phase_period(period);
+  }
   FirmwareChip* chip() override { return inner().chip(); }
 
  private:

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "firmware_iface/robot_io.h"
+#include "firmware_iface/phase_period.h"
 #include "sim/robot/per_wheel.h"
 
 namespace omnihil {
@@ -19,6 +19,9 @@ class MotorControl {
   virtual MotorDrive motor_tick(const MotorSensors& sensors) = 0;
   // It touches nothing that another robot's does: both may run at once.
   virtual bool runs_aside() const { return false; }
+  // It runs within the periods: phase_period() is then called in place of motor_tick().
+  virtual bool runs_in_periods() const { return false; }
+  virtual PhaseLegs phase_period(const PhasePeriod&) { return {}; }
 };
 
 // Who carries out pieces of work that touch nothing of each other's: one after the other, or on several cores. What comes of

@@ -95,12 +95,14 @@ int ElectricWheels::hall(std::size_t wheel, double theta_rotor_rad, std::int64_t
 
 // One period of one wheel, with the friction that holds or brakes it.
 PeriodFlow ElectricWheels::advance_wheel(ElectricMemory& memory, std::size_t wheel, const WheelDriveInput& in,
-                                         std::int64_t now_ns, StepIntegrals& integrals) const {
+                                         std::int64_t now_ns, double sample_ratio,
+                                         StepIntegrals& integrals) const {
   const WheelElectrics& drive = wheels_[wheel];
   WheelElectricState& x = memory.wheel[wheel];
   const double level_Nm = friction_Nm_[wheel];
   double direction = sign_of(x.omega_rotor_rad_s);
-  PeriodInput period{.bus_voltage_V = memory.at_bridges_V(), .tau_load_Nm = in.contact_Nm};
+  PeriodInput period{
+      .bus_voltage_V = memory.at_bridges_V(), .tau_load_Nm = in.contact_Nm, .sample_ratio = sample_ratio};
   if (direction == 0.0 && level_Nm > 0.0) {
     const double applied_Nm = x.mean_torque_Nm - in.contact_Nm;
     period.held = std::abs(applied_Nm) <= level_Nm;
@@ -172,6 +174,36 @@ void ElectricWheels::see(ElectricMemory& memory, const PerWheel<PeriodFlow>& flo
   }
 }
 
+// A period with a control that runs within it.
+void ElectricWheels::advance_within(ElectricMemory& memory, const PerWheel<WheelDriveInput>& inputs,
+                                    std::int64_t begin_ns, std::int64_t end_ns, MotorControl& control,
+                                    PerWheel<StepIntegrals>& integrals, PerWheel<PeriodFlow>& flows) const {
+  const PerWheel<WheelElectricState> wheels_before = memory.wheel;
+  const PerWheel<StepIntegrals> integrals_before = integrals;
+  for (std::size_t i = 0; i < wheels_.size(); ++i)
+    flows[i] = advance_wheel(memory, i, inputs[i], begin_ns, 0.0, integrals[i]);
+  see(memory, flows, begin_ns);
+  PhasePeriod period{.begin = memory.seen, .end_ns = end_ns};
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    PeriodSample end = flows[i].sample;  // in the middle of the off-time, as at the begin
+    end.current_A = wheels_[i].phase_current_A(memory.wheel[i]);
+    for (std::size_t x = 0; x < kLegs; ++x) period.end_phase_current_A[i][x] = measured_A(end, i, x, end_ns);
+  }
+  const PhaseLegs legs = control.phase_period(period);
+  const MotorDrive foreseen = memory.legs;
+  memory.legs = legs.mean;
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    const bool same = std::equal(foreseen.leg[i], foreseen.leg[i] + kLegs, legs.mean.leg[i]) &&
+                      std::equal(foreseen.leg_duty_ratio[i], foreseen.leg_duty_ratio[i] + kLegs,
+                                 legs.mean.leg_duty_ratio[i]);
+    if (same || inputs[i].bridge.mode != OMNIHIL_DRIVE_PHASES) continue;
+    memory.wheel[i] = wheels_before[i];
+    integrals[i] = integrals_before[i];
+    flows[i] = advance_wheel(memory, i, inputs[i], begin_ns, 0.0, integrals[i]);
+  }
+  memory.legs = legs.end;
+}
+
 void ElectricWheels::begin_step(ElectricMemory& memory, const PerWheel<WheelDriveInput>& inputs,
                                 std::int64_t now_ns, MotorControl* control, PerWheel<WheelStep>& steps) {
   PerWheel<StepIntegrals> integrals;
@@ -183,13 +215,21 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const PerWheel<WheelDriv
     wheels_[i].keep_warm(x);
   }
   const double period_s = wheels_.front().period_s();
+  const bool within = electric_.three_phase() && control != nullptr && control->runs_in_periods();
   PerWheel<PeriodFlow> flows;
   for (int n = 0; n < periods_; ++n) {
     const std::int64_t begin_ns = now_ns + whole_ns(n * period_s);
     double bus_charge_C = memory.other_current_A * period_s;
     memory.book.bus_J += bus_charge_C * memory.at_bridges_V();
+    if (within) {
+      const std::int64_t end_ns = now_ns + whole_ns((n + 1) * period_s);
+      advance_within(memory, inputs, begin_ns, end_ns, *control, integrals, flows);
+    }
     for (std::size_t i = 0; i < wheels_.size(); ++i) {
-      const PeriodFlow& f = flows[i] = advance_wheel(memory, i, inputs[i], begin_ns, integrals[i]);
+      if (!within)
+        flows[i] =
+            advance_wheel(memory, i, inputs[i], begin_ns, electric_.current_sample_ratio, integrals[i]);
+      const PeriodFlow& f = flows[i];
       bus_charge_C += f.bus_charge_C;
       memory.book.bus_J += f.bus_charge_C * memory.at_bridges_V();
       memory.book.winding_heat_J += f.winding_heat_J;
@@ -197,7 +237,7 @@ void ElectricWheels::begin_step(ElectricMemory& memory, const PerWheel<WheelDriv
       memory.book.mechanical_J += f.mechanical_J;
     }
     advance_bus(memory, bus_charge_C);
-    if (!electric_.three_phase()) continue;
+    if (!electric_.three_phase() || within) continue;
     see(memory, flows, begin_ns + whole_ns(electric_.current_sample_ratio * period_s));
     if (control != nullptr) memory.legs = control->motor_tick(memory.seen);
   }

@@ -15,7 +15,8 @@
 //   change of speed it had:  T = J (omega_end - omega_start) / h + floor + b mean omega.
 //   Then the temperatures by thermal.h with the step's winding losses.
 //   A firmware that sets the legs (MotorControl) is called after each period with what its sensors saw in it;
-//   what it gives acts from the next one on.
+//   what it gives acts from the next one on. One that runs within the periods is shown each as it would be with
+//   the legs that it begins with; a wheel whose legs change then has it anew with the legs' means.
 // Coupling to the mechanics: held torques on either side, first order in the mechanical step.
 // Cannot represent: effects that act in the drive (validate.h refuses them), the winding's response to a
 //   departure from the predicted speed within a mechanical step.
@@ -65,8 +66,11 @@ class ElectricWheels {
  private:
   struct StepIntegrals;  // of one wheel through a mechanical step
   PeriodFlow advance_wheel(ElectricMemory& memory, std::size_t wheel, const WheelDriveInput& in,
-                           std::int64_t now_ns, StepIntegrals& integrals) const;
+                           std::int64_t now_ns, double sample_ratio, StepIntegrals& integrals) const;
   void advance_bus(ElectricMemory& memory, double bus_charge_C) const;
+  void advance_within(ElectricMemory& memory, const PerWheel<WheelDriveInput>& inputs, std::int64_t begin_ns,
+                      std::int64_t end_ns, MotorControl& control, PerWheel<StepIntegrals>& integrals,
+                      PerWheel<PeriodFlow>& flows) const;
   void see(ElectricMemory& memory, const PerWheel<PeriodFlow>& flows, std::int64_t at_ns) const;
   double measured_A(const PeriodSample& sample, std::size_t wheel, std::size_t phase,
                     std::int64_t at_ns) const;

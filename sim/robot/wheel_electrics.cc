@@ -301,7 +301,7 @@ PeriodFlow WheelElectrics::advance_averaged_legs(WheelElectricState& x, const Br
 
 PeriodFlow WheelElectrics::advance(WheelElectricState& x, const BridgeCommand& legs,
                                    const PeriodInput& in) const {
-  const double ratio = electric_.current_sample_ratio;
+  const double ratio = in.sample_ratio;
   PeriodFlow f;
   if (electric_.kind == DriveKind::kSwitched) {
     x.switched.motor.omega_rotor_rad_s = x.omega_rotor_rad_s;

@@ -43,8 +43,9 @@ struct WheelElectricState {
 
 struct PeriodInput {
   double bus_voltage_V = 0.0;
-  double tau_load_Nm = 0.0;  // against positive speed, without viscous friction
-  bool held = false;         // friction keeps the rotor where it is
+  double tau_load_Nm = 0.0;   // against positive speed, without viscous friction
+  bool held = false;          // friction keeps the rotor where it is
+  double sample_ratio = 0.0;  // three phases: of the period, where the sample is taken
 };
 
 struct PeriodFlow {
@@ -53,7 +54,7 @@ struct PeriodFlow {
   double bus_charge_C = 0.0;
   double winding_heat_J = 0.0, device_heat_J = 0.0, mechanical_J = 0.0;
   std::array<double, kLegs> leg_V{};  // three phases: mean of each leg's voltage against the bus's minus
-  PeriodSample sample;                // three phases: at the model's sampling instant
+  PeriodSample sample;                // three phases: at the input's sampling instant
 };
 
 class WheelElectrics {

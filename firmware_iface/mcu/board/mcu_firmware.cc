@@ -121,6 +121,7 @@ void McuFirmware::show_world() {
       seen.omega_rotor_rad_s[i] = world_.omega_rotor_rad_s[w];
       seen.motor_current_A[i] = world_.motor_current_A[w];
       seen.phase_current_A[i] = world_.phase_current_A[w];
+      seen.phase_rate_A_s[i] = world_.phase_rate_A_s[w];
       seen.leg_V[i] = world_.leg_V[w];
     }
     boards_[b]->set_world(seen);
@@ -191,22 +192,36 @@ RobotDrive McuFirmware::end_tick() {
   return drive;
 }
 
-MotorDrive McuFirmware::motor_tick(const MotorSensors& sensors) {
-  const auto now_ns = static_cast<std::int64_t>(sensors.now_ns);
-  for (const auto& board : boards_) board->run_until_ns(now_ns);
-  world_.bus_voltage_V = sensors.bus_voltage_V;
+PhaseLegs McuFirmware::phase_period(const PhasePeriod& period) {
+  const MotorSensors& begin = period.begin;
+  world_.phases_at_ns = static_cast<std::int64_t>(begin.now_ns);
+  const double duration_s = 1e-9 * static_cast<double>(period.end_ns - world_.phases_at_ns);
+  world_.bus_voltage_V = begin.bus_voltage_V;
   for (std::size_t w = 0; w < kWheels; ++w) {
-    std::copy_n(sensors.phase_current_A[w], kLegs, world_.phase_current_A[w].begin());
-    std::copy_n(sensors.leg_V[w], kLegs, world_.leg_V[w].begin());
-  }
-  show_world();
-  MotorDrive drive{};
-  for (int w = 0; w < kWheels; ++w) {
-    if (const MotorWire* motor = wire(w)) {
-      motor->legs(drive.leg[static_cast<std::size_t>(w)], drive.leg_duty_ratio[static_cast<std::size_t>(w)]);
+    std::copy_n(begin.phase_current_A[w], kLegs, world_.phase_current_A[w].begin());
+    std::copy_n(begin.leg_V[w], kLegs, world_.leg_V[w].begin());
+    for (std::size_t x = 0; x < kLegs; ++x) {
+      world_.phase_rate_A_s[w][x] =
+          (period.end_phase_current_A[w][x] - begin.phase_current_A[w][x]) / duration_s;
     }
   }
-  return drive;
+  show_world();
+  for (int w = 0; w < kWheels; ++w) {
+    if (MotorWire* motor = wire(w)) motor->begin(world_.phases_at_ns);
+  }
+  for (const auto& board : boards_) board->run_until_ns(period.end_ns);
+  PhaseLegs legs;
+  const auto put = [](const BridgeLegs& from, MotorDrive& to, std::size_t w) {
+    std::copy_n(from.leg, kLegs, to.leg[w]);
+    std::copy_n(from.duty_ratio, kLegs, to.leg_duty_ratio[w]);
+  };
+  for (int w = 0; w < kWheels; ++w) {
+    MotorWire* motor = wire(w);
+    if (motor == nullptr) continue;
+    put(motor->end_legs(period.end_ns), legs.mean, static_cast<std::size_t>(w));
+    put(motor->held_legs(), legs.end, static_cast<std::size_t>(w));
+  }
+  return legs;
 }
 
 std::uint64_t McuFirmware::missed_control_periods() const {

@@ -6,9 +6,9 @@
 // tick() at t lets the board run from t to t + control_period_ns(), with shafts turning on at their speed,
 // and gives the mean of what the bridges did in that time, which the plant then holds for the same time: no
 // delay is added. The grid of ticks is absolute, so results do not depend on the loop step. Boards with
-// three-phase bridges set the legs at every PWM period (motor_tick()), from what their timers give at that
-// instant. Effects of the model on encoders act as the difference between sensed and exact counts at each
-// tick. A robot may have several boards with the same image, each driving the next wheels. Commands reach the
+// three-phase bridges run from PWM period to PWM period of the plant (phase_period.h). Effects of the model
+// on encoders act as the difference between sensed and exact counts at each tick. A robot may have several
+// boards with the same image, each driving the next wheels. Commands reach the
 // image as radio frames, which it decodes itself, or as wheel speeds by eq. (5) in the words of its main
 // board (wheel_words.h); a command older than a quarter of a second is speed 0. Cannot represent: ripple
 // within a coupling period, kicker and dribbler (they have no wires yet), duties to boards that take wheel
@@ -47,14 +47,15 @@ class McuFirmware final : public Firmware {
   RobotGains gains() const override { return {}; }
   void shafts(const RobotShafts& exact) override { exact_ = exact; }
   RobotDrive tick(const RobotSensors& sensors) override;
-  // A part is a board; of three-phase boards, which run on in motor_tick(), one with nothing to do.
+  // A part is a board; of three-phase boards, which run on in phase_period(), one with nothing to do.
   std::size_t tick_parts() const override { return phases_ ? 1 : boards_.size(); }
   void begin_tick(const RobotSensors& sensors) override;
   void run_part(std::size_t part) override;
   RobotDrive end_tick() override;
   RobotFeedback feedback() const override { return feedback_; }
   bool drives_phases() const override { return phases_; }
-  MotorDrive motor_tick(const MotorSensors& sensors) override;
+  bool runs_in_phase_periods() const override { return phases_; }
+  PhaseLegs phase_period(const PhasePeriod& period) override;
   // Updates of the board's control timer that came before the image had taken the last one.
   std::uint64_t missed_control_periods() const override;
 

@@ -1,5 +1,6 @@
 #include "firmware_iface/mcu/board/motor_wire.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace omnihil::mcu {
@@ -7,11 +8,14 @@ namespace omnihil::mcu {
 MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int64_t()> now_ns)
     : entry_(entry), now_ns_(std::move(now_ns)), phases_(entry.pwm.size() == 3) {
   const auto pin_changed = [this](bool) { changed(now_ns_()); };
-  for (const ChannelName& channel : entry_.pwm) {
-    timers_.push_back(chip.find<Timer>(channel.timer));
-    timers_.back()->on_output([this](std::int64_t at_ns) { changed(at_ns); });
-  }
-  for (const ChannelName& channel : entry_.pwm_low) low_timers_.push_back(chip.find<Timer>(channel.timer));
+  const auto listen = [this](Timer* timer) {
+    if (std::find(leg_timers_.begin(), leg_timers_.end(), timer) != leg_timers_.end()) return;
+    leg_timers_.push_back(timer);
+    timer->on_output([this](std::int64_t at_ns) { changed(at_ns); });
+  };
+  for (const ChannelName& channel : entry_.pwm) listen(timers_.emplace_back(chip.find<Timer>(channel.timer)));
+  for (const ChannelName& channel : entry_.pwm_low)
+    listen(low_timers_.emplace_back(chip.find<Timer>(channel.timer)));
   if (entry_.direction) {
     direction_ = chip.port(entry_.direction->port);
     direction_->on_output(entry_.direction->pin, pin_changed);
@@ -76,7 +80,10 @@ void MotorWire::hold() {
 }
 
 void MotorWire::changed(std::int64_t at_ns) {
-  if (phases()) return;
+  if (phases()) {
+    if (!legs_stay()) means_.hold(look_at_legs(), at_ns);
+    return;
+  }
   pass(at_ns);
   if (!still()) hold();
 }
@@ -85,7 +92,7 @@ void MotorWire::begin(std::int64_t at_ns) {
   since_ns_ = at_ns;
   driven_ns_ = duty_ns_ = 0.0;
   if (phases()) {
-    held_ = {};
+    means_.begin(legs_stay() ? means_.held() : look_at_legs(), at_ns);
   } else if (!still()) {
     hold();
   }
@@ -95,6 +102,32 @@ BridgeDrive MotorWire::end(std::int64_t at_ns) {
   pass(at_ns);
   if (driven_ns_ <= 0.0) return {};
   return {true, duty_ns_ / driven_ns_};
+}
+
+std::uint32_t MotorWire::leg_pins_version() const {
+  std::uint32_t version = 0;
+  for (const Timer* timer : leg_timers_) version += timer->pins_version();
+  return version;
+}
+
+// What look_at_legs() would give is means_.held(): nothing that it is made of has moved since.
+bool MotorWire::legs_stay() const {
+  return legs_known_ && legs_version_ == leg_pins_version() && legs_enabled_ == enabled() &&
+         legs_braked_ == braked();
+}
+
+BridgeLegs MotorWire::look_at_legs() {
+  BridgeLegs now;
+  legs(now.leg, now.duty_ratio);
+  legs_enabled_ = enabled();
+  legs_braked_ = braked();
+  legs_version_ = leg_pins_version();
+  const auto stays = [](Timer* timer, const ChannelName& channel) {
+    return timer->pin_stays(channel.channel, channel.complement);
+  };
+  legs_known_ = std::equal(timers_.begin(), timers_.end(), entry_.pwm.begin(), stays) &&
+                std::equal(low_timers_.begin(), low_timers_.end(), entry_.pwm_low.begin(), stays);
+  return now;
 }
 
 void MotorWire::legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) const {

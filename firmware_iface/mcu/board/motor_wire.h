@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/board/board_spec.h"
+#include "firmware_iface/mcu/board/leg_means.h"
 #include "firmware_iface/mcu/stm32/chip.h"
 #include "firmware_iface/mcu/stm32/device.h"
 #include "firmware_iface/mcu/stm32/timer/timer.h"
@@ -50,12 +51,17 @@ class MotorWire {
   }
   // The bridge's gate driver; until it lets the switches go, the motor coasts.
   void gate_by(Device& driver);
-  // The legs of a three-phase bridge, as omnihil_motor_drive has them.
+  // The legs of a three-phase bridge, as omnihil_motor_drive has them; from begin() to this instant on the mean, and then.
   void legs(std::uint32_t (&leg)[kLegs], double (&duty_ratio)[kLegs]) const;
+  BridgeLegs end_legs(std::int64_t at_ns) { return means_.end(at_ns); }
+  const BridgeLegs& held_legs() const { return means_.held(); }
   CurrentPath path(std::size_t phase) const;  // now
 
  private:
   void changed(std::int64_t at_ns);
+  BridgeLegs look_at_legs();
+  bool legs_stay() const;
+  std::uint32_t leg_pins_version() const;
   BridgeDrive work_out(bool& pwm) const;  // pwm: of pins that are PWM alone
   void hold();
   bool still() const;
@@ -86,6 +92,11 @@ class MotorWire {
   std::uint32_t held_version_ = 0;                 // ... and of this version of them
   std::int64_t since_ns_ = 0;
   double driven_ns_ = 0.0, duty_ns_ = 0.0;
+  // Of phases; what held_legs() are depends on this version of pins that stay, and on these switches.
+  LegMeans means_;
+  std::vector<Timer*> leg_timers_;
+  bool legs_known_ = false, legs_enabled_ = false, legs_braked_ = false;
+  std::uint32_t legs_version_ = 0;
 };
 
 }  // namespace omnihil::mcu

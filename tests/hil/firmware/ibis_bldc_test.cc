@@ -132,10 +132,10 @@ TEST_F(IbisBoard, TwoBoardsOfARobotTakeTheirOwnMotorsCommands) {
     const auto now_ns = static_cast<std::int64_t>(sensors.now_us) * 1000;
     if (sensors.now_us % 20'000 == 0) firmware.command(command, now_ns);
     firmware.tick(sensors);
-    MotorSensors motors{};
-    motors.now_ns = static_cast<std::uint64_t>(now_ns) + 500'000;
-    motors.bus_voltage_V = 24.0;
-    firmware.motor_tick(motors);
+    PhasePeriod period{.end_ns = now_ns + 500'000};
+    period.begin.now_ns = static_cast<std::uint64_t>(now_ns);
+    period.begin.bus_voltage_V = 24.0;
+    firmware.phase_period(period);
     sensors.now_us += 500;
   }
   EXPECT_EQ(firmware.commands_ignored(), 0u);

@@ -71,8 +71,11 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
   void on_output(std::function<void(std::int64_t now_ns)> listener) {
     listeners_.push_back(std::move(listener));
   }
-  // While this number stays, a pin that is kPwm stays what it is.
+  // While this number stays, a pin that is kPwm stays what it is, and any that is said to.
   std::uint32_t pins_version() const { return pins_version_; }
+  bool pin_stays(unsigned channel, bool complement) const {  // of one that was asked for since
+    return (pins_known_ >> (2 * channel + (complement ? 1 : 0)) & 1u) != 0;
+  }
   TimerPin pin(unsigned channel, bool complement) const {  // one side of output()
     const unsigned i = 2 * channel + (complement ? 1 : 0);
     return (pins_known_ >> i & 1u) != 0 ? pins_[i] : find_pin(channel, complement);
