@@ -252,6 +252,7 @@ TEST(Units, LeadToTheSignalsOwn) {
   EXPECT_FALSE(unit_scale("A", "rad/s", {}, fault));
   EXPECT_NE(fault.find("allowed: rad/s"), std::string::npos) << fault;
   EXPECT_EQ(split_unit("current_A").second, "A");
+  EXPECT_EQ(split_unit("Motor_Speed(RPM)"), (std::pair<std::string, std::string>("Motor_Speed", "RPM")));
   EXPECT_EQ(split_unit("omega_rad_s"), (std::pair<std::string, std::string>("omega", "rad/s")));
   EXPECT_EQ(split_unit("alpha_a").second, "");
 }
