@@ -44,8 +44,7 @@ Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal)
                {kNeedsReportedSpeed, measured("velocity"), "needs a speed that the drive reports"},
                {kNeedsShaftSensor, true, ""},
                {kNeedsEncoder, encoder, "needs an encoder"},
-               {kNeedsAngle, encoder || measured("position"), "needs an encoder"},
-               {kNeedsPhase, true, ""}},
+               {kNeedsAngle, encoder || measured("position"), "needs an encoder"}},
       .free_base = {},
       .present_base = {}};
   add_base(nominal, drive, out);

@@ -57,7 +57,7 @@ struct OneWheel {
     out.list.insert(out.list.end(), {{kNeedsSeveralMotors, false, "needs more than one motor"},
                                      {kNeedsCamera, false, "needs a camera"},
                                      {kNeedsDribbler, false, "needs the dribbler"},
-                                     {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle | kNeedsPhase,
+                                     {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle,
                                       has_channel(dataset, "encoder"), "needs an encoder"}});
     return out;
   }

@@ -33,7 +33,7 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
   const auto stop = [&] { return !say("fitting", 0.3); };
   const Dataset dataset = heard_commands(recorded, nominal, {.jobs = options.jobs, .stop = stop}).dataset;
   SelectionContext context(dataset, nominal, {.seed = options.seed, .jobs = options.jobs});
-  out.why = context.predictor().applies(*use.entry);
+  out.why = why_not(*use.entry, context.predictor(), dataset);
   out.applies = out.why.empty();
   if (!out.applies) return out;
   if (!say("refitting the base parameters", 0.0) || !context.fit_base(stop)) {
@@ -57,8 +57,8 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
       start.tried ? start.gain / std::max(null_gain, 1e-300) : (gained > 0.0 ? kScreenedBefore : 0.0);
   const AcceptanceResult acceptance = test_acceptance(task.acceptance_context, context.base(), with,
                                                       start.name, signal_to_null, start.aliased_parameter());
-  out.useful = acceptance.accepted();
-  out.why = acceptance.why;
+  out.useful = acceptance.accepted() && start.is_resolved();
+  out.why = start.is_resolved() ? acceptance.why : std::string(kPhaseUnresolved);
   out.fit_after = with.fit;
   out.after = compare(context.predictor(), with.fit.model);
   say("done", 1.0);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "identify/record/rig.h"
+
 namespace omnihil {
 namespace {
 
@@ -20,35 +22,61 @@ Eigen::VectorXd time_between(const WhitenedResiduals& residuals, const Eigen::Ve
   return out;
 }
 
-// Of what a law of the angle depends on, and how many periods are in a turn of it; null: on none.
-const Eigen::VectorXd* drift_of(const EffectUse& use, const AngleDrift& drift, double& order) {
+// Of the angle that a law depends on; null: on none.
+const Eigen::VectorXd* drift_of(const EffectInfo& info, const AngleDrift& drift) {
+  if (info.of_angle == LawOfAngle::kNone) return nullptr;
+  return info.of_angle == LawOfAngle::kRotor ? &drift.rotor_rad : &drift.output_rad;
+}
+
+// Periods in a turn of it.
+double order_of(const EffectUse& use) {
   const auto& rows = use.entry->info->params;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].trait != ParamTrait::kOrder) continue;
-    order = use.values[i];
-    return &drift.rotor_rad;
+    if (rows[i].trait == ParamTrait::kOrder) return use.values[i];
   }
-  order = 1.0;
-  const bool periodic = std::any_of(
-      rows.begin(), rows.end(), [](const EffectParam& row) { return row.trait == ParamTrait::kPeriodic; });
-  return periodic ? &drift.output_rad : nullptr;
+  return 1.0;
 }
 
 }  // namespace
 
+AngleSource angle_source(const Dataset& dataset) {
+  const bool sensor = std::any_of(dataset.channels.begin(), dataset.channels.end(), [](const Channel& c) {
+    return c.signal.starts_with("encoder") || c.signal == "position";
+  });
+  if (sensor) return AngleSource::kSensor;
+  return dataset.rig->of_robot ? AngleSource::kNone : AngleSource::kSpeed;
+}
+
 AngleDrift angle_drift(const WhitenedResiduals& residuals, const Candidate& model, double speed_error_rad_s) {
+  if (std::isinf(speed_error_rad_s)) {
+    const Eigen::VectorXd lost = Eigen::VectorXd::Constant(residuals.size(), speed_error_rad_s);
+    return {.rotor_rad = lost, .output_rad = lost};
+  }
   // theta_k - theta_(k-1) is off by d_omega dt
   const Eigen::VectorXd output = speed_error_rad_s * time_between(residuals, residuals.track(model, "time"));
   return {.rotor_rad = drive_of(model).gear_ratio * output, .output_rad = output};
 }
 
 double unresolved_share(const EffectUse& use, const AngleDrift& drift, const Eigen::VectorXd& signal) {
-  double order = 1.0;
-  const Eigen::VectorXd* drifted = drift_of(use, drift, order);
+  const Eigen::VectorXd* drifted = drift_of(*use.entry->info, drift);
   const double energy = signal.squaredNorm();
   if (drifted == nullptr || drifted->size() != signal.size() || energy <= 0.0) return 0.0;
-  const auto lost = (order * drifted->array() >= std::numbers::pi).cast<double>();
+  const auto lost = (order_of(use) * drifted->array() >= std::numbers::pi).cast<double>();
   return (signal.array().square() * lost).sum() / energy;
+}
+
+bool is_never_resolved(const EffectInfo& info, const AngleDrift& drift) {
+  const Eigen::VectorXd* drifted = drift_of(info, drift);
+  return drifted != nullptr && drifted->size() > 0 && drifted->minCoeff() >= std::numbers::pi;
+}
+
+bool lacks_phase(const EffectInfo& info, const Dataset& dataset) {
+  return info.of_angle != LawOfAngle::kNone && angle_source(dataset) == AngleSource::kNone;
+}
+
+std::string why_not(const EffectEntry& entry, const Predictor& predictor, const Dataset& dataset) {
+  std::string why = predictor.applies(entry);
+  return why.empty() && lacks_phase(*entry.info, dataset) ? std::string(kNoPhase) : why;
 }
 
 }  // namespace omnihil

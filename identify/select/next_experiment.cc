@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "identify/record/rig.h"
+#include "identify/select/angle_resolution.h"
 #include "sim/law/effect_registry.h"
 
 namespace omnihil {
@@ -101,7 +102,8 @@ NextExperiment next_experiment(const Dataset& dataset, const Diagnosis& diagnosi
     const EffectInfo* info = info_of(r.effect);
     const bool hidden = r.visibility == Visibility::kAliased || r.visibility == Visibility::kBelowNoise ||
                         r.visibility == Visibility::kUnresolved;
-    if (info == nullptr || !hidden) continue;
+    // What lacks a sensor, no motion shows.
+    if (info == nullptr || !hidden || lacks_phase(*info, dataset)) continue;
     next.what = fmt::format("To see {}, which these data could not show: {}", r.effect, info->reveals);
     next.separates = {r.effect};
     next.command = command_for(dataset, next.separates);

@@ -214,6 +214,13 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
 }
 
 Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
+  if (is_never_resolved(*entry->info, task.drift)) {
+    Screened lost;
+    lost.entry = entry;
+    lost.name = std::string(entry->info->id);
+    lost.unresolved = 1.0;
+    return lost;
+  }
   std::vector<EffectVariant> variants = variants_of(*entry, *task.model, task.scale);
   const bool steps_in = (entry->info->claims & kFlatAtNeutral) != 0 && variants.front().columns.size() == 1;
   Scored best = steps_in ? SizeSearch(task).run(variants) : best_of(task, variants);

@@ -23,6 +23,10 @@
 
 namespace omnihil {
 
+// Share of its signal in rows too far apart to know the angle (angle_resolution.h), from which a law of the angle is
+// not told from one of the mean: most of it. A choice.
+inline constexpr double kMostUnresolved = 0.5;  // a choice
+
 // Samples of the fit runs that belong to one regime.
 struct RegimeMask {
   std::string name;        // "slow"
@@ -60,7 +64,11 @@ struct Screened {
   std::vector<double> base_start;
   Eigen::VectorXd signal;   // at its best size, base parameters projected out: one value per sample
   double unresolved = 0.0;  // share of that in rows too far apart to know a law's angle (angle_resolution.h)
-  bool tried = false;       // false: interrupted, or every size of it made the model diverge
+  // false: interrupted, every size of it made the model diverge, or no row knows its angle
+  bool tried = false;
+
+  // Is a law of the angle told from one of the mean? True of others.
+  bool is_resolved() const { return unresolved <= kMostUnresolved; }
 
   // The base parameter that is aliased with it in these data, if its page lists that as easily confused;
   // empty: none.

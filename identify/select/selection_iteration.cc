@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "identify/compare/order_spectrum.h"
 #include "identify/record/parallel.h"
@@ -24,9 +25,6 @@ constexpr double kLeastRegimeShare = 0.05;  // tuned
 // Screened share from which a candidate beyond the shortlist is refitted if no candidate of the shortlist is accepted. A
 // choice: the share that counts as structure (verdict.cc); smaller ones would be many tests for little.
 constexpr double kWorthSecondBatch = 0.1;  // a choice
-// Share of its signal in rows too far apart to know the angle (angle_resolution.h), from which a law of the angle is
-// not told from one of the mean: most of it. A choice.
-constexpr double kMostUnresolved = 0.5;  // a choice
 // Gain over the null's from which a candidate is refitted: that of the acceptance test (DECISIONS 52).
 constexpr double kLeastSignalToNull = 2.0;  // tuned, as the acceptance test's
 // An effect whose typical size would gain less than this many times the null's largest gain is not visible:
@@ -64,10 +62,12 @@ Eigen::VectorXd scales_now(const SelectionTask& task, const Fitted& parent) {
   return scale;
 }
 
-// Of the model's angle's rate, rad/s at the output; 0 where a sensor reports the angle, or none the speed.
+// Of the model's angle's rate, rad/s at the output; 0 where a sensor reports the angle, or none the speed; infinite where
+// nothing tells the angle.
 double speed_error(const SelectionTask& task, const Fitted& parent) {
-  const Dataset& data = *task.dataset;
-  if (data.channel("encoder") != nullptr || data.channel("position") != nullptr) return 0.0;
+  const AngleSource source = angle_source(*task.dataset);
+  if (source == AngleSource::kSensor) return 0.0;
+  if (source == AngleSource::kNone) return std::numeric_limits<double>::infinity();
   const std::vector<std::string>& names = task.channels->name;
   const auto speed =
       static_cast<Eigen::Index>(std::find(names.begin(), names.end(), "velocity") - names.begin());
@@ -105,7 +105,7 @@ std::vector<std::size_t> above_null(const std::vector<Screened>& screened, const
     const Screened& s = screened[i];
     const bool above = s.gain > kLeastSignalToNull * s.null_gain &&
                        (s.share > kLeastShare || s.best_regime_share > kLeastRegimeShare);
-    if (s.tried && s.unresolved <= kMostUnresolved && (above || has_signature(i))) order.push_back(i);
+    if (s.tried && s.is_resolved() && (above || has_signature(i))) order.push_back(i);
   }
   const auto rank = [&](std::size_t i) { return std::pair(has_signature(i), screened[i].share); };
   std::stable_sort(order.begin(), order.end(),
@@ -123,8 +123,8 @@ std::vector<std::size_t> shortlist(const std::vector<Screened>& screened, const 
     if (out.size() < kMostRefits - 1) out.push_back(i);
   }
   for (std::size_t i = 0; i < screened.size(); ++i) {
-    const bool absorbed = screened[i].unresolved <= kMostUnresolved &&
-                          is_prior_rejected(parent.fit, screened[i].aliased_parameter());
+    const bool absorbed =
+        screened[i].is_resolved() && is_prior_rejected(parent.fit, screened[i].aliased_parameter());
     if (absorbed && std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
   }
   const auto in_regime = std::max_element(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -196,7 +196,7 @@ std::vector<std::size_t> confounded_with_best(const Iteration& iteration, bool h
   std::vector<std::size_t> out;
   for (std::size_t i = 0; best != nullptr && i < iteration.screened.size(); ++i) {
     const Screened& s = iteration.screened[i];
-    if (s.tried && s.unresolved <= kMostUnresolved && !s.extends && !was_refitted(iteration, s) &&
+    if (s.tried && s.is_resolved() && !s.extends && !was_refitted(iteration, s) &&
         listed_as_confounded(*best->screened.entry->info, *s.entry->info))
       out.push_back(i);
   }
@@ -221,8 +221,8 @@ bool has_accepted(const Iteration& iteration) {
 }
 
 Visibility visibility_of(const Screened& s, double largest_null_gain) {
+  if (!s.is_resolved()) return Visibility::kUnresolved;
   if (!s.tried) return Visibility::kNotTried;
-  if (s.unresolved > kMostUnresolved) return Visibility::kUnresolved;
   if (!(s.typical_gain <= kVisibleSignalToNull * largest_null_gain)) return Visibility::kVisible;
   const bool aliased = s.residual_fraction < kAliasedFraction && !s.closest_parameter.empty();
   return aliased ? Visibility::kAliased : Visibility::kBelowNoise;
@@ -237,9 +237,7 @@ std::string reason_of_screening(const Screened& s, Visibility visibility) {
     case Visibility::kBelowNoise:
       return "not visible in these data: at its typical size it gains no more than in the simulated null";
     case Visibility::kUnresolved:
-      return "not visible in these data: no sensor reports the angle, and from one row to the next the "
-             "model's is off "
-             "by more than half a period";
+      return std::string(s.tried ? kPhaseUnresolved : kNoPhase);
     case Visibility::kVisible:
       break;
   }

@@ -91,7 +91,7 @@ struct Cogging {
           },
       .claims = kConservative,
       .numerics = kFine,
-      .demands = kNeedsPhase,
+      .of_angle = LawOfAngle::kRotor,
       .params = kParams,
       .plot = {.excitation = "turn", .x = "rotor_angle", .y = "load_torque", .from_s = 0.0, .to_s = 4.0},
   };

@@ -40,7 +40,7 @@ struct GravityLoad {
             return 3.0 * 0.03 * s.current_sigma_A * std::sqrt(2.0 / (s.rate_Hz * s.duration_s));
           },
       .claims = kConservative,
-      .demands = kNeedsPhase,
+      .of_angle = LawOfAngle::kOutput,
       .excludes = {"load.gravity_torque_Nm", BaseExclusion::kWherePresent},
       .params = kParams,
       .plot = {.excitation = "turn", .x = "rotor_angle", .y = "load_torque", .from_s = 0.0, .to_s = 4.0},

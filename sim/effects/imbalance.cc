@@ -40,7 +40,7 @@ struct Imbalance {
             return 3e-5 * 2.0 * speed_step_rad_s / std::sqrt(s.rate_Hz * s.duration_s);
           },
       .claims = kConservative,
-      .demands = kNeedsPhase,
+      .of_angle = LawOfAngle::kRotor,
       .params = kParams,
       .plot = {.excitation = "turn", .x = "rotor_angle", .y = "load_torque", .from_s = 0.0, .to_s = 4.0},
   };

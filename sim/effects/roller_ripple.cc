@@ -43,7 +43,7 @@ struct RollerRipple {
             return 1e-4 * 15 * 10 * speed_step_rad_s / (6.0 * 0.027) / std::sqrt(s.rate_Hz * s.duration_s);
           },
       .rigs = kOnRobot,
-      .demands = kNeedsPhase,
+      .of_angle = LawOfAngle::kOutput,
       .params = kParams,
   };
 

@@ -55,7 +55,7 @@ struct TorqueRipple {
           },
       .claims = kOdd,
       .numerics = kFine,
-      .demands = kNeedsPhase,
+      .of_angle = LawOfAngle::kRotor,
       .params = kParams,
       .plot = {.excitation = "creep", .x = "time", .y = "motor_current", .from_s = 0.5, .to_s = 2.0},
   };

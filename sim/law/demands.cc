@@ -59,8 +59,7 @@ std::string_view demand_name(DemandBit bit) {
                                                         "a sensor of the shaft",
                                                         "an encoder",
                                                         "an angle of the shaft",
-                                                        "a body that moves freely",
-                                                        "on a robot: encoders"};
+                                                        "a body that moves freely"};
   return bit == kNeedsNothing ? "" : kNames[std::countr_zero(static_cast<std::uint32_t>(bit))];
 }
 

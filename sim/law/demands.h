@@ -33,11 +33,8 @@ enum DemandBit : std::uint32_t {
   kNeedsEncoder = 1u << 14,        // that counts
   kNeedsAngle = 1u << 15,          // of the shaft: an encoder, or a position that the drive reports
   kNeedsFreeBody = 1u << 16,       // that forces move: not one that a bench moves
-  // Of a law of the angle, one phase for all runs: each begins a robot at wheel angles that only encoders know, and the
-  // integral of a speed has lost the phase after a few turns. An axis is taken as it comes.
-  kNeedsPhase = 1u << 17,
 };
-inline constexpr int kDemands = 18;
+inline constexpr int kDemands = 17;
 
 // A base parameter beside which an effect has no place: it would do the same.
 struct BaseExclusion {

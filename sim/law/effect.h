@@ -69,6 +69,10 @@ enum NumericsBit : std::uint32_t {
 
 enum RigsBit : std::uint32_t { kOnAxis = 1u << 0, kOnRobot = 1u << 1, kOnBoth = 3u };
 
+// The shaft by whose angle a law repeats itself, with one phase for all runs: what does not tell that angle does not
+// show the law (identify/select/angle_resolution.h). Not of sensors that need the angle themselves.
+enum class LawOfAngle : std::uint8_t { kNone, kRotor, kOutput };
+
 // How good the sensors are, for the smallest size of an effect that they can show.
 struct SensorSet {
   double counts_per_turn = 4096;  // encoder on the rotor
@@ -108,7 +112,8 @@ struct EffectInfo {
   std::uint32_t numerics = kNumericsPlain;
   std::uint32_t rigs = kOnBoth;
   std::uint32_t demands = kNeedsNothing;  // of the rig, beyond what its place needs
-  BaseExclusion excludes{};               // a base parameter that does the same
+  LawOfAngle of_angle = LawOfAngle::kNone;
+  BaseExclusion excludes{};  // a base parameter that does the same
   std::span<const EffectParam> params;
   std::span<const EffectState> states{};
   // An effect whose states this one reads; it is run along, at neutral strength if the model does not have

@@ -26,6 +26,8 @@ std::string needs_of(const EffectInfo& info) {
     if ((demands >> bit & 1u) == 0) continue;
     out += (out.empty() ? "" : "; ") + std::string(demand_name(static_cast<DemandBit>(1u << bit)));
   }
+  if (info.of_angle != LawOfAngle::kNone)
+    out += (out.empty() ? "" : "; ") + std::string("on a robot: encoders");
   out = fmt::format("Needs: {}.", out.empty() ? "nothing in particular" : out);
   const auto& [path, when] = info.excludes;
   if (path.empty()) return out;

@@ -14,6 +14,7 @@
 #include "hil/text/dataset_files.h"
 #include "identify/estimate/fit_note.h"
 #include "identify/record/rig.h"
+#include "identify/select/angle_resolution.h"
 #include "identify/select/refit.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/params.h"
@@ -82,7 +83,8 @@ std::vector<std::string> words_of(const std::vector<std::string>& lists) {
   return words;
 }
 
-std::vector<std::string> check_names(const std::vector<std::string>& names, const Predictor& predictor) {
+std::vector<std::string> check_names(const std::vector<std::string>& names, const Predictor& predictor,
+                                     const Dataset& dataset) {
   std::vector<std::string> faults;
   for (const std::string& name : names) {
     if (name == kBase) continue;
@@ -92,7 +94,7 @@ std::vector<std::string> check_names(const std::vector<std::string>& names, cons
       faults.push_back(fmt::format("--separate {}: there is no such effect; {}", name,
                                    near.empty() ? "allowed: effects of `omnihil effects`, or \"base\""
                                                 : fmt::format("did you mean \"{}\"?", near)));
-    } else if (const std::string why = predictor.applies(*entry); !why.empty()) {
+    } else if (const std::string why = why_not(*entry, predictor, dataset); !why.empty()) {
       faults.push_back(fmt::format("--separate {}: {}", name, why));
     }
   }
@@ -187,7 +189,8 @@ int run(Arguments a) {
   std::unique_ptr<Predictor> predictor;
   if (reading.dataset) {
     predictor = make_predictor(*reading.dataset, *reading.nominal, {});
-    for (std::string& fault : check_names(names, *predictor)) faults.push_back(std::move(fault));
+    for (std::string& fault : check_names(names, *predictor, *reading.dataset))
+      faults.push_back(std::move(fault));
     if (format != nullptr && !reading.dataset->rig->whole_robot) {
       faults.push_back("--radio: this is a single axis; only a robot has a radio to send packets to");
     }

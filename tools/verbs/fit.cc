@@ -11,6 +11,7 @@
 #include "hil/serve/serve_signals.h"
 #include "hil/text/dataset_files.h"
 #include "identify/estimate/heard_commands.h"
+#include "identify/select/angle_resolution.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/params.h"
 #include "tools/command_line.h"
@@ -94,7 +95,7 @@ int run(const Arguments& a) {
     std::fprintf(stderr, "omnihil fit: %s\n", dataset.notes[n].c_str());
   const auto predictor = make_predictor(dataset, *reading.nominal, {});
   for (const EffectUse& use : start.effects) {
-    const std::string why = faults.empty() ? predictor->applies(*use.entry) : "";
+    const std::string why = faults.empty() ? why_not(*use.entry, *predictor, dataset) : "";
     const bool asked = std::find(a.with.begin(), a.with.end(), effect_name(use)) != a.with.end();
     if (!why.empty() && asked) faults.push_back(fmt::format("--with {}: {}", effect_name(use), why));
   }

@@ -119,10 +119,6 @@ TEST(RobotRefusals, ByWhatIsMeasured) {
   EXPECT_EQ(robot_refusal("dribbler_drag"), "needs the dribbler's speed (channel dribbler)");
   EXPECT_EQ(robot_refusal("encoder_eccentricity"), "");
   EXPECT_EQ(robot_refusal("encoder_eccentricity", {"encoder"}), "needs encoders");
-  for (const char* id : {"cogging", "torque_ripple", "roller_ripple", "imbalance", "gravity_load"}) {
-    EXPECT_EQ(robot_refusal(id), "") << id;
-    EXPECT_EQ(robot_refusal(id, {"encoder"}), "needs encoders: its phase is that of an angle") << id;
-  }
   EXPECT_EQ(robot_refusal("coulomb_friction", {"encoder"}), "");
 }
 

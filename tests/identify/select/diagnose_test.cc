@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "hil/report/diagnosis_json.h"
 #include "identify/select/add_effect.h"
@@ -242,6 +243,41 @@ TEST(SlowAddEffectTest, TakesWhatIsThere) {
   EXPECT_TRUE(a.useful) << a.why;
   EXPECT_LT(a.after.error(Split::kValidation, "velocity")->rmse,
             a.before.error(Split::kValidation, "velocity")->rmse);
+}
+
+// Speeds every quarter of a second in place of counts: from one row to the next the model's angle is lost.
+void keep_speeds_alone(Dataset& d) {
+  constexpr std::size_t kApart = 250, kSpan = 10;  // rows of a millisecond
+  constexpr double kGear = 3.0;                    // of kWheelModel
+  const double rad_per_count = 2.0 * std::numbers::pi / d.channel("encoder")->counts_per_rev / kGear;
+  for (Run& run : d.runs) {
+    Run kept = run;
+    kept.time_s.clear();
+    for (auto& [name, values] : kept.signals) values.clear();
+    std::vector<double> speed;
+    const std::vector<double>& counts = *run.signal("encoder");
+    for (std::size_t k = kSpan; k < run.time_s.size(); k += kApart) {
+      kept.time_s.push_back(run.time_s[k]);
+      for (auto& [name, values] : kept.signals) values.push_back((*run.signal(name))[k]);
+      speed.push_back((counts[k] - counts[k - kSpan]) * rad_per_count /
+                      (run.time_s[k] - run.time_s[k - kSpan]));
+    }
+    kept.signals.erase("encoder");
+    kept.signals["velocity"] = speed;
+    run = std::move(kept);
+  }
+  Channel& encoder = *std::find_if(d.channels.begin(), d.channels.end(),
+                                   [](const Channel& c) { return c.signal == "encoder"; });
+  encoder = {.signal = "velocity", .column = "velocity", .unit = "rad/s"};
+}
+
+TEST(SlowAddEffectTest, TakesNoLawOfAnAngleThatIsLost) {
+  Bench bench = simulated_bench(steps_with({"quadratic_drag.coefficient_Nm_s2_per_rad2=1e-7"}));
+  keep_speeds_alone(bench.dataset);
+  const Addition a = add_effect(bench.dataset, bench.nominal, neutral_use(*find_effect("cogging")), {});
+  EXPECT_TRUE(a.applies);
+  EXPECT_FALSE(a.useful);
+  EXPECT_NE(a.why.find("no sensor reports the angle"), std::string::npos) << a.why;
 }
 
 TEST(SlowAddEffectTest, SaysWhyAnEffectCannotAct) {

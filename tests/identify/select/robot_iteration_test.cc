@@ -32,6 +32,25 @@ TEST(RobotIteration, AMassWithinItsToleranceIsNoPayload) {
                                   << iteration.candidates.front().acceptance.why;
 }
 
+TEST(RobotIteration, WithoutEncodersNoLawOfTheAngleIsTried) {
+  Dataset data = robot_record({}, 1.0);
+  std::erase_if(data.channels, [](const Channel& c) { return c.signal.starts_with("encoder"); });
+  const Candidate nominal = robot_candidate();
+  SelectionContext bench(data, nominal, {.seed = 1, .jobs = 2});
+  ASSERT_TRUE(bench.fit_base([] { return false; }));
+  bench.simulate();
+  std::vector<std::string> not_applicable;
+  SelectionTask task = bench.task(not_applicable);
+  task.applicable = {find_effect("cogging"), find_effect("roller_ripple")};
+  const Iteration iteration = selection_iteration(task, bench.base());
+  ASSERT_EQ(iteration.ranking.size(), 2u);
+  for (const RankedEffect& r : iteration.ranking) {
+    EXPECT_EQ(r.visibility, Visibility::kUnresolved) << r.effect;
+    EXPECT_EQ(r.why, "needs encoders: its phase is that of an angle") << r.effect;
+    EXPECT_EQ(r.score, 0.0) << r.effect;
+  }
+}
+
 // Ten per cent, five tolerances: after the other effect is found nothing remains but a prior-implausible mass.
 TEST(SlowRobotDiagnosis, APayloadIsFoundBesideAnotherEffect) {
   const Dataset data =

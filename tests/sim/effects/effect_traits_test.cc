@@ -47,6 +47,40 @@ TEST_P(EffectTraits, AngularShapesSayWhetherTheyGoRound) {
   }
 }
 
+// What has a phase and depends on the angle of a shaft says of which; sensors that need that angle need not.
+TEST_P(EffectTraits, ALawOfTheAngleSaysSo) {
+  const bool phase = std::any_of(info().params.begin(), info().params.end(),
+                                 [](const EffectParam& row) { return row.trait == ParamTrait::kPeriodic; });
+  if (!phase || (info().demands & kNeedsAngle) != 0) {
+    EXPECT_EQ(info().of_angle, LawOfAngle::kNone);
+    return;
+  }
+  const auto turned = [&](auto turn) {
+    bool moved = false;
+    for_each_place<double>(entry(), [&](auto function, auto port) {
+      const std::vector<double> at = typical_use(entry()).values;
+      const auto a = changes(applied<double>(entry(), function, port, at, 0));
+      const auto after_turn = [&](const void* context, const double* p, double* x, decltype(port)& q) {
+        turn(q);
+        function(context, p, x, q);
+      };
+      const auto b = changes(applied<double>(entry(), after_turn, port, at, 0));
+      for (std::size_t c = 0; c < a.size(); ++c) moved = moved || a[c].value != b[c].value;
+    });
+    return moved;
+  };
+  const bool of_rotor = turned([](auto& q) {
+    if constexpr (requires { q.theta_rotor_rad; }) q.theta_rotor_rad += 0.1;
+  });
+  const bool of_output = turned([](auto& q) {
+    if constexpr (requires { q.theta_output_rad; }) q.theta_output_rad += 0.1;
+    if constexpr (requires { q.theta_wheel_rad; }) q.theta_wheel_rad += 0.1;
+  });
+  EXPECT_EQ(info().of_angle, of_rotor    ? LawOfAngle::kRotor
+                             : of_output ? LawOfAngle::kOutput
+                                         : LawOfAngle::kNone);
+}
+
 TEST_P(EffectTraits, WholeNumbersAndTimesHaveTheUnitsOfSuch) {
   for (const EffectParam& row : info().params) {
     if (is_whole(row)) {
