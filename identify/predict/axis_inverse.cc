@@ -70,16 +70,13 @@ LowPass motion_filter(const LowPass& compared, std::size_t samples, double rate_
 CommandKind needed_kind(CommandKind kind) {
   return kind == CommandKind::kPositionTarget ? CommandKind::kDuty : kind;
 }
-std::string torque_unit(const Dataset& dataset) { return dataset.linear ? "N" : "N m"; }
-std::string needed_unit(const Dataset& dataset, CommandKind kind) {
-  return kind == CommandKind::kMotorTorque ? torque_unit(dataset)
-                                           : std::string(command_unit(needed_kind(kind)));
-}
 
-void add(AxisSetup& s, std::string_view name, std::string unit, Quantity quantity,
+void add(const Dataset& dataset, AxisSetup& s, std::string_view name, Quantity quantity,
          std::vector<double> measured, double sigma, bool stated) {
-  ComparedSignal& c = add_signal(s, {.quantity = quantity}, std::string(name), std::move(unit),
-                                 s.input.time_s, std::move(measured));
+  const Channel* channel = dataset.channel(name);  // null: the duty of a servo
+  ComparedSignal& c =
+      add_signal(s, {.quantity = quantity}, std::string(name), channel != nullptr ? channel->unit : "1",
+                 s.input.time_s, std::move(measured));
   c.noise_sigma = c.whitened_sigma = std::max(sigma, kLeastNoiseShare * rms_about_mean(c.measured));
   c.noise_is_stated = stated;
 }
@@ -197,8 +194,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   s.position = position;
   s.measured_current = linear(r.current);
   s.measured_temperature = linear(r.temperature);
-  const auto add_filtered = [&](std::string_view name, std::string unit, Quantity quantity,
-                                const std::vector<double>& raw) {
+  const auto add_filtered = [&](std::string_view name, Quantity quantity, const std::vector<double>& raw) {
     const Channel* channel = dataset.channel(name);
     const bool is_input = quantity == Quantity::kNeededInput;
     const bool stated = channel != nullptr && channel->sigma > 0.0 && (!is_input || by_torque);
@@ -215,25 +211,24 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
       const double bus_V = in.bus_voltage_V.empty() ? 0.0 : median(in.bus_voltage_V);
       sigma = std::hypot(sigma, inertia_sigma_Nm * input_per_torque(kind, drive, bus_V));
     }
-    add(s, name, std::move(unit), quantity, std::move(low), sigma, stated);
+    add(dataset, s, name, quantity, std::move(low), sigma, stated);
     if (is_input || quantity == Quantity::kLoadTorque) s.compared.back().noise_level_sigma = kLevelSigma;
   };
   std::vector<bool> still, jumps;  // of the needed input
   if (bench_torque) {
-    add_filtered("load_torque", torque_unit(dataset), Quantity::kLoadTorque, linear(r.load_torque_Nm));
+    add_filtered("load_torque", Quantity::kLoadTorque, linear(r.load_torque_Nm));
   } else if (!speed_imposed || by_torque || r.current.empty()) {
     const std::vector<double> input = at_interval_end(in.command);
     in.command_is_compared = true;
     s.given = zero_phase(s.filter, input);
-    add_filtered(command_name(needed_kind(kind)), needed_unit(dataset, kind), Quantity::kNeededInput, input);
+    add_filtered(command_name(needed_kind(kind)), Quantity::kNeededInput, input);
     const auto of_filter = static_cast<std::size_t>(rate / cutoff + 0.5);  // samples of its time
     still = rest_of(r, in.time_s, of_filter);
     if (by_torque) jumps = unresolved_jumps(command, band, s.compared.back().noise_sigma, of_filter);
   }
-  if (!r.current.empty() && !by_torque)
-    add_filtered("motor_current", "A", Quantity::kCurrent, s.measured_current);
+  if (!r.current.empty() && !by_torque) add_filtered("motor_current", Quantity::kCurrent, s.measured_current);
   if (!r.temperature.empty() && !by_torque)
-    add_filtered("winding_temperature", "degC", Quantity::kTemperature, s.measured_temperature);
+    add_filtered("winding_temperature", Quantity::kTemperature, s.measured_temperature);
   leave_out(r, kEndsInPeriods / cutoff, s);
   for (ComparedSignal& c : s.compared) {
     if (c.name == command_name(needed_kind(kind))) leave_out_undetermined(still, jumps, c);
@@ -272,7 +267,7 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
     }
     for (std::size_t k = 0; k < first && first < r.size(); ++k) s.approach[k] = s.approach[first];
   }
-  add(s, command_name(needed_kind(in.kind)), needed_unit(dataset, in.kind), Quantity::kNeededInput, r.command,
+  add(dataset, s, command_name(needed_kind(in.kind)), Quantity::kNeededInput, r.command,
       estimate_noise(r.command).sigma, false);
 }
 

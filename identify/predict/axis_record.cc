@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "identify/predict/axis_setup.h"
+#include "identify/predict/interpolation.h"
 #include "identify/record/statistics.h"
 #include "sim/bench/axis_signal.h"
 
@@ -43,15 +44,7 @@ std::vector<double> AxisRecord::angle_by_speed() const {
   const double wander =
       velocity_sigma_rad_s * std::sqrt(period_s * (time_s.back() - time_s.front())) * gear_ratio;
   if (!(wander < kMostWander_rad) || !std::isfinite(velocity[0])) return {};
-  std::vector<double> out(size(), kMissing);
-  out[0] = 0.0;
-  std::size_t last = 0;
-  for (std::size_t k = 1; k < size() && !gap_before(k); ++k) {
-    if (!std::isfinite(velocity[k])) continue;
-    out[k] = out[last] + 0.5 * (velocity[k] + velocity[last]) * (time_s[k] - time_s[last]);
-    last = k;
-  }
-  return out;
+  return integrated(time_s, velocity, longest_gap_s());
 }
 
 double AxisRecord::speed_near(std::size_t k) const {
@@ -99,19 +92,19 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
   const auto first =
       std::find_if(command->begin(), command->end(), [](double v) { return std::isfinite(v); });
   if (first == command->end()) return r;
-  r.first_row = static_cast<std::size_t>(first - command->begin());
-  r.time_s = from_row(&run.time_s, r.first_row);
+  const auto first_row = static_cast<std::size_t>(first - command->begin());
+  r.time_s = from_row(&run.time_s, first_row);
   r.period_s = median_period_s(r.time_s);
-  r.command = held(command, r.first_row);
-  r.enable = held(run.signal("enable"), r.first_row);
-  r.bus = read_bus(dataset, run, r.first_row, {.half = kHalfBusWindow});
-  r.load_torque_Nm = held(run.signal("load_torque"), r.first_row);
-  r.velocity = from_row(run.signal("velocity"), r.first_row);
+  r.command = held(command, first_row);
+  r.enable = held(run.signal("enable"), first_row);
+  r.bus = read_bus(dataset, run, first_row, {.half = kHalfBusWindow});
+  r.load_torque_Nm = held(run.signal("load_torque"), first_row);
+  r.velocity = from_row(run.signal("velocity"), first_row);
   r.velocity_sigma_rad_s = noise_sigma_of(dataset, "velocity", r.velocity);
-  r.position = from_row(run.signal("position"), r.first_row);
-  r.counts = from_row(run.signal("encoder"), r.first_row);
-  r.current = from_row(run.signal("motor_current"), r.first_row);
-  r.temperature = from_row(run.signal("winding_temperature"), r.first_row);
+  r.position = from_row(run.signal("position"), first_row);
+  r.counts = from_row(run.signal("encoder"), first_row);
+  r.current = from_row(run.signal("motor_current"), first_row);
+  r.temperature = from_row(run.signal("winding_temperature"), first_row);
   if (const Channel* encoder = dataset.channel("encoder");
       encoder != nullptr && encoder->counts_per_rev > 0.0) {
     const double per_shaft_rad = encoder->counts_per_rev / (2.0 * std::numbers::pi);

@@ -21,7 +21,6 @@ namespace omnihil {
 inline constexpr std::size_t kBusWindow = 21;  // a choice
 
 struct AxisRecord {
-  std::size_t first_row = 0;
   double period_s = 0.0;  // median
   std::vector<double> time_s;
   std::vector<double> command;

@@ -14,13 +14,6 @@ std::vector<double> slope(const std::vector<double>& t, const std::vector<double
   return out;
 }
 
-template <typename Map>
-std::vector<double> mapped(const std::vector<double>& x, Map map) {
-  std::vector<double> out;
-  for (const double v : x) out.push_back(std::isfinite(v) ? map(v) : kMissing);
-  return out;
-}
-
 }  // namespace
 
 std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model, double step_s) {
@@ -37,8 +30,12 @@ std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model
       std::transform(samples.begin(), samples.end(), std::back_inserter(measured), modelled);
     return measured;
   };
-  const auto add = [&](const char* name, const char* unit, std::vector<double> value) {
-    if (value.size() == in.time_s.size()) out.push_back({name, unit, std::move(value)});
+  const auto add = [&](const char* name, const char* unit, const std::vector<double>& value) {
+    if (value.size() == in.time_s.size()) out.push_back({name, unit, value});
+  };
+  const auto mapped = [](std::vector<double> x, auto map) {
+    for (double& v : x) v = std::isfinite(v) ? map(v) : kMissing;
+    return x;
   };
   const auto size = [](double v) { return std::abs(v); };
   const char *way = drive.linear ? "m" : "rad", *per_s = drive.linear ? "m/s" : "rad/s";

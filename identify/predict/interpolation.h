@@ -3,6 +3,7 @@
 //   Instant<Jet> at = instant(time_s, age_s);                   // a time that may carry derivatives
 //   Jet y = at.of([&](std::size_t k) { return values[k]; });
 //   std::vector<double> even = resampled(time_s, values, clock);      // over missing values (NaN) as well
+//   std::vector<double> angle_rad = integrated(time_s, values, 0.01);
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,21 @@ inline std::vector<double> resampled_steps(const std::vector<double>& time_s,
   std::vector<double> out;
   for (std::size_t k = 0; k < clock.size() && !known.value.empty(); ++k)
     out.push_back(known.held_at(clock[k], late_s));
+  return out;
+}
+
+// Of a rate since its first sample, which is known, by the trapezoidal rule over missing ones (NaN there as well); NaN from
+// the first two samples on that are further apart than `gap_s`.
+inline std::vector<double> integrated(const std::vector<double>& time_s, const std::vector<double>& rate,
+                                      double gap_s) {
+  std::vector<double> out(rate.size(), std::nan(""));
+  if (!out.empty()) out[0] = 0.0;
+  std::size_t last = 0;
+  for (std::size_t k = 1; k < rate.size() && !(time_s[k] - time_s[k - 1] > gap_s); ++k) {
+    if (!std::isfinite(rate[k])) continue;
+    out[k] = out[last] + 0.5 * (rate[k] + rate[last]) * (time_s[k] - time_s[last]);
+    last = k;
+  }
   return out;
 }
 

@@ -141,11 +141,11 @@ void complete(const RigRun& run, std::size_t signal, bool is_value, Eigen::Ref<E
       gap += (is_value ? measured[k] : 0.0) - column[static_cast<Eigen::Index>(k)], n += 1.0;
     }
     if (n > 0.0) column.array() += gap / n;
-  } else if (!run.filter.sections.empty()) {
-    column = zero_phase(run.filter, Eigen::MatrixXd(column)).col(0);
-    if (is_value && how.quantity == Quantity::kNeededInput)
-      column += Eigen::Map<const Eigen::VectorXd>(run.given.data(), column.size());
+    return;
   }
+  if (!run.filter.sections.empty()) column = zero_phase(run.filter, Eigen::MatrixXd(column)).col(0);
+  if (is_value && how.quantity == Quantity::kNeededInput)
+    column += Eigen::Map<const Eigen::VectorXd>(run.given.data(), column.size());
 }
 
 void complete(const RigRun& run, Prediction& p) {

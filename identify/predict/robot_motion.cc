@@ -8,6 +8,7 @@
 #include "identify/predict/interpolation.h"
 #include "identify/predict/own_clock.h"
 #include "sim/law/random.h"
+#include "sim/law/sensor_reading.h"
 
 namespace omnihil {
 namespace {
@@ -59,14 +60,10 @@ class Runner {
   const EffectChain<T, TimingPort<T>>& timing() const { return robot_.effects().timing; }
 
   T age(Stamped what, std::size_t k, EffectStates& states) const {
-    TimingPort<T> port;
-    NoiseKey key{options_.noise_seed.value_or(0), stream_of("timing"), k};
-    port.what = what;
-    port.time_s = record_.time_s[k];
-    port.dt_s = k > 0 ? record_.time_s[k] - record_.time_s[k - 1] : 0.0;
-    port.noise = options_.noise_seed ? &key : nullptr;
-    timing().apply(robot_.effects().values(), states.data(), port);
-    return port.age_s;
+    return reading_age(robot_.effects(), states.data(), what, stamp(k, stream_of("timing")));
+  }
+  ReadingStamp stamp(std::size_t k, std::uint64_t stream) const {
+    return stamp_of(record_.time_s, k, options_.noise_seed, stream);
   }
 
   RollingInput<T> input(std::size_t k) const {
@@ -297,12 +294,11 @@ class Runner {
     }
   }
 
-  T encoder(std::size_t k, std::size_t i, const T& theta, const T& omega, const T& travel,
+  T encoder(std::size_t k, std::size_t i, const T& theta, const T& omega, const T& turned_rad,
             EffectStates& states) const {
     const EffectSet<T>& effects = robot_.effects();
     if (effects.sensor.empty()) return theta;
     SensorPort<T> port;
-    NoiseKey key{options_.noise_seed.value_or(0), stream_of("sensor") + i, k};
     port.theta_rotor_rad = port.encoder_angle_rad = theta;
     if (record_.has_all_encoders && options_.slave_angle) {
       // an encoder's error depends on the angle: the law takes the angle at the sampled (earlier) instant
@@ -310,12 +306,8 @@ class Runner {
       port.encoder_angle_rad = port.theta_rotor_rad;
     }
     port.omega_rotor_rad_s = port.measured_speed_rad_s = omega;
-    port.travel_rad = value_of(travel) < 0.0 ? T(-travel) : travel;
     port.counts_per_turn = T(record_.counts_per_rotor_turn[i]);
-    port.time_s = record_.time_s[k];
-    port.dt_s = k > 0 ? record_.time_s[k] - record_.time_s[k - 1] : 0.0;
-    port.noise = options_.noise_seed ? &key : nullptr;
-    effects.sensor.apply(effects.values(), states.data(), port);
+    read_encoder(effects, states.data(), stamp(k, stream_of("sensor") + i), turned_rad, port);
     return theta + (port.encoder_angle_rad - port.theta_rotor_rad);
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <string>
@@ -219,13 +220,7 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   r.dribbler_rad_s = held(run.signal("dribbler"));
   r.dribbler_rad_s.resize(r.size());
   r.bus = read_bus(dataset, run, 0, kBusWindows);
-  if (const std::vector<double>* gyro = run.signal("gyro_z"); gyro != nullptr) {
-    const std::vector<double> rate = held(gyro);
-    r.turned_rad.resize(rate.size());
-    for (std::size_t k = 1; k < rate.size(); ++k) {
-      r.turned_rad[k] = r.turned_rad[k - 1] + 0.5 * (rate[k - 1] + rate[k]) * (r.time_s[k] - r.time_s[k - 1]);
-    }
-  }
+  r.turned_rad = integrated(r.time_s, held(run.signal("gyro_z")), std::numeric_limits<double>::infinity());
   read_frames(run, r);
   drop_silent_frames(run, nominal, r);
   unwrap_by_gyro(r);
@@ -237,26 +232,21 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
 
 RobotRecord rows_of(const RobotRecord& all, std::size_t from, std::size_t to) {
   RobotRecord out;
-  const auto cut = [&](const auto& v) {
-    using List = std::remove_cvref_t<decltype(v)>;
+  const auto cut = [&]<typename V>(const std::vector<V>& v) {
     if (v.size() != all.size()) return v;
-    return List(v.begin() + static_cast<std::ptrdiff_t>(from),
-                v.begin() + static_cast<std::ptrdiff_t>(to + 1));
+    return std::vector<V>(v.begin() + static_cast<std::ptrdiff_t>(from),
+                          v.begin() + static_cast<std::ptrdiff_t>(to + 1));
   };
+  const auto cut_each = [&](auto... list) { ((out.*list = cut(all.*list)), ...); };
+  cut_each(&RobotRecord::time_s, &RobotRecord::duty_ratio, &RobotRecord::enabled,
+           &RobotRecord::dribbler_rad_s, &RobotRecord::encoder_rotor_rad, &RobotRecord::theta_rotor_rad,
+           &RobotRecord::turned_rad, &RobotRecord::imposed_velocity);
   out.wheels = all.wheels;
-  out.time_s = cut(all.time_s);
-  out.duty_ratio = cut(all.duty_ratio);
-  out.enabled = cut(all.enabled);
   out.bus = all.bus;
   out.bus.input_V = cut(all.bus.input_V);
   out.bus.measured_V = cut(all.bus.measured_V);
-  out.dribbler_rad_s = cut(all.dribbler_rad_s);
   out.counts_per_rotor_turn = all.counts_per_rotor_turn;
-  out.encoder_rotor_rad = cut(all.encoder_rotor_rad);
-  out.theta_rotor_rad = cut(all.theta_rotor_rad);
   out.has_all_encoders = all.has_all_encoders;
-  out.turned_rad = cut(all.turned_rad);
-  out.imposed_velocity = cut(all.imposed_velocity);
   out.start_velocity = all.start_velocity;
   out.radio = all.radio;
   out.radio->value = cut(all.radio->value);

@@ -16,13 +16,6 @@
 
 namespace omnihil {
 
-struct AxisNoise {
-  double bus_voltage_V = 0.02;
-  double motor_current_A = 0.03;
-  double position_rad = 1e-4;  // where the rig has no encoder
-  double winding_K = 0.2;
-};
-
 struct AxisBenchRun {
   std::string name;        // of the CSV, without .csv
   std::string use;         // "fit", "holdout", "extrapolation"
@@ -36,7 +29,7 @@ struct AxisBench {
   std::string title;
   AxisModel model;
   std::vector<AxisBenchRun> runs;
-  AxisNoise noise;
+  double noise_scale = 1.0;      // of the usual sensors; 0: none
   bool has_temperature = false;  // some effect models the winding's temperature
 };
 

@@ -3,14 +3,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/drive/sensor_chain.h"
+
 namespace omnihil {
 namespace {
 
 using Sample = AxisSample<double>;
 
+constexpr double kAmbient_degC = 25.0;  // of a bench: a choice
+
 constexpr AxisSignal kSignals[] = {
     {"time", "s", [](const Sample& s, const AxisInput&, std::size_t) { return s.time_s; }},
-    {"command", "", [](const Sample&, const AxisInput& in, std::size_t k) { return in.command[k]; }},
     {"duty", "1", [](const Sample&, const AxisInput& in, std::size_t k) { return in.command[k]; }},
     {"position", "rad", [](const Sample& s, const AxisInput&, std::size_t) { return s.position_rad; }},
     {"velocity", "rad/s", [](const Sample& s, const AxisInput&, std::size_t) { return s.velocity_rad_s; }},
@@ -26,11 +29,16 @@ constexpr AxisSignal kSignals[] = {
      }},
     {"encoder_error", "rad",
      [](const Sample& s, const AxisInput&, std::size_t) { return s.position_rad - s.theta_rotor_rad; }},
+    {"encoder", "counts",
+     [](const Sample& s, const AxisInput&, std::size_t) { return encoder_reading(s.encoder_counts); }},
+    {"winding_temperature", "degC",
+     [](const Sample& s, const AxisInput&, std::size_t) { return kAmbient_degC + s.winding_rise_K; }},
 };
 
-}  // namespace
+constexpr std::string_view kCommands[] = {"duty", "motor_voltage", "motor_current", "motor_torque",
+                                          "position_target"};  // in the order of CommandKind
 
-std::span<const AxisSignal> axis_signals() { return kSignals; }
+}  // namespace
 
 const AxisSignal* find_axis_signal(std::string_view name) {
   for (const AxisSignal& s : kSignals) {
@@ -39,36 +47,6 @@ const AxisSignal* find_axis_signal(std::string_view name) {
   return nullptr;
 }
 
-std::string_view command_name(CommandKind kind) {
-  switch (kind) {
-    case CommandKind::kDuty:
-      return "duty";
-    case CommandKind::kMotorVoltage:
-      return "motor_voltage";
-    case CommandKind::kMotorCurrent:
-      return "motor_current";
-    case CommandKind::kMotorTorque:
-      return "motor_torque";
-    case CommandKind::kPositionTarget:
-      return "position_target";
-  }
-  return "";
-}
-
-std::string_view command_unit(CommandKind kind) {
-  switch (kind) {
-    case CommandKind::kDuty:
-      return "1";
-    case CommandKind::kMotorVoltage:
-      return "V";
-    case CommandKind::kMotorCurrent:
-      return "A";
-    case CommandKind::kMotorTorque:
-      return "N m";
-    case CommandKind::kPositionTarget:
-      return "rad";
-  }
-  return "";
-}
+std::string_view command_name(CommandKind kind) { return kCommands[static_cast<std::size_t>(kind)]; }
 
 }  // namespace omnihil

@@ -4,7 +4,6 @@
 //   s->get(sample, input, k);                              // rad/s
 #pragma once
 #include <cstddef>
-#include <span>
 #include <string_view>
 
 #include "sim/bench/axis_sim.h"
@@ -17,11 +16,9 @@ struct AxisSignal {
   double (*get)(const AxisSample<double>&, const AxisInput&, std::size_t);
 };
 
-std::span<const AxisSignal> axis_signals();
-const AxisSignal* find_axis_signal(std::string_view name);
+const AxisSignal* find_axis_signal(std::string_view name);  // null: there is none
 
 // The name of a drive input in a measurement: "duty", "motor_voltage", …
 std::string_view command_name(CommandKind kind);
-std::string_view command_unit(CommandKind kind);
 
 }  // namespace omnihil

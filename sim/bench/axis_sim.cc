@@ -7,6 +7,7 @@
 
 #include "sim/drive/motion_record.h"
 #include "sim/law/random.h"
+#include "sim/law/sensor_reading.h"
 
 namespace omnihil {
 namespace {
@@ -73,12 +74,11 @@ class AxisRun {
 
   AxisSample<T> sample(std::size_t k) {
     const auto& p = sim_.params();
-    const double dt = k > 0 ? input_.time_s[k] - input_.time_s[k - 1] : 0.0;
     const T seen_s = looks_back_ ? T(state_.now_s) - age(k) : T(state_.now_s);
     const MotionPoint<T> seen = instant(seen_s);
     AxisSample<T> s;
     s.time_s = input_.time_s[k];
-    SensorPort<T> port = sense(k, dt, seen);
+    const SensorPort<T> port = sense(k, seen);
     // A sensor of angle or speed beside the encoder is another one, and sits at the output.
     s.position_rad = (has_encoder() ? seen.theta_rad : port.encoder_angle_rad) / p.gear_ratio + seen.lead_rad;
     s.velocity_rad_s = port.measured_speed_rad_s / p.gear_ratio + seen.lead_rad_s;
@@ -204,36 +204,25 @@ class AxisRun {
 
   T age(std::size_t k) {
     alone_ = k == 0;  // nothing to look back at yet
-    TimingPort<T> port;
-    NoiseKey key = noise_key(k, "timing");
-    port.time_s = input_.time_s[k];
-    port.dt_s = k > 0 ? input_.time_s[k] - input_.time_s[k - 1] : 0.0;
-    port.noise = input_.noise_seed ? &key : nullptr;
-    sim_.effects().timing.apply(sim_.effects().values(), state_.effects.data(), port);
-    return port.age_s;
+    return reading_age(sim_.effects(), state_.effects.data(), Stamped::kDriveSensors, stamp(k, "timing"));
   }
 
-  SensorPort<T> sense(std::size_t k, double dt, const MotionPoint<T>& seen) {
+  SensorPort<T> sense(std::size_t k, const MotionPoint<T>& seen) {
     SensorPort<T> port;
-    NoiseKey key = noise_key(k, "sensor");
     port.theta_rotor_rad = seen.theta_rad - travel_ahead_rad_;
     port.encoder_angle_rad = seen.theta_rad;
     port.omega_rotor_rad_s = port.measured_speed_rad_s = seen.omega_rad_s;
     port.speed_is_the_encoders = !has_encoder();
     if (input_.encoder_on_output) port.encoder_turns_per_rotor_turn = 1.0 / sim_.params().gear_ratio;
     if (sim_.effects().sensor.empty()) return port;
-    const T turned_rad = seen.theta_rad - previous_.theta_rad;
-    port.travel_rad = value_of(turned_rad) < 0.0 ? -turned_rad : turned_rad;
     port.counts_per_turn = T(input_.encoder_counts_per_turn);
-    port.time_s = input_.time_s[k];
-    port.dt_s = dt;
-    port.noise = input_.noise_seed ? &key : nullptr;
-    sim_.effects().sensor.apply(sim_.effects().values(), state_.effects.data(), port);
+    read_encoder(sim_.effects(), state_.effects.data(), stamp(k, "sensor"),
+                 T(seen.theta_rad - previous_.theta_rad), port);
     return port;
   }
 
-  NoiseKey noise_key(std::size_t k, std::string_view stream) const {
-    return {input_.noise_seed.value_or(0), stream_of(stream), k};
+  ReadingStamp stamp(std::size_t k, std::string_view stream) const {
+    return stamp_of(input_.time_s, k, input_.noise_seed, stream_of(stream));
   }
 
   const AxisInput& input_;

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "sim/drive/sensor_chain.h"
 #include "sim/law/toml_text.h"
 
 namespace omnihil {
@@ -19,6 +22,33 @@ std::string channel_line(std::string_view signal, std::string_view column, doubl
                          std::string_view more) {
   const std::string noise = sigma > 0.0 ? fmt::format(", sigma = {:g}", sigma) : "";
   return fmt::format("{} = {{ column = \"{}\"{}{} }}\n", signal, column, noise, more);
+}
+
+std::string columns_text(std::string_view title, std::string_view rig,
+                         const std::vector<BenchColumn>& columns) {
+  std::string text = dataset_head(title, rig);
+  for (const BenchColumn& c : columns) text += channel_line(c.signal, c.column, c.sigma, c.more);
+  return text;
+}
+
+std::string bench_header(const std::vector<BenchColumn>& columns) {
+  std::string text = "time_s";
+  for (const BenchColumn& c : columns) text += "," + c.column;
+  return text + "\n";
+}
+
+std::string bench_line(const std::vector<BenchColumn>& columns, double time_s,
+                       const std::vector<double>& values, std::optional<std::uint64_t> seed,
+                       std::uint64_t k) {
+  std::string text = fmt::format("{:.6f}", time_s);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    text += ',';
+    if (!std::isfinite(values[i])) continue;
+    const BenchColumn& c = columns[i];
+    const double value = seed && c.sigma > 0.0 ? noisy(values[i], c.sigma, *seed, c.stream, k) : values[i];
+    text += fmt::format(fmt::runtime(c.format), value);
+  }
+  return text + "\n";
 }
 
 std::string run_lines(std::string_view file, std::string_view use, std::string_view excitation) {

@@ -4,12 +4,16 @@
 
 #include "sim/drive/encoder.h"
 #include "sim/law/random.h"
+#include "sim/law/sensor_reading.h"
 
 namespace omnihil {
 namespace {
 
-NoiseKey noise_key(std::string_view stream, std::size_t which, const Sensing& at) {
-  return {at.seed, stream_of(stream) + which, static_cast<std::uint64_t>(at.now_ns)};
+ReadingStamp stamp(std::string_view stream, std::size_t which, const Sensing& at,
+                   const RobotEffectMemory& memory) {
+  return {.time_s = at.now.time_s,
+          .dt_s = at.now.time_s - memory.read_s,
+          .noise = NoiseKey{at.seed, stream_of(stream) + which, static_cast<std::uint64_t>(at.now_ns)}};
 }
 
 // Four to a robot; a fifth and sixth wheel have theirs far behind all robots' (2^20: no bench has so many).
@@ -20,29 +24,18 @@ std::size_t wheel_stream(std::size_t robot, std::size_t wheel) {
 
 // How much older than its stamp a measurement of now is.
 double age_s(const RobotEffects& effects, RobotEffectMemory& memory, Stamped what, const Sensing& at) {
-  TimingPort<double> port;
-  const NoiseKey key = noise_key("timing", at.robot, at);
-  port.what = what;
-  port.time_s = at.now.time_s;
-  port.dt_s = at.now.time_s - memory.read_s;
-  port.noise = &key;
-  effects.set().timing.apply(effects.set().values(), memory.timing.data(), port);
-  return port.age_s;
+  return reading_age(effects.set(), memory.timing.data(), what, stamp("timing", at.robot, at, memory));
 }
 
 double encoder_angle_rad(const RobotEffects& effects, RobotEffectMemory& memory, const RobotModel& model,
                          std::size_t i, const RobotInstant& seen, const Sensing& at) {
-  const EffectSet<double>& set = effects.set();
   SensorPort<double> port;
-  const NoiseKey key = noise_key("sensor", wheel_stream(at.robot, i), at);
   port.theta_rotor_rad = port.encoder_angle_rad = seen.theta_rotor_rad[i];
   port.omega_rotor_rad_s = port.measured_speed_rad_s = seen.omega_rotor_rad_s[i];
-  port.travel_rad = std::abs(seen.theta_rotor_rad[i] - memory.seen_theta_rotor_rad[i]);
   port.counts_per_turn = model.encoder.counts_per_turn;
-  port.time_s = at.now.time_s;
-  port.dt_s = at.now.time_s - memory.read_s;
-  port.noise = &key;
-  set.sensor.apply(set.values(), memory.drive[i].effects.data(), port);
+  read_encoder(effects.set(), memory.drive[i].effects.data(),
+               stamp("sensor", wheel_stream(at.robot, i), at, memory),
+               seen.theta_rotor_rad[i] - memory.seen_theta_rotor_rad[i], port);
   return port.encoder_angle_rad;
 }
 

@@ -53,7 +53,7 @@ inline Bench simulated_bench(const BenchRecipe& recipe) {
   for (const std::string& with : recipe.with) {
     EXPECT_EQ(add_override(with, {.drive = &model.drive, .linear = model.drive.linear}, effects), "") << with;
   }
-  AxisBench bench{.title = "simulated", .model = model, .runs = {}, .noise = {}};
+  AxisBench bench{.title = "simulated", .model = model, .runs = {}};
   for (std::size_t r = 0; r < recipe.excitations.size(); ++r) {
     AxisInput in;
     in.kind = recipe.drive;

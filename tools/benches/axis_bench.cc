@@ -70,11 +70,8 @@ std::optional<VirtualBench> make_axis_bench(const BenchOptions& options, std::ve
     return read_bench_rows(path, kOne, "what is asked", faults);
   });
   if (!faults.empty()) return std::nullopt;
-  AxisBench bench{.title = "simulated: " + options.model, .model = model, .runs = {}, .noise = {}};
-  bench.noise.bus_voltage_V *= options.noise_scale;
-  bench.noise.motor_current_A *= options.noise_scale;
-  bench.noise.position_rad *= options.noise_scale;
-  bench.noise.winding_K *= options.noise_scale;
+  AxisBench bench{
+      .title = "simulated: " + options.model, .model = model, .runs = {}, .noise_scale = options.noise_scale};
   bench.has_temperature = std::any_of(effects.begin(), effects.end(), [](const EffectUse& u) {
     const EffectEntry* read = find_effect(u.entry->info->needs);
     return ((u.entry->info->claims | (read != nullptr ? read->info->claims : 0u)) & kWarmsWinding) != 0;

@@ -11,8 +11,6 @@
 #include "hil/loop/effect_overrides.h"
 #include "hil/text/program_files.h"
 #include "hil/text/recording_text.h"
-#include "sim/bench/dataset_text.h"
-#include "sim/drive/sensor_chain.h"
 #include "sim/model/effect_reader.h"
 
 namespace omnihil {
@@ -161,30 +159,9 @@ std::optional<BenchAxis> open_axis(const BenchOptions& options, std::vector<std:
 
 std::string bench_dataset(const std::string& title, const std::string& rig,
                           const std::vector<BenchColumn>& columns, const std::vector<BenchRun>& runs) {
-  std::string text = dataset_head(title, rig);
-  for (const BenchColumn& c : columns) text += channel_line(c.signal, c.column, c.sigma, c.more);
+  std::string text = columns_text(title, rig, columns);
   for (const BenchRun& run : runs) text += run_lines(run.name + ".csv", run.use, run.excitation);
   return text;
-}
-
-std::string bench_header(const std::vector<BenchColumn>& columns) {
-  std::string text = "time_s";
-  for (const BenchColumn& c : columns) text += "," + c.column;
-  return text + "\n";
-}
-
-std::string bench_line(const std::vector<BenchColumn>& columns, double time_s,
-                       const std::vector<double>& values, std::optional<std::uint64_t> seed,
-                       std::uint64_t k) {
-  std::string text = fmt::format("{:.6f}", time_s);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    text += ',';
-    if (!std::isfinite(values[i])) continue;
-    const BenchColumn& c = columns[i];
-    const double value = seed && c.sigma > 0.0 ? noisy(values[i], c.sigma, *seed, c.stream, k) : values[i];
-    text += fmt::format(fmt::runtime(c.format), value);
-  }
-  return text + "\n";
 }
 
 }  // namespace omnihil

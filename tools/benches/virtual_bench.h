@@ -19,6 +19,7 @@
 #include "hil/dataset/dataset_export.h"
 #include "hil/loop/model_store.h"
 #include "identify/record/rig.h"
+#include "sim/bench/dataset_text.h"
 #include "sim/bench/excitation.h"
 #include "sim/model/axis_model.h"
 
@@ -97,20 +98,6 @@ struct BenchAxis {
   std::vector<EffectUse> driven;
 };
 std::optional<BenchAxis> open_axis(const BenchOptions& options, std::vector<std::string>& faults);
-
-// A column of a bench's runs: its line in [channels], and how its numbers are written.
-struct BenchColumn {
-  std::string signal, column;
-  const char* format = "{:.9g}";  // of fmt
-  double sigma = 0.0;             // white noise of its sensor; 0: none
-  std::string more = {};          // further keys of its line: ", counts_per_rev = 4096"
-  std::string stream = {};        // of its noise
-};
-std::string bench_header(const std::vector<BenchColumn>& columns);  // first line of a run's CSV
-// A value a column, NaN: an empty cell. With a seed, their sensors' noise is put on row `k`'s.
-std::string bench_line(const std::vector<BenchColumn>& columns, double time_s,
-                       const std::vector<double>& values, std::optional<std::uint64_t> seed = {},
-                       std::uint64_t k = 0);
 
 std::string bench_dataset(const std::string& title, const std::string& rig,
                           const std::vector<BenchColumn>& columns, const std::vector<BenchRun>& runs);
