@@ -46,6 +46,26 @@ std::vector<LostPackets> decide(const Dataset& dataset, const std::vector<RobotR
   return out;
 }
 
+HeardCommands all_heard(const Dataset& dataset) {
+  return {.dataset = dataset, .lost = std::vector<LostPackets>(dataset.runs.size())};
+}
+
+HeardCommands without(const Dataset& dataset, std::vector<LostPackets> lost) {
+  HeardCommands out{.dataset = dataset, .lost = std::move(lost)};
+  for (std::size_t r = 0; r < out.lost.size(); ++r) take_out(out.lost[r].rows, out.dataset.runs[r]);
+  return out;
+}
+
+// With a note per run.
+HeardCommands said(HeardCommands heard) {
+  heard.dataset.heard = true;
+  for (std::size_t r = 0; r < heard.lost.size(); ++r) {
+    const std::string sentence = sentence_of(heard.lost[r]);
+    if (!sentence.empty()) heard.dataset.notes.push_back(heard.dataset.runs[r].file + ": " + sentence);
+  }
+  return heard;
+}
+
 // As they were sent; empty where there is no command to lose, or no motion of numbers alone to decide by.
 std::vector<RobotRun> radio_runs(const Dataset& dataset, const Candidate& nominal) {
   std::vector<RobotRun> out;
@@ -70,6 +90,11 @@ std::string sentence_of(const LostPackets& lost) {
       lost.rows.size(), lost.tried);
 }
 
+bool HeardCommands::same_lost(const HeardCommands& other) const {
+  return std::equal(lost.begin(), lost.end(), other.lost.begin(), other.lost.end(),
+                    [](const LostPackets& a, const LostPackets& b) { return a.rows == b.rows; });
+}
+
 std::size_t HeardCommands::lost_packets() const {
   std::size_t sum = 0;
   for (const LostPackets& l : lost) sum += l.rows.size();
@@ -77,28 +102,24 @@ std::size_t HeardCommands::lost_packets() const {
 }
 
 HeardCommands heard_commands(const Dataset& dataset, const Candidate& nominal, const HeardOptions& options) {
-  const std::vector<LostPackets> none(dataset.runs.size());
-  HeardCommands out{.dataset = dataset, .lost = none};
+  HeardCommands out = all_heard(dataset);
   const std::vector<RobotRun> sent = radio_runs(dataset, nominal);
   if (sent.empty()) return out;
   Candidate model = nominal;
   for (int round = 0; round < kRounds; ++round) {
     model = fit_base(out.dataset, nominal, model, options).model;
-    if (options.stop && options.stop()) return {.dataset = dataset, .lost = none};
-    std::vector<LostPackets> lost = decide(dataset, sent, model);
-    const bool same = std::equal(lost.begin(), lost.end(), out.lost.begin(),
-                                 [](const LostPackets& a, const LostPackets& b) { return a.rows == b.rows; });
-    out.lost = std::move(lost);
-    out.dataset = dataset;
-    for (std::size_t r = 0; r < out.lost.size(); ++r) take_out(out.lost[r].rows, out.dataset.runs[r]);
+    if (options.stop && options.stop()) return all_heard(dataset);
+    HeardCommands decided = without(dataset, decide(dataset, sent, model));
+    const bool same = decided.same_lost(out);
+    out = std::move(decided);
     if (same) break;
   }
-  out.dataset.heard = true;
-  for (std::size_t r = 0; r < out.lost.size(); ++r) {
-    const std::string sentence = sentence_of(out.lost[r]);
-    if (!sentence.empty()) out.dataset.notes.push_back(dataset.runs[r].file + ": " + sentence);
-  }
-  return out;
+  return said(std::move(out));
+}
+
+HeardCommands heard_by(const Dataset& sent, const Candidate& nominal, const Candidate& model) {
+  const std::vector<RobotRun> runs = radio_runs(sent, nominal);
+  return runs.empty() ? all_heard(sent) : said(without(sent, decide(sent, runs, model)));
 }
 
 }  // namespace omnihil

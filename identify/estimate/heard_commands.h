@@ -31,8 +31,11 @@ struct HeardCommands {
   std::vector<LostPackets> lost;  // one per run
 
   std::size_t lost_packets() const;
+  bool same_lost(const HeardCommands& other) const;
 };
 
 HeardCommands heard_commands(const Dataset& dataset, const Candidate& nominal, const HeardOptions& options);
+// By a model that is fitted already, with effects that heard_commands() did not know; `sent`: as they were sent.
+HeardCommands heard_by(const Dataset& sent, const Candidate& nominal, const Candidate& model);
 
 }  // namespace omnihil

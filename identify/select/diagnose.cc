@@ -5,9 +5,9 @@
 #include <atomic>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 
-#include "identify/estimate/heard_commands.h"
 #include "identify/select/confidence.h"
 #include "identify/select/diagnose_summary.h"
 #include "identify/select/diagnosis.h"
@@ -41,15 +41,11 @@ constexpr const char* kInterrupted = "interrupted before any effect was tried";
 
 class Diagnosing {
  public:
-  // recorded: what was measured; dataset: the same as it is compared (heard_commands.h).
-  Diagnosing(const Dataset& recorded, const Dataset& dataset, const Candidate& nominal,
+  // recorded: what was measured; heard: the same as it is compared.
+  Diagnosing(const Dataset& recorded, HeardCommands heard, const Candidate& nominal,
              const DiagnoseOptions& options)
-      : recorded_(recorded),
-        dataset_(dataset),
-        nominal_(nominal),
-        options_(options),
-        context_(dataset, nominal, {.seed = options.seed, .jobs = options.jobs}) {
-    out_.dataset = dataset.name;
+      : recorded_(recorded), nominal_(nominal), options_(options), data_(data_of(std::move(heard))) {
+    out_.dataset = recorded.name;
     out_.seed = options.seed;
     out_.outcome = Outcome::kNotSearched;  // until it is
     out_.not_searched = kInterrupted;
@@ -57,7 +53,7 @@ class Diagnosing {
 
   Diagnosis run() {
     out_.findings = check_data(recorded_, nominal_);
-    out_.nominal_comparison = compare(context_.predictor(), nominal_);
+    out_.nominal_comparison = compare(context().predictor(), nominal_);
     add_step("nominal", {}, out_.nominal_comparison);
     if (!baseline()) return finish_early();
     simulate();
@@ -66,12 +62,28 @@ class Diagnosing {
       iterate();
       eliminate();
       simplify();
+      hear_anew();
     }
     conclude();
     return std::move(out_);
   }
+  const HeardCommands& heard() const { return data_->heard; }
 
  private:
+  // What was heard, and what all iterations make of it.
+  struct Data {
+    HeardCommands heard;
+    SelectionContext context;
+
+    Data(HeardCommands of, const Candidate& nominal, const SelectionOptions& options)
+        : heard(std::move(of)), context(heard.dataset, nominal, options) {}
+  };
+  std::unique_ptr<Data> data_of(HeardCommands heard) const {
+    return std::make_unique<Data>(std::move(heard), nominal_,
+                                  SelectionOptions{.seed = options_.seed, .jobs = options_.jobs});
+  }
+  SelectionContext& context() const { return data_->context; }
+
   bool say(const std::string& doing, double share) {
     const std::scoped_lock lock(mutex_);
     furthest_ = std::max(furthest_, share);
@@ -82,21 +94,21 @@ class Diagnosing {
   // Base parameters before anything else: their tolerances are priors.
   bool baseline() {
     if (!say("refitting the base parameters", 0.02)) return false;
-    const bool usable = context_.fit_base(stop());
+    const bool usable = context().fit_base(stop());
     if (!usable && !stopped_) {
       out_.not_searched =
           "the base parameters cannot be fitted: the model does not stay finite, or there are no fit runs";
     }
-    out_.baseline = context_.base().fit;
-    out_.baseline_comparison = compare(context_.predictor(), context_.base().fit.model);
-    add_step("base parameters refitted", context_.base(), out_.baseline_comparison);
-    current_ = context_.base();
+    out_.baseline = context().base().fit;
+    out_.baseline_comparison = compare(context().predictor(), context().base().fit.model);
+    add_step("base parameters refitted", context().base(), out_.baseline_comparison);
+    current_ = context().base();
     return say("base parameters refitted", kAfterBaseline) && usable;
   }
 
   void simulate() {
-    context_.simulate();
-    task_ = context_.task(not_applicable_);
+    context().simulate();
+    task_ = context().task(not_applicable_);
     out_.not_visible = not_applicable_;
     say("simulated null", kAfterNull);
   }
@@ -167,11 +179,11 @@ class Diagnosing {
   bool parent_not_converged(const Iteration& iteration) {
     const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
     if (best.screened.extends) return false;
-    Fitted without = refit_as_it_is(context_.setup(true, stop()),
+    Fitted without = refit_as_it_is(context().setup(true, stop()),
                                     without_effect(best.fitted.fit.model, best.screened.name), 1);
     if (!without.finite) return false;
-    const double ratio =
-        energy_ratio(context_.splits()[kTraining], current_.residual[kTraining], without.residual[kTraining]);
+    const double ratio = energy_ratio(context().splits()[kTraining], current_.residual[kTraining],
+                                      without.residual[kTraining]);
     if (ratio > 1.0 - kNotConverged) return false;
     current_ = std::move(without);
     if (out_.effects.empty()) rebase();
@@ -180,9 +192,9 @@ class Diagnosing {
 
   // The baseline itself had not converged: replace it in the answer.
   void rebase() {
-    context_.take_base(current_);
+    context().take_base(current_);
     out_.baseline = current_.fit;
-    out_.baseline_comparison = compare(context_.predictor(), current_.fit.model);
+    out_.baseline_comparison = compare(context().predictor(), current_.fit.model);
     out_.ladder.back().comparison = out_.baseline_comparison;
     out_.ladder.back().parameters = current_.fit.parameters;
   }
@@ -203,7 +215,7 @@ class Diagnosing {
   std::optional<Fitted> converged_choice(Iteration& iteration) {
     while (iteration.chosen >= 0) {
       const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
-      Fitted fitted = refit_to_convergence(context_.setup(true, stop()), best.fitted);
+      Fitted fitted = refit_to_convergence(context().setup(true, stop()), best.fitted);
       const std::string why = ends_at_bound(fitted.fit, best.screened.name);
       if (why.empty() || stopped_) return fitted;
       refuse_chosen(task_, current_, why, iteration);
@@ -218,7 +230,7 @@ class Diagnosing {
       out_.effects.push_back(best.screened.name);
       aliased_parameter_[best.screened.name] = best.screened.aliased_parameter();
     }
-    add_step(best.screened.name, current_, compare(context_.predictor(), current_.fit.model));
+    add_step(best.screened.name, current_, compare(context().predictor(), current_.fit.model));
     note_confounded(iteration, out_);
   }
 
@@ -226,14 +238,14 @@ class Diagnosing {
   bool take_pair(const Iteration& singles) {
     const EffectPair pair = selection_pair(task_, current_, singles);
     if (!pair.found()) return false;
-    current_ = refit_to_convergence(context_.setup(true, stop()), pair.fitted);
+    current_ = refit_to_convergence(context().setup(true, stop()), pair.fitted);
     pair_ = pair.names;
     for (std::size_t k = 0; k < pair.names.size(); ++k) {
       out_.effects.push_back(pair.names[k]);
       aliased_parameter_[pair.names[k]] = pair.aliased_parameters[k];
     }
     add_step(fmt::format("{}", fmt::join(pair.names, " and ")), current_,
-             compare(context_.predictor(), current_.fit.model));
+             compare(context().predictor(), current_.fit.model));
     return true;
   }
 
@@ -242,11 +254,11 @@ class Diagnosing {
     while (!out_.effects.empty() && !stopped_) {
       say("are all effects still needed", kAfterRounds);
       std::optional<UnneededEffect> unneeded =
-          unneeded_effect(task_, context_.setup(true, stop()), current_, found(), removed);
+          unneeded_effect(task_, context().setup(true, stop()), current_, found(), removed);
       if (!unneeded) return;
       current_ = std::move(unneeded->fitted);
       std::erase(out_.effects, unneeded->name);
-      add_step("removed " + unneeded->name, current_, compare(context_.predictor(), current_.fit.model));
+      add_step("removed " + unneeded->name, current_, compare(context().predictor(), current_.fit.model));
       removed = true;
     }
   }
@@ -258,13 +270,34 @@ class Diagnosing {
   void simplify() {
     for (std::size_t n = 0; n < out_.effects.size() && !stopped_; ++n) {
       const std::string name = out_.effects[n];
-      std::optional<NestedLaw> simpler = nested_law(task_, context_.setup(true, stop()), current_, name);
+      std::optional<NestedLaw> simpler = nested_law(task_, context().setup(true, stop()), current_, name);
       if (!simpler) continue;
       current_ = std::move(simpler->fitted);
       replace_in_answer(name, simpler->name, out_);
       add_step(fmt::format("{} in place of {}", simpler->name, name), current_,
-               compare(context_.predictor(), current_.fit.model));
+               compare(context().predictor(), current_.fit.model));
     }
+  }
+
+  // Which commands were lost was decided by a model without the effects that it has now: once more with them, and all
+  // figures by what was heard then.
+  void hear_anew() {
+    if (out_.effects.empty() || stopped_) return;
+    say("are the same commands lost", 0.86);
+    HeardCommands anew = heard_by(recorded_, nominal_, current_.fit.model);
+    if (anew.same_lost(heard())) return;
+    std::unique_ptr<Data> data = data_of(std::move(anew));
+    if (!data->context.fit_base(stop()) || stopped_) return;
+    data->context.simulate();
+    data_ = std::move(data);
+    std::vector<std::string> known;
+    task_ = context().task(known);
+    out_.nominal_comparison = compare(context().predictor(), nominal_);
+    out_.baseline = context().base().fit;
+    out_.baseline_comparison = compare(context().predictor(), out_.baseline.model);
+    const RefitSetup setup = context().setup(false, stop());
+    current_ = refit_to_convergence(setup, refit_as_it_is(setup, current_.fit.model, 1));
+    add_step("lost commands decided anew", current_, compare(context().predictor(), current_.fit.model));
   }
 
   void conclude() {
@@ -273,16 +306,16 @@ class Diagnosing {
     if (added && !stopped_) {
       // The structure is fixed now; a few runs that it cannot explain should not bias its parameters (Huber's
       // loss).
-      RefitSetup setup = context_.setup(false, stop());
+      RefitSetup setup = context().setup(false, stop());
       setup.robust = true;
       const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);
       const auto to_bound = [&](const std::string& name) { return !ends_at_bound(last.fit, name).empty(); };
       const bool imitates = std::any_of(out_.effects.begin(), out_.effects.end(), to_bound);
       if (last.finite && !imitates &&
-          energy_ratio(context_.splits()[kTraining], current_.residual[kTraining], last.residual[kTraining]) <
-              kRobustLoss) {
+          energy_ratio(context().splits()[kTraining], current_.residual[kTraining],
+                       last.residual[kTraining]) < kRobustLoss) {
         current_ = last;
-        out_.ladder.back().comparison = compare(context_.predictor(), current_.fit.model);
+        out_.ladder.back().comparison = compare(context().predictor(), current_.fit.model);
         out_.ladder.back().parameters = current_.fit.parameters;
       }
     }
@@ -295,7 +328,7 @@ class Diagnosing {
     added = !out_.effects.empty();
     out_.final_fit = current_.fit;
     out_.final_comparison =
-        added ? compare(context_.predictor(), current_.fit.model) : out_.baseline_comparison;
+        added ? compare(context().predictor(), current_.fit.model) : out_.baseline_comparison;
     out_.not_searched = not_searched();
     const bool searched = out_.not_searched.empty();
     if (const DataFinding* fault = first_fault(out_.findings); fault != nullptr && searched)
@@ -327,24 +360,26 @@ class Diagnosing {
     }
     settle_confounded(out_);
     out_.confidence = confidences(out_);
-    out_.next_experiment = next_experiment(dataset_, out_);
+    out_.next_experiment = next_experiment(heard().dataset, out_);
     out_.complete = !stopped_;
     say("done", 1.0);
   }
 
   ResidualExcesses excesses_of(const Candidate& model) const {
-    return {context_, out_.baseline.model, model, options_.seed, options_.jobs};
+    return {context(), out_.baseline.model, model, options_.seed, options_.jobs};
   }
   ResidualExcesses fitted_to_all() {
-    return excesses_of(fitted_to_all_runs(dataset_, context_.setup(false, stop()), current_.fit.model));
+    return excesses_of(
+        fitted_to_all_runs(heard().dataset, context().setup(false, stop()), current_.fit.model));
   }
 
   // Stop when the residual is at the null level (DECISIONS 35), unless a base parameter is prior-implausible
   // (DECISIONS 50).
   bool worth_another_iteration() {
-    const std::size_t u = context_.splits()[kValidation].empty() ? kTraining : kValidation;
+    const std::size_t u = context().splits()[kValidation].empty() ? kTraining : kValidation;
     return is_implausible(current_.fit) ||
-           structure_in(context_.splits()[u], context_.null(), context_.channels(), current_.residual[u]) ||
+           structure_in(context().splits()[u], context().null(), context().channels(),
+                        current_.residual[u]) ||
            structure_in_excess(excesses_of(current_.fit.model).alike());
   }
 
@@ -360,8 +395,8 @@ class Diagnosing {
       if (std::find(out_.effects.begin(), out_.effects.end(), e->info->id) == out_.effects.end())
         others.push_back(e);
     }
-    const std::optional<NoiseEffect> found = noise_effect({.predictor = &context_.predictor(),
-                                                           .unweighted = &context_.unweighted(),
+    const std::optional<NoiseEffect> found = noise_effect({.predictor = &context().predictor(),
+                                                           .unweighted = &context().unweighted(),
                                                            .model = &current_.fit.model,
                                                            .seed = options_.seed},
                                                           others);
@@ -370,7 +405,7 @@ class Diagnosing {
     current_.fit.model = with_use(current_.fit.model, found->use);
     current_.fit.parameters.push_back(found->strength);
     out_.effects.push_back(name);
-    add_step(name, current_, compare(context_.predictor(), current_.fit.model));
+    add_step(name, current_, compare(context().predictor(), current_.fit.model));
     for (std::size_t r = 0; r < out_.ranking.size(); ++r) {
       RankedEffect& ranked = out_.ranking[r];
       if (ranked.effect != name) continue;
@@ -400,10 +435,9 @@ class Diagnosing {
   }
 
   const Dataset& recorded_;
-  const Dataset& dataset_;
   const Candidate& nominal_;
   const DiagnoseOptions& options_;
-  SelectionContext context_;
+  std::unique_ptr<Data> data_;
   SelectionTask task_;
   std::vector<std::string> not_applicable_;
   Fitted current_;
@@ -451,25 +485,12 @@ std::span<const LadderStep> steps_after_first_ranking(const Diagnosis& diagnosis
                                          : std::span<const LadderStep>(first + 1, diagnosis.ladder.end());
 }
 
-namespace {
-
-std::vector<DataFinding> lost_commands(const Dataset& dataset, const HeardCommands& heard) {
-  std::vector<DataFinding> out;
-  for (std::size_t r = 0; r < heard.lost.size(); ++r) {
-    const LostPackets& lost = heard.lost[r];
-    if (std::string sentence = sentence_of(lost); !sentence.empty())
-      out.push_back({DataFinding::Grade::kNote, "lost_commands", dataset.runs[r].file, "command",
-                     static_cast<double>(lost.rows.size()), std::move(sentence)});
-  }
-  return out;
-}
-
-}  // namespace
-
 Diagnosis diagnose(const Dataset& dataset, const Candidate& nominal, const DiagnoseOptions& options) {
-  const HeardCommands heard = heard_commands(dataset, nominal, {.jobs = options.jobs, .stop = options.stop});
-  Diagnosis out = Diagnosing(dataset, heard.dataset, nominal, options).run();
-  for (DataFinding& finding : lost_commands(dataset, heard)) out.findings.push_back(std::move(finding));
+  Diagnosing diagnosing(dataset,
+                        heard_commands(dataset, nominal, {.jobs = options.jobs, .stop = options.stop}),
+                        nominal, options);
+  Diagnosis out = diagnosing.run();
+  for (DataFinding& finding : lost_commands(diagnosing.heard())) out.findings.push_back(std::move(finding));
   return out;
 }
 

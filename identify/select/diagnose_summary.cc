@@ -110,4 +110,15 @@ std::vector<Where> where_of(const Comparison& comparison, double order) {
   return all;
 }
 
+std::vector<DataFinding> lost_commands(const HeardCommands& heard) {
+  std::vector<DataFinding> out;
+  for (std::size_t r = 0; r < heard.lost.size(); ++r) {
+    const LostPackets& lost = heard.lost[r];
+    if (std::string sentence = sentence_of(lost); !sentence.empty())
+      out.push_back({DataFinding::Grade::kNote, "lost_commands", heard.dataset.runs[r].file, "command",
+                     static_cast<double>(lost.rows.size()), std::move(sentence)});
+  }
+  return out;
+}
+
 }  // namespace omnihil

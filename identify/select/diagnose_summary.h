@@ -1,5 +1,6 @@
-// The lists of a diagnosis: confounded sets, and the variables that explain the residual.
+// The lists of a diagnosis: confounded sets, lost commands, and the variables that explain the residual.
 #pragma once
+#include "identify/estimate/heard_commands.h"
 #include "identify/select/selection_iteration.h"
 
 namespace omnihil {
@@ -19,5 +20,8 @@ void settle_confounded(Diagnosis& diagnosis);
 // The variables that explain most of a comparison's residual, the largest fraction first; `order`: dominant
 // in the residual along the rotor's angle, 0: none.
 std::vector<Where> where_of(const Comparison& comparison, double order);
+
+// A note per run that lost some.
+std::vector<DataFinding> lost_commands(const HeardCommands& heard);
 
 }  // namespace omnihil

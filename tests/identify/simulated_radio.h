@@ -68,4 +68,39 @@ inline Dataset blank_radio(double duration_s, bool wheels_commanded = false) {
   return d;
 }
 
+// A host that says something new in most packets: a staircase along two axes.
+inline Dataset staircase(double duration_s) {
+  Dataset d = blank_radio(duration_s);
+  for (Run& run : d.runs) {
+    for (std::size_t k = 0; k < run.time_s.size(); ++k) {
+      const double t = run.time_s[k];
+      run.signals["command_vx"][k] = t < 0.3 ? 0.0 : 0.02 * std::round(40.0 * std::sin(2.1 * t));
+      run.signals["command_vy"][k] = t < 0.3 ? 0.0 : 0.02 * std::round(30.0 * std::sin(2.9 * t));
+      run.signals["command_w"][k] = 0.0;
+    }
+  }
+  return d;
+}
+
+// What a robot did that did not hear the commands of `lost`; the file says what was sent.
+inline Dataset measured_without(const Dataset& sent, const std::vector<std::size_t>& lost,
+                                const Candidate& truth) {
+  Dataset heard = sent;
+  for (Run& run : heard.runs)
+    for (const std::size_t k : lost)
+      for (const char* name : {"command_vx", "command_vy", "command_w"}) run.signals[name][k] = kMissing;
+  Dataset out = measured(heard, *make_predictor(heard, radio_candidate(), {})->simulated(truth, 3));
+  for (std::size_t r = 0; r < out.runs.size(); ++r)
+    for (const char* name : {"command_vx", "command_vy", "command_w"})
+      out.runs[r].signals[name] = sent.runs[r].signals.at(name);
+  return out;
+}
+
+// The wheels tell speeds to 0.05 rad/s; blank_radio's 0.3 hides a command that is one packet late.
+inline Dataset with_quiet_wheels(Dataset d) {
+  for (Channel& c : d.channels)
+    if (c.signal.starts_with("wheel_speed")) c.sigma = 0.05;
+  return d;
+}
+
 }  // namespace omnihil::test

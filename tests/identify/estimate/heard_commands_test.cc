@@ -8,42 +8,10 @@
 namespace omnihil {
 namespace {
 
-using test::blank_radio;
+using test::measured_without;
 using test::radio_candidate;
-
-// A host that says something new in most packets: a staircase along two axes.
-Dataset staircase(double duration_s) {
-  Dataset d = blank_radio(duration_s);
-  for (Run& run : d.runs) {
-    for (std::size_t k = 0; k < run.time_s.size(); ++k) {
-      const double t = run.time_s[k];
-      run.signals["command_vx"][k] = t < 0.3 ? 0.0 : 0.02 * std::round(40.0 * std::sin(2.1 * t));
-      run.signals["command_vy"][k] = t < 0.3 ? 0.0 : 0.02 * std::round(30.0 * std::sin(2.9 * t));
-      run.signals["command_w"][k] = 0.0;
-    }
-  }
-  return d;
-}
-
-// What a robot did that did not hear the commands of `lost`; the file says what was sent.
-Dataset measured_without(const Dataset& sent, const std::vector<std::size_t>& lost, const Candidate& truth) {
-  Dataset heard = sent;
-  for (Run& run : heard.runs)
-    for (const std::size_t k : lost)
-      for (const char* name : {"command_vx", "command_vy", "command_w"}) run.signals[name][k] = kMissing;
-  Dataset out = test::measured(heard, *make_predictor(heard, radio_candidate(), {})->simulated(truth, 3));
-  for (std::size_t r = 0; r < out.runs.size(); ++r)
-    for (const char* name : {"command_vx", "command_vy", "command_w"})
-      out.runs[r].signals[name] = sent.runs[r].signals.at(name);
-  return out;
-}
-
-// The wheels tell speeds to 0.05 rad/s; blank_radio's 0.3 hides a command that is one packet late.
-Dataset with_quiet_wheels(Dataset d) {
-  for (Channel& c : d.channels)
-    if (c.signal.starts_with("wheel_speed")) c.sigma = 0.05;
-  return d;
-}
+using test::staircase;
+using test::with_quiet_wheels;
 
 Candidate late_truth() {
   Candidate truth = radio_candidate();
@@ -83,6 +51,23 @@ TEST(HeardCommands, AreAllWhereTheModelFollowsLittle) {
     for (int i = 1; i <= 4; ++i)
       for (double& v : run.signals["wheel_speed_" + std::to_string(i)]) v = 0.0;
   EXPECT_EQ(heard_commands(d, radio_candidate(), {}).lost_packets(), 0u);
+}
+
+// Measurements that are 10 ms old are no late commands, and no lost ones: a model that knows of it tells them apart.
+TEST(HeardCommands, AreDecidedByAModelThatIsRightWhereTheFirstWasWrong) {
+  const std::vector<std::size_t> lost = {40, 77, 78, 131, 205};
+  Candidate truth = with_effect(late_truth(), *find_effect("sampling_delay"));
+  ASSERT_EQ(set_value(truth, "sampling_delay.delay_s", 0.01), "");
+  const Dataset d = measured_without(with_quiet_wheels(staircase(5.0)), lost, truth);
+  const HeardCommands first = heard_commands(d, radio_candidate(), {});
+  const HeardCommands second = heard_by(d, radio_candidate(), truth);
+  EXPECT_FALSE(second.same_lost(first));
+  for (std::size_t r = 0; r < 2; ++r) {
+    EXPECT_NE(first.lost[r].rows, lost) << r;
+    EXPECT_EQ(second.lost[r].rows, lost) << r;
+  }
+  EXPECT_TRUE(second.dataset.heard);
+  EXPECT_EQ(second.dataset.notes.size(), d.notes.size() + 2);
 }
 
 TEST(HeardCommands, LeaveARobotThatDutiesDriveAsItIs) {
