@@ -91,9 +91,29 @@ struct BoardPorts::WireEnd {
   std::uint64_t out = 0, in = 0, lost = 0;
 };
 
+// What is typed at a port's console, from the first of it that it was not given yet.
+struct BoardPorts::Typed {
+  Typed(const mcu::PortEntry& entry, const BoardPortsOptions& options)
+      : text(entry.console ? options.typed : ConsoleInput{}), robot_id(options.robot_id) {}
+  std::span<const std::uint8_t> take(std::size_t most) {
+    if (!text) return {};
+    const std::string_view more = text(robot_id).substr(given).substr(0, most);
+    given += more.size();
+    return {reinterpret_cast<const std::uint8_t*>(more.data()), more.size()};
+  }
+  ConsoleInput text;
+  std::uint32_t robot_id;
+  std::size_t given = 0;
+};
+
 struct BoardPorts::SerialPort final : Port {
-  SerialPort(const mcu::PortEntry& entry, mcu::McuBoard& on, ConsoleText console)
-      : Port(entry), board(on), usart(*on.chip().find<mcu::Usart>(entry.of)), text(std::move(console)) {
+  SerialPort(const mcu::PortEntry& entry, mcu::McuBoard& on, ConsoleText console,
+             const BoardPortsOptions& options)
+      : Port(entry),
+        board(on),
+        usart(*on.chip().find<mcu::Usart>(entry.of)),
+        text(std::move(console)),
+        typed(entry, options) {
     usart.on_transmit([this](std::uint8_t byte, mcu::Cycles) {
       if (is.console) text.add(as_text({&byte, 1}));
       end.say({&byte, 1});
@@ -101,10 +121,13 @@ struct BoardPorts::SerialPort final : Port {
   }
 
   void pump() override {
-    if (!end.open()) return;
     // Not more than the line carries in that time.
     const double per_run = usart.baud() / 10.0 * 1e-9 * static_cast<double>(board.spec().coupling_ns);
-    const auto arrived = end.take(static_cast<std::size_t>(std::clamp(per_run, 1.0, 4096.0)));
+    const auto most = static_cast<std::size_t>(std::clamp(per_run, 1.0, 4096.0));
+    const auto by_hand = typed.take(most);
+    if (!by_hand.empty()) usart.feed(by_hand, board.now_ns());
+    if (!end.open()) return;
+    const auto arrived = end.take(most - by_hand.size());
     if (!arrived.empty()) usart.feed(arrived, board.now_ns());
     end.send();
   }
@@ -125,6 +148,7 @@ struct BoardPorts::SerialPort final : Port {
   mcu::McuBoard& board;
   mcu::Usart& usart;
   ConsoleText text;
+  Typed typed;
   WireEnd end;
 };
 
@@ -172,13 +196,17 @@ struct BoardPorts::TextSource final : Port {
 };
 
 struct BoardPorts::RttSource final : Port {
-  RttSource(const mcu::PortEntry& entry, mcu::McuBoard& board, ConsoleText console)
-      : Port(entry), rtt(board.machine()), text(std::move(console)) {}
+  RttSource(const mcu::PortEntry& entry, mcu::McuBoard& board, ConsoleText console,
+            const BoardPortsOptions& options)
+      : Port(entry), rtt(board.machine()), text(std::move(console)), typed(entry, options) {}
   void pump() override {
     rtt.pump([this](std::string_view said) {
       if (is.console) text.add(said);
       end.say({reinterpret_cast<const std::uint8_t*>(said.data()), said.size()});
     });
+    if (const std::size_t room = rtt.room(); room > 0) {
+      if (const auto by_hand = typed.take(room); !by_hand.empty()) rtt.put(by_hand);
+    }
     if (!end.open()) return;
     if (const std::size_t room = rtt.room(); room > 0) rtt.put(end.take(room));
     end.send();
@@ -190,6 +218,7 @@ struct BoardPorts::RttSource final : Port {
   }
   RttConsole rtt;
   ConsoleText text;
+  Typed typed;
   WireEnd end;
 };
 
@@ -224,7 +253,7 @@ BoardPorts::BoardPorts(mcu::McuBoard& board, const BoardPortsOptions& options) {
     });
     WireProblem problem;
     if (entry.source == mcu::PortSource::kRtt) {
-      auto port = std::make_unique<RttSource>(entry, board, std::move(text));
+      auto port = std::make_unique<RttSource>(entry, board, std::move(text), options);
       port->end.wire = byte_wire(entry, options, problem);
       ports_.push_back(std::move(port));
     } else if (!entry.bus.empty()) {
@@ -235,7 +264,7 @@ BoardPorts::BoardPorts(mcu::McuBoard& board, const BoardPortsOptions& options) {
       std::unique_ptr<FrameWire> wire = open_frame_wire(url_of(entry, options), kUsual, problem);
       if (wire) ports_.push_back(std::make_unique<CanLine>(entry, board, std::move(wire)));
     } else {
-      auto port = std::make_unique<SerialPort>(entry, board, std::move(text));
+      auto port = std::make_unique<SerialPort>(entry, board, std::move(text), options);
       port->end.wire = byte_wire(entry, options, problem);
       ports_.push_back(std::move(port));
     }

@@ -25,11 +25,16 @@ namespace omnihil {
 using ConsoleListener =
     std::function<void(std::uint32_t robot_id, int board, const std::string& port, const std::string& line)>;
 
+// All that has been typed at this robot's consoles since the start; it only grows. A port with `console` that takes bytes is
+// given it as if by a wire.
+using ConsoleInput = std::function<std::string_view(std::uint32_t robot_id)>;
+
 struct BoardPortsOptions {
   std::uint32_t robot_id = 0;
   int board = 0;           // of the robot
   std::string board_file;  // in messages
   ConsoleListener on_line = {};
+  ConsoleInput typed = {};
   BoardBuses* buses = nullptr;  // of the robot; needed where a port is on one
 };
 
@@ -48,6 +53,7 @@ class BoardPorts {
  private:
   struct Port;
   struct WireEnd;
+  struct Typed;
   struct SerialPort;
   struct CanLine;
   struct TextSource;

@@ -39,8 +39,8 @@ class ImageFirmware final : public Firmware {
     for (int b = 0; b < mcu_.boards(); ++b) {
       if (!image_->board.ports.empty() && listeners.ports) {
         ports_.push_back(std::make_unique<BoardPorts>(
-            mcu_.board(b),
-            BoardPortsOptions{config.robot_id, b, image_->board_file, keeper_of_lines(), &buses_}));
+            mcu_.board(b), BoardPortsOptions{config.robot_id, b, image_->board_file, keeper_of_lines(),
+                                             listeners.typed, &buses_}));
       }
       if (listeners.on_board)
         listeners.on_board({config.robot_id, b, mcu_.boards(), mcu_.board(b), image_->elf});

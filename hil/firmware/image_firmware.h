@@ -29,6 +29,7 @@ using BoardListener = std::function<void(const MadeBoard&)>;
 struct ImageListeners {
   BoardListener on_board = {};
   ConsoleListener on_line = {};
+  ConsoleInput typed = {};
   bool ports = true;  // false: nothing leads out: ports are not opened, cards not written
 };
 

@@ -187,6 +187,7 @@ int run(Words& words) {
           if (print) print(robot, board, port, line);
           if (*record) (*record)(robot, board, port, line);
         };
+    words.firmware.all.listeners.typed = console_input(words.console);
     words.firmware.all.listeners.on_board = gdb_listener(gdb.get());
     ImageReports reports(words.observe, words.firmware.all.file);
     words.firmware.all.observer = reports.observer();

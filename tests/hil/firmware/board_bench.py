@@ -16,7 +16,7 @@ def board_text(name):
         return file.read()
 
 
-def on_board(image, board, *arguments):
+def on_board(image, board, *arguments, typed=None):
     """{folder} in the board's text is the bench's own."""
     return benches.Bench(["--physics", "planar", "--firmware", image, "--board", "{folder}/board.toml", *arguments],
-                         files={"board.toml": board})
+                         files={"board.toml": board}, typed=typed)

@@ -11,13 +11,13 @@ from board_bench import benches, board_text, on_board
 IMAGE = os.path.join(os.environ["OMNIHIL_BUILD"], "images", "ports.elf")
 
 
-def served(ports, *arguments):
+def served(ports, *arguments, typed=None):
     """A bench whose robots' boards have these ports; {folder} stands for the bench's own folder."""
     if not os.path.exists(IMAGE):
         raise benches.Skip("no arm-none-eabi-gcc: the image was not built")
     if "semihosting" not in ports:  # the image says something by it; without a console that is a fault
         ports += '\n[[port]]\nof = "semihosting"\nconsole = true\n'
-    return on_board(IMAGE, board_text("four_wheels_f405.toml") + ports, *arguments)
+    return on_board(IMAGE, board_text("four_wheels_f405.toml") + ports, *arguments, typed=typed)
 
 
 class Line:
@@ -148,6 +148,16 @@ def what_it_says_is_in_the_report_and_on_the_terminal():
                      ("RTT", "by rtt, and it is longer than the buffer")):
         assert f"robot 2 {of} | {line}" in report.text, report.text
         assert f"{of} said 1 lines:" in report.text, report.text
+
+
+def what_is_typed_is_heard_by_the_robots_named():
+    ports = '\n[[port]]\nof = "RTT"\nconsole = true\n'
+    with served(ports, "--robots", "1-2", "--console", "2", "--clock", "free", "--duration", "0.3",
+                typed=b"typed by hand\n") as bench:
+        report = bench.finish()
+    assert report.code == 0, report.text
+    assert "robot 2 RTT | TYPED BY HAND" in report.text, report.text
+    assert report.text.count("TYPED BY HAND") == 2, report.text  # as it is said, and in the report
 
 
 def what_it_says_is_in_the_recording():

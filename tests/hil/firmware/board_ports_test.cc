@@ -19,6 +19,7 @@ SCRIPT_TEST(BoardPorts, "firmware/board_ports_client.py", a_socket_carries_a_flo
 SCRIPT_TEST(BoardPorts, "firmware/board_ports_client.py", can_frames_come_and_go)
 SCRIPT_TEST(BoardPorts, "firmware/board_ports_client.py", a_motor_turns_as_its_can_is_told)
 SCRIPT_TEST(BoardPorts, "firmware/board_ports_client.py", what_it_says_is_in_the_report_and_on_the_terminal)
+SCRIPT_TEST(BoardPorts, "firmware/board_ports_client.py", what_is_typed_is_heard_by_the_robots_named)
 SCRIPT_TEST(BoardPorts, "firmware/board_ports_client.py", what_it_says_is_in_the_recording)
 
 struct BoardPortFiles : CliTest {

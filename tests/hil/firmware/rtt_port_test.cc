@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -78,6 +79,31 @@ TEST_F(RttPort, AWireIsATerminalBothWays) {
   for (const std::string& line : ports.report()) report += line + "\n";
   EXPECT_NE(report.find("RTT at pty:"), std::string::npos) << report;
   EXPECT_NE(report.find("12 in"), std::string::npos) << report;
+}
+
+// As it comes, and as there is room. A serial port hears it once its receiver is on, as on a line.
+TEST_F(RttPort, WhatIsTypedReachesTheConsoles) {
+  std::string typed;
+  std::vector<std::string> said;
+  const auto on = board(
+      "console = true\n[[port]]\nof = \"RTT\"\nconsole = true\n[[port]]\nof = \"USART2\"\nconsole = true\n");
+  BoardPorts ports(*on, {.robot_id = 3,
+                         .board_file = "b.toml",
+                         .on_line = [&](std::uint32_t, int, const std::string& port,
+                                        const std::string& line) { said.push_back(port + ": " + line); },
+                         .typed =
+                             [&](std::uint32_t robot) {
+                               return robot == 3 ? std::string_view(typed) : std::string_view();
+                             }});
+  for (int n = 0; n < 800; ++n) {
+    if (n == 100) typed += "typed ";
+    if (n == 400) typed += "by hand, more than there is room for\n";
+    ports.pump();
+    on->run_until_ns(on->now_ns() + 500'000);
+  }
+  const std::string all = "TYPED BY HAND, MORE THAN THERE IS ROOM FOR";
+  EXPECT_NE(std::ranges::find(said, "RTT: " + all), said.end()) << testing::PrintToString(said);
+  EXPECT_NE(std::ranges::find(said, "USART2: " + all), said.end()) << testing::PrintToString(said);
 }
 
 TEST_F(RttPort, TextThatOnlyLeadsOutHasNoWire) {

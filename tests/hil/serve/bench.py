@@ -53,9 +53,9 @@ class Report:
 
 
 class Bench:
-    def __init__(self, arguments=(), columns=None, device=None, files=None):
+    def __init__(self, arguments=(), columns=None, device=None, files=None, typed=None):
         """columns: the bench sees a terminal that wide instead of a pipe. device: a wire instead of a path.
-        files: texts by name, in its folder before it starts; {folder} in them is that."""
+        files: texts by name, in its folder before it starts; {folder} in them is that. typed: its standard input."""
         self.folder = tempfile.mkdtemp(prefix="omnihil-serve-")
         for name, text in (files or {}).items():
             with open(self.path(name), "w", encoding="utf-8") as file:
@@ -69,8 +69,12 @@ class Bench:
         else:
             self.output, end = os.pipe()
         self.process = subprocess.Popen([self.program, "serve", "--device", self.device, *arguments],
-                                        stdin=subprocess.DEVNULL, stdout=end, stderr=subprocess.STDOUT)
+                                        stdin=subprocess.DEVNULL if typed is None else subprocess.PIPE, stdout=end,
+                                        stderr=subprocess.STDOUT)
         os.close(end)
+        if typed is not None:
+            with self.process.stdin as keys:
+                keys.write(typed)
         self.text = ""
         self.wait_for(" ready: ")
         self.device = re.search(r"device (\S+) ready: ", self.text).group(1)  # a wire's name may say more
