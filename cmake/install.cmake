@@ -31,7 +31,8 @@ install(DIRECTORY ${manual}/share DESTINATION .)
 
 # The libraries that are pure. Headers name each other by their path in the project: "sim/law/effect.h".
 install(DIRECTORY sim identify protocols DESTINATION ${omnihil_includes} COMPONENT development FILES_MATCHING PATTERN "*.h")
-install(FILES firmware_iface/checksum.h firmware_iface/omnihil_firmware.h firmware_iface/ports.h firmware_iface/robot_io.h
+install(FILES firmware_iface/checksum.h firmware_iface/omnihil_firmware.h firmware_iface/phase_period.h firmware_iface/ports.h
+              firmware_iface/robot_io.h
         DESTINATION ${omnihil_includes}/firmware_iface COMPONENT development)
 add_library(omnihil_effects INTERFACE)  # the catalogue of effects is in the models' library
 target_link_libraries(omnihil_effects INTERFACE omnihil_sim)

@@ -28,6 +28,7 @@ struct ToothPull {
       .reveals = "slow turning: current twice per turn",
       .visible = "as imbalance",
       .claims = kConservative,
+      .of_angle = LawOfAngle::kRotor,
       .params = kParams,
   };
 
