@@ -37,12 +37,13 @@ void check_constant(const CheckContext& data, std::vector<DataFinding>& findings
       if (!is_constant(values)) continue;
       const double value =
           *std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-      const bool moves = row.role == SignalRole::kMotion || row.role == SignalRole::kCounts;
+      const bool moves = (row.role == SignalRole::kMotion || row.role == SignalRole::kCounts) &&
+                         !data.dataset.channel(name)->imposed;
       if (moves && moves_elsewhere(data, name)) {
         const bool of_wheel = name.starts_with("encoder") || name.starts_with("wheel_speed");
         findings.push_back({of_wheel ? Grade::kDoubt : Grade::kNote, "constant", run.file, name, value,
                             fmt::format("{} is {:g} throughout, and moves in other runs", name, value)});
-      } else if (moves && !data.dataset.channel(name)->imposed) {
+      } else if (moves) {
         findings.push_back(
             {Grade::kFault, "constant", run.file, name, value,
              fmt::format("{} is {:g} throughout: nothing moved, or its sensor was not connected", name,

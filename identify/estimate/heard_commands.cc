@@ -10,8 +10,8 @@
 namespace omnihil {
 namespace {
 
-constexpr int kRounds = 3;       // of fit and decisions, by cost
-constexpr int kIterations = 12;  // of a fit, by cost
+constexpr int kRounds = 3;       // of fit and decisions; a choice, by cost
+constexpr int kIterations = 12;  // of a fit; a choice, by cost
 constexpr double kMostLost =
     0.2;  // of a run's commands: four times what radios are reported to lose; a choice
 

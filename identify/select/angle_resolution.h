@@ -46,9 +46,8 @@ bool is_never_resolved(const EffectInfo& info, const AngleDrift& drift);
 
 // For people: of what rows lie too far apart for, and of what no row tells.
 inline constexpr std::string_view kPhaseUnresolved =
-    "not visible in these data: no sensor reports the angle, and from one row to the next the model's is off "
-    "by "
-    "more than half a period";
+    "not visible in these data: no sensor reports the angle, and from one row to the next the model's is "
+    "off by more than half a period";
 inline constexpr std::string_view kNoPhase = "needs encoders: its phase is that of an angle";
 // Does no row of these data tell the law's phase?
 bool lacks_phase(const EffectInfo& info, const Dataset& dataset);

@@ -283,7 +283,7 @@ class Diagnosing {
   // figures by what was heard then.
   void hear_anew() {
     if (out_.effects.empty() || stopped_) return;
-    say("are the same commands lost", 0.86);
+    say("are the same commands lost", kAfterRounds);
     HeardCommands anew = heard_by(recorded_, nominal_, current_.fit.model);
     if (anew.same_lost(heard())) return;
     std::unique_ptr<Data> data = data_of(std::move(anew));

@@ -18,8 +18,7 @@ namespace omnihil {
 void add_console_option(Verb& verb, std::string& robots) {
   verb.add_option("--console", robots,
                   "print what these robots' boards say on their consoles, such as 3 or 0-5; serve gives them "
-                  "what is typed "
-                  "(docs/mcu-boards.md)");
+                  "what is typed (docs/mcu-boards.md)");
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "hil/firmware/image_firmware.h"
 #include "hil/recording/session_setup.h"
 #include "tests/hil/firmware/esc_image.h"
+#include "tests/hil/one_robot.h"
 
 namespace omnihil {
 namespace {
@@ -168,11 +169,7 @@ TEST_F(AteamWheel, AnswersWithItsGains) {
 }
 
 SessionConfig ateam_robot(std::int64_t step_ns) {
-  SessionSetup setup;
-  setup.model = load_robot_model("ateam_2025", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
-  setup.radio_format = "ulaval-hermes";
-  setup.robot_ids = {0};
-  setup.plant.physics = Physics::kPlanar;
+  SessionSetup setup = test::one_robot("ateam_2025");
   setup.step_ns = step_ns;
   return session_config(setup);
 }

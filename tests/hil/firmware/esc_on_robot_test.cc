@@ -7,6 +7,7 @@
 #include "sim/robot/electric_model.h"
 #include "tests/hil/firmware/third_party.h"
 #include "tests/hil/firmware/vesc_line.h"
+#include "tests/hil/one_robot.h"
 
 namespace omnihil {
 namespace {
@@ -16,11 +17,7 @@ struct EscOnRobot : ThirdPartyImage {
   void SetUp() override {
     ThirdPartyImage::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
-    SessionSetup setup;
-    setup.model = load_robot_model("omni_foc", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
-    setup.radio_format = "ulaval-hermes";
-    setup.robot_ids = {0};
-    setup.plant.physics = Physics::kPlanar;
+    SessionSetup setup = test::one_robot("omni_foc");
     const SessionConfig config = session_config(setup);
     motor_ = phase_motor(config.robots[0]);
     session_ = std::make_unique<Session>(

@@ -8,10 +8,10 @@
 
 #include "firmware_iface/mcu/stm32/bxcan.h"
 #include "hil/firmware/image_firmware.h"
-#include "hil/loop/model_store.h"
 #include "hil/recording/session_setup.h"
 #include "tests/hil/firmware/motor_on_board.h"
 #include "tests/hil/firmware/third_party.h"
+#include "tests/hil/one_robot.h"
 
 namespace omnihil {
 namespace {
@@ -150,11 +150,7 @@ TEST_F(IbisBoard, TwoBoardsOfARobotTakeTheirOwnMotorsCommands) {
 // Without a speed loop the robot only nearly does what is asked: every wheel the right way, and the body
 // within a tenth.
 TEST_F(IbisBoard, SlowTwoBoardsDriveTheRobotTheRightWay) {
-  SessionSetup setup;
-  setup.model = load_robot_model("ibis_orion", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
-  setup.radio_format = "ulaval-hermes";
-  setup.robot_ids = {0};
-  setup.plant.physics = Physics::kPlanar;
+  SessionSetup setup = test::one_robot("ibis_orion");
   Session session(session_config(setup), image_firmware(third_party_image(image_file_), board_file_));
   constexpr double kForward_m_s = 0.8, kLeft_m_s = 0.3, kAngle_deg[] = {300, 225, 135, 60};
   const auto move = hermes_packet("SPEED_MOVE", {{"vx", kForward_m_s}, {"vy", kLeft_m_s}});

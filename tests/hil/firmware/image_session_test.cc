@@ -10,8 +10,8 @@
 
 #include "hil/firmware/image_firmware.h"
 #include "hil/firmware/open_firmware.h"
-#include "hil/loop/model_store.h"
 #include "hil/recording/session_setup.h"
+#include "tests/hil/one_robot.h"
 
 #if defined(__x86_64__)
 #define OMNIHIL_HOST_MACHINE "x86-64 (machine 62)"
@@ -28,11 +28,7 @@ const std::string kBoard = OMNIHIL_SOURCE_DIR "/boards/four_wheels_f405.toml";
 constexpr double kRotor_rad_s = 60.0;  // in the board file's preset flash
 
 SessionConfig one_robot(std::int64_t step_ns) {
-  SessionSetup setup;
-  setup.model = load_robot_model("omni_default", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
-  setup.radio_format = "ulaval-hermes";
-  setup.robot_ids = {0};
-  setup.plant.physics = Physics::kPlanar;
+  SessionSetup setup = test::one_robot("omni_default");
   setup.step_ns = step_ns;
   return session_config(setup);
 }

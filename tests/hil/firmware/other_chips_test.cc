@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "hil/firmware/image_firmware.h"
-#include "hil/loop/model_store.h"
 #include "hil/recording/session_setup.h"
+#include "tests/hil/one_robot.h"
 
 namespace omnihil {
 namespace {
@@ -42,11 +42,7 @@ TEST_P(OtherChips, WheelsReachTheirSpeedsWithinOnePercentAndNothingIsUnmodelled)
   const auto board = std::filesystem::temp_directory_path() /
                      ("omnihil-other-" + std::to_string(::getpid()) + GetParam().chip + ".toml");
   std::ofstream(board) << board_text();
-  SessionSetup setup;
-  setup.model = load_robot_model("omni_default", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
-  setup.radio_format = "ulaval-hermes";
-  setup.robot_ids = {0};
-  setup.plant.physics = Physics::kPlanar;
+  SessionSetup setup = test::one_robot("omni_default");
   setup.step_ns = 1'000'000;
   Session session(session_config(setup), image_firmware(image(), board.string()));
   std::filesystem::remove(board);

@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "hil/firmware/image_firmware.h"
-#include "hil/loop/model_store.h"
 #include "hil/recording/session_setup.h"
 #include "sim/robot/electric_model.h"
+#include "tests/hil/one_robot.h"
 
 namespace omnihil {
 namespace {
@@ -28,11 +28,7 @@ struct PhaseSteps : testing::TestWithParam<DriveKind> {
     if (!std::ifstream(image)) GTEST_SKIP() << "no arm-none-eabi-gcc: the image was not built";
     const std::string board_file = testing::TempDir() + "phase_steps.toml";
     std::ofstream(board_file) << kBoard;
-    SessionSetup setup;
-    setup.model = load_robot_model("omni_foc", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
-    setup.radio_format = "ulaval-hermes";
-    setup.robot_ids = {0};
-    setup.plant.physics = Physics::kPlanar;
+    SessionSetup setup = test::one_robot("omni_foc");
     SessionConfig config = session_config(setup);
     set_electrics(config.robots[0], [](ElectricModel& e) {
       e.kind = GetParam();

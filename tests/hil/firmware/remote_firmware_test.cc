@@ -13,6 +13,7 @@
 
 #include "hil/loop/reference_firmware.h"
 #include "hil/recording/session_setup.h"
+#include "tests/hil/one_robot.h"
 
 namespace omnihil {
 namespace {
@@ -40,11 +41,7 @@ class EmulatedBoard {
 };
 
 SessionConfig config_of_one_robot() {
-  SessionSetup setup;
-  setup.model = load_robot_model("omni_default", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
-  setup.radio_format = "ulaval-hermes";
-  setup.robot_ids = {0};
-  setup.plant.physics = Physics::kPlanar;
+  SessionSetup setup = test::one_robot("omni_default");
   return session_config(setup);
 }
 

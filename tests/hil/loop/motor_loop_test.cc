@@ -15,6 +15,7 @@
 #include "hil/recording/session_setup.h"
 #include "protocols/radio_format.h"
 #include "sim/robot/electric_model.h"
+#include "tests/hil/one_robot.h"
 
 namespace omnihil {
 namespace {
@@ -22,11 +23,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 SessionConfig phase_session(DriveKind kind, MotorLoop loop) {
-  SessionSetup setup;
-  setup.model = load_robot_model("omni_default", {OMNIHIL_SOURCE_DIR "/models"}).bundle;
-  setup.radio_format = "ulaval-hermes";
-  setup.robot_ids = {0};
-  setup.plant.physics = Physics::kPlanar;
+  SessionSetup setup = test::one_robot("omni_default");
   SessionConfig config = session_config(setup);
   config.robots[0].motor_loop = loop;
   set_electrics(config.robots[0], [kind](ElectricModel& e) {

@@ -22,10 +22,14 @@ BridgeLegs mean(const BridgeLegs& before, const BridgeLegs& after, std::int64_t 
   return is;
 }
 
+void expect_leg(const BridgeLegs& is, std::uint32_t leg, double duty) {
+  EXPECT_EQ(is.leg[0], leg);
+  EXPECT_DOUBLE_EQ(is.duty_ratio[0], duty);
+}
+
 TEST(LegMeans, ADutyThatStepsIsItsMean) {
-  const BridgeLegs is = mean(legs(OMNIHIL_LEG_PWM, 0.2), legs(OMNIHIL_LEG_PWM, 0.6), 25);
-  EXPECT_EQ(is.leg[0], static_cast<std::uint32_t>(OMNIHIL_LEG_PWM));
-  EXPECT_DOUBLE_EQ(is.duty_ratio[0], 0.25 * 0.2 + 0.75 * 0.6);
+  expect_leg(mean(legs(OMNIHIL_LEG_PWM, 0.2), legs(OMNIHIL_LEG_PWM, 0.6), 25), OMNIHIL_LEG_PWM,
+             0.25 * 0.2 + 0.75 * 0.6);
 }
 
 // 0.1 has no exact mean of itself.
@@ -40,26 +44,17 @@ TEST(LegMeans, ALegThatDoesNotChangeIsWhatItWasToTheLastBit) {
 }
 
 TEST(LegMeans, ALegHeldAtARailIsADutyOfThatRail) {
-  const BridgeLegs low = mean(legs(OMNIHIL_LEG_LOW, 1.0), legs(OMNIHIL_LEG_PWM, 0.5), 50);
-  EXPECT_EQ(low.leg[0], static_cast<std::uint32_t>(OMNIHIL_LEG_PWM));
-  EXPECT_DOUBLE_EQ(low.duty_ratio[0], 0.25);
-  const BridgeLegs high = mean(legs(OMNIHIL_LEG_HIGH, 1.0), legs(OMNIHIL_LEG_PWM, 0.5), 50);
-  EXPECT_EQ(high.leg[0], static_cast<std::uint32_t>(OMNIHIL_LEG_PWM));
-  EXPECT_DOUBLE_EQ(high.duty_ratio[0], 0.75);
+  expect_leg(mean(legs(OMNIHIL_LEG_LOW, 1.0), legs(OMNIHIL_LEG_PWM, 0.5), 50), OMNIHIL_LEG_PWM, 0.25);
+  expect_leg(mean(legs(OMNIHIL_LEG_HIGH, 1.0), legs(OMNIHIL_LEG_PWM, 0.5), 50), OMNIHIL_LEG_PWM, 0.75);
 }
 
 TEST(LegMeans, OneSwitchAndOpenIsThatSwitchForItsShare) {
-  const BridgeLegs is = mean(legs(OMNIHIL_LEG_HIGH, 0.4), legs(OMNIHIL_LEG_OFF, 0.0), 50);
-  EXPECT_EQ(is.leg[0], static_cast<std::uint32_t>(OMNIHIL_LEG_HIGH));
-  EXPECT_DOUBLE_EQ(is.duty_ratio[0], 0.2);
+  expect_leg(mean(legs(OMNIHIL_LEG_HIGH, 0.4), legs(OMNIHIL_LEG_OFF, 0.0), 50), OMNIHIL_LEG_HIGH, 0.2);
 }
 
 TEST(LegMeans, BothSwitchesAndOpenIsWhatItWasLonger) {
-  const BridgeLegs driven = mean(legs(OMNIHIL_LEG_PWM, 0.4), legs(OMNIHIL_LEG_OFF, 0.0), 60);
-  EXPECT_EQ(driven.leg[0], static_cast<std::uint32_t>(OMNIHIL_LEG_PWM));
-  EXPECT_DOUBLE_EQ(driven.duty_ratio[0], 0.4);
-  EXPECT_EQ(mean(legs(OMNIHIL_LEG_PWM, 0.4), legs(OMNIHIL_LEG_OFF, 0.0), 40).leg[0],
-            static_cast<std::uint32_t>(OMNIHIL_LEG_OFF));
+  expect_leg(mean(legs(OMNIHIL_LEG_PWM, 0.4), legs(OMNIHIL_LEG_OFF, 0.0), 60), OMNIHIL_LEG_PWM, 0.4);
+  expect_leg(mean(legs(OMNIHIL_LEG_PWM, 0.4), legs(OMNIHIL_LEG_OFF, 0.0), 40), OMNIHIL_LEG_OFF, 0.0);
 }
 
 }  // namespace
