@@ -23,7 +23,7 @@ void check_silent(const CheckContext& data, std::vector<DataFinding>& findings) 
                "{} repeats {:.6g} from {:.2f} s to {:.2f} s while the wheels {} the robot by {:.2g} {}: its "
                "sensor went silent; these rows of it are not used",
                heading ? "vision_theta" : "vision_x, vision_y", (*run.signal(s.signal))[s.from] + 0.0,
-               run.time_s[s.from], run.time_s[s.to], heading ? "turn" : "drive", std::abs(s.moved),
+               run.time_s[s.from], run.time_s[s.to], heading ? "turn" : "drive", s.moved,
                heading ? "rad" : "m")});
     }
   }

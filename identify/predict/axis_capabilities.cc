@@ -3,20 +3,6 @@
 #include "identify/predict/predictor_axis.h"
 
 namespace omnihil {
-namespace {
-
-// Of base parameters: those with a tolerance, and those of the drive that are not 0.
-void add_base(const Candidate& nominal, const DriveParams<double>& drive, Capabilities& out) {
-  for (const Parameter& p : nominal.file.parameters.parameters) {
-    if (p.tolerance.value_or(0.0) > 0.0) out.free_base.push_back(parameter_path(*p.row));
-  }
-  for (const DriveParamPath& p : drive_param_paths()) {
-    if (drive.*p.value > 0.0) out.present_base.emplace_back(p.path);
-  }
-}
-
-}  // namespace
-
 Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal) {
   const CommandKind kind = axis_command_kind(dataset);
   const DriveParams<double> drive = drive_of(nominal);
@@ -47,7 +33,12 @@ Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal)
                {kNeedsAngle, encoder || measured("position"), "needs an encoder"}},
       .free_base = {},
       .present_base = {}};
-  add_base(nominal, drive, out);
+  for (const Parameter& p : nominal.file.parameters.parameters) {
+    if (p.tolerance.value_or(0.0) > 0.0) out.free_base.push_back(parameter_path(*p.row));
+  }
+  for (const DriveParamPath& p : drive_param_paths()) {
+    if (drive.*p.value > 0.0) out.present_base.emplace_back(p.path);
+  }
   return out;
 }
 

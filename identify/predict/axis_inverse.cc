@@ -27,7 +27,13 @@ double cutoff_for(double rate_Hz) { return std::min(kHighestCutoff_Hz, kShareOfN
 // a motion's second derivative in a band is known.
 constexpr double kLevelSigma = 0.2;  // measured, as above
 constexpr double kLeastBand = 0.1;   // of that cutoff, however noisy the motion is; a choice
-LowPass filter_for(double rate_Hz) { return butterworth(kOrder, cutoff_for(rate_Hz), rate_Hz); }
+
+// d/dt of an evenly sampled signal.
+std::vector<double> rate_of(const std::vector<double>& x, double rate_Hz) {
+  std::vector<double> out = central_differences(x);
+  for (double& v : out) v *= rate_Hz;
+  return out;
+}
 
 // An even clock of the record's median period.
 std::vector<double> even_clock(const AxisRecord& r) {
@@ -36,13 +42,6 @@ std::vector<double> even_clock(const AxisRecord& r) {
   std::vector<double> t;
   for (std::size_t i = 0; i <= n; ++i) t.push_back(r.time_s.front() + static_cast<double>(i) * r.period_s);
   return t;
-}
-
-// A value held from k to k + 1, at the end of its interval.
-std::vector<double> at_interval_end(const std::vector<double>& x) {
-  std::vector<double> out(x.size());
-  for (std::size_t k = 0; k < x.size(); ++k) out[k] = x[k > 0 ? k - 1 : 0];
-  return out;
 }
 
 // Mean of a sampled signal from each sample to the next, of the cubic through four samples: that of the line loses 3 % of
@@ -132,33 +131,29 @@ std::vector<double> smoothed_velocity(const AxisRecord& record) {
   const std::vector<double> clock = even_clock(record);
   if (clock.size() < 30 || clock.size() > 4 * record.size()) return record.velocity;
   const double rate = 1.0 / record.period_s;
-  const LowPass filter = filter_for(rate);
-  std::vector<double> speed;
-  if (!record.velocity.empty()) {
-    speed = zero_phase(filter, resampled(record.time_s, record.velocity, clock));
-  } else {
-    const std::vector<double> x = resampled(record.time_s, record.position_or_counts(), clock);
-    if (x.empty()) return {};
-    speed = central_differences(zero_phase(filter, x));
-    for (double& v : speed) v *= rate;
-  }
-  return resampled(clock, speed, record.time_s);
+  const bool fast = !record.velocity.empty();
+  const std::vector<double> x =
+      resampled(record.time_s, fast ? record.velocity : record.position_or_counts(), clock);
+  if (x.empty()) return {};
+  const std::vector<double> low = zero_phase(butterworth(kOrder, cutoff_for(rate), rate), x);
+  return resampled(clock, fast ? low : rate_of(low, rate), record.time_s);
 }
 
 void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive, const AxisRecord& r,
                         AxisSetup& s) {
   const CommandKind kind = s.input.kind;
-  const Channel* speed_channel = dataset.channel("velocity");
-  const bool speed_imposed = speed_channel != nullptr && speed_channel->imposed;
+  const bool speed_imposed = speed_is_imposed(dataset);
   const double rate = 1.0 / r.period_s;
   AxisInput& in = s.input;
   in.time_s = even_clock(r);
   const auto linear = [&](const std::vector<double>& x) { return resampled(r.time_s, x, in.time_s); };
   const auto steps = [&](const std::vector<double>& x) {
     constexpr double kLate = 1e-6;  // of a period: time stamps are sums; a choice
-    return resampled_steps(r.time_s, x, in.time_s, kLate * r.period_s);
+    return resampled(r.time_s, x, in.time_s, [&](const KnownValues& known, double at_s) {
+      return known.held_at(at_s, kLate * r.period_s);
+    });
   };
-  const bool by_torque = kind == CommandKind::kMotorTorque || kind == CommandKind::kMotorCurrent;
+  const bool by_torque = is_torque(kind);
   const std::vector<double> command = by_torque ? linear(r.command) : steps(r.command);
   in.command = by_torque ? interval_means(command) : command;
   for (const double e : steps(r.enable)) in.enable.push_back(e != 0.0 ? 1 : 0);
@@ -173,8 +168,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     const Channel* encoder = dataset.channel("encoder");
     in.imposed_at_rotor = r.position.empty() && encoder != nullptr && !encoder->on_output;
     spectrum = NoiseSpectrum::kDifferenced;
-    velocity = central_differences(position);
-    for (double& v : velocity) v *= rate;
+    velocity = rate_of(position, rate);
     position = wiener_smoothed(position, NoiseSpectrum::kWhite).value;
   }
   const WienerEstimate smoothed = wiener_smoothed(velocity, spectrum);
@@ -218,7 +212,8 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   if (bench_torque) {
     add_filtered("load_torque", Quantity::kLoadTorque, linear(r.load_torque_Nm));
   } else if (!speed_imposed || by_torque || r.current.empty()) {
-    const std::vector<double> input = at_interval_end(in.command);
+    std::vector<double> input = in.command;  // at the end of the interval that each is held in
+    std::shift_right(input.begin(), input.end(), 1);
     in.command_is_compared = true;
     s.given = zero_phase(s.filter, input);
     add_filtered(command_name(needed_kind(kind)), Quantity::kNeededInput, input);

@@ -1,15 +1,9 @@
 #include "identify/predict/axis_outputs.h"
 
-#include <cmath>
-
 #include "identify/predict/settled_points.h"
 
 namespace omnihil {
 namespace {
-
-double bus_at(const AxisInput& in, std::size_t k) {
-  return in.bus_voltage_V.empty() ? 0.0 : in.bus_voltage_V[k];
-}
 
 template <typename T>
 T quantity_of(const AxisSetup& s, const DriveParams<T>& p, Quantity what,
@@ -33,10 +27,10 @@ T quantity_of(const AxisSetup& s, const DriveParams<T>& p, Quantity what,
     case Quantity::kNeededInput: {
       if (k == 0 && !s.steady) return T(0);
       const std::size_t from = s.steady ? k : k - 1;  // where what was given began
-      const double load = s.input.load_torque_Nm.empty() ? 0.0 : s.input.load_torque_Nm[from];
+      const auto given = [&](const std::vector<double>& of) { return of.empty() ? 0.0 : of[from]; };
       // torque that the bench would have to add at the rotor, beyond the measured load
-      const T lacking = (now.load_torque_Nm - load) / p.gear_ratio;
-      return lacking * input_per_torque(s.input.kind, p, bus_at(s.input, from));
+      const T lacking = (now.load_torque_Nm - given(s.input.load_torque_Nm)) / p.gear_ratio;
+      return lacking * input_per_torque(s.input.kind, p, given(s.input.bus_voltage_V));
     }
     default:
       return T(kMissing);

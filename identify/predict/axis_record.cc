@@ -10,12 +10,6 @@
 #include "sim/bench/axis_signal.h"
 
 namespace omnihil {
-namespace {
-
-constexpr std::size_t kHalfBusWindow[] = {kBusWindow / 2};  // to either side: derived
-
-}  // namespace
-
 double AxisRecord::longest_gap_s() const {
   constexpr double kGapPeriods = 10.0;  // a lost row or a late one is bridged, a pause is not; a choice
   return kGapPeriods * period_s;
@@ -85,6 +79,7 @@ double AxisRecord::speed_near(std::size_t k) const {
 }
 
 AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, const Run& run) {
+  constexpr std::size_t kHalfBusWindow[] = {kBusWindow / 2};  // to either side: derived
   AxisRecord r;
   r.gear_ratio = drive_of(nominal).gear_ratio;
   const std::vector<double>* command = run.signal(command_name(axis_command_kind(dataset)));

@@ -6,16 +6,6 @@
 #include "identify/predict/predictor_axis.h"
 
 namespace omnihil {
-namespace {
-
-std::vector<double> slope(const std::vector<double>& t, const std::vector<double>& x) {
-  std::vector<double> out(x.size(), kMissing);
-  for (std::size_t k = 1; k + 1 < x.size(); ++k) out[k] = (x[k + 1] - x[k - 1]) / (t[k + 1] - t[k - 1]);
-  return out;
-}
-
-}  // namespace
-
 std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model, double step_s) {
   std::vector<RegimeTrack> out;
   const AxisInput& in = s.input;
@@ -51,7 +41,9 @@ std::vector<RegimeTrack> axis_regimes(const AxisSetup& s, const Candidate& model
   add("speed", per_s, mapped(speed, size));
   add("velocity", per_s, speed);
   add("direction", "1", mapped(speed, [](double v) { return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0); }));
-  add("acceleration", drive.linear ? "m/s2" : "rad/s2", slope(in.time_s, speed));
+  std::vector<double> acceleration(speed.size(), kMissing);
+  for (std::size_t k = 1; k + 1 < speed.size(); ++k) acceleration[k] = rate_at(in.time_s, speed, k);
+  add("acceleration", drive.linear ? "m/s2" : "rad/s2", acceleration);
   add("abs_current", "A", mapped(current, size));
   add("rotor_angle", way, mapped(angle, [&](double v) { return v * gear; }));
   add("output_angle", way, angle);

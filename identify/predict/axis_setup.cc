@@ -10,8 +10,6 @@
 namespace omnihil {
 namespace {
 
-bool finite(double v) { return std::isfinite(v); }
-
 void set_motion(const Dataset& dataset, const AxisRecord& r, AxisInput& in) {
   for (const double e : r.enable) in.enable.push_back(e != 0.0 ? 1 : 0);
   if (const Channel* encoder = dataset.channel("encoder"); encoder != nullptr) {
@@ -23,9 +21,9 @@ void set_motion(const Dataset& dataset, const AxisRecord& r, AxisInput& in) {
   if (!servo) in.measured_position_rad = angle.empty() ? r.angle_by_speed() : angle;
   in.initial_position_rad = first_known(angle, 0.0);
   const double speed = servo && r.velocity.empty() ? 0.0 : r.speed_near(0);
-  in.initial_velocity_rad_s = finite(speed) ? speed : 0.0;
+  in.initial_velocity_rad_s = std::isfinite(speed) ? speed : 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!r.gap_before(k) || !finite(r.speed_near(k))) continue;
+    if (!r.gap_before(k) || !std::isfinite(r.speed_near(k))) continue;
     in.restart_velocity_rad_s.resize(r.size(), kMissing);
     in.restart_velocity_rad_s[k] = r.speed_near(k);
   }
@@ -89,12 +87,14 @@ CommandKind axis_command_kind(const Dataset& dataset) {
   return CommandKind::kMotorCurrent;
 }
 
-Method axis_method(const Dataset& dataset) {
-  const CommandKind kind = axis_command_kind(dataset);
+bool speed_is_imposed(const Dataset& dataset) {
   const Channel* velocity = dataset.channel("velocity");
-  const bool imposed = velocity != nullptr && velocity->imposed;
-  const bool by_torque = kind == CommandKind::kMotorTorque || kind == CommandKind::kMotorCurrent;
-  return imposed || by_torque ? Method::kInverse : Method::kForward;
+  return velocity != nullptr && velocity->imposed;
+}
+
+Method axis_method(const Dataset& dataset) {
+  const bool inverse = speed_is_imposed(dataset) || is_torque(axis_command_kind(dataset));
+  return inverse ? Method::kInverse : Method::kForward;
 }
 
 AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, const Run& run) {

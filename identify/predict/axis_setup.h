@@ -48,6 +48,10 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& record, AxisSet
 std::vector<double> smoothed_velocity(const AxisRecord& record);
 
 CommandKind axis_command_kind(const Dataset& dataset);
+bool speed_is_imposed(const Dataset& dataset);
+inline bool is_torque(CommandKind kind) {
+  return kind == CommandKind::kMotorTorque || kind == CommandKind::kMotorCurrent;
+}
 Method axis_method(const Dataset& dataset);
 
 }  // namespace omnihil

@@ -18,11 +18,13 @@ RobotCommand radio_command(std::span<const double> value, CommandFrame frame) {
   return c;
 }
 
-FirmwareLoop::FirmwareLoop(const FirmwareSource& source, double latency_s, double start_s)
+FirmwareLoop::FirmwareLoop(const FirmwareSource& source, double latency_s, double start_s,
+                           double report_filter_s)
     : firmware_(source.fresh()),
       counts_per_rad_(source.counts_per_rotor_turn() / (2.0 * std::numbers::pi)),
       latency_s_(latency_s),
       start_s_(start_s),
+      report_filter_s_(report_filter_s),
       next_s_(start_s),
       period_s_(1e-9 * static_cast<double>(firmware_->control_period_ns())),
       last_s_(start_s) {}
@@ -44,11 +46,13 @@ void FirmwareLoop::tick(double now_s, const RobotInstant& sees) {
   RobotSensors s{};
   s.now_us = static_cast<std::uint64_t>(clock_ns(now_s) / 1000);
   const double span_s = now_s - last_s_;
+  const double share = ticks_ > 0 ? -std::expm1(-period_s_ / report_filter_s_) : 1.0;
   RobotShafts shafts{};
   for (std::size_t i = 0; i < kWheels; ++i) {
     s.encoder_counts[i] = static_cast<std::int64_t>(std::floor(sees.theta_rotor_rad[i] * counts_per_rad_));
     shafts.theta_rotor_rad[i] = sees.theta_rotor_rad[i];
     shafts.omega_rotor_rad_s[i] = sees.omega_rotor_rad_s[i];
+    filtered_rad_s_[i] += (sees.omega_rotor_rad_s[i] - filtered_rad_s_[i]) * share;
     s.motor_current_A[i] = ticks_ > 0 && span_s > 0.0 ? (sees.charge_C[i] - last_charge_C_[i]) / span_s : 0.0;
     last_charge_C_[i] = sees.charge_C[i];
   }
@@ -66,10 +70,12 @@ void FirmwareLoop::tick(double now_s, const RobotInstant& sees) {
   next_s_ = start_s_ + static_cast<double>(++ticks_) * period_s_;
 }
 
-bool FirmwareLoop::tells(std::array<double, kWheels>& omega_wheel_rad_s) const {
-  const RobotFeedback f = firmware_->feedback();
-  if (ticks_ == 0 || f.now_us == 0) return false;
-  std::copy(std::begin(f.omega_wheel_rad_s), std::end(f.omega_wheel_rad_s), omega_wheel_rad_s.begin());
+bool FirmwareLoop::tells(double gear_ratio, std::array<double, kWheels>& omega_rotor_rad_s) const {
+  if (ticks_ == 0) return false;
+  const RobotFeedback told = firmware_->feedback();
+  omega_rotor_rad_s = filtered_rad_s_;
+  if (told.now_us == 0) return report_filter_s_ > 0.0;
+  for (std::size_t i = 0; i < kWheels; ++i) omega_rotor_rad_s[i] = told.omega_wheel_rad_s[i] * gear_ratio;
   return true;
 }
 

@@ -25,7 +25,7 @@ RobotCommand radio_command(std::span<const double> value, CommandFrame frame);
 
 class FirmwareLoop {
  public:
-  FirmwareLoop(const FirmwareSource& source, double latency_s, double start_s);
+  FirmwareLoop(const FirmwareSource& source, double latency_s, double start_s, double report_filter_s = 0.0);
 
   void hear(double now_s, std::span<const double> value, CommandFrame frame);
   bool due(double now_s) const { return now_s >= next_s_ - kSame_s; }
@@ -37,8 +37,9 @@ class FirmwareLoop {
   double period_s() const { return period_s_; }
   const std::array<double, kWheels>& duty() const { return duty_; }
   const std::array<bool, kWheels>& enabled() const { return enabled_; }
-  // As its telemetry tells them; false: it tells none.
-  bool tells(std::array<double, kWheels>& omega_wheel_rad_s) const;
+  // As its telemetry tells them, at the rotors; of one that tells none the shafts' own, low-passed as by report_filter_s.
+  // False: neither.
+  bool tells(double gear_ratio, std::array<double, kWheels>& omega_rotor_rad_s) const;
   // It no longer answers.
   bool failed() const { return !firmware_->failure().empty(); }
 
@@ -51,9 +52,9 @@ class FirmwareLoop {
   std::int64_t clock_ns(double now_s) const;
 
   std::unique_ptr<Firmware> firmware_;
-  double counts_per_rad_, latency_s_, start_s_, next_s_, period_s_;
+  double counts_per_rad_, latency_s_, start_s_, report_filter_s_, next_s_, period_s_;
   std::deque<Packet> packets_;
-  std::array<double, kWheels> last_charge_C_{}, duty_{};
+  std::array<double, kWheels> last_charge_C_{}, duty_{}, filtered_rad_s_{};
   std::array<bool, kWheels> enabled_{};
   double last_s_;
   std::int64_t ticks_ = 0;

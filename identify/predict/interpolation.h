@@ -55,23 +55,18 @@ struct KnownValues {
   }
 };
 
-// On another clock; empty where nothing is known.
-inline std::vector<double> resampled(const std::vector<double>& time_s, const std::vector<double>& values,
-                                     const std::vector<double>& clock) {
+// On another clock, at(known, time) each; empty where nothing is known.
+template <typename At>
+std::vector<double> resampled(const std::vector<double>& time_s, const std::vector<double>& values,
+                              const std::vector<double>& clock, At at) {
   const KnownValues known(time_s, values);
   std::vector<double> out;
-  for (std::size_t k = 0; k < clock.size() && !known.value.empty(); ++k)
-    out.push_back(known.line_at(clock[k]));
+  for (std::size_t k = 0; k < clock.size() && !known.value.empty(); ++k) out.push_back(at(known, clock[k]));
   return out;
 }
-inline std::vector<double> resampled_steps(const std::vector<double>& time_s,
-                                           const std::vector<double>& values,
-                                           const std::vector<double>& clock, double late_s) {
-  const KnownValues known(time_s, values);
-  std::vector<double> out;
-  for (std::size_t k = 0; k < clock.size() && !known.value.empty(); ++k)
-    out.push_back(known.held_at(clock[k], late_s));
-  return out;
+inline std::vector<double> resampled(const std::vector<double>& time_s, const std::vector<double>& values,
+                                     const std::vector<double>& clock) {
+  return resampled(time_s, values, clock, [](const KnownValues& x, double at_s) { return x.line_at(at_s); });
 }
 
 // Of a rate since its first sample, which is known, by the trapezoidal rule over missing ones (NaN there as well); NaN from

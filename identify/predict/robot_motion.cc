@@ -36,7 +36,8 @@ class Runner {
         robot_(model.params, model.uses, model.values) {
     std::ranges::copy(robot_.effects().initial_states(), initial_states_.begin());
     if (record.radio && options.firmware != nullptr) {
-      firmware_.emplace(*options.firmware, value_of(model.params.controller.latency_s), record.time_s[0]);
+      const auto& c = model.params.controller;
+      firmware_.emplace(*options.firmware, value_of(c.latency_s), record.time_s[0], c.report_filter_s);
     } else if (record.radio) {
       at_.controller.emplace(model.params.controller,
                              std::span(model.params.wheel_angle_rad).first(model.params.wheels),
@@ -97,20 +98,11 @@ class Runner {
         sees.charge_C[i] = value_of(x.charge_C[i]);
       }
       firmware_->tick(now_s, sees);
-      report_speeds();
     }
     for (std::size_t i = 0; i < kWheels; ++i) {
       in.duty_ratio[i] = T(firmware_->duty()[i]);
       in.enabled[i] = firmware_->enabled()[i];
     }
-  }
-  // Of a firmware that tells none: the shafts' own, as its telemetry would filter them.
-  void report_speeds() {
-    const double filter_s = model_.params.controller.report_filter_s;
-    if (filter_s <= 0.0) return;
-    const double share = -std::expm1(-firmware_->period_s() / filter_s);
-    for (std::size_t i = 0; i < record_.wheels; ++i)
-      reported_[i] += (at_.state.omega_rotor_rad_s(i) - reported_[i]) * share;
   }
   void control(RollingInput<T>& in, double now_s, double step_s) {
     if (now_s >= at_.next_control_s - 0.5 * step_s) {
@@ -143,7 +135,6 @@ class Runner {
       return;
     }
     at_.state = robot_.start(record_.start_velocity, record_.theta_rotor_rad[0]);
-    reported_ = speeds();
     if (!at_.controller) return;
     at_.last_control_s = at_.next_control_s = record_.time_s[0];
     at_.controller->begin(record_.start_velocity, speeds(), model_.params.drive.torque_constant_Nm_per_A,
@@ -181,32 +172,25 @@ class Runner {
     at_.heading += 0.5 * (turn_rate + x.velocity[2]) * h;
   }
 
-  // The period after sample k in steps of the same length, longest_s at most.
+  // The period after sample k in steps of the same length, longest_s at most. Where a firmware drives, each stretch of it ends
+  // where the firmware runs next.
   void pass(std::size_t k, double longest_s) {
-    const double period_s = record_.time_s[k + 1] - record_.time_s[k];
-    const RollingInput<T> in = input(k);
-    const int steps = parts_of(period_s, longest_s);
-    for (int j = 0; j < steps; ++j)
-      step(k, {static_cast<double>(j), j + 1.0, static_cast<double>(steps)}, in);
-  }
-  // The same where a firmware drives: each stretch of it ends where the firmware runs next.
-  void pass_by_firmware(std::size_t k, double longest_s) {
-    const double start_s = record_.time_s[k], period_s = record_.time_s[k + 1] - start_s;
     constexpr double kSame_s = 1e-9;  // rounding of sums of periods; a choice
+    constexpr double kOff = 1e-6;     // of a step: clocks are sums; a choice
+    const double start_s = record_.time_s[k], period_s = record_.time_s[k + 1] - start_s;
     RollingInput<T> in = input(k);
     for (double at_s = 0.0, until_s; at_s < period_s; at_s = until_s) {
-      run_firmware(in, start_s + at_s);
-      until_s = firmware_->next_s() - start_s;
+      if (firmware_) run_firmware(in, start_s + at_s);
+      until_s = firmware_ ? firmware_->next_s() - start_s : period_s;
       if (until_s <= at_s || until_s > period_s - kSame_s) until_s = period_s;
       const double stretch_s = until_s - at_s;
-      const int steps = parts_of(stretch_s, longest_s);
+      const int steps = std::max(1, static_cast<int>(std::ceil(stretch_s / longest_s - kOff)));
       for (int j = 0; j < steps; ++j)
-        step(k, {at_s + stretch_s * j / steps, at_s + stretch_s * (j + 1) / steps, period_s}, in);
+        step(k,
+             firmware_ ? Part{at_s + stretch_s * j / steps, at_s + stretch_s * (j + 1) / steps, period_s}
+                       : Part{static_cast<double>(j), j + 1.0, static_cast<double>(steps)},
+             in);
     }
-  }
-  static int parts_of(double time_s, double longest_s) {
-    constexpr double kOff = 1e-6;  // of a step: clocks are sums; a choice
-    return std::max(1, static_cast<int>(std::ceil(time_s / longest_s - kOff)));
   }
 
   void simulate() {
@@ -217,7 +201,7 @@ class Runner {
       keep();
       if (k + 1 >= record_.size()) break;
       if (record_.radio) hear(k);
-      firmware_ ? pass_by_firmware(k, step_s) : pass(k, step_s);
+      pass(k, step_s);
       const RollingState<T>& x = at_.state;
       out_.finite = !(firmware_ && firmware_->failed()) && is_finite(x.velocity[0]) &&
                     is_finite(x.omega_rotor_rad_s(0)) && is_finite(x.charge_C[0]);
@@ -244,16 +228,14 @@ class Runner {
          .accel_m_s2 = {x.accel_x_m_s2, x.accel_y_m_s2},
          .force_N = {x.floor_x_N, x.floor_y_N}};
     std::array<double, kWheels> told;
-    const bool tells = firmware_ && firmware_->tells(told);
-    const bool filtered = firmware_ && model_.params.controller.report_filter_s > 0.0;
+    const bool tells = firmware_ && firmware_->tells(value_of(model_.params.drive.gear_ratio), told);
     RollingSample<T>& s = out_.samples.emplace_back();
     s.bus_voltage_V = x.bus_voltage_V;
     s.supply_voltage_V = x.supply_voltage_V;
     s.velocity = x.velocity;
     for (std::size_t i = 0; i < record_.wheels; ++i) {
       if (at_.controller) t.reported_rad_s[i] = at_.controller->reported_rad_s(i);
-      if (filtered) t.reported_rad_s[i] = reported_[i];
-      if (tells) t.reported_rad_s[i] = T(told[i] * value_of(model_.params.drive.gear_ratio));
+      if (tells) t.reported_rad_s[i] = T(told[i]);
       s.temperature_rise_K += (1.0 / static_cast<double>(record_.wheels)) * x.drive[i].temperature_rise_K;
     }
   }
@@ -317,7 +299,9 @@ class Runner {
     using std::sin;
     const std::vector<double>& t = record_.time_s;
     T vx = T(0), vy = T(0);
-    if (!options_.follow_camera) out_.samples[0].pose[2] = T(first_heading());
+    const auto seen =
+        std::ranges::find_if(record_.frames, [](const CameraFrame& f) { return std::isfinite(f.pose[2]); });
+    if (!options_.follow_camera && seen != record_.frames.end()) out_.samples[0].pose[2] = T(seen->pose[2]);
     for (std::size_t k = 0; k < record_.size(); ++k) {
       RollingSample<T>& s = out_.samples[k];
       const RollingSample<T>& before = out_.samples[k > 0 ? k - 1 : 0];
@@ -333,13 +317,6 @@ class Runner {
       vy = wy;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) report(axis);
-  }
-
-  double first_heading() const {
-    for (const CameraFrame& f : record_.frames) {
-      if (std::isfinite(f.pose[2])) return f.pose[2];
-    }
-    return 0.0;
   }
 
   // One coordinate of the path as the camera says it: as old as its frames, and at the frames alone (NaN between),
@@ -382,7 +359,6 @@ class Runner {
   EffectStates initial_states_{};
   RobotCarry<T> at_;
   std::optional<FirmwareLoop> firmware_;
-  PerWheel<T> reported_{};  // by report_speeds()
   T camera_age_s_ = T(0);
   std::vector<T> heading_;
   std::vector<Truth<T>> truth_;

@@ -72,16 +72,14 @@ void add_frames(const Channel& channel, Observation how, std::string_view unit, 
   }
 }
 
-// What a signal on a clock of its own reads, with one shift of it drawn; empty: it has none.
-std::vector<double> by_its_clock(const RobotRun& run, std::size_t signal, const RobotMotion<double>& m,
-                                 std::uint64_t seed) {
-  const std::vector<std::size_t>& with_it = run.clock.signals;
-  if (std::find(with_it.begin(), with_it.end(), signal) == with_it.end()) return {};
+// What the signals of a clock of its own read, with one shift of it drawn.
+void shift_clock(const RobotRun& run, std::uint64_t seed, std::vector<std::vector<double>>& y) {
   const double shift_s = run.clock.sigma_s * gaussian(seed, stream_of("clock of the camera"), 0);
-  std::vector<double> y, out;
-  for (const RollingSample<double>& s : m.samples) y.push_back(quantity_of(s, run.seen[signal]));
-  for (std::size_t k = 0; k < y.size(); ++k) out.push_back(y[k] + shift_s * rate_at(run.record.time_s, y, k));
-  return out;
+  for (const std::size_t s : run.clock.signals) {
+    const std::vector<double> unmoved = y[s];
+    for (std::size_t k = 0; k < unmoved.size(); ++k)
+      y[s][k] += shift_s * rate_at(run.record.time_s, unmoved, k);
+  }
 }
 
 }  // namespace
@@ -187,6 +185,8 @@ std::vector<RegimeTrack> robot_regimes(const Run& run, const RobotRecord& r, con
 
 void measure_robot(const RobotRun& run, const RobotMotion<double>& m, std::uint64_t seed, Run& made) {
   const RobotRecord& r = run.record;
+  std::vector<std::vector<double>> seen = robot_outputs(run, m);
+  shift_clock(run, seed, seen);
   for (std::size_t n = 0; n < run.seen.size(); ++n) {
     const Observation& s = run.seen[n];
     std::vector<double>& out = made.signals.find(s.channel)->second;
@@ -199,16 +199,14 @@ void measure_robot(const RobotRun& run, const RobotMotion<double>& m, std::uint6
     }
     const double counts_per_rad = r.counts_per_rotor_turn[s.part] / kTurn;
     double origin = s.view == View::kFrames ? kMissing : 0.0;  // of the camera, from the simulation's
-    const std::vector<double> late = by_its_clock(run, n, m, seed);
     for (std::size_t k = 0; k < r.size(); ++k) {
       if (!std::isfinite(out[k])) continue;
-      const double normal = gaussian(seed, stream, k),
-                   value = late.empty() ? quantity_of(m.samples[k], s) : late[k];
+      const double normal = gaussian(seed, stream, k), value = seen[n][k];
       if (!std::isfinite(origin)) origin = out[k] - value;
       if (s.view == View::kLevel) {  // an input: the true one has no sensor's noise
         out[k] = r.bus.input_V[k] + s.channel_sigma * normal;
       } else if (s.view == View::kDifference) {
-        out[k] = std::floor(value * counts_per_rad + s.channel_sigma * normal);
+        out[k] = std::floor(quantity_of(m.samples[k], s) * counts_per_rad + s.channel_sigma * normal);
       } else {
         out[k] = reading(value + origin, s.channel_sigma, run.compared[n].quantum, normal);
       }
@@ -220,8 +218,7 @@ void measure_compared_bus(const RobotMotion<double>& m, std::uint64_t seed, Robo
   const std::uint64_t stream = stream_of("bus_voltage compared");
   for (std::size_t n = 0; n < r.seen.size(); ++n) {
     if (r.seen[n].view != View::kLevel) continue;
-    std::vector<double> values;
-    for (const RollingSample<double>& s : m.samples) values.push_back(quantity_of(s, r.seen[n]));
+    std::vector<double> values = robot_outputs(r, m)[n];
     complete(r, n, true, values);
     for (std::size_t k = 0; k < values.size(); ++k) {
       double& out = r.compared[n].measured[k];

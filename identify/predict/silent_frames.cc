@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 
 #include "identify/predict/channel.h"
@@ -81,31 +82,27 @@ void drop_silent_frames(const Run& run, const RollingParams<double>& nominal, Ro
   if (speed[0].empty()) return;
   std::array<double, 3> sigma{};
   for (std::size_t a = 0; a < 3; ++a) sigma[a] = estimate_noise(speed[a]).sigma;
-  const auto rows = [&](std::size_t first, std::size_t last) {
-    return std::pair(r.frames[first].sample, r.frames[last].sample);
+  // Coordinates that a frame has together.
+  const auto drop = [&](const char* signal, std::initializer_list<std::size_t> axes, double least) {
+    const auto same = [&](const CameraFrame& x, const CameraFrame& y) {
+      return std::ranges::all_of(axes, [&](std::size_t a) { return x.pose[a] == y.pose[a]; });
+    };
+    for_stretches(r, same, [&](std::size_t first, std::size_t last) {
+      const std::size_t from = r.frames[first].sample, to = r.frames[last].sample;
+      double way = 0.0, least_sure = 0.0;
+      for (const std::size_t a : axes) {
+        const auto [along, sure] = moved(r, speed[a], sigma[a], from, to);
+        way = std::hypot(way, along), least_sure = std::hypot(least_sure, sure);
+      }
+      if (way < std::max(least, least_sure)) return;
+      r.silent.push_back({signal, from, to, r.frames[first].pose[*axes.begin()], way});
+      for (std::size_t n = first; n <= last; ++n) {
+        for (const std::size_t a : axes) r.frames[n].pose[a] = kMissing;
+      }
+    });
   };
-  for_stretches(
-      r, [](const CameraFrame& a, const CameraFrame& b) { return a.pose[2] == b.pose[2]; },
-      [&](std::size_t first, std::size_t last) {
-        const auto [from, to] = rows(first, last);
-        const auto [turned, sure] = moved(r, speed[2], sigma[2], from, to);
-        if (std::abs(turned) < std::max(kTurned_rad, sure)) return;
-        r.silent.push_back({"vision_theta", from, to, r.frames[first].pose[2], turned});
-        for (std::size_t n = first; n <= last; ++n) r.frames[n].pose[2] = kMissing;
-      });
-  for_stretches(
-      r,
-      [](const CameraFrame& a, const CameraFrame& b) {
-        return a.pose[0] == b.pose[0] && a.pose[1] == b.pose[1];
-      },
-      [&](std::size_t first, std::size_t last) {
-        const auto [from, to] = rows(first, last);
-        const auto [x, sure_x] = moved(r, speed[0], sigma[0], from, to);
-        const auto [y, sure_y] = moved(r, speed[1], sigma[1], from, to);
-        if (std::hypot(x, y) < std::max(kDriven_m, std::hypot(sure_x, sure_y))) return;
-        r.silent.push_back({"vision_x", from, to, r.frames[first].pose[0], std::hypot(x, y)});
-        for (std::size_t n = first; n <= last; ++n) r.frames[n].pose[0] = r.frames[n].pose[1] = kMissing;
-      });
+  drop("vision_theta", {2}, kTurned_rad);
+  drop("vision_x", {0, 1}, kDriven_m);
   std::erase_if(r.frames, [](const CameraFrame& f) { return !f.sees(); });
 }
 

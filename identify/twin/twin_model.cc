@@ -26,16 +26,6 @@ Dataset told_by(const Run& piece) {
   return d;
 }
 
-// Central differences over the piece's rows, one-sided at its ends.
-std::vector<double> slopes(const std::vector<double>& time_s, const std::vector<double>& y) {
-  std::vector<double> out(y.size(), 0.0);
-  for (std::size_t k = 0; k < y.size(); ++k) {
-    const std::size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, y.size() - 1);
-    if (b > a && time_s[b] > time_s[a]) out[k] = (y[b] - y[a]) / (time_s[b] - time_s[a]);
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string twin_refusal(const Candidate& model) {
@@ -82,7 +72,6 @@ TwinWindow TwinModel::advance(const Run& piece) {
     told.wheel_speed = run.seen[s].quantity == Quantity::kWheelSpeed;
     std::vector<double> plain;
     for (const Jet& y : expected[s]) plain.push_back(y.a);
-    const std::vector<double> slope = slopes(record.time_s, plain);
     const std::vector<double>& measured = run.compared[s].measured;
     std::vector<std::size_t> rows;
     for (std::size_t k = goes_on ? 1 : 0; k < plain.size(); ++k) {
@@ -94,7 +83,7 @@ TwinWindow TwinModel::advance(const Run& piece) {
       told.time_s.push_back(record.time_s[k]);
       told.measured.push_back(measured[k]);
       told.expected.push_back(plain[k]);
-      told.slope.push_back(slope[k]);
+      told.slope.push_back(rate_at(record.time_s, plain, k));
       for (Eigen::Index f = 0; f < faults; ++f) {
         const Jet& y = expected[static_cast<std::size_t>(f / kJetWidth) * run.seen.size() + s][k];
         told.gains(static_cast<Eigen::Index>(n), f) = y.v[f % kJetWidth];

@@ -100,7 +100,7 @@ TEST(FirmwareLoop, BridgesAreWhatItAsksAndOffWhereItLetsGo) {
   EXPECT_FALSE(loop.enabled()[1]);
   EXPECT_EQ(loop.duty()[1], 0.0);
   std::array<double, kWheels> told{};
-  EXPECT_FALSE(loop.tells(told));  // its feedback has no time
+  EXPECT_FALSE(loop.tells(1.0, told));  // its feedback has no time
 }
 
 TEST(FirmwareLoop, EncodersCountDownRoundedAndCurrentsAreMeansSinceTheTickBefore) {

@@ -43,8 +43,11 @@ TEST(Interpolation, PassesOverMissingValues) {
   const std::vector<double> t = {0.0, 1.0, 2.0, 3.0}, clock = {-1.0, 0.0, 1.0, 2.5, 9.0};
   const std::vector<double> x = {kNaN, 1.0, kNaN, 5.0};
   EXPECT_EQ(resampled(t, x, clock), (std::vector<double>{1.0, 1.0, 1.0, 4.0, 5.0}));
-  EXPECT_EQ(resampled_steps(t, x, clock, 0.0), (std::vector<double>{1.0, 1.0, 1.0, 1.0, 5.0}));
-  EXPECT_EQ(resampled_steps(t, x, {2.95}, 0.1), (std::vector<double>{5.0})) << "0.05 s early counts as there";
+  const auto held = [](double late_s) {
+    return [=](const KnownValues& known, double at_s) { return known.held_at(at_s, late_s); };
+  };
+  EXPECT_EQ(resampled(t, x, clock, held(0.0)), (std::vector<double>{1.0, 1.0, 1.0, 1.0, 5.0}));
+  EXPECT_EQ(resampled(t, x, {2.95}, held(0.1)), (std::vector<double>{5.0})) << "0.05 s early counts as there";
   EXPECT_TRUE(resampled(t, {kNaN, kNaN, kNaN, kNaN}, clock).empty());
 }
 
