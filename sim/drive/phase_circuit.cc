@@ -37,8 +37,8 @@ struct Drive {
   double damping = 0.0;  // sum emf_x^2
 };
 
-template <class On>
-[[gnu::always_inline]] inline Drive drive_of(const On& on, const Three& constant, const Three& current_A) {
+[[gnu::always_inline]] inline Drive drive_of(const Conduction& on, const Three& constant,
+                                             const Three& current_A) {
   Drive d;
   d.constant = constant;
   const double mean_V = mean_of(on, on.volt_V), mean_K = mean_of(on, constant);
@@ -70,8 +70,7 @@ template <class On>
 }
 
 // The diode whose current reaches zero first within the part, or kNone. remaining: exp(-t / tau) there.
-template <class On>
-std::size_t first_zero(const PhaseState& s, const On& on, const Part& p, double& remaining) {
+std::size_t first_zero(const PhaseState& s, const Conduction& on, const Part& p, double& remaining) {
   Three end_A;
   each_phase([&](auto x) {
     end_A[x] = on.direction[x] * (p.settled_A[x] + (s.current_A[x] - p.settled_A[x]) * p.decay);
@@ -89,8 +88,7 @@ std::size_t first_zero(const PhaseState& s, const On& on, const Part& p, double&
 }
 
 // Of the star point against the bus's minus.
-template <class On>
-double star_of(const On& on, const std::array<Leg, 3>& legs, const Three& emf_V, double bus_V) {
+double star_of(const Conduction& on, const std::array<Leg, 3>& legs, const Three& emf_V, double bus_V) {
   if (on.count > 0) return mean_of(on, on.volt_V) - mean_of(on, emf_V);
   double lowest_V = legs[0].forward.volt_V - emf_V[0], highest_V = legs[0].backward.volt_V - emf_V[0];
   for (std::size_t x = 1; x < 3; ++x) {
@@ -101,10 +99,10 @@ double star_of(const On& on, const std::array<Leg, 3>& legs, const Three& emf_V,
 }
 
 // What floats follows the star point; what conducts is its source behind R_on.
-template <class On>
 [[gnu::always_inline]] inline void book_voltages(const PhaseCircuit& c, const std::array<Leg, 3>& legs,
-                                                 const On& on, const Three& constant, const PhaseInput& in,
-                                                 const Part& p, const Three& charge_C, PhaseFlow& flow) {
+                                                 const Conduction& on, const Three& constant,
+                                                 const PhaseInput& in, const Part& p, const Three& charge_C,
+                                                 PhaseFlow& flow) {
   const double w = p.omega_mid_rad_s;
   const Three emf_V = {constant[0] * w, constant[1] * w, constant[2] * w};
   const double star_V = on.count == 3 ? 0.0 : star_of(on, legs, emf_V, in.bus_voltage_V);
@@ -114,9 +112,8 @@ template <class On>
   });
 }
 
-template <class On>
 [[gnu::always_inline]] inline void book(const PhaseCircuit& c, const std::array<Leg, 3>& legs,
-                                        const PhaseState& s, const On& on, const Three& constant,
+                                        const PhaseState& s, const Conduction& on, const Three& constant,
                                         const PhaseInput& in, const Part& p, PhaseFlow& flow) {
   // integral of (i_inf + d exp(-t / tau))^2 = i_inf^2 h + 2 i_inf d phi h + d^2 (1 + decay) phi h / 2
   const double ring_s = p.mean_decay * p.h_s, ring2_s = 0.5 * (1.0 + p.decay) * ring_s;
@@ -163,15 +160,12 @@ void extinguish(PhaseState& s, std::size_t x) {
   }
 }
 
-// The usual case, apart because it costs a third: two phases carry the same current, the third floats within
-// its diodes' voltages, nothing ends. Does nothing and returns false if it is not that.
+// One that floats within its diodes' voltages, while the other two carry the same current and nothing ends: apart because
+// it costs a third. Does nothing and returns false if it is not that.
 bool advance_pair(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs, const Three& constant,
-                  const PhaseInput& in, const Part& p, PhaseFlow& flow) {
+                  const PhaseInput& in, const PhaseStretch& p, std::size_t f, PhaseFlow& flow) {
   const Three& i = s.current_A;
-  const bool a = !legs[0].always && i[0] == 0.0, b = !legs[1].always && i[1] == 0.0;
-  const bool third = !legs[2].always && i[2] == 0.0;
-  if (a + b + third != 1) return false;
-  const std::size_t f = a ? 0 : (b ? 1 : 2), h = a ? 1 : 0, l = third ? 1 : 2;
+  const std::size_t h = f == 0 ? 1 : 0, l = f == 2 ? 1 : 2;
   const LegSource& from = i[h] < 0.0 ? legs[h].backward : legs[h].forward;
   const LegSource& to = i[l] < 0.0 ? legs[l].backward : legs[l].forward;
   const double w = s.omega_rotor_rad_s, current_A = i[h];
@@ -215,6 +209,49 @@ bool advance_pair(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>
   return true;
 }
 
+// All three carry current, and nothing ends: most of the time, apart because it costs half. Otherwise as above. The same
+// numbers as below, to the last bit.
+bool advance_three(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                   const Three& constants, const PhaseInput& in, const PhaseStretch& p, PhaseFlow& flow) {
+  const LegSource& a = source_of(legs[0], s.current_A[0]);
+  const LegSource& b = source_of(legs[1], s.current_A[1]);
+  const LegSource& z = source_of(legs[2], s.current_A[2]);
+  const Lanes source_V({a.volt_V, b.volt_V, z.volt_V}), constant(constants), before_A(s.current_A);
+  const Lanes volt_V = source_V - mean_of(source_V), emf = constant - mean_of(constant);
+  const double w = s.omega_rotor_rad_s;
+  double omega_mid = w;
+  if (!in.speed_is_imposed) {
+    const double gain = (1.0 - p.mean_decay) * c.conductance_per_ohm;
+    const double torque = gain * sum_of(constant * volt_V) + p.mean_decay * sum_of(constant * before_A);
+    const double twice_inertia = 2.0 * c.inertia_kg_m2;
+    omega_mid = (twice_inertia * w + p.h_s * (torque - in.tau_load_Nm)) /
+                (twice_inertia + p.h_s * (gain * sum_of(emf * emf) + c.viscous_Nm_s_per_rad));
+  }
+  const Lanes settled_A = (volt_V - emf * omega_mid) * c.conductance_per_ohm, d = before_A - settled_A;
+  const Lanes end_A = settled_A + d * p.decay;
+  if (has_turned(legs[0], s.current_A[0], end_A.two[0]) ||
+      has_turned(legs[1], s.current_A[1], end_A.two[1]) || has_turned(legs[2], s.current_A[2], end_A.third))
+    return false;
+  const Lanes mean_A = settled_A + d * p.mean_decay, charge_C = mean_A * p.h_s;
+  const double ring_s = p.mean_decay * p.h_s, ring2_s = 0.5 * (1.0 + p.decay) * ring_s;
+  const double bus_C = sum_of(Lanes({a.bus_share, b.bus_share, z.bus_share}) * mean_A) * p.h_s;
+  const double impulse_Nm_s = sum_of(constant * mean_A) * p.h_s;
+  flow.time_s += p.h_s;
+  (Lanes(flow.charge_C) + charge_C).put(flow.charge_C);
+  (Lanes(flow.leg_V_s) + (source_V * p.h_s - c.device_ohm * charge_C)).put(flow.leg_V_s);
+  flow.square_A2_s += sum_of(settled_A * (settled_A * p.h_s + 2.0 * d * ring_s) + d * d * ring2_s);
+  flow.bus_charge_C += bus_C;
+  flow.bus_J += bus_C * in.bus_voltage_V;
+  flow.drop_J += sum_of(Lanes({a.drop_V, b.drop_V, z.drop_V}) * mean_A) * p.h_s;
+  flow.impulse_Nm_s += impulse_Nm_s;
+  flow.mechanical_J += impulse_Nm_s * omega_mid;
+  flow.angle_rad += omega_mid * p.h_s;
+  end_A.put(s.current_A);
+  s.theta_rotor_rad += omega_mid * p.h_s;
+  if (!in.speed_is_imposed) s.omega_rotor_rad_s = 2.0 * omega_mid - w;
+  return true;
+}
+
 // What is left behind a diode's current that has reached zero in `phase`.
 struct Rest {
   std::size_t phase = kNone;  // none has
@@ -222,9 +259,8 @@ struct Rest {
 };
 
 // The part as long as it is, or until a diode's current ends.
-template <class On>
 [[gnu::always_inline]] inline Rest advance_part(const PhaseCircuit& c, PhaseState& s,
-                                                const std::array<Leg, 3>& legs, const On& on,
+                                                const std::array<Leg, 3>& legs, const Conduction& on,
                                                 const Three& constant, const PhaseInput& in, bool is_last,
                                                 Part& p, PhaseFlow& flow) {
   const Drive drive = drive_of(on, constant, s.current_A);
@@ -280,32 +316,49 @@ PhaseStretch stretch_of(const PhaseCircuit& c, double h_s) {
   return {p.h_s, p.decay, p.mean_decay};
 }
 
-void advance_circuit(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
-                     const PhaseInput& in, const PhaseStretch& stretch, PhaseFlow& flow) {
+namespace {
+
+// What usually happens, if it does.
+bool advance_usual(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                   const Three& constant, const PhaseInput& in, const PhaseStretch& p, PhaseFlow& flow) {
+  const unsigned floating = without_current(s.current_A, legs);
+  if (floating == 0) return advance_three(c, s, legs, constant, in, p, flow);
+  const bool one = (floating & (floating - 1)) == 0;
+  return one && advance_pair(c, s, legs, constant, in, p, floating >> 1, flow);
+}
+
+// Part by part, each with a conduction of its own; `constant` of the first one, which is not usual.
+void advance_parts(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs, Three constant,
+                   const PhaseInput& in, const PhaseStretch& stretch, PhaseFlow& flow) {
   Part p;
   p.h_s = stretch.h_s;
   p.decay = stretch.decay;
   p.mean_decay = stretch.mean_decay;
   std::size_t barred = kNone;
   for (int part = 1;; ++part) {
-    const Three constant = phase_constants(c, s.theta_rotor_rad + 0.5 * p.h_s * s.omega_rotor_rad_s);
-    if (barred == kNone && advance_pair(c, s, legs, constant, in, p, flow)) return;
-    const bool is_last = part == kMaxParts;
-    Rest rest;
-    if (barred == kNone && all_conduct(s.current_A, legs)) {
-      const AllConduction on = all_of(s.current_A, legs);
-      rest = advance_part(c, s, legs, on, constant, in, is_last, p, flow);
-    } else {
-      const double w = s.omega_rotor_rad_s;
-      const Conduction on =
-          conduction_of(s.current_A, legs, {constant[0] * w, constant[1] * w, constant[2] * w}, barred);
-      rest = advance_part(c, s, legs, on, constant, in, is_last, p, flow);
-    }
+    const double w = s.omega_rotor_rad_s;
+    const Conduction on =
+        conduction_of(s.current_A, legs, {constant[0] * w, constant[1] * w, constant[2] * w}, barred);
+    const Rest rest = advance_part(c, s, legs, on, constant, in, part == kMaxParts, p, flow);
     if (rest.phase == kNone) return;
     barred = p.h_s > 0.0 ? kNone : rest.phase;
     extinguish(s, rest.phase);
     if (rest.left_s <= 0.0) return;
     set_length(c, p, rest.left_s, rest.left_decay);
+    constant = phase_constants(c, s.theta_rotor_rad + 0.5 * p.h_s * s.omega_rotor_rad_s);
+    if (barred == kNone && advance_usual(c, s, legs, constant, in, {p.h_s, p.decay, p.mean_decay}, flow))
+      return;
+  }
+}
+
+}  // namespace
+
+void advance_circuit(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                     const PhaseInput& in, const PhaseStretch& stretch, PhaseFlow& flow, int stretches) {
+  for (int k = 0; k < stretches; ++k) {
+    const Three constant = phase_constants(c, s.theta_rotor_rad + 0.5 * stretch.h_s * s.omega_rotor_rad_s);
+    if (!advance_usual(c, s, legs, constant, in, stretch, flow))
+      advance_parts(c, s, legs, constant, in, stretch, flow);
   }
 }
 

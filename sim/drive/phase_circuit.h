@@ -91,8 +91,10 @@ struct PhaseStretch {
 };
 PhaseStretch stretch_of(const PhaseCircuit& circuit, double h_s);
 
+// So many stretches, one after the other.
 void advance_circuit(const PhaseCircuit& circuit, PhaseState& x, const std::array<Leg, 3>& legs,
-                     const PhaseInput& input, const PhaseStretch& stretch, PhaseFlow& flow);
+                     const PhaseInput& input, const PhaseStretch& stretch, PhaseFlow& flow,
+                     int stretches = 1);
 inline void advance_circuit(const PhaseCircuit& circuit, PhaseState& x, const std::array<Leg, 3>& legs,
                             const PhaseInput& input, double h_s, PhaseFlow& flow) {
   advance_circuit(circuit, x, legs, input, stretch_of(circuit, h_s), flow);

@@ -18,6 +18,25 @@ namespace omnihil::phase_detail {
 inline constexpr std::size_t kNone = 3;  // no phase
 using Three = std::array<double, 3>;
 
+// Three numbers reckoned with at once, two of them by one instruction: the same bits as one by one.
+struct Lanes {
+  using Pair [[gnu::vector_size(16)]] = double;
+  Pair two;
+  double third;
+
+  explicit Lanes(const Three& x) : two{x[0], x[1]}, third(x[2]) {}
+  Lanes(Pair first, double last) : two(first), third(last) {}
+  void put(Three& x) const { x = {two[0], two[1], third}; }
+};
+inline Lanes operator+(const Lanes& a, const Lanes& b) { return {a.two + b.two, a.third + b.third}; }
+inline Lanes operator-(const Lanes& a, const Lanes& b) { return {a.two - b.two, a.third - b.third}; }
+inline Lanes operator-(const Lanes& a, double b) { return {a.two - b, a.third - b}; }
+inline Lanes operator*(const Lanes& a, const Lanes& b) { return {a.two * b.two, a.third * b.third}; }
+inline Lanes operator*(const Lanes& a, double b) { return {a.two * b, a.third * b}; }
+inline Lanes operator*(double a, const Lanes& b) { return {a * b.two, a * b.third}; }
+inline double sum_of(const Lanes& x) { return 0.0 + x.two[0] + x.two[1] + x.third; }
+inline double mean_of(const Lanes& x) { return (1.0 / 3.0) * (x.two[0] + x.two[1] + x.third); }
+
 // f(0), f(1), f(2), each with its index as a constant: everything about a phase stays in registers.
 template <typename F>
 inline void each_phase(F&& f) {
@@ -47,23 +66,14 @@ struct Conduction {
 
 inline constexpr Three kShare = {1.0, 1.0 / 2.0, 1.0 / 3.0};
 
-// All three do, which is half of what happens: what is known of it then needs no arithmetic.
-struct AllConduction {
-  std::array<const LegSource*, 3> source;
-  static constexpr Three on = {1.0, 1.0, 1.0};
-  Three volt_V, direction;
-  static constexpr double share = kShare[2];
-  static constexpr int count = 3;
-};
-
-inline bool all_conduct(const Three& current_A, const std::array<Leg, 3>& legs) {
-  return (legs[0].always || current_A[0] != 0.0) && (legs[1].always || current_A[1] != 0.0) &&
-         (legs[2].always || current_A[2] != 0.0);
+// A bit for each phase without current whose leg has no switch on.
+inline unsigned without_current(const Three& current_A, const std::array<Leg, 3>& legs) {
+  const auto is = [&](std::size_t x) { return !legs[x].always && current_A[x] == 0.0 ? 1u << x : 0u; };
+  return is(0) | is(1) | is(2);
 }
 
 // Over the conducting phases.
-template <class On>
-inline double mean_of(const On& c, const Three& value) {
+inline double mean_of(const Conduction& c, const Three& value) {
   return c.share * (c.on[0] * value[0] + c.on[1] * value[1] + c.on[2] * value[2]);
 }
 
@@ -111,15 +121,9 @@ inline const LegSource& source_of(const Leg& leg, double current_A) {
 inline double diode_direction(const Leg& leg, double current_A) {
   return static_cast<double>(!leg.always) * static_cast<double>((current_A > 0.0) - (current_A < 0.0));
 }
-
-inline AllConduction all_of(const Three& current_A, const std::array<Leg, 3>& legs) {
-  AllConduction c;
-  each_phase([&](auto x) {
-    c.source[x] = &source_of(legs[x], current_A[x]);
-    c.volt_V[x] = c.source[x]->volt_V;
-    c.direction[x] = diode_direction(legs[x], current_A[x]);
-  });
-  return c;
+// Whether a diode would have to carry its current the other way.
+inline bool has_turned(const Leg& leg, double current_A, double end_A) {
+  return !leg.always && (current_A < 0.0 ? end_A > 0.0 : end_A < 0.0);
 }
 
 inline Conduction conduction_of(const Three& current_A, const std::array<Leg, 3>& legs, const Three& emf_V,

@@ -51,7 +51,8 @@ PeriodSample advance_period(const SwitchedDrive& drive, SwitchedState& state, co
   std::array<double, 3> free_at_s = state.blocked_s;
   for (std::size_t x = 0; x < 3; ++x) on[x] = on_time(command[x], drive.period_s);
   std::array<LegState, 3> state_of{};
-  std::array<Leg, 3> legs{};
+  const Leg off = leg_of(drive.inverter, LegState::kOff, input.bus_voltage_V);
+  std::array<Leg, 3> legs = {off, off, off};
   PeriodSample sample;
   bool sampled = false;
   double t = 0.0;
@@ -66,8 +67,9 @@ PeriodSample advance_period(const SwitchedDrive& drive, SwitchedState& state, co
       const LegState wanted = is_on ? command[x].on : command[x].off;
       if (opposite(wanted, state.wanted[x])) free_at_s[x] = t + drive.inverter.dead_time_s;
       state.wanted[x] = wanted;
-      state_of[x] = free_at_s[x] > t ? LegState::kOff : wanted;
-      legs[x] = leg_of(drive.inverter, state_of[x], input.bus_voltage_V);
+      const LegState now = free_at_s[x] > t ? LegState::kOff : wanted;
+      if (now != state_of[x]) legs[x] = leg_of(drive.inverter, now, input.bus_voltage_V);
+      state_of[x] = now;
       if (command[x].on != command[x].off) {
         next = earlier(t, on[x].begin_s, next);
         next = earlier(t, on[x].end_s, next);
@@ -83,7 +85,7 @@ PeriodSample advance_period(const SwitchedDrive& drive, SwitchedState& state, co
     if (listener) listener->piece(t, state_of, state.motor);
     const int pieces = std::max(1, static_cast<int>(std::ceil((next - t) / drive.max_step_s - 1e-9)));
     const PhaseStretch piece = stretch_of(drive.circuit, (next - t) / pieces);
-    for (int k = 0; k < pieces; ++k) advance_circuit(drive.circuit, state.motor, legs, input, piece, flow);
+    advance_circuit(drive.circuit, state.motor, legs, input, piece, flow, pieces);
     t = next;
   }
   if (!sampled) take_sample();

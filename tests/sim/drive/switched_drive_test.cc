@@ -32,6 +32,27 @@ TEST(PhaseCircuit, OnePhasePairAtStandstillIsOneExponential) {
   EXPECT_EQ(x.current_A[2], 0.0);
 }
 
+// Of three phases that conduct, by two switches and a diode, and of two when the diode's current has ended.
+TEST(PhaseCircuit, SeveralStretchesAreOneAfterTheOther) {
+  const PhaseMotor<double> m = sine_motor();
+  const PhaseCircuit c = make_phase_circuit(m, 0.012, 5e-6, 0.0);
+  const std::array<Leg, 3> legs = {leg_of(kReal, LegState::kHigh, 24.0), leg_of(kReal, LegState::kLow, 24.0),
+                                   leg_of(kReal, LegState::kOff, 24.0)};
+  PhaseState at_once, by_one;
+  at_once.current_A = by_one.current_A = {3.0, -5.0, 2.0};
+  at_once.omega_rotor_rad_s = by_one.omega_rotor_rad_s = 100.0;
+  PhaseFlow sums, sums_by_one;
+  const PhaseStretch stretch = stretch_of(c, 5e-6);
+  const PhaseInput in{.bus_voltage_V = 24.0, .tau_load_Nm = 0.01};
+  advance_circuit(c, at_once, legs, in, stretch, sums, 40);
+  for (int k = 0; k < 40; ++k) advance_circuit(c, by_one, legs, in, stretch, sums_by_one);
+  EXPECT_EQ(at_once.current_A, by_one.current_A);
+  EXPECT_EQ(at_once.theta_rotor_rad, by_one.theta_rotor_rad);
+  EXPECT_EQ(sums.mechanical_J, sums_by_one.mechanical_J);
+  EXPECT_EQ(sums.events, 1);
+  EXPECT_EQ(at_once.current_A[2], 0.0);
+}
+
 TEST(PhaseCircuit, FreewheelingCurrentStopsAtExactlyZeroAndAtTheRightInstant) {
   const PhaseMotor<double> m = trapezoid_motor();
   const PhaseCircuit c = make_phase_circuit(m, 0.012, 20e-6, 1e3);
