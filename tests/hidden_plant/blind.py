@@ -2,7 +2,7 @@
 """The sealed test of the diagnosis: makes records with something hidden in them, lets the program say what it is, scores it.
 
     blind.py --program build/release/tools/omnihil [--set dev|release|sealed] [--only CLASS[,CLASS]] [--cases N]
-             [--jobs N] [--keep DIR] [--generate-only] [--json OUT]
+             [--skip N] [--jobs N] [--keep DIR] [--generate-only] [--json OUT]
 """
 import argparse
 import concurrent.futures
@@ -32,6 +32,9 @@ def arguments():
     parser.add_argument("--sealed", action="store_true", help="the third set, for a closing score only")
     parser.add_argument("--only", help="classes, separated by commas: " + ", ".join(cases.classes()))
     parser.add_argument("--cases", type=int, help="at most so many of each class")
+    parser.add_argument(
+        "--skip", type=int, default=0, help="not the first so many of each class, as those developed against"
+    )
     parser.add_argument("--jobs", type=int, default=2, help="cases at a time (2)")
     parser.add_argument(
         "--keep",
@@ -140,7 +143,7 @@ def main():
     if args.generate_only and args.sealed:
         print("blind: sealed cases are made only to be scored", file=sys.stderr)
         return 2
-    todo = cases.reduced() if args.reduced else cases.list_cases(set_name, only, args.cases)
+    todo = cases.reduced() if args.reduced else cases.list_cases(set_name, only, args.cases, args.skip)
     stamp = "" if args.generate_only else hashlib.sha256(args.program.read_bytes()).hexdigest()[:12]
     with tempfile.TemporaryDirectory(prefix="blind-") as scratch:
         keep = (args.keep or pathlib.Path(scratch)).resolve()

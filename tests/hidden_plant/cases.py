@@ -194,15 +194,15 @@ def reduced():
     return [Case("dev", name, k, table[name].cases[k]) for name, chosen in REDUCED.items() for k in chosen]
 
 
-def list_cases(set_name, only=None, count=None):
-    """Cases of a set: of the named classes, the first `count` of each; class by class in turn, so that a run that is cut off
-    has seen of each."""
+def list_cases(set_name, only=None, count=None, skip=0):
+    """Cases of a set: of the named classes, the first `count` of each but for the first `skip`; class by class in turn, so
+    that a run that is cut off has seen of each."""
     out = []
     for name, cls in classes().items():
         if only and name not in only:
             continue
         out += [Case(set_name, name, k, what) for k, what in enumerate(cls.cases[:count])]
-    return sorted(out, key=lambda case: case.index)
+    return sorted((case for case in out if case.index >= skip), key=lambda case: case.index)
 
 
 def make(case, folder):

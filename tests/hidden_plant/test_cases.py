@@ -131,6 +131,11 @@ class CasesTest(unittest.TestCase):
         self.assertEqual({w[0] for w in table["outside"].cases}, set(outside.names()))
         self.assertEqual({w[0] for w in table["fault"].cases}, set(faults.KINDS))
 
+    def test_the_cases_behind_a_number_are_the_rest_of_the_list(self):
+        whole = cases.list_cases("dev", ["single", "pair"], 9)
+        first = cases.list_cases("dev", ["single", "pair"], 4)
+        self.assertEqual(first + cases.list_cases("dev", ["single", "pair"], 9, 4), whole)
+
     def test_every_folder_name_is_its_own(self):
         names = [c.name for s in cases.SETS for c in cases.list_cases(s)]
         self.assertEqual(len(names), len(set(names)))
