@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "identify/predict/axis_outputs.h"
-#include "identify/predict/band_noise.h"
 #include "identify/predict/interpolation.h"
 #include "identify/predict/undetermined.h"
+#include "identify/record/band_noise.h"
 #include "identify/record/statistics.h"
 #include "identify/record/wiener.h"
 #include "sim/bench/axis_signal.h"

@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <ranges>
+#include <string>
+#include <utility>
 
 #include "identify/predict/axis_outputs.h"
 #include "identify/predict/axis_substep.h"
 #include "identify/predict/counted_setups.h"
+#include "identify/predict/input_wander.h"
 #include "identify/predict/predictor_rig.h"
 #include "sim/law/random.h"
 
@@ -36,6 +41,7 @@ class AxisRig : public RigRuns<AxisSetup> {
     share_noise(series);
     choose_averaging(*dataset_, all_runs());
     choose_step();
+    choose_whitening();
   }
 
   Method method() const { return axis_method(*dataset_); }
@@ -102,7 +108,6 @@ class AxisRig : public RigRuns<AxisSetup> {
   }
 
   void choose_step() {
-    constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
     auto trial = std::make_shared<AxisRig>(*this);
     for (AxisSetup& s : trial->runs_) shorten(s, kTrial_s);
     substep_ =
@@ -115,6 +120,46 @@ class AxisRig : public RigRuns<AxisSetup> {
           return distance(s, predicted(*trial, own, n, h), predicted(*trial, own, n, 0.25 * h));
         });
   }
+
+  // Of counts and positions whose drive's bus is measured: that input's noise integrates into speed and position.
+  void choose_whitening() {
+    std::map<std::string, std::vector<Wander>> wanders;
+    for (std::size_t n = 0; n < runs_.size(); ++n) {
+      const AxisSetup& s = runs_[n];
+      const bool compares = std::ranges::any_of(s.compared, is_difference);
+      if (!compares || dataset_->runs[n].split != Split::kTraining || !has_bus_input(s)) continue;
+      AxisRig trial(*this);
+      shorten(trial.runs_[n], kTrial_s);
+      const Candidate own = with_known(*nominal_, dataset_->runs[n].known);
+      const Prediction moved = trial.ground_truth_prediction(own, n, kNoiseSeed),
+                       still = predicted(trial, own, n, step_s(own, n));
+      for (std::size_t c = 0; c < s.compared.size(); ++c) {
+        if (!is_difference(s.compared[c])) continue;
+        Wander& w = wanders[s.compared[c].name].emplace_back(Wander{&s.compared[c], moved.values[c]});
+        for (std::size_t k = 0; k < w.change.size(); ++k) w.change[k] -= still.values[c][k];
+      }
+    }
+    for (const auto& [name, of_runs] : wanders) {
+      const Whitening best = whitening_beside(of_runs, kWhitening_s, kShortestWhitening_s);
+      for (AxisSetup& s : runs_) {
+        for (ComparedSignal& c : s.compared) {
+          if (c.name != name || !is_difference(c) || best.sigma <= 0.0) continue;
+          c.whitening_s = best.time_constant_s;
+          c.whitened_sigma = best.sigma;
+        }
+      }
+    }
+  }
+  static bool is_difference(const ComparedSignal& c) {
+    return c.whitening_s > 0.0 && c.counted.window_s <= 0.0;
+  }
+  static bool has_bus_input(const AxisSetup& s) {
+    return s.method == Method::kForward && !s.steady && s.input.time_s.size() > 1 &&
+           std::ranges::any_of(s.compared, [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
+  }
+  // Any: the draw is used for the rms of the noise alone.
+  static constexpr std::uint64_t kNoiseSeed = 1;
+  static constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
 
   static void shorten(AxisSetup& s, double span_s) {
     const auto& t = s.input.time_s;

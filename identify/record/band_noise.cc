@@ -1,4 +1,4 @@
-#include "identify/predict/band_noise.h"
+#include "identify/record/band_noise.h"
 
 #include <algorithm>
 #include <cmath>
