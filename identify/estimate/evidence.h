@@ -10,7 +10,8 @@
 // density of held-out blocks and its standard error (Vehtari, Gelman, Gabry, Stat. Comput. 27, 2017), Gaussian with
 // the variance that each model has on the fit runs.
 // Limits: neither knows of the laws' forms, which are never exact: on records of any length they accept what imitates
-// that (docs/diagnosis-statistics.md). They are printed, and do not decide.
+// that (docs/diagnosis-statistics.md). So BIC is necessary for an addition, not sufficient (acceptance.h); the
+// log density is printed, and does not decide.
 #pragma once
 #include <Eigen/Core>
 

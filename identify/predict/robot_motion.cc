@@ -198,9 +198,15 @@ class Runner {
     double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
     if (at_.controller) step_s = std::min(step_s, at_.controller->period_s());
     for (std::size_t k = 0; out_.finite; ++k) {
+      // What a row tells is of the loop's run at its instant, if one falls there; that of the last row is tried: its command
+      // is heard by the motion that goes on from there.
+      const bool last = k + 1 >= record_.size();
+      const std::optional<RobotCarry<T>> before = last ? std::optional(at_) : std::nullopt;
+      if (record_.radio && !last) hear(k);
+      if (RollingInput<T> in = input(k); at_.controller) control(in, record_.time_s[k], step_s);
       keep();
-      if (k + 1 >= record_.size()) break;
-      if (record_.radio) hear(k);
+      if (last) at_ = *before;
+      if (last) break;
       pass(k, step_s);
       const RollingState<T>& x = at_.state;
       out_.finite = !(firmware_ && firmware_->failed()) && is_finite(x.velocity[0]) &&

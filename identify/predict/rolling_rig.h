@@ -70,7 +70,14 @@ class RollingRig : public RigRuns<RobotRun> {
   }
 
   void measure(const Candidate& truth, std::uint64_t seed);
-  Capabilities capabilities() const { return Kind::capabilities(*dataset_); }
+  Capabilities capabilities() const {
+    Capabilities out = Kind::capabilities(*dataset_);
+    const bool described = motion_.firmware == nullptr && std::ranges::any_of(runs_, [](const RobotRun& run) {
+                             return run.record.radio.has_value();
+                           });
+    if (described) out.loop_period_s = rolling_params(nominal_->file.parameters).controller.period_s;
+    return out;
+  }
 
  private:
   template <typename T>

@@ -200,6 +200,22 @@ bool extrapolation_decides(const AcceptanceContext& context, const Fitted& paren
   return reason_against_gain(parent, child, gains, kDecides, share, 0.0).empty();
 }
 
+Evidence evidence_of(const AcceptanceContext& context, const Fitted& parent, const Fitted& child) {
+  const int extra =
+      static_cast<int>(child.fit.unknowns.size()) - static_cast<int>(parent.fit.unknowns.size());
+  return evidence_of((*context.splits)[kTraining], {parent.residual[kTraining], child.residual[kTraining]},
+                     (*context.splits)[kValidation],
+                     {parent.residual[kValidation], child.residual[kValidation]}, std::max(extra, 1));
+}
+
+// Whatever the gain, the criterion's price of the numbers is the least that it has to be worth (DECISIONS 194).
+std::string reason_against_numbers(const Evidence& evidence) {
+  if (evidence.delta_bic <= 0.0) return "";
+  return fmt::format(
+      "its gain does not pay for its numbers: the Bayesian information criterion rises by {:.1f}",
+      evidence.delta_bic);
+}
+
 }  // namespace
 
 Fitted fitted(const Splits& splits, const Splits& unweighted, FitResult fit, int jobs) {
@@ -232,7 +248,8 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
   out.decisive = 1.0 - held.ratio > kDecisiveGain && held.worst < 1.0;
   const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
   std::string implausible = implausibility(parent.fit, child.fit, name, out.decisive);
-  if (implausible.empty()) implausible = below_time_resolution(child.fit, name, context.rate_Hz);
+  if (implausible.empty())
+    implausible = below_time_resolution(child.fit, name, context.rate_Hz, context.loop_period_s);
   out.plausible = implausible.empty();
   out.share_of_base = share_of_base(context, static_cast<std::size_t>(decides), parent, child);
   out.why = reason_against_fit(out, signal_to_null);
@@ -245,6 +262,8 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
     }
   }
   if (out.why.empty()) out.why = implausible;
+  out.evidence = evidence_of(context, parent, child);
+  if (out.why.empty()) out.why = reason_against_numbers(out.evidence);
   if (out.why.empty()) {
     out.accepted_by = AcceptedBy::kGain;
     out.why = fmt::format("{} error energy falls by {}", by == &held ? "held-out" : "extrapolation",

@@ -6,15 +6,17 @@
 //   // "it removes 1.2 % of the held-out error energy; 3.5 % is required"
 //
 // Method: parent and child are compared by the ratio of their whitened residual energies on each split, its
-// interval from a block bootstrap (gain.h) and its level from the simulated null (null_model.h). Nine gates,
-// in the order of test_acceptance; the first one that fails is the reason. Beside them one way without
-// gain: AcceptedBy::kPrior (plausibility.h).
+// interval from a block bootstrap (gain.h) and its level from the simulated null (null_model.h). Ten gates,
+// in the order of test_acceptance; the first one that fails is the reason. The last one is the Bayesian information
+// criterion (evidence.h): a gain has to pay for its numbers. Beside them one way without gain: AcceptedBy::kPrior
+// (plausibility.h).
 // Limits: the gates' sizes are tuned, not derived from one error rate; each says so at its line.
 #pragma once
 #include <array>
 #include <string>
 #include <vector>
 
+#include "identify/estimate/evidence.h"
 #include "identify/estimate/fit.h"
 #include "identify/estimate/gain.h"
 #include "identify/estimate/null_model.h"
@@ -41,6 +43,7 @@ struct AcceptanceResult {
   SplitGain fit, holdout, extrapolation;
   bool plausible = true;       // its numbers and those of the base (plausibility.h)
   double share_of_base = 1.0;  // of the base model's energy above the noise: what the addition removes
+  Evidence evidence;           // what standard rules of selection say of it
 
   bool accepted() const { return accepted_by != AcceptedBy::kNone; }
 };
@@ -49,7 +52,8 @@ struct AcceptanceContext {
   const Splits* splits = nullptr;
   const NullModel* null = nullptr;
   std::array<const BlockBootstrap*, kSplits> bootstrap{};
-  double rate_Hz = 0.0;  // of the samples; 0: unknown
+  double rate_Hz = 0.0;        // of the samples; 0: unknown
+  double loop_period_s = 0.0;  // Capabilities::loop_period_s
   // Whitened residuals of the base model, before any effect was found; null: the parent is that.
   const Residuals* base = nullptr;
 };

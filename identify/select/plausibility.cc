@@ -183,7 +183,8 @@ std::string restores_prior(const FitResult& parent, const FitResult& child,
              : "";
 }
 
-std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz) {
+std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz,
+                                  double loop_period_s) {
   // Of the visible size: below, a model's own sub-steps amount to as much. Tuned: every false alarm left was
   // 4 us of delay at 1 kHz (DECISIONS 55); sensitivity not measured.
   constexpr double kOfVisible = 0.05;  // tuned
@@ -194,6 +195,12 @@ std::string below_time_resolution(const FitResult& child, const std::string& nam
   const double visible = entry->info->min_visible({.rate_Hz = rate_Hz});
   for (const ParameterEstimate& p : child.parameters) {
     if (p.path != name + "." + std::string(row.name)) continue;
+    if (std::abs(p.value - row.neutral) < loop_period_s) {
+      return fmt::format(
+          "{} = {:.2g} {} is less than a period of the speed loop ({:.2g} s), whose description knows no "
+          "instant within it",
+          p.path, p.value, p.unit, loop_period_s);
+    }
     if (std::abs(p.value - row.neutral) >= kOfVisible * visible) continue;
     return fmt::format(
         "{} = {:.2g} {} is below the time resolution: at {:g} Hz such an effect is visible from {:.2g} {}",

@@ -52,8 +52,10 @@ std::string restores_prior(const FitResult& parent, const FitResult& child,
                            std::string_view aliased_parameter = {});
 
 // Is an effect's time (a delay, an inductance over a resistance) so far below what its page calls visible at
-// this sampling rate that the model's sub-steps and the time stamps' resolution amount to as much? Empty: no.
-std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz);
+// this sampling rate that the model's sub-steps and the time stamps' resolution amount to as much? Or below a period of
+// the described speed loop (Capabilities::loop_period_s; 0: none)? Empty: no.
+std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz,
+                                  double loop_period_s = 0.0);
 
 // A parameter of the effect that ends at a bound as no result does (a strength away from neutral, a shape that is
 // neither periodic nor a choice of form). Empty: none.

@@ -82,6 +82,7 @@ SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) c
       .null = &null_,
       .bootstrap = {&bootstrap_[kTraining], &bootstrap_[kValidation], &bootstrap_[kExtrapolation]},
       .rate_Hz = rate_Hz(*predictor_),
+      .loop_period_s = predictor_->capabilities().loop_period_s,
       .base = &base_.residual};
   task.seed = options_.seed;
   task.jobs = options_.jobs;

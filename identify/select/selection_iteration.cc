@@ -168,12 +168,6 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
     c.acceptance = test_acceptance(task.acceptance_context, parent, c.fitted, c.screened.name,
                                    signal_to_null(c.screened, iteration.largest_null_gain),
                                    c.screened.aliased_parameter());
-    const int extra =
-        static_cast<int>(c.fitted.fit.unknowns.size()) - static_cast<int>(parent.fit.unknowns.size());
-    c.evidence =
-        evidence_of((*task.splits)[kTraining], {parent.residual[kTraining], c.fitted.residual[kTraining]},
-                    (*task.splits)[kValidation],
-                    {parent.residual[kValidation], c.fitted.residual[kValidation]}, std::max(extra, 1));
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (task.progress && !task.progress("refitting " + c.screened.name, share)) stopped = true;
   });
@@ -265,7 +259,7 @@ void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& it
     r.accepted_by = c.acceptance.accepted_by;
     r.plausible = c.acceptance.plausible;
     r.share_of_base = c.acceptance.share_of_base;
-    r.evidence = c.evidence;
+    r.evidence = c.acceptance.evidence;
     r.why = c.acceptance.why;
     r.selection_frequency = c.selection_frequency;
     r.parameters = parameters_of(c.fitted.fit, c.screened.name);

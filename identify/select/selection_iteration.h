@@ -40,7 +40,6 @@ struct CandidateEffect {
   Screened screened;
   Fitted fitted;
   AcceptanceResult acceptance;
-  Evidence evidence;
   double selection_frequency = 0.0;  // share of the bootstrap's draws (selection.h)
 };
 

@@ -59,6 +59,8 @@ struct Capabilities {
   std::vector<Capability> list;        // the first that is demanded and not there is the refusal
   std::vector<std::string> free_base;  // paths, for BaseExclusion
   std::vector<std::string> present_base;
+  // Of a speed loop that is described in place of the firmware: what happens within a period, it does not know. 0: none.
+  double loop_period_s = 0.0;
 };
 
 // The effect's own and its place's.

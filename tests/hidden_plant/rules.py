@@ -15,6 +15,7 @@ import pathlib
 
 RULES = {
     "today's": lambda r: r["accepted"],
+    "today's, without BIC": lambda r: r["accepted"] or "does not pay for its numbers" in r["why"],
     "today's, without model discrepancy": lambda r: r["accepted"] or "the form of an effect" in r["why"],
     "bootstrap: gain above the null's largest (p < 1/13)": lambda r: r["signal_to_null"] > 1,
     "bootstrap: above twice the null's largest": lambda r: r["signal_to_null"] > 2,

@@ -195,6 +195,38 @@ TEST(RadioDriven, AFitFindsLatencyAndGains) {
   EXPECT_NEAR(found("robot.wheel_radius_m"), 0.0274, 5e-5);
 }
 
+// Without a filter the loop sees the mean speed of its last period: what the encoder's counts say between two rows that are
+// a period apart, and not what they said a row before.
+TEST(RadioDriven, ARowTellsTheSpeedsOfTheLoopThatRunsAtIt) {
+  Candidate robot = radio_candidate();
+  EXPECT_EQ(set_value(robot, "controller.speed_filter_s", 0.0), "");
+  Dataset d = blank_radio(1.0);
+  d.channels.push_back({.signal = "encoder_1",
+                        .column = "encoder_1",
+                        .unit = "counts",
+                        .clock_sigma_s = 0.0,
+                        .counts_per_rev = 1e9});
+  for (omnihil::Run& run : d.runs) {
+    for (std::size_t k = 0; k < run.time_s.size(); ++k) {
+      run.time_s[k] = 1e-3 * static_cast<double>(k);
+      run.signals["command_vx"][k] = 1.0;
+    }
+    run.signals["encoder_1"].assign(run.time_s.size(), 0.0);
+  }
+  const auto p = make_predictor(d, robot, {});
+  const Prediction y = p->predict(robot, 0);
+  const auto predicted = [&](std::string_view name) {
+    for (std::size_t s = 0; s < p->compared(0).size(); ++s)
+      if (p->compared(0)[s].name == name) return y.values[s];
+    return std::vector<double>{};
+  };
+  const std::vector<double> told = predicted("wheel_speed_1"), counted = predicted("velocity_1");
+  ASSERT_EQ(told.size(), counted.size());
+  const double gear = value_at(robot, "gear.ratio").value_or(0.0);
+  for (std::size_t k = 2; k < told.size(); ++k)
+    EXPECT_NEAR(told[k] * gear, counted[k], 1e-6 * std::abs(counted.back()) + 1e-9) << k;
+}
+
 TEST(RadioDriven, TheDelayBelongsToTheController) {
   const auto p = make_predictor(blank_radio(1.0), radio_candidate(), {});
   EXPECT_EQ(p->applies(*find_effect("actuator_delay")), "the base model has controller.latency_s");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "identify/estimate/linear_base.h"
 #include "sim/law/random.h"
@@ -214,6 +215,12 @@ TEST(AcceptanceTest, RefusesATimeBelowTheResolution) {
   child.fit.parameters[0].value = 4e-5;
   EXPECT_TRUE(
       test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "actuator_delay", 100).accepted());
+  // nor within a period of a loop that is described in place of its firmware
+  fixture.context.loop_period_s = 1e-3;
+  const AcceptanceResult within =
+      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "actuator_delay", 100);
+  EXPECT_FALSE(within.accepted());
+  EXPECT_NE(within.why.find("a period of the speed loop"), std::string::npos) << within.why;
 }
 
 TEST(AcceptanceTest, RefusesAGainThatTheSimulatedNullHasAsWell) {
@@ -344,6 +351,27 @@ TEST(AcceptanceTest, CorrelatedStrengthsAreTestedJointly) {
   for (ParameterEstimate& p : child.fit.parameters) p.value = 1.002;
   EXPECT_FALSE(test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100)
                    .accepted());
+}
+
+// A residual that swings once in 2000 of 4000 samples holds a handful of independent ones: six numbers for 36 % of
+// its energy are too many (4 log 0.64 + 6 log 4 > 0), for noise that is new at every sample they are not.
+TEST(AcceptanceTest, AGainHasToPayForItsNumbers) {
+  const AcceptanceFixture fixture;
+  const auto accepted = [&](bool slow) {
+    Fitted parent = fixture.leaving(1, 1, 1), child = fixture.leaving(0.8, 0.8, 0.8);
+    if (slow) {
+      for (std::size_t u = 0; u < kSplits; ++u) {
+        for (Eigen::Index i = 0; i < kSamples; ++i)
+          parent.residual[u][i] = 1.5 * std::sin(2.0 * std::numbers::pi * static_cast<double>(i) / 2000.0);
+        child.residual[u] = 0.8 * parent.residual[u];
+      }
+    }
+    child.fit.unknowns.resize(6);
+    return test_acceptance(fixture.context, parent, child, "x", 100);
+  };
+  EXPECT_TRUE(accepted(false).accepted());
+  EXPECT_FALSE(accepted(true).accepted());
+  EXPECT_NE(accepted(true).why.find("does not pay for its numbers"), std::string::npos) << accepted(true).why;
 }
 
 TEST(BlockBootstrapTest, AGainInOneMomentAloneIsUncertain) {
