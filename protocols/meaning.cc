@@ -181,8 +181,8 @@ bool ask_by_meaning(const RadioFormat& format, const RobotCommand& command, cons
 
 bool encode_drive(const RadioFormat& format, const RobotCommand& command, const CommandTo& to,
                   std::vector<std::uint8_t>& out) {
-  return format.encode_command != nullptr ? format.encode_command(command, to, out)
-                                          : ask_by_meaning(format, command, to, out);
+  return format.encode_command != no_command ? format.encode_command(command, to, out)
+                                             : ask_by_meaning(format, command, to, out);
 }
 
 }  // namespace omnihil

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "hil/radio_file/radio_file.h"
+#include "protocols/meaning.h"
 #include "tests/protocols/dongles/links_harness.h"
 
 namespace omnihil {
@@ -96,6 +97,18 @@ TEST(OwnFormat, BytesThatBeginNoFrameAreSkippedAndAWrongSumIsCounted) {
   EXPECT_EQ(bench.refused(PacketError::kFraming), 1u);
   EXPECT_EQ(bench.refused(PacketError::kChecksum), 1u);
   EXPECT_EQ(bench.good(), 1u);
+}
+
+TEST(OwnFormat, AHostAsksForAVelocityByTheMeaningOfItsFields) {
+  RobotCommand command{};
+  command.mode = OMNIHIL_MODE_BODY_VELOCITY;
+  command.v_forward_m_s = 0.5, command.v_left_m_s = -8.0, command.omega_body_rad_s = -1.0;
+  Bytes bytes;
+  ASSERT_TRUE(encode_drive(ours(), command, {.robot_id = 3}, bytes));
+  EXPECT_EQ(bytes, encode(ours(), "MOVE",
+                          {{"robot", 3}, {"forward", 0.5}, {"right", 8.0}, {"turn", -1000}, {"counter", 0}}));
+  command.mode = OMNIHIL_MODE_WHEEL_SPEED;  // it has no packet for
+  EXPECT_FALSE(encode_drive(ours(), command, {.robot_id = 3}, bytes));
 }
 
 TEST(OwnFormat, FoundByItsIdOnceInUseAndSaysNoCommandsOfItsOwn) {
