@@ -8,7 +8,7 @@
 #include <ctime>
 
 #include "hil/league/robot_sights.h"
-#include "protocols/meaning.h"
+#include "hil/loop/radio_front.h"
 
 namespace omnihil {
 namespace {
@@ -51,15 +51,13 @@ bool say_planned(const RadioFormat& format, const CommandTo& to, PlanDrive drive
                  const std::array<double, kWheels>& value, double yaw_rad, SaidCommand& out) {
   out = {};
   out.sent.value = value;
-  RobotCommand command = plan_command(drive, value);
-  if (encode_drive(format, command, to, out.bytes)) return true;
-  if (drive != PlanDrive::kBodyVelocity || !std::isfinite(yaw_rad)) return false;
-  const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
-  out.sent.value = {c * value[0] - s * value[1], s * value[0] + c * value[1], value[2], 0.0};
-  out.sent.in_field = true;
-  command = plan_command(drive, out.sent.value);
-  command.flags = OMNIHIL_COMMAND_FIELD_FRAME;
-  return encode_drive(format, command, to, out.bytes);
+  const std::optional<RobotCommand> said =
+      encode_towards(format, plan_command(drive, value), yaw_rad, to, out.bytes);
+  if (said && (said->flags & OMNIHIL_COMMAND_FIELD_FRAME) != 0) {
+    out.sent.value = {said->v_forward_m_s, said->v_left_m_s, said->omega_body_rad_s, 0.0};
+    out.sent.in_field = true;
+  }
+  return said.has_value();
 }
 
 std::vector<std::string> plan_problems(const AcquirePlan& plan, const RadioFormat& format,

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "hil/dataset/booted_image.h"
 #include "hil/dataset/firmware_trial.h"
 #include "hil/firmware/open_firmware.h"
 #include "hil/loop/radio_front.h"
@@ -25,75 +26,12 @@ struct ImageOnBoard {
   double boot_s = 0.0;
 };
 
-// Boards that were switched on boot_s before their first tick.
-class BootedImage final : public Firmware {
- public:
-  explicit BootedImage(const ImageOnBoard& of) : image_(of.make(of.config)) {
-    boot_ticks_ = std::llround(1e9 * of.boot_s / static_cast<double>(image_->control_period_ns()));
-    const auto id = static_cast<int>(of.config.robot_id);
-    if (of.radio != nullptr) radio_ = std::make_unique<RadioFront>(*of.radio, id, of.config.wheel_radius_m);
-  }
-
-  std::string_view name() const override { return image_->name(); }
-  std::string_view radio_format() const override { return {}; }
-  std::int64_t control_period_ns() const override { return image_->control_period_ns(); }
-  void command(const RobotCommand& command, std::int64_t) override { heard_.push_back(command); }
-  void radio_receive(std::span<const std::uint8_t>, std::int64_t) override {}
-  std::size_t radio_transmit(std::span<std::uint8_t>) override { return 0; }
-  bool set_gains(const RobotGains&) override { return false; }
-  RobotGains gains() const override { return {}; }
-  void shafts(const RobotShafts& exact) override { exact_ = exact; }
-  RobotDrive tick(const RobotSensors& sensors) override {
-    if (ticks_ == 0) boot(sensors);
-    for (const RobotCommand& command : heard_) {
-      if (radio_ == nullptr) {
-        image_->command(command, now_ns());
-      } else if (!radio_->say(command, *image_, now_ns()) && failure_.empty()) {
-        failure_ = "a command cannot be said in its radio format";
-      }
-    }
-    heard_.clear();
-    return turn(sensors, exact_);
-  }
-  // No telemetry: the shafts' own speeds are compared.
-  RobotFeedback feedback() const override { return {}; }
-  bool drives_phases() const override { return image_->drives_phases(); }
-  std::string_view failure() const override { return failure_.empty() ? image_->failure() : failure_; }
-  std::vector<std::string> report() const override { return image_->report(); }
-
- private:
-  std::int64_t now_ns() const { return ticks_ * image_->control_period_ns(); }
-  void boot(const RobotSensors& sensors) {
-    RobotSensors still = sensors;
-    std::fill_n(still.motor_current_A, kWheels, 0.0);
-    still.gyro_z_rad_s = still.accel_x_m_s2 = still.accel_y_m_s2 = 0.0;
-    RobotShafts standing = exact_;
-    std::fill_n(standing.omega_rotor_rad_s, kWheels, 0.0);
-    while (ticks_ < boot_ticks_ && image_->failure().empty()) turn(still, standing);
-  }
-  RobotDrive turn(RobotSensors sensors, const RobotShafts& shafts) {
-    sensors.now_us = static_cast<std::uint64_t>(now_ns() / 1000);
-    image_->shafts(shafts);
-    const RobotDrive drive = image_->tick(sensors);
-    while (image_->radio_transmit(frame_) > 0) {
-    }
-    ++ticks_;
-    return drive;
-  }
-
-  std::unique_ptr<Firmware> image_;
-  std::unique_ptr<RadioFront> radio_;
-  std::vector<RobotCommand> heard_;  // since the tick before
-  RobotShafts exact_{};
-  std::int64_t ticks_ = 0, boot_ticks_ = 0;
-  std::string failure_;
-  std::array<std::uint8_t, 512> frame_{};
-};
-
 class ImageSource final : public FirmwareSource {
  public:
   explicit ImageSource(ImageOnBoard of) : of_(std::move(of)) {}
-  std::unique_ptr<Firmware> fresh() const override { return std::make_unique<BootedImage>(of_); }
+  std::unique_ptr<Firmware> fresh() const override {
+    return std::make_unique<BootedImage>(of_.make(of_.config), of_.radio, of_.config, of_.boot_s);
+  }
   double counts_per_rotor_turn() const override { return of_.config.encoder_counts_per_rotor_turn; }
 
  private:

@@ -6,10 +6,11 @@
 // Each prediction has boards of its own, switched on boot_s before its record begins, with shafts that stand where they will
 // begin to turn; their clock goes one control period a tick (mcu_firmware.h). Commands reach the image as frames of its
 // board's radio format (hil/loop/radio_front.h), all of what is late about them in the model's controller.latency_s; boards
-// that are told wheel speeds get them so. Ports are not opened, memory cards not written. Before that it is tried for half a
-// second or so.
-// Cannot: boards that set the legs of three-phase bridges; hear what the image says of itself: speeds of telemetry are compared
-// with the shafts' own, behind the model's controller.report_filter_s.
+// that are told wheel speeds get them so. Wheel speeds that the image tells by its radio are those that the record's are
+// compared with (booted_image.h); of one that tells none the shafts' own, behind the model's controller.report_filter_s.
+// Ports are not opened, memory cards not written. Before that it is tried for half a second or so.
+// Cannot: boards that set the legs of three-phase bridges; read other channels of a record (gyro_z, bus_voltage) out of the
+// image's telemetry.
 #pragma once
 #include "hil/dataset/dataset_firmware.h"
 

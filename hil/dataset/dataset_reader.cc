@@ -9,6 +9,7 @@
 #include "hil/dataset/dataset_runs.h"
 #include "hil/firmware/open_firmware.h"
 #include "hil/loop/session_checks.h"
+#include "hil/radio_file/radio_file.h"
 #include "hil/text/text_file.h"
 #include "hil/text/toml_keys.h"
 #include "identify/predict/torque_scale.h"
@@ -242,6 +243,12 @@ class DatasetReader {
                                             : plan_.firmware_at,
               key, fmt::format("\"{}\"", value), std::move(what), std::move(allowed));
     };
+    if (!other_firmware_.format.empty()) {
+      const RadioFile radio = load_radio_file(other_firmware_.format);
+      out_.problems.insert(out_.problems.end(), radio.problems.begin(), radio.problems.end());
+      if (radio.format == nullptr) return;
+      use_radio_format(*radio.format);
+    }
     if (chosen.file.empty()) {
       if (!chosen.board.empty()) refuse("board", "has nothing to do", "a firmware beside it, an image");
       return;
@@ -257,11 +264,13 @@ class DatasetReader {
     for (FirmwareRefusal& r : refused) refuse(r.key, std::move(r.what), std::move(r.allowed));
     if (!dataset_.firmware) return;
     const bool said = out_.nominal->file.parameters.find("encoder.counts_per_turn") != nullptr;
-    dataset_.notes.push_back(fmt::format(
-        "{} makes the duties, by encoders of {:g} counts a turn{}; of [controller] {}",
-        dataset_.firmware->fresh()->name(), dataset_.firmware->counts_per_rotor_turn(),
-        said ? "" : " (the model does not say: encoder.counts_per_turn)",
-        chosen.board.empty() ? "the latency alone counts" : "latency_s and report_filter_s count"));
+    dataset_.notes.push_back(
+        fmt::format("{} makes the duties, by encoders of {:g} counts a turn{}; of [controller] {}",
+                    dataset_.firmware->fresh()->name(), dataset_.firmware->counts_per_rotor_turn(),
+                    said ? "" : " (the model does not say: encoder.counts_per_turn)",
+                    chosen.board.empty()
+                        ? "the latency alone counts"
+                        : "latency_s counts, and report_filter_s where its telemetry tells no wheel speeds"));
   }
 
   // Duties of radio commands are made by the firmware, or by the model's [controller].

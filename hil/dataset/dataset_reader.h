@@ -31,6 +31,7 @@ struct DatasetReading {
 // What a robot under commands is predicted with, in place of what the dataset names; empty: as it does.
 struct OtherFirmware {
   std::string file{}, board{};
+  std::string format{};  // file of the radio format that the board names (docs/radio/own-format.md)
 };
 
 // `model`: path of another model to take in place of the dataset's own; empty: its own.

@@ -1,6 +1,9 @@
 #include "hil/loop/radio_front.h"
 
+#include <cmath>
+
 #include "protocols/meaning.h"
+#include "protocols/telemetry.h"
 
 namespace omnihil {
 namespace {
@@ -26,7 +29,7 @@ struct Frames : RadioSink {
 }  // namespace
 
 RadioFront::RadioFront(const RadioFormat& format, int robot_id, double wheel_radius_m)
-    : format_(format), robot_id_(robot_id) {
+    : format_(format), robot_id_(robot_id), tells_speeds_(tells_wheel_speeds(format)) {
   RadioLinkConfig config;
   config.robot_ids = {robot_id};
   config.team = kTeam;
@@ -35,10 +38,10 @@ RadioFront::RadioFront(const RadioFormat& format, int robot_id, double wheel_rad
   link_ = format.make_link(config);
 }
 
-bool RadioFront::say(const RobotCommand& command, Firmware& firmware, std::int64_t now_ns) {
+bool RadioFront::say(const RobotCommand& command, Firmware& firmware, std::int64_t now_ns, double yaw_rad) {
   bytes_.clear();
-  const CommandTo to{.robot_id = robot_id_, .team = kTeam, .set_up = set_up_};
-  if (!encode_drive(format_, command, to, bytes_)) return false;
+  const CommandTo to{.robot_id = robot_id_, .team = kTeam, .set_up = set_up_, .tell_all = tells_speeds_};
+  if (!encode_towards(format_, command, yaw_rad, to, bytes_)) return false;
   Frames frames(firmware, now_ns);
   link_->host_bytes(bytes_, clock_ns_);
   // Until nothing has come for a while; what has to go first may come by itself.
@@ -51,13 +54,26 @@ bool RadioFront::say(const RobotCommand& command, Firmware& firmware, std::int64
   }
   set_up_ = false;
   bytes_.clear();
-  link_->take_host_bytes(clock_ns_, bytes_);  // answers: nobody reads them
+  link_->take_host_bytes(clock_ns_, bytes_);  // of the dongle itself: nobody reads them
   return true;
+}
+
+std::optional<RobotCommand> encode_towards(const RadioFormat& format, const RobotCommand& command,
+                                           double yaw_rad, const CommandTo& to,
+                                           std::vector<std::uint8_t>& out) {
+  if (encode_drive(format, command, to, out)) return command;
+  if (command.mode != OMNIHIL_MODE_BODY_VELOCITY || !std::isfinite(yaw_rad)) return std::nullopt;
+  const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+  RobotCommand in_field = command;
+  in_field.v_forward_m_s = c * command.v_forward_m_s - s * command.v_left_m_s;
+  in_field.v_left_m_s = s * command.v_forward_m_s + c * command.v_left_m_s;
+  in_field.flags |= OMNIHIL_COMMAND_FIELD_FRAME;
+  return encode_drive(format, in_field, to, out) ? std::optional(in_field) : std::nullopt;
 }
 
 bool can_say(const RadioFormat& format, const RobotCommand& command) {
   std::vector<std::uint8_t> bytes;
-  return encode_drive(format, command, {}, bytes);
+  return encode_towards(format, command, 0.0, {}, bytes).has_value();
 }
 
 }  // namespace omnihil

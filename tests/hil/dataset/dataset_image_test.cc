@@ -6,13 +6,16 @@
 #include <cmath>
 #include <filesystem>
 
+#include "hil/dataset/booted_image.h"
 #include "hil/dataset/firmware_meter.h"
 #include "hil/dataset/radio_export.h"
 #include "hil/firmware/image_firmware.h"
 #include "hil/firmware/open_firmware.h"
+#include "hil/loop/session_checks.h"
 #include "identify/predict/predictor.h"
 #include "identify/record/parallel.h"
 #include "tests/hil/dataset/radio_recording.h"
+#include "tests/hil/dataset/telling_firmware.h"
 #include "tests/identify/dataset_folder.h"
 
 namespace omnihil {
@@ -54,6 +57,23 @@ class UntoldSource final : public FirmwareSource {
 
  private:
   std::shared_ptr<const FirmwareSource> of_;
+};
+
+// An image that drives as the library does and tells its speeds by radio.
+class TellingSource final : public FirmwareSource {
+ public:
+  TellingSource(std::shared_ptr<const FirmwareSource> of, const RobotConfig& config, const Telling& how)
+      : of_(std::move(of)), config_(config), how_(how) {}
+  std::unique_ptr<Firmware> fresh() const override {
+    auto boards = std::make_unique<TellingFirmware>(std::make_unique<Untold>(of_->fresh()), how_, config_);
+    return std::make_unique<BootedImage>(std::move(boards), &telling_format(), config_, 0.0);
+  }
+  double counts_per_rotor_turn() const override { return of_->counts_per_rotor_turn(); }
+
+ private:
+  std::shared_ptr<const FirmwareSource> of_;
+  RobotConfig config_;
+  Telling how_;
 };
 
 struct DatasetImage : testing::Test {
@@ -131,6 +151,46 @@ TEST_F(DatasetImage, TheModelsFilterMakesOfTheShaftsSpeedsWhatTelemetryTells) {
     for (std::size_t k = 0; k < a.values[s].size(); ++k) off.push_back(a.values[s][k] - b.values[s][k]);
     EXPECT_LT(rms(off), 0.01 * rms(b.values[s]));
   }
+}
+
+// Told at each tick, in steps: the shafts' own but for half a step and the way to the host, two ticks and the one that the row
+// comes before. Filtered by the image: as by the model's filter of the same time, and not as the shafts.
+TEST_F(DatasetImage, WheelSpeedsOfARecordArePredictedAsTheImageTellsThem) {
+  constexpr double kLate_s = 1e-9 * kToHost_ns + 1e-3, kFilter_s = 0.05;
+  std::ofstream(folder.path() + "/model.toml", std::ios::app)
+      << reference_controller_text(*read_bundle(one_radio_robot().model).model->robot);
+  DatasetReading reading = read({.file = kLibrary});
+  ASSERT_TRUE(reading.dataset) << all_text(reading.problems);
+  const std::shared_ptr<const FirmwareSource> library = reading.dataset->firmware;
+  const RobotConfig config = robot_config(*reading.nominal->file.robot, 0);
+  const auto predicted = [&](const Telling& how, double model_filter_s) {
+    reading.dataset->firmware = std::make_shared<TellingSource>(library, config, how);
+    const std::pair<std::string, double> known[] = {{"controller.report_filter_s", model_filter_s}};
+    return make_predictor(*reading.dataset, *reading.nominal, {})
+        ->predict(with_known(*reading.nominal, known), 0);
+  };
+  const auto off = [](const Prediction& a, const Prediction& b, double late_s, const std::vector<double>& t) {
+    double largest = 0.0;
+    for (std::size_t s = 0; s < 4; ++s) {
+      std::vector<double> d;
+      for (std::size_t k = 1; k + 1 < t.size(); ++k) {
+        const double slope = (b.values[s][k + 1] - b.values[s][k - 1]) / (t[k + 1] - t[k - 1]);
+        d.push_back(a.values[s][k] - (b.values[s][k] - late_s * slope));
+      }
+      largest = std::max(largest, rms(d) / rms(b.values[s]));
+    }
+    return largest;
+  };
+  const auto of = make_predictor(*reading.dataset, *reading.nominal, {});
+  const std::vector<double> t = of->compared(0)[0].time_s;
+  const Prediction shafts = predicted({.every = 0}, 0.0), low_passed = predicted({.every = 0}, kFilter_s);
+  const Prediction told = predicted({.every = 1, .counted = false}, 0.3);
+  const Prediction filtered = predicted({.every = 1, .filter_s = kFilter_s, .counted = false}, 0.3);
+  ASSERT_TRUE(shafts.finite && told.finite && filtered.finite);
+  EXPECT_LT(off(told, shafts, kLate_s, t), 0.01);
+  EXPECT_LT(off(filtered, low_passed, kLate_s, t), 0.01);
+  EXPECT_GT(off(filtered, shafts, 0.0, t), 0.05);
+  for (const double v : told.values[0]) EXPECT_NEAR(std::remainder(v, kToldStep_rad_s), 0.0, 1e-9);
 }
 
 // rms of measured less predicted wheel speeds, over that of the measured, the largest of the wheels'.
