@@ -1,7 +1,7 @@
 // What the noise of a measured input makes of a signal that is differences of a position: the motion wanders beside the
 // position's own rounding, and the filter that whitens both is another than that of the rounding alone.
 //
-//   Wander w{.signal = &run.compared[0], .change = moved_minus_still};    // one per run
+//   const std::vector<Wander> wanders = {{.signal = &run.compared[0], .change = moved_minus_still}};    // one per run
 //   const Whitening w = whitening_beside(wanders, 0.25, 0.0625);         // w.time_constant_s: 0.0625 to 0.25
 //
 // Law: of the leaks that whiten (predictor.h), halved from the longest on, the first through which the wander is no more than
