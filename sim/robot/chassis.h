@@ -49,10 +49,12 @@ class Chassis {
   const WheelContacts<double>& contacts(std::size_t robot) const;
   const FloorForces& floor_forces(std::size_t robot) const;  // of a robot with effects only
   void accelerations(const std::vector<WheelTorques>& torques, StepPart part, std::vector<double>& udot);
+  static constexpr bool kRatesAreSpeeds = false;
   void position_rates(const std::vector<double>& q, const std::vector<double>& u,
                       std::vector<double>& qdot) const;
   void normalise(std::vector<double>& q) const;
 
+  double yaw_rad(const std::vector<double>& q, std::size_t robot) const;
   BodyMotion motion(const std::vector<double>& q, const std::vector<double>& u, std::size_t robot) const;
   void place(std::vector<double>& q, std::vector<double>& u, std::size_t robot, double x_m, double y_m,
              double yaw_rad) const;

@@ -130,16 +130,19 @@ WheelGrip<T> wheel_grip(const ContactLaw<T>& law, const WheelMotion<T>& m, Wheel
 // Forces and their sum for loads that are known.
 template <typename T>
 void apply_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T>& out) {
-  out.force_x_N = out.force_y_N = out.moment_z_Nm = T(0);
+  T x_N = T(0), y_N = T(0), z_Nm = T(0);
   each_wheel(law.geometry.wheels, [&](std::size_t i) {
     const T f = g.longitudinal_ratio[i] * out.load_N[i];
     const T s = g.lateral_ratio[i] * out.load_N[i];
     out.force_longitudinal_N[i] = f;
     out.force_lateral_N[i] = s;
-    out.force_x_N += -law.geometry.sin_angle[i] * f + law.geometry.cos_angle[i] * s;
-    out.force_y_N += law.geometry.cos_angle[i] * f + law.geometry.sin_angle[i] * s;
-    out.moment_z_Nm += law.geometry.wheel_center_radius_m * f;
+    x_N += -law.geometry.sin_angle[i] * f + law.geometry.cos_angle[i] * s;
+    y_N += law.geometry.cos_angle[i] * f + law.geometry.sin_angle[i] * s;
+    z_Nm += law.geometry.wheel_center_radius_m * f;
   });
+  out.force_x_N = x_N;
+  out.force_y_N = y_N;
+  out.moment_z_Nm = z_Nm;
 }
 
 // Loads by the law of wheel_load.h, transfer included; with a further horizontal force of the floor, if any.
@@ -173,12 +176,18 @@ void find_loads(const ContactLaw<T>& law, const WheelGrip<T>& g, WheelContacts<T
   each_wheel(wheels, [&](std::size_t i) { out.load_N[i] = law.load.at_rest_N[i] + part * change_N[i]; });
 }
 
+// `out` may hold those of another instant of the same robot.
 template <typename T>
-WheelContacts<T> contact_forces(const ContactLaw<T>& law, const WheelMotion<T>& motion) {
-  WheelContacts<T> out;
+void find_contacts(const ContactLaw<T>& law, const WheelMotion<T>& motion, WheelContacts<T>& out) {
   const WheelGrip<T> g = wheel_grip(law, motion, out);
   find_loads(law, g, out);
   apply_loads(law, g, out);
+}
+
+template <typename T>
+WheelContacts<T> contact_forces(const ContactLaw<T>& law, const WheelMotion<T>& motion) {
+  WheelContacts<T> out;
+  find_contacts(law, motion, out);
   return out;
 }
 

@@ -12,6 +12,7 @@
 // Both are explicit: stable only while the stiffest contact mode is slow against the step; validate.h refuses
 // models for which it is not.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "sim/robot/mechanics.h"
@@ -35,29 +36,47 @@ void step_semi_implicit_euler(Back& back, const std::vector<WheelTorques>& torqu
   for (std::size_t i = 0; i < q.size(); ++i) q[i] += h * s.qdot[i];
 }
 
+// Of a stage: sum += weight rate, and where the next one looks, next = x + ahead rate.
+inline void add_stage(const std::vector<double>& x, const std::vector<double>& rate, double weight,
+                      double ahead_s, std::vector<double>& sum, std::vector<double>& next) {
+  const double* __restrict const at = x.data(), * __restrict const rates = rate.data();
+  double* __restrict const sums = sum.data(), * __restrict const nexts = next.data();
+  for (std::size_t i = 0, n = x.size(); i < n; ++i) {
+    sums[i] += weight * rates[i];
+    nexts[i] = at[i] + ahead_s * rates[i];
+  }
+}
+inline void add_last_stage(const std::vector<double>& rate, double weight, double step_s,
+                           const std::vector<double>& sum, std::vector<double>& x) {
+  const double* __restrict const rates = rate.data(), * __restrict const sums = sum.data();
+  double* __restrict const at = x.data();
+  for (std::size_t i = 0, n = x.size(); i < n; ++i) at[i] += step_s * (sums[i] + weight * rates[i]);
+}
+
 template <typename Back>
 void step_runge_kutta_4(Back& back, const std::vector<WheelTorques>& torques, double h,
                         std::vector<double>& q, std::vector<double>& u, IntegratorScratch& s) {
   constexpr double kWeight[4] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
   constexpr StepPart kPart[4] = {StepPart::kStart, StepPart::kMiddle, StepPart::kMiddle, StepPart::kEnd};
   constexpr double kNext[4] = {0.5, 0.5, 1.0, 0.0};
-  for (double& x : s.q_sum) x = 0.0;
-  for (double& x : s.u_sum) x = 0.0;
-  for (int stage = 0; stage < 4; ++stage) {
+  std::fill(s.q_sum.begin(), s.q_sum.end(), 0.0);
+  std::fill(s.u_sum.begin(), s.u_sum.end(), 0.0);
+  for (int stage = 0;; ++stage) {
     back.accelerations(torques, kPart[stage], s.udot);
-    if (stage == 0)
-      back.position_rates(q, u, s.qdot);
-    else
-      back.position_rates(s.q, s.u, s.qdot);
-    for (std::size_t i = 0; i < q.size(); ++i) s.q_sum[i] += kWeight[stage] * s.qdot[i];
-    for (std::size_t i = 0; i < u.size(); ++i) s.u_sum[i] += kWeight[stage] * s.udot[i];
-    if (stage == 3) break;
-    for (std::size_t i = 0; i < q.size(); ++i) s.q[i] = q[i] + h * kNext[stage] * s.qdot[i];
-    for (std::size_t i = 0; i < u.size(); ++i) s.u[i] = u[i] + h * kNext[stage] * s.udot[i];
+    const std::vector<double>& at = stage == 0 ? q : s.q;
+    const std::vector<double>& speeds = stage == 0 ? u : s.u;
+    if constexpr (!Back::kRatesAreSpeeds) back.position_rates(at, speeds, s.qdot);
+    const std::vector<double>& qdot = Back::kRatesAreSpeeds ? speeds : s.qdot;
+    if (stage == 3) {
+      add_last_stage(qdot, kWeight[3], h, s.q_sum, q);
+      add_last_stage(s.udot, kWeight[3], h, s.u_sum, u);
+      return;
+    }
+    const double weight = kWeight[stage], ahead_s = h * kNext[stage];
+    add_stage(q, qdot, weight, ahead_s, s.q_sum, s.q);
+    add_stage(u, s.udot, weight, ahead_s, s.u_sum, s.u);
     back.set_state(s.q, s.u);
   }
-  for (std::size_t i = 0; i < q.size(); ++i) q[i] += h * s.q_sum[i];
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] += h * s.u_sum[i];
 }
 
 template <typename Back>

@@ -5,7 +5,7 @@
 //   back.set_state(q, u);                    // all robots, one after another
 //   back.contacts(robot);                    // floor forces at that state
 //   back.accelerations(torques, part, udot); // at that state, with these torques at that part of the step
-//   back.position_rates(q, u, qdot);         // dq/dt = N(q) u, for any q and u
+//   back.position_rates(q, u, qdot);         // dq/dt = N(q) u, for any q and u; kRatesAreSpeeds: N = 1
 //
 // State of one robot: q = (pose, wheel angles), u = (body speeds, wheel speeds); as many wheels as the robot with the
 // most has, so that all robots take the same room.

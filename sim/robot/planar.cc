@@ -1,9 +1,7 @@
 #include "sim/robot/planar.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace omnihil {
 namespace {
@@ -43,8 +41,7 @@ PerWheel<double> PlanarMechanics::wheels_of(const Robot& r, const double* first)
     Robot& r = robots_[n];
     const double* qr = q.data() + n * layout_.q_per_robot;
     const double* ur = u.data() + n * layout_.u_per_robot;
-    if (std::bit_cast<std::uint64_t>(qr[0]) !=
-        std::bit_cast<std::uint64_t>(r.yaw_rad)) {  // a step begins where the one before was looked at
+    if (!is_looked_at(r, qr[0])) {  // a step begins where the one before was looked at
       r.yaw_rad = qr[0];
       ::sincos(qr[0], &r.sin_yaw, &r.cos_yaw);  // the same bits as sin and cos, at the cost of one
     }
@@ -53,7 +50,7 @@ PerWheel<double> PlanarMechanics::wheels_of(const Robot& r, const double* first)
     const PerWheel<double> omega_wheel = wheels_of(r, ur + layout_.wheel_u);
     const WheelMotion<double> motion = wheel_motion(r.law, velocity, omega_wheel);
     if (r.effects == nullptr) {
-      r.contacts = contact_forces(r.law, motion);
+      find_contacts(r.law, motion, r.contacts);
     } else {
       const FloorState state{qr[0], velocity, omega_wheel, wheels_of(r, qr + layout_.wheel_q)};
       r.contacts = r.effects->contacts(r.law, motion, state, nullptr, r.more);
@@ -98,10 +95,10 @@ BodyMotion PlanarMechanics::motion(const std::vector<double>& q, const std::vect
                                    std::size_t robot) const {
   const double* qr = q.data() + robot * layout_.q_per_robot;
   const double* ur = u.data() + robot * layout_.u_per_robot;
-  return {.x_m = qr[1],
-          .y_m = qr[2],
-          .yaw_rad = qr[0],
-          .velocity = in_body(ur, std::cos(qr[0]), std::sin(qr[0]))};
+  const Robot& r = robots_[robot];
+  double cos_yaw = r.cos_yaw, sin_yaw = r.sin_yaw;
+  if (!is_looked_at(r, qr[0])) ::sincos(qr[0], &sin_yaw, &cos_yaw);
+  return {.x_m = qr[1], .y_m = qr[2], .yaw_rad = qr[0], .velocity = in_body(ur, cos_yaw, sin_yaw)};
 }
 
 void PlanarMechanics::place(std::vector<double>& q, std::vector<double>& u, std::size_t robot, double x_m,

@@ -4,6 +4,8 @@
 //
 // Laws: planar_law.h (masses), contact.h (floor). No allocation after construction.
 #pragma once
+#include <bit>
+#include <cstdint>
 #include <vector>
 
 #include "sim/robot/floor_effects.h"
@@ -26,10 +28,14 @@ class PlanarMechanics {
   // Of a robot with effects only.
   const FloorForces& floor_forces(std::size_t robot) const { return robots_[robot].more; }
   void accelerations(const std::vector<WheelTorques>& torques, StepPart part, std::vector<double>& udot);
+  static constexpr bool kRatesAreSpeeds = true;  // position_rates() gives u
   void position_rates(const std::vector<double>& q, const std::vector<double>& u,
                       std::vector<double>& qdot) const;
   void normalise(std::vector<double>&) const {}
 
+  double yaw_rad(const std::vector<double>& q, std::size_t robot) const {
+    return q[robot * layout_.q_per_robot];
+  }
   BodyMotion motion(const std::vector<double>& q, const std::vector<double>& u, std::size_t robot) const;
   // At rest at a pose, wheel angles zero.
   void place(std::vector<double>& q, std::vector<double>& u, std::size_t robot, double x_m, double y_m,
@@ -49,6 +55,9 @@ class PlanarMechanics {
     PerWheel<bool> lifted{};
   };
   static PerWheel<double> wheels_of(const Robot& r, const double* first);
+  static bool is_looked_at(const Robot& r, double yaw_rad) {  // its sine and cosine are known
+    return std::bit_cast<std::uint64_t>(yaw_rad) == std::bit_cast<std::uint64_t>(r.yaw_rad);
+  }
 
   StateLayout layout_;
   std::vector<Robot> robots_;

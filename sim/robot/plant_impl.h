@@ -391,7 +391,7 @@ struct Plant::Impl {
     }
     ++memory[n].current_steps;
     if (held && !free()) come_to_rest(n);
-    const double yaw_rad = back.motion(of.q, of.u, n - of.first).yaw_rad;
+    const double yaw_rad = back.yaw_rad(of.q, n - of.first);
     disturb(n, yaw_rad);
     const double* v0 = u_before + field_u();
     const double* v1 = field_velocity(n);
@@ -419,8 +419,32 @@ struct Plant::Impl {
     if (!fault) fault = PlantFault{now_ns, static_cast<int>(robot), signal, static_cast<int>(index)};
   }
 
+  // All of a robot's numbers at once, two by two: x - x is 0 of a finite one, and of no other.
+  bool all_finite(std::size_t n) const {
+    using Pair [[gnu::vector_size(16)]] = double;
+    Pair rest{};
+    const auto add = [&rest](const double* values, std::size_t count) {
+      std::size_t i = 0;
+      for (; i + 1 < count; i += 2) {
+        const Pair two{values[i], values[i + 1]};
+        rest += two - two;
+      }
+      if (i < count) rest[0] += values[i] - values[i];
+    };
+    const RobotMemory& mem = memory[n];
+    const MechanicsGroup& of = group(n);
+    const std::size_t count = wheels(n);
+    for (const auto& legs : electric_memory[n].legs.leg_duty_ratio) add(legs, kLegs);
+    add(mem.duty_ratio.data(), count);
+    for (std::size_t i = 0; i < count; ++i) rest[0] += mem.winding[i].current_A - mem.winding[i].current_A;
+    add(of.pose(n), layout.wheel_q + count);
+    add(of.speeds(n), layout.wheel_u + count);
+    return rest[0] + rest[1] == 0.0;
+  }
+
   void look_for_fault() {
     for (std::size_t n = 0; n < models.size() && !fault; ++n) {
+      if (all_finite(n)) continue;
       const auto scan = [&](const double* values, std::size_t count, std::string_view signal) {
         for (std::size_t i = 0; i < count; ++i) {
           if (!std::isfinite(values[i])) report(n, signal, i);
