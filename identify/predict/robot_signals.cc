@@ -52,7 +52,8 @@ void add_encoder(const Channel& channel, Observation how, const std::string& nam
 }
 
 // The first frame is the origin of the path, and is not compared.
-void add_frames(const Channel& channel, Observation how, std::string_view unit, RobotRun& r) {
+void add_frames(const Channel& channel, Observation how, std::string_view unit, double loop_sigma_s,
+                RobotRun& r) {
   std::vector<double> seen, at_rows(r.record.size(), kMissing);
   for (const CameraFrame& f : r.record.frames) {
     const double v = f.pose[how.part];
@@ -65,8 +66,8 @@ void add_frames(const Channel& channel, Observation how, std::string_view unit, 
       add_signal(r, std::move(how), name, std::string(unit), r.record.time_s, std::move(at_rows));
   set_noise(channel.sigma, estimate_noise(seen), c);  // from frame to frame
   r.seen.back().channel_sigma = c.noise_sigma;
-  if (channel.clock_sigma_s > 0.0 && !seen.empty()) {
-    r.clock.sigma_s = channel.clock_sigma_s;
+  if (const double sigma_s = std::max(channel.clock_sigma_s, loop_sigma_s); sigma_s > 0.0 && !seen.empty()) {
+    r.clock.sigma_s = sigma_s;
     r.clock.follow_s = kFollowCamera_s;
     r.clock.signals.push_back(r.compared.size() - 1);
   }
@@ -87,6 +88,12 @@ void shift_clock(const RobotRun& run, std::uint64_t seed, std::vector<std::vecto
 RobotRun robot_run(const Dataset& dataset, const Run& run, const RollingParams<double>& nominal) {
   RobotRun r;
   r.record = robot_record(dataset, run, nominal);
+  // A loop that is described in place of the firmware says of neither what it hears nor what it tells at which instant of its
+  // period: the difference of two that are uniform in it, T / sqrt(6), by which a camera's clock is off if no clock is stated.
+  const bool stated =
+      std::ranges::any_of(dataset.channels, [](const Channel& c) { return c.clock_sigma_s > 0.0; });
+  const bool described = r.record.radio.has_value() && dataset.firmware == nullptr && !stated;
+  const double loop_sigma_s = described ? nominal.controller.period_s / std::sqrt(6.0) : 0.0;
   for (const Source& source : kSources) {
     const bool each = source.part == kEachWheel;
     for (std::size_t i = 0; i < (each ? r.record.wheels : 1u); ++i) {
@@ -102,7 +109,7 @@ RobotRun robot_run(const Dataset& dataset, const Run& run, const RollingParams<d
       if (source.view == View::kDifference) {
         add_encoder(*channel, how, numbered("velocity", i, r.record.wheels), r);
       } else if (source.view == View::kFrames) {
-        add_frames(*channel, how, source.unit, r);
+        add_frames(*channel, how, source.unit, loop_sigma_s, r);
       } else {
         const bool bus = source.view == View::kLevel;
         add_signal(r, how, name, std::string(source.unit), r.record.time_s,

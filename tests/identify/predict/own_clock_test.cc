@@ -171,5 +171,20 @@ TEST(OwnClock, AShiftIsNoDelay) {
   }
 }
 
+// Poses half a period of the described loop late are no sign of anything: they cost what two instants within the period are
+// worth, (0.5 ms over 1 ms / sqrt(6))^2 = 1.5, and what the shift leaves in second order. A robot that does not turn, gently.
+TEST(OwnClock, WithinThePeriodOfADescribedLoopNoInstantIsKnown) {
+  Candidate truth = radio_candidate();
+  EXPECT_EQ(set_value(truth, "controller.acceleration_limit_m_s2", 1.0), "");
+  Candidate late = with_effect(truth, *find_effect("vision_delay"));
+  EXPECT_EQ(set_value(late, "vision_delay.delay_s", 0.5e-3), "");
+  Dataset quiet = with_clock(0.0);
+  for (Channel& c : quiet.channels)
+    if (c.signal == "vision_x" || c.signal == "vision_y") c.sigma = 1e-4;
+  for (omnihil::Run& run : quiet.runs) run.signals["command_w"].assign(run.time_s.size(), 0.0);
+  const auto made = make_predictor(quiet, truth, {})->simulated(late, 6);
+  EXPECT_LT(camera_energy(*made, truth) - camera_energy(*made, late), 1.5 + 5.0);
+}
+
 }  // namespace
 }  // namespace omnihil::test
