@@ -83,7 +83,10 @@ ResidualExcess ResidualExcesses::on(Split split) const {
   const Eigen::VectorXd before = excess_of(residuals, null_, channels, first);
   const Eigen::VectorXd after = excess_of(residuals, null_, channels, now);
   Eigen::Index worst = 0;
-  out.excess = after.maxCoeff(&worst);
+  // Where nothing is left, it is said of what there was something to explain of, not of an input (a measured bus).
+  if (after.maxCoeff(&worst) < kStructure && before.maxCoeff() >= kStructure)
+    (before.array() >= kStructure).select(after, after.minCoeff() - 1.0).maxCoeff(&worst);
+  out.excess = after[worst];
   out.excess_before = before[worst];
   out.signal = channels.name[static_cast<std::size_t>(worst)];
   out.rms = std::sqrt(residuals.mean_square(now)[worst]);
