@@ -2,7 +2,7 @@
 // position's own rounding, and the filter that whitens both is another than that of the rounding alone.
 //
 //   const std::vector<Wander> wanders = {{.signal = &run.compared[0], .change = moved_minus_still}};    // one per run
-//   const Whitening w = whitening_beside(wanders, 0.25, 0.0625);         // w.time_constant_s: 0.0625 to 0.25
+//   const Whitening w = whitening_beside(wanders, 0.25, 0.125);          // w.time_constant_s: 0.125 to 0.25
 //
 // Law: of the leaks that whiten (predictor.h), halved from the longest on, the first through which the wander is no more than
 // the rounding; the shortest if none is. The sigma is of both.
