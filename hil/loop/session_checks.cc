@@ -160,6 +160,15 @@ std::vector<std::string> firmware_problems(const SessionConfig& config,
 }
 
 std::string first_non_finite(const RobotSample& sample) {
+  const RobotSensors& s = sample.sensors;
+  double rest = 0.0;  // x - x is 0 of a finite number, and of no other
+  for (const double x : {s.bus_voltage_V, s.gyro_z_rad_s, s.accel_x_m_s2, s.accel_y_m_s2}) rest += x - x;
+  for (std::size_t w = 0; w < kWheels; ++w) {
+    for (const double x :
+         {s.motor_current_A[w], sample.drive.duty_ratio[w], sample.feedback.omega_wheel_rad_s[w]})
+      rest += x - x;
+  }
+  if (rest == 0.0) return {};
   FiniteScan scan;
   scan.check_all("sensors motor_current_A", sample.sensors.motor_current_A);
   scan.check("sensors bus_voltage_V", sample.sensors.bus_voltage_V);

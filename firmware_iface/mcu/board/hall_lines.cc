@@ -24,6 +24,13 @@ double HallLines::electric_rad(std::int64_t at_ns) const {
   return world_().rotor_rad(entry_.wheel, at_ns) * entry_.hall_pole_pairs;
 }
 
+void HallLines::look() {
+  const std::int64_t now_ns = system_.to_ns(system_.now());
+  const double theta_elec_rad = electric_rad(now_ns);
+  show(code(theta_elec_rad));
+  plan(now_ns, theta_elec_rad);
+}
+
 unsigned HallLines::code(double theta_elec_rad) {
   unsigned code = 0;
   for (unsigned x = 0; x < 3; ++x) {
@@ -47,20 +54,18 @@ void HallLines::show(unsigned code) {
 
 void HallLines::world_changed() {
   const Cycles before = next_;
-  show(code(electric_rad(system_.to_ns(system_.now()))));
-  plan();
+  look();
   if (next_ != before) system_.event_moved(&next_, before);
 }
 
 // The next edge is half a sector away from a multiple of one: at 30, 90, 150 … electrical degrees.
-void HallLines::plan() {
+void HallLines::plan(std::int64_t now_ns, double theta_elec_rad) {
   next_ = kNever;
   const WorldState& world = world_();
   const double omega =
       world.omega_rotor_rad_s[static_cast<std::size_t>(entry_.wheel)] * entry_.hall_pole_pairs;
   if (std::abs(omega) < 1e-6) return;
-  const std::int64_t now_ns = system_.to_ns(system_.now());
-  const double at = electric_rad(now_ns) / kSector - 0.5;
+  const double at = theta_elec_rad / kSector - 0.5;
   constexpr double kPast = 1e-9;  // of a sector: an edge that has just been passed is not the next
   const double edge = omega > 0 ? std::floor(at + kPast) + 1.0 : std::ceil(at - kPast) - 1.0;
   const double wait_ns = (edge - at) * kSector / omega * 1e9;
@@ -70,9 +75,7 @@ void HallLines::plan() {
 }
 
 void HallLines::run_events() {
-  if (next_ > system_.now()) return;
-  show(code(electric_rad(system_.to_ns(system_.now()))));
-  plan();
+  if (next_ <= system_.now()) look();
 }
 
 }  // namespace omnihil::mcu

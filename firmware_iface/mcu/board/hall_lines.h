@@ -23,14 +23,18 @@ class HallLines final : public Peripheral {
   std::uint32_t read(std::uint32_t, unsigned) override { return 0; }
   void write(std::uint32_t, unsigned, std::uint32_t) override {}
   void run_events() override;
-  void clock_changed() override { plan(); }
+  void clock_changed() override {
+    const std::int64_t now_ns = system_.to_ns(system_.now());
+    plan(now_ns, electric_rad(now_ns));
+  }
   void world_changed();  // a new step of the plant has begun, at now()
   static unsigned code(double theta_elec_rad);
 
  private:
   double electric_rad(std::int64_t at_ns) const;
   void show(unsigned code);
-  void plan();
+  void plan(std::int64_t now_ns, double theta_elec_rad);
+  void look();
 
   MotorEntry entry_;
   System& system_;

@@ -114,6 +114,7 @@ void McuFirmware::speak(std::int64_t now_ns) {
 }
 
 void McuFirmware::show_world() {
+  if (boards_.size() == 1) return boards_[0]->set_world(world_);
   for (std::size_t b = 0; b < boards_.size(); ++b) {
     WorldState seen = world_;
     for (std::size_t w = b * static_cast<std::size_t>(wheels_per_board_), i = 0; w < kWheels; ++w, ++i) {

@@ -5,6 +5,37 @@
 
 namespace omnihil::mcu {
 
+void MotorWire::pass(std::int64_t at_ns) {
+  const auto held_ns = static_cast<double>(at_ns - since_ns_);
+  since_ns_ = at_ns;
+  if (!held_.driven || held_ns <= 0.0) return;
+  driven_ns_ += held_ns;
+  duty_ns_ += held_ns * held_.duty_ratio;
+}
+
+// What now() would give is held_: nothing that it is made of has moved since.
+inline bool MotorWire::still() const {
+  return held_pwm_ && held_version_ == pins_version() && held_directed_ == directed() && enabled() &&
+         !braked();
+}
+
+[[gnu::noinline]] void MotorWire::hold() {
+  held_ = work_out(held_pwm_);
+  held_directed_ = directed();
+  if (held_pwm_) held_version_ = pins_version();
+}
+
+[[gnu::noinline]] void MotorWire::legs_changed(std::int64_t at_ns) {
+  if (!legs_stay()) means_.hold(look_at_legs(), at_ns);
+}
+
+// At every update of a timer, whatever has come of it.
+inline void MotorWire::changed(std::int64_t at_ns) {
+  if (phases()) return legs_changed(at_ns);
+  pass(at_ns);
+  if (!still()) hold();
+}
+
 MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int64_t()> now_ns)
     : entry_(entry), now_ns_(std::move(now_ns)), phases_(entry.pwm.size() == 3) {
   const auto pin_changed = [this](bool) { changed(now_ns_()); };
@@ -57,35 +88,6 @@ BridgeDrive MotorWire::work_out(bool& pwm) const {
   if (direction_ == nullptr) return {true, entry_.sign * (2.0 * first.high_ratio - 1.0)};
   const bool forward = directed() == entry_.direction_high_is_forward;
   return {true, entry_.sign * (forward ? first.high_ratio : -first.high_ratio)};
-}
-
-void MotorWire::pass(std::int64_t at_ns) {
-  const auto held_ns = static_cast<double>(at_ns - since_ns_);
-  since_ns_ = at_ns;
-  if (!held_.driven || held_ns <= 0.0) return;
-  driven_ns_ += held_ns;
-  duty_ns_ += held_ns * held_.duty_ratio;
-}
-
-// What now() would give is held_: nothing that it is made of has moved since.
-inline bool MotorWire::still() const {
-  return held_pwm_ && held_version_ == pins_version() && held_directed_ == directed() && enabled() &&
-         !braked();
-}
-
-void MotorWire::hold() {
-  held_ = work_out(held_pwm_);
-  held_directed_ = directed();
-  if (held_pwm_) held_version_ = pins_version();
-}
-
-void MotorWire::changed(std::int64_t at_ns) {
-  if (phases()) {
-    if (!legs_stay()) means_.hold(look_at_legs(), at_ns);
-    return;
-  }
-  pass(at_ns);
-  if (!still()) hold();
 }
 
 void MotorWire::begin(std::int64_t at_ns) {

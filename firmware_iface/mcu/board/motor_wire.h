@@ -59,6 +59,7 @@ class MotorWire {
 
  private:
   void changed(std::int64_t at_ns);
+  void legs_changed(std::int64_t at_ns);
   BridgeLegs look_at_legs();
   bool legs_stay() const;
   std::uint32_t leg_pins_version() const;

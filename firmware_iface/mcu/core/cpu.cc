@@ -86,7 +86,8 @@ Stop Cpu::run(std::int64_t now, std::int64_t deadline) {
     if (now >= deadline) return Stop::kDeadline;
   }
   wait_.steady_until = 0;
-  if ((reg.fpscr & kRoundingMode) != 0) return run_rounded(now, deadline);
+  if ((reg.fpscr & kRoundingMode) != 0) [[unlikely]]
+    return run_rounded(now, deadline);
   const Stop stop = observer_ == nullptr ? execute(now, deadline) : execute_observed(now, deadline);
   if ((reg.fpscr & kRoundingMode) != 0) std::fesetround(FE_TONEAREST);
   return stop;
@@ -375,9 +376,10 @@ bool Cpu::bus_fault(std::uint32_t address) {
 }
 
 bool Cpu::slow_load(std::uint32_t address, unsigned bytes, std::uint32_t& value, bool must_align) {
-  const bool own =
-      address - kPrivate < kPrivateSize && (address & (bytes - 1)) == 0 && watches_.empty();  // of the core
-  if (!own && !is_device(address, bytes)) return far_load(address, bytes, value, must_align);
+  if (!is_device(address, bytes)) {
+    const bool own = address - kPrivate < kPrivateSize && (address & (bytes - 1)) == 0;  // of the core
+    if (!own || !watches_.empty()) return far_load(address, bytes, value, must_align);
+  }
   if (!bus_.read(address, bytes, value)) return bus_fault(address);
   if (learning_) note_of_wait(address, bytes, value, nullptr);
   return true;

@@ -249,6 +249,11 @@ bool Machine::write_words(std::uint32_t address, std::span<const std::uint32_t> 
 
 std::uint32_t Machine::bus_read(std::uint32_t address, unsigned bytes) {
   std::uint32_t value = 0;
+  const Slot* slot = recent_slots_[address >> 10 & 255];  // no memory is where a block is
+  if (slot != nullptr && in(address, slot->base, slot->size)) {
+    read(address, bytes, value);
+    return value;
+  }
   const MemoryRegion* region = memory_.find(address);
   std::uint8_t raw[4] = {};
   if (region != nullptr && memory_.read(address, {raw, bytes})) {

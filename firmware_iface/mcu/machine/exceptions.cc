@@ -65,8 +65,8 @@ void Machine::take_exception() {
   const bool fp = R.control & kFpContextActive, psp = R.uses_psp();
   const std::uint32_t exception_return =
       0xFFFFFFE1u | (fp ? 0 : 0x10) | (R.ipsr == 0 ? 8 : 0) | (psp ? 4 : 0);
-  const int before = execution_priority();
   if (!push_frame()) {  // the fault joins what is pending
+    const int before = execution_priority();
     cfsr_ |= kStackingBus;
     const bool taken = nvic_.enabled(kBusFault) && nvic_.group_priority(kBusFault) < before;
     if (!taken) hfsr_ |= 1u << 30;
@@ -222,7 +222,7 @@ void Machine::note_fault(int exception, const Fault& fault) {
 }
 
 void Machine::lock_up() {
-  locked_up_ = true;
+  locked_up_ = rare_ = true;
   report_.lock_up_pc = cpu_.reg.r[15];
 }
 

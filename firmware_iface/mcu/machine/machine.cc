@@ -49,6 +49,7 @@ void Machine::attach(std::uint32_t base, std::uint32_t size, Peripheral& periphe
 
 DebugUnit& Machine::debug(DebugListener& listener) {
   if (!debug_) debug_ = std::make_unique<DebugUnit>(*this, listener);
+  rare_ = true;
   return *debug_;
 }
 
@@ -105,6 +106,7 @@ void Machine::power_on() {
 
 void Machine::request_reset(std::string_view cause) {
   reset_wanted_ = cause;
+  rare_ = true;
   reschedule();
 }
 
@@ -163,6 +165,7 @@ void Machine::do_reset() {
 
 void Machine::map_at_zero(std::uint32_t base) {
   zero_wanted_ = base;
+  rare_ = true;
   reschedule();
 }
 
@@ -281,16 +284,22 @@ void Machine::run_to(Cycles end, bool until_clock_changes) {
   const std::int64_t end_sub = static_cast<std::int64_t>(end) * kSubcycles;
   while (now_ < end_sub) {
     run_due_events();
-    if (!reset_wanted_.empty()) {
-      do_reset();
-      continue;
+    if (rare_) [[unlikely]] {
+      if (!reset_wanted_.empty()) {
+        do_reset();
+        continue;
+      }
+      if (zero_wanted_) show_at_zero(*zero_wanted_);
     }
-    if (zero_wanted_) show_at_zero(*zero_wanted_);
     if (until_clock_changes && clock_.hz() != hz) return;
-    if (debug_ && debug_->halt_if_due()) continue;
-    if (locked_up_) {
-      now_ = static_cast<std::int64_t>(std::max<Cycles>(std::min(end, next_event()), now() + 1)) * kSubcycles;
-      continue;
+    if (rare_) [[unlikely]] {
+      if (debug_ && debug_->halt_if_due()) continue;
+      if (locked_up_) {
+        now_ =
+            static_cast<std::int64_t>(std::max<Cycles>(std::min(end, next_event()), now() + 1)) * kSubcycles;
+        continue;
+      }
+      rare_ = debug_ != nullptr;  // of all that is rare only a debugger stays
     }
     if (sleeping_ != Sleep::kNo) {
       sleep_until(end);

@@ -279,6 +279,8 @@ class Machine final : public System, private CpuBus {
   Cycles next_event_ = 0;
   std::uint64_t announced_ = 0;  // how often an event has been said to have moved
   bool running_ = false, next_event_known_ = false, armed_known_ = false, locked_up_ = false;
+  bool rare_ =
+      false;  // a reset or another memory at 0 is wanted, the core is locked up, or there is a debugger
   Sleep sleeping_ = Sleep::kNo;
   std::string reset_cause_ = "power-on";
   std::string reset_wanted_;

@@ -97,9 +97,10 @@ void Adc::begin() {
   const unsigned input = channel(active_, place_);
   sampling_ = true;
   sampling_clocks_ = sample_clocks(input) + late_clocks_;
-  phase_end_ = sampled_at_ = now() + cycles(sampling_lasted_, sampling_clocks_);
+  const Cycles begun = now();
+  phase_end_ = sampled_at_ = begun + cycles(sampling_lasted_, sampling_clocks_);
   held_ = (steady_ >> input & 1u) != 0;
-  if (held_) phase_end_ += conversion();
+  if (held_) phase_end_ = begun + whole();
 }
 
 void Adc::run_events() {
@@ -123,10 +124,11 @@ void Adc::sample() {
   } else {
     system().report_unmodelled(name(), fmt::format("input {} converted; nothing is connected to it", input));
   }
-  const double full = static_cast<double>(1u << bits());
+  const unsigned resolution = bits();
+  const double full = static_cast<double>(1u << resolution);
   const double code = std::floor(volts / reference_V * full + 0.5);
   code_ = code > 0.0 ? static_cast<std::uint32_t>(std::min(code, full - 1.0)) : 0u;
-  if (left_aligned()) code_ <<= bits() == 6 ? 2 : 16 - bits();
+  if (left_aligned()) code_ <<= resolution == 6 ? 2 : 16 - resolution;
   sampling_ = held_ = false;
 }
 

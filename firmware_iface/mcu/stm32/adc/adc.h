@@ -96,10 +96,8 @@ class Adc : public RegisterBlock, public TriggerSink {
   };
   Cycles cycles(Lasted& before, double clocks);
   // Of what follows the sampling: both together are whole cycles, not each of them.
-  Cycles conversion() {
-    return cycles(whole_lasted_, sampling_clocks_ + convert_clocks()) -
-           cycles(sampling_lasted_, sampling_clocks_);
-  }
+  Cycles conversion() { return whole() - cycles(sampling_lasted_, sampling_clocks_); }
+  Cycles whole() { return cycles(whole_lasted_, sampling_clocks_ + convert_clocks()); }
   void finish();
   bool goes_on() const {
     return in_group() && group_->is_slave(*this) ? group_->master().continues() : continues();

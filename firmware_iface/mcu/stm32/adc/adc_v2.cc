@@ -130,8 +130,11 @@ AdcV2::AdcV2(const std::string& name, AdcFamily family, int irq, const AdcTrigge
 
 void AdcV2::reset() {
   Adc::reset();
+  count_selected();
   update();
 }
+
+void AdcV2::count_selected() { selected_ = static_cast<unsigned>(std::popcount(value(kChselr))); }
 
 unsigned AdcV2::length(Group group) const {
   if (places_chosen() && group == Group::kRegular) {  // up to the first place that names no channel
@@ -139,8 +142,7 @@ unsigned AdcV2::length(Group group) const {
     while (places < 8 && field(value(kChselr), 4 * places, 4) != 15) ++places;
     return places;
   }
-  if (regular_alone())
-    return group == Group::kRegular ? static_cast<unsigned>(std::popcount(value(kChselr))) : 0;
+  if (regular_alone()) return group == Group::kRegular ? selected_ : 0;
   return group == Group::kInjected ? field(value(kJsqr), 0, 2) + 1 : field(value(kSqr1), 0, 4) + 1;
 }
 
@@ -309,6 +311,7 @@ void AdcV2::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
     control(written);
   } else {
     keep(offset, written, lanes);
+    if (offset == kChselr) count_selected();
     if (family_ == AdcFamily::kG0 && (offset == kChselr || offset == kCfgr)) value(kIsr) |= kCcrdy;
   }
   if (offset == kCr || offset == kCfgr || offset == kJsqr) listen();

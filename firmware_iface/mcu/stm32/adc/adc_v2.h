@@ -51,10 +51,12 @@ class AdcV2 final : public Adc {
   bool places_chosen() const { return family_ == AdcFamily::kG0 && bit(value(0x0C), 21); }  // CHSELRMOD
   bool old_fields() const { return family_ == AdcFamily::kF3 || family_ == AdcFamily::kL4; }
   void update();
+  void count_selected();  // after every change of CHSELR
   AdcFamily family_;
   IrqLine irq_;
   int dma_;
   std::uint32_t ccr_ = 0;
+  unsigned selected_ = 0;  // channels
 };
 
 class AdcV2Common final : public RegisterBlock {

@@ -480,7 +480,7 @@ void Timer::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lan
       if (!captures(c) && !bit(value(kCcmr1 + 4 * (c / 2)), 3 + 8 * (c % 2))) ccr_[c] = value(kCcr1 + 4 * c);
     }
   }
-  note_preloads();
+  if (offset != kSr) note_preloads();
   if (offset == kSmcr || offset == kCr2 || offset == kCcmr1 || offset == kCcmr2) listen_to_triggers();
   look_at_references();
   plan();

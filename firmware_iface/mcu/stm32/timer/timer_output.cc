@@ -157,12 +157,13 @@ double Timer::dead_ticks() const {
 
 TimerPin Timer::find_pin(unsigned c, bool complement) const {
   const unsigned i = 2 * c + (complement ? 1 : 0);
-  pins_[i] = work_out_pin(c, complement);
+  const TimerPin is = work_out_pin(c, complement);
+  pins_[i] = is;
   // Steady ones may change with the count, but for those that are forced.
   const unsigned mode = output_mode(c);
   const bool forced = mode == kForceLow || mode == kForceHigh;
-  if (pins_[i].drive != TimerPin::Drive::kSteady || forced) pins_known_ |= 1u << i;
-  return pins_[i];
+  if (is.drive != TimerPin::Drive::kSteady || forced) pins_known_ |= 1u << i;
+  return is;
 }
 
 TimerPin Timer::work_out_pin(unsigned c, bool complement) const {
