@@ -18,7 +18,7 @@ BootedImage::BootedImage(std::unique_ptr<Firmware> image, const RadioFormat* rad
 
 RobotDrive BootedImage::tick(const RobotSensors& sensors) {
   if (ticks_ == 0) boot(sensors);
-  // Its own heading, as an AI host has it: told, or that of its start.
+  // The heading that its telemetry has told, before any that of its start.
   const double told_rad = ear_ ? ear_->told(now_ns()).yaw_rad : 0.0,
                yaw_rad = std::isfinite(told_rad) ? told_rad : 0.0;
   for (const RobotCommand& command : heard_) {

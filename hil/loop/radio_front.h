@@ -7,8 +7,8 @@
 // What a host would write goes through the dongle of the format (Session's own, radio_link.h), on a clock of its own: how long
 // the air takes is whose command it is, who has it in a latency of his own. Packets that have to go before the first command
 // go before it; of a format that tells wheel speeds each asks for all that the robot can tell (hil/dataset/radio_ear.h hears
-// it). A format that has velocities in the field's frame alone (REM) says them by the heading that is given, as an AI host
-// does. Cannot: keep a connection up for a format that wants packets between commands.
+// it). A format that has velocities in the field's frame alone (REM) says them by the heading that is given.
+// Cannot: keep a connection up for a format that wants packets between commands.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <type_traits>
 
 #include "protocols/radio_format.h"
 #include "sim/model/params.h"
@@ -23,7 +24,7 @@ class FiniteScan {
     if (found_.empty() && !std::isfinite(value)) found_ = name;
   }
   template <class Values>
-  void check_all(std::string_view name, const Values& values) {
+  void check(std::string_view name, const Values& values) {
     if (!found_.empty()) return;
     int index = 0;
     for (const double value : values) {
@@ -160,23 +161,27 @@ std::vector<std::string> firmware_problems(const SessionConfig& config,
 }
 
 std::string first_non_finite(const RobotSample& sample) {
-  const RobotSensors& s = sample.sensors;
+  const auto each = [&](auto&& take) {
+    const RobotSensors& s = sample.sensors;
+    take("sensors motor_current_A", s.motor_current_A);
+    take("sensors bus_voltage_V", s.bus_voltage_V);
+    take("sensors gyro_z_rad_s", s.gyro_z_rad_s);
+    take("sensors accel_x_m_s2", s.accel_x_m_s2);
+    take("sensors accel_y_m_s2", s.accel_y_m_s2);
+    take("drive duty_ratio", sample.drive.duty_ratio);
+    take("feedback omega_wheel_rad_s", sample.feedback.omega_wheel_rad_s);
+  };
   double rest = 0.0;  // x - x is 0 of a finite number, and of no other
-  for (const double x : {s.bus_voltage_V, s.gyro_z_rad_s, s.accel_x_m_s2, s.accel_y_m_s2}) rest += x - x;
-  for (std::size_t w = 0; w < kWheels; ++w) {
-    for (const double x :
-         {s.motor_current_A[w], sample.drive.duty_ratio[w], sample.feedback.omega_wheel_rad_s[w]})
-      rest += x - x;
-  }
+  each([&](std::string_view, const auto& value) {
+    if constexpr (std::is_floating_point_v<std::remove_cvref_t<decltype(value)>>) {
+      rest += value - value;
+    } else {
+      for (const double x : value) rest += x - x;
+    }
+  });
   if (rest == 0.0) return {};
   FiniteScan scan;
-  scan.check_all("sensors motor_current_A", sample.sensors.motor_current_A);
-  scan.check("sensors bus_voltage_V", sample.sensors.bus_voltage_V);
-  scan.check("sensors gyro_z_rad_s", sample.sensors.gyro_z_rad_s);
-  scan.check("sensors accel_x_m_s2", sample.sensors.accel_x_m_s2);
-  scan.check("sensors accel_y_m_s2", sample.sensors.accel_y_m_s2);
-  scan.check_all("drive duty_ratio", sample.drive.duty_ratio);
-  scan.check_all("feedback omega_wheel_rad_s", sample.feedback.omega_wheel_rad_s);
+  each([&](std::string_view name, const auto& value) { scan.check(name, value); });
   return scan.take();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <ranges>
 #include <string>
 #include <utility>
@@ -108,8 +109,7 @@ class AxisRig : public RigRuns<AxisSetup> {
   }
 
   void choose_step() {
-    auto trial = std::make_shared<AxisRig>(*this);
-    for (AxisSetup& s : trial->runs_) shorten(s, kTrial_s);
+    const auto trial = std::make_shared<AxisRig>(shortened());
     substep_ =
         AxisSubstep(*nominal_, runs_, options_.step_s, [trial](const Candidate& model, int run, double h) {
           const auto n = static_cast<std::size_t>(run);
@@ -124,12 +124,12 @@ class AxisRig : public RigRuns<AxisSetup> {
   // Of counts and positions whose drive's bus is measured: that input's noise integrates into speed and position.
   void choose_whitening() {
     std::map<std::string, std::vector<Wander>> wanders;
+    std::optional<AxisRig> shorter;
     for (std::size_t n = 0; n < runs_.size(); ++n) {
       const AxisSetup& s = runs_[n];
       const bool compares = std::ranges::any_of(s.compared, is_difference);
       if (!compares || dataset_->runs[n].split != Split::kTraining || !has_bus_input(s)) continue;
-      AxisRig trial(*this);
-      shorten(trial.runs_[n], kTrial_s);
+      AxisRig& trial = shorter ? *shorter : shorter.emplace(shortened());
       const Candidate own = with_known(*nominal_, dataset_->runs[n].known);
       const Prediction moved = trial.ground_truth_prediction(own, n, kNoiseSeed),
                        still = predicted(trial, own, n, step_s(own, n));
@@ -143,7 +143,7 @@ class AxisRig : public RigRuns<AxisSetup> {
       const Whitening best = whitening_beside(of_runs, kWhitening_s, kShortestWhitening_s);
       for (AxisSetup& s : runs_) {
         for (ComparedSignal& c : s.compared) {
-          if (c.name != name || !is_difference(c) || best.sigma <= 0.0) continue;
+          if (c.name != name || !is_difference(c)) continue;
           c.whitening_s = best.time_constant_s;
           c.whitened_sigma = best.sigma;
         }
@@ -158,9 +158,14 @@ class AxisRig : public RigRuns<AxisSetup> {
            std::ranges::any_of(s.compared, [](const ComparedSignal& c) { return c.name == "bus_voltage"; });
   }
   // Any: the draw is used for the rms of the noise alone.
-  static constexpr std::uint64_t kNoiseSeed = 1;
-  static constexpr double kTrial_s = 10.0;  // of a run: bounds the cost; a choice
+  static constexpr std::uint64_t kNoiseSeed = 1;  // as above
+  static constexpr double kTrial_s = 10.0;        // of a run: bounds the cost; a choice
 
+  AxisRig shortened() const {
+    AxisRig out(*this);
+    for (AxisSetup& s : out.runs_) shorten(s, kTrial_s);
+    return out;
+  }
   static void shorten(AxisSetup& s, double span_s) {
     const auto& t = s.input.time_s;
     if (t.empty() || s.steady) return;

@@ -119,6 +119,10 @@ class Runner {
     }
     in.duty_ratio = at_.duty;
   }
+  void run_loop(std::size_t k, double step_s) {
+    RollingInput<T> in = input(k);
+    control(in, record_.time_s[k], step_s);
+  }
   T bus_or_supply(const RollingInput<T>& in) const {
     const T bus = in.bus_is_measured ? T(in.bus_voltage_V) : at_.state.bus_voltage_V;
     return value_of(bus) > 0.0 ? bus : model_.params.drive.supply_voltage_V;
@@ -203,7 +207,7 @@ class Runner {
       const bool last = k + 1 >= record_.size();
       const std::optional<RobotCarry<T>> before = last ? std::optional(at_) : std::nullopt;
       if (record_.radio && !last) hear(k);
-      if (RollingInput<T> in = input(k); at_.controller) control(in, record_.time_s[k], step_s);
+      if (at_.controller) run_loop(k, step_s);
       keep();
       if (last) at_ = *before;
       if (last) break;

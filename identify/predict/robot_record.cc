@@ -215,6 +215,7 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   r.encoder_rotor_rad.resize(r.size());
   r.theta_rotor_rad.resize(r.size());
   read_drive(run, r);
+  if (r.radio && dataset.firmware == nullptr) r.loop_period_s = nominal.controller.period_s;
   r.duty_quantum = rounding_of(r.duty_ratio, r.wheels);
   read_encoders(dataset, run, nominal.drive.gear_ratio, r);
   r.dribbler_rad_s = held(run.signal("dribbler"));

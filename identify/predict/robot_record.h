@@ -55,6 +55,7 @@ struct RobotRecord {
   std::vector<double> time_s;
   std::vector<PerWheel<double>> duty_ratio;  // 0 where `radio` drives
   std::optional<RadioCommands> radio;
+  double loop_period_s = 0.0;  // of the [controller] that stands in for the firmware; 0: none does
   std::vector<PerWheel<bool>> enabled;
   BusReading bus;
   double duty_quantum = 0.0;  // step that the record's duties are rounded to; 0: none found

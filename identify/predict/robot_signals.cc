@@ -92,8 +92,7 @@ RobotRun robot_run(const Dataset& dataset, const Run& run, const RollingParams<d
   // period: the difference of two that are uniform in it, T / sqrt(6), by which a camera's clock is off if no clock is stated.
   const bool stated =
       std::ranges::any_of(dataset.channels, [](const Channel& c) { return c.clock_sigma_s > 0.0; });
-  const bool described = r.record.radio.has_value() && dataset.firmware == nullptr && !stated;
-  const double loop_sigma_s = described ? nominal.controller.period_s / std::sqrt(6.0) : 0.0;
+  const double loop_sigma_s = stated ? 0.0 : r.record.loop_period_s / std::sqrt(6.0);
   for (const Source& source : kSources) {
     const bool each = source.part == kEachWheel;
     for (std::size_t i = 0; i < (each ? r.record.wheels : 1u); ++i) {

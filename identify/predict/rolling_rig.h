@@ -72,10 +72,8 @@ class RollingRig : public RigRuns<RobotRun> {
   void measure(const Candidate& truth, std::uint64_t seed);
   Capabilities capabilities() const {
     Capabilities out = Kind::capabilities(*dataset_);
-    const bool described = motion_.firmware == nullptr && std::ranges::any_of(runs_, [](const RobotRun& run) {
-                             return run.record.radio.has_value();
-                           });
-    if (described) out.loop_period_s = rolling_params(nominal_->file.parameters).controller.period_s;
+    for (const RobotRun& run : runs_)
+      out.loop_period_s = std::max(out.loop_period_s, run.record.loop_period_s);
     return out;
   }
 
