@@ -29,7 +29,7 @@ bool is_chopped(const LegCommand& c) { return c.off == LegState::kOff && c.on !=
 double effective_duty(const AveragedDrive& d, const PhaseState& s, std::size_t high, std::size_t low,
                       double duty, bool fast, double bus_V) {
   const PhaseCircuit& c = d.circuit;
-  const auto k = phase_constants(c, s.theta_rotor_rad + 0.5 * c.step_s * s.omega_rotor_rad_s);
+  const auto k = phase_constants(c, s.theta_rotor_rad + 0.5 * c.step.h_s * s.omega_rotor_rad_s);
   const double emf_V = (k[high] - k[low]) * s.omega_rotor_rad_s;
   const double off_V = fast ? -(bus_V + 2.0 * d.inverter.diode_forward_V) : -d.inverter.diode_forward_V;
   if (emf_V >= bus_V || emf_V <= off_V) return duty;
@@ -94,7 +94,7 @@ void advance_averaged(const AveragedDrive& drive, PhaseState& state, const Bridg
     return complementary_leg(drive, c.on == LegState::kHigh ? d : 1.0 - d, bus_V, state.current_A[x]);
   };
   const std::array<Leg, 3> legs = {leg(0), leg(1), leg(2)};
-  advance_circuit(drive.circuit, state, legs, input, drive.circuit.step_s, flow);
+  advance_circuit(drive.circuit, state, legs, input, drive.circuit.step, flow);
 }
 
 }  // namespace omnihil

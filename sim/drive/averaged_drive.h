@@ -31,7 +31,7 @@ struct AveragedDrive {
 AveragedDrive make_averaged_drive(const PhaseMotor<double>& motor, const Inverter& inverter, double step_s,
                                   double extra_inertia_kg_m2);
 
-// One step of drive.circuit.step_s.
+// One step of drive.circuit.step.h_s.
 void advance_averaged(const AveragedDrive& drive, PhaseState& state, const BridgeCommand& command,
                       const PhaseInput& input, PhaseFlow& flow);
 

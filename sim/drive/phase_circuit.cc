@@ -14,15 +14,12 @@ using namespace phase_detail;
 
 constexpr int kMaxParts = 12;  // of one step; each ends with a diode's current at zero
 // A stretch of time with fixed conduction.
-struct Part {
-  double h_s = 0.0;
-  double decay = 0.0;
-  double mean_decay = 0.0;  // (1 - decay) tau / h
+struct Part : PhaseStretch {
   double omega_mid_rad_s = 0.0;
   Three settled_A{};  // where each current would go
 };
 
-void set_length(const PhaseCircuit& c, Part& p, double h_s, double decay) {
+void set_length(const PhaseCircuit& c, PhaseStretch& p, double h_s, double decay) {
   p.h_s = h_s;
   p.decay = decay;
   p.mean_decay = h_s > 0.0 ? (1.0 - decay) * c.time_constant_s / h_s : 1.0;
@@ -69,22 +66,36 @@ struct Drive {
       [&](auto x) { p.settled_A[x] = (d.volt_V[x] - d.emf[x] * p.omega_mid_rad_s) * c.conductance_per_ohm; });
 }
 
-// The diode whose current reaches zero first within the part, or kNone. remaining: exp(-t / tau) there.
-std::size_t first_zero(const PhaseState& s, const Conduction& on, const Part& p, double& remaining) {
-  Three end_A;
-  each_phase([&](auto x) {
-    end_A[x] = on.direction[x] * (p.settled_A[x] + (s.current_A[x] - p.settled_A[x]) * p.decay);
-  });
-  if (std::min(std::min(end_A[0], end_A[1]), end_A[2]) >= 0.0) return kNone;
-  std::size_t first = kNone;
+// What is left behind a diode's current that has reached zero in `phase`.
+struct Rest {
+  std::size_t phase = kNone;  // none has
+  double after_s = 0.0;
+  PhaseStretch left;
+};
+
+// Currents that would turn within a stretch, which a diode cannot carry, and where each is going.
+struct Turning {
+  std::array<bool, 3> turns;
+  Three settled_A;
+  bool any() const { return turns[0] || turns[1] || turns[2]; }
+};
+
+// The diode whose current reaches zero first of those that would turn within the stretch, which is shortened to there.
+Rest shorten(const PhaseCircuit& c, const Three& current_A, const Turning& turning, PhaseStretch& p) {
+  Rest rest;
+  double remaining = 1.0;  // exp(-t / tau) there
   for (std::size_t x = 0; x < 3; ++x) {
-    if (end_A[x] >= 0.0) continue;
+    if (!turning.turns[x]) continue;
     // i_inf + (i_0 - i_inf) exp(-t / tau) = 0
-    const double i0 = s.current_A[x], settled = p.settled_A[x];
+    const double i0 = current_A[x], settled = turning.settled_A[x];
     const double there = i0 == 0.0 ? 1.0 : settled / (settled - i0);
-    if (first == kNone || there > remaining) first = x, remaining = there;
+    if (rest.phase == kNone || there > remaining) rest.phase = x, remaining = there;
   }
-  return first;
+  if (rest.phase == kNone) return rest;
+  rest.after_s = -c.time_constant_s * std::log(remaining);
+  set_length(c, rest.left, p.h_s - rest.after_s, p.decay / remaining);
+  set_length(c, p, rest.after_s, remaining);
+  return rest;
 }
 
 // Of the star point against the bus's minus.
@@ -209,10 +220,12 @@ bool advance_pair(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>
   return true;
 }
 
-// All three carry current, and nothing ends: most of the time, apart because it costs half. Otherwise as above. The same
-// numbers as below, to the last bit.
-bool advance_three(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
-                   const Three& constants, const PhaseInput& in, const PhaseStretch& p, PhaseFlow& flow) {
+// All three carry current: most of the time, apart because it costs half. The same numbers as below, to the last bit.
+// Whether a diode's current would turn is looked at if `turning` is given; then it is told, nothing done, false returned.
+[[gnu::always_inline]] inline bool advance_three(const PhaseCircuit& c, PhaseState& s,
+                                                 const std::array<Leg, 3>& legs, const Three& constants,
+                                                 const PhaseInput& in, const PhaseStretch& p, PhaseFlow& flow,
+                                                 Turning* turning) {
   const LegSource& a = source_of(legs[0], s.current_A[0]);
   const LegSource& b = source_of(legs[1], s.current_A[1]);
   const LegSource& z = source_of(legs[2], s.current_A[2]);
@@ -229,9 +242,12 @@ bool advance_three(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3
   }
   const Lanes settled_A = (volt_V - emf * omega_mid) * c.conductance_per_ohm, d = before_A - settled_A;
   const Lanes end_A = settled_A + d * p.decay;
-  if (has_turned(legs[0], s.current_A[0], end_A.two[0]) ||
-      has_turned(legs[1], s.current_A[1], end_A.two[1]) || has_turned(legs[2], s.current_A[2], end_A.third))
-    return false;
+  if (turning != nullptr) {
+    turning->turns = {has_turned(legs[0], s.current_A[0], end_A.two[0]),
+                      has_turned(legs[1], s.current_A[1], end_A.two[1]),
+                      has_turned(legs[2], s.current_A[2], end_A.third)};
+    if (turning->any()) return settled_A.put(turning->settled_A), false;
+  }
   const Lanes mean_A = settled_A + d * p.mean_decay, charge_C = mean_A * p.h_s;
   const double ring_s = p.mean_decay * p.h_s, ring2_s = 0.5 * (1.0 + p.decay) * ring_s;
   const double bus_C = sum_of(Lanes({a.bus_share, b.bus_share, z.bus_share}) * mean_A) * p.h_s;
@@ -252,32 +268,30 @@ bool advance_three(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3
   return true;
 }
 
-// What is left behind a diode's current that has reached zero in `phase`.
-struct Rest {
-  std::size_t phase = kNone;  // none has
-  double left_s = 0.0, left_decay = 1.0;
-};
-
-// The part as long as it is, or until a diode's current ends.
-[[gnu::always_inline]] inline Rest advance_part(const PhaseCircuit& c, PhaseState& s,
-                                                const std::array<Leg, 3>& legs, const Conduction& on,
-                                                const Three& constant, const PhaseInput& in, bool is_last,
-                                                Part& p, PhaseFlow& flow) {
+// The stretch, or as much of it as passes until a diode's current ends, with a conduction of its own. A barred phase has
+// just been found not to conduct.
+Rest advance_part(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs, const Three& constant,
+                  const PhaseInput& in, bool is_last, std::size_t barred, const PhaseStretch& stretch,
+                  PhaseFlow& flow) {
+  const double w = s.omega_rotor_rad_s;
+  const Conduction on =
+      conduction_of(s.current_A, legs, {constant[0] * w, constant[1] * w, constant[2] * w}, barred);
   const Drive drive = drive_of(on, constant, s.current_A);
+  Part p{stretch};
   Rest rest;
-  // First over all that is left; once more, shorter, if a diode's current ends within.
-  for (bool shortened = false;; shortened = true) {
-    solve(c, s, drive, in, p);
-    if (shortened || is_last) break;
-    double remaining = 1.0;
-    rest.phase = first_zero(s, on, p, remaining);
-    if (rest.phase == kNone) break;
-    ++flow.events;
-    const double zero_s = -c.time_constant_s * std::log(remaining);
-    rest.left_s = p.h_s - zero_s;
-    rest.left_decay = p.decay / remaining;
-    set_length(c, p, zero_s, remaining);
-    if (zero_s <= 0.0) break;
+  // First over all of it; once more, shorter, if a diode's current ends within.
+  solve(c, s, drive, in, p);
+  if (!is_last) {
+    Turning turning{{}, p.settled_A};
+    each_phase([&](auto x) {
+      const double end_A = p.settled_A[x] + (s.current_A[x] - p.settled_A[x]) * p.decay;
+      turning.turns[x] = on.direction[x] * end_A < 0.0;
+    });
+    if (turning.any()) {
+      rest = shorten(c, s.current_A, turning, p);
+      if (p.h_s > 0.0) solve(c, s, drive, in, p);
+      ++flow.events;
+    }
   }
   if (p.h_s > 0.0) {
     book(c, legs, s, on, constant, in, p, flow);
@@ -291,14 +305,12 @@ struct Rest {
 PhaseCircuit make_phase_circuit(const PhaseMotor<double>& m, double switch_resistance_ohm, double step_s,
                                 double extra_inertia_kg_m2) {
   PhaseCircuit c;
-  c.step_s = step_s;
   c.winding_ohm = m.resistance_ohm;
   c.device_ohm = switch_resistance_ohm;
   c.inductance_H = 0.5 * (m.inductance_d_H + m.inductance_q_H);
   c.conductance_per_ohm = 1.0 / (c.winding_ohm + c.device_ohm);
   c.time_constant_s = c.inductance_H * c.conductance_per_ohm;
-  c.decay = std::exp(-step_s / c.time_constant_s);
-  c.mean_decay = (1.0 - c.decay) * c.time_constant_s / step_s;
+  set_length(c, c.step, step_s, std::exp(-step_s / c.time_constant_s));
   c.pole_pairs = m.pole_pairs;
   c.back_emf_V_s_per_rad = m.pole_pairs * m.flux_linkage_Wb;
   c.inertia_kg_m2 = m.rotor_inertia_kg_m2 + extra_inertia_kg_m2;
@@ -310,45 +322,68 @@ PhaseCircuit make_phase_circuit(const PhaseMotor<double>& m, double switch_resis
 }
 
 PhaseStretch stretch_of(const PhaseCircuit& c, double h_s) {
-  if (h_s == c.step_s) return {h_s, c.decay, c.mean_decay};
-  Part p;
-  set_length(c, p, h_s, std::exp(-h_s / c.time_constant_s));
-  return {p.h_s, p.decay, p.mean_decay};
+  if (h_s == c.step.h_s) return c.step;
+  PhaseStretch stretch;
+  set_length(c, stretch, h_s, std::exp(-h_s / c.time_constant_s));
+  return stretch;
 }
 
 namespace {
 
-// What usually happens, if it does.
-bool advance_usual(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
-                   const Three& constant, const PhaseInput& in, const PhaseStretch& p, PhaseFlow& flow) {
-  const unsigned floating = without_current(s.current_A, legs);
-  if (floating == 0) return advance_three(c, s, legs, constant, in, p, flow);
-  const bool one = (floating & (floating - 1)) == 0;
-  return one && advance_pair(c, s, legs, constant, in, p, floating >> 1, flow);
+void advance_stretch(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                     const Three& constant, const PhaseInput& in, const PhaseStretch& p, PhaseFlow& flow,
+                     int part);
+
+// On behind each diode's current that has ended.
+void advance_parts(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs, Three constant,
+                   const PhaseInput& in, Rest rest, PhaseFlow& flow, int part) {
+  for (;; ++part) {
+    if (rest.phase == kNone) return;
+    const std::size_t barred = rest.after_s > 0.0 ? kNone : rest.phase;
+    extinguish(s, rest.phase);
+    if (rest.left.h_s <= 0.0) return;
+    constant = phase_constants(c, s.theta_rotor_rad + 0.5 * rest.left.h_s * s.omega_rotor_rad_s);
+    if (barred == kNone) return advance_stretch(c, s, legs, constant, in, rest.left, flow, part + 1);
+    rest = advance_part(c, s, legs, constant, in, part + 1 == kMaxParts, barred, rest.left, flow);
+  }
 }
 
-// Part by part, each with a conduction of its own; `constant` of the first one, which is not usual.
-void advance_parts(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs, Three constant,
-                   const PhaseInput& in, const PhaseStretch& stretch, PhaseFlow& flow) {
-  Part p;
-  p.h_s = stretch.h_s;
-  p.decay = stretch.decay;
-  p.mean_decay = stretch.mean_decay;
-  std::size_t barred = kNone;
-  for (int part = 1;; ++part) {
-    const double w = s.omega_rotor_rad_s;
-    const Conduction on =
-        conduction_of(s.current_A, legs, {constant[0] * w, constant[1] * w, constant[2] * w}, barred);
-    const Rest rest = advance_part(c, s, legs, on, constant, in, part == kMaxParts, p, flow);
-    if (rest.phase == kNone) return;
-    barred = p.h_s > 0.0 ? kNone : rest.phase;
-    extinguish(s, rest.phase);
-    if (rest.left_s <= 0.0) return;
-    set_length(c, p, rest.left_s, rest.left_decay);
-    constant = phase_constants(c, s.theta_rotor_rad + 0.5 * p.h_s * s.omega_rotor_rad_s);
-    if (barred == kNone && advance_usual(c, s, legs, constant, in, {p.h_s, p.decay, p.mean_decay}, flow))
-      return;
+// The unusual part of a stretch, and what is behind it.
+[[gnu::noinline]] void advance_unusual(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                                       const Three& constant, const PhaseInput& in, const PhaseStretch& p,
+                                       PhaseFlow& flow, int part) {
+  const Rest rest = advance_part(c, s, legs, constant, in, part == kMaxParts, kNone, p, flow);
+  advance_parts(c, s, legs, constant, in, rest, flow, part);
+}
+
+// All three carry current until one of a diode ends.
+[[gnu::noinline]] void advance_turning(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                                       const Three& constant, const PhaseInput& in, PhaseStretch p,
+                                       const Turning& turning, PhaseFlow& flow, int part) {
+  if (part == kMaxParts) {
+    advance_three(c, s, legs, constant, in, p, flow, nullptr);
+    return;
   }
+  const Rest rest = shorten(c, s.current_A, turning, p);
+  if (p.h_s > 0.0) advance_three(c, s, legs, constant, in, p, flow, nullptr);
+  ++flow.events;
+  advance_parts(c, s, legs, constant, in, rest, flow, part);
+}
+
+// What usually happens first.
+void advance_stretch(const PhaseCircuit& c, PhaseState& s, const std::array<Leg, 3>& legs,
+                     const Three& constant, const PhaseInput& in, const PhaseStretch& p, PhaseFlow& flow,
+                     int part) {
+  const unsigned floating = without_current(s.current_A, legs);
+  if (floating == 0) {
+    Turning turning;
+    if (!advance_three(c, s, legs, constant, in, p, flow, &turning))
+      advance_turning(c, s, legs, constant, in, p, turning, flow, part);
+    return;
+  }
+  const bool one = (floating & (floating - 1)) == 0;
+  if (!one || !advance_pair(c, s, legs, constant, in, p, floating >> 1, flow))
+    advance_unusual(c, s, legs, constant, in, p, flow, part);
 }
 
 }  // namespace
@@ -357,8 +392,7 @@ void advance_circuit(const PhaseCircuit& c, PhaseState& s, const std::array<Leg,
                      const PhaseInput& in, const PhaseStretch& stretch, PhaseFlow& flow, int stretches) {
   for (int k = 0; k < stretches; ++k) {
     const Three constant = phase_constants(c, s.theta_rotor_rad + 0.5 * stretch.h_s * s.omega_rotor_rad_s);
-    if (!advance_usual(c, s, legs, constant, in, stretch, flow))
-      advance_parts(c, s, legs, constant, in, stretch, flow);
+    advance_stretch(c, s, legs, constant, in, stretch, flow, 1);
   }
 }
 

@@ -27,16 +27,21 @@
 
 namespace omnihil {
 
+// A length of time with its exponential, for several steps of one length.
+struct PhaseStretch {
+  double h_s = 0.0;
+  double decay = 0.0;       // exp(-h / time constant)
+  double mean_decay = 0.0;  // (1 - decay) time constant / h: the exponential's mean over the length
+};
+
 // Constant: shared between equal drives. Made again when a temperature changed the winding.
 struct PhaseCircuit {
-  double step_s = 0.0;  // the length whose exponential is kept
+  PhaseStretch step;  // the length whose exponential is kept
   double winding_ohm = 0.0;
   double device_ohm = 0.0;
   double inductance_H = 0.0;
   double time_constant_s = 0.0;
   double conductance_per_ohm = 0.0;  // 1 / (R + R_on)
-  double decay = 0.0;                // exp(-step / time constant)
-  double mean_decay = 0.0;           // (1 - decay) time constant / step
   double pole_pairs = 0.0;
   double back_emf_V_s_per_rad = 0.0;  // p lambda: peak of one phase
   double inertia_kg_m2 = 0.0;
@@ -84,11 +89,6 @@ struct PhaseFlow {
 PhaseCircuit make_phase_circuit(const PhaseMotor<double>& motor, double switch_resistance_ohm, double step_s,
                                 double extra_inertia_kg_m2);
 
-// A length of time with its exponential, for several steps of one length.
-struct PhaseStretch {
-  double h_s = 0.0;
-  double decay = 0.0, mean_decay = 0.0;  // as the circuit's own
-};
 PhaseStretch stretch_of(const PhaseCircuit& circuit, double h_s);
 
 // So many stretches, one after the other.

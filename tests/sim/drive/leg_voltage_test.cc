@@ -19,11 +19,11 @@ struct Turned {
 
   std::array<double, 3> at(double theta_elec_rad, std::array<LegState, 3> legs = {}) {
     x.omega_rotor_rad_s = omega_rotor_rad_s;
-    x.theta_rotor_rad = theta_elec_rad / circuit.pole_pairs - 0.5 * omega_rotor_rad_s * circuit.step_s;
+    x.theta_rotor_rad = theta_elec_rad / circuit.pole_pairs - 0.5 * omega_rotor_rad_s * circuit.step.h_s;
     flow = {};
     std::array<Leg, 3> leg;
     for (std::size_t n = 0; n < 3; ++n) leg[n] = leg_of(kBridge, legs[n], kBus_V);
-    advance_circuit(circuit, x, leg, {.bus_voltage_V = kBus_V, .speed_is_imposed = true}, circuit.step_s,
+    advance_circuit(circuit, x, leg, {.bus_voltage_V = kBus_V, .speed_is_imposed = true}, circuit.step.h_s,
                     flow);
     std::array<double, 3> volts;
     for (std::size_t n = 0; n < 3; ++n) volts[n] = flow.leg_V_s[n] / flow.time_s;
