@@ -156,6 +156,7 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
     ++pins_version_;
   }
   TimerPin find_pin(unsigned channel, bool complement) const;
+  bool is_plain_pwm(unsigned channel) const;
   TimerPin work_out_pin(unsigned channel, bool complement) const;
   double dead_ticks() const;
   void outputs_changed();

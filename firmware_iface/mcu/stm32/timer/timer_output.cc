@@ -157,6 +157,10 @@ double Timer::dead_ticks() const {
 
 TimerPin Timer::find_pin(unsigned c, bool complement) const {
   const unsigned i = 2 * c + (complement ? 1 : 0);
+  if (!complement && is_plain_pwm(c)) {
+    pins_known_ |= 1u << i;
+    return pins_[i] = {TimerPin::Drive::kPwm, law_.pwm_ratio(ccr_[c])};
+  }
   const TimerPin is = work_out_pin(c, complement);
   pins_[i] = is;
   // Steady ones may change with the count, but for those that are forced.
@@ -164,6 +168,12 @@ TimerPin Timer::find_pin(unsigned c, bool complement) const {
   const bool forced = mode == kForceLow || mode == kForceHigh;
   if (is.drive != TimerPin::Drive::kSteady || forced) pins_known_ |= 1u << i;
   return is;
+}
+
+// Of mode 1, neither paired nor inverted: most of those that are written to, apart because it costs a third.
+bool Timer::is_plain_pwm(unsigned c) const {
+  return output_mode(c) == kPwm1 && running_ && (enable_bits() >> 4 * c & 0xFu) == 1 &&
+         (!spec_.advanced || (value(kBdtr) & kMoe) != 0);
 }
 
 TimerPin Timer::work_out_pin(unsigned c, bool complement) const {
