@@ -151,7 +151,33 @@ int run(bool quick) {
   return good ? 0 : 1;
 }
 
+// One row alone, for a count of its instructions; a motor's steps are printed.
+int count(const std::string& row_name, long steps) {
+  clock_counts_looks = true;
+  const double s = static_cast<double>(steps) / 64.0;  // of cost_of()'s first run, a second by this clock
+  constexpr BackEmfShape kTrapezoid = BackEmfShape::kTrapezoid;
+  if (row_name == "dq")
+    dq_cost(s, 0.0);
+  else if (row_name == "averaged_duty_1")
+    averaged_cost(s, kTrapezoid, PwmMode::kComplementary, 1.0);
+  else if (row_name == "averaged_dead_time")
+    averaged_cost(s, kTrapezoid, PwmMode::kComplementary, 0.4);
+  else if (row_name == "averaged_chop")
+    averaged_cost(s, kTrapezoid, PwmMode::kHighSideChop, 0.4);
+  else if (row_name == "switched")
+    switched_cost(s, PwmMode::kComplementary);
+  else if (row_name == "switched_chop")
+    switched_cost(s, PwmMode::kHighSideChop);
+  else
+    return 2;
+  std::printf("%ld\n", 9 * steps * static_cast<long>(kMotors));
+  return 0;
+}
+
 }  // namespace
 }  // namespace omnihil
 
-int main(int argc, char** argv) { return omnihil::run(argc > 1 && std::strcmp(argv[1], "--quick") == 0); }
+int main(int argc, char** argv) {
+  if (argc == 4 && std::strcmp(argv[1], "--count") == 0) return omnihil::count(argv[2], std::atol(argv[3]));
+  return omnihil::run(argc > 1 && std::strcmp(argv[1], "--quick") == 0);
+}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs every benchmark program of a build, then counts instructions. Called by `./dev bench [NAME…] [--OPTION…]`; the options
+# Runs every benchmark program of a build. Called by `./dev bench [NAME…] [--OPTION…]`; the options
 # go to each program that runs.
 set -uo pipefail
 build=$1

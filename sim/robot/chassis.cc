@@ -300,11 +300,11 @@ void Chassis::normalise(std::vector<double>& q) const {
   }
 }
 
-double Chassis::yaw_rad(const std::vector<double>& q, std::size_t robot) const {
+Heading Chassis::heading(const std::vector<double>& q, std::size_t robot) const {
   const double* qr = q.data() + robot * layout().q_per_robot;
-  if (impl_->joint == Joint::kPlanar) return qr[0];
+  if (impl_->joint == Joint::kPlanar) return heading_of(qr[0]);
   const Rotation r_WB(SimTK::Quaternion(qr[0], qr[1], qr[2], qr[3]));
-  return std::atan2(r_WB[1][0], r_WB[0][0]);
+  return heading_of(std::atan2(r_WB[1][0], r_WB[0][0]));
 }
 
 BodyMotion Chassis::motion(const std::vector<double>& q, const std::vector<double>& u,

@@ -54,7 +54,7 @@ class Chassis {
                       std::vector<double>& qdot) const;
   void normalise(std::vector<double>& q) const;
 
-  double yaw_rad(const std::vector<double>& q, std::size_t robot) const;
+  Heading heading(const std::vector<double>& q, std::size_t robot) const;
   BodyMotion motion(const std::vector<double>& q, const std::vector<double>& u, std::size_t robot) const;
   void place(std::vector<double>& q, std::vector<double>& u, std::size_t robot, double x_m, double y_m,
              double yaw_rad) const;

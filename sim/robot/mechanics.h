@@ -13,6 +13,7 @@
 //   free body:     pose quaternion (w, x, y, z), x, y, z; speeds omega_W, v_W
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -55,6 +56,16 @@ struct WheelTorque {
   }
 };
 using WheelTorques = PerWheel<WheelTorque>;  // of one robot
+
+// Of the body's x axis in the field frame.
+struct Heading {
+  double cos_yaw = 1.0, sin_yaw = 0.0;
+};
+inline Heading heading_of(double yaw_rad) {
+  Heading to;
+  ::sincos(yaw_rad, &to.sin_yaw, &to.cos_yaw);  // the same bits as sin and cos, at the cost of one
+  return to;
+}
 
 struct BodyMotion {
   double x_m = 0, y_m = 0, yaw_rad = 0;

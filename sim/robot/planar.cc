@@ -7,9 +7,9 @@ namespace omnihil {
 namespace {
 
 // Field-frame speeds (yaw rate, v_x, v_y) as the body sees them.
-BodyVelocity<double> in_body(const double* u, double cos_yaw, double sin_yaw) {
-  return {.v_forward_m_s = cos_yaw * u[1] + sin_yaw * u[2],
-          .v_left_m_s = -sin_yaw * u[1] + cos_yaw * u[2],
+BodyVelocity<double> in_body(const double* u, const Heading& to) {
+  return {.v_forward_m_s = to.cos_yaw * u[1] + to.sin_yaw * u[2],
+          .v_left_m_s = -to.sin_yaw * u[1] + to.cos_yaw * u[2],
           .omega_body_rad_s = u[0]};
 }
 
@@ -29,6 +29,19 @@ PlanarMechanics::PlanarMechanics(const std::vector<RobotModel>& robots,
   }
 }
 
+// A step begins where the one before was looked at.
+[[gnu::always_inline]] inline const Heading& PlanarMechanics::look_along(Robot& r, double yaw_rad) {
+  if (!is_looked_at(r, yaw_rad)) {
+    r.yaw_rad = yaw_rad;
+    r.heading = heading_of(yaw_rad);
+  }
+  return r.heading;
+}
+
+const Heading& PlanarMechanics::heading(const std::vector<double>& q, std::size_t robot) {
+  return look_along(robots_[robot], q[robot * layout_.q_per_robot]);
+}
+
 PerWheel<double> PlanarMechanics::wheels_of(const Robot& r, const double* first) {
   PerWheel<double> out{};
   each_wheel(r.law.geometry.wheels, [&](std::size_t i) { out[i] = first[i]; });
@@ -41,12 +54,8 @@ PerWheel<double> PlanarMechanics::wheels_of(const Robot& r, const double* first)
     Robot& r = robots_[n];
     const double* qr = q.data() + n * layout_.q_per_robot;
     const double* ur = u.data() + n * layout_.u_per_robot;
-    if (!is_looked_at(r, qr[0])) {  // a step begins where the one before was looked at
-      r.yaw_rad = qr[0];
-      ::sincos(qr[0], &r.sin_yaw, &r.cos_yaw);  // the same bits as sin and cos, at the cost of one
-    }
     r.omega_body_rad_s = ur[0];
-    const BodyVelocity<double> velocity = in_body(ur, r.cos_yaw, r.sin_yaw);
+    const BodyVelocity<double> velocity = in_body(ur, look_along(r, qr[0]));
     const PerWheel<double> omega_wheel = wheels_of(r, ur + layout_.wheel_u);
     const WheelMotion<double> motion = wheel_motion(r.law, velocity, omega_wheel);
     if (r.effects == nullptr) {
@@ -72,8 +81,8 @@ void PlanarMechanics::accelerations(const std::vector<WheelTorques>& torques, St
              : body_acceleration(r.body, c.force_x_N, c.force_y_N, c.moment_z_Nm, r.omega_body_rad_s);
     double* out = udot.data() + n * layout_.u_per_robot;
     out[0] = a.yaw_rad_s2;
-    out[1] = r.cos_yaw * a.x_m_s2 - r.sin_yaw * a.y_m_s2;
-    out[2] = r.sin_yaw * a.x_m_s2 + r.cos_yaw * a.y_m_s2;
+    out[1] = r.heading.cos_yaw * a.x_m_s2 - r.heading.sin_yaw * a.y_m_s2;
+    out[2] = r.heading.sin_yaw * a.x_m_s2 + r.heading.cos_yaw * a.y_m_s2;
     const double* omega_wheel = u_.data() + n * layout_.u_per_robot + layout_.wheel_u;
     each_wheel(r.law.geometry.wheels, [&](std::size_t i) {
       const double radius_m = more ? r.more.wheel_radius_m[i] : r.law.geometry.wheel_radius_m;
@@ -96,9 +105,8 @@ BodyMotion PlanarMechanics::motion(const std::vector<double>& q, const std::vect
   const double* qr = q.data() + robot * layout_.q_per_robot;
   const double* ur = u.data() + robot * layout_.u_per_robot;
   const Robot& r = robots_[robot];
-  double cos_yaw = r.cos_yaw, sin_yaw = r.sin_yaw;
-  if (!is_looked_at(r, qr[0])) ::sincos(qr[0], &sin_yaw, &cos_yaw);
-  return {.x_m = qr[1], .y_m = qr[2], .yaw_rad = qr[0], .velocity = in_body(ur, cos_yaw, sin_yaw)};
+  const Heading to = is_looked_at(r, qr[0]) ? r.heading : heading_of(qr[0]);
+  return {.x_m = qr[1], .y_m = qr[2], .yaw_rad = qr[0], .velocity = in_body(ur, to)};
 }
 
 void PlanarMechanics::place(std::vector<double>& q, std::vector<double>& u, std::size_t robot, double x_m,

@@ -33,9 +33,7 @@ class PlanarMechanics {
                       std::vector<double>& qdot) const;
   void normalise(std::vector<double>&) const {}
 
-  double yaw_rad(const std::vector<double>& q, std::size_t robot) const {
-    return q[robot * layout_.q_per_robot];
-  }
+  const Heading& heading(const std::vector<double>& q, std::size_t robot);
   BodyMotion motion(const std::vector<double>& q, const std::vector<double>& u, std::size_t robot) const;
   // At rest at a pose, wheel angles zero.
   void place(std::vector<double>& q, std::vector<double>& u, std::size_t robot, double x_m, double y_m,
@@ -46,14 +44,16 @@ class PlanarMechanics {
     ContactLaw<double> law;
     PlanarBody<double> body;
     double gear_ratio = 1.0;
-    double wheel_viscous_Nm_s_per_rad = 0.0;             // rotor friction seen at the wheel: gear^2 b
-    double yaw_rad = 0.0, cos_yaw = 1.0, sin_yaw = 0.0;  // of the current state
+    double wheel_viscous_Nm_s_per_rad = 0.0;  // rotor friction seen at the wheel: gear^2 b
+    double yaw_rad = 0.0;                     // that it was last looked at with
+    Heading heading;                          // of that yaw
     double omega_body_rad_s = 0.0;
     WheelContacts<double> contacts;
     const FloorEffects* effects = nullptr;
     FloorForces more;
     PerWheel<bool> lifted{};
   };
+  static const Heading& look_along(Robot& r, double yaw_rad);
   static PerWheel<double> wheels_of(const Robot& r, const double* first);
   static bool is_looked_at(const Robot& r, double yaw_rad) {  // its sine and cosine are known
     return std::bit_cast<std::uint64_t>(yaw_rad) == std::bit_cast<std::uint64_t>(r.yaw_rad);

@@ -153,8 +153,9 @@ PlantSensors Plant::sample_all(int robot) {
   }
   PlantSensors s;
   s.board.now_us = static_cast<std::uint64_t>(p.now_ns / 1000);
+  const double* theta_wheel_rad = p.wheel_angles(n);
   for (std::size_t i = 0; i < model.wheels; ++i) {
-    const double theta_rotor_rad = model.gear_ratio * p.wheel_angles(n)[i];
+    const double theta_rotor_rad = model.gear_ratio * theta_wheel_rad[i];
     if (std::isfinite(theta_rotor_rad)) s.encoder_counts[i] = encoder_counts(model.encoder, theta_rotor_rad);
     s.motor_current_A[i] = mem.current_steps > 0
                                ? mem.current_sum_A[i] / static_cast<double>(mem.current_steps)

@@ -159,13 +159,13 @@ struct Plant::Impl {
   }
 
   // v += a h, omega += alpha h of the force alone (planar_law.h).
-  void disturb(std::size_t n, double yaw_rad) {
+  void disturb(std::size_t n, const Heading& to) {
     const RobotFaults& f = memory[n].faults;
     if (f.force_forward_N == 0.0 && f.force_left_N == 0.0 && f.moment_Nm == 0.0) return;
     const auto a = body_acceleration(bodies[n], f.force_forward_N, f.force_left_N, f.moment_Nm, 0.0);
     double* v = field_velocity(n);
-    v[0] += step_s * (std::cos(yaw_rad) * a.x_m_s2 - std::sin(yaw_rad) * a.y_m_s2);
-    v[1] += step_s * (std::sin(yaw_rad) * a.x_m_s2 + std::cos(yaw_rad) * a.y_m_s2);
+    v[0] += step_s * (to.cos_yaw * a.x_m_s2 - to.sin_yaw * a.y_m_s2);
+    v[1] += step_s * (to.sin_yaw * a.x_m_s2 + to.cos_yaw * a.y_m_s2);
     speeds(n)[free() ? 2 : 0] += step_s * a.yaw_rad_s2;
   }
 
@@ -367,7 +367,7 @@ struct Plant::Impl {
   }
 
   template <typename Back>
-  void end_robot(const Back& back, std::size_t n) {
+  void end_robot(Back& back, std::size_t n) {
     const MechanicsGroup& of = group(n);
     const double* u_before = &of.u_before[(n - of.first) * layout.u_per_robot];
     const double* before = u_before + layout.wheel_u;
@@ -391,13 +391,13 @@ struct Plant::Impl {
     }
     ++memory[n].current_steps;
     if (held && !free()) come_to_rest(n);
-    const double yaw_rad = back.yaw_rad(of.q, n - of.first);
-    disturb(n, yaw_rad);
+    const Heading to = back.heading(of.q, n - of.first);
+    disturb(n, to);
     const double* v0 = u_before + field_u();
     const double* v1 = field_velocity(n);
     const double ax = (v1[0] - v0[0]) / step_s, ay = (v1[1] - v0[1]) / step_s;
-    memory[n].accel_x_m_s2 = std::cos(yaw_rad) * ax + std::sin(yaw_rad) * ay;
-    memory[n].accel_y_m_s2 = -std::sin(yaw_rad) * ax + std::cos(yaw_rad) * ay;
+    memory[n].accel_x_m_s2 = to.cos_yaw * ax + to.sin_yaw * ay;
+    memory[n].accel_y_m_s2 = -to.sin_yaw * ax + to.cos_yaw * ay;
   }
 
   // The floor's viscous hold would let the speed fade for ever, into numbers that cost time to compute with.
@@ -434,9 +434,10 @@ struct Plant::Impl {
     const RobotMemory& mem = memory[n];
     const MechanicsGroup& of = group(n);
     const std::size_t count = wheels(n);
-    for (const auto& legs : electric_memory[n].legs.leg_duty_ratio) add(legs, kLegs);
-    add(mem.duty_ratio.data(), count);
-    for (std::size_t i = 0; i < count; ++i) rest[0] += mem.winding[i].current_A - mem.winding[i].current_A;
+    add(&electric_memory[n].legs.leg_duty_ratio[0][0], kWheels * kLegs);  // wheel after wheel
+    add(mem.duty_ratio.data(), kMaxWheels);
+    for (std::size_t i = 0; i < kMaxWheels; ++i)
+      rest[0] += mem.winding[i].current_A - mem.winding[i].current_A;
     add(of.pose(n), layout.wheel_q + count);
     add(of.speeds(n), layout.wheel_u + count);
     return rest[0] + rest[1] == 0.0;
