@@ -4,9 +4,9 @@
 #include <cmath>
 #include <span>
 
+#include "identify/predict/camera_path.h"
 #include "identify/predict/firmware_loop.h"
 #include "identify/predict/interpolation.h"
-#include "identify/predict/own_clock.h"
 #include "sim/law/random.h"
 #include "sim/law/sensor_reading.h"
 
@@ -52,7 +52,7 @@ class Runner {
     if (options_.follow_camera) heading_ = headings(record_, camera_age_s_);
     simulate();
     sense();
-    see();
+    see_path(record_, {options_.follow_camera, camera_age_s_, heading_}, out_.samples);
     return std::move(out_);
   }
 
@@ -118,10 +118,6 @@ class Runner {
       at_.next_control_s += at_.controller->period_s();
     }
     in.duty_ratio = at_.duty;
-  }
-  void run_loop(std::size_t k, double step_s) {
-    RollingInput<T> in = input(k);
-    control(in, record_.time_s[k], step_s);
   }
   T bus_or_supply(const RollingInput<T>& in) const {
     const T bus = in.bus_is_measured ? T(in.bus_voltage_V) : at_.state.bus_voltage_V;
@@ -207,7 +203,7 @@ class Runner {
       const bool last = k + 1 >= record_.size();
       const std::optional<RobotCarry<T>> before = last ? std::optional(at_) : std::nullopt;
       if (record_.radio && !last) hear(k);
-      if (at_.controller) run_loop(k, step_s);
+      if (RollingInput<T> in = input(k); at_.controller) control(in, record_.time_s[k], step_s);
       keep();
       if (last) at_ = *before;
       if (last) break;
@@ -301,64 +297,6 @@ class Runner {
     port.counts_per_turn = T(record_.counts_per_rotor_turn[i]);
     read_encoder(effects, states.data(), stamp(k, stream_of("sensor") + i), turned_rad, port);
     return theta + (port.encoder_angle_rad - port.theta_rotor_rad);
-  }
-
-  // Path and heading by the trapezoidal rule, and what the camera makes of them.
-  void see() {
-    using std::cos;
-    using std::sin;
-    const std::vector<double>& t = record_.time_s;
-    T vx = T(0), vy = T(0);
-    const auto seen =
-        std::ranges::find_if(record_.frames, [](const CameraFrame& f) { return std::isfinite(f.pose[2]); });
-    if (!options_.follow_camera && seen != record_.frames.end()) out_.samples[0].pose[2] = T(seen->pose[2]);
-    for (std::size_t k = 0; k < record_.size(); ++k) {
-      RollingSample<T>& s = out_.samples[k];
-      const RollingSample<T>& before = out_.samples[k > 0 ? k - 1 : 0];
-      const double half_s = k > 0 ? 0.5 * (t[k] - t[k - 1]) : 0.0;
-      if (k > 0) s.pose[2] = before.pose[2] + half_s * (before.velocity[2] + s.velocity[2]);
-      const T& heading = heading_.empty() ? s.pose[2] : heading_[k];
-      const T cosine = cos(heading), sine = sin(heading);
-      const T wx = cosine * s.velocity[0] - sine * s.velocity[1];
-      const T wy = sine * s.velocity[0] + cosine * s.velocity[1];
-      s.pose[0] = before.pose[0] + half_s * (vx + wx);
-      s.pose[1] = before.pose[1] + half_s * (vy + wy);
-      vx = wx;
-      vy = wy;
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) report(axis);
-  }
-
-  // One coordinate of the path as the camera says it: as old as its frames, and at the frames alone (NaN between),
-  // corrected by the camera's earlier ones where they are followed: first order filter of its difference to the path.
-  void report(std::size_t axis) {
-    std::vector<T> path;
-    for (const RollingSample<T>& s : out_.samples) path.push_back(s.pose[axis]);
-    const auto there_at = [&](std::size_t k) {
-      if (is_exactly(camera_age_s_, 0.0)) return path[k];
-      return instant(record_.time_s, T(record_.time_s[k] - camera_age_s_)).of([&](std::size_t j) {
-        return path[j];
-      });
-    };
-    for (std::size_t k = 0; k < path.size(); ++k)
-      out_.samples[k].pose[axis] = options_.follow_camera ? T(kMissing) : there_at(k);
-    if (!options_.follow_camera) return;
-    T correction = T(0);
-    double last_s = kMissing, frames = 0.0;
-    for (const CameraFrame& f : record_.frames) {
-      if (!std::isfinite(f.pose[axis])) continue;
-      const double now_s = record_.time_s[f.sample];
-      const T there = there_at(f.sample);
-      T& out = out_.samples[f.sample].pose[axis];
-      if (!std::isfinite(last_s)) {
-        correction = f.pose[axis] - there;  // the first frame is the path's origin, and is not compared
-      } else {
-        out = there + correction;
-        correction += (f.pose[axis] - out) * follow_gain(now_s - last_s, kFollowCamera_s, frames);
-      }
-      last_s = now_s;
-      frames += 1.0;
-    }
   }
 
   const RobotModelValues<T>& model_;

@@ -24,10 +24,6 @@ namespace omnihil {
 template <typename T>
 using RobotModelValues = RigValues<T, RollingParams>;
 
-// Time constant of the model path's correction towards the camera: an error of speed dv appears as 0.5 s dv,
-// above a camera's millimetres for 10 mm/s. A choice; sensitivity not measured.
-inline constexpr double kFollowCamera_s = 0.5;  // a choice
-
 struct RobotMotionOptions {
   bool slave_angle = true;    // laws of the angle take the measured angle
   bool follow_camera = true;  // false: heading and path are the model's own, from the record's start

@@ -16,8 +16,6 @@ namespace omnihil {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-// Time constant of the correction of the gyro's integral to the camera's heading.
-constexpr double kHeadingMemory_s = 1.0;  // a choice; sensitivity not measured
 // For the parabola of the speeds at the start: tens of samples.
 constexpr double kStartSpan_s = 0.02;  // a choice
 
@@ -282,63 +280,5 @@ RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed) {
   if (!r.bus.input_V.empty()) r.bus.input_V = without_noise(r.bus.input_V, r.bus.sigma_V, kBusWindows);
   return r;
 }
-
-// ------------------------------------------------------------------------------------------ the heading
-
-namespace {
-
-// Means over both sides, weighted by exp(-|dt| / memory).
-template <typename T>
-std::vector<T> smoothed(const std::vector<double>& time_s, const std::vector<T>& values, double memory_s) {
-  const std::size_t n = values.size();
-  std::vector<T> sum = values;
-  std::vector<double> weight(n, 1.0);
-  for (const bool forward : {true, false}) {
-    T carried = T(0);
-    double carried_weight = 0.0;
-    for (std::size_t i = 1; i < n; ++i) {
-      const std::size_t k = forward ? i : n - 1 - i, last = forward ? k - 1 : k + 1;
-      const double keep = std::exp(-std::abs(time_s[k] - time_s[last]) / memory_s);
-      carried = (carried + values[last]) * keep;
-      carried_weight = (carried_weight + 1.0) * keep;
-      sum[k] += carried;
-      weight[k] += carried_weight;
-    }
-  }
-  for (std::size_t k = 0; k < n; ++k) sum[k] /= weight[k];
-  return sum;
-}
-
-}  // namespace
-
-template <typename T>
-std::vector<T> headings(const RobotRecord& r, const T& camera_age_s) {
-  std::vector<double> seen_s, seen_rad;
-  for (const CameraFrame& f : r.frames) {
-    if (!std::isfinite(f.pose[2])) continue;
-    seen_s.push_back(r.time_s[f.sample]);
-    seen_rad.push_back(f.pose[2]);
-  }
-  const auto at = [](const std::vector<double>& clock_s, const T& at_s, const auto& values) {
-    return instant(clock_s, at_s).of([&](std::size_t k) { return T(values[k]); });
-  };
-  std::vector<T> heading, offset;
-  if (r.turned_rad.empty()) {
-    for (std::size_t k = 0; k < r.size() && !seen_s.empty(); ++k)
-      heading.push_back(at(seen_s, T(r.time_s[k] + camera_age_s), seen_rad));
-    return heading;
-  }
-  for (std::size_t n = 0; n < seen_s.size(); ++n)
-    offset.push_back(seen_rad[n] - at(r.time_s, T(seen_s[n] - camera_age_s), r.turned_rad));
-  if (!offset.empty()) offset = smoothed(seen_s, offset, kHeadingMemory_s);
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    heading.push_back(T(r.turned_rad[k]));
-    if (!offset.empty()) heading[k] += at(seen_s, T(r.time_s[k]), offset);
-  }
-  return heading;
-}
-
-template std::vector<double> headings(const RobotRecord&, const double&);
-template std::vector<Jet> headings(const RobotRecord&, const Jet&);
 
 }  // namespace omnihil

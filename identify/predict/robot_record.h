@@ -3,7 +3,6 @@
 //
 //   RobotRecord r = robot_record(dataset, run, nominal);
 //   r.duty_ratio[k];                    // held from sample k to the next
-//   headings<Jet>(r, camera_age_s);     // of the body in the field, per sample
 //
 // Signals of one wheel alone have no number ("duty"), those of several have theirs ("duty_1").
 // An empty duty is a bridge that is off. A missing sample of an input holds the one before.
@@ -92,10 +91,5 @@ RobotRecord settled_point(const RobotRecord& record, std::size_t row);
 // The record with another draw of its inputs' noise: uniform rounding error of the duties, the bus sensor's
 // normal one.
 RobotRecord with_input_noise(const RobotRecord& record, std::uint64_t seed);
-
-// Heading of the body in rad, n samples, as measured; empty where neither gyro nor camera give one.
-// A camera's frame is `age` older than its stamp.
-template <typename T>
-std::vector<T> headings(const RobotRecord& record, const T& camera_age_s);
 
 }  // namespace omnihil

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "identify/predict/camera_path.h"
 #include "sim/law/random.h"
 
 namespace omnihil {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "identify/predict/robot_record.h"
+#include "identify/predict/camera_path.h"
 #include "identify/record/rig.h"
 #include "identify/record/statistics.h"
 #include "identify/tyre/motion_smoother.h"
