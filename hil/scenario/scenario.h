@@ -48,6 +48,7 @@ enum class StepKind : std::uint8_t {
   kMark,
   kRewind,
   kSet,
+  kType,
   kChip,
 };
 
@@ -69,6 +70,7 @@ struct ScenarioStep {
   double v_x_m_s = 0.0, v_y_m_s = 0.0, v_z_m_s = 0.0;     // kBall
   int opponent = 0;
   std::string variable, value;  // kSet
+  std::string typed;            // kType
   ChipFault chip;               // kChip
 };
 

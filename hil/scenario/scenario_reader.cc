@@ -56,27 +56,15 @@ class Reader {
  private:
   void head() {
     const toml::table& t = document_.table;
-    static constexpr std::string_view kKeys[] = {"format",
-                                                 "title",
-                                                 "what",
-                                                 "level",
-                                                 "robot",
-                                                 "stand",
-                                                 "commands",
-                                                 "duration_s",
-                                                 "command_every_ms",
-                                                 "step",
-                                                 "check",
-                                                 "field",
-                                                 "opponents",
-                                                 "goes_on_after_failure"};
-    keys_.only(t, "", kKeys);
+    keys_.only(
+        t, "",
+        words_of("format title what level robot stand commands duration_s command_every_ms step check field "
+                 "opponents goes_on_after_failure"));
     static constexpr std::string_view kFormat[] = {"omnihil-scenario/1"};
     need(t, "", "format", "\"omnihil-scenario/1\"");
     keys_.word(t, "", "format", kFormat, 0);
     out_.file = document_.file;
-    need(t, "", "title", "a text");
-    out_.title = keys_.text(t, "", "title").value_or("");
+    out_.title = needed_text(t, "", "title", "a text");
     out_.what = keys_.text(t, "", "what").value_or("");
     out_.robot = keys_.text(t, "", "robot").value_or(out_.robot);
     static constexpr std::string_view kLevels[] = {"wheel", "robot", "field"};
@@ -115,6 +103,12 @@ class Reader {
 
   void need(const toml::table& t, const std::string& path, std::string_view key, const std::string& allowed) {
     if (t.get(key) == nullptr) keys_.missing(t, path, key, allowed);
+  }
+
+  std::string needed_text(const toml::table& t, const std::string& path, std::string_view key,
+                          const std::string& what) {
+    need(t, path, key, what);
+    return keys_.text(t, path, key).value_or("");
   }
 
   bool flag(const toml::table& t, const std::string& path, std::string_view key) {
@@ -270,9 +264,11 @@ class Reader {
         place(t, path, s);
         break;
       case StepKind::kSet:
-        need(t, path, "name", "a variable of the firmware");
-        s.variable = keys_.text(t, path, "name").value_or("");
+        s.variable = needed_text(t, path, "name", "a variable of the firmware");
         s.value = value_text(keys_, t, path);
+        break;
+      case StepKind::kType:
+        s.typed = needed_text(t, path, "text", "what is typed");
         break;
       case StepKind::kChip:
         s.chip.at_ns = std::llround(s.at_s * 1e9);
@@ -379,8 +375,7 @@ class Reader {
   }
 
   void read_console(const toml::table& t, const std::string& path, ScenarioCheck& c) {
-    need(t, path, "text", "what stands in a line");
-    c.text = keys_.text(t, path, "text").value_or("");
+    c.text = needed_text(t, path, "text", "what stands in a line");
     c.port = keys_.text(t, path, "port").value_or("");
     if (t.get("board") != nullptr) c.board = count(t, path, "board", kWheels - 1);
   }

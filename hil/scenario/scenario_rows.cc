@@ -52,6 +52,11 @@ constexpr StepRow kSteps[] = {
     {StepKind::kSet, "set", false, false, "name value",
      "a variable of the firmware, by name, is given this value (docs/variables.md)",
      "at_s = 1.0, do = \"set\", name = \"wheel[2].integral\", value = 0.5"},
+    {StepKind::kType, "type", false, false, "text",
+     "typed at the board's consoles that read (a serial port at its rate, RTT), as it stands: a line's end, "
+     "\\r or \\n, "
+     "is part of it",
+     "at_s = 0.5, do = \"type\", text = \"gain 0.4\\r\\n\""},
     {StepKind::kChip, "flip_ram", false, false, "address bit board",
      "a bit of a byte of the emulated chip's RAM turns over; of all steps on the chip at_s may be any "
      "instant",

@@ -126,15 +126,21 @@ class Bench : public SessionObserver {
     run_.trace = ScenarioTrace(variables_->names());
   }
 
-  // A check of what is never said would pass where nobody can say anything.
+  // A check of what is never said would pass where nobody can say anything, and what is typed would be lost unseen.
   void listen() {
-    if (console_ != nullptr && console_->there) return;
     std::vector<std::string> problems;
-    for (const ScenarioCheck& check : scenario_.checks) {
-      if (!of_console(check.kind)) continue;
+    const auto need = [&](int line, std::string_view word, std::string_view what) {
       problems.push_back(
-          fmt::format("{}:{}: {}: needed: an image on a board with a console, [[port]] with console = true",
-                      scenario_.file, check.line, row_of(check.kind).word));
+          fmt::format("{}:{}: {}: needed: an image on a board with a console{}, [[port]] with console = true",
+                      scenario_.file, line, word, what));
+    };
+    for (const ScenarioCheck& check : scenario_.checks) {
+      if (of_console(check.kind) && (console_ == nullptr || !console_->there))
+        need(check.line, row_of(check.kind).word, "");
+    }
+    for (const ScenarioStep& step : scenario_.steps) {
+      if (step.kind == StepKind::kType && (console_ == nullptr || !console_->reads))
+        need(step.line, row_of(step.kind).word, " that reads (a serial port or RTT)");
     }
     throw_problems(problems);
   }
@@ -179,7 +185,7 @@ class Bench : public SessionObserver {
   static bool at_an_instant(StepKind kind) {
     return kind == StepKind::kCommand || kind == StepKind::kBall || kind == StepKind::kRobotAt ||
            kind == StepKind::kOpponentAt || kind == StepKind::kMark || kind == StepKind::kRewind ||
-           kind == StepKind::kSet || kind == StepKind::kChip;
+           kind == StepKind::kSet || kind == StepKind::kType || kind == StepKind::kChip;
   }
 
   void begin(const ScenarioStep& step) {
@@ -206,6 +212,9 @@ class Bench : public SessionObserver {
         break;
       case StepKind::kSet:
         variables_->set(0, step.variable, step.value);
+        break;
+      case StepKind::kType:
+        console_->typed += step.typed;
         break;
       default:
         break;

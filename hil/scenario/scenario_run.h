@@ -36,10 +36,11 @@ struct ScenarioVariables {
   std::vector<std::string> set;    // "NAME=VALUE", at the start
 };
 
-// Who hears the robot's boards, and whether one of them has a console.
+// Who hears the robot's boards and types at them, and whether one of them has a console, and one that reads.
 struct ScenarioConsole {
   ConsoleKeeper keeper;
-  bool there = false;
+  bool there = false, reads = false;
+  std::string typed;  // since the start
 };
 
 // `config` has one robot. std::invalid_argument: the configuration, or a command that the path of the

@@ -83,8 +83,12 @@ void write(const fs::path& file, const std::string& text) {
 
 FirmwareChoice heard_by(ScenarioConsole& console, FirmwareChoice choice) {
   choice.listeners.on_line = console.keeper.listener(choice.listeners.on_line);
+  choice.listeners.typed = [&console](std::uint32_t) -> std::string_view { return console.typed; };
   choice.listeners.on_board = [&console, also = choice.listeners.on_board](const MadeBoard& made) {
-    console.there = console.there || std::ranges::any_of(made.mcu.spec().ports, &mcu::PortEntry::console);
+    for (const mcu::PortEntry& port : made.mcu.spec().ports) {
+      console.there = console.there || port.console;
+      console.reads = console.reads || (port.console && port.reads());
+    }
     if (also) also(made);
   };
   return choice;

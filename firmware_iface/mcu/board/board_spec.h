@@ -113,6 +113,8 @@ struct PortEntry {
   bool console = false;  // what it says is text, kept line by line
   std::string key;       // "port[0]", in messages
   unsigned line = 0;
+
+  bool reads() const { return source == PortSource::kSerial || source == PortSource::kRtt; }  // bytes, not frames
 };
 
 // A board that drives wheels as the robot's main board tells it, which the bench stands in for.

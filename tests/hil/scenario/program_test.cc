@@ -121,6 +121,26 @@ TEST_F(ScenarioConsoleProgram, WhatItMustNotSayFailsAndIsShown) {
   EXPECT_NE(text_of("out.json").find("\"text\":\"boot\""), std::string::npos);
 }
 
+// The image gives back every letter as a capital. The opponents run it as well, and are typed at by nobody.
+const std::string kTypes = "[[step]]\nat_s = 0.01\ndo = \"type\"\ntext = \"go on\\n\"\n";
+TEST_F(ScenarioConsoleProgram, WhatIsTypedIsRead) {
+  const std::string answers =
+      "[[check]]\nis = \"console_says\"\ntext = \"GO ON\"\nfrom_s = 0.01\nat_most_s = 0.005\n";
+  const auto with = [](const std::string& of) {  // past its words by semihosting, without which it stops
+    return "of = \"semihosting\"\nconsole = true\n[[port]]\nof = \"" + of + "\"\nconsole = true\n";
+  };
+  EXPECT_EQ(run(kTypes + answers, with("USART2")).exit_code, 0);
+  EXPECT_EQ(run(answers, with("USART2")).exit_code, 1);
+  const Ran rtt = run(kTypes + answers, with("RTT"));
+  EXPECT_EQ(rtt.exit_code, 0) << rtt.text;
+}
+
+TEST_F(ScenarioConsoleProgram, NothingIsTypedWhereNobodyReads) {
+  const Ran ran = run(kTypes + kSaysBoot, "of = \"ITM\"\nconsole = true\n");
+  EXPECT_EQ(ran.exit_code, 2) << ran.text;
+  EXPECT_TRUE(ran.says("s.toml:10: type: needed") && ran.says("a serial port or RTT")) << ran.text;
+}
+
 TEST_F(ScenarioConsoleProgram, WithoutAConsoleNothingIsExpectedOfIt) {
   const Ran ran = run(kNeverBoot, "");
   EXPECT_EQ(ran.exit_code, 2) << ran.text;
