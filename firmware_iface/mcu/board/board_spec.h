@@ -114,7 +114,9 @@ struct PortEntry {
   std::string key;       // "port[0]", in messages
   unsigned line = 0;
 
-  bool reads() const { return source == PortSource::kSerial || source == PortSource::kRtt; }  // bytes, not frames
+  bool reads() const {
+    return source == PortSource::kSerial || source == PortSource::kRtt;
+  }  // bytes, not frames
 };
 
 // A board that drives wheels as the robot's main board tells it, which the bench stands in for.
