@@ -1,5 +1,6 @@
 """Scores one result, twin-aware, and whole sets of them."""
 import math
+import random
 import statistics
 
 LEAST_SHARE = 0.15  # of the residual: from here on an effect has to be named
@@ -154,6 +155,14 @@ def expected_calibration_error(pairs):
         inside = [(p, right) for p, right in pairs if low <= p < high]
         bad += abs(sum(p for p, _ in inside) - sum(right for _, right in inside))
     return bad / total if total else math.nan
+
+
+def calibration_by_chance(pairs, draws=1000):
+    """(mean, 95 % point) of that error where each name is right as often as was said: a few names in a bin are never right in
+    just that share (parametric bootstrap)."""
+    chance = random.Random(1)
+    errors = [expected_calibration_error([(p, chance.random() < p) for p, _ in pairs]) for _ in range(draws)]
+    return (statistics.fmean(errors), quantile(errors, 0.95)) if pairs else (math.nan, math.nan)
 
 
 def wilson(k, n, z=1.96):

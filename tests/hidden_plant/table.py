@@ -117,7 +117,11 @@ def reliability(pairs):
             f"  said {100 * said:5.1f} %  right {100 * hits / len(inside):5.1f} % ({hits} of {len(inside)}; "
             f"95 %: {100 * left:.1f} to {100 * right:.1f} %)"
         )
-    lines.append(f"  expected calibration error {100 * score.expected_calibration_error(pairs):.1f} points, {len(pairs)} names")
+    mean, most = score.calibration_by_chance(pairs)
+    lines.append(
+        f"  expected calibration error {100 * score.expected_calibration_error(pairs):.1f} points, {len(pairs)} names; "
+        f"were all of it true, by chance {100 * mean:.1f} (95 %: up to {100 * most:.1f})"
+    )
     return lines
 
 

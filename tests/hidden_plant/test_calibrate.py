@@ -70,6 +70,14 @@ class CalibrateTest(unittest.TestCase):
         said = [(0.9, True)] * 8 + [(0.9, False)] * 2 + [(0.2, False)] * 10
         self.assertAlmostEqual(score.expected_calibration_error(said), 0.5 * 0.1 + 0.5 * 0.2)
 
+    def test_what_chance_makes_of_a_few_names(self):
+        # n names of p in one bin: mean of |sum - n p| / n, about sqrt(2 p (1 - p) / (pi n)) of a normal law
+        few, many = [(0.5, True)] * 16, [(0.5, True)] * 1600
+        self.assertAlmostEqual(score.calibration_by_chance(few)[0], math.sqrt(0.5 / (math.pi * 16)), delta=0.01)
+        self.assertAlmostEqual(score.calibration_by_chance(many, 200)[0], math.sqrt(0.5 / (math.pi * 1600)), delta=0.001)
+        self.assertGreater(score.expected_calibration_error(many), score.calibration_by_chance(many, 200)[1])
+        self.assertEqual(score.calibration_by_chance([(1.0, True)] * 5), (0.0, 0.0))
+
     def test_names_of_a_case_with_nothing_hidden_count_as_wrong(self):
         d = {"effects": ["cogging"], "confidence": [{"effect": "cogging", "probability": 0.7}]}
         empty = {"case": "x", "class": "outside", "rig": "axis", "what": [], "effects": []}
