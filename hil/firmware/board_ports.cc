@@ -9,7 +9,7 @@
 
 #include "firmware_iface/mcu/board/can_frames.h"
 #include "firmware_iface/mcu/stm32/can.h"
-#include "firmware_iface/mcu/stm32/usart.h"
+#include "firmware_iface/mcu/stm32/serial_port.h"
 #include "hil/firmware/console_text.h"
 #include "hil/firmware/rtt_console.h"
 #include "hil/wire/buffered_wire.h"
@@ -111,7 +111,7 @@ struct BoardPorts::SerialPort final : Port {
              const BoardPortsOptions& options)
       : Port(entry),
         board(on),
-        usart(*on.chip().find<mcu::Usart>(entry.of)),
+        usart(*on.chip().find<mcu::SerialPort>(entry.of)),
         text(std::move(console)),
         typed(entry, options) {
     usart.on_transmit([this](std::uint8_t byte, mcu::Cycles) {
@@ -146,7 +146,7 @@ struct BoardPorts::SerialPort final : Port {
   }
 
   mcu::McuBoard& board;
-  mcu::Usart& usart;
+  mcu::SerialPort& usart;
   ConsoleText text;
   Typed typed;
   WireEnd end;

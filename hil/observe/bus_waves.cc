@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "firmware_iface/mcu/stm32/can.h"
+#include "firmware_iface/mcu/stm32/serial_port.h"
 #include "firmware_iface/mcu/stm32/spi.h"
-#include "firmware_iface/mcu/stm32/usart.h"
 
 namespace omnihil {
 namespace {
@@ -23,18 +23,19 @@ std::int64_t ns_of(const mcu::McuBoard& board, double cycles) {
   return std::llround(cycles * 1e9 / board.machine().core_hz());
 }
 
-void watch_serial(mcu::McuBoard& board, mcu::Usart& usart, WaveLog& log, const std::string& scope) {
+void watch_serial(mcu::McuBoard& board, mcu::SerialPort& port, const std::string& of, WaveLog& log,
+                  const std::string& scope) {
   struct Lines {
     SerialLine of[2];
   };
   auto lines = std::make_shared<Lines>();
   constexpr const char* kNames[] = {"_RX", "_TX"};
   for (int sent = 0; sent < 2; ++sent) {
-    const std::string name = usart.name() + kNames[sent];
+    const std::string name = of + kNames[sent];
     lines->of[sent] = {log.add(scope, name, WaveKind::kLevel, 1, kHigh),
                        log.add(scope, name + "_byte", WaveKind::kWord, 8)};
   }
-  usart.watch_frames([&board, &log, lines](const mcu::SerialFrame& frame) {
+  port.watch_frames([&board, &log, lines](const mcu::SerialFrame& frame) {
     SerialLine& line = lines->of[frame.sent ? 1 : 0];
     const auto bit = static_cast<double>(frame.bit);
     const std::int64_t end_ns = board.machine().to_ns(frame.end);
@@ -107,7 +108,8 @@ void watch_can(mcu::McuBoard& board, mcu::CanPort& can, const std::string& name,
 
 void watch_buses(mcu::McuBoard& board, WaveLog& log, const std::string& scope) {
   for (const mcu::Chip::Mapped& block : board.chip().blocks()) {
-    if (auto* usart = dynamic_cast<mcu::Usart*>(block.peripheral)) watch_serial(board, *usart, log, scope);
+    if (auto* port = dynamic_cast<mcu::SerialPort*>(block.peripheral))
+      watch_serial(board, *port, block.peripheral->name(), log, scope);
     if (auto* spi = dynamic_cast<mcu::Spi*>(block.peripheral)) watch_spi(board, *spi, log, scope);
     if (auto* can = dynamic_cast<mcu::CanPort*>(block.peripheral))
       watch_can(board, *can, block.peripheral->name(), log, scope);

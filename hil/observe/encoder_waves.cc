@@ -16,7 +16,7 @@ constexpr std::int64_t kMostEdges = 10'000;
 EncoderWaves::EncoderWaves(mcu::McuBoard& board, WaveLog& log, const std::string& scope)
     : board_(board), log_(log) {
   for (const mcu::MotorEntry& motor : board.spec().motors) {
-    if (motor.encoder_timer.empty()) continue;
+    if (motor.encoder_timer.empty() && motor.encoder_pins.empty()) continue;
     const std::string name = fmt::format("wheel{}_", motor.wheel);
     Encoder encoder{motor.wheel, motor.encoder_sign,
                     log.add(scope, name + "A", WaveKind::kLevel, 1, {0, false}, true),

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
+#include <vector>
 
 namespace omnihil {
 namespace {
@@ -20,6 +22,8 @@ Names names_of(const mcu::BoardSpec& spec) {
   for (const mcu::MotorEntry& motor : spec.motors) {
     if (motor.direction) name(*motor.direction, fmt::format("wheel{}_direction", motor.wheel));
     if (motor.enable) name(*motor.enable, fmt::format("wheel{}_enable", motor.wheel));
+    for (std::size_t i = 0; i < motor.encoder_pins.size(); ++i)
+      name(motor.encoder_pins[i], fmt::format("wheel{}_{}", motor.wheel, i == 0 ? 'A' : 'B'));
     for (std::size_t i = 0; i < motor.hall_pins.size(); ++i)
       name(motor.hall_pins[i], fmt::format("wheel{}_hall{}", motor.wheel, i + 1));
   }
@@ -38,19 +42,21 @@ Names names_of(const mcu::BoardSpec& spec) {
 
 void watch_pins(mcu::McuBoard& board, WaveLog& log, const std::string& scope) {
   const Names names = names_of(board.spec());
-  for (char letter = 'A'; letter <= 'K'; ++letter) {
-    mcu::GpioPort* port = board.chip().port(letter);
-    if (port == nullptr) continue;
-    std::array<int, 16> signals{};
-    for (unsigned pin = 0; pin < 16; ++pin) {
-      const auto known = names.find({letter, pin});
+  std::vector<mcu::PinBank*> ports = board.chip().ports();
+  std::ranges::sort(ports, {}, &mcu::PinBank::letter);
+  for (mcu::PinBank* port : ports) {
+    std::array<int, 32> signals{};
+    signals.fill(-1);
+    for (unsigned pin = 0; port->has(pin); ++pin) {
+      const auto known = names.find({port->letter(), pin});
       const bool wired = known != names.end();
-      signals[pin] = log.add(scope, fmt::format("P{}{}{}", letter, pin, wired ? known->second : ""),
-                             WaveKind::kLevel, 1, {port->level(pin) ? 1u : 0u, false}, wired);
+      signals[pin] =
+          log.add(scope, mcu::PinBank::pin_name(port->letter(), pin) + (wired ? known->second : ""),
+                  WaveKind::kLevel, 1, {port->level(pin) ? 1u : 0u, false}, wired);
     }
-    port->watch_levels([&board, &log, signals](std::uint32_t levels) {
+    port->watch_levels([&board, &log, port, signals](std::uint32_t levels) {
       const std::int64_t at_ns = board.now_ns();
-      for (unsigned pin = 0; pin < 16; ++pin) log.put(signals[pin], at_ns, levels >> pin & 1u);
+      for (unsigned pin = 0; port->has(pin); ++pin) log.put(signals[pin], at_ns, levels >> pin & 1u);
     });
   }
 }

@@ -126,7 +126,7 @@ void watch_wheel(mcu::McuBoard& board, mcu::MotorWire& wire, WaveLog& log, const
   };
   for (const auto& channels : {entry.pwm, entry.pwm_low}) {
     for (const mcu::ChannelName& channel : channels)
-      board.chip().find<mcu::Timer>(channel.timer)->on_output(look);
+      board.chip().find<mcu::PwmOutputs>(channel.timer)->on_output(look);
   }
   for (const std::optional<mcu::PinName>& pin : {entry.direction, entry.enable}) {
     if (pin)

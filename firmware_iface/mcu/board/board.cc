@@ -8,13 +8,13 @@
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
 #include "firmware_iface/mcu/stm32/sdmmc.h"
+#include "firmware_iface/mcu/stm32/serial_port.h"
 #include "firmware_iface/mcu/stm32/spi.h"
-#include "firmware_iface/mcu/stm32/usart.h"
 
 namespace omnihil::mcu {
 namespace {
 // No chip has anything here; wires and alarms only have events.
-constexpr std::uint32_t kWiresBase = 0x5FFF0000, kAlarmsBase = 0x5FFE0000;
+constexpr std::uint32_t kWiresBase = 0x5FFF0000, kAlarmsBase = 0x5FFE0000, kEncodersBase = 0x5FFD0000;
 
 MachineConfig configuration(const BoardSpec& spec) {
   MachineConfig config = machine_config(*spec.chip);
@@ -67,6 +67,12 @@ void McuBoard::wire_motors() {
             return sign < 0 ? -counts : counts;
           });
     }
+    if (!entry.encoder_pins.empty()) {
+      encoders_.push_back(std::make_unique<EncoderLines>(entry, chip_, machine_,
+                                                         [this]() -> const WorldState& { return world_; }));
+      machine_.attach(kEncodersBase + 16 * static_cast<std::uint32_t>(encoders_.size()), 4,
+                      *encoders_.back());
+    }
     if (entry.hall_pole_pairs == 0 || (entry.hall_timer.empty() && entry.hall_pins.empty())) continue;
     halls_.push_back(std::make_unique<HallLines>(entry, chip_, machine_,
                                                  [this]() -> const WorldState& { return world_; }));
@@ -116,7 +122,7 @@ void McuBoard::wire_device(const DeviceEntry& entry) {
     Spi* bus = chip_.find<Spi>(entry.bus);
     bus->connect(*slave);
     // Selected while the pin is low; until the firmware makes it an output, a pull-up keeps it high.
-    GpioPort* port = chip_.port(entry.select->port);
+    PinBank* port = chip_.port(entry.select->port);
     const unsigned pin = entry.select->pin;
     const auto follow = [bus, slave, port, pin] {
       bus->select(*slave, port->mode(pin) == PinMode::kOutput && !port->output(pin));
@@ -216,7 +222,7 @@ void McuBoard::wire_analog() {
 // The main board is at the other end; what it is answered is dropped.
 void McuBoard::wire_commands() {
   const std::string& via = spec_.wheel_commands.via;
-  if (auto* serial = chip_.find<Usart>(via)) serial->on_transmit([](std::uint8_t, Cycles) {});
+  if (auto* serial = chip_.find<SerialPort>(via)) serial->on_transmit([](std::uint8_t, Cycles) {});
   if (auto* can = chip_.find<CanPort>(via)) can->on_transmit([](const CanFrame&, Cycles) {});
 }
 
@@ -224,7 +230,7 @@ void McuBoard::wire_radio() {
   if (spec_.radio_via.empty()) return;
   radio_ = device(spec_.radio_via);
   if (radio_ != nullptr) return;
-  serial_ = chip_.find<Usart>(spec_.radio_via);
+  serial_ = chip_.find<SerialPort>(spec_.radio_via);
   serial_->on_transmit([this](std::uint8_t byte, Cycles end) {
     sent_.push_back(byte);
     sent_last_ns_ = machine_.to_ns(end);
@@ -245,6 +251,7 @@ void McuBoard::set_world(const WorldState& world) {
   for (Adc* adc : adcs_) adc->take_samples();
   world_ = world;
   for (const auto& hall : halls_) hall->world_changed();
+  for (const auto& encoder : encoders_) encoder->world_changed();
   for (const Wired& wired : devices_) wired.device->world_changed();
 }
 

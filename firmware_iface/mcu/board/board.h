@@ -18,6 +18,7 @@
 
 #include "firmware_iface/mcu/board/board_spec.h"
 #include "firmware_iface/mcu/board/device_alarm.h"
+#include "firmware_iface/mcu/board/encoder_lines.h"
 #include "firmware_iface/mcu/board/hall_lines.h"
 #include "firmware_iface/mcu/board/motor_wire.h"
 #include "firmware_iface/mcu/board/world_state.h"
@@ -28,7 +29,7 @@
 namespace omnihil::mcu {
 
 class Adc;
-class Usart;
+class SerialPort;
 
 class McuBoard {
  public:
@@ -83,10 +84,11 @@ class McuBoard {
   WorldState world_;
   std::vector<std::unique_ptr<MotorWire>> wires_;
   std::vector<std::unique_ptr<HallLines>> halls_;
+  std::vector<std::unique_ptr<EncoderLines>> encoders_;
   std::vector<Wired> devices_;
   std::vector<Adc*> adcs_;  // that something of the world is wired to
   Device* radio_ = nullptr;
-  Usart* serial_ = nullptr;
+  SerialPort* serial_ = nullptr;
   std::vector<std::uint8_t> sent_;  // bytes of a serial radio, not yet a frame
   std::int64_t sent_last_ns_ = 0;
   std::multimap<std::int64_t, std::function<void()>> due_;

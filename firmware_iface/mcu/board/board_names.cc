@@ -6,9 +6,9 @@
 #include "firmware_iface/mcu/stm32/can.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
 #include "firmware_iface/mcu/stm32/sdmmc.h"
+#include "firmware_iface/mcu/stm32/serial_port.h"
 #include "firmware_iface/mcu/stm32/spi.h"
 #include "firmware_iface/mcu/stm32/timer/timer.h"
-#include "firmware_iface/mcu/stm32/usart.h"
 
 namespace omnihil::mcu {
 namespace {
@@ -27,6 +27,11 @@ std::string join(const std::vector<std::string>& names) {
 }  // namespace
 
 std::optional<PinName> parse_pin(std::string_view text) {
+  if (text.starts_with("GP")) {
+    const auto pin = parse_number(text.substr(2));
+    if (!pin || *pin > 29) return std::nullopt;
+    return PinName{PinBank::kGp, *pin};
+  }
   if (text.size() < 3 || text[0] != 'P' || text[1] < 'A' || text[1] > 'K') return std::nullopt;
   const auto pin = parse_number(text.substr(2));
   if (!pin || *pin > 15) return std::nullopt;
@@ -39,8 +44,12 @@ std::optional<ChannelName> parse_channel(std::string_view text) {
   ChannelName channel{std::string(text.substr(0, dot)), 0, text.ends_with('N')};
   std::string_view number = text.substr(dot + 1);
   if (channel.complement) number.remove_suffix(1);
+  if (channel.timer.starts_with("PWM") && (number == "A" || number == "B")) {  // a slice's
+    channel.channel = number == "B" ? 1 : 0;
+    return channel;
+  }
   const auto n = parse_number(number);
-  if (!n || *n < 1 || *n > 4) return std::nullopt;
+  if (channel.timer.starts_with("PWM") || !n || *n < 1 || *n > 4) return std::nullopt;
   channel.channel = *n - 1;
   return channel;
 }
@@ -68,34 +77,44 @@ BoardNames::BoardNames(const ChipSpec& spec)
     : system_(std::make_unique<Nothing>()), chip_(std::make_unique<Chip>(spec, *system_)) {}
 BoardNames::~BoardNames() = default;
 
-bool BoardNames::has_pin(const PinName& pin) const { return chip_->port(pin.port) != nullptr; }
+bool BoardNames::has_pin(const PinName& pin) const {
+  const PinBank* bank = chip_->port(pin.port);
+  return bank != nullptr && bank->has(pin.pin);
+}
 bool BoardNames::has_timer(const std::string& name, unsigned channels) const {
+  if (channels == 0) return chip_->find<PwmOutputs>(name) != nullptr;
   const Timer* timer = chip_->find<Timer>(name);
   return timer != nullptr && timer->spec().channels >= channels;
 }
 bool BoardNames::has_channel(const ChannelName& c) const {
-  const Timer* timer = chip_->find<Timer>(c.timer);
-  if (timer == nullptr || c.channel >= timer->spec().channels) return false;
-  return !c.complement || (timer->spec().advanced && c.channel < 3);
+  const auto* timer = chip_->find<PwmOutputs>(c.timer);
+  return timer != nullptr && c.channel < (c.complement ? timer->complements() : timer->channels());
 }
 bool BoardNames::has_adc(const std::string& name) const { return chip_->find<Adc>(name) != nullptr; }
 bool BoardNames::has_spi(const std::string& name) const { return chip_->find<Spi>(name) != nullptr; }
 bool BoardNames::has_i2c(const std::string& name) const { return chip_->find<I2c>(name) != nullptr; }
 bool BoardNames::has_sdmmc(const std::string& name) const { return chip_->find<Sdmmc>(name) != nullptr; }
-bool BoardNames::has_serial(const std::string& name) const { return chip_->find<Usart>(name) != nullptr; }
+bool BoardNames::has_serial(const std::string& name) const {
+  return chip_->find<SerialPort>(name) != nullptr;
+}
 bool BoardNames::has_can(const std::string& name) const { return chip_->find<CanPort>(name) != nullptr; }
 std::string BoardNames::timers(unsigned channels) const {
-  std::vector<std::string> names = chip_->names<Timer>();
+  std::vector<std::string> names = chip_->names<PwmOutputs>();
   std::erase_if(names, [&](const std::string& name) { return !has_timer(name, channels); });
   return join(names);
 }
 std::string BoardNames::timers_with_complements() const {
-  std::vector<std::string> names = chip_->names<Timer>();
+  std::vector<std::string> names = chip_->names<PwmOutputs>();
   std::erase_if(names, [&](const std::string& name) { return !has_channel({name, 0, true}); });
   return join(names);
 }
+std::string BoardNames::example_channels() const {
+  const std::string slices = join(chip_->names<PwmOutputs>());
+  return slices.starts_with("PWM") ? "channels such as PWM3.A of " + slices
+                                   : "channels such as TIM1.2 of " + timers(1);
+}
 std::string BoardNames::adcs() const { return join(chip_->names<Adc>()); }
-std::string BoardNames::serials() const { return join(chip_->names<Usart>()); }
+std::string BoardNames::serials() const { return join(chip_->names<SerialPort>()); }
 std::string BoardNames::spis() const { return join(chip_->names<Spi>()); }
 std::string BoardNames::i2cs() const { return join(chip_->names<I2c>()); }
 std::string BoardNames::sdmmcs() const { return join(chip_->names<Sdmmc>()); }

@@ -33,6 +33,7 @@ class BoardNames {
   // Lists of what is allowed: "TIM1, TIM2, …", those with at least so many channels.
   std::string timers(unsigned channels = 0) const;
   std::string timers_with_complements() const;
+  std::string example_channels() const;  // in words
   std::string spis() const;
   std::string i2cs() const;
   std::string sdmmcs() const;

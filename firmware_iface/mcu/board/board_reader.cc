@@ -59,7 +59,9 @@ std::optional<PinName> Reader::pin_word(const toml::table& t, const std::string&
                                         const std::string& word) {
   const auto parsed = parse_pin(word);
   if (parsed && (!names_ || names_->has_pin(*parsed))) return parsed;
-  keys_.wrong(t, path, key, fmt::format("no pin \"{}\"", word), "pins of the chip, such as PA3");
+  keys_.wrong(t, path, key, fmt::format("no pin \"{}\"", word),
+              fmt::format("pins of the chip, such as {}",
+                          names_ && names_->has_pin({PinBank::kGp, 3}) ? "GP3" : "PA3"));
   return std::nullopt;
 }
 
@@ -90,7 +92,8 @@ void Reader::read_top() {
   }
   if (spec_.chip != nullptr) names_ = std::make_unique<BoardNames>(*spec_.chip);
   read_boot_address();
-  spec_.crystal_Hz = keys_.number(top_, "", "crystal_Hz", 1e6, 50e6).value_or(spec_.crystal_Hz);
+  spec_.crystal_Hz = keys_.number(top_, "", "crystal_Hz", 1e6, 50e6)
+                         .value_or(spec_.chip != nullptr ? spec_.chip->crystal_hz : spec_.crystal_Hz);
   spec_.cpi_scale = keys_.number(top_, "", "cpi_scale", 0.25, 10.0).value_or(spec_.cpi_scale);
   spec_.coupling_ns =
       1000 * keys_.whole(top_, "", "coupling_us", 10, 10'000).value_or(spec_.coupling_ns / 1000);
@@ -132,10 +135,10 @@ std::vector<ChannelName> Reader::channels(const toml::table& t, const std::strin
     const auto channel = parse_channel(word);
     if (!channel || (names_ && !names_->has_channel(*channel))) {
       keys_.wrong(t, path, key, fmt::format("no channel \"{}\"", word),
-                  !names_ ? "channels of the chip, such as TIM1.2, TIM1.2N"
+                  !names_ ? "channels of the chip, such as TIM1.2, TIM1.2N, PWM3.A"
                   : word.ends_with('N')
                       ? "complementary outputs such as TIM1.2N of " + names_->timers_with_complements()
-                      : "channels such as TIM1.2 of " + names_->timers(1));
+                      : names_->example_channels());
       continue;
     }
     claim(t, path, key, word);
@@ -145,9 +148,10 @@ std::vector<ChannelName> Reader::channels(const toml::table& t, const std::strin
 }
 
 void Reader::read_motor(const toml::table& t, const std::string& path) {
-  keys_.only(t, path,
-             {"wheel", "pwm", "pwm_low", "inverted", "direction", "forward", "reversed", "enable", "brake",
-              "encoder", "encoder_reversed", "hall", "hall_pins", "hall_inverted", "pole_pairs"});
+  keys_.only(
+      t, path,
+      {"wheel", "pwm", "pwm_low", "inverted", "direction", "forward", "reversed", "enable", "brake",
+       "encoder", "encoder_pins", "encoder_reversed", "hall", "hall_pins", "hall_inverted", "pole_pairs"});
   MotorEntry motor;
   if (const auto wheel = keys_.whole(t, path, "wheel", 0, kWheels - 1)) {
     motor.wheel = static_cast<int>(*wheel);
@@ -184,6 +188,11 @@ void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEn
       claim(t, path, "encoder", motor.encoder_timer + " inputs");
     }
   }
+  for (const std::string& word : keys_.texts(t, path, "encoder_pins")) {
+    if (const auto p = pin_word(t, path, "encoder_pins", word)) motor.encoder_pins.push_back(*p);
+  }
+  if (t.contains("encoder_pins") && motor.encoder_pins.size() != 2)
+    keys_.wrong(t, path, "encoder_pins", "not two pins", "two pins: A, B"), motor.encoder_pins.clear();
   motor.encoder_sign = keys_.flag(t, path, "encoder_reversed").value_or(false) ? -1.0 : 1.0;
   motor.hall_timer = keys_.text(t, path, "hall").value_or("");
   if (!motor.hall_timer.empty()) {

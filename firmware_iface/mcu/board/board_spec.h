@@ -45,10 +45,11 @@ struct MotorEntry {
   bool inverted = false;                  // the driver's input is active low
   std::optional<PinName> direction;
   bool direction_high_is_forward = true;
-  double sign = 1.0;                  // -1: the motor's leads are swapped
-  std::optional<PinName> enable;      // low: the bridge is off
-  std::optional<PinName> brake = {};  // low: all lower switches are closed
-  std::string encoder_timer;          // empty: none
+  double sign = 1.0;                       // -1: the motor's leads are swapped
+  std::optional<PinName> enable;           // low: the bridge is off
+  std::optional<PinName> brake = {};       // low: all lower switches are closed
+  std::string encoder_timer;               // empty: none
+  std::vector<PinName> encoder_pins = {};  // instead: its lines A and B on pins
   double encoder_sign = 1.0;
   std::string hall_timer;          // empty: none; its channels 1 to 3
   std::vector<PinName> hall_pins;  // the same lines as pins

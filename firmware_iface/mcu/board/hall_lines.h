@@ -40,7 +40,7 @@ class HallLines final : public Peripheral {
   System& system_;
   std::function<const WorldState&()> world_;
   Timer* timer_ = nullptr;
-  std::vector<std::pair<GpioPort*, unsigned>> pins_;
+  std::vector<std::pair<PinBank*, unsigned>> pins_;
   unsigned shown_ = 0;
   Cycles next_ = kNever;
 };

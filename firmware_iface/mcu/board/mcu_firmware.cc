@@ -7,7 +7,7 @@
 
 #include "firmware_iface/mcu/board/can_frames.h"
 #include "firmware_iface/mcu/stm32/can.h"
-#include "firmware_iface/mcu/stm32/usart.h"
+#include "firmware_iface/mcu/stm32/serial_port.h"
 
 namespace omnihil::mcu {
 
@@ -105,7 +105,7 @@ void McuFirmware::speak(std::int64_t now_ns) {
     McuBoard& board = *boards_[b];
     for (const BusFrame& frame : frames) {
       if (to.serial) {
-        board.chip().find<Usart>(to.via)->feed(frame.bytes(), board.now_ns());
+        board.chip().find<SerialPort>(to.via)->feed(frame.bytes(), board.now_ns());
       } else {
         board.chip().find<CanPort>(to.via)->receive(can_frame_of(frame));
       }
@@ -228,7 +228,8 @@ PhaseLegs McuFirmware::phase_period(const PhasePeriod& period) {
 std::uint64_t McuFirmware::missed_control_periods() const {
   if (spec_.control_timer.empty()) return 0;
   std::uint64_t missed = 0;
-  for (const auto& board : boards_) missed += board->chip().find<Timer>(spec_.control_timer)->updates_lost();
+  for (const auto& board : boards_)
+    missed += board->chip().find<PwmOutputs>(spec_.control_timer)->updates_lost();
   return missed;
 }
 

@@ -39,14 +39,15 @@ inline void MotorWire::changed(std::int64_t at_ns) {
 MotorWire::MotorWire(const MotorEntry& entry, Chip& chip, std::function<std::int64_t()> now_ns)
     : entry_(entry), now_ns_(std::move(now_ns)), phases_(entry.pwm.size() == 3) {
   const auto pin_changed = [this](bool) { changed(now_ns_()); };
-  const auto listen = [this](Timer* timer) {
+  const auto listen = [this](PwmOutputs* timer) {
     if (std::find(leg_timers_.begin(), leg_timers_.end(), timer) != leg_timers_.end()) return;
     leg_timers_.push_back(timer);
     timer->on_output([this](std::int64_t at_ns) { changed(at_ns); });
   };
-  for (const ChannelName& channel : entry_.pwm) listen(timers_.emplace_back(chip.find<Timer>(channel.timer)));
+  for (const ChannelName& channel : entry_.pwm)
+    listen(timers_.emplace_back(chip.find<PwmOutputs>(channel.timer)));
   for (const ChannelName& channel : entry_.pwm_low)
-    listen(low_timers_.emplace_back(chip.find<Timer>(channel.timer)));
+    listen(low_timers_.emplace_back(chip.find<PwmOutputs>(channel.timer)));
   if (entry_.direction) {
     direction_ = chip.port(entry_.direction->port);
     direction_->on_output(entry_.direction->pin, pin_changed);
@@ -66,7 +67,7 @@ void MotorWire::gate_by(Device& driver) {
   driver.on_bridge([this] { changed(now_ns_()); });
 }
 
-TimerPin MotorWire::pin(Timer& timer, const ChannelName& channel) const {
+TimerPin MotorWire::pin(PwmOutputs& timer, const ChannelName& channel) const {
   TimerPin pin = timer.pin(channel.channel, channel.complement);
   if (entry_.inverted && pin.drive != TimerPin::Drive::kOff) pin.high_ratio = 1.0 - pin.high_ratio;
   return pin;
@@ -108,7 +109,7 @@ BridgeDrive MotorWire::end(std::int64_t at_ns) {
 
 std::uint32_t MotorWire::leg_pins_version() const {
   std::uint32_t version = 0;
-  for (const Timer* timer : leg_timers_) version += timer->pins_version();
+  for (const PwmOutputs* timer : leg_timers_) version += timer->pins_version();
   return version;
 }
 
@@ -124,7 +125,7 @@ BridgeLegs MotorWire::look_at_legs() {
   legs_enabled_ = enabled();
   legs_braked_ = braked();
   legs_version_ = leg_pins_version();
-  const auto stays = [](Timer* timer, const ChannelName& channel) {
+  const auto stays = [](PwmOutputs* timer, const ChannelName& channel) {
     return timer->pin_stays(channel.channel, channel.complement);
   };
   legs_known_ = std::equal(timers_.begin(), timers_.end(), entry_.pwm.begin(), stays) &&
@@ -171,12 +172,11 @@ CurrentPath MotorWire::path(std::size_t phase) const {
   if (!enabled()) return CurrentPath::kDiodes;
   if (braked()) return CurrentPath::kLower;
   const std::size_t x = entry_.sign < 0 && phase > 0 ? kLegs - 1 - phase : phase;  // as the leads are swapped
-  const auto driven = [this](Timer& timer, const ChannelName& channel) {
+  const auto driven = [this](PwmOutputs& timer, const ChannelName& channel) {
     return pin(timer, channel).drive != TimerPin::Drive::kOff;
   };
-  constexpr std::uint32_t kCount = 0x24;  // a timer knows where it is when that is asked for
-  timers_[x]->peek(kCount);
-  if (!low_timers_.empty()) low_timers_[x]->peek(kCount);
+  timers_[x]->look();
+  if (!low_timers_.empty()) low_timers_[x]->look();
   const bool high = driven(*timers_[x], entry_.pwm[x]);
   const bool upper = high && level(*timers_[x], entry_.pwm[x]);
   if (upper) return CurrentPath::kUpper;

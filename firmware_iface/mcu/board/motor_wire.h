@@ -22,7 +22,7 @@
 #include "firmware_iface/mcu/board/leg_means.h"
 #include "firmware_iface/mcu/stm32/chip.h"
 #include "firmware_iface/mcu/stm32/device.h"
-#include "firmware_iface/mcu/stm32/timer/timer.h"
+#include "firmware_iface/mcu/stm32/timer/pwm_outputs.h"
 #include "firmware_iface/robot_io.h"
 
 namespace omnihil::mcu {
@@ -67,8 +67,8 @@ class MotorWire {
   void hold();
   bool still() const;
   void pass(std::int64_t at_ns);
-  TimerPin pin(Timer& timer, const ChannelName& channel) const;
-  bool level(Timer& timer, const ChannelName& channel) const {
+  TimerPin pin(PwmOutputs& timer, const ChannelName& channel) const;
+  bool level(PwmOutputs& timer, const ChannelName& channel) const {
     return timer.level(channel.channel, channel.complement) != entry_.inverted;
   }
   TimerPin pin(std::size_t i) const { return pin(*timers_[i], entry_.pwm[i]); }
@@ -84,8 +84,8 @@ class MotorWire {
 
   MotorEntry entry_;
   std::function<std::int64_t()> now_ns_;
-  std::vector<Timer*> timers_, low_timers_;
-  GpioPort *direction_ = nullptr, *enable_ = nullptr, *brake_ = nullptr;
+  std::vector<PwmOutputs*> timers_, low_timers_;
+  PinBank *direction_ = nullptr, *enable_ = nullptr, *brake_ = nullptr;
   const Device* driver_ = nullptr;
   bool phases_ = false;
   BridgeDrive held_;
@@ -95,7 +95,7 @@ class MotorWire {
   double driven_ns_ = 0.0, duty_ns_ = 0.0;
   // Of phases; what held_legs() are depends on this version of pins that stay, and on these switches.
   LegMeans means_;
-  std::vector<Timer*> leg_timers_;
+  std::vector<PwmOutputs*> leg_timers_;
   bool legs_known_ = false, legs_enabled_ = false, legs_braked_ = false;
   std::uint32_t legs_version_ = 0;
 };

@@ -69,7 +69,7 @@ bool Machine::load(const ElfImage& image, std::vector<std::string>& problems) {
   }
   if (problems.size() != before) return false;
   for (const ElfSegment& segment : image.segments) memory_.write(segment.address, segment.bytes);
-  occupied_low_.clear();
+  occupied_low_ = config_.used_low;
   for (const ElfRange& range : image.occupied) {
     if (range.begin < kNullPointers) occupied_low_.push_back(range);
   }
@@ -350,6 +350,8 @@ void Machine::sleep_until(Cycles end) {
   accounted_ = now();
 }
 
+bool Machine::rom_call() { return cpu_.reg.r[15] - rom_base_ < rom_bytes_ && rom_calls_(cpu_.breakpoint); }
+
 void Machine::handle(Stop stop) {
   switch (stop) {
     case Stop::kWfi:
@@ -370,7 +372,7 @@ void Machine::handle(Stop stop) {
       return_from(cpu_.exception_return);
       return;
     case Stop::kBreakpoint:
-      if (visit()) {
+      if (visit() || rom_call()) {
       } else if (breakpoint_hook_ && breakpoint_hook_(cpu_.breakpoint)) {
         cpu_.reg.r[15] += 2;
       } else if (debug_ == nullptr || !debug_->takes_breakpoint_instruction()) {

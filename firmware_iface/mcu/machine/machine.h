@@ -51,6 +51,8 @@ struct MachineConfig {
   // Name and base of the chip's block at an address, for what is not modelled; an empty name: none is known.
   std::function<std::pair<std::string_view, std::uint32_t>(std::uint32_t)> block_name = {};
   bool flash_at_zero = true;
+  // Below 4096: what a program may read without it being a null pointer's.
+  std::vector<ElfRange> used_low = {};
   std::uint32_t boot_address = 0x08000000;  // where the vectors are at reset: in flash or an alias of it
   double reset_hz = 16e6;                   // the clock the chip comes out of reset with
   double cpi_scale = 1.0;  // cycles of the table are multiplied by this: fit it to one measured duration
@@ -77,6 +79,15 @@ class Machine final : public System, private CpuBus {
   // BKPT asks here first; true: go on behind it. Without a hook, or refused, it is a fault as without a
   // debugger.
   void set_breakpoint_hook(std::function<bool(std::uint32_t)> hook) { breakpoint_hook_ = std::move(hook); }
+
+  // A boot ROM whose functions are the host's: BKPT n within these addresses calls it, which says where the program
+  // goes on; false: there is no such function. What it takes it spends.
+  void set_rom_calls(std::uint32_t base, std::uint32_t bytes, std::function<bool(unsigned)> calls) {
+    rom_base_ = base;
+    rom_bytes_ = bytes;
+    rom_calls_ = std::move(calls);
+  }
+  void spend(Cycles cycles) { now_ += static_cast<std::int64_t>(cycles) * kSubcycles; }
 
   // Does `work` when the program first comes to this address, before the instruction there runs; once. Until then a
   // BKPT stands in its place. False: no code is there.
@@ -240,6 +251,7 @@ class Machine final : public System, private CpuBus {
   void run_events_due();
   Cycles next_event();
   void look_who_is_armed();
+  bool rom_call();
   void handle(Stop stop);
   bool wakes() const;
   void sleep_until(Cycles end);
@@ -261,6 +273,8 @@ class Machine final : public System, private CpuBus {
   std::map<std::pair<std::string, std::string>, std::size_t> unmodelled_index_;
   FlashWrites* flash_writes_ = nullptr;
   std::function<bool(std::uint32_t)> breakpoint_hook_;
+  std::uint32_t rom_base_ = 0, rom_bytes_ = 0;
+  std::function<bool(unsigned)> rom_calls_;
   std::unique_ptr<DebugUnit> debug_;
   std::function<void(std::string_view)> trace_;
   struct Visit {

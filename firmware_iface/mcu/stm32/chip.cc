@@ -44,10 +44,13 @@ MachineConfig machine_config(const ChipSpec& spec) {
       config.ram_base = memory.base;
       config.ram_bytes = memory.bytes;
     } else {
-      config.memories.push_back({std::string(memory.name), memory.base, memory.bytes, kRam});
+      config.memories.push_back(
+          {std::string(memory.name), memory.base, memory.bytes, memory.rom ? kFlash : kRam});
       if (memory.base == 0) config.flash_at_zero = false;
     }
   }
+  if (spec.boots_from_rom) config.boot_address = 0;
+  config.used_low = spec.used_low;
   for (const auto& [name, base] : spec.aliases) {
     config.aliases.emplace_back(name == "sram" ? "ram" : std::string(name), base);
   }
@@ -57,6 +60,7 @@ MachineConfig machine_config(const ChipSpec& spec) {
 void attach(Chip& chip, Machine& machine) {
   for (const Chip::Mapped& block : chip.blocks()) machine.attach(block.base, block.bytes, *block.peripheral);
   machine.set_flash_writes(chip.flash());
+  for (const auto& work : chip.when_attached_) work(machine);
 }
 
 Chip::Chip(const ChipSpec& spec, System& system) : spec_(spec), context_(system) {
@@ -78,7 +82,13 @@ Peripheral* Chip::peripheral(std::string_view name) const {
   return nullptr;
 }
 
-GpioPort* Chip::port(char letter) const { return find<GpioPort>(std::string("GPIO") + letter); }
+PinBank* Chip::port(char letter) const {
+  for (PinBank* port : ports_) {
+    if (port->letter() == letter) return port;
+  }
+  return nullptr;
+}
+
 Flash* Chip::flash() const { return find<Flash>("FLASH"); }
 
 }  // namespace omnihil::mcu

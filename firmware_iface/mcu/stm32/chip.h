@@ -8,10 +8,12 @@
 // Adding a chip is adding a file to firmware_iface/mcu/stm32/chips/ that defines `const ChipSpec& chip_STEM()`.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,7 +23,7 @@
 #include "firmware_iface/mcu/stm32/block_map.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/clock/flash.h"
-#include "firmware_iface/mcu/stm32/gpio.h"
+#include "firmware_iface/mcu/stm32/pin_bank.h"
 
 namespace omnihil::mcu {
 
@@ -32,6 +34,7 @@ struct MemorySpec {
   std::uint32_t base = 0, bytes = 0;
   bool flash = false;
   bool core_only = false;  // no DMA controller reaches it
+  bool rom = false;        // nobody writes there
 };
 
 struct ChipSpec {
@@ -40,11 +43,14 @@ struct ChipSpec {
   Variant core = kCortexM4F;
   BlockFamily blocks = BlockFamily::kUnknown;  // what is where, for messages
   double reset_hz = 16e6;
-  // Where the vectors are at reset. 0: at the flash's base; else as the chip's option bytes are delivered, and a
+  double crystal_hz = 8e6;      // where a board does not say it
+  bool boots_from_rom = false;  // the vectors are at 0 at reset
+  // Else where they are. 0: at the flash's base; else as the chip's option bytes are delivered, and a
   // board may say another.
   std::uint32_t boot_address = 0;
   std::vector<MemorySpec> memories;
   std::vector<std::pair<std::string_view, std::uint32_t>> aliases = {};  // of a memory, at another base
+  std::vector<ElfRange> used_low = {};  // below 4096: what a program reads and means it
   void (*build)(Chip& chip) = nullptr;
 };
 
@@ -71,7 +77,8 @@ class Chip {
   Kind* find(std::string_view name) const {
     return dynamic_cast<Kind*>(peripheral(name));
   }
-  GpioPort* port(char letter) const;
+  PinBank* port(char letter) const;
+  const std::vector<PinBank*>& ports() const { return ports_; }
   Flash* flash() const;
   // Names of the blocks of one kind, for messages.
   template <class Kind>
@@ -84,11 +91,13 @@ class Chip {
   }
 
   // For the chips' files.
+  void when_attached(std::function<void(Machine&)> work) { when_attached_.push_back(std::move(work)); }
   template <class Kind>
   Kind& add(std::uint32_t base, std::uint32_t bytes, std::unique_ptr<Kind> peripheral) {
     Kind& kept = *peripheral;
     owned_.push_back(std::move(peripheral));
     blocks_.push_back({base, bytes, &kept});
+    if constexpr (std::is_base_of_v<PinBank, Kind>) ports_.push_back(&kept);
     return kept;
   }
 
@@ -98,6 +107,9 @@ class Chip {
   ChipContext context_;
   std::vector<std::unique_ptr<Peripheral>> owned_;
   std::vector<Mapped> blocks_;
+  std::vector<PinBank*> ports_;
+  std::vector<std::function<void(Machine&)>> when_attached_;
+  friend void attach(Chip& chip, Machine& machine);
 };
 
 }  // namespace omnihil::mcu

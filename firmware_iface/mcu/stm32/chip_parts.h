@@ -16,6 +16,7 @@
 #include "firmware_iface/mcu/stm32/dma/dma_v1.h"
 #include "firmware_iface/mcu/stm32/dma/dma_v2.h"
 #include "firmware_iface/mcu/stm32/exti.h"
+#include "firmware_iface/mcu/stm32/gpio.h"
 #include "firmware_iface/mcu/stm32/i2c.h"
 #include "firmware_iface/mcu/stm32/math/crc.h"
 #include "firmware_iface/mcu/stm32/sdmmc.h"

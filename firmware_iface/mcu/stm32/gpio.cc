@@ -24,6 +24,7 @@ constexpr RegisterInfo kPortOfF1[] = {{f1::kCrl, "CRL", 0x44444444}, {f1::kCrh, 
 GpioPort::GpioPort(unsigned port, ChipContext& context, GpioLayout layout)
     : RegisterBlock(std::string("GPIO") + static_cast<char>('A' + port), context.system,
                     layout == GpioLayout::kF1 ? std::span<const RegisterInfo>(kPortOfF1) : kPort),
+      PinBank(static_cast<char>('A' + port), 16),
       port_(port),
       layout_(layout) {
   next_event_is(kNever);
@@ -59,49 +60,13 @@ void GpioPort::note_modes() {
       const PinMode mode = (four & 3u) == 0 ? (four == 0 ? PinMode::kAnalog : PinMode::kInput)
                            : four < 8       ? PinMode::kOutput
                                             : PinMode::kAlternate;
-      modes_ = (modes_ & ~(3u << (2 * pin))) | static_cast<std::uint32_t>(mode) << (2 * pin);
+      modes_ = (modes_ & ~(std::uint64_t{3} << (2 * pin))) | std::uint64_t{static_cast<unsigned>(mode)}
+                                                                 << (2 * pin);
       up = four == 8 && output(pin);  // an input with a pull, which ODR says the direction of
     }
     if (mode(pin) == PinMode::kOutput) outputs_ |= 1u << pin;
     if (up) pulled_ |= 1u << pin;
   }
-}
-
-std::uint32_t GpioPort::levels() const {
-  const std::uint32_t idle = (driven_ & driven_high_) | (~driven_ & pulled_);
-  return ((outputs_ & odr_) | (~outputs_ & idle)) & 0xFFFFu;
-}
-
-bool GpioPort::level(unsigned pin) const { return (levels() >> pin & 1u) != 0; }
-
-void GpioPort::changed() {
-  const std::uint32_t levels_now = levels(), outputs = outputs_ & odr_;
-  const std::uint32_t moved = levels_now ^ seen_levels_, given = outputs ^ seen_outputs_;
-  seen_levels_ = levels_now;
-  seen_outputs_ = outputs;
-  if (moved != 0 && watcher_) watcher_(levels_now);
-  for (unsigned pin = 0; pin < 16 && on_level_ && moved != 0; ++pin) {
-    if ((moved >> pin & 1u) != 0) on_level_(port_, pin, (levels_now >> pin & 1u) != 0);
-  }
-  if (given == 0) return;
-  for (const auto& [pin, listener] : listeners_) {
-    if ((given >> pin & 1u) != 0) listener((outputs >> pin & 1u) != 0);
-  }
-}
-
-void GpioPort::drive(unsigned pin, bool level) {
-  driven_ |= 1u << pin;
-  driven_high_ = (driven_high_ & ~(1u << pin)) | (level ? 1u << pin : 0u);
-  changed();
-}
-
-void GpioPort::release(unsigned pin) {
-  driven_ &= ~(1u << pin);
-  changed();
-}
-
-void GpioPort::on_output(unsigned pin, std::function<void(bool)> listener) {
-  listeners_.emplace_back(pin, std::move(listener));
 }
 
 std::uint32_t GpioPort::load(std::uint32_t offset) {
@@ -127,7 +92,7 @@ void GpioPort::store(std::uint32_t offset, std::uint32_t written, std::uint32_t 
   if (odr_ == before && (offset == kBsrr || offset == kBrr)) return;
   changed();
   if (offset != kModer && offset != kAfrl && offset != kAfrl + 4) return;
-  for (const auto& listener : on_modes_) listener();
+  modes_changed();
 }
 
 [[gnu::noinline]] void GpioPort::store_f1(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) {
@@ -143,7 +108,7 @@ void GpioPort::store(std::uint32_t offset, std::uint32_t written, std::uint32_t 
   note_modes();  // pulls follow ODR
   changed();
   if (offset != f1::kCrl && offset != f1::kCrh) return;
-  for (const auto& listener : on_modes_) listener();
+  modes_changed();
 }
 
 }  // namespace omnihil::mcu

@@ -32,7 +32,7 @@ class RegisterBlock : public Peripheral {
 
   void reset() override;
   std::uint32_t read(std::uint32_t offset, unsigned bytes) override;
-  void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) final;
+  void write(std::uint32_t offset, unsigned bytes, std::uint32_t value) override;
   std::uint32_t peek(std::uint32_t offset) final { return info(offset) != nullptr ? shown(offset) : 0; }
   std::span<const RegisterInfo> registers() const { return registers_; }
   // Registers change by accesses and events alone; blocks with others, or with reads that do something, say

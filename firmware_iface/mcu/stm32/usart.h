@@ -11,14 +11,13 @@
 // synchronous mode, flow control, mute, receiver timeout.
 #pragma once
 #include <deque>
-#include <functional>
 #include <span>
 #include <string>
 #include <utility>
 
-#include "firmware_iface/mcu/stm32/bus_ledger.h"
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
+#include "firmware_iface/mcu/stm32/serial_port.h"
 
 namespace omnihil::mcu {
 
@@ -32,16 +31,7 @@ struct UsartSpec {
   unsigned fifo = 0;       // how many bytes its FIFOs hold; 0: it has none, and no prescaler
 };
 
-// What passed on one of its lines: levels from the start bit on, the first of them in bit 0.
-struct SerialFrame {
-  bool sent = false;  // else received
-  std::uint8_t byte = 0;
-  std::uint32_t levels = 0;
-  unsigned bits = 0;
-  Cycles bit = 0, end = 0;  // of one bit, of the last one
-};
-
-class Usart final : public RegisterBlock, public BusEnd {
+class Usart final : public RegisterBlock, public SerialPort {
  public:
   Usart(UsartSpec spec, ChipContext& context);
   void reset() override;
@@ -51,14 +41,8 @@ class Usart final : public RegisterBlock, public BusEnd {
     return (offset & ~3u) == (spec_.v2 ? 0x24u : 0x04u) ? 0 : kNever;
   }
 
-  void on_transmit(std::function<void(std::uint8_t byte, Cycles end)> listener) {
-    on_transmit_ = std::move(listener);
-  }
-  // For whoever draws the lines: each frame at its end.
-  void watch_frames(std::function<void(const SerialFrame&)> watcher) { watcher_ = std::move(watcher); }
-  // `bit_ns` 0: what this end is set to.
-  void feed(std::span<const std::uint8_t> bytes, std::int64_t at_ns, double bit_ns = 0.0);
-  double baud() const;
+  void feed(std::span<const std::uint8_t> bytes, std::int64_t at_ns, double bit_ns = 0.0) override;
+  double baud() const override;
   std::uint64_t overruns() const { return overruns_; }
 
  protected:
@@ -103,8 +87,6 @@ class Usart final : public RegisterBlock, public BusEnd {
   Cycles transmit_end_ = kNever, receive_at_ = kNever, idle_at_ = kNever;
   Cycles next_ = kNever;  // the first of them
   std::deque<Waiting> waiting_;
-  std::function<void(std::uint8_t, Cycles)> on_transmit_;
-  std::function<void(const SerialFrame&)> watcher_;
   std::uint64_t overruns_ = 0;
 };
 

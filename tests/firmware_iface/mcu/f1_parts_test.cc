@@ -41,7 +41,7 @@ TEST(F1Parts, RunsAt72MHzAndItsTimersToo) {
 // RM0008 table 20: CNF and MODE of a pin.
 TEST(F1Parts, PinsAreWhatFourBitsSayOfThem) {
   ChipBench b("stm32f103");
-  GpioPort& port = *b.chip.port('A');
+  PinBank& port = *b.chip.port('A');
   EXPECT_EQ(port.mode(0), PinMode::kInput) << "floating after a reset";
   struct Row {
     std::uint32_t bits;

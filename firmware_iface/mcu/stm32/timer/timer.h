@@ -11,6 +11,7 @@
 // Cannot represent: input filters, external trigger input, asymmetric and combined PWM modes (8 and up),
 // channels 5 and 6, break filters, the HRTIM; an encoder's overflow interrupt comes up to 50 us late.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "firmware_iface/mcu/stm32/chip_context.h"
 #include "firmware_iface/mcu/stm32/register_block.h"
 #include "firmware_iface/mcu/stm32/timer/counter_law.h"
+#include "firmware_iface/mcu/stm32/timer/pwm_outputs.h"
 
 namespace omnihil::mcu {
 
@@ -38,20 +40,13 @@ struct TimerSpec {
   std::vector<std::string> internal_triggers{};  // ITR0.. by name: "TIM2_TRGO"
 };
 
-// What a timer makes of one pin.
-struct TimerPin {
-  enum class Drive : std::uint8_t { kOff, kSteady, kPwm };
-  Drive drive = Drive::kOff;  // kOff: high-impedance, or the channel is not enabled
-  double high_ratio = 0.0;    // share of the period for which the pin is high
-  bool operator==(const TimerPin&) const = default;
-};
 struct TimerOutput {
   TimerPin main, complement;
   double dead_time_s = 0.0;
   double period_s = 0.0;  // of the PWM
 };
 
-class Timer final : public RegisterBlock, public TriggerSink, public TriggerSender {
+class Timer final : public RegisterBlock, public TriggerSink, public TriggerSender, public PwmOutputs {
  public:
   using ShaftCount = std::function<std::int64_t(std::int64_t at_ns)>;
   Timer(TimerSpec spec, ChipContext& context);
@@ -64,32 +59,25 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
   Cycles stable_until(std::uint32_t offset) const override;
 
   const TimerSpec& spec() const { return spec_; }
+  unsigned channels() const override { return spec_.channels; }
+  unsigned complements() const override { return spec_.advanced ? std::min(spec_.channels, 3u) : 0; }
   void set_shaft(ShaftCount shaft);
   void set_input(unsigned channel, bool level);
   // The break input's pin: outputs follow at once, whatever the clock does (its filter is off).
   void break_input(bool level);
-  void on_output(std::function<void(std::int64_t now_ns)> listener) {
-    listeners_.push_back(std::move(listener));
-  }
-  // While this number stays, a pin that is kPwm stays what it is, and any that is said to.
-  std::uint32_t pins_version() const { return pins_version_; }
-  bool pin_stays(unsigned channel, bool complement) const {  // of one that was asked for since
-    return (pins_known_ >> (2 * channel + (complement ? 1 : 0)) & 1u) != 0;
-  }
-  TimerPin pin(unsigned channel, bool complement) const {  // one side of output()
-    const unsigned i = 2 * channel + (complement ? 1 : 0);
-    return (pins_known_ >> i & 1u) != 0 ? pins_[i] : find_pin(channel, complement);
-  }
   TimerOutput output(unsigned channel) const;
   // Of a pin that is driven: its level at this instant, as if there were no dead time.
-  bool level(unsigned channel, bool complement) const;
+  bool level(unsigned channel, bool complement) const override;
+  void look() override {
+    if (!encoder()) sync();
+  }
   bool paired(unsigned channel) const {  // both of its pins are on: dead time lies between them
     return (enable_bits() >> 4 * channel & 5u) == 5u;
   }
   bool reference(unsigned channel) const;  // OCxREF now
-  double period_s() const;                 // (PSC + 1) periods of the count
+  double period_s() const override;        // (PSC + 1) periods of the count
   // Update events, software's own aside, that found the flag of the one before still set.
-  std::uint64_t updates_lost() const { return updates_lost_; }
+  std::uint64_t updates_lost() const override { return updates_lost_; }
 
  protected:
   std::uint32_t load(std::uint32_t offset) override;
@@ -149,13 +137,7 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
   void reference_moved(unsigned channel, bool level);
   bool reference_of(unsigned channel, bool falling, std::uint64_t count) const;
   std::uint32_t references_at(std::uint64_t position) const;
-  void forget_pins(std::uint32_t channels = ~0u) {
-    for (unsigned c = 0; c < kChannels; ++c) {
-      if ((channels >> c & 1u) != 0) pins_known_ &= ~(3u << 2 * c);
-    }
-    ++pins_version_;
-  }
-  TimerPin find_pin(unsigned channel, bool complement) const;
+  TimerPin find_pin(unsigned channel, bool complement) const override;
   bool is_plain_pwm(unsigned channel) const;
   TimerPin work_out_pin(unsigned channel, bool complement) const;
   double dead_ticks() const;
@@ -192,10 +174,7 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
   std::uint32_t captures_ = 0, flag_only_ = 0;  // a bit per channel: an input; a match sets its flag alone
   std::uint32_t acting_ = 0, outputs_ = 0;      // its reference acts on matches; it is there, and no input
   bool encoder_ = false;
-  std::uint32_t asking_ = 0;                            // flags that hold an interrupt line
-  mutable std::array<TimerPin, 2 * kChannels> pins_{};  // while they are known: main, complement
-  mutable std::uint32_t pins_known_ = 0;
-  std::uint32_t pins_version_ = 0;
+  std::uint32_t asking_ = 0;  // flags that hold an interrupt line
   bool running_ = false;
   Cycles anchor_ = 0;                   // when the counter stood at start_
   std::uint64_t start_ = 0, done_ = 0;  // position at the anchor; ticks since then that were dealt with
@@ -212,7 +191,6 @@ class Timer final : public RegisterBlock, public TriggerSink, public TriggerSend
   bool break_high_ = false;                       // active: enabled, and the pin at its active level
   std::optional<bool> break_level_ = {};          // the pin's; nobody drives it: never active
   unsigned burst_ = 0;
-  std::vector<std::function<void(std::int64_t)>> listeners_;
   int trgo_ = 0;
   std::array<int, kChannels> compare_{}, dma_channel_{};
   std::vector<int> internal_;

@@ -12,7 +12,7 @@ TEST(BreakBeamPin, HasItsLevelWhileTheBallIsInTheBeam) {
     const auto firmware = wheels_firmware(std::string("[[pin]]\npin = \"PC13\"\nbreak_beam = \"") +
                                           (high ? "high" : "low") + "\"\n");
     ASSERT_NE(firmware, nullptr);
-    GpioPort& port = *firmware->board().chip().port('C');
+    PinBank& port = *firmware->board().chip().port('C');
     EXPECT_EQ(port.level(13), !high);
     RobotSensors sensors{};
     for (const bool seen : {true, true, false, true, false}) {
