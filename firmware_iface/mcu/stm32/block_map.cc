@@ -276,6 +276,8 @@ std::span<const BlockPlace> map_of(BlockFamily family) {
       return block_map_g0();
     case BlockFamily::kL4:
       return block_map_l4();
+    case BlockFamily::kRp2040:
+      return block_map_rp2040();
     case BlockFamily::kH7:
       return block_map_h7();
     case BlockFamily::kG4:

@@ -9,7 +9,20 @@
 
 namespace omnihil::mcu {
 
-enum class BlockFamily : std::uint8_t { kUnknown, kF0, kF1, kF3, kF4, kF446, kF7, kG0, kG4, kH7, kL4 };
+enum class BlockFamily : std::uint8_t {
+  kUnknown,
+  kF0,
+  kF1,
+  kF3,
+  kF4,
+  kF446,
+  kF7,
+  kG0,
+  kG4,
+  kH7,
+  kL4,
+  kRp2040
+};
 
 struct BlockPlace {
   std::string_view name;

@@ -34,6 +34,8 @@ enum class Bus : std::uint8_t {
   kI2c4,
   kFdcan,
   kSdmmc,
+  kReference,  // RP2040: clk_ref, clk_peri
+  kPeripheral,
   kEnd
 };
 inline constexpr std::size_t kBuses = static_cast<std::size_t>(Bus::kEnd);

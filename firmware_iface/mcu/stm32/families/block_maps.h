@@ -12,5 +12,6 @@ std::span<const BlockPlace> block_map_f1();
 std::span<const BlockPlace> block_map_g0();
 std::span<const BlockPlace> block_map_h7();
 std::span<const BlockPlace> block_map_l4();
+std::span<const BlockPlace> block_map_rp2040();
 
 }  // namespace omnihil::mcu
