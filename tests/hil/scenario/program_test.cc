@@ -147,5 +147,36 @@ TEST_F(ScenarioConsoleProgram, WithoutAConsoleNothingIsExpectedOfIt) {
   EXPECT_TRUE(ran.says("s.toml:10: console_never_says") && ran.says("console = true")) << ran.text;
 }
 
+// An RP2040 in the loop: four wheels on a stand, geared 3 to 1; encoders by pin interrupts and by PIO.
+class ScenarioRp2040 : public ScenarioProgram {
+ protected:
+  Ran run(const std::string& image, const std::string& step, const std::string& limits) const {
+    std::ofstream(folder_ / "s.toml")
+        << "format = \"omnihil-scenario/1\"\ntitle = \"t\"\nduration_s = 1.5\nstand = true\n"
+        << "[[step]]\n"
+        << step << "[[check]]\nis = \"signal\"\nsignal = \"omega_wheel_rad_s\"\nfrom_s = 1.2\n"
+        << limits;
+    return run_omnihil("scenario run" + shell(folder_ / "s.toml") + "--no-plots --all --firmware '" + image +
+                       "' --board '" OMNIHIL_SOURCE_DIR "/boards/four_wheels_rp2040.toml'");
+  }
+};
+
+TEST_F(ScenarioRp2040, HoldsTheSpeedsOfItsFlash) {
+  const std::string image = OMNIHIL_BUILD_DIR "/images/wheels_rp2040.elf";
+  if (!fs::exists(image)) GTEST_SKIP() << "no image";
+  const Ran ran = run(image, "at_s = 1.0\ndo = \"mark\"\n", "at_least_rad_s = 19.8\nat_most_rad_s = 20.2\n");
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+}
+
+// docs/mcu-third-party.md says how it is built.
+TEST_F(ScenarioRp2040, AnImageOfThePicoSdkIsToldItsSpeedsByConsole) {
+  const char* folder = std::getenv("OMNIHIL_IMAGES");
+  const std::string image = folder != nullptr ? std::string(folder) + "/pico-wheels.elf" : std::string();
+  if (!fs::exists(image)) GTEST_SKIP() << "no pico-wheels.elf in OMNIHIL_IMAGES";
+  const Ran ran = run(image, "at_s = 0.1\ndo = \"type\"\ntext = \"S 40 40 40 40\\n\"\n",
+                      "at_least_rad_s = 13.2\nat_most_rad_s = 13.5\n");
+  EXPECT_EQ(ran.exit_code, 0) << ran.text;
+}
+
 }  // namespace
 }  // namespace omnihil
