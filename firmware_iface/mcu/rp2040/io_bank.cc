@@ -57,7 +57,7 @@ IoBank::IoBank(ChipContext& context)
       line_(context.irqs, kIrq) {
   next_event_is(kNever);
   pads_.fill(kPadReset);
-  on_level([this](unsigned, unsigned pin, bool level) { edge(pin, level); });
+  on_level([this](unsigned, unsigned pin, bool) { tell_input(pin); });
   IoBank::reset();
 }
 
@@ -92,6 +92,7 @@ void IoBank::refresh() {
   }
   apply_outputs();
   modes_changed();
+  for (unsigned pin = 0; (inputs() ^ told_) >> pin != 0; ++pin) tell_input(pin);
 }
 
 void IoBank::drive_from(Function from, std::uint32_t out, std::uint32_t enable) {
@@ -132,12 +133,13 @@ void IoBank::apply_outputs() {
   changed();
 }
 
-void IoBank::edge(unsigned pin, bool level) {
-  if (!bit(seen_, pin)) return;
-  const bool seen = level != bit(inverted_, pin);
-  edges_[pin / 8] |= (seen ? kEdgeHigh : kEdgeLow) << (4 * (pin % 8));
+void IoBank::tell_input(unsigned pin) {
+  const bool level = bit(inputs(), pin);
+  if (level == bit(told_, pin)) return;
+  told_ ^= 1u << pin;
+  edges_[pin / 8] |= (level ? kEdgeHigh : kEdgeLow) << (4 * (pin % 8));
   update();
-  for (const auto& listener : input_listeners_) listener(pin, seen);
+  for (const auto& listener : input_listeners_) listener(pin, level);
 }
 
 std::uint32_t IoBank::raw(unsigned word) const {

@@ -51,7 +51,7 @@ class IoBank final : public Rp2040Block, public PinBank {
  private:
   void refresh();
   void apply_outputs();
-  void edge(unsigned pin, bool level);
+  void tell_input(unsigned pin);
   std::uint32_t raw(unsigned word) const;
   std::uint32_t shown_interrupts(unsigned word) const;
   void update();
@@ -63,6 +63,7 @@ class IoBank final : public Rp2040Block, public PinBank {
   std::array<std::uint32_t, 3> of_{};              // pins that are theirs
   bool plain_ = true;                              // no override anywhere
   std::uint32_t seen_ = 0, inverted_ = 0;
+  std::uint32_t told_ = 0;  // inputs() as its listeners know it
   std::array<std::uint32_t, kWords> edges_{};
   std::vector<std::function<void(unsigned, bool)>> input_listeners_;
   IrqLine line_;

@@ -40,10 +40,20 @@ PwmSlice::PwmSlice(unsigned number, IoBank& io, ChipContext& context)
     const TimerPin before[] = {pin(0, false), pin(1, false)};
     forget_pins();
     if (!(before[0] == pin(0, false)) || !(before[1] == pin(1, false))) outputs_changed();
+    b_changed();
   });
-  io.on_input([this](unsigned gpio, bool level) {
-    if (gpio % 16 == 2 * number_ + 1 && io_.function(gpio) == IoBank::kPwm) b_changed(level);
+  io.on_input([this](unsigned gpio, bool) {
+    if (gpio % 16 == 2 * number_ + 1) b_changed();
   });
+}
+
+// As an input: either of its pins that is given to it and high.
+bool PwmSlice::find_b() const {
+  const unsigned gpio = 2 * number_ + 1;
+  const auto high = [this](unsigned at) {
+    return at < kPins && io_.function(at) == IoBank::kPwm && bit(io_.inputs(), at);
+  };
+  return high(gpio) || high(gpio + 16);
 }
 
 void PwmSlice::reset() {
@@ -53,7 +63,8 @@ void PwmSlice::reset() {
   cc_ = next_cc_ = {};
   position_ = part_ = edges_ = 0;
   since_ = system_.now();
-  heard_ = b_ = false;
+  heard_ = false;
+  b_ = find_b();
   forget_pins();
   plan();
   outputs_changed();
@@ -136,14 +147,16 @@ void PwmSlice::hear_wraps(bool on) {
   moved(before);
 }
 
-void PwmSlice::b_changed(bool level) {
+void PwmSlice::b_changed() {
+  const bool level = find_b();
+  if (level == b_) return;
   const Cycles before = next_;
   advance();
   b_ = level;
   if (mode() == kGated) forget_pins();
   if (enabled() && ((mode() == kRising && level) || (mode() == kFalling && !level))) {
-    const std::uint32_t whole = step() >> 4;
-    if (++edges_ >= whole) edges_ = 0, count(1);
+    edges_ += 16;
+    if (edges_ >= step()) edges_ -= step(), count(1);
   }
   plan();
   moved(before);
@@ -209,7 +222,7 @@ void PwmSlice::write(std::uint32_t offset, unsigned, std::uint32_t value) {
     forget_pins();
   } else if (offset == kDiv) {
     div_ = value & 0xFFFu;
-    part_ = 0;
+    part_ = edges_ = 0;
   } else if (offset == kCtr) {
     position_ = std::min(value & 0xFFFFu, top_);
     part_ = 0;

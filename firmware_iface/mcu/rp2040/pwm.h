@@ -59,7 +59,8 @@ class PwmSlice final : public Peripheral, public PwmOutputs {
   void transfer();
   void plan();
   void moved(Cycles before);
-  void b_changed(bool level);
+  bool find_b() const;
+  void b_changed();
   void outputs_changed();
 
   unsigned number_;
@@ -72,7 +73,7 @@ class PwmSlice final : public Peripheral, public PwmOutputs {
   std::uint64_t position_ = 0;  // within the period, in counts
   std::uint32_t part_ = 0;      // and beyond it in sixteenths of a cycle
   Cycles since_ = 0;            // when that was
-  std::uint32_t edges_ = 0;     // of B, before DIV
+  std::uint32_t edges_ = 0;     // of B, before DIV, in sixteenths
   bool heard_ = false, b_ = false;
   std::uint64_t lost_ = 0;
   Cycles next_ = kNever;

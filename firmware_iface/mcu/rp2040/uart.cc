@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace omnihil::mcu::rp2040 {
 namespace {
@@ -63,6 +64,7 @@ RpUart::RpUart(unsigned number, int irq, ChipContext& context)
 void RpUart::reset() {
   Rp2040Block::reset();
   raw_ = errors_ = 0;
+  gap_ = false;
   received_.clear();
   holding_.clear();
   sent_at_ = timeout_at_ = kNever;
@@ -155,10 +157,13 @@ void RpUart::receive(std::uint8_t byte) {
   if (received_.size() >= depth()) {
     raw_ |= kOverrun;
     errors_ |= 8u;
+    gap_ = true;
     ledger_.lost("byte", "came before the ones before it were read (overrun)", now());
     return;
   }
-  received_.push_back(byte & ((1u << data_bits()) - 1u));
+  constexpr unsigned kOe = 11;
+  received_.push_back(static_cast<std::uint16_t>((byte & ((1u << data_bits()) - 1u)) |
+                                                 (std::exchange(gap_, false) ? 1u << kOe : 0u)));
   constexpr unsigned kTimeoutBits = 32;
   timeout_at_ = depth() > 1 ? now() + bit_times(kTimeoutBits) : kNever;
   levels();

@@ -51,6 +51,7 @@ class RpUart final : public Rp2040Block, public SerialPort {
   IrqLine irq_;
   int dma_rx_, dma_tx_;
   std::uint32_t raw_ = 0, errors_ = 0;
+  bool gap_ = false;                    // a byte was lost behind the last one received
   std::deque<std::uint16_t> received_;  // with OE of the byte in bit 11
   std::deque<std::uint8_t> holding_;
   std::uint8_t shifting_ = 0;

@@ -11,31 +11,10 @@
 #include "firmware_iface/mcu/rp2040/rom_floats.h"
 #include "firmware_iface/mcu/rp2040/sio.h"
 #include "firmware_iface/mcu/stm32/adc/adc.h"
-#include "firmware_iface/mcu/stm32/timer/pwm_outputs.h"
-#include "tests/firmware_iface/mcu/chip_bench.h"
+#include "tests/firmware_iface/mcu/rp2040/rp2040_bench.h"
 
 namespace omnihil::mcu {
 namespace {
-using namespace rp2040;
-constexpr std::uint32_t kSet = 0x2000, kClear = 0x3000, kFlip = 0x1000;
-
-// With its clocks as the SDK leaves them: crystal of 12 MHz, clk_sys 125 MHz, a tick every microsecond; nothing in reset.
-struct Rp2040Bench : ChipBench {
-  Rp2040Bench() : ChipBench("rp2040") {
-    chip.context().clocks.hse_hz = 12e6;
-    set("RESETS", kClear, 0x01FFFFFF);
-    set("XOSC", 0, 0xFABAA0);
-    set("PLL_SYS", 8, 125);
-    set("PLL_SYS", 4, 4);
-    set("PLL_SYS", 0x0C, 6u << 16 | 2u << 12);
-    set("CLOCKS", 0x30, 2);
-    set("CLOCKS", 0x3C, 1);
-    set("CLOCKS", 0x48, 1u << 11);
-    set("WATCHDOG", 0x2C, 1u << 9 | 12);
-  }
-  PwmOutputs& slice(const std::string& name) { return *chip.find<PwmOutputs>(name); }
-};
-
 TEST(Rp2040, ClocksComeFromTheContentsOfTheRegisters) {
   Rp2040Bench b;
   EXPECT_DOUBLE_EQ(b.system.core_hz(), 12e6 * 125 / (6 * 2));
