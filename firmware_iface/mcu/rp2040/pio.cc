@@ -97,6 +97,7 @@ void Pio::reset() {
   Rp2040Block::reset();
   program_ = {};
   port_ = {};
+  port_.inputs = io_.inputs();
   debug_ = wanted_ = 0;
   for (unsigned i = 0; i < kMachines; ++i) {
     runners_[i] = {};
@@ -320,7 +321,12 @@ void Pio::control(std::uint32_t written) {
   for (unsigned i = 0; i < kMachines; ++i) {
     Runner& runner = runners_[i];
     const bool on = bit(written, i);
-    if (bit(written, 4 + i)) runner.sm.restart();
+    if (bit(written, 4 + i)) {
+      runner.sm.restart();
+      // Its delay is over; its divider goes on.
+      const Time now_there = Time{now()} << 8;
+      if (runner.at > now_there) runner.at = now_there + (runner.at - now_there - 1) % runner.sm.period() + 1;
+    }
     if (bit(written, 8 + i) || (on && !runner.sm.enabled)) runner.at = (Time{now()} + 1) << 8;
     runner.sm.enabled = on;
   }
@@ -387,10 +393,7 @@ void Pio::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes
     store_machine((offset - kMachine) / kMachineBytes, (offset - kMachine) % kMachineBytes, written, lanes);
   } else {
     keep(offset, written, lanes);
-    if (offset == kCtrl) {
-      port_.inputs = io_.inputs();
-      control(written);
-    }
+    if (offset == kCtrl) control(written);
   }
   settle();
 }

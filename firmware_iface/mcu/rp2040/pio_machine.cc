@@ -45,10 +45,13 @@ void StateMachine::write_pins(std::uint32_t& word, unsigned base, unsigned count
 }
 
 // The five bits behind the code: side-set from the top, the rest is delay.
-void StateMachine::side_set(PioPort& port, std::uint16_t instruction, unsigned& delay) const {
+unsigned StateMachine::delay(std::uint16_t instruction) const {
+  return instruction >> 8 & low(5 - std::min(pinctrl >> 29, 5u));
+}
+
+void StateMachine::side_set(PioPort& port, std::uint16_t instruction) const {
   const unsigned bits = pinctrl >> 29, all = instruction >> 8 & 31u;
   const bool optional = (execctrl >> 30 & 1u) != 0;
-  delay = all & low(5 - std::min(bits, 5u));
   unsigned count = bits;
   std::uint32_t value = bits == 0 ? 0u : all >> (5 - bits);
   if (optional && bits > 0) {
@@ -131,16 +134,19 @@ bool StateMachine::shift_in(std::uint16_t instruction, const PioPort& port) {
   return !automatic || state.isr_count < threshold(20) || push();
 }
 
+// Autopull, in every cycle (§3.5.4.2).
+void StateMachine::refill() {
+  if (!joins(17) || state.osr_count < threshold(25) || tx.empty()) return;
+  state.osr = tx.front();
+  tx.pop_front();
+  state.osr_count = 0;
+}
+
 bool StateMachine::shift_out(std::uint16_t instruction, PioPort& port) {
   const bool automatic = joins(17);
   if (automatic && state.osr_count >= threshold(25)) {  // empty: filled in this cycle, shifted in the next
-    if (tx.empty()) {
-      tx_stall = true;
-    } else {
-      state.osr = tx.front();
-      tx.pop_front();
-      state.osr_count = 0;
-    }
+    tx_stall = tx_stall || tx.empty();
+    refill();
     return false;
   }
   const unsigned bits = (instruction & 31u) == 0 ? 32 : instruction & 31u;
@@ -153,11 +159,7 @@ bool StateMachine::shift_out(std::uint16_t instruction, PioPort& port) {
     state.osr = bits == 32 ? 0u : state.osr << bits;
   }
   state.osr_count = std::min(state.osr_count + bits, 32u);
-  if (automatic && state.osr_count >= threshold(25) && !tx.empty()) {
-    state.osr = tx.front();
-    tx.pop_front();
-    state.osr_count = 0;
-  }
+  refill();
   switch (instruction >> 5 & 7u) {
     case 0:
       write_pins(port.out, pinctrl & 31u, pinctrl >> 20 & 63u, data);
@@ -312,9 +314,7 @@ StateMachine::Outcome StateMachine::step(PioPort& port, unsigned& cycles) {
   const bool was_forced = forced();
   const auto instruction = static_cast<std::uint16_t>(was_forced ? state.forced : (*program)[state.pc]);
   if (was_forced) state.forced = -1;
-  unsigned delay = 0;
   cycles = 1;
-  side_set(port, instruction, delay);
   jumped_ = false;
   bool done = true;
   switch (instruction >> 13) {
@@ -343,11 +343,13 @@ StateMachine::Outcome StateMachine::step(PioPort& port, unsigned& cycles) {
       set(instruction, port);
       break;
   }
+  if (instruction >> 13 != kOut) refill();
+  side_set(port, instruction);  // behind the rest: of one pin in one cycle it is what is seen
   if (!done) {
     if (was_forced) state.forced = instruction;
     return kStalled;
   }
-  cycles += delay;
+  if (!forced()) cycles += delay(instruction);  // of one that has EXEC another, that one's is taken instead
   if (!jumped_ && !was_forced)
     state.pc = state.pc == (execctrl >> 12 & 31u) ? execctrl >> 7 & 31u : (state.pc + 1) & 31u;
   return kWent;

@@ -63,7 +63,8 @@ class StateMachine {
   }
   std::uint32_t pins_in(const PioPort& port) const;
   void write_pins(std::uint32_t& word, unsigned base, unsigned count, std::uint32_t value) const;
-  void side_set(PioPort& port, std::uint16_t instruction, unsigned& delay) const;
+  void side_set(PioPort& port, std::uint16_t instruction) const;
+  unsigned delay(std::uint16_t instruction) const;
   bool condition(unsigned which, const PioPort& port);
   std::uint32_t source(unsigned which, const PioPort& port) const;
   bool jump(std::uint16_t instruction, const PioPort& port);
@@ -75,6 +76,7 @@ class StateMachine {
   bool interrupt(std::uint16_t instruction, PioPort& port);
   void set(std::uint16_t instruction, PioPort& port);
   bool push();
+  void refill();
   unsigned flag(unsigned index) const {
     return (index & 0x10u) != 0 ? (index & 4u) | ((index + number) & 3u) : index & 7u;
   }
