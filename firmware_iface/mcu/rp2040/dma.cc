@@ -1,6 +1,7 @@
 #include "firmware_iface/mcu/rp2040/dma.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace omnihil::mcu::rp2040 {
 namespace {
@@ -92,6 +93,7 @@ void Dma::reset() {
   Rp2040Block::reset();
   channels_ = {};
   paced_.fill(kNever);
+  rest_ = {};
   raw_ = to_trigger_ = 0;
   plan();
   update();
@@ -103,7 +105,10 @@ void Dma::trigger(unsigned number) {
   channel.left = channel.reload;
   channel.busy = true;
   const unsigned request = request_of(channel);
-  if (request >= kFirstTimer && request < kAlways) paced_[request - kFirstTimer] = now();
+  if (request >= kFirstTimer && request < kAlways) {
+    Cycles& next = paced_[request - kFirstTimer];
+    if (next == kNever || next < now()) next = now();
+  }
   if (on_wanted_) on_wanted_(request, true);
   if (channel.left == 0) return finish(number);
   serve(number);
@@ -113,6 +118,7 @@ void Dma::trigger(unsigned number) {
 void Dma::serve(unsigned number) {
   Channel& channel = channels_[number];
   const unsigned request = request_of(channel);
+  const bool outer = !std::exchange(draining_, true);  // what this one's items trigger waits for its end
   if (request == kAlways) {
     while (channel.busy && channel.left > 0) move(channel);
   } else if (request < lines_.size()) {
@@ -124,6 +130,9 @@ void Dma::serve(unsigned number) {
     system().report_unmodelled(name(), "TREQ_SEL " + std::to_string(request) + " is no request");
   }
   if (channel.busy && channel.left == 0) finish(number);
+  if (!outer) return;
+  draining_ = false;
+  drain();
 }
 
 void Dma::move(Channel& channel) {
@@ -196,17 +205,30 @@ void Dma::plan() {
 void Dma::run_events() {
   if (next_ > now()) return;
   for (unsigned t = 0; t < kTimers; ++t) {
-    if (paced_[t] > now()) continue;
-    const std::uint32_t rate = value(kTimer0 + 4 * t), x = rate >> 16, y = rate & 0xFFFFu;
-    paced_[t] = x == 0 || y == 0 ? kNever : now() + std::max<Cycles>(1, y / x);
-    for (unsigned i = 0; i < kChannels; ++i) {
-      Channel& channel = channels_[i];
-      if (!channel.busy || request_of(channel) != kFirstTimer + t || x == 0) continue;
-      move(channel);
-      if (channel.left == 0) finish(i);
-    }
+    if (paced_[t] <= now()) pace(t);
   }
   plan();
+}
+
+void Dma::pace(unsigned timer) {
+  const std::uint32_t rate = value(kTimer0 + 4 * timer), x = rate >> 16, y = rate & 0xFFFFu;
+  if (x == 0 || y == 0) {
+    paced_[timer] = kNever;
+    return;
+  }
+  const std::uint32_t parts = std::max(x, y) + rest_[timer];
+  paced_[timer] = now() + parts / x;
+  rest_[timer] = parts % x;
+  draining_ = true;
+  for (unsigned i = 0; i < kChannels; ++i) {
+    Channel& channel = channels_[i];
+    if (!channel.busy || request_of(channel) != kFirstTimer + timer || !bit(channel.control, kEnable))
+      continue;
+    move(channel);
+    if (channel.left == 0) finish(i);
+  }
+  draining_ = false;
+  drain();
 }
 
 void Dma::update() {
@@ -223,7 +245,7 @@ std::uint32_t Dma::load(std::uint32_t offset) {
       case kWrite:
         return channel.write;
       case kCount:
-        return channel.busy ? channel.left : channel.reload;
+        return channel.left;
       case kCtrl:
         return channel.control | (channel.busy ? kBusy : 0u);
     }
@@ -260,10 +282,12 @@ void Dma::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes
         break;
     }
     if (place == 3) {
-      if (written != 0)
-        trigger(number);
-      else if (bit(channel.control, kIrqQuiet))
+      if (written != 0) {
+        to_trigger_ |= 1u << number;
+        drain();
+      } else if (bit(channel.control, kIrqQuiet)) {
         raw_ |= 1u << number;  // a null trigger
+      }
     }
   } else if (offset == kMulti) {
     to_trigger_ |= written & kAll;
@@ -276,6 +300,8 @@ void Dma::store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes
     raw_ &= ~written;
   } else {
     keep(offset, written, lanes);
+    if (offset >= kTimer0 && offset < kMulti && paced_[(offset - kTimer0) / 4] == kNever)
+      paced_[(offset - kTimer0) / 4] = now() + 1;
   }
   plan();
   update();

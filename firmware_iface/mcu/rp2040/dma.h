@@ -45,13 +45,15 @@ class Dma final : public Rp2040Block, public DmaSink {
   void move(Channel& channel);
   void finish(unsigned number);
   void drain();
+  void pace(unsigned timer);
   void plan();
   void update();
 
   ChipContext& context_;
   std::vector<int> lines_;  // of DmaRouter, by request
   std::array<Channel, kChannels> channels_;
-  std::array<Cycles, kTimers> paced_{};  // the next item of each timer
+  std::array<Cycles, kTimers> paced_{};        // the next item of each timer
+  std::array<std::uint32_t, kTimers> rest_{};  // of a cycle to it, in parts of X
   std::uint32_t raw_ = 0, to_trigger_ = 0;
   bool draining_ = false;
   IrqLine first_, second_;

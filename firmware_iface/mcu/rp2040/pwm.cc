@@ -84,13 +84,12 @@ std::uint32_t PwmSlice::counter() const {
 }
 
 void PwmSlice::advance() {
-  const Cycles now = system_.now();
-  if (counts() && now > since_) {
-    const std::uint64_t sixteenths = 16 * (now - since_) + part_;
-    part_ = static_cast<std::uint32_t>(sixteenths % step());
-    count(sixteenths / step());
-  }
-  since_ = now;
+  const Cycles now = system_.now(), passed = now - since_;
+  since_ = now;  // before a wrap is told: DMA may write to the slice
+  if (!counts() || passed == 0) return;
+  const std::uint64_t sixteenths = 16 * passed + part_;
+  part_ = static_cast<std::uint32_t>(sixteenths % step());
+  count(sixteenths / step());
 }
 
 void PwmSlice::count(std::uint64_t ticks) {
