@@ -71,6 +71,7 @@ class RpAdc final : public Atomic<Adc> {
   void result(Group, unsigned place, std::uint32_t code, bool) override {
     result_ = code;
     input_ = sequence_[(place + 1) % inputs_];
+    if (outside_) leave_outside();
     if (bit(value(kFcs), 0)) {
       if (fifo_.size() >= kDepth)
         errors_ |= kOver;
@@ -141,13 +142,23 @@ class RpAdc final : public Atomic<Adc> {
   void settle() {
     const std::uint32_t robin = field(value(kCs), 16, 5);
     inputs_ = 0;
+    outside_ = robin != 0 && !bit(robin, input_);
     for (std::uint32_t i = 0; i < sequence_.size(); ++i) {
       const std::uint32_t input = (input_ + i) % sequence_.size();
       if (i == 0 || bit(robin, input)) sequence_[inputs_++] = static_cast<std::uint8_t>(input);
     }
   }
 
+  // An AINSEL that is not in RROBIN is taken once: the next place is 1 already, the others are turned round to it.
+  void leave_outside() {
+    outside_ = false;
+    const auto all = sequence_;
+    --inputs_;
+    for (unsigned i = 1; i <= inputs_; ++i) sequence_[i % inputs_] = all[i];
+  }
+
   std::array<std::uint8_t, 5> sequence_{};
+  bool outside_ = false;
   unsigned inputs_ = 1;
   std::deque<std::uint32_t> fifo_;
   std::uint32_t result_ = 0, input_ = 0, errors_ = 0;

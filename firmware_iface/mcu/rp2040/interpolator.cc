@@ -46,7 +46,6 @@ Interpolator::Results Interpolator::results() const {
     r.lane[1] = static_cast<std::uint32_t>(from + (((to - from) * alpha) >> 8));
     r.full = base_[2] + parts[0];
   }
-  for (unsigned lane = 0; lane < 2; ++lane) r.lane[lane] |= (control_[lane] >> kForceMsb & 3u) << 28;
   return r;
 }
 
@@ -61,7 +60,8 @@ std::uint32_t Interpolator::read(std::uint32_t offset, bool pops) {
       for (unsigned lane = 0; lane < 2; ++lane)
         accumulator_[lane] = r.lane[control(lane, kCrossResult) ? 1 - lane : lane];
     }
-    return which < 2 ? r.lane[which] : r.full;
+    // FORCE_MSB is on the bus alone.
+    return which < 2 ? r.lane[which] | (control_[which] >> kForceMsb & 3u) << 28 : r.full;
   }
   if (offset == 0x2C) {
     const std::uint32_t over = (masked(0).overflows ? 1u : 0u) | (masked(1).overflows ? 2u : 0u);

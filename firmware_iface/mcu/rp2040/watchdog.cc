@@ -42,10 +42,13 @@ ClockRatio Watchdog::tick() const {
 }
 
 void Watchdog::clock_changed() {
-  count_.rate(tick(), now());
+  run_or_pause();
   for (const auto& listener : listeners_) listener();
   plan();
 }
+
+// Without ENABLE the count stands.
+void Watchdog::run_or_pause() { count_.rate(bit(value(kCtrl), kEnable) ? tick() : ClockRatio{0, 1}, now()); }
 
 void Watchdog::plan() { next_ = bit(value(kCtrl), kEnable) ? count_.when(end_, now()) : kNever; }
 
@@ -78,6 +81,7 @@ void Watchdog::store(std::uint32_t offset, std::uint32_t written, std::uint32_t 
   } else {
     keep(offset, written, lanes);
     if (offset == kTick) clock_changed();
+    if (offset == kCtrl) run_or_pause();
     plan();
     if (offset == kCtrl && bit(written, kTrigger)) system().request_reset(kForced);
   }

@@ -62,6 +62,7 @@ class Watchdog final : public Rp2040Block {
   void store(std::uint32_t offset, std::uint32_t written, std::uint32_t lanes) override;
 
  private:
+  void run_or_pause();
   void plan();
   std::uint32_t left() const;
 

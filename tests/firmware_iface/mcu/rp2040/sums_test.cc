@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "firmware_iface/mcu/rp2040/interpolator.h"
-#include "tests/firmware_iface/mcu/rp2040_bench.h"
+#include "tests/firmware_iface/mcu/rp2040/rp2040_bench.h"
 
 namespace omnihil::mcu {
 namespace {
