@@ -1,5 +1,6 @@
 // I2C0 and I2C1 of the RP2040 (datasheet §4.3, DW_apb_i2c): the master's commands by IC_DATA_CMD, FIFOs of 16, an abort
-// where nobody answers, interrupts, DMA. A byte takes nine clocks of (HCNT + LCNT) core cycles. Not there: slave, 10-bit
+// where nobody answers, interrupts, DMA. A byte takes nine clocks, each high for HCNT + SPKLEN + 7 cycles and low for
+// LCNT + 1 (§4.3.14; edges take no time). Not there: slave, 10-bit
 // addresses, arbitration, stretching by devices.
 #include <algorithm>
 #include <deque>
@@ -32,7 +33,8 @@ enum : std::uint16_t {
   kDmaCr = 0x88,
   kDmaTx = 0x8C,
   kDmaRx = 0x90,
-  kEnabled = 0x9C
+  kEnabled = 0x9C,
+  kSpike = 0xA0
 };
 constexpr RegisterInfo kRegisters[] = {{kCon, "IC_CON", 0x65, 0x3FF, 0x18},
                                        {kTar, "IC_TAR", 0x55, 0xFFF, 0xC00},
@@ -71,7 +73,7 @@ constexpr RegisterInfo kRegisters[] = {{kCon, "IC_CON", 0x65, 0x3FF, 0x18},
                                        {0x94, "IC_SDA_SETUP", 0x64, 0xFF},
                                        {0x98, "IC_ACK_GENERAL_CALL", 1, 1},
                                        {kEnabled, "IC_ENABLE_STATUS", 0, 0},
-                                       {0xA0, "IC_FS_SPKLEN", 7, 0xFF},
+                                       {kSpike, "IC_FS_SPKLEN", 7, 0xFF},
                                        {0xA8, "IC_CLR_RESTART_DET", 0, 0},
                                        {0xF4, "IC_COMP_PARAM_1", 0, 0},
                                        {0xF8, "IC_COMP_VERSION", 0x3230312A, 0},
@@ -122,7 +124,8 @@ class I2cDw final : public Atomic<I2c> {
   }
   void after_bits(unsigned bits) {
     const bool fast = field(value(kCon), 1, 2) != 1;
-    const std::uint32_t clock = value(fast ? kFsHigh : kSsHigh) + value(fast ? kFsLow : kSsLow);
+    const std::uint32_t high = value(fast ? kFsHigh : kSsHigh) + value(kSpike) + 7,
+                        clock = high + value(fast ? kFsLow : kSsLow) + 1;
     at_ = now() + std::max<Cycles>(8, Cycles{bits} * clock);
   }
   void begin();

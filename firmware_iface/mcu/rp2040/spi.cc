@@ -86,7 +86,7 @@ class SpiPl022 final : public Atomic<Spi> {
       case kSr:
         return (transmit_.empty() ? 1u : 0u) | (transmit_.size() < kDepth ? 2u : 0u) |
                (receive_.empty() ? 0u : 4u) | (receive_.size() >= kDepth ? 8u : 0u) |
-               (end_ != kNever ? 16u : 0u);
+               (end_ != kNever || !transmit_.empty() ? 16u : 0u);
       case kRis:
         return raw();
       case kMis:

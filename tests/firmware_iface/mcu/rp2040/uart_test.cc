@@ -1,13 +1,9 @@
-// UART, SPI and I2C of the RP2040 against their formulas (§4.2, §4.4, §4.3; ARM DDI 0183G, 0194G).
+// UART of the RP2040 against its formulas (§4.2; ARM DDI 0183G).
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include "firmware_iface/mcu/stm32/i2c.h"
-#include "firmware_iface/mcu/stm32/spi.h"
 #include "tests/firmware_iface/mcu/rp2040/rp2040_bench.h"
 
 namespace omnihil::mcu {
