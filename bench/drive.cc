@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "bench/cpu_time.h"
@@ -111,17 +112,30 @@ bool row(const char* name, const Cost& cost, double target_ns) {
   return met;
 }
 
-const std::vector<const char*> kFive = {"stribeck_friction", "cogging", "torque_ripple", "winding_heating",
-                                        "dead_time"};
+struct Row {
+  const char *word, *text;  // word: of --count
+  double target_ns;
+  Cost (*cost)(double repetition_s);
+};
+const Row kRows[] = {
+    {"plant", "exact DC drive of the plant, no effect", 10.0, plain_cost},
+    {"none", "drive with effects: none", 10.0, [](double s) { return effects_cost(s, {}); }},
+    {"five", "Stribeck, cogging, torque ripple, heating, dead time", 90.0,
+     [](double s) {
+       return effects_cost(s,
+                           {"stribeck_friction", "cogging", "torque_ripple", "winding_heating", "dead_time"});
+     }},
+};
 
 int run(bool quick) {
-  const double repetition_s = quick ? 0.02 : 0.2;
   std::printf("%-62s %7s %7s %7s\n", "ns per sub-step of one motor", "best", "median", "target");
   bool all = true;
-  const Cost plain = plain_cost(repetition_s);
-  all &= row("exact DC drive of the plant, no effect", plain, 10.0);
-  all &= row("drive with effects: none", effects_cost(repetition_s, {}), 10.0);
-  all &= row("Stribeck, cogging, torque ripple, heating, dead time", effects_cost(repetition_s, kFive), 90.0);
+  Cost plain;
+  for (const Row& r : kRows) {
+    const Cost cost = r.cost(quick ? 0.02 : 0.2);
+    all &= row(r.text, cost, r.target_ns);
+    if (&r == kRows) plain = cost;
+  }
   // 48 motors, 20 sub-steps per ms
   const double core_percent = plain.best_ns * 1e-9 * kMotors * 20e3 * 100.0;
   const bool met = core_percent < 3.0;
@@ -131,19 +145,15 @@ int run(bool quick) {
 }
 
 // One row alone, for a count of its instructions; a motor's sub-steps are printed.
-int count(const std::string& row_name, long calls) {
+int count(std::string_view word, long calls) {
   clock_counts_looks = true;
-  const double s = static_cast<double>(calls) / 20.0;  // each look at the clock is 20 calls later
-  if (row_name == "plant")
-    plain_cost(s);
-  else if (row_name == "none")
-    effects_cost(s, {});
-  else if (row_name == "five")
-    effects_cost(s, kFive);
-  else
-    return 2;
-  std::printf("%ld\n", 10 * calls * kMotors * kSubsteps);
-  return 0;
+  for (const Row& r : kRows) {
+    if (word != r.word) continue;
+    r.cost(static_cast<double>(calls) / 20.0);  // each look at the clock is 20 calls later
+    std::printf("%ld\n", 10 * calls * kMotors * kSubsteps);
+    return 0;
+  }
+  return 2;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include "bench/cpu_time.h"
@@ -124,26 +125,34 @@ bool row(const char* what, const Cost& c, double at_most) {
   return met;
 }
 
+struct Row {
+  const char *word, *text;  // word: of --count
+  double at_most_ns;        // 0: no target
+  Cost (*cost)(double repetition_s);
+};
+constexpr BackEmfShape kTrapezoid = BackEmfShape::kTrapezoid, kSine = BackEmfShape::kSine;
+constexpr PwmMode kComplementary = PwmMode::kComplementary, kChop = PwmMode::kHighSideChop;
+const Row kRows[] = {
+    {"dq", "dq step", 60, [](double s) { return dq_cost(s, 0.0); }},
+    {"dq_saturated", "dq step, saturated", 0, [](double s) { return dq_cost(s, 0.025); }},
+    {"averaged_duty_1", "six-step sub-step, averaged, trapezoid, complementary, duty 1", 60,
+     [](double s) { return averaged_cost(s, kTrapezoid, kComplementary, 1.0); }},
+    {"averaged_dead_time", "six-step sub-step, averaged, trapezoid, complementary, dead time", 60,
+     [](double s) { return averaged_cost(s, kTrapezoid, kComplementary, 0.4); }},
+    {"averaged_chop", "six-step sub-step, averaged, trapezoid, high-side chop", 60,
+     [](double s) { return averaged_cost(s, kTrapezoid, kChop, 0.4); }},
+    {"averaged_sine", "six-step sub-step, averaged, sine, complementary", 0,
+     [](double s) { return averaged_cost(s, kSine, kComplementary, 0.4); }},
+    {"switched", "PWM period at 20 kHz, switched, complementary, dead time", 0,
+     [](double s) { return switched_cost(s, kComplementary); }},
+    {"switched_chop", "PWM period at 20 kHz, switched, high-side chop", 0,
+     [](double s) { return switched_cost(s, kChop); }},
+};
+
 int run(bool quick) {
-  const double s = quick ? 0.01 : 0.1;
-  constexpr BackEmfShape kTrapezoid = BackEmfShape::kTrapezoid, kSine = BackEmfShape::kSine;
   std::printf("%d motors, one core; best and median per motor and step\n", kMotors);
-  bool good = row("dq step", dq_cost(s, 0.0), 60);
-  row("dq step, saturated", dq_cost(s, 0.025), 0);
-  good = row("six-step sub-step, averaged, trapezoid, complementary, duty 1",
-             averaged_cost(s, kTrapezoid, PwmMode::kComplementary, 1.0), 60) &&
-         good;
-  good = row("six-step sub-step, averaged, trapezoid, complementary, dead time",
-             averaged_cost(s, kTrapezoid, PwmMode::kComplementary, 0.4), 60) &&
-         good;
-  good = row("six-step sub-step, averaged, trapezoid, high-side chop",
-             averaged_cost(s, kTrapezoid, PwmMode::kHighSideChop, 0.4), 60) &&
-         good;
-  row("six-step sub-step, averaged, sine, complementary",
-      averaged_cost(s, kSine, PwmMode::kComplementary, 0.4), 0);
-  row("PWM period at 20 kHz, switched, complementary, dead time", switched_cost(s, PwmMode::kComplementary),
-      0);
-  row("PWM period at 20 kHz, switched, high-side chop", switched_cost(s, PwmMode::kHighSideChop), 0);
+  bool good = true;
+  for (const Row& r : kRows) good = row(r.text, r.cost(quick ? 0.01 : 0.1), r.at_most_ns) && good;
   const double converged = dq_speed_after(0.25e-6);
   std::printf("\ndq: error of the speed after 20 ms from rest (%.3f rad/s)\n", converged);
   for (const double h : {100e-6, 50e-6, 25e-6})
@@ -152,26 +161,15 @@ int run(bool quick) {
 }
 
 // One row alone, for a count of its instructions; a motor's steps are printed.
-int count(const std::string& row_name, long steps) {
+int count(std::string_view word, long steps) {
   clock_counts_looks = true;
-  const double s = static_cast<double>(steps) / 64.0;  // of cost_of()'s first run, a second by this clock
-  constexpr BackEmfShape kTrapezoid = BackEmfShape::kTrapezoid;
-  if (row_name == "dq")
-    dq_cost(s, 0.0);
-  else if (row_name == "averaged_duty_1")
-    averaged_cost(s, kTrapezoid, PwmMode::kComplementary, 1.0);
-  else if (row_name == "averaged_dead_time")
-    averaged_cost(s, kTrapezoid, PwmMode::kComplementary, 0.4);
-  else if (row_name == "averaged_chop")
-    averaged_cost(s, kTrapezoid, PwmMode::kHighSideChop, 0.4);
-  else if (row_name == "switched")
-    switched_cost(s, PwmMode::kComplementary);
-  else if (row_name == "switched_chop")
-    switched_cost(s, PwmMode::kHighSideChop);
-  else
-    return 2;
-  std::printf("%ld\n", 9 * steps * static_cast<long>(kMotors));
-  return 0;
+  for (const Row& r : kRows) {
+    if (word != r.word) continue;
+    r.cost(static_cast<double>(steps) / 64.0);  // of cost_of()'s first run, a second by this clock
+    std::printf("%ld\n", 9 * steps * static_cast<long>(kMotors));
+    return 0;
+  }
+  return 2;
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ OMNIHIL_EFFECT(wheel_drag, WheelDrag)
 // Sizes: half of what a team would call broken (a fifth of a wheel's torque, twice a wheel's own friction, the sag of a battery
 // that is due, a fifth of the mass, a packet period); choices.
 constexpr double kLeastTorque = -0.1, kLeastDrag_Nm = 0.008, kLeastSag_ohm = 0.05, kLeastMass_kg = 0.25,
-                 kLeastLate_s = 0.008;
+                 kLeastLate_s = 0.008;  // choices, as above
 
 class Maker {
  public:

@@ -17,7 +17,7 @@ constexpr double kLeastWindows =
     6.0;  // that an alarm takes: a blow, a skid, a hand last less than three seconds; a choice
 // Share of the differences' energy that names a suspect: where the differences as such have grown, and where only the direction of
 // one fault stands out of what healthy differences are. Choices; wrong names and no names were weighed on hidden robots.
-constexpr double kExplained = 0.6, kExplainedOfLittle = 0.3;
+constexpr double kExplained = 0.6, kExplainedOfLittle = 0.3;  // choices, as above
 constexpr double kWorthIt = 0.75;  // of its least size: a suspect that is smaller is none; a choice
 constexpr double kNearly = 0.8;    // of what the suspect explains: a rival that is named with it; a choice
 constexpr int kPatience = 2;       // windows that an alarm waits for a name: a second; a choice

@@ -14,7 +14,7 @@
 namespace omnihil::mcu {
 namespace {
 // No chip has anything here; wires and alarms only have events.
-constexpr std::uint32_t kWiresBase = 0x5FFF0000, kAlarmsBase = 0x5FFE0000, kEncodersBase = 0x5FFD0000;
+constexpr std::uint32_t kWiresBase = 0x5FFF0000, kAlarmsBase = 0x5FFE0000;
 
 MachineConfig configuration(const BoardSpec& spec) {
   MachineConfig config = machine_config(*spec.chip);
@@ -57,6 +57,13 @@ McuBoard::McuBoard(const BoardSpec& spec, const ElfImage& image)
 
 McuBoard::~McuBoard() = default;
 
+template <class Lines>
+void McuBoard::add_lines(const MotorEntry& entry) {
+  lines_.push_back(
+      std::make_unique<Lines>(entry, chip_, machine_, [this]() -> const WorldState& { return world_; }));
+  machine_.attach(kWiresBase + 16 * static_cast<std::uint32_t>(lines_.size()), 4, *lines_.back());
+}
+
 void McuBoard::wire_motors() {
   for (const MotorEntry& entry : spec_.motors) {
     wires_.push_back(std::make_unique<MotorWire>(entry, chip_, [this] { return now_ns(); }));
@@ -67,16 +74,9 @@ void McuBoard::wire_motors() {
             return sign < 0 ? -counts : counts;
           });
     }
-    if (!entry.encoder_pins.empty()) {
-      encoders_.push_back(std::make_unique<EncoderLines>(entry, chip_, machine_,
-                                                         [this]() -> const WorldState& { return world_; }));
-      machine_.attach(kEncodersBase + 16 * static_cast<std::uint32_t>(encoders_.size()), 4,
-                      *encoders_.back());
-    }
-    if (entry.hall_pole_pairs == 0 || (entry.hall_timer.empty() && entry.hall_pins.empty())) continue;
-    halls_.push_back(std::make_unique<HallLines>(entry, chip_, machine_,
-                                                 [this]() -> const WorldState& { return world_; }));
-    machine_.attach(kWiresBase + 16 * static_cast<std::uint32_t>(halls_.size()), 4, *halls_.back());
+    if (!entry.encoder_pins.empty()) add_lines<EncoderLines>(entry);
+    if (entry.hall_pole_pairs > 0 && (!entry.hall_timer.empty() || !entry.hall_pins.empty()))
+      add_lines<HallLines>(entry);
   }
 }
 
@@ -250,8 +250,7 @@ void McuBoard::set_world(const WorldState& world) {
   if (watcher_) watcher_(world);
   for (Adc* adc : adcs_) adc->take_samples();
   world_ = world;
-  for (const auto& hall : halls_) hall->world_changed();
-  for (const auto& encoder : encoders_) encoder->world_changed();
+  for (const auto& lines : lines_) lines->world_changed();
   for (const Wired& wired : devices_) wired.device->world_changed();
 }
 

@@ -67,6 +67,8 @@ class McuBoard {
     DeviceEntry entry;
   };
   void run_to_due(std::int64_t end_ns);
+  template <class Lines>
+  void add_lines(const MotorEntry& entry);
   void wire_motors();
   void wire_device(const DeviceEntry& entry);
   void wire_device_pins(Device& device, const DeviceEntry& entry);
@@ -83,8 +85,7 @@ class McuBoard {
   Chip chip_;
   WorldState world_;
   std::vector<std::unique_ptr<MotorWire>> wires_;
-  std::vector<std::unique_ptr<HallLines>> halls_;
-  std::vector<std::unique_ptr<EncoderLines>> encoders_;
+  std::vector<std::unique_ptr<ShaftLines>> lines_;
   std::vector<Wired> devices_;
   std::vector<Adc*> adcs_;  // that something of the world is wired to
   Device* radio_ = nullptr;

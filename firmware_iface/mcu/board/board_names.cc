@@ -44,12 +44,13 @@ std::optional<ChannelName> parse_channel(std::string_view text) {
   ChannelName channel{std::string(text.substr(0, dot)), 0, text.ends_with('N')};
   std::string_view number = text.substr(dot + 1);
   if (channel.complement) number.remove_suffix(1);
-  if (channel.timer.starts_with("PWM") && (number == "A" || number == "B")) {  // a slice's
+  if (number == "A" || number == "B") {
     channel.channel = number == "B" ? 1 : 0;
+    channel.by_letter = true;
     return channel;
   }
   const auto n = parse_number(number);
-  if (channel.timer.starts_with("PWM") || !n || *n < 1 || *n > 4) return std::nullopt;
+  if (!n || *n < 1 || *n > 4) return std::nullopt;
   channel.channel = *n - 1;
   return channel;
 }
@@ -81,14 +82,15 @@ bool BoardNames::has_pin(const PinName& pin) const {
   const PinBank* bank = chip_->port(pin.port);
   return bank != nullptr && bank->has(pin.pin);
 }
-bool BoardNames::has_timer(const std::string& name, unsigned channels) const {
-  if (channels == 0) return chip_->find<PwmOutputs>(name) != nullptr;
+bool BoardNames::has_timer(const std::string& name) const { return chip_->find<PwmOutputs>(name) != nullptr; }
+bool BoardNames::has_inputs(const std::string& name, unsigned inputs) const {
   const Timer* timer = chip_->find<Timer>(name);
-  return timer != nullptr && timer->spec().channels >= channels;
+  return timer != nullptr && timer->spec().channels >= inputs;
 }
 bool BoardNames::has_channel(const ChannelName& c) const {
   const auto* timer = chip_->find<PwmOutputs>(c.timer);
-  return timer != nullptr && c.channel < (c.complement ? timer->complements() : timer->channels());
+  return timer != nullptr && c.by_letter == !timer->channel_letters().empty() &&
+         c.channel < (c.complement ? timer->complements() : timer->channels());
 }
 bool BoardNames::has_adc(const std::string& name) const { return chip_->find<Adc>(name) != nullptr; }
 bool BoardNames::has_spi(const std::string& name) const { return chip_->find<Spi>(name) != nullptr; }
@@ -98,20 +100,26 @@ bool BoardNames::has_serial(const std::string& name) const {
   return chip_->find<SerialPort>(name) != nullptr;
 }
 bool BoardNames::has_can(const std::string& name) const { return chip_->find<CanPort>(name) != nullptr; }
-std::string BoardNames::timers(unsigned channels) const {
-  std::vector<std::string> names = chip_->names<PwmOutputs>();
-  std::erase_if(names, [&](const std::string& name) { return !has_timer(name, channels); });
+std::string BoardNames::timers() const { return join(chip_->names<PwmOutputs>()); }
+std::string BoardNames::timers_with_inputs(unsigned inputs) const {
+  std::vector<std::string> names = chip_->names<Timer>();
+  std::erase_if(names, [&](const std::string& name) { return !has_inputs(name, inputs); });
   return join(names);
 }
 std::string BoardNames::timers_with_complements() const {
   std::vector<std::string> names = chip_->names<PwmOutputs>();
-  std::erase_if(names, [&](const std::string& name) { return !has_channel({name, 0, true}); });
+  std::erase_if(names,
+                [&](const std::string& name) { return chip_->find<PwmOutputs>(name)->complements() == 0; });
   return join(names);
 }
 std::string BoardNames::example_channels() const {
-  const std::string slices = join(chip_->names<PwmOutputs>());
-  return slices.starts_with("PWM") ? "channels such as PWM3.A of " + slices
-                                   : "channels such as TIM1.2 of " + timers(1);
+  std::vector<std::string> names = chip_->names<PwmOutputs>();
+  std::erase_if(names,
+                [&](const std::string& name) { return chip_->find<PwmOutputs>(name)->channels() == 0; });
+  if (names.empty()) return "none";
+  const std::string_view letters = chip_->find<PwmOutputs>(names.front())->channel_letters();
+  return "channels such as " + names.front() + "." +
+         (letters.empty() ? "1" : std::string(letters.substr(0, 1))) + " of " + join(names);
 }
 std::string BoardNames::adcs() const { return join(chip_->names<Adc>()); }
 std::string BoardNames::serials() const { return join(chip_->names<SerialPort>()); }

@@ -23,15 +23,17 @@ class BoardNames {
   ~BoardNames();
   bool has_pin(const PinName& pin) const;
   bool has_channel(const ChannelName& channel) const;
-  bool has_timer(const std::string& name, unsigned channels) const;
+  bool has_timer(const std::string& name) const;
+  bool has_inputs(const std::string& name, unsigned inputs) const;  // a timer with so many
   bool has_adc(const std::string& name) const;
   bool has_spi(const std::string& name) const;
   bool has_i2c(const std::string& name) const;
   bool has_sdmmc(const std::string& name) const;
   bool has_serial(const std::string& name) const;
   bool has_can(const std::string& name) const;
-  // Lists of what is allowed: "TIM1, TIM2, …", those with at least so many channels.
-  std::string timers(unsigned channels = 0) const;
+  // Lists of what is allowed: "TIM1, TIM2, …", those with at least so many inputs.
+  std::string timers() const;
+  std::string timers_with_inputs(unsigned inputs) const;
   std::string timers_with_complements() const;
   std::string example_channels() const;  // in words
   std::string spis() const;

@@ -99,7 +99,7 @@ void Reader::read_top() {
       1000 * keys_.whole(top_, "", "coupling_us", 10, 10'000).value_or(spec_.coupling_ns / 1000);
   spec_.adc_reference_V = keys_.number(top_, "", "adc_reference_V", 0.5, 6.0).value_or(spec_.adc_reference_V);
   spec_.control_timer = keys_.text(top_, "", "control_timer").value_or("");
-  if (!spec_.control_timer.empty() && names_ && !names_->has_timer(spec_.control_timer, 0)) {
+  if (!spec_.control_timer.empty() && names_ && !names_->has_timer(spec_.control_timer)) {
     keys_.wrong(top_, "", "control_timer", "no such timer", names_->timers());
   }
 }
@@ -182,8 +182,8 @@ void Reader::read_motor(const toml::table& t, const std::string& path) {
 void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEntry& motor) {
   motor.encoder_timer = keys_.text(t, path, "encoder").value_or("");
   if (!motor.encoder_timer.empty()) {
-    if (names_ && !names_->has_timer(motor.encoder_timer, 2)) {
-      keys_.wrong(t, path, "encoder", "no timer with two inputs", names_->timers(2));
+    if (names_ && !names_->has_inputs(motor.encoder_timer, 2)) {
+      keys_.wrong(t, path, "encoder", "no timer with two inputs", names_->timers_with_inputs(2));
     } else {
       claim(t, path, "encoder", motor.encoder_timer + " inputs");
     }
@@ -196,8 +196,8 @@ void Reader::read_sensors(const toml::table& t, const std::string& path, MotorEn
   motor.encoder_sign = keys_.flag(t, path, "encoder_reversed").value_or(false) ? -1.0 : 1.0;
   motor.hall_timer = keys_.text(t, path, "hall").value_or("");
   if (!motor.hall_timer.empty()) {
-    if (names_ && !names_->has_timer(motor.hall_timer, 3)) {
-      keys_.wrong(t, path, "hall", "no timer with three inputs", names_->timers(3));
+    if (names_ && !names_->has_inputs(motor.hall_timer, 3)) {
+      keys_.wrong(t, path, "hall", "no timer with three inputs", names_->timers_with_inputs(3));
     } else {
       claim(t, path, "hall", motor.hall_timer + " inputs");
     }

@@ -34,6 +34,7 @@ struct ChannelName {  // "TIM1.3", its complementary output "TIM1.3N"
   std::string timer;
   unsigned channel = 0;  // from 0
   bool complement = false;
+  bool by_letter = false;  // "PWM3.A"
 };
 
 // One motor: one channel with or without a direction pin, two channels (a bridge's halves), or three

@@ -142,6 +142,31 @@ void StateMachine::refill() {
   state.osr_count = 0;
 }
 
+// What OUT and MOV have in common of their destinations; `bits` are in the ISR then.
+void StateMachine::give(unsigned destination, std::uint32_t data, unsigned bits, PioPort& port) {
+  switch (destination) {
+    case 0:
+      write_pins(port.out, pinctrl & 31u, pinctrl >> 20 & 63u, data);
+      break;
+    case 1:
+      state.x = data;
+      break;
+    case 2:
+      state.y = data;
+      break;
+    case 5:
+      state.pc = data & 31u;
+      jumped_ = true;
+      break;
+    case 6:
+      state.isr = data;
+      state.isr_count = bits;
+      break;
+    default:
+      break;
+  }
+}
+
 bool StateMachine::shift_out(std::uint16_t instruction, PioPort& port) {
   const bool automatic = joins(17);
   if (automatic && state.osr_count >= threshold(25)) {  // empty: filled in this cycle, shifted in the next
@@ -160,33 +185,13 @@ bool StateMachine::shift_out(std::uint16_t instruction, PioPort& port) {
   }
   state.osr_count = std::min(state.osr_count + bits, 32u);
   refill();
-  switch (instruction >> 5 & 7u) {
-    case 0:
-      write_pins(port.out, pinctrl & 31u, pinctrl >> 20 & 63u, data);
-      break;
-    case 1:
-      state.x = data;
-      break;
-    case 2:
-      state.y = data;
-      break;
-    case 4:
-      write_pins(port.enable, pinctrl & 31u, pinctrl >> 20 & 63u, data);
-      break;
-    case 5:
-      state.pc = data & 31u;
-      jumped_ = true;
-      break;
-    case 6:
-      state.isr = data;
-      state.isr_count = bits;
-      break;
-    case 7:
-      state.forced = static_cast<std::int32_t>(data & 0xFFFFu);
-      break;
-    default:
-      break;
-  }
+  const unsigned destination = instruction >> 5 & 7u;
+  if (destination == 4)  // pin directions
+    write_pins(port.enable, pinctrl & 31u, pinctrl >> 20 & 63u, data);
+  else if (destination == 7)  // an instruction
+    state.forced = static_cast<std::int32_t>(data & 0xFFFFu);
+  else
+    give(destination, data, bits, port);
   return true;
 }
 
@@ -242,33 +247,14 @@ void StateMachine::move(std::uint16_t instruction, PioPort& port) {
   std::uint32_t data = source(instruction & 7u, port);
   const unsigned how = instruction >> 3 & 3u;
   data = how == 1 ? ~data : how == 2 ? reversed(data) : data;
-  switch (instruction >> 5 & 7u) {
-    case 0:
-      write_pins(port.out, pinctrl & 31u, pinctrl >> 20 & 63u, data);
-      break;
-    case 1:
-      state.x = data;
-      break;
-    case 2:
-      state.y = data;
-      break;
-    case 4:
-      state.forced = static_cast<std::int32_t>(data & 0xFFFFu);
-      break;
-    case 5:
-      state.pc = data & 31u;
-      jumped_ = true;
-      break;
-    case 6:
-      state.isr = data;
-      state.isr_count = 0;
-      break;
-    case 7:
-      state.osr = data;
-      state.osr_count = 0;
-      break;
-    default:
-      break;
+  const unsigned destination = instruction >> 5 & 7u;
+  if (destination == 4) {  // an instruction
+    state.forced = static_cast<std::int32_t>(data & 0xFFFFu);
+  } else if (destination == 7) {
+    state.osr = data;
+    state.osr_count = 0;
+  } else {
+    give(destination, data, 0, port);
   }
 }
 

@@ -72,6 +72,7 @@ class StateMachine {
   bool shift_in(std::uint16_t instruction, const PioPort& port);
   bool shift_out(std::uint16_t instruction, PioPort& port);
   bool push_pull(std::uint16_t instruction);
+  void give(unsigned destination, std::uint32_t data, unsigned bits, PioPort& port);
   void move(std::uint16_t instruction, PioPort& port);
   bool interrupt(std::uint16_t instruction, PioPort& port);
   void set(std::uint16_t instruction, PioPort& port);

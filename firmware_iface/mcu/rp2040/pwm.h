@@ -36,6 +36,7 @@ class PwmSlice final : public Peripheral, public PwmOutputs {
   void advance();  // to this instant
 
   unsigned channels() const override { return 2; }
+  std::string_view channel_letters() const override { return "AB"; }
   unsigned complements() const override { return 0; }
   bool level(unsigned channel, bool complement) const override;
   void look() override { advance(); }

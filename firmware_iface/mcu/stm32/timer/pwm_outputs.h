@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,9 @@ class PwmOutputs {
   // Brings what level() tells to this instant.
   virtual void look() {}
   virtual unsigned channels() const = 0;
+  virtual std::string_view channel_letters() const {
+    return {};
+  }                                          // that name them; empty: numbers from 1 on do
   virtual unsigned complements() const = 0;  // channels, from 0 on, that have one
   virtual double period_s() const = 0;
   // Control periods that began before the one before them was seen: updates that found their flag still set.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "firmware_iface/mcu/board/board.h"
+#include "firmware_iface/mcu/board/board_names.h"
 #include "firmware_iface/mcu/board/mcu_firmware.h"
 #include "firmware_iface/mcu/stm32/serial_port.h"
 #include "tests/firmware_iface/mcu/image_bench.h"
@@ -68,6 +69,20 @@ TEST(Rp2040Board, WheelsReachTheirSpeedsWithinOnePercentAndNothingIsUnmodelled) 
   wheels.run_ms(1000);
   for (const double omega : wheels.world.omega_rotor_rad_s) EXPECT_NEAR(omega, 60.0, 0.6);
   for (const std::string& line : board_report(*wheels.board, wheels.image)) EXPECT_EQ(line, "");
+}
+
+TEST(Rp2040Board, ChannelsHaveLettersWhereTheChipNamesThemSo) {
+  const BoardNames pico(*find_chip("rp2040")), stm32(*find_chip("stm32f405"));
+  const auto has = [](const BoardNames& names, const char* word) {
+    const auto channel = parse_channel(word);
+    return channel && names.has_channel(*channel);
+  };
+  EXPECT_TRUE(has(pico, "PWM3.B"));
+  EXPECT_FALSE(has(pico, "PWM3.1") || has(pico, "PWM8.A") || has(pico, "PWM3.AN") || has(pico, "PWM3.C"));
+  EXPECT_TRUE(has(stm32, "TIM1.2") && has(stm32, "TIM1.2N"));
+  EXPECT_FALSE(has(stm32, "TIM1.A"));
+  EXPECT_EQ(pico.example_channels().substr(0, 31), "channels such as PWM0.A of PWM0");
+  EXPECT_EQ(stm32.example_channels().substr(0, 31), "channels such as TIM1.1 of TIM1");
 }
 
 TEST(Rp2040Board, EncodersOnPinsAreCountedEdgeByEdge) {
