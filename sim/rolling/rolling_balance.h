@@ -1,7 +1,7 @@
 // One step of a robot that rolls (rolling_robot.h): the slips on which floor, rotors and body agree.
 //
 //   RollingBalance<double, 4> b;           // filled by rolling_robot.cc
-//   if (!b.newton(slip)) b.sweep(slip);
+//   if (!b.newton(slip, inverse)) b.sweep(slip);
 #pragma once
 #include <Eigen/LU>
 #include <array>
@@ -19,8 +19,9 @@ template <typename T, int Size>
 struct RollingBalance {
   using Vector = Eigen::Matrix<double, Size, 1>;
   using Square = Eigen::Matrix<double, Size, Size>;
-  // Newton's last change: by its square over a slip of 1 cm/s the solution is then off, 1e-16 m/s.
-  static constexpr double kSolved_m_s = 1e-9;
+  // Newton's last change: by its square over a slip of 1 cm/s the solution is then off, 1e-16 m/s; or what is left of the
+  // equations, by which it is off at most: whoever asks takes one more step of Newton's (rolling_solution.cc).
+  static constexpr double kSolved_m_s = 1e-9, kLeft_m_s = 1e-9;
   static constexpr double kFastest_m_s = 1e3;  // no slip is faster
   static constexpr int kBisections = 60;
   static constexpr int kHalvings = 8;
@@ -60,11 +61,12 @@ struct RollingBalance {
     }
     return out;
   }
-  // Newton, no further than what is left shrinks.
-  bool newton(Vector& slip) const {
+  // Newton, no further than what is left shrinks. `inverse`: of the slopes where the last step began.
+  bool newton(Vector& slip, Square& inverse) const {
     Vector left = residual(slip);
     for (int round = 0; round < kIterations; ++round) {
-      Vector change = slopes(slip).partialPivLu().solve(left);
+      inverse = slopes(slip).inverse();
+      Vector change = inverse * left;
       if (change.cwiseAbs().maxCoeff() <= kSolved_m_s) {
         slip -= change;
         return true;
@@ -76,6 +78,7 @@ struct RollingBalance {
       }
       slip -= change;
       left = next;
+      if (left.cwiseAbs().maxCoeff() <= kLeft_m_s) return true;
     }
     return false;
   }

@@ -134,7 +134,7 @@ class RollingRobot {
               T* friction_Nm) const;
   template <int Size>
   Eigen::Matrix<double, Size, 1> solve_values(const RollingState<T>& x, const Step& s,
-                                              Eigen::Matrix<double, Size, Size>& jacobian);
+                                              Eigen::Matrix<double, Size, Size>& inverse);
   void solve(RollingState<T>& x, Step& s);
   template <int Size>
   void solve_in(RollingState<T>& x, Step& s);

@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "sim/rolling/rolling_balance.h"
 #include "sim/rolling/rolling_step.h"
@@ -92,11 +93,11 @@ T RollingRobot<T>::rotor_end(const RollingState<T>& x, const Step& s, std::size_
   return omega;
 }
 
-// The slips of this step, as values; `jacobian` at the solution.
+// The slips of this step, as values; `inverse` of the slopes: with derivatives at the solution, else near it.
 template <typename T>
 template <int Size>
 Eigen::Matrix<double, Size, 1> RollingRobot<T>::solve_values(const RollingState<T>& x, const Step& s,
-                                                             Eigen::Matrix<double, Size, Size>& jacobian) {
+                                                             Eigen::Matrix<double, Size, Size>& inverse) {
   RollingBalance<T, Size> balance;
   Eigen::Matrix<double, Size, 1> before;
   for (Eigen::Index i = 0; i < Size; ++i) {
@@ -126,12 +127,12 @@ Eigen::Matrix<double, Size, 1> RollingRobot<T>::solve_values(const RollingState<
     }
   }
   Eigen::Matrix<double, Size, 1> slip = before;
-  if (!balance.newton(slip)) {
+  if (!balance.newton(slip, inverse)) {
     slip = before;
     for (int n = 0; n < kSweeps; ++n) balance.sweep(slip);
-    if (!balance.newton(slip)) unsolved_ += 1.0;
+    if (!balance.newton(slip, inverse)) unsolved_ += 1.0;
   }
-  jacobian = balance.slopes(slip);
+  if constexpr (!std::is_same_v<T, double>) inverse = balance.slopes(slip).inverse();
   return slip;
 }
 
@@ -143,10 +144,9 @@ void RollingRobot<T>::solve(RollingState<T>& x, Step& s) {
 template <typename T>
 template <int Size>
 void RollingRobot<T>::solve_in(RollingState<T>& x, Step& s) {
-  Eigen::Matrix<double, Size, Size> jacobian;
-  const Eigen::Matrix<double, Size, 1> slip = solve_values<Size>(x, s, jacobian);
+  Eigen::Matrix<double, Size, Size> inverse;
+  const Eigen::Matrix<double, Size, 1> slip = solve_values<Size>(x, s, inverse);
   // Newton once more on T, from the solution: exact derivatives.
-  const Eigen::Matrix<double, Size, Size> inverse = jacobian.inverse();
   PerWheel<T> force, residual;
   for (std::size_t i = 0; i < wheels_; ++i) {
     force[i] = mean_force(x, s, i, T(-s.wheel[i].grip.force_of(T(slip(static_cast<Eigen::Index>(i))))));
