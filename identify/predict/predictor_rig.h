@@ -11,6 +11,7 @@
 #include "identify/predict/observation.h"
 #include "identify/predict/rig_values.h"
 #include "identify/predict/settled_points.h"
+#include "identify/record/remembered.h"
 
 namespace omnihil {
 
@@ -26,8 +27,10 @@ struct Secant {
   bool forward = false;
 };
 
-// step_s(): of the simulation, at most. is_exact(): dual numbers pass through it. secant(): where the exact derivative is
-// not to be used. measure(): puts what `truth` shows these sensors, with their noise, in place of the measurement.
+// kCostly: a simulation takes a large part of a second, and what was made last is kept. step_s(): of the simulation, at most.
+// is_exact(): dual numbers pass through it. is_rough(): with them it takes longer steps; values are of a run without them.
+// secant(): where the exact derivative is not to be used. measure(): puts what `truth` shows these sensors, with their noise, in
+// place of the measurement.
 template <class R>
 concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, const Unknown& unknown,
                                 std::size_t run, Eigen::Index u, Prediction& p) {
@@ -37,7 +40,9 @@ concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, con
   { rig.template outputs<double>(RigModel{own}, run, 1e-3) } -> std::same_as<RigOutputs<double>>;
   { rig.template outputs<Jet>(RigModel{own}, run, 1e-3) } -> std::same_as<RigOutputs<Jet>>;
   { rig.step_s(own, run) } -> std::same_as<double>;
+  { R::kCostly } -> std::convertible_to<bool>;
   { rig.is_exact(own, run) } -> std::same_as<bool>;
+  { rig.is_rough(own, run) } -> std::same_as<bool>;
   { rig.secant(own, unknown, u, run, p) } -> std::same_as<Secant>;
   { rig.regimes(own, run) } -> std::same_as<std::vector<RegimeTrack>>;
   { rig.capabilities() } -> std::same_as<Capabilities>;
@@ -49,6 +54,7 @@ concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, con
 template <std::derived_from<RigRun> Kept>
 class RigRuns {
  public:
+  static constexpr bool kCostly = false;
   RigRuns(std::shared_ptr<const Dataset> dataset, std::shared_ptr<const Candidate> nominal,
           const PredictOptions& options)
       : dataset_(std::move(dataset)), nominal_(std::move(nominal)), options_(options) {}
@@ -58,6 +64,7 @@ class RigRuns {
   Method method() const { return Method::kForward; }
   double step_s(const Candidate&, std::size_t) const { return options_.step_s; }
   bool is_exact(const Candidate&, std::size_t) const { return true; }
+  bool is_rough(const Candidate&, std::size_t) const { return false; }
   Secant secant(const Candidate&, const Unknown&, Eigen::Index, std::size_t, const Prediction&) const {
     return {};
   }
@@ -84,11 +91,14 @@ class RigRuns {
 };
 
 template <class Rig>
-Prediction predicted(const Rig& rig, const Candidate& own, std::size_t run, double step_s) {
-  RigOutputs<double> y = rig.template outputs<double>({own}, run, step_s);
+Prediction predicted(const Rig& rig, std::size_t run, RigOutputs<double> y) {
   Prediction p{.values = std::move(y.values), .derivatives = {}, .finite = y.finite};
   complete(rig.run(run), p);
   return p;
+}
+template <class Rig>
+Prediction predicted(const Rig& rig, const Candidate& own, std::size_t run, double step_s) {
+  return predicted(rig, run, rig.template outputs<double>({own}, run, step_s));
 }
 
 template <PredictedRig Rig>
@@ -106,41 +116,105 @@ class RigPredictor final : public Predictor {
     return rig_.shows_signature_of(effect);
   }
   std::vector<RegimeTrack> regimes(const Candidate& candidate, int n) const override {
-    std::vector<RegimeTrack> tracks = rig_.regimes(with_known(candidate, run(n).known), at(n));
-    if (run(n).steady) no_time(tracks);
-    return tracks;
+    const Candidate own = with_known(candidate, run(n).known);
+    const auto made = [&] {
+      std::vector<RegimeTrack> tracks = rig_.regimes(own, at(n));
+      if (run(n).steady) no_time(tracks);
+      return tracks;
+    };
+    return Rig::kCostly ? *kept_->regimes.of(simulated_numbers(own, at(n)), made) : made();
   }
 
   Prediction predict(const Candidate& candidate, int n) const override {
     const Candidate own = with_known(candidate, run(n).known);
-    return predicted(rig_, own, at(n), rig_.step_s(own, at(n)));
+    return predicted(rig_, at(n), values_of(own, at(n)));
   }
 
   Prediction predict_with_derivatives(const Candidate& candidate, std::span<const Unknown> unknowns,
                                       int n) const override {
     const Candidate own = with_known(candidate, run(n).known);
     const std::vector<Unknown> open = open_unknowns(unknowns, run(n));
-    const double step_s = rig_.step_s(own, at(n));
-    const bool exact = rig_.is_exact(own, at(n));
-    const bool passes = exact && !open.empty();  // of no unknowns there are no columns
-    Prediction p = passes ? by_passes(own, open, at(n), step_s) : by_values(own, open, at(n), step_s);
-    for (std::size_t u = 0; u < open.size() && p.finite; ++u) {
-      if (open[u].path.empty()) continue;
-      const Secant secant = rig_.secant(own, open[u], static_cast<Eigen::Index>(u), at(n), p);
-      if (secant.width > 0.0) difference(own, std::span(open).subspan(u, 1), u, at(n), secant, step_s, p);
+    if (!Rig::kCostly || open.empty()) return derived(own, open, at(n));
+    Prediction all;
+    for (std::size_t first = 0; first < open.size(); first += kJetWidth) {
+      const auto pass = std::span(open).subspan(first, std::min<std::size_t>(kJetWidth, open.size() - first));
+      const std::shared_ptr<const Prediction> made = kept_->derivatives.of(
+          simulated_numbers(own, at(n), pass), [&] { return derived(own, pass, at(n)); });
+      if (pass.size() == open.size()) return *made;
+      append(*made, static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(open.size()), all);
     }
-    complete(rig_.run(at(n)), p);
-    return p;
+    return all;
   }
 
   std::unique_ptr<Predictor> simulated(const Candidate& truth, std::uint64_t seed) const override {
     auto copy = std::make_unique<RigPredictor>(*this);
     copy->rig_.measure(truth, seed);
+    copy->kept_ = std::make_shared<Kept>(copy->rig_);
     return copy;
   }
 
  private:
+  // What fit() asks for again of each run: its start, the best point so far, the end of the last step, a trial; of two fits at
+  // a time. Derivatives: of where each of them is, in two passes, as far as memory lets it.
+  struct Kept {
+    static constexpr std::size_t kValues = 8, kPasses = 4;            // derived
+    static constexpr std::size_t kMost_bytes = std::size_t{1} << 28;  // of derivatives; a choice
+    explicit Kept(const Rig& rig)
+        : values(kValues * rig.dataset().runs.size()),
+          derivatives(passes_kept(rig)),
+          regimes(rig.dataset().runs.size()) {}
+    static std::size_t passes_kept(const Rig& rig) {
+      std::size_t numbers = 1;  // of the longest run
+      for (std::size_t n = 0; n < rig.dataset().runs.size(); ++n) {
+        std::size_t of_run = 0;
+        for (const ComparedSignal& c : rig.run(n).compared) of_run += kJetWidth * c.measured.size();
+        numbers = std::max(numbers, of_run);
+      }
+      const std::size_t asked = kPasses * rig.dataset().runs.size();
+      return std::clamp<std::size_t>(kMost_bytes / (numbers * sizeof(double)), 1,
+                                     std::max<std::size_t>(1, asked));
+    }
+    Remembered<SimulatedNumbers, RigOutputs<double>> values;
+    Remembered<SimulatedNumbers, Prediction> derivatives;
+    Remembered<SimulatedNumbers, std::vector<RegimeTrack>> regimes;
+  };
   static std::size_t at(int n) { return static_cast<std::size_t>(n); }
+
+  RigOutputs<double> values_of(const Candidate& own, std::size_t n) const {
+    const auto simulate = [&] { return rig_.template outputs<double>({own}, n, rig_.step_s(own, n)); };
+    if constexpr (!Rig::kCostly) return simulate();
+    return *kept_->values.of(simulated_numbers(own, n), simulate);
+  }
+
+  // One pass's columns to their places.
+  static void append(const Prediction& pass, Eigen::Index first, Eigen::Index count, Prediction& all) {
+    if (first == 0) {
+      all.values = pass.values;
+      for (const Eigen::MatrixXd& d : pass.derivatives) all.derivatives.emplace_back(d.rows(), count);
+    }
+    all.finite = all.finite && pass.finite;
+    for (std::size_t s = 0; s < pass.derivatives.size(); ++s)
+      all.derivatives[s].middleCols(first, pass.derivatives[s].cols()) = pass.derivatives[s];
+  }
+
+  Prediction derived(const Candidate& own, std::span<const Unknown> open, std::size_t n) const {
+    const double step_s = rig_.step_s(own, n);
+    const bool exact = rig_.is_exact(own, n);
+    const bool passes = exact && !open.empty();  // of no unknowns there are no columns
+    Prediction p = passes ? by_passes(own, open, n, step_s) : by_values(own, open, n);
+    if (passes && rig_.is_rough(own, n)) {
+      RigOutputs<double> y = values_of(own, n);
+      p.values = std::move(y.values);
+      p.finite = p.finite && y.finite;
+    }
+    for (std::size_t u = 0; u < open.size() && p.finite; ++u) {
+      if (open[u].path.empty()) continue;
+      const Secant secant = rig_.secant(own, open[u], static_cast<Eigen::Index>(u), n, p);
+      if (secant.width > 0.0) difference(own, open.subspan(u, 1), u, n, secant, step_s, p);
+    }
+    complete(rig_.run(n), p);
+    return p;
+  }
 
   // Unknowns that the run states as known keep their index, but have no path: their derivatives are zero.
   static std::vector<Unknown> open_unknowns(std::span<const Unknown> unknowns, const Run& run) {
@@ -154,9 +228,8 @@ class RigPredictor final : public Predictor {
     return open;
   }
 
-  Prediction by_values(const Candidate& own, std::span<const Unknown> open, std::size_t n,
-                       double step_s) const {
-    RigOutputs<double> y = rig_.template outputs<double>({own}, n, step_s);
+  Prediction by_values(const Candidate& own, std::span<const Unknown> open, std::size_t n) const {
+    RigOutputs<double> y = values_of(own, n);
     Prediction p{.values = std::move(y.values), .derivatives = {}, .finite = y.finite};
     for (const auto& v : p.values)
       p.derivatives.emplace_back(
@@ -211,6 +284,7 @@ class RigPredictor final : public Predictor {
   }
 
   Rig rig_;
+  std::shared_ptr<Kept> kept_ = std::make_shared<Kept>(rig_);
 };
 
 // Of a rig's table (identify/record/rig.h).

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -22,6 +23,30 @@ struct RigModel {
   std::span<const Unknown> unknowns = {};
   std::size_t first = 0;
 };
+
+// All that a simulation takes from a candidate: its numbers, and which laws act; of which run, and by which unknowns there are
+// derivatives.
+struct SimulatedNumbers {
+  std::size_t run = 0;
+  std::vector<double> numbers{};
+  std::vector<const void*> laws{};
+  std::vector<std::string> unknowns{};  // paths
+
+  bool operator==(const SimulatedNumbers&) const = default;
+};
+
+inline SimulatedNumbers simulated_numbers(const Candidate& candidate, std::size_t run,
+                                          std::span<const Unknown> unknowns = {}) {
+  SimulatedNumbers out{.run = run};
+  for (const Parameter& p : candidate.file.parameters.parameters)
+    out.numbers.insert(out.numbers.end(), p.values.begin(), p.values.end());
+  for (const EffectUse& use : candidate.effects) {
+    out.laws.insert(out.laws.end(), {use.entry, use.owner.get()});
+    out.numbers.insert(out.numbers.end(), use.values.begin(), use.values.end());
+  }
+  for (const Unknown& u : unknowns) out.unknowns.push_back(u.path);
+  return out;
+}
 
 // A candidate's numbers on a scalar: the base's, and those of all effects one after another.
 template <typename T, template <typename> class Params>

@@ -195,7 +195,9 @@ class Runner {
 
   void simulate() {
     begin();
-    double step_s = model_.params.has_tyre ? kSlippingStep_s : kRollingStep_s;
+    truth_.reserve(record_.size());
+    out_.samples.reserve(record_.size());
+    double step_s = model_.params.has_tyre && !options_.rough ? kSlippingStep_s : kRollingStep_s;
     if (at_.controller) step_s = std::min(step_s, at_.controller->period_s());
     for (std::size_t k = 0; out_.finite; ++k) {
       // What a row tells is of the loop's run at its instant, if one falls there; that of the last row is tried: its command

@@ -27,6 +27,7 @@ using RobotModelValues = RigValues<T, RollingParams>;
 struct RobotMotionOptions {
   bool slave_angle = true;    // laws of the angle take the measured angle
   bool follow_camera = true;  // false: heading and path are the model's own, from the record's start
+  bool rough = false;         // on tyres, too, in steps of kRollingStep_s
   std::optional<std::uint64_t> noise_seed;  // for effects that draw random numbers; none: expected values
   // In the loop in place of the model's [controller] (firmware_loop.h): a motion of numbers alone, a Jet's derivatives are
   // not followed through it. Not owned; null: none.

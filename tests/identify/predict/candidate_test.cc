@@ -7,6 +7,7 @@
 
 #include "hil/dataset/dataset_model.h"
 #include "hil/loop/model_store.h"
+#include "identify/predict/rig_values.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/axis_model.h"
 
@@ -244,6 +245,22 @@ TEST(Candidate, ARobotKeepsItsFrictionAndItsEffects) {
     ASSERT_NE(r.model->robot->effects, nullptr);
     EXPECT_EQ(value_at(candidate_of(*r.model), "wheel_slip.compliance_m_s"), 0.07);
   }
+}
+
+TEST(Candidate, ASimulationIsOfItsNumbersItsLawsItsRunAndItsUnknowns) {
+  Candidate c;
+  c.effects.push_back(typical_use(*find_effect("cogging")));
+  const SimulatedNumbers cogging = simulated_numbers(c, 0);
+  const std::vector<Unknown> unknowns = unknowns_of(c);
+  EXPECT_EQ(simulated_numbers(Candidate(c), 0), cogging);
+  EXPECT_NE(simulated_numbers(c, 1), cogging);
+  EXPECT_NE(simulated_numbers(c, 0, unknowns), cogging);
+  EXPECT_EQ(simulated_numbers(c, 0, unknowns), simulated_numbers(c, 0, unknowns));
+  c.effects[0].values[0] *= 2.0;
+  EXPECT_NE(simulated_numbers(c, 0), cogging);
+  c.effects[0] = typical_use(*find_effect("battery_sag"));
+  c.effects[0].values = typical_use(*find_effect("cogging")).values;
+  EXPECT_NE(simulated_numbers(c, 0), cogging);
 }
 
 }  // namespace
