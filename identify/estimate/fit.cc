@@ -29,7 +29,7 @@ FitResult fit(const Predictor& predictor, const Candidate& candidate, const std:
   FitResult result;
   result.unknowns = unknowns;
   result.model = candidate;
-  FitProblem problem(predictor, candidate, unknowns, options.jobs, options.robust);
+  FitProblem problem(predictor, candidate, unknowns, options.jobs, options.robust, options.coarse);
   Eigen::VectorXd given(static_cast<Eigen::Index>(unknowns.size()));
   for (std::size_t i = 0; i < unknowns.size(); ++i) given[static_cast<Eigen::Index>(i)] = unknowns[i].start;
   given = within_bounds(unknowns, given);

@@ -5,6 +5,7 @@
 
 #include "identify/record/parallel.h"
 #include "identify/record/statistics.h"
+#include "sim/law/demands.h"
 #include "sim/law/scalar.h"
 
 namespace omnihil {
@@ -42,11 +43,25 @@ double autocorrelation_time(const Eigen::VectorXd& r) {
   return std::max(1.0, time);
 }
 
+// A robot's record takes a large part of a second to simulate, with derivatives several times that.
+bool on_a_floor(const Predictor& predictor) {
+  const Capabilities rig = predictor.capabilities();
+  return std::ranges::any_of(rig.list,
+                             [](const Capability& c) { return c.there && (c.bits & kNeedsFloor) != 0; });
+}
+
+std::size_t passes_of(std::size_t unknowns) { return (unknowns + kJetWidth - 1) / kJetWidth; }
+
 }  // namespace
 
 FitProblem::FitProblem(const Predictor& predictor, const Candidate& candidate,
-                       const std::vector<Unknown>& unknowns, int jobs, bool robust)
-    : predictor_(predictor), candidate_(candidate), unknowns_(unknowns), jobs_(jobs), robust_(robust) {
+                       const std::vector<Unknown>& unknowns, int jobs, bool robust, bool near_enough)
+    : predictor_(predictor),
+      candidate_(candidate),
+      unknowns_(unknowns),
+      jobs_(jobs),
+      robust_(robust),
+      near_enough_(near_enough && on_a_floor(predictor)) {
   for (int run = 0; run < predictor.run_count(); ++run) {
     if (predictor.run(run).split == Split::kTraining && !predictor.compared(run).empty())
       runs_.push_back(run);
@@ -189,20 +204,43 @@ FitPoint FitProblem::along(const Eigen::VectorXd& x, Eigen::Index unknown) const
   return evaluated(x, std::span(unknowns_).subspan(static_cast<std::size_t>(unknown), 1), unknown);
 }
 
+bool FitProblem::near_derived(const Eigen::VectorXd& x) const {
+  constexpr double kNear = 0.1;  // of an unknown's scale: its derivatives change by about as much; a choice
+  if (!near_enough_ || derived_.x.size() != x.size()) return false;
+  if (!std::ranges::all_of(derived_.runs, [](const Prediction& p) { return p.finite; })) return false;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (std::abs(x[i] - derived_.x[i]) > kNear * unknowns_[static_cast<std::size_t>(i)].scale) return false;
+  }
+  return true;
+}
+
+// All passes of a run one after another.
+std::vector<Prediction> FitProblem::derived(const Eigen::VectorXd& x, std::span<const Unknown> by) const {
+  const Candidate c = candidate_at(x);
+  const std::size_t passes = passes_of(by.size());
+  std::vector<Prediction> out(runs_.size() * passes);
+  parallel_for(jobs_, static_cast<int>(out.size()), [&](int task) {
+    const auto t = static_cast<std::size_t>(task);
+    const std::size_t begin = t % passes * kJetWidth;
+    const auto some = by.subspan(begin, std::min<std::size_t>(kJetWidth, by.size() - begin));
+    out[t] = predictor_.predict_with_derivatives(c, some, runs_[t / passes]);
+  });
+  return out;
+}
+
 // Derivatives by the unknowns `by`, which begin at `first` of all.
 FitPoint FitProblem::evaluated(const Eigen::VectorXd& x, std::span<const Unknown> by,
                                Eigen::Index first) const {
-  const Candidate c = candidate_at(x);
   const std::size_t n = by.size();
-  const std::size_t strides = (n + kJetWidth - 1) / kJetWidth;
-  std::vector<Prediction> derived(runs_.size() * strides);
-  parallel_for(jobs_, static_cast<int>(derived.size()), [&](int task) {
-    const auto t = static_cast<std::size_t>(task);
-    const std::size_t begin = t % strides * kJetWidth;
-    const auto some = by.subspan(begin, std::min<std::size_t>(kJetWidth, n - begin));
-    derived[t] = predictor_.predict_with_derivatives(c, some, runs_[t / strides]);
-  });
-  const std::vector<Prediction>* plain = strides == 0 ? &predicted(x) : nullptr;
+  const std::size_t strides = passes_of(n);
+  const bool all = n == unknowns_.size() && n > 0;
+  const bool same = derived_.x.size() == x.size() && derived_.x == x;
+  const bool nearby = all && !same && near_derived(x);
+  std::vector<Prediction> some;
+  if (all && !nearby && !same) derived_ = {.x = x, .runs = derived(x, by)};
+  if (!all) some = derived(x, by);
+  const std::vector<Prediction>& derived = all ? derived_.runs : some;
+  const std::vector<Prediction>* plain = strides == 0 || nearby ? &predicted(x) : nullptr;
   std::vector<RunPart> parts(runs_.size());
   parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int r) {
     const auto i = static_cast<std::size_t>(r);

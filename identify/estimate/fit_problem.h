@@ -13,6 +13,9 @@
 // quadratic. `robust`: linear beyond 1.345 s_c, s_c by the median, so that a run whose conditions are known
 // wrongly does not bias the estimates; 95 % as efficient as least squares where the residual is Gaussian. p
 // unknowns: x, gradient of size p, information of p x p, in the unknowns' own units and their inverses.
+// Derivatives are made once for a point, however often it is weighed. `near_enough`: and taken for those of points nearby, a
+// tenth of each unknown's scale off at most, where a record is costly (of wheels on a floor): Gauss-Newton with them ends where
+// it would, in more steps that cost a simulation each.
 // Sources: Huber 1964; Holland, Welsch 1977 (1.345); Sokal 1997 (autocorrelation time).
 #pragma once
 #include <Eigen/Core>
@@ -42,7 +45,7 @@ struct SignalWeight {
 class FitProblem {
  public:
   FitProblem(const Predictor& predictor, const Candidate& candidate, const std::vector<Unknown>& unknowns,
-             int jobs, bool robust = false);
+             int jobs, bool robust = false, bool near_enough = false);
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   bool empty() const { return runs_.empty(); }
@@ -68,6 +71,8 @@ class FitProblem {
   std::vector<std::vector<Eigen::VectorXd>> residuals(const Eigen::VectorXd& x, bool& finite) const;
   const std::vector<Prediction>& predicted(const Eigen::VectorXd& x) const;
   FitPoint evaluated(const Eigen::VectorXd& x, std::span<const Unknown> by, Eigen::Index first) const;
+  std::vector<Prediction> derived(const Eigen::VectorXd& x, std::span<const Unknown> by) const;
+  bool near_derived(const Eigen::VectorXd& x) const;
   RunPart part(int run, const Prediction& values, const std::vector<const Prediction*>& strides,
                Eigen::Index n) const;
 
@@ -75,7 +80,7 @@ class FitProblem {
   Candidate candidate_;
   std::vector<Unknown> unknowns_;
   int jobs_ = 1;
-  bool robust_ = false;
+  bool robust_ = false, near_enough_ = false;
   std::vector<int> runs_;
   std::map<std::string, SignalWeight> weights_;
   // The last predictions without derivatives, newest first: a fit asks for its start, its best point and the point before a
@@ -85,6 +90,7 @@ class FitProblem {
     std::vector<Prediction> runs;  // as runs_
   };
   mutable std::deque<Predicted> predicted_;
+  mutable Predicted derived_;  // the last by all unknowns: a run's passes one after another
 };
 
 }  // namespace omnihil

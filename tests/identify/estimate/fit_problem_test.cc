@@ -1,4 +1,4 @@
-// The cost at a point: predicted once however often it is asked for, and its derivative by one unknown.
+// The cost at a point: predicted once however often it is asked for, its derivatives too, and that by one unknown.
 #include "identify/estimate/fit_problem.h"
 
 #include <gtest/gtest.h>
@@ -22,10 +22,11 @@ class Polynomial : public FakePredictor {
     return made(c, {});
   }
   Prediction predict_with_derivatives(const Candidate& c, std::span<const Unknown> by, int) const override {
+    ++derived;
     return made(c, by);
   }
 
-  mutable int predicted = 0;
+  mutable int predicted = 0, derived = 0;
 
  private:
   static double power(int sample, std::size_t unknown) {
@@ -77,6 +78,46 @@ TEST(FitProblem, PredictsAPointOnceHoweverOftenItIsAskedFor) {
   EXPECT_EQ(problem.at(given.x, false).cost(), cost);  // neither forgotten nor taken for the other
   EXPECT_EQ(problem.noise_cost(given.x), noise_cost);
   EXPECT_EQ(predictor.predicted, 2);
+}
+
+TEST(FitProblem, DerivesAPointOnceHoweverItIsWeighed) {
+  Problem given;
+  const Polynomial predictor(given.unknowns);
+  FitProblem problem(predictor, given.candidate, given.unknowns, 1);
+  ASSERT_TRUE(problem.reweigh(given.x));
+  const FitPoint before = problem.at(given.x, true);
+  const int passes = predictor.derived;
+  Eigen::VectorXd other = given.x;
+  other[0] += 0.5 * given.unknowns[0].scale;
+  ASSERT_TRUE(problem.reweigh(other));
+  const FitPoint again = problem.at(given.x, true);
+  EXPECT_EQ(predictor.derived, passes);
+  EXPECT_NE(again.cost(), before.cost());  // by the other weights
+  problem.at(other, true);
+  EXPECT_EQ(predictor.derived, 2 * passes);
+}
+
+// Of a linear model derivatives are the same everywhere: what is taken for a point nearby has that point's own gradient.
+TEST(FitProblem, NearbyItTakesTheDerivativesThatItHas) {
+  Problem given;
+  const Polynomial predictor(given.unknowns);
+  FitProblem exact(predictor, given.candidate, given.unknowns, 1);
+  FitProblem rough(predictor, given.candidate, given.unknowns, 1, false, true);
+  ASSERT_TRUE(exact.reweigh(given.x));
+  ASSERT_TRUE(rough.reweigh(given.x));
+  rough.at(given.x, true);
+  const int passes = predictor.derived;
+  Eigen::VectorXd near = given.x, far = given.x;
+  near[0] += 0.09 * given.unknowns[0].scale;
+  far[0] += 0.11 * given.unknowns[0].scale;
+  const FitPoint there = rough.at(near, true);
+  EXPECT_EQ(predictor.derived, passes);
+  const FitPoint own = exact.at(near, true);
+  EXPECT_EQ(predictor.derived, 2 * passes);
+  EXPECT_EQ(there.cost(), own.cost());
+  EXPECT_EQ(there.gradient, own.gradient);
+  rough.at(far, true);
+  EXPECT_EQ(predictor.derived, 3 * passes);
 }
 
 TEST(FitProblem, AlongOneUnknownIsItsPartOfAll) {
