@@ -193,7 +193,8 @@ void add_doubts(const std::string& path, const std::vector<std::string>& doubts,
   }
 }
 
-// What was asked of columns that this run has, or that no log has: of a pose's columns runs without one know nothing.
+// What was asked of columns that this run has, or that no log has: logs of one import may differ in their columns, and of a
+// pose's columns runs without one know nothing.
 std::vector<ColumnMap> asked_here(const LogRun& run, const std::vector<LogRun>& all,
                                   const std::vector<ColumnMap>& asked) {
   const auto has = [](const LogTable& table, const ColumnMap& a) {
@@ -202,9 +203,9 @@ std::vector<ColumnMap> asked_here(const LogRun& run, const std::vector<LogRun>& 
   };
   std::vector<ColumnMap> out;
   for (const ColumnMap& a : asked) {
-    const bool of_a_pose =
-        std::any_of(all.begin(), all.end(), [&](const LogRun& r) { return has(r.pose, a); });
-    if (has(run.table, a) || !of_a_pose) out.push_back(a);
+    const bool elsewhere = std::any_of(all.begin(), all.end(),
+                                       [&](const LogRun& r) { return has(r.table, a) || has(r.pose, a); });
+    if (has(run.table, a) || !elsewhere) out.push_back(a);
   }
   return out;
 }

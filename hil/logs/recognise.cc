@@ -14,6 +14,7 @@
 namespace omnihil {
 namespace {
 
+constexpr const char* kNameless = "its name says nothing to me";
 constexpr double kDutyWithin = 1.05;                       // a ratio, with rounding; per cent go far beyond
 constexpr double kLeastStep_s = 10e-6, kMostStep_s = 0.5;  // of a clock in seconds: 2 Hz to 100 kHz
 constexpr double kMostVolts = 100.0;                       // above it the unit may be millivolts
@@ -126,7 +127,7 @@ class Recogniser {
       if (may.size() > 1) ambiguous_.emplace_back(m.series, may);
     }
     if (m.signal == "velocity" && m.unit.empty() && (base == "rpm" || base == "RPM")) m.unit = "rpm";
-    m.because = m.signal.empty()                  ? "its name says nothing to me"
+    m.because = m.signal.empty()                  ? kNameless
                 : unit.empty() && !m.unit.empty() ? "its name; unit as the file says"
                                                   : "its name";
     ranks_[m.series] = 0;
@@ -221,6 +222,32 @@ class Recogniser {
     }
   }
 
+  // The motion, else the drive input, of an axis that a unit fits; null: neither.
+  const SignalRow* row_by_unit(const std::string& unit) const {
+    for (const bool motion : {true, false}) {
+      for (const SignalRow& row : context_.rig->signals) {
+        const bool moves = row.role == SignalRole::kMotion || row.role == SignalRole::kCounts;
+        if ((motion ? moves : row.role == SignalRole::kDrive) && has_unit(std::string(row.name), unit))
+          return &row;
+      }
+    }
+    return nullptr;
+  }
+
+  // Of an axis' columns whose names say nothing, those that are in a unit of a drive input, or of a motion: a flag each.
+  std::string flags_by_unit(bool of_drive) const {
+    constexpr std::size_t kMost = 4;  // flags in one message; a choice
+    std::vector<std::string> flags;
+    for (const ColumnMeaning& m : out_.columns) {
+      if (context_.rig->of_robot || m.because != kNameless || m.unit.empty() || flags.size() == kMost)
+        continue;
+      const SignalRow* row = row_by_unit(m.unit);
+      if (row == nullptr || (row->role == SignalRole::kDrive) != of_drive) continue;
+      flags.push_back(fmt::format("--map \"{}={}:{}\"", name(m), row->name, m.unit));
+    }
+    return flags.empty() ? "" : fmt::format("; by their units may be: {}", fmt::join(flags, ", or "));
+  }
+
   void check_whole() {
     if (!out_.doubts.empty()) return;
     if (log_.by_rows() && out_.of("time") == nullptr && !(context_.period_s > 0.0))
@@ -239,14 +266,16 @@ class Recogniser {
                 "command_vx, _vy, _w"
               : "no column is what was asked of the drive; give --map \"COLUMN=duty:1\" (or motor_voltage:V, "
                 "motor_torque:Nm, "
-                "position_target:rad), or --imposed motor_current where the current was set");
+                "position_target:rad), or --imposed motor_current where the current was set" +
+                    flags_by_unit(true));
     check_drives();
     if (!any([&](const ColumnMeaning& m) {
           return role(m) == SignalRole::kMotion || role(m) == SignalRole::kCounts;
         }))
       out_.doubts.push_back(
           "no column is a motion; give --map \"COLUMN=velocity:rad/s\" (or rpm), \"COLUMN=position:rad\" or "
-          "\"COLUMN=encoder:counts\"");
+          "\"COLUMN=encoder:counts\"" +
+          flags_by_unit(false));
   }
 
   // A model is driven by one thing: of two that were logged the user says which.

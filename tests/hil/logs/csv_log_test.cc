@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "hil/logs/known_names.h"
+#include "hil/logs/log_dataset.h"
 #include "hil/logs/log_rows.h"
 #include "hil/logs/recognise.h"
 #include "identify/record/rig.h"
@@ -198,6 +199,39 @@ TEST(Meaning, MissingDriveOrMotionIsSaid) {
             std::string::npos);
   EXPECT_NE(meaning("time_s,duty\n0,1\n1e-2,0.2\n").doubts.at(0).find("no column is a motion"),
             std::string::npos);
+}
+
+// A table of two axes, "a1 velocity [rad/s]": which it is only the user knows, but the flags need no thought.
+TEST(Meaning, ColumnsThatMayBeTheMissingOneByTheirUnitsAreNamed) {
+  const LogMeaning m =
+      meaning("time [s],a1 torque cmd [Nm],a1 velocity [rad/s],mode\n0,0.1,60,1\n0.01,0.2,120,1\n");
+  ASSERT_EQ(m.doubts.size(), 2u);
+  EXPECT_NE(m.doubts[0].find("may be: --map \"a1 torque cmd [Nm]=motor_torque:Nm\""), std::string::npos)
+      << m.doubts[0];
+  EXPECT_NE(m.doubts[1].find("may be: --map \"a1 velocity [rad/s]=velocity:rad/s\""), std::string::npos)
+      << m.doubts[1];
+  EXPECT_EQ(m.doubts[0].find("a1 velocity"), std::string::npos) << m.doubts[0];
+}
+
+LogRun run_of(std::string_view text, const char* path, Split use) {
+  LogRun run;
+  run.path = run.file.name = path;
+  run.table = parse_csv_log(text, path, {});
+  run.use = use;
+  return run;
+}
+
+// A closed-loop log has the reference beside, an open-loop one has not.
+TEST(LogDataset, AMapOfAColumnThatOnlySomeLogsHaveIsNoFault) {
+  const std::vector<LogRun> runs = {
+      run_of("t,duty,y\n0,0.1,1\n0.01,0.2,2\n0.02,0.2,2\n", "open.csv", Split::kTraining),
+      run_of("t,speed,duty,y\n0,9,0.1,1\n0.01,9,0.2,2\n0.02,9,0.2,2\n", "closed.csv", Split::kValidation)};
+  LogDatasetOptions options;
+  options.asked = {{"y", "velocity", "rad/s"}, {"speed", "-", ""}};
+  const LogDataset made = make_log_dataset(runs, options);
+  EXPECT_TRUE(made.doubts.empty()) << made.doubts.front();
+  options.asked.push_back({"sped", "-", ""});  // that no log has
+  EXPECT_FALSE(make_log_dataset(runs, options).doubts.empty());
 }
 
 TEST(Meaning, MisspeltMapsAreNamed) {
