@@ -83,8 +83,19 @@ std::string speed_name(const CheckContext& data, std::size_t wheel) {
   return "";
 }
 
+// A bridge that opens in its off-time lets the motor coast: its speed is then bounded by the whole bus, whatever the duty
+// (effect coast_mode). "": a drive by voltage, or faster than that.
+const char* or_coasting(const CheckContext& data, std::size_t wheel, const Windows& all) {
+  const double bus_V = nominal_value(data.nominal, "supply.voltage_V").value_or(0.0);
+  const double constant = nominal_value(data.nominal, "motor.torque_constant_Nm_per_A").value_or(0.0);
+  const bool by_duty = data.runs.front().drives[wheel].drive_name.starts_with("duty");
+  return by_duty && constant * largest_size(all.w) <= bus_V
+             ? ", or a bridge that lets it coast in its off-time (coast_mode: search all the same)"
+             : "";
+}
+
 void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double confirmed, const char* how,
-               std::vector<DataFinding>& findings) {
+               const Windows& all, std::vector<DataFinding>& findings) {
   const double tolerance = kTolerances * tolerance_of(data.nominal, "motor.torque_constant_Nm_per_A");
   const double off = std::abs(std::log(ratio));
   if (off < std::max(kDoubtful, tolerance)) return;
@@ -94,8 +105,8 @@ void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double
   findings.push_back(
       {off > wrong ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,
        fmt::format("the speed from {} is {:.3g} times what {} and the model's torque constant "
-                   "allow: a wrong scale (gear ratio, counts_per_rev or a unit), or not this motor",
-                   name, ratio, how)});
+                   "allow: a wrong scale (gear ratio, counts_per_rev or a unit), or not this motor{}",
+                   name, ratio, how, ratio > 1.0 ? or_coasting(data, wheel, all) : "")});
 }
 
 // Acceleration over what current and nominal inertia allow; 1 where it cannot be told.
@@ -153,7 +164,7 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
                      name, current_ratio, thousand ? " (milliamperes, mA, in place of A)" : "")});
   }
   const double confirmed = data.dataset.rig->of_robot ? constant / (-b / a) : acceleration_ratio(data, wheel);
-  say_speed(data, wheel, constant / (-b / a), confirmed, "voltage, current", findings);
+  say_speed(data, wheel, constant / (-b / a), confirmed, "voltage, current", all, findings);
   return true;
 }
 
@@ -198,7 +209,7 @@ void by_speed_per_volt(const CheckContext& data, std::size_t wheel, const Window
     }
     return;
   }
-  say_speed(data, wheel, ratio, 1.0, "the voltage", findings);
+  say_speed(data, wheel, ratio, 1.0, "the voltage", all, findings);
 }
 
 }  // namespace

@@ -168,6 +168,18 @@ TEST_F(SpoiltData, CountsPerTurnOfAnotherEncoder) {
   expect("wrong_scale", "gear ratio, counts_per_rev");
 }
 
+// Three times too fast for its duty: within the whole bus a bridge that coasts in its off-time does that as well.
+TEST(CheckData, ASpeedWithinTheBusMayBeACoastingBridge) {
+  for (const double amplitude : {0.2, 0.9}) {
+    Bench bench = simulated_bench({.amplitude = amplitude, .with = {}, .model = ""});
+    for (Channel& channel : bench.dataset.channels) channel.counts_per_rev /= 3.0;
+    const auto findings = check(bench);
+    const DataFinding* f = find(findings, "wrong_scale");
+    ASSERT_NE(f, nullptr) << amplitude << text_of(findings);
+    EXPECT_EQ(f->sentence.find("coast_mode") != std::string::npos, amplitude < 0.3) << f->sentence;
+  }
+}
+
 TEST_F(SpoiltData, CurrentInMilliamperes) {
   for (std::size_t r = 0; r < 3; ++r) {
     for (double& v : signal(r, "motor_current")) v *= 1000.0;
