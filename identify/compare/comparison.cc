@@ -8,6 +8,7 @@
 #include "identify/compare/regime_bins.h"
 #include "identify/compare/repeat_noise.h"
 #include "identify/compare/worst_regime.h"
+#include "identify/record/parallel.h"
 
 namespace omnihil {
 namespace {
@@ -154,8 +155,9 @@ const SignalError* Comparison::error(Split split, std::string_view signal) const
 }
 
 Comparison compare(const Predictor& predictor, const Candidate& candidate) {
-  std::vector<Prediction> predictions;
-  for (int r = 0; r < predictor.run_count(); ++r) predictions.push_back(predictor.predict(candidate, r));
+  std::vector<Prediction> predictions(static_cast<std::size_t>(predictor.run_count()));
+  parallel_for(predictor.run_count(),
+               [&](int r) { predictions[static_cast<std::size_t>(r)] = predictor.predict(candidate, r); });
   return compare(predictor, candidate, predictions);
 }
 
@@ -167,8 +169,11 @@ Comparison compare(const Predictor& predictor, const Candidate& candidate,
   for (int r = 0; r < runs; ++r) {
     const auto at = static_cast<std::size_t>(r);
     if (!predictions[at].finite) out.diverged.push_back(predictor.run(r).file);
-    if (with_regimes && predictions[at].finite) tracks[at] = predictor.regimes(candidate, r);
   }
+  parallel_for(with_regimes ? runs : 0, [&](int r) {
+    const auto at = static_cast<std::size_t>(r);
+    if (predictions[at].finite) tracks[at] = predictor.regimes(candidate, r);
+  });
   for (const ComparedSignal* signal : all_signals(predictor)) {
     const double repeat = repeat_noise(predictor, signal->name).value_or(0.0);
     for (int u = 0; u < kSplits; ++u) {

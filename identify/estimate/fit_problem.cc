@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "identify/record/parallel.h"
 #include "identify/record/statistics.h"
@@ -66,6 +68,10 @@ FitProblem::FitProblem(const Predictor& predictor, const Candidate& candidate,
     if (predictor.run(run).split == Split::kTraining && !predictor.compared(run).empty())
       runs_.push_back(run);
   }
+  longest_first_.resize(runs_.size());
+  std::iota(longest_first_.begin(), longest_first_.end(), std::size_t{0});
+  std::ranges::stable_sort(longest_first_, std::greater<>(),
+                           [&](std::size_t n) { return predictor.run(runs_[n]).time_s.size(); });
 }
 
 Candidate FitProblem::candidate_at(const Eigen::VectorXd& x) const {
@@ -99,8 +105,9 @@ const std::vector<Prediction>& FitProblem::predicted(const Eigen::VectorXd& x) c
   }
   const Candidate c = candidate_at(x);
   Predicted made{.x = x, .runs = std::vector<Prediction>(runs_.size())};
-  parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int n) {
-    made.runs[static_cast<std::size_t>(n)] = predictor_.predict(c, runs_[static_cast<std::size_t>(n)]);
+  parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int k) {
+    const std::size_t n = longest_first_[static_cast<std::size_t>(k)];
+    made.runs[n] = predictor_.predict(c, runs_[n]);
   });
   predicted_.push_front(std::move(made));
   if (predicted_.size() > kKept) predicted_.pop_back();
@@ -221,9 +228,9 @@ std::vector<Prediction> FitProblem::derived(const Eigen::VectorXd& x, std::span<
   std::vector<Prediction> out(runs_.size() * passes);
   parallel_for(jobs_, static_cast<int>(out.size()), [&](int task) {
     const auto t = static_cast<std::size_t>(task);
-    const std::size_t begin = t % passes * kJetWidth;
+    const std::size_t n = longest_first_[t / passes], begin = t % passes * kJetWidth;
     const auto some = by.subspan(begin, std::min<std::size_t>(kJetWidth, by.size() - begin));
-    out[t] = predictor_.predict_with_derivatives(c, some, runs_[t / passes]);
+    out[n * passes + t % passes] = predictor_.predict_with_derivatives(c, some, runs_[n]);
   });
   return out;
 }

@@ -82,6 +82,7 @@ class FitProblem {
   int jobs_ = 1;
   bool robust_ = false, near_enough_ = false;
   std::vector<int> runs_;
+  std::vector<std::size_t> longest_first_;  // indices into runs_: what is begun last is not what all wait for
   std::map<std::string, SignalWeight> weights_;
   // The last predictions without derivatives, newest first: a fit asks for its start, its best point and the point before a
   // step several times, with other weights. One thread at a time may ask.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 
+#include "identify/record/parallel.h"
 #include "identify/select/confidence.h"
 #include "identify/select/diagnose_summary.h"
 #include "identify/select/diagnosis.h"
@@ -486,6 +487,7 @@ std::span<const LadderStep> steps_after_first_ranking(const Diagnosis& diagnosis
 }
 
 Diagnosis diagnose(const Dataset& dataset, const Candidate& nominal, const DiagnoseOptions& options) {
+  const ThreadTeam team(options.jobs);
   Diagnosing diagnosing(dataset,
                         heard_commands(dataset, nominal, {.jobs = options.jobs, .stop = options.stop}),
                         nominal, options);

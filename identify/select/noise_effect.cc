@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "identify/record/parallel.h"
 #include "identify/select/effect_variants.h"
 #include "sim/law/effect_registry.h"
 #include "sim/law/random.h"
@@ -268,13 +269,20 @@ class Trial {
 
 std::optional<NoiseEffect> noise_effect(const NoiseSearch& search,
                                         const std::vector<const EffectEntry*>& effects) {
-  std::optional<NoiseEffect> best;
+  std::vector<const EffectEntry*> tried;
   for (const EffectEntry* entry : effects) {
     int strengths = 0;
     for (const EffectParam& row : entry->info->params) strengths += row.role == ParamRole::kStrength ? 1 : 0;
-    if ((entry->info->claims & kRandom) == 0 || strengths != 1) continue;
-    std::optional<NoiseEffect> found = Trial(search, *entry).run();
-    if (found && (!best || found->explained > best->explained)) best = std::move(found);
+    if ((entry->info->claims & kRandom) != 0 && strengths == 1) tried.push_back(entry);
+  }
+  std::vector<std::optional<NoiseEffect>> found(tried.size());
+  parallel_for(static_cast<int>(tried.size()), [&](int n) {
+    const auto k = static_cast<std::size_t>(n);
+    found[k] = Trial(search, *tried[k]).run();
+  });
+  std::optional<NoiseEffect> best;
+  for (std::optional<NoiseEffect>& f : found) {
+    if (f && (!best || f->explained > best->explained)) best = std::move(f);
   }
   return best;
 }

@@ -72,8 +72,8 @@ bool resize(const ScreeningTask& task, const Scored& scored, EffectVariant& vari
   return changed;
 }
 
-// The shape of largest gain, then at the size that its coefficient estimates.
-Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& variants) {
+// The shape of largest gain, then at the size that its coefficient estimates. `typical`: score of the first one.
+Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& variants, const Scored& typical) {
   constexpr int kResizings = 3;  // by cost: a simulation each
   // Where no size gained: one well below and, after it, one well above. Tuned on the open cases; sensitivity
   // not measured.
@@ -81,7 +81,7 @@ Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& vari
   Scored best;
   for (const EffectVariant& v : variants) {
     if (v.columns.empty()) continue;
-    Scored s = score(task, v);
+    Scored s = &v == &variants.front() ? typical : score(task, v);
     if (s.finite && (!best.finite || s.fit.gain > best.fit.gain)) best = std::move(s);
   }
   if (!best.finite) return best;
@@ -102,9 +102,11 @@ Scored best_of(const ScreeningTask& task, const std::vector<EffectVariant>& vari
 // idle (DECISIONS 33).
 class SizeSearch {
  public:
-  explicit SizeSearch(const ScreeningTask& task) : task_(task) {}
+  // `typical`: score of the first variant.
+  SizeSearch(const ScreeningTask& task, const Scored& typical) : task_(task), typical_(typical) {}
 
   Scored run(const std::vector<EffectVariant>& variants) {
+    first_ = &variants.front();
     // Octaves about the typical size: 8 times to a 128th of it. Halvings of the last octave: to 2 % of the
     // size where it begins to act (2^(1/32)). Choices, by cost: a simulation each.
     constexpr int kLargest = 3, kSmallest = -7, kHalvings = 5;
@@ -137,7 +139,7 @@ class SizeSearch {
     const ParamRange range = param_range(row, *task_.model);
     column.size *= factor;
     if (column.size <= 0.0 || row.neutral + column.size > range.upper) return true;
-    Scored s = score(task_, std::move(sized));
+    Scored s = &variant == first_ && factor == 1.0 ? typical_ : score(task_, std::move(sized));
     if (!s.finite) return true;
     s.fit = task_.base->gain_as_tried(s.columns);
     constexpr double kActs =
@@ -148,6 +150,8 @@ class SizeSearch {
   }
 
   const ScreeningTask& task_;
+  const Scored& typical_;
+  const EffectVariant* first_ = nullptr;
   Scored best_;
 };
 
@@ -223,9 +227,9 @@ Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
   }
   std::vector<EffectVariant> variants = variants_of(*entry, *task.model, task.scale);
   const bool steps_in = (entry->info->claims & kFlatAtNeutral) != 0 && variants.front().columns.size() == 1;
-  Scored best = steps_in ? SizeSearch(task).run(variants) : best_of(task, variants);
   // At its typical size, whatever the data estimate: for visibility.
   const Scored typical = score(task, variants.front());
+  Scored best = steps_in ? SizeSearch(task, typical).run(variants) : best_of(task, variants, typical);
   if (best.finite) {
     for (const EffectVariant& v : series_variants(*entry, *task.model, task.scale)) {
       Scored series = score(task, v);
@@ -312,7 +316,7 @@ std::vector<Screened> screen_extensions(const ScreeningTask& task) {
   for (const EffectUse& use : task.model->effects) {
     const std::vector<EffectVariant> variants = extensions_of(use, *task.model, task.scale);
     if (variants.empty()) continue;
-    Screened s = finished(task, use.entry, best_of(task, variants));
+    Screened s = finished(task, use.entry, best_of(task, variants, score(task, variants.front())));
     s.name = effect_name(use);
     s.extends = true;
     out.push_back(std::move(s));
