@@ -190,12 +190,15 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
 
 // An effect that the held-out runs hardly move (a dead band under full steps) and another kind of motion does: the
 // extrapolation runs were not fitted to either. A little comes from the base parameters' last digits there, hence a
-// decisive gain, and no loss on the held-out runs.
+// decisive gain, of the unweighted energy too (whitening weighs the slowest part of a residual most: DECISIONS 51), and
+// no loss on the held-out runs.
 bool extrapolation_decides(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
                            const AcceptanceResult& gains) {
   constexpr Split kDecides = Split::kExtrapolation;
   const bool has_both = !(*context.splits)[kValidation].empty() && !(*context.splits)[kExtrapolation].empty();
   if (!has_both || gains.holdout.ratio > 1.0 || 1.0 - gains.extrapolation.ratio < kDecisiveGain) return false;
+  if (unweighted_gain(parent.unweighted[kExtrapolation], child.unweighted[kExtrapolation]) < kLeastUnweighted)
+    return false;
   const double share = share_of_base(context, kExtrapolation, parent, child);
   return reason_against_gain(parent, child, gains, kDecides, share, 0.0).empty();
 }

@@ -4,13 +4,13 @@
 //   Diagnosis d;   // finished
 //   for (const NameConfidence& c : confidences(d)) print(c.effect, c.probability);
 //
-// Logistic regression on what the search knew when it took the effect (was it the first; does structure remain that
-// nothing explains; which share of the base model's error it removes; in how many bootstrap draws it won; is it
-// undecided; how far above the sensors' noise the last model stays), fitted on the open cases of the hidden-effect
-// test (tests/hidden_plant/calibrate.py: coefficients, reliability of cases that were not fitted to;
-// docs/diagnosis-statistics.md).
-// Limits: calibrated on made records of one effect, of two, of none and of what is in no catalogue, in the test's
-// proportions. On measured records it is an extrapolation: they always leave more than made ones.
+// Logistic regression on what the search knew when it took the effect: was it the first; which share of the base model's
+// error it removes; in how many bootstrap draws it won; is it undecided; and how far above the sensors' noise the last model
+// stays. Where structure remains that nothing explains, another map: what imitates it removes less than it is, so the share
+// over what remains takes the place of the share and of the noise. Fitted on the open cases of the hidden-effect test
+// (tests/hidden_plant/calibrate.py: coefficients, reliability of cases that were not fitted to; docs/diagnosis-statistics.md).
+// Limits: calibrated on made records of one effect, of two, of none and of one beside what is in no catalogue, in the test's
+// proportions. On measured records it is an extrapolation.
 #pragma once
 #include <string>
 #include <vector>
@@ -26,6 +26,7 @@ struct NameEvidence {
   double selection_frequency = 1.0;
   bool undecided = false;         // a set of several
   double error_over_noise = 1.0;  // of the last model, held out, pooled over the signals
+  double remaining_share = 0.0;   // energy above the noise of the last model over the base model's, likewise
 };
 double probability_right(const NameEvidence& evidence);
 

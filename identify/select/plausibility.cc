@@ -24,20 +24,24 @@ constexpr double kDeviationRise_sigmas = 0.7;   // tuned
 // Standard deviation of an angle of which nothing is known, 2 pi / sqrt(12).
 constexpr double kUniformAngle_rad = 1.8138;  // derived
 
-// A base parameter that the addition moves out of its tolerance; empty: none. What its prior rejects without the
-// addition too absorbs something else that is missing (an inductance a delay): beside a decisive gain it says nothing
+// A base parameter that the addition moves out of its tolerance or to a bound. Empty: none. What its prior rejects without
+// the addition too absorbs something else that is missing (an inductance a delay): beside a decisive gain it says nothing
 // against this addition.
 std::string moved_out_of_tolerance(const FitResult& parent, const FitResult& child, bool decisive) {
   for (const ParameterEstimate& p : child.parameters) {
-    if (p.prior_sigma <= 0.0 || std::abs(p.prior_deviation_sigmas) < kOutOfTolerance_sigmas) continue;
+    const double sigmas = std::abs(p.prior_deviation_sigmas);
+    if (p.prior_sigma <= 0.0 || (sigmas < kOutOfTolerance_sigmas && !p.at_bound)) continue;
     const auto before = std::find_if(parent.parameters.begin(), parent.parameters.end(),
                                      [&](const ParameterEstimate& q) { return q.path == p.path; });
     if (before == parent.parameters.end()) continue;  // of the effect itself
     if (decisive && std::abs(before->prior_deviation_sigmas) >= kPriorRejected_sigmas) continue;
-    if (std::abs(p.prior_deviation_sigmas) >
-        std::abs(before->prior_deviation_sigmas) + kDeviationRise_sigmas) {
-      return fmt::format("it moves {} out of its tolerance ({:+.1f} sigma, before {:+.1f})", p.path,
-                         p.prior_deviation_sigmas, before->prior_deviation_sigmas);
+    const double rise = sigmas - std::abs(before->prior_deviation_sigmas);
+    // A bound at zero lies nearer than the limit where the tolerance is wide: the addition stands in for the parameter.
+    const bool replaced = p.at_bound && !before->at_bound && sigmas >= kRestored_sigmas;
+    if (rise > kDeviationRise_sigmas && (replaced || sigmas >= kOutOfTolerance_sigmas)) {
+      return fmt::format("it moves {} {} ({:+.1f} sigma, before {:+.1f})", p.path,
+                         replaced ? "to its bound" : "out of its tolerance", p.prior_deviation_sigmas,
+                         before->prior_deviation_sigmas);
     }
   }
   return "";

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "identify/select/plausibility.h"
+#include "identify/select/strength_grid.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/effect_reader.h"
 
@@ -15,6 +16,9 @@ namespace {
 // on the open cases; sensitivity not measured.
 constexpr double kWorthTypicalStart = 0.2;  // tuned
 constexpr double kWorthPriorStart = 0.1;    // tuned
+// Noise's share of what a fit leaves above which no other valley of the strength is looked for: a choice, what
+// remains would be a fifth of the energy.
+constexpr double kNearNoise = 0.8;  // a choice
 // A start has succeeded if it gains this fraction of what the screening predicts (it is linear, and not on
 // all bounds).
 constexpr double kOfPredicted = 0.5;  // a choice
@@ -72,16 +76,6 @@ Candidate with_strength_times(const Candidate& model, const std::string& effect,
   return out;
 }
 
-// The base parameters at their prior means.
-Candidate at_priors(const Candidate& model, const Candidate& nominal) {
-  std::vector<Unknown> base = unknowns_with_priors(model, nominal);
-  std::erase_if(base, [](const Unknown& u) { return u.effect >= 0 || u.prior_sigma <= 0.0; });
-  std::vector<double> values;
-  values.reserve(base.size());
-  for (const Unknown& u : base) values.push_back(u.prior_mean);
-  return with_values(model, base, values);
-}
-
 // Resets base parameters that are neither identifiable nor correlated with others to the parent's estimates:
 // the data say nothing of them, and a random change would raise the error of another kind of motion.
 Fitted reset_unidentifiable(const RefitSetup& setup, const Fitted& parent, Fitted child) {
@@ -112,7 +106,24 @@ double fit_ratio(const RefitSetup& setup, const Fitted& parent, const Fitted& ch
   return energy_ratio((*setup.splits)[kTraining], parent.residual[kTraining], child.residual[kTraining]);
 }
 
+// Does the child leave more than the sensors' noise in what the addition changes?
+bool leaves_structure(const RefitSetup& setup, const Fitted& parent, const Fitted& child) {
+  if (setup.null == nullptr || !child.finite) return false;
+  const WhitenedResiduals& fit = (*setup.splits)[kTraining];
+  const Eigen::VectorXd &before = parent.residual[kTraining], &left = child.residual[kTraining];
+  return floor_share(fit, *setup.null, left, weights_for(fit, *setup.null, before, left)) < kNearNoise;
+}
+
 }  // namespace
+
+Candidate at_priors(const Candidate& model, const Candidate& nominal) {
+  std::vector<Unknown> base = unknowns_with_priors(model, nominal);
+  std::erase_if(base, [](const Unknown& u) { return u.effect >= 0 || u.prior_sigma <= 0.0; });
+  std::vector<double> values;
+  values.reserve(base.size());
+  for (const Unknown& u : base) values.push_back(u.prior_mean);
+  return with_values(model, base, values);
+}
 
 EffectUse at_typical_size(const EffectUse& use, const Candidate& model) {
   EffectUse out = use;
@@ -184,6 +195,12 @@ Fitted refit(const RefitSetup& of_iteration, const Fitted& parent, const Screene
       (effect.start.entry->info->numerics & kImpacts) != 0 && ratio < 1.0 - kWorthTypicalStart;
   for (const double factor : {0.5, 2.0}) {
     if (many_optima && !stopped()) also_from(with_strength_times(best.fit.model, effect.name, factor));
+  }
+  if (effect.share >= kWorthTypicalStart && leaves_structure(setup, parent, best) && !stopped()) {
+    const std::optional<Candidate> lower =
+        below_on_strength_grid(setup, {best.fit.model, at_priors(best.fit.model, *setup.nominal)},
+                               effect.name, best.residual[kTraining]);
+    if (lower) also_from(*lower);
   }
   best = reset_unidentifiable(setup, parent, std::move(best));
   if (ratio > 1.0 && !restores(best, ratio)) {

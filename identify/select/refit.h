@@ -19,6 +19,7 @@ struct RefitSetup {
   const Splits* splits = nullptr;
   const Splits* unweighted = nullptr;  // in the channels' own units
   const Candidate* nominal = nullptr;  // whose priors hold
+  const NullModel* null = nullptr;     // the level of noise; none: a strength's grid is not tried
   std::uint64_t seed = 1;
   int jobs = 1;
   int max_iterations = 12;
@@ -33,6 +34,9 @@ struct RefitSetup {
 std::vector<Unknown> unknowns_with_priors(const Candidate& candidate, const Candidate& nominal);
 
 Fitted refit(const RefitSetup& setup, const Fitted& parent, const Screened& effect);
+
+// The base parameters at their prior means.
+Candidate at_priors(const Candidate& model, const Candidate& nominal);
 
 // All strengths at their typical sizes, for where neither the screening's estimate nor a start near neutral succeeds.
 EffectUse at_typical_size(const EffectUse& use, const Candidate& model);

@@ -162,6 +162,7 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
                      .splits = task.splits,
                      .unweighted = task.unweighted,
                      .nominal = task.nominal,
+                     .null = task.null,
                      .seed = task.seed,
                      .stop = [&] { return stopped.load(); }};
     c.fitted = refit(setup, parent, c.screened);

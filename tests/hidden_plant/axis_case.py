@@ -99,7 +99,7 @@ def close_loop(rng, rig):
     rig.true.update(command_kind=2, loop_kp=stiff, loop_ki=stiff * rng.uniform(5, 15))
 
 
-def write_case(folder, rig, kinds, hidden_params, key, change=None, gear=None):
+def write_case(folder, rig, kinds, hidden_params, key, change=None, gear=None, rows=ROWS):
     """The folder the program sees. `change` may spoil the columns of a run (data faults)."""
     folder.mkdir(parents=True, exist_ok=True)
     params = {**rig.true, **hidden_params}
@@ -107,7 +107,7 @@ def write_case(folder, rig, kinds, hidden_params, key, change=None, gear=None):
     runs = []
     for number, (use, kind) in enumerate(zip(("fit", "holdout", "extrapolation"), kinds)):
         rng = source(*key, "run", use)
-        asked = asked_of(rng, kind)
+        asked = asked_of(rng, kind, rows)
         columns = record(rig, params, asked, rng.randrange(1 << 30))
         if change:
             columns = change(columns, source(*key, "change", use))

@@ -1,10 +1,11 @@
 """Fits the map from what a diagnosis knows of a name to the probability that the name is right.
 
-    ./dev blind --cases 66 --only single,generic,pair,control,loop,loop-control,outside,faint --keep run/blind
+    ./dev blind --cases 66 --only single,generic,pair,control,loop,loop-control,outside,faint,beside --keep run/blind
     python3 tests/hidden_plant/calibrate.py run/blind dev
 
-Prints the coefficients for identify/select/confidence.cc, and the reliability of predictions of cases that a fit has not
-seen (ten folds by case). Logistic regression with a ridge (le Cessie, van Houwelingen, Appl. Statist. 41(1), 1992):
+Two maps: one for answers that leave nothing, one for those beside which structure remains. Prints the coefficients of both
+for identify/select/confidence.cc, and the reliability of predictions of cases that a fit has not seen (ten folds by case).
+Logistic regression with a ridge (le Cessie, van Houwelingen, Appl. Statist. 41(1), 1992):
 maximum likelihood has no end where a feature separates the wrong names.
 """
 import argparse
@@ -20,7 +21,11 @@ RIDGE = 1.0  # prior precision of the slopes of standardised features: one unit 
 FOLDS = 10
 # From here on the made records hold too few names to tell; measured ones go further.
 MOST_OVER_NOISE = 2.0
-FEATURES = ("one", "later", "more_remains", "log10_share_of_base", "selection_frequency", "undecided", "log10_error_over_noise")
+LEAST_REMAINING = 1e-3  # of the base model's energy: below, the noise's level is not known that well
+FEATURES = {
+    "found": ("one", "later", "log10_share_of_base", "selection_frequency", "undecided", "log10_error_over_noise"),
+    "found, but more remains": ("one", "later", "log10_share_over_remaining", "selection_frequency", "undecided"),
+}
 
 
 def rounds(diagnosis):
@@ -36,34 +41,41 @@ def rounds(diagnosis):
     return out
 
 
-def features(diagnosis):
-    """One row per name of the answer: [(name, x)]."""
+def evidence(diagnosis):
+    """One table per name of the answer: [(name, {feature: value})]."""
     taken, out = rounds(diagnosis), []
     sigma = {k: v.get("noise_sigma") for k, v in (diagnosis.get("signals") or {}).items()}
-    final = diagnosis.get("final") or {}
-    over_noise = score.pooled(final.get("holdout") or final.get("fit"), sigma)
+
+    def over_noise(model):
+        model = diagnosis.get(model) or {}
+        value = score.pooled(model.get("holdout") or model.get("fit"), sigma)
+        return max(value, 1.0) if math.isfinite(value) else 1.0
+
+    last, base = over_noise("final"), over_noise("baseline")
+    remaining = (last**2 - 1.0) / max(base**2 - 1.0, 1e-9)
     for position, name in enumerate(diagnosis.get("effects") or []):
         r = taken.get(name, {})
         by_noise = next(
             (q["noise_share"] for q in diagnosis["ranking"] if q["effect"] == name and q["accepted_by"] == "noise"), 0.0
         )
-        share = by_noise or r.get("share_of_base") or 0.0
-        undecided = any(name in s and len(s) > 1 for s in diagnosis.get("indistinguishable") or [])
-        out.append(
-            (
-                name,
-                [
-                    1.0,
-                    float(position > 0),
-                    float(diagnosis["outcome"] == "found, but more remains"),
-                    math.log10(min(max(share, 1e-3), 1.0)),
-                    1.0 if by_noise else r.get("selection_frequency") or 0.0,
-                    float(undecided),
-                    math.log10(min(max(over_noise, 1.0), MOST_OVER_NOISE)) if math.isfinite(over_noise) else 0.0,
-                ],
-            )
-        )
+        share = min(max(by_noise or r.get("share_of_base") or 0.0, 1e-3), 1.0)
+        table = {
+            "one": 1.0,
+            "later": float(position > 0),
+            "log10_share_of_base": math.log10(share),
+            "log10_share_over_remaining": math.log10(share / min(max(remaining, LEAST_REMAINING), 1.0)),
+            "selection_frequency": 1.0 if by_noise else r.get("selection_frequency") or 0.0,
+            "undecided": float(any(name in s and len(s) > 1 for s in diagnosis.get("indistinguishable") or [])),
+            "log10_error_over_noise": math.log10(min(last, MOST_OVER_NOISE)),
+        }
+        out.append((name, table))
     return out
+
+
+def features(diagnosis):
+    """The regression's rows of the answer's names: [(name, x)]."""
+    wanted = FEATURES[diagnosis["outcome"]]
+    return [(name, [table[f] for f in wanted]) for name, table in evidence(diagnosis)]
 
 
 def probability(x, beta):
@@ -86,7 +98,7 @@ def solve(a, b):
 
 def fit(rows):
     """Newton's method on the penalised log-likelihood; rows: [(x, right)]."""
-    k = len(FEATURES)
+    k = len(rows[0][0])
     scale = [1.0] + [
         max(math.sqrt(sum((x[j] - sum(y[j] for y, _ in rows) / len(rows)) ** 2 for x, _ in rows) / len(rows)), 1e-3)
         for j in range(1, k)
@@ -116,27 +128,35 @@ def main():
     args = parser.parse_args()
     folders = sorted((args.keep / "results" / args.set).iterdir(), key=lambda p: len(list(p.iterdir())))
     folder = args.keep / "results" / args.set / args.program if args.program else folders[-1]
-    cases = {}
+    cases = {outcome: {} for outcome in FEATURES}
     for path in sorted(folder.glob("*.json")):
         answer = json.loads((args.keep / "answers" / args.set / path.name).read_text())
         diagnosis = json.loads(path.read_text()).get("diagnosis")
-        if diagnosis:
-            cases[path.stem] = [
+        if diagnosis and diagnosis.get("effects"):
+            cases[diagnosis["outcome"]][path.stem] = [
                 (x, any(score.matches(name, e, diagnosis) for e in answer["effects"]))
                 for name, x in features(diagnosis)
             ]
+    for outcome, of in cases.items():
+        if of:
+            print_map(outcome, of)
+
+
+def print_map(outcome, cases):
+    """Reliability of unseen cases and the coefficients of one outcome's map; cases: {case: [(x, right)]}."""
     rows = [row for case in cases.values() for row in case]
-    print(f"{len(cases)} cases, {len(rows)} names, {sum(right for _, right in rows)} of them right")
+    print(f"{outcome}: {len(cases)} cases, {len(rows)} names, {sum(right for _, right in rows)} of them right")
     predicted = []
     for fold in range(FOLDS):
         held = {c for c in cases if zlib.crc32(c.encode()) % FOLDS == fold}
-        beta = fit([row for c, case in cases.items() if c not in held for row in case])
-        predicted += [(probability(x, beta), right) for c in held for x, right in cases[c]]
+        seen = [row for c, case in cases.items() if c not in held for row in case]
+        beta = fit(seen) if held and seen else None
+        predicted += [(probability(x, beta), right) for c in held if beta for x, right in cases[c]]
     print("Reliability of predictions of cases not fitted to")
     print("\n".join(table.reliability(predicted)))
     print("Coefficients of the fit to all")
-    for name, b in zip(FEATURES, fit(rows)):
-        print(f"  {name:20s} {b:8.3f}")
+    for name, b in zip(FEATURES[outcome], fit(rows)):
+        print(f"  {name:26s} {b:8.3f}")
 
 
 if __name__ == "__main__":

@@ -152,6 +152,11 @@ def classes():
             [(strange[k % len(strange)],) for k in range(50)],
             lambda c, f: outside.make_case(f, c.key, c.what[0]),
         ),
+        "beside": Class(
+            "one hidden effect beside something no list of effects has",
+            outside.with_an_effect(),
+            lambda c, f: outside.make_case_with_an_effect(f, c.key, *c.what),
+        ),
         "fault": Class(
             "broken record",
             [(broken[k % len(broken)],) for k in range(42)],

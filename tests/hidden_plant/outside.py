@@ -1,9 +1,12 @@
 """What no list of effects has: the right answer is that structure remains which nothing known explains."""
+import hashlib
+
 import axis_case
 import robot_case
+from axis_effects import BY_ID, EFFECTS, same_law, size_range
 from axis_rig import draw_rig
 from excitation import POOL
-from share import Ruler, size_for
+from share import Ruler, hidden_at, size_for
 
 # name: (plant parameters for a size, least and largest size relative to the bench, excitations that show it, gear)
 KINDS = {
@@ -51,6 +54,7 @@ KINDS = {
         None,
     ),
 }
+ROWS_WITH_AN_EFFECT = 8000
 ROBOT_KINDS = {
     "floor_nap": {"nap": 0.03, "nap_towards": 0.8},
     "jumping_contact_of_a_wheel": {"contact_ohm": 1.2, "contact_s": 0.4},
@@ -76,3 +80,39 @@ def make_case(folder, key, kind, share=0.7):
     size, reached = size_for(Ruler(rig, asked), lambda m: hide(m, rig), (low, high), share)
     axis_case.write_case(folder, rig, kinds, hide(size, rig), key)
     return {**axis_case.answer_of(rig, kinds, []), "outside": {"kind": kind, "size": size, "share": reached}}
+
+
+def with_an_effect():
+    """(effect, kind) of one bench, in a fixed order that mixes them: what is recorded of real drives has both."""
+
+    def fits(effect, kind):  # all other kinds need a bench that does not heat up
+        return "drive" in effect.rigs and (kind == "supply_ripple" or "heating" not in effect.needs)
+
+    both = [(e.id, kind) for e in EFFECTS for kind in KINDS if fits(e, kind)]
+    return sorted(both, key=lambda pair: hashlib.sha256("/".join(pair).encode()).hexdigest())
+
+
+def energy_share(rng, least, most):
+    """E / (E + 1) of an energy over the noise's that is drawn evenly in its logarithm."""
+    energy = least * (most / least) ** rng.random()
+    return energy / (energy + 1.0)
+
+
+def make_case_with_an_effect(folder, key, effect_id, kind):
+    """One effect of the list, of 1 to 100 times the noise's energy, and beside it what no list has, of 0.3 to 50 times.
+    Runs of 8 s, as measured ones are."""
+    rng, effect = axis_case.source(*key), BY_ID[effect_id]
+    hide, limits, shows, _ = KINDS[kind]
+    needs = [*effect.needs, "bus hidden" if kind == "supply_ripple" else "not heated"]
+    rig = draw_rig(rng, "drive", rng.choice(effect.gears) if effect.gears else None, list(dict.fromkeys(needs)))
+    both = "+".join((rng.choice(effect.shows), rng.choice([k for k in shows if k in POOL])))
+    kinds = (both, both, rng.choice(list(POOL)))
+    asked = axis_case.asked_of(axis_case.source(*key, "run", "fit"), both, ROWS_WITH_AN_EFFECT)
+    ruler = Ruler(rig, asked)
+    hidden, answer = hidden_at(
+        effect, effect.shape(rng, rig), rig, ruler, size_range(effect, rig), energy_share(rng, 1, 100), same_law(effect, rig)
+    )
+    low, high = (x * rig.torque_scale for x in limits)
+    size, reached = size_for(ruler, lambda m: hide(m, rig), (low, high), energy_share(rng, 0.3, 50))
+    axis_case.write_case(folder, rig, kinds, {**hidden, **hide(size, rig)}, key, rows=ROWS_WITH_AN_EFFECT)
+    return {**axis_case.answer_of(rig, kinds, [answer]), "outside": {"kind": kind, "size": size, "share": reached}}

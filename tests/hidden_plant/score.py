@@ -139,6 +139,7 @@ def judge(result, answer):
         out["first_two"] = any(matches(n, effects[0], d) for n in second)
         out["all"] = all(any(matches(n, e, d) for n in named) for e in effects)
         out["extra"] = sum(not any(matches(n, e, d) for e in effects) for n in named)
+        out["extra_later"] = sum(not any(matches(n, e, d) for e in effects) for n in named[1:])
         out["reduction"] = error_reduction(result)
         out["parameter_errors"] = parameter_errors(result, answer)
         out["bias"] = base_bias(result, answer) if out["all"] else []
@@ -224,6 +225,7 @@ def summary(rows):
         "generic first two": rate(generic, lambda r: r["first_two"]),
         "small single first": rate([r for r in get("single") if r not in single], lambda r: r["first"]),
         "extra effects per case": statistics.fmean([r["extra"] for r in both]) if both else math.nan,
+        "second names not hidden": rate(both, lambda r: r["extra_later"]),
         "false alarm": rate(get("control"), alarm),
         "controls minutes": sum(control_s) / 60 if control_s else math.nan,
         "robot false alarm": rate(get("robot-control"), alarm),
@@ -238,6 +240,8 @@ def summary(rows):
         "pair one": rate(large(get("pair")), lambda r: r["first"] or r["extra"] < len(r["named"])),
         "outside unknown": rate(get("outside"), lambda r: r["verdict"] == "unknown"),
         "outside wrong name": rate(get("outside"), lambda r: r["verdict"] == "effect"),
+        "beside named": rate(large(get("beside")), lambda r: r["all"]),
+        "beside wrong names": statistics.fmean([r["extra"] for r in get("beside")]) if get("beside") else math.nan,
         "faint wrong name": rate(get("faint"), lambda r: r["named"] and not r["first"]),
         "fault found": rate(get("fault"), lambda r: r["found"]),
         "fault named as effect": rate(get("fault"), lambda r: r["verdict"] == "effect" and not r["found"]),

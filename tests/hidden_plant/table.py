@@ -88,11 +88,11 @@ def confusion(rows):
 def others(rows):
     """What was said where nothing of the catalogue was hidden, and about pairs."""
     lines = []
-    for cls in ("control", "loop-control", "torque-control", "robot-control", "outside", "fault", "pair"):
+    for cls in ("control", "loop-control", "torque-control", "robot-control", "outside", "fault", "pair", "beside"):
         for r in rows:
             if r["class"] != cls:
                 continue
-            good = {"outside": r["verdict"] == "unknown", "fault": r.get("found"), "pair": r.get("all")}.get(
+            good = {"outside": r["verdict"] == "unknown", "fault": r.get("found"), "pair": r.get("all"), "beside": r.get("all")}.get(
                 cls, r["verdict"] == "adequate" and not r["named"]
             )
             if not good:

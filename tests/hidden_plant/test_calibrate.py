@@ -48,13 +48,21 @@ TWO_ROUNDS = diagnosis(
 
 class CalibrateTest(unittest.TestCase):
     def test_evidence_is_that_of_the_round_that_took_the_name(self):
-        first, second = calibrate.features(TWO_ROUNDS)
-        self.assertEqual(first[0], "stribeck_friction")
-        self.assertAlmostEqual(first[1][calibrate.FEATURES.index("log10_share_of_base")], math.log10(0.5))
-        self.assertEqual(second[1][1], 1.0)
-        self.assertAlmostEqual(second[1][3], math.log10(0.04))
-        self.assertEqual(second[1][calibrate.FEATURES.index("undecided")], 1.0)
-        self.assertAlmostEqual(second[1][-1], math.log10(1.5))
+        (first, of_first), (_, of_second) = calibrate.evidence(TWO_ROUNDS)
+        self.assertEqual(first, "stribeck_friction")
+        self.assertAlmostEqual(of_first["log10_share_of_base"], math.log10(0.5))
+        self.assertEqual(of_second["later"], 1.0)
+        self.assertAlmostEqual(of_second["log10_share_of_base"], math.log10(0.04))
+        self.assertEqual(of_second["undecided"], 1.0)
+        self.assertAlmostEqual(of_second["log10_error_over_noise"], math.log10(1.5))
+        self.assertEqual(len(calibrate.features(TWO_ROUNDS)[0][1]), len(calibrate.FEATURES["found"]))
+
+    def test_what_remains_is_the_energy_above_the_noise_over_the_base_models(self):
+        more = {**TWO_ROUNDS, "outcome": "found, but more remains", "baseline": {"holdout": {"velocity": {"rmse": 5.0}}}}
+        # (1.5^2 - 1) / (2.5^2 - 1) = 0.238
+        second = calibrate.evidence(more)[1][1]
+        self.assertAlmostEqual(second["log10_share_over_remaining"], math.log10(0.04 / (1.25 / 5.25)))
+        self.assertEqual(calibrate.features(more)[1][1][2], second["log10_share_over_remaining"])
 
     def test_the_fit_finds_the_slopes_that_made_the_data(self):
         draw, beta = random.Random(1), [1.0, -2.0, 0.0, 0.0, 1.5, 0.0, 0.0]

@@ -61,6 +61,8 @@ class ScoreTest(unittest.TestCase):
     def test_second_place_counts_for_the_first_two(self):
         row = score.judge(said("imbalance", "cogging"), answer("cogging"))
         self.assertEqual((row["first"], row["first_two"], row["extra"]), (False, True, 1))
+        self.assertEqual(row["extra_later"], 0)  # a wrong first name is counted where first names are
+        self.assertEqual(score.judge(said("cogging", "imbalance"), answer("cogging"))["extra_later"], 1)
         self.assertTrue(
             score.judge(said("imbalance", ranking=["imbalance", "cogging"]), answer("cogging"))["first_two"]
         )

@@ -282,6 +282,27 @@ TEST(AcceptanceTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
   EXPECT_NE(j.why.find("motor.resistance_ohm"), std::string::npos) << j.why;
 }
 
+// A tolerance of 30 % puts a bound of zero at 3.3 standard deviations: no limit beyond that would ever refuse it.
+TEST(AcceptanceTest, RefusesWhatTakesABaseParametersPlace) {
+  const AcceptanceFixture fixture;
+  const auto accepted = [&](double before_sigmas, double after_sigmas, bool bound_before) {
+    Fitted parent = fixture.leaving(1, 1, 1), child = fixture.leaving(0.7, 0.7, 0.7);
+    ParameterEstimate friction;
+    friction.path = "coulomb_friction.torque_Nm";
+    friction.prior_sigma = 0.3;
+    friction.prior_deviation_sigmas = before_sigmas;
+    friction.at_bound = bound_before;
+    parent.fit.parameters = {friction};
+    friction.prior_deviation_sigmas = after_sigmas;
+    friction.at_bound = true;
+    child.fit.parameters = {friction};
+    return test_acceptance(fixture.context, parent, child, "grease_drag", 100).accepted();
+  };
+  EXPECT_FALSE(accepted(0.5, -3.33, false));
+  EXPECT_TRUE(accepted(-3.33, -3.33, true));  // it was there before
+  EXPECT_TRUE(accepted(0.0, -1.0, false));    // a belief so vague that zero is within it
+}
+
 // What its prior rejects without the addition too (p < 1 %) absorbs something else: no reason against a decisive gain.
 TEST(AcceptanceTest, ABaseParameterThatWasBentBeforeIsNoReasonAgainstADecisiveGain) {
   const AcceptanceFixture fixture;
@@ -408,6 +429,10 @@ TEST(AcceptanceTest, AnotherKindOfMotionDecidesWhereTheHeldOutRunsHardlyShowTheE
   EXPECT_FALSE(with(1.005, 0.6).accepted())
       << "a loss on the held-out runs is none of another motion's business";
   EXPECT_FALSE(with(0.995, 0.9).accepted()) << "19 % of the energy may be the base parameters' last digits";
+  Fitted whitened_only = fixture.leaving(1.8, 2 * 0.995, 2 * 0.6);
+  whitened_only.unweighted[kExtrapolation] = fixture.leaving(2, 2, 2).unweighted[kExtrapolation] * 0.99;
+  EXPECT_FALSE(test_acceptance(fixture.context, fixture.leaving(2, 2, 2), whitened_only, "x", 100).accepted())
+      << "what only the slowest part of the residual shows is the base parameters' last digits";
 }
 
 }  // namespace

@@ -65,11 +65,42 @@ TEST(ConfidenceTest, TakesTheHeldOutErrorOfTheLastModelWithoutTheBus) {
           {.later = true, .share_of_base = 0.02, .selection_frequency = 0.7, .error_over_noise = 1.3}));
 }
 
+TEST(ConfidenceTest, WhatRemainsIsTheEnergyAboveTheNoiseOverTheBaseModels) {
+  Diagnosis d = two_names();
+  d.outcome = Outcome::kMoreRemains;
+  const auto error = [](double over_noise) {
+    SignalError e;
+    e.signal = "velocity";
+    e.split = Split::kValidation;
+    e.noise_sigma = 0.02;
+    e.rmse = 0.02 * over_noise;
+    return e;
+  };
+  d.baseline_comparison.errors = {error(3.0)};
+  d.final_comparison.errors = {error(2.0)};
+  EXPECT_DOUBLE_EQ(confidences(d)[0].probability, probability_right({.more_remains = true,
+                                                                     .share_of_base = 0.8,
+                                                                     .selection_frequency = 0.9,
+                                                                     .error_over_noise = 2.0,
+                                                                     .remaining_share = 3.0 / 8.0}));
+}
+
 TEST(ConfidenceTest, IsLowerWhereStructureRemainsAndForLaterNames) {
   const NameEvidence first{.selection_frequency = 0.3}, later{.later = true, .selection_frequency = 0.3},
-      remains{.more_remains = true, .selection_frequency = 0.3};
+      remains{.more_remains = true, .selection_frequency = 0.3, .remaining_share = 0.5};
   EXPECT_LT(probability_right(later), probability_right(first));
   EXPECT_LT(probability_right(remains), probability_right(first));
+}
+
+TEST(ConfidenceTest, ANameThatExplainsMuchMoreThanWhatRemainsIsLikelier) {
+  const auto beside = [](double remaining) {
+    return probability_right({.more_remains = true,
+                              .share_of_base = 0.5,
+                              .selection_frequency = 0.8,
+                              .remaining_share = remaining});
+  };
+  EXPECT_GT(beside(0.02), beside(0.2));
+  EXPECT_GT(beside(0.2), beside(0.5));
 }
 
 TEST(ConfidenceTest, SaysItInPerCent) {

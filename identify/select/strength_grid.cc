@@ -1,0 +1,58 @@
+#include "identify/select/strength_grid.h"
+
+#include <cmath>
+
+#include "sim/law/effect_registry.h"
+#include "sim/model/effect_reader.h"
+
+namespace omnihil {
+namespace {
+
+// Steps of the grid either side of the visible size, by powers of the root of two: from a quarter to four times.
+constexpr int kSteps = 4;  // a choice
+
+std::vector<double> strengths(const EffectUse& use, const Candidate& model) {
+  const EffectParam& row = use.entry->info->params[first_strength(*use.entry->info)];
+  const ParamRange range = param_range(row, model);
+  std::vector<double> out;
+  for (const double sign : {1.0, -1.0}) {
+    for (int k = -kSteps; k <= kSteps; ++k) {
+      const double value = row.neutral + sign * visible_size(row, model) * std::pow(2.0, 0.5 * k);
+      if (value > range.lower && value < range.upper) out.push_back(value);
+    }
+  }
+  return out;
+}
+
+Candidate with_strength(const Candidate& model, const EffectUse& use, double strength) {
+  EffectUse changed = use;
+  changed.values[first_strength(*use.entry->info)] = strength;
+  return with_use(model, changed);
+}
+
+}  // namespace
+
+std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const std::vector<Candidate>& models,
+                                                const std::string& effect, const Eigen::VectorXd& residual) {
+  const WhitenedResiduals& fit = (*setup.splits)[kTraining];
+  std::optional<Candidate> lowest;
+  double least = 1.0;  // of `residual`'s energy
+  for (const Candidate& model : models) {
+    for (const EffectUse& use : model.effects) {
+      if (use.entry->info->id != effect) continue;
+      for (const double strength : strengths(use, model)) {
+        if (setup.stop && setup.stop()) return lowest;
+        Candidate at = with_strength(model, use, strength);
+        const Eigen::VectorXd left = fit.residual(fit.predicted_runs(at, setup.jobs));
+        if (left.size() != residual.size() || !left.allFinite()) continue;
+        const double ratio = energy_ratio(fit, residual, left);
+        if (!(ratio < least)) continue;
+        least = ratio;
+        lowest = std::move(at);
+      }
+    }
+  }
+  return lowest;
+}
+
+}  // namespace omnihil

@@ -1,0 +1,25 @@
+// A grid of an effect's strength, for what a descent does not find: the energy has several valleys where the law acts on
+// part of the record alone (a limit that the largest steps reach), and base parameters that have absorbed the effect bar the
+// way to its own.
+//
+//   if (auto lower = below_on_strength_grid(setup, {fitted.model, at_priors(fitted.model, nominal)}, "duty_limit", energy))
+//     fit(*lower);
+//
+// Grid: the visible size (effect_variants.h) times powers of the root of two, from a quarter to four times; both signs where
+// the strength has two. Multi-start as in Ljung, System Identification, 1999, 10.5.
+// Limits: one strength at a time, shapes and base parameters as in the models given; a valley that is narrower than a factor
+// of the root of two is found only if its foot is below what was fitted.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identify/select/refit.h"
+
+namespace omnihil {
+
+// The point of least whitened energy of the fit runs, with the models' other values; empty: none is below `residual`'s.
+std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const std::vector<Candidate>& models,
+                                                const std::string& effect, const Eigen::VectorXd& residual);
+
+}  // namespace omnihil
