@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "identify/checks/check_list.h"
 #include "identify/record/rig.h"
@@ -83,15 +85,31 @@ std::string speed_name(const CheckContext& data, std::size_t wheel) {
   return "";
 }
 
-// A bridge that opens in its off-time lets the motor coast: its speed is then bounded by the whole bus, whatever the duty
-// (effect coast_mode). "": a drive by voltage, or faster than that.
-const char* or_coasting(const CheckContext& data, std::size_t wheel, const Windows& all) {
+// A bridge that opens in its off-time lets the motor coast (effect coast_mode): its speed is bounded by the whole bus,
+// whatever the duty, and comes nearer to the duty's own the larger that is. A wrong scale is the same at all duties, and
+// friction makes the ratio rise.
+enum class Coasting { kNo, kPossible, kShown };
+Coasting coasting(const CheckContext& data, std::size_t wheel, const Windows& all) {
+  // Ratio of speed to voltage at the upper quarter of voltages over that at the lower half: a choice, a bridge without
+  // current loses more between them.
+  constexpr double kFalls = 0.8;  // a choice
   const double bus_V = nominal_value(data.nominal, "supply.voltage_V").value_or(0.0);
   const double constant = nominal_value(data.nominal, "motor.torque_constant_Nm_per_A").value_or(0.0);
   const bool by_duty = data.runs.front().drives[wheel].drive_name.starts_with("duty");
-  return by_duty && constant * largest_size(all.w) <= bus_V
-             ? ", or a bridge that lets it coast in its off-time (coast_mode: search all the same)"
-             : "";
+  if (!by_duty || constant * largest_size(all.w) > bus_V) return Coasting::kNo;
+  std::vector<std::pair<double, double>> by_voltage;  // |u|, w / u
+  for (std::size_t k = 0; k < all.u.size(); ++k) {
+    if (all.w[k] * all.u[k] > 0.0) by_voltage.emplace_back(std::abs(all.u[k]), all.w[k] / all.u[k]);
+  }
+  std::sort(by_voltage.begin(), by_voltage.end());
+  if (by_voltage.size() < kLeastWindows) return Coasting::kPossible;
+  const auto ratio = [&](std::size_t from, std::size_t to) {
+    std::vector<double> some;
+    for (std::size_t k = from; k < to; ++k) some.push_back(by_voltage[k].second);
+    return median(some);
+  };
+  const std::size_t n = by_voltage.size();
+  return ratio(n - n / 4, n) < kFalls * ratio(0, n / 2) ? Coasting::kShown : Coasting::kPossible;
 }
 
 void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double confirmed, const char* how,
@@ -102,11 +120,18 @@ void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double
   const std::string name = speed_name(data, wheel);
   const bool same = std::log(confirmed) * std::log(ratio) > 0.0 && std::abs(std::log(confirmed)) > 0.5 * off;
   const double wrong = std::max(same ? kWrong : kWrongAlone, tolerance);
+  const Coasting coasts = ratio > 1.0 ? coasting(data, wheel, all) : Coasting::kNo;
+  const bool fault = off > wrong && coasts != Coasting::kShown;
   findings.push_back(
-      {off > wrong ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,
-       fmt::format("the speed from {} is {:.3g} times what {} and the model's torque constant "
-                   "allow: a wrong scale (gear ratio, counts_per_rev or a unit), or not this motor{}",
-                   name, ratio, how, ratio > 1.0 ? or_coasting(data, wheel, all) : "")});
+      {fault ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,
+       fmt::format(
+           "the speed from {} is {:.3g} times what {} and the model's torque constant "
+           "allow: a wrong scale (gear ratio, counts_per_rev or a unit), or not this motor{}",
+           name, ratio, how,
+           coasts == Coasting::kNo ? ""
+           : fault ? ", or a bridge that lets it coast in its off-time (coast_mode: search all the same)"
+                   : ", or a bridge that lets it coast in its off-time (coast_mode): the ratio falls with "
+                     "the duty")});
 }
 
 // Acceleration over what current and nominal inertia allow; 1 where it cannot be told.

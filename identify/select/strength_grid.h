@@ -2,8 +2,8 @@
 // part of the record alone (a limit that the largest steps reach), and base parameters that have absorbed the effect bar the
 // way to its own.
 //
-//   if (auto lower = below_on_strength_grid(setup, {fitted.model, at_priors(fitted.model, nominal)}, "duty_limit", energy))
-//     fit(*lower);
+//   const Candidate believed = at_priors(fitted.model, nominal);
+//   const auto lower = below_on_strength_grid(setup, {fitted.model, believed}, "duty_limit", residual);
 //
 // Grid: the visible size (effect_variants.h) times powers of the root of two, from a quarter to four times; both signs where
 // the strength has two. Multi-start as in Ljung, System Identification, 1999, 10.5.

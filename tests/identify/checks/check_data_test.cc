@@ -180,6 +180,22 @@ TEST(CheckData, ASpeedWithinTheBusMayBeACoastingBridge) {
   }
 }
 
+// The same of a bridge that does coast: its ratio falls with the duty, and it is no fault.
+TEST(CheckData, ABridgeThatCoastsIsADoubt) {
+  Bench bench = simulated_bench(
+      {.amplitude = 0.3,
+       .with = {"coast_mode.coast_share=1", "coast_mode.time_constant_s=2e-6", "coast_mode.return_ratio=1"},
+       .excitations = {Excitation::kRamp, Excitation::kRamp, Excitation::kRamp},
+       .duration_s = 20.0,
+       .model = ""});
+  for (omnihil::Run& run : bench.dataset.runs) run.signals.erase("motor_current");
+  const auto findings = check(bench);
+  EXPECT_EQ(count(findings, Grade::kFault), 0) << text_of(findings);
+  const DataFinding* f = find(findings, "wrong_scale");
+  ASSERT_NE(f, nullptr) << text_of(findings);
+  EXPECT_NE(f->sentence.find("falls with the duty"), std::string::npos) << f->sentence;
+}
+
 TEST_F(SpoiltData, CurrentInMilliamperes) {
   for (std::size_t r = 0; r < 3; ++r) {
     for (double& v : signal(r, "motor_current")) v *= 1000.0;
