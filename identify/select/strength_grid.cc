@@ -14,8 +14,10 @@ constexpr int kSteps = 4;  // a choice
 std::vector<double> strengths(const EffectUse& use, const Candidate& model) {
   const EffectParam& row = use.entry->info->params[first_strength(*use.entry->info)];
   const ParamRange range = param_range(row, model);
+  const double fitted = use.values[first_strength(*use.entry->info)] - row.neutral;
   std::vector<double> out;
   for (const double sign : {1.0, -1.0}) {
+    if (sign * fitted < 0.0) continue;  // its sign is what a fit does find
     for (int k = -kSteps; k <= kSteps; ++k) {
       const double value = row.neutral + sign * visible_size(row, model) * std::pow(2.0, 0.5 * k);
       if (value > range.lower && value < range.upper) out.push_back(value);

@@ -5,8 +5,8 @@
 //   const Candidate believed = at_priors(fitted.model, nominal);
 //   const auto lower = below_on_strength_grid(setup, {fitted.model, believed}, "duty_limit", residual);
 //
-// Grid: the visible size (effect_variants.h) times powers of the root of two, from a quarter to four times; both signs where
-// the strength has two. Multi-start as in Ljung, System Identification, 1999, 10.5.
+// Grid: the visible size (effect_variants.h) times powers of the root of two, from a quarter to four times, of the sign that
+// it has (at its neutral value: of both). Multi-start as in Ljung, System Identification, 1999, 10.5.
 // Limits: one strength at a time, shapes and base parameters as in the models given; a valley that is narrower than a factor
 // of the root of two is found only if its foot is below what was fitted.
 #pragma once
