@@ -14,13 +14,15 @@
 
 namespace omnihil {
 
-// What it makes of a robot's parameters, and what effects may need of it.
+// What it makes of a robot's parameters, what effects may need of it, and whether its derivatives on tyres may be those of
+// steps twice as long (a body's speed follows its wheels slowly; a single wheel's force does not).
 template <class K>
 concept RollingKind = requires(const RollingParams<double>& robot, const RollingParams<Jet>& jets,
                                const Dataset& dataset) {
   { K::params(robot) } -> std::same_as<RollingParams<double>>;
   { K::params(jets) } -> std::same_as<RollingParams<Jet>>;
   { K::capabilities(dataset) } -> std::same_as<Capabilities>;
+  { K::kRough } -> std::convertible_to<bool>;
 };
 
 template <RollingKind Kind>
@@ -55,7 +57,7 @@ class RollingRig : public RigRuns<RobotRun> {
   }
   // Wheels on tyres, with derivatives: at twice the step these are off by a hundredth, which costs a fit no iteration.
   bool is_rough(const Candidate& own, std::size_t) const {
-    return rolling_params(own.file.parameters).has_tyre;
+    return Kind::kRough && rolling_params(own.file.parameters).has_tyre;
   }
   std::vector<RegimeTrack> regimes(const Candidate& own, std::size_t n) const {
     return robot_regimes(dataset_->runs[n], runs_[n].record,
@@ -65,7 +67,7 @@ class RollingRig : public RigRuns<RobotRun> {
   template <typename T>
   RigOutputs<T> outputs(const RigModel& model, std::size_t n, double) const {
     RobotMotionOptions how = motion_;
-    how.rough = std::is_same_v<T, Jet>;
+    how.rough = Kind::kRough && std::is_same_v<T, Jet>;
     const RobotMotion<T> motion = run_robot(values_of<T>(model), runs_[n].record, how);
     return {.values = robot_outputs(runs_[n], motion), .finite = motion.finite};
   }

@@ -55,6 +55,7 @@ constexpr SignalRow kSignals[] = {
 #undef EACH_WHEEL
 
 struct WholeRobot {
+  static constexpr bool kRough = true;
   template <typename T>
   static RollingParams<T> params(const RollingParams<T>& robot) {
     return robot;

@@ -43,6 +43,7 @@ constexpr GivenSignal kGiven[] = {
     {"body_vx", "the velocity that the bench gave the wheel's body, 0 where it stood"}};
 
 struct OneWheel {
+  static constexpr bool kRough = false;
   template <typename T>
   static RollingParams<T> params(const RollingParams<T>& robot) {
     RollingParams<T> wheel = robot;
