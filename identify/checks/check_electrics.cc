@@ -112,6 +112,18 @@ Coasting coasting(const CheckContext& data, std::size_t wheel, const Windows& al
   return ratio(n - n / 4, n) < kFalls * ratio(0, n / 2) ? Coasting::kShown : Coasting::kPossible;
 }
 
+const char* words_of(Coasting coasts) {
+  switch (coasts) {
+    case Coasting::kPossible:
+      return ", or a bridge that lets it coast in its off-time (coast_mode: search all the same)";
+    case Coasting::kShown:
+      return ", or a bridge that lets it coast in its off-time (coast_mode): the ratio falls with the duty";
+    case Coasting::kNo:
+      break;
+  }
+  return "";
+}
+
 void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double confirmed, const char* how,
                const Windows& all, std::vector<DataFinding>& findings) {
   const double tolerance = kTolerances * tolerance_of(data.nominal, "motor.torque_constant_Nm_per_A");
@@ -124,14 +136,9 @@ void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double
   const bool fault = off > wrong && coasts != Coasting::kShown;
   findings.push_back(
       {fault ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,
-       fmt::format(
-           "the speed from {} is {:.3g} times what {} and the model's torque constant "
-           "allow: a wrong scale (gear ratio, counts_per_rev or a unit), or not this motor{}",
-           name, ratio, how,
-           coasts == Coasting::kNo ? ""
-           : fault ? ", or a bridge that lets it coast in its off-time (coast_mode: search all the same)"
-                   : ", or a bridge that lets it coast in its off-time (coast_mode): the ratio falls with "
-                     "the duty")});
+       fmt::format("the speed from {} is {:.3g} times what {} and the model's torque constant "
+                   "allow: a wrong scale (gear ratio, counts_per_rev or a unit), or not this motor{}",
+                   name, ratio, how, words_of(coasts))});
 }
 
 // Acceleration over what current and nominal inertia allow; 1 where it cannot be told.

@@ -7,7 +7,6 @@
 
 #include "identify/record/parallel.h"
 #include "identify/record/statistics.h"
-#include "sim/law/demands.h"
 #include "sim/law/scalar.h"
 
 namespace omnihil {
@@ -45,13 +44,6 @@ double autocorrelation_time(const Eigen::VectorXd& r) {
   return std::max(1.0, time);
 }
 
-// A robot's record takes a large part of a second to simulate, with derivatives several times that.
-bool on_a_floor(const Predictor& predictor) {
-  const Capabilities rig = predictor.capabilities();
-  return std::ranges::any_of(rig.list,
-                             [](const Capability& c) { return c.there && (c.bits & kNeedsFloor) != 0; });
-}
-
 std::size_t passes_of(std::size_t unknowns) { return (unknowns + kJetWidth - 1) / kJetWidth; }
 
 }  // namespace
@@ -63,7 +55,7 @@ FitProblem::FitProblem(const Predictor& predictor, const Candidate& candidate,
       unknowns_(unknowns),
       jobs_(jobs),
       robust_(robust),
-      near_enough_(near_enough && on_a_floor(predictor)) {
+      near_enough_(near_enough && predictor.is_costly()) {
   for (int run = 0; run < predictor.run_count(); ++run) {
     if (predictor.run(run).split == Split::kTraining && !predictor.compared(run).empty())
       runs_.push_back(run);
@@ -80,7 +72,8 @@ Candidate FitProblem::candidate_at(const Eigen::VectorXd& x) const {
 
 std::vector<std::vector<Eigen::VectorXd>> FitProblem::residuals(const Eigen::VectorXd& x,
                                                                 bool& finite) const {
-  const std::vector<Prediction>& all_predicted = predicted(x);
+  const auto kept = predicted(x);
+  const std::vector<Prediction>& all_predicted = *kept;
   std::vector<std::vector<Eigen::VectorXd>> all(runs_.size());
   parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int n) {
     const auto i = static_cast<std::size_t>(n);
@@ -93,25 +86,16 @@ std::vector<std::vector<Eigen::VectorXd>> FitProblem::residuals(const Eigen::Vec
   return all;
 }
 
-const std::vector<Prediction>& FitProblem::predicted(const Eigen::VectorXd& x) const {
-  // The start, the best point so far, the end of the last step and one trial: more are not asked for again. Derived from what
-  // fit() asks.
-  constexpr std::size_t kKept = 4;  // derived
-  const auto same = [&](const Predicted& p) { return p.x == x; };
-  const auto found = std::find_if(predicted_.begin(), predicted_.end(), same);
-  if (found != predicted_.end()) {
-    std::rotate(predicted_.begin(), found, found + 1);
-    return predicted_.front().runs;
-  }
-  const Candidate c = candidate_at(x);
-  Predicted made{.x = x, .runs = std::vector<Prediction>(runs_.size())};
-  parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int k) {
-    const std::size_t n = longest_first_[static_cast<std::size_t>(k)];
-    made.runs[n] = predictor_.predict(c, runs_[n]);
+std::shared_ptr<const std::vector<Prediction>> FitProblem::predicted(const Eigen::VectorXd& x) const {
+  return predicted_.of(x, [&] {
+    const Candidate c = candidate_at(x);
+    std::vector<Prediction> made(runs_.size());
+    parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int k) {
+      const std::size_t n = longest_first_[static_cast<std::size_t>(k)];
+      made[n] = predictor_.predict(c, runs_[n]);
+    });
+    return made;
   });
-  predicted_.push_front(std::move(made));
-  if (predicted_.size() > kKept) predicted_.pop_back();
-  return predicted_.front().runs;
 }
 
 bool FitProblem::reweigh(const Eigen::VectorXd& x) {
@@ -247,7 +231,7 @@ FitPoint FitProblem::evaluated(const Eigen::VectorXd& x, std::span<const Unknown
   if (all && !nearby && !same) derived_ = {.x = x, .runs = derived(x, by)};
   if (!all) some = derived(x, by);
   const std::vector<Prediction>& derived = all ? derived_.runs : some;
-  const std::vector<Prediction>* plain = strides == 0 || nearby ? &predicted(x) : nullptr;
+  const auto plain = strides == 0 || nearby ? predicted(x) : nullptr;
   std::vector<RunPart> parts(runs_.size());
   parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int r) {
     const auto i = static_cast<std::size_t>(r);

@@ -19,11 +19,12 @@
 // Sources: Huber 1964; Holland, Welsch 1977 (1.345); Sokal 1997 (autocorrelation time).
 #pragma once
 #include <Eigen/Core>
-#include <deque>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "identify/predict/predictor.h"
+#include "identify/record/remembered.h"
 
 namespace omnihil {
 
@@ -69,7 +70,7 @@ class FitProblem {
     Eigen::MatrixXd information;
   };
   std::vector<std::vector<Eigen::VectorXd>> residuals(const Eigen::VectorXd& x, bool& finite) const;
-  const std::vector<Prediction>& predicted(const Eigen::VectorXd& x) const;
+  std::shared_ptr<const std::vector<Prediction>> predicted(const Eigen::VectorXd& x) const;
   FitPoint evaluated(const Eigen::VectorXd& x, std::span<const Unknown> by, Eigen::Index first) const;
   std::vector<Prediction> derived(const Eigen::VectorXd& x, std::span<const Unknown> by) const;
   bool near_derived(const Eigen::VectorXd& x) const;
@@ -84,14 +85,16 @@ class FitProblem {
   std::vector<int> runs_;
   std::vector<std::size_t> longest_first_;  // indices into runs_: what is begun last is not what all wait for
   std::map<std::string, SignalWeight> weights_;
-  // The last predictions without derivatives, newest first: a fit asks for its start, its best point and the point before a
-  // step several times, with other weights. One thread at a time may ask.
-  struct Predicted {
+  // The last predictions without derivatives, as runs_: the start, the best point so far, the end of the last step and one trial
+  // are asked for again with other weights, more are not.
+  static constexpr std::size_t kKept = 4;  // derived from what fit() asks
+  mutable Remembered<Eigen::VectorXd, std::vector<Prediction>> predicted_{kKept};
+  // The last ones by all unknowns, a run's passes one after another. One thread at a time may ask.
+  struct Derived {
     Eigen::VectorXd x;
-    std::vector<Prediction> runs;  // as runs_
+    std::vector<Prediction> runs;
   };
-  mutable std::deque<Predicted> predicted_;
-  mutable Predicted derived_;  // the last by all unknowns: a run's passes one after another
+  mutable Derived derived_;
 };
 
 }  // namespace omnihil

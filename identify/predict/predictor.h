@@ -101,6 +101,8 @@ class Predictor {
   virtual Capabilities capabilities() const = 0;
   // Can this effect act here at all; "" or why not ("needs a camera").
   std::string applies(const EffectEntry& entry) const { return refusal(*entry.info, capabilities()); }
+  // Does a simulation of a run take a large part of a second, and with derivatives several times that?
+  virtual bool is_costly() const { return false; }
   // Do the readings carry this effect's quantisation signature (counted_speed.h)?
   virtual bool shows_signature_of(const EffectEntry&) const { return false; }
 };

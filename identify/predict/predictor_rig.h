@@ -112,6 +112,7 @@ class RigPredictor final : public Predictor {
   const Run& run(int n) const override { return rig_.dataset().runs[at(n)]; }
   const std::vector<ComparedSignal>& compared(int n) const override { return rig_.run(at(n)).compared; }
   Capabilities capabilities() const override { return rig_.capabilities(); }
+  bool is_costly() const override { return Rig::kCostly; }
   bool shows_signature_of(const EffectEntry& effect) const override {
     return rig_.shows_signature_of(effect);
   }

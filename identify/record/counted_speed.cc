@@ -17,7 +17,8 @@ constexpr int kFewestSteps = 3;    // different readings; fewer fit any step: de
 // differenced from an encoder changes at every sample (1.0 to 2.4 times as often), one rounded to a number
 // format wherever its noise or the motion crosses a rounding limit.
 bool slides(const std::vector<double>& values, double step, double window_samples) {
-  constexpr double kLeast = 0.6, kMost = 0.9;  // of the expected changes; between the measured ranges above
+  constexpr double kLeast = 0.6,
+                   kMost = 0.9;  // of the expected changes: a choice between the measured ranges above
   // Changes per sample: "slow" of the law above; tuned on it.
   constexpr double kSlowest = 0.05, kFastest = 0.6;  // tuned
   constexpr double kUneven = 0.5;    // change of speed over a window, of the speed: "even"; tuned

@@ -198,7 +198,7 @@ Fitted refit(const RefitSetup& of_iteration, const Fitted& parent, const Screene
   }
   if (effect.share >= kWorthTypicalStart && leaves_structure(setup, parent, best) && !stopped()) {
     const std::optional<Candidate> lower = below_on_strength_grid(
-        setup, {at_priors(best.fit.model, *setup.nominal)}, effect.name, best.residual[kTraining]);
+        setup, at_priors(best.fit.model, *setup.nominal), effect.name, best.residual[kTraining]);
     if (lower) also_from(*lower);
   }
   best = reset_unidentifiable(setup, parent, std::move(best));

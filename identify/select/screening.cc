@@ -47,7 +47,7 @@ Scored score(const ScreeningTask& task, EffectVariant variant) {
 bool resize(const ScreeningTask& task, const Scored& scored, EffectVariant& variant, double idle_factor) {
   // Largest size tried, of the parameter's bound; smallest, of that; a change of size below this factor is
   // none. Choices; all three only save simulations: the refit starts from the coefficients, whatever the size was.
-  constexpr double kOfBound = 0.9, kLeastOfBound = 1e-6, kSameBelow = 0.7, kSameAbove = 1.4;
+  constexpr double kOfBound = 0.9, kLeastOfBound = 1e-6, kSameBelow = 0.7, kSameAbove = 1.4;  // choices
   bool changed = false;
   const EffectInfo& info = *variant.shape.entry->info;
   for (std::size_t c = 0; c < variant.columns.size(); ++c) {
@@ -109,7 +109,7 @@ class SizeSearch {
     first_ = &variants.front();
     // Octaves about the typical size: 8 times to a 128th of it. Halvings of the last octave: to 2 % of the
     // size where it begins to act (2^(1/32)). Choices, by cost: a simulation each.
-    constexpr int kLargest = 3, kSmallest = -7, kHalvings = 5;
+    constexpr int kLargest = 3, kSmallest = -7, kHalvings = 5;  // by cost
     // Sizes beyond that one. Tuned on the open cases (DECISIONS 33); sensitivity not measured.
     constexpr double kBeyond[] = {1.08, 1.2, 1.4, 1.7};  // tuned
     for (const EffectVariant& v : variants) {
@@ -271,7 +271,7 @@ std::vector<RegimeMask> regime_masks(const WhitenedResiduals& residuals, const C
   const Eigen::VectorXd acceleration = residuals.track(model, "acceleration");
   const std::vector<double> speeds = finite_sizes(speed), accelerations = finite_sizes(acceleration);
   // Samples in a regime: its mean square is then known to 10 % (sqrt(2 / n)); a choice.
-  constexpr std::size_t kLeast = 200;
+  constexpr std::size_t kLeast = 200;  // a choice
   // Limits of the regimes: shares of the top speed (98 % quantile, so that no glitch sets it), quantiles of
   // the acceleration. Tuned on the open cases; sensitivity not measured.
   constexpr double kTopQuantile = 0.98, kSlow = 0.1, kFast = 0.6;     // tuned

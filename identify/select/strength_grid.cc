@@ -1,6 +1,8 @@
 #include "identify/select/strength_grid.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "sim/law/effect_registry.h"
 #include "sim/model/effect_reader.h"
@@ -34,25 +36,23 @@ Candidate with_strength(const Candidate& model, const EffectUse& use, double str
 
 }  // namespace
 
-std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const std::vector<Candidate>& models,
+std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const Candidate& model,
                                                 const std::string& effect, const Eigen::VectorXd& residual) {
+  const auto use =
+      std::ranges::find_if(model.effects, [&](const EffectUse& u) { return u.entry->info->id == effect; });
+  if (use == model.effects.end()) return std::nullopt;
   const WhitenedResiduals& fit = (*setup.splits)[kTraining];
   std::optional<Candidate> lowest;
   double least = 1.0;  // of `residual`'s energy
-  for (const Candidate& model : models) {
-    for (const EffectUse& use : model.effects) {
-      if (use.entry->info->id != effect) continue;
-      for (const double strength : strengths(use, model)) {
-        if (setup.stop && setup.stop()) return lowest;
-        Candidate at = with_strength(model, use, strength);
-        const Eigen::VectorXd left = fit.residual(fit.predicted_runs(at, setup.jobs));
-        if (left.size() != residual.size() || !left.allFinite()) continue;
-        const double ratio = energy_ratio(fit, residual, left);
-        if (!(ratio < least)) continue;
-        least = ratio;
-        lowest = std::move(at);
-      }
-    }
+  for (const double strength : strengths(*use, model)) {
+    if (setup.stop && setup.stop()) return lowest;
+    Candidate at = with_strength(model, *use, strength);
+    const Eigen::VectorXd left = fit.residual(fit.predicted_runs(at, setup.jobs));
+    if (left.size() != residual.size() || !left.allFinite()) continue;
+    const double ratio = energy_ratio(fit, residual, left);
+    if (!(ratio < least)) continue;
+    least = ratio;
+    lowest = std::move(at);
   }
   return lowest;
 }

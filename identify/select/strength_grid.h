@@ -2,24 +2,22 @@
 // part of the record alone (a limit that the largest steps reach), and base parameters that have absorbed the effect bar the
 // way to its own.
 //
-//   const Candidate believed = at_priors(fitted.model, nominal);
-//   const auto lower = below_on_strength_grid(setup, {fitted.model, believed}, "duty_limit", residual);
+//   const auto lower = below_on_strength_grid(setup, at_priors(fitted.model, nominal), "duty_limit", residual);
 //
 // Grid: the visible size (effect_variants.h) times powers of the root of two, from a quarter to four times, of the sign that
 // it has (at its neutral value: of both). Multi-start as in Ljung, System Identification, 1999, 10.5.
-// Limits: one strength at a time, shapes and base parameters as in the models given; a valley that is narrower than a factor
+// Limits: one strength at a time, shapes and base parameters as in the model given; a valley that is narrower than a factor
 // of the root of two is found only if its foot is below what was fitted.
 #pragma once
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "identify/select/refit.h"
 
 namespace omnihil {
 
-// The point of least whitened energy of the fit runs, with the models' other values; empty: none is below `residual`'s.
-std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const std::vector<Candidate>& models,
+// The point of least whitened energy of the fit runs, with the model's other values; empty: none is below `residual`'s.
+std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const Candidate& model,
                                                 const std::string& effect, const Eigen::VectorXd& residual);
 
 }  // namespace omnihil

@@ -50,7 +50,7 @@ double difference(const TwinSignal& s, std::size_t k, const Eigen::VectorXd& off
 
 // Numbers of a model are off by this share of a fault's least size, each for itself: where the robot skids, or a wheel comes to the
 // edge of its grip, every gain is large, and so is what may be off there; a choice.
-constexpr double kModelShare = 0.2;
+constexpr double kModelShare = 0.2;  // a choice
 
 double variance_of(const SignalPromise& p, const TwinSignal& s, std::size_t k, const Eigen::VectorXd& least) {
   const double model2 =
@@ -68,7 +68,7 @@ Eigen::VectorXd least_sizes(const TwinBank& bank) {
 Eigen::VectorXd learn_offset(const std::vector<TwinWindow>& healthy, const TwinBank& bank,
                              const TwinPromise& promise) {
   // Differences 0.1 s apart tell something new, six of 60 Hz do not: the prior weighs as much more. A choice.
-  constexpr double kDependent = 6.0;
+  constexpr double kDependent = 6.0;  // a choice
   const auto n = static_cast<Eigen::Index>(bank.faults.size());
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);

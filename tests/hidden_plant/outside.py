@@ -66,27 +66,37 @@ def names():
     return list(KINDS) + list(ROBOT_KINDS)
 
 
+def needs_of(kind):
+    return "bus hidden" if kind == "supply_ripple" else "not heated"
+
+
+def sized(kind, rig, ruler, share):
+    """(plant parameters, what the answer says of it) of a kind at the size at which it takes about this share."""
+    hide, limits, _, _ = KINDS[kind]
+    low, high = (x * rig.torque_scale for x in limits)
+    size, reached = size_for(ruler, lambda m: hide(m, rig), (low, high), share)
+    return hide(size, rig), {"kind": kind, "size": size, "share": reached}
+
+
 def make_case(folder, key, kind, share=0.7):
     if kind in ROBOT_KINDS:
         answer = robot_case.make_case(folder, key, [], 0, ROBOT_KINDS[kind])
         return {**answer, "outside": {"kind": kind}}
-    hide, limits, shows, gear = KINDS[kind]
+    _, _, shows, gear = KINDS[kind]
     rng = axis_case.source(*key)
-    needs = ["bus hidden"] if kind == "supply_ripple" else ["not heated"]
-    rig = draw_rig(rng, "drive", gear, needs)
+    rig = draw_rig(rng, "drive", gear, [needs_of(kind)])
     kinds = axis_case.draw_kinds(rng, [k for k in shows if k in POOL], rig, False)
     asked = axis_case.asked_of(axis_case.source(*key, "run", "fit"), kinds[0])
-    low, high = (x * rig.torque_scale for x in limits)
-    size, reached = size_for(Ruler(rig, asked), lambda m: hide(m, rig), (low, high), share)
-    axis_case.write_case(folder, rig, kinds, hide(size, rig), key)
-    return {**axis_case.answer_of(rig, kinds, []), "outside": {"kind": kind, "size": size, "share": reached}}
+    hidden, outside = sized(kind, rig, Ruler(rig, asked), share)
+    axis_case.write_case(folder, rig, kinds, hidden, key)
+    return {**axis_case.answer_of(rig, kinds, []), "outside": outside}
 
 
 def with_an_effect():
     """(effect, kind) of one bench, in a fixed order that mixes them: what is recorded of real drives has both."""
 
-    def fits(effect, kind):  # all other kinds need a bench that does not heat up
-        return "drive" in effect.rigs and (kind == "supply_ripple" or "heating" not in effect.needs)
+    def fits(effect, kind):
+        return "drive" in effect.rigs and not {"heating", "not heated"} <= {needs_of(kind), *effect.needs}
 
     both = [(e.id, kind) for e in EFFECTS for kind in KINDS if fits(e, kind)]
     return sorted(both, key=lambda pair: hashlib.sha256("/".join(pair).encode()).hexdigest())
@@ -102,17 +112,15 @@ def make_case_with_an_effect(folder, key, effect_id, kind):
     """One effect of the list, of 1 to 100 times the noise's energy, and beside it what no list has, of 0.3 to 50 times.
     Runs of 8 s, as measured ones are."""
     rng, effect = axis_case.source(*key), BY_ID[effect_id]
-    hide, limits, shows, _ = KINDS[kind]
-    needs = [*effect.needs, "bus hidden" if kind == "supply_ripple" else "not heated"]
+    needs = [*effect.needs, needs_of(kind)]
     rig = draw_rig(rng, "drive", rng.choice(effect.gears) if effect.gears else None, list(dict.fromkeys(needs)))
-    both = "+".join((rng.choice(effect.shows), rng.choice([k for k in shows if k in POOL])))
+    both = "+".join((rng.choice(effect.shows), rng.choice([k for k in KINDS[kind][2] if k in POOL])))
     kinds = (both, both, rng.choice(list(POOL)))
     asked = axis_case.asked_of(axis_case.source(*key, "run", "fit"), both, ROWS_WITH_AN_EFFECT)
     ruler = Ruler(rig, asked)
     hidden, answer = hidden_at(
         effect, effect.shape(rng, rig), rig, ruler, size_range(effect, rig), energy_share(rng, 1, 100), same_law(effect, rig)
     )
-    low, high = (x * rig.torque_scale for x in limits)
-    size, reached = size_for(ruler, lambda m: hide(m, rig), (low, high), energy_share(rng, 0.3, 50))
-    axis_case.write_case(folder, rig, kinds, {**hidden, **hide(size, rig)}, key, rows=ROWS_WITH_AN_EFFECT)
-    return {**axis_case.answer_of(rig, kinds, [answer]), "outside": {"kind": kind, "size": size, "share": reached}}
+    strange, outside = sized(kind, rig, ruler, energy_share(rng, 0.3, 50))
+    axis_case.write_case(folder, rig, kinds, {**hidden, **strange}, key, rows=ROWS_WITH_AN_EFFECT)
+    return {**axis_case.answer_of(rig, kinds, [answer]), "outside": outside}

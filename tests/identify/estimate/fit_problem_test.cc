@@ -26,6 +26,8 @@ class Polynomial : public FakePredictor {
     return made(c, by);
   }
 
+  bool is_costly() const override { return true; }
+
   mutable int predicted = 0, derived = 0;
 
  private:

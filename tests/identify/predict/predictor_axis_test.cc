@@ -81,6 +81,7 @@ Dataset bench(const Candidate& truth, std::size_t n, double size = 0.3) {
 TEST(AxisPredictor, TheTrueModelLeavesTheRoundingOfCountsOnly) {
   const Candidate truth = model();
   const auto p = make_predictor(bench(truth, 1500), truth, {});
+  EXPECT_FALSE(p->is_costly());
   ASSERT_EQ(p->method(), Method::kForward);
   const ComparedSignal& speed = p->compared(0)[0];
   EXPECT_EQ(speed.name, "velocity");

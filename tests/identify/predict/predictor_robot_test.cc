@@ -177,6 +177,7 @@ TEST(PredictorRobot, OnTyresValuesBesideDerivativesAreThePredicted) {
   const std::vector<Unknown> unknowns = unknowns_of(at);
   ASSERT_GT(unknowns.size(), static_cast<std::size_t>(kJetWidth));
   const auto simulated = simulated_recording(at, false, 1.0);
+  EXPECT_TRUE(simulated->is_costly());
   const Prediction alone = simulated->predict(at, 0);
   const Prediction beside = simulated->predict_with_derivatives(at, unknowns, 0);
   for (std::size_t s = 0; s < alone.values.size(); ++s) {

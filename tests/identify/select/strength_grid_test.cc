@@ -42,7 +42,7 @@ TEST(StrengthGrid, FindsThePointNextToTheTruthOfEitherSign) {
     const Scene with_load(hidden);
     const Candidate neutral = with_load.with(0.0);
     const auto lower =
-        below_on_strength_grid(with_load.setup, {neutral}, "constant_load", with_load.residual(neutral));
+        below_on_strength_grid(with_load.setup, neutral, "constant_load", with_load.residual(neutral));
     ASSERT_TRUE(lower);
     EXPECT_NEAR(value_at(*lower, kLoad).value() / hidden, 1.0, 1e-9);  // both lie on the grid
   }
@@ -53,18 +53,23 @@ TEST(StrengthGrid, HasNothingBelowTheOptimum) {
   const double hidden = 1.2 * visible_size(row, Scene(0.0).nominal);  // between two points
   const Scene scene(hidden);
   const Candidate there = scene.with(hidden);
-  EXPECT_FALSE(below_on_strength_grid(scene.setup, {there}, "constant_load", scene.residual(there)));
+  EXPECT_FALSE(below_on_strength_grid(scene.setup, there, "constant_load", scene.residual(there)));
 }
 
-TEST(StrengthGrid, TakesTheModelWhoseOtherValuesAreNearer) {
+TEST(StrengthGrid, KeepsTheModelsOtherValues) {
   const EffectParam& row = find_effect("constant_load")->info->params[0];
   const double hidden = visible_size(row, Scene(0.0).nominal);
   const Scene scene(hidden);
   const Candidate bent = with_load(scene.nominal, 0.0, 5e-5), believed = scene.with(0.0);
-  const auto lower =
-      below_on_strength_grid(scene.setup, {bent, believed}, "constant_load", scene.residual(bent));
+  const auto lower = below_on_strength_grid(scene.setup, believed, "constant_load", scene.residual(bent));
   ASSERT_TRUE(lower);
   EXPECT_DOUBLE_EQ(value_at(*lower, kFriction).value(), 1e-5);
+}
+
+TEST(StrengthGrid, OfAnEffectThatTheModelHasNotIsNone) {
+  const Scene scene(0.1);
+  const Candidate model = scene.with(0.0);
+  EXPECT_FALSE(below_on_strength_grid(scene.setup, model, "cogging", scene.residual(model)));
 }
 
 }  // namespace
