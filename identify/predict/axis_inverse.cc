@@ -9,6 +9,7 @@
 #include "identify/predict/interpolation.h"
 #include "identify/predict/undetermined.h"
 #include "identify/record/band_noise.h"
+#include "identify/record/periodogram.h"
 #include "identify/record/statistics.h"
 #include "identify/record/wiener.h"
 #include "sim/bench/axis_signal.h"
@@ -171,6 +172,7 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     velocity = rate_of(position, rate);
     position = wiener_smoothed(position, NoiseSpectrum::kWhite).value;
   }
+  const std::vector<double> raw_velocity = velocity;
   const WienerEstimate smoothed = wiener_smoothed(velocity, spectrum);
   // What the sensor does not resolve of the motion the torque still has: it is compared as far as both have it.
   const double cutoff =
@@ -194,11 +196,13 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
     const bool stated = channel != nullptr && channel->sigma > 0.0 && (!is_input || by_torque);
     std::vector<double> low = zero_phase(s.filter, raw);
     // White noise of the channel, in the filter's band; of a torque, which is compared as the mean of two samples, that of
-    // its samples.
+    // its samples. What a controller commands faster than the band is no noise where the motion follows it.
     const bool of_means = is_input && by_torque;
-    double sigma = stated     ? channel->sigma
-                   : of_means ? white_noise(command, zero_phase(s.filter, command), band)
-                              : white_noise(raw, low, band);
+    const std::vector<double>& samples = of_means ? command : raw;
+    double sigma = stated
+                       ? channel->sigma
+                       : std::fmin(white_noise(samples, of_means ? zero_phase(s.filter, command) : low, band),
+                                   incoherent_sigma(samples, raw_velocity, band));
     sigma *= std::sqrt(of_means ? kept_of_means(band) : kept_of_samples(band));
     if (quantity == Quantity::kLoadTorque) sigma = std::hypot(sigma, drive.gear_ratio * inertia_sigma_Nm);
     if (quantity == Quantity::kNeededInput) {

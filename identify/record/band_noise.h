@@ -11,7 +11,8 @@
 
 namespace omnihil {
 
-// Of a channel's samples, by what stands above the cutoff, in the channel's unit; `low`: the samples through the filter.
+// Of a channel's samples, by what stands above the cutoff, in the channel's unit; `low`: the samples through the filter. All of that
+// counts as noise: an upper bound where the channel itself has something there (periodogram.h has another).
 double white_noise(const std::vector<double>& samples, const std::vector<double>& low, double band);
 
 // Share of white noise's variance that the band keeps: of samples, and of means from each to the next (interpolated by a cubic:

@@ -2,58 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 
+#include "identify/record/periodogram.h"
 #include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
 
-// Segments, powers of two, by cost and resolution: at 1 kHz 1 Hz. At least eight fit into a record.
-constexpr std::size_t kShortest = 32, kLongest = 1024;  // by cost
 // Where the noise is looked for, in shares of the Nyquist frequency: above the motion, and below where differences of
 // a position have no noise left. Choices.
 constexpr double kNoiseFrom = 0.5, kNoiseTo = 0.9;  // choices
 // Standard deviations of the periodogram's mean that a frequency has to stand above the noise: a slope multiplies what
 // is let through by chance with its frequency. One in 3e4 by chance (normal, one-sided).
 constexpr double kAbove_sigmas = 4.0;  // a choice
-
-std::size_t segment_length(std::size_t samples) {
-  std::size_t length = kShortest;
-  while (length < kLongest && 2 * length * 8 <= samples) length *= 2;
-  return length;
-}
-
-// One-sided periodogram (length / 2 + 1 values), summed over half-overlapped segments without their means; relative
-// standard deviation 1.03 / sqrt(segments) with Hann's window (Welch 1967).
-struct Periodogram {
-  std::vector<double> power;
-  double segments = 0.0;
-  double window_square =
-      0.0;  // sum of the window's squares, of all segments: the power of white noise of variance 1
-};
-Periodogram welch(std::span<const double> x, std::size_t length) {
-  Eigen::FFT<double> fft;
-  Periodogram out{.power = std::vector<double>(length / 2 + 1, 0.0)};
-  std::vector<double> segment(length);
-  std::vector<std::complex<double>> spectrum;
-  for (std::size_t from = 0; from + length <= x.size(); from += length / 2) {
-    double mean = 0.0;
-    for (std::size_t i = 0; i < length; ++i) mean += x[from + i] / static_cast<double>(length);
-    for (std::size_t i = 0; i < length; ++i) {
-      const double turn = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length);
-      const double window = 0.5 * (1.0 - std::cos(turn));
-      segment[i] = window * (x[from + i] - mean);
-      out.window_square += window * window;
-    }
-    fft.fwd(spectrum, segment);
-    for (std::size_t k = 0; k < out.power.size(); ++k) out.power[k] += std::norm(spectrum[k]);
-    out.segments += 1.0;
-  }
-  return out;
-}
 
 double shape_of(NoiseSpectrum noise, double share_of_nyquist) {
   const double turn = std::numbers::pi * share_of_nyquist;
@@ -70,9 +32,7 @@ std::vector<double> noise_of(const Periodogram& periodogram, NoiseSpectrum noise
     const double share = static_cast<double>(k) / top;
     if (share >= kNoiseFrom && share <= kNoiseTo) level.push_back(power[k] / shape_of(noise, share));
   }
-  // median over mean of a chi-square of n degrees, (1 - 2 / (9 n))^3 (Wilson, Hilferty 1931); n from the relative deviation above
-  const double degrees = 2.0 * periodogram.segments / (1.03 * 1.03);
-  const double size = median(std::move(level)) / std::pow(1.0 - 2.0 / (9.0 * degrees), 3);
+  const double size = median(std::move(level)) / median_over_mean(periodogram.segments);
   std::vector<double> out;
   for (std::size_t k = 0; k < power.size(); ++k)
     out.push_back(size * shape_of(noise, static_cast<double>(k) / top));
@@ -82,7 +42,7 @@ std::vector<double> noise_of(const Periodogram& periodogram, NoiseSpectrum noise
 // H at the frequencies of the periodogram.
 std::vector<double> gain_of(const Periodogram& periodogram, const std::vector<double>& noise_power) {
   const std::vector<double>& power = periodogram.power;
-  const double above = 1.0 + kAbove_sigmas * 1.03 / std::sqrt(periodogram.segments);
+  const double above = 1.0 + kAbove_sigmas * kWelchDeviation / std::sqrt(periodogram.segments);
   std::vector<double> gain;
   for (std::size_t k = 0; k < power.size(); ++k)
     gain.push_back(power[k] > above * noise_power[k] ? 1.0 - noise_power[k] / power[k] : 0.0);
@@ -116,7 +76,7 @@ WienerEstimate wiener_smoothed(std::span<const double> x, NoiseSpectrum noise) {
     out.value.assign(x.begin(), x.end());
     return out;
   }
-  const Periodogram periodogram = welch(x, segment_length(n));
+  const Periodogram periodogram = periodogram_of(x, segment_length(n));
   const std::vector<double> noise_power = noise_of(periodogram, noise);
   const std::vector<double> gain = gain_of(periodogram, noise_power);
   for (std::size_t k = 0; k < gain.size(); ++k)

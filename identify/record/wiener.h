@@ -10,7 +10,7 @@
 // regressor's expectation given the measurement in its place the coefficient is right (regression calibration: Carroll
 // et al., Measurement Error in Nonlinear Models, 2nd ed. 2006, ch. 4); slopes of the smoothed record are the expected
 // slopes, for both are linear.
-// Spectrum: Welch (IEEE Trans. Audio Electroacoust. 15, 1967), Hann window, half overlapped. The noise's size is the
+// Spectrum: periodogram.h. The noise's size is the
 // median between half and 0.9 of the Nyquist frequency, so that lines there do not count.
 // Validity: evenly spaced samples, noise that has the named spectrum; a motion that fills that band is taken for noise.
 // Cannot: tell noise that comes and goes (steps of a coarse encoder at low speed).

@@ -45,16 +45,23 @@ const ComparedSignal* signal_of(const Predictor& predictor, const std::string& c
 std::string remainder(const ResidualExcess& excess) {
   constexpr double kAtNoise =
       1.05;  // of its root mean square: the replicates' own scatter is of that order; a choice
+  // Of the null's energy: 2.5 standard deviations where a torque's noise is known worst (axis_inverse.cc); derived.
+  constexpr double kTooFarBelow = 0.5;  // derived
   const double ratio = std::sqrt(std::max(0.0, 1.0 + excess.excess));
   const std::string_view runs = excess.split == Split::kTraining     ? "fit"
                                 : excess.split == Split::kValidation ? "held-out"
                                                                      : "extrapolation";
-  return fmt::format("{:.3g} {} RMS of {} on {} runs, {}", excess.rms, excess.unit, excess.signal, runs,
-                     ratio < kAtNoise ? "as the sensors' noise alone would leave"
-                     : excess.noise_level_sigma > 0.0
-                         ? fmt::format("{:.3g} times the sensors' noise, which is known to {:.0f} %", ratio,
-                                       50.0 * excess.noise_level_sigma)  // a variance's is twice its root's
-                         : fmt::format("{:.3g} times the sensors' noise", ratio));
+  return fmt::format(
+      "{:.3g} {} RMS of {} on {} runs, {}", excess.rms, excess.unit, excess.signal, runs,
+      excess.excess < -kTooFarBelow
+          ? fmt::format("{:.2g} times the noise that the sensors were taken to have: too much (state "
+                        "its `sigma`), and what is smaller was not looked for",
+                        ratio)
+      : ratio < kAtNoise ? "as the sensors' noise alone would leave"
+      : excess.noise_level_sigma > 0.0
+          ? fmt::format("{:.3g} times the sensors' noise, which is known to {:.0f} %", ratio,
+                        50.0 * excess.noise_level_sigma)  // a variance's is twice its root's
+          : fmt::format("{:.3g} times the sensors' noise", ratio));
 }
 
 }  // namespace

@@ -137,6 +137,16 @@ TEST(AxisPredictor, ATorqueBetweenRowsIsThatOfACurveThroughThem) {
             0.005 * 40.0 / std::numbers::sqrt2);
 }
 
+// A controller commands faster than the band that is compared (a tenth of the rate), and the mass follows: that is no noise of
+// the force, 28 N of it or 0.2.
+TEST(AxisPredictor, WhatTheMotionFollowsOfAFastCommandIsNoNoise) {
+  const auto [truth, p] =
+      force_driven({.position_sigma_m = 1e-9, .period_s = 2e-3, .force_Hz = 65.0, .force_sigma_N = 0.2});
+  const ComparedSignal& force = p->compared(0)[0];
+  EXPECT_LT(force.noise_sigma, 0.4);
+  EXPECT_GT(force.noise_sigma, 0.02);
+}
+
 // A command has no noise of its own: what the right model leaves is the position's noise, by the mass.
 TEST(AxisPredictor, TheNoiseOfANeededTorqueIsThatOfTheMotionTimesTheInertia) {
   for (const double sigma_m : {1e-6, 3e-6, 1e-5}) {

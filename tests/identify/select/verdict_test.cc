@@ -51,6 +51,11 @@ TEST(Verdict, TheSentenceSaysSizeSignalAndShare) {
   const std::string below = residual_sentence(excess(-0.03, 0.5, 0.05, 0.0), true);
   EXPECT_NE(below.find("as the sensors' noise alone would leave"), std::string::npos) << below;
   EXPECT_EQ(below.find("-"), below.find("-out")) << below;
+  // far below it: the noise was no noise
+  const std::string wrong = residual_sentence(excess(-0.75, 0.5, 0.05, 0.0), true);
+  EXPECT_NE(wrong.find("0.5 times the noise that the sensors were taken to have: too much"),
+            std::string::npos)
+      << wrong;
   const std::string nothing = residual_sentence(excess(0.02, 0.02, 0.01, 1.0), false);
   EXPECT_NE(nothing.find("Nothing that matters is missing"), std::string::npos) << nothing;
 }
