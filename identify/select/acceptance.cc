@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "identify/select/plausibility.h"
+#include "identify/select/verdict.h"
 
 namespace omnihil {
 namespace {
@@ -63,6 +64,19 @@ double share_of_base(const AcceptanceContext& context, std::size_t split, const 
     most = std::max(most, fall[k] / base[k]);
   }
   return any ? most : 1.0;
+}
+
+// Where structure remains: does the child take away nearly all that stands above the null, in the channel that has most of it, on
+// runs that decide? However small a share of the whole that is: it is what was missing.
+bool explains_structure(const AcceptanceContext& context, std::size_t split, const Fitted& parent,
+                        const Fitted& child) {
+  if (!context.structure_remains) return false;
+  const auto excess = [&](const Fitted& of) {
+    return excess_of((*context.splits)[split], *context.null, *context.channels, of.residual[split]);
+  };
+  const Eigen::VectorXd before = excess(parent), after = excess(child);
+  Eigen::Index most = 0;
+  return before.maxCoeff(&most) > kLeastExcess && after[most] <= (1.0 - kNearlyAll) * before[most];
 }
 
 // The largest relative fall of one channel's unweighted residual energy.
@@ -138,13 +152,13 @@ std::string reason_by_prior(const Fitted& parent, const Fitted& child, const Acc
 }
 
 // The gates of the gain that do not depend on the split that decides, in order. Empty: passed.
-std::string reason_against_fit(const AcceptanceResult& gains, double signal_to_null) {
+std::string reason_against_fit(const AcceptanceResult& gains, double signal_to_null, bool explains) {
   if (signal_to_null < kLeastSignalToNull) {
     return signal_to_null < 0.05  // rounds to 0.0
                ? "linearised, it gains nothing"
                : fmt::format("its gain is {:.1f} times that of the simulated null", signal_to_null);
   }
-  if (1.0 - gains.fit.ratio < kLeastFitGain) {
+  if (1.0 - gains.fit.ratio < (explains ? 0.0 : kLeastFitGain)) {
     return fmt::format("it lowers the error energy of the fit runs by {} only",
                        percent(1.0 - gains.fit.ratio));
   }
@@ -158,11 +172,12 @@ const SplitGain& gain_on(const AcceptanceResult& gains, Split split) {
 
 // Those that do, in order. Empty: passed.
 std::string reason_against_gain(const Fitted& parent, const Fitted& child, const AcceptanceResult& gains,
-                                Split decides, double share_of_base, double rise) {
+                                Split decides, bool explains, double rise) {
   const bool held_out = decides == Split::kValidation;
   const std::size_t d = static_cast<std::size_t>(decides);
   const SplitGain& held = gain_on(gains, decides);
-  const double gain = 1.0 - held.ratio, needed = kLeastGain + kLeastGainInNoise * held.floor;
+  const double gain = 1.0 - held.ratio, share_of_base = gains.share_of_base;
+  const double needed = explains ? 0.0 : kLeastGain + kLeastGainInNoise * held.floor;
   if (gain < needed && held.ratio > 1.0) {
     return fmt::format("it lowers the error that it was fitted to, and raises the {} error energy by {}",
                        held_out ? "held-out" : "fit", percent(-gain));
@@ -255,10 +270,11 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
     implausible = below_time_resolution(child.fit, name, context.rate_Hz, context.loop_period_s);
   out.plausible = implausible.empty();
   out.share_of_base = share_of_base(context, static_cast<std::size_t>(decides), parent, child);
-  out.why = reason_against_fit(out, signal_to_null);
+  const bool explains = explains_structure(context, static_cast<std::size_t>(decides), parent, child);
+  out.why = reason_against_fit(out, signal_to_null, explains);
   const SplitGain* by = &held;
   if (out.why.empty()) {
-    out.why = reason_against_gain(parent, child, out, decides, out.share_of_base, rise);
+    out.why = reason_against_gain(parent, child, out, decides, explains, rise);
     if (!out.why.empty() && extrapolation_decides(context, parent, child, out)) {
       out.why.clear();
       by = &out.extrapolation;

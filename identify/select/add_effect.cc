@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/estimate/heard_commands.h"
+#include "identify/select/verdict.h"
 
 namespace omnihil {
 namespace {
@@ -45,7 +46,7 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
   say("simulated null", 0.4);
   context.simulate();
   std::vector<std::string> ignored;
-  const SelectionTask task = context.task(ignored);
+  SelectionTask task = context.task(ignored);
   double null_gain = 0.0;
   const Screened start = screened_alone(task, context.base(), use, null_gain);
   say("refitting with " + start.name, 0.6);
@@ -55,8 +56,20 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
                          1.0);
   const double signal_to_null =
       start.tried ? start.gain / std::max(null_gain, 1e-300) : (gained > 0.0 ? kScreenedBefore : 0.0);
-  const AcceptanceResult acceptance = test_acceptance(task.acceptance_context, context.base(), with,
-                                                      start.name, signal_to_null, start.aliased_parameter());
+  const auto test = [&] {
+    return test_acceptance(task.acceptance_context, context.base(), with, start.name, signal_to_null,
+                           start.aliased_parameter());
+  };
+  AcceptanceResult acceptance = test();
+  if (!acceptance.accepted()) {
+    task.acceptance_context.structure_remains = true;
+    const AcceptanceResult small = test();
+    const auto remains = [&, model = context.base().fit.model] {
+      return structure_remains(ResidualExcesses(context, model, model, options.seed, options.jobs).alike(),
+                               false);
+    };
+    if (small.accepted() && remains()) acceptance = small;
+  }
   out.useful = acceptance.accepted() && start.is_resolved();
   out.why = start.is_resolved() ? acceptance.why : std::string(kPhaseUnresolved);
   out.fit_after = with.fit;

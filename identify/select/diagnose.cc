@@ -159,11 +159,12 @@ class Diagnosing {
         continue;
       }
       std::optional<Fitted> converged = converged_choice(iteration);
+      const bool unexplained = !converged && !iteration.stopped && pairs_asked() && worth_another_iteration();
+      if (unexplained) converged = converged_choice(with_small_gains(iteration));
       if (first) out_.ranking = iteration.ranking;
       out_.ladder.back().ranking = iteration.ranking;
       if (!converged) {
-        if (iteration.stopped || !pairs_asked() || !worth_another_iteration() || !take_pair(iteration))
-          return;
+        if (!unexplained || !take_pair(iteration)) return;
         from = to;
         continue;
       }
@@ -171,6 +172,13 @@ class Diagnosing {
       if (!worth_another_iteration()) return;
       from = to;
     }
+  }
+
+  // Structure remains, and nothing was accepted.
+  Iteration& with_small_gains(Iteration& iteration) {
+    task_.acceptance_context.structure_remains = true;
+    judge_anew(task_, current_, iteration);
+    return iteration;
   }
 
   // Where nothing has been found at all, an answer is worth two further iterations.
@@ -292,7 +300,9 @@ class Diagnosing {
     data->context.simulate();
     data_ = std::move(data);
     std::vector<std::string> known;
+    const bool remained = task_.acceptance_context.structure_remains;
     task_ = context().task(known);
+    task_.acceptance_context.structure_remains = remained;
     out_.nominal_comparison = compare(context().predictor(), nominal_);
     out_.baseline = context().base().fit;
     out_.baseline_comparison = compare(context().predictor(), out_.baseline.model);
@@ -452,39 +462,6 @@ class Diagnosing {
 };
 
 }  // namespace
-
-std::string_view outcome_name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kFound:
-      return "found";
-    case Outcome::kMoreRemains:
-      return "found, but more remains";
-    case Outcome::kNothingFound:
-      return "nothing found";
-    case Outcome::kNotSearched:
-      return "not searched";
-  }
-  return "";
-}
-
-std::string_view verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kAdequate:
-      return "adequate";
-    case Verdict::kEffect:
-      return "effect";
-    case Verdict::kUnknown:
-      return "unknown";
-  }
-  return "";
-}
-
-std::span<const LadderStep> steps_after_first_ranking(const Diagnosis& diagnosis) {
-  const auto first = std::find_if(diagnosis.ladder.begin(), diagnosis.ladder.end(),
-                                  [](const LadderStep& step) { return !step.ranking.empty(); });
-  return first == diagnosis.ladder.end() ? std::span<const LadderStep>()
-                                         : std::span<const LadderStep>(first + 1, diagnosis.ladder.end());
-}
 
 Diagnosis diagnose(const Dataset& dataset, const Candidate& nominal, const DiagnoseOptions& options) {
   const ThreadTeam team(options.jobs);

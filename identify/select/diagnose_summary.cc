@@ -121,4 +121,37 @@ std::vector<DataFinding> lost_commands(const HeardCommands& heard) {
   return out;
 }
 
+std::string_view outcome_name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kFound:
+      return "found";
+    case Outcome::kMoreRemains:
+      return "found, but more remains";
+    case Outcome::kNothingFound:
+      return "nothing found";
+    case Outcome::kNotSearched:
+      return "not searched";
+  }
+  return "";
+}
+
+std::string_view verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAdequate:
+      return "adequate";
+    case Verdict::kEffect:
+      return "effect";
+    case Verdict::kUnknown:
+      return "unknown";
+  }
+  return "";
+}
+
+std::span<const LadderStep> steps_after_first_ranking(const Diagnosis& diagnosis) {
+  const auto first = std::find_if(diagnosis.ladder.begin(), diagnosis.ladder.end(),
+                                  [](const LadderStep& step) { return !step.ranking.empty(); });
+  return first == diagnosis.ladder.end() ? std::span<const LadderStep>()
+                                         : std::span<const LadderStep>(first + 1, diagnosis.ladder.end());
+}
+
 }  // namespace omnihil

@@ -80,6 +80,7 @@ SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) c
   task.acceptance_context = {
       .splits = &splits_,
       .null = &null_,
+      .channels = &channels_,
       .bootstrap = {&bootstrap_[kTraining], &bootstrap_[kValidation], &bootstrap_[kExtrapolation]},
       .rate_Hz = rate_Hz(*predictor_),
       .loop_period_s = predictor_->capabilities().loop_period_s,

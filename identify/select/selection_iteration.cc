@@ -148,6 +148,12 @@ double largest_null_gain_of(const std::vector<Screened>& screened) {
   return most;
 }
 
+void judge(const SelectionTask& task, const Fitted& parent, double largest_null_gain, CandidateEffect& c) {
+  c.acceptance =
+      test_acceptance(task.acceptance_context, parent, c.fitted, c.screened.name,
+                      signal_to_null(c.screened, largest_null_gain), c.screened.aliased_parameter());
+}
+
 void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std::vector<std::size_t>& chosen,
                      Iteration& iteration) {
   const std::size_t before = iteration.candidates.size();
@@ -166,9 +172,7 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
                      .seed = task.seed,
                      .stop = [&] { return stopped.load(); }};
     c.fitted = refit(setup, parent, c.screened);
-    c.acceptance = test_acceptance(task.acceptance_context, parent, c.fitted, c.screened.name,
-                                   signal_to_null(c.screened, iteration.largest_null_gain),
-                                   c.screened.aliased_parameter());
+    judge(task, parent, iteration.largest_null_gain, c);
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (task.progress && !task.progress("refitting " + c.screened.name, share)) stopped = true;
   });
@@ -287,6 +291,15 @@ void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& it
   iteration.ranking.insert(iteration.ranking.end(), others.begin(), others.end());
 }
 
+void choose_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
+  iteration.chosen = -1;
+  iteration.confounded.clear();
+  iteration.ranking.clear();
+  for (CandidateEffect& c : iteration.candidates) c.selection_frequency = 0.0;
+  select_best(task, parent, iteration);
+  make_ranking(task, parent, iteration);
+}
+
 }  // namespace
 
 std::vector<ParameterEstimate> parameters_of(const FitResult& fit, const std::string& effect) {
@@ -332,12 +345,12 @@ void refuse_chosen(const SelectionTask& task, const Fitted& parent, const std::s
   refused.accepted_by = AcceptedBy::kNone;
   refused.plausible = false;
   refused.why = why;
-  iteration.chosen = -1;
-  iteration.confounded.clear();
-  iteration.ranking.clear();
-  for (CandidateEffect& c : iteration.candidates) c.selection_frequency = 0.0;
-  select_best(task, parent, iteration);
-  make_ranking(task, parent, iteration);
+  choose_anew(task, parent, iteration);
+}
+
+void judge_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
+  for (CandidateEffect& c : iteration.candidates) judge(task, parent, iteration.largest_null_gain, c);
+  choose_anew(task, parent, iteration);
 }
 
 Iteration selection_iteration(const SelectionTask& task, const Fitted& parent) {

@@ -61,6 +61,9 @@ Iteration selection_iteration(const SelectionTask& task, const Fitted& parent);
 void refuse_chosen(const SelectionTask& task, const Fitted& parent, const std::string& why,
                    Iteration& iteration);
 
+// Tests the candidates again, by what the task's acceptance context is now, and chooses among those that pass.
+void judge_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration);
+
 // The screening alone: what these effects would gain, in the data and in the null.
 Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
                               const std::vector<const EffectEntry*>& effects);

@@ -18,19 +18,6 @@ constexpr double kUnexplained = 0.10;  // tuned
 // replicates (8: known to 27 %, 1 / sqrt(2 (n - 1))). Tuned on the open cases; sensitivity not measured.
 constexpr double kSpreads = 5.0;  // tuned
 
-// Excess of each channel's energy over the null's: [channel].
-Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& null,
-                          const ComparedChannels& channels, const Eigen::VectorXd& residual) {
-  const Eigen::VectorXd floor = null.floor(residuals.split()), square = residuals.mean_square(residual);
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(square.size());
-  for (Eigen::Index k = 0; k < out.size(); ++k) {
-    // A measured bus voltage is an input of the model: its residual is no structure of the drive.
-    if (channels.name[static_cast<std::size_t>(k)] == "bus_voltage") continue;
-    if (floor[k] > 0.0) out[k] = square[k] / floor[k] - 1.0;
-  }
-  return out;
-}
-
 // The channel as the first run that has it compares it; null: none does.
 const ComparedSignal* signal_of(const Predictor& predictor, const std::string& channel) {
   for (int run = 0; run < predictor.run_count(); ++run) {
@@ -65,6 +52,18 @@ std::string remainder(const ResidualExcess& excess) {
 }
 
 }  // namespace
+
+Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& null,
+                          const ComparedChannels& channels, const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd floor = null.floor(residuals.split()), square = residuals.mean_square(residual);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(square.size());
+  for (Eigen::Index k = 0; k < out.size(); ++k) {
+    // A measured bus voltage is an input of the model: its residual is no structure of the drive.
+    if (channels.name[static_cast<std::size_t>(k)] == "bus_voltage") continue;
+    if (floor[k] > 0.0) out[k] = square[k] / floor[k] - 1.0;
+  }
+  return out;
+}
 
 ResidualExcesses::ResidualExcesses(const SelectionContext& context, const Candidate& baseline,
                                    Candidate model, std::uint64_t seed, int jobs)

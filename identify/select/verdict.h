@@ -18,6 +18,10 @@
 
 namespace omnihil {
 
+// Excess of each channel's mean square over the null's, as a share of that: [channel]; 0 for a measured bus, which is an input.
+Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& null,
+                          const ComparedChannels& channels, const Eigen::VectorXd& residual);
+
 // Of the channel where the excess is largest, in unweighted energy.
 struct ResidualExcess {
   double excess = 0.0;         // energy over the null's mean, less 1

@@ -29,6 +29,7 @@ struct FakeResiduals {
     }
     context = {.splits = splits.get(),
                .null = &null,
+               .channels = &channels,
                .bootstrap = {&bootstrap[kTraining], &bootstrap[kValidation], &bootstrap[kExtrapolation]}};
   }
   FakeResiduals(const FakeResiduals&) = delete;  // the context points into it

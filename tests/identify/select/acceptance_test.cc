@@ -111,6 +111,27 @@ TEST(AcceptanceTest, AllowsARiseOnAnotherKindOfMotionThatTheNullLeavesAsWell) {
           .accepted());
 }
 
+// Noise of 1, and a tenth of its energy above it: what takes most of that away is what was missing, though it is little of the
+// whole. Half of it is not enough, nor is all of what is no structure.
+TEST(AcceptanceTest, TakesWhatExplainsNearlyAllStructureHoweverNoisyTheRestIs) {
+  AcceptanceFixture fixture;
+  for (auto& level : fixture.null.mean_square) level = Eigen::MatrixXd::Constant(2, 1, 1.0);
+  const double of_noise = fixture.leaving(1.0, 1.0, 1.0).unweighted[kValidation][0];
+  const auto by_energy = [&](double fit, double held_out) {
+    return fixture.leaving(std::sqrt(fit / of_noise), std::sqrt(held_out / of_noise), 1.0);
+  };
+  const Fitted parent = by_energy(1.105, 1.105);
+  EXPECT_FALSE(test_acceptance(fixture.context, parent, by_energy(1.094, 1.03), "x", 100).accepted());
+  fixture.context.structure_remains = true;
+  const AcceptanceResult all = test_acceptance(fixture.context, parent, by_energy(1.094, 1.03), "x", 100);
+  EXPECT_TRUE(all.accepted()) << all.why;
+  const AcceptanceResult half = test_acceptance(fixture.context, parent, by_energy(1.05, 1.05), "x", 100);
+  EXPECT_FALSE(half.accepted());
+  EXPECT_NE(half.why.find("is required"), std::string::npos) << half.why;
+  EXPECT_FALSE(test_acceptance(fixture.context, by_energy(1.045, 1.045), by_energy(1.001, 1.001), "x", 100)
+                   .accepted());
+}
+
 // The first of two effects that made up for each other raises the error of the motion in which they did so.
 TEST(AcceptanceTest, AllowsARiseOnAnotherKindOfMotionThatIsSmallBesideTheHeldOutFall) {
   const AcceptanceFixture fixture;
