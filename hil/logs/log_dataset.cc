@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -11,7 +12,9 @@
 
 #include "hil/logs/log_rows.h"
 #include "hil/text/line_chart.h"
+#include "identify/record/held_readings.h"
 #include "identify/record/rig.h"
+#include "identify/record/signal_list.h"
 #include "sim/bench/dataset_text.h"
 
 namespace omnihil {
@@ -237,16 +240,70 @@ std::vector<std::string> merged(const std::vector<std::string>& notes) {
   return texts;
 }
 
+// A run with what its columns are taken for.
+struct ReadRun {
+  LogRun run;
+  LogMeaning meaning;
+  LogRows rows;
+};
+
+// What a fit takes a reading of, one by one. A motor's speed by Hall pulses is not: its held window is known by its
+// repeats (counted_speed.h).
+bool is_reading(const ColumnMeaning& m, const MeaningContext& context) {
+  const SignalRow& row = *find_signal(*context.rig, m.signal);
+  if (m.imposed || (m.signal == "velocity" && context.pole_pairs > 0.0)) return false;
+  return row.role == SignalRole::kMotion || row.role == SignalRole::kCounts ||
+         m.signal.starts_with("motor_current");
+}
+
+// Of a sensor that is slower than its rows one row a reading is left, and that is said.
+void empty_held(std::deque<ReadRun>& read, const MeaningContext& context, LogDataset& made) {
+  std::map<std::string, std::vector<std::vector<double>*>> by_signal;
+  for (ReadRun& r : read) {
+    if (!r.run.table.by_rows()) continue;
+    for (std::size_t k = 0; k < r.rows.meaning.size(); ++k) {
+      if (is_reading(*r.rows.meaning[k], context))
+        by_signal[r.rows.meaning[k]->signal].push_back(&r.rows.columns[k]);
+    }
+  }
+  for (const auto& [signal, runs] : by_signal) {
+    const double rows = rows_held({runs.begin(), runs.end()});
+    if (!(rows > 0.0)) continue;
+    for (std::vector<double>* values : runs) empty_repeats(*values);
+    made.notes.push_back(fmt::format(
+        "logs: {} is new in one row of {:g} only, about every {:.3g} ms, and repeated in the others, whose "
+        "cells are left empty",
+        signal, rows, 1e3 * rows * median_period_s(read.front().rows.time_s)));
+  }
+}
+
+// The files of one run: a fit run may have a part that is held out.
+void write_run(const ReadRun& r, const std::string& stem, const LogDatasetOptions& o,
+               std::vector<DatasetFile>& csv, std::string& run_text) {
+  const std::vector<double>& time_s = r.rows.time_s;
+  std::size_t cut = time_s.size();
+  if (r.run.use == kTraining && o.fit_share < 1.0) {
+    const double end = time_s.back() * o.fit_share;
+    cut = static_cast<std::size_t>(std::upper_bound(time_s.begin(), time_s.end(), end) - time_s.begin());
+    if (cut < 2 || time_s.size() - cut < 2)
+      throw BadLog(
+          fmt::format("{}: --split {:g} leaves a part with less than two rows", r.run.path, o.fit_share));
+  }
+  csv.push_back({stem + ".csv", csv_text(r.run.table, r.rows, 0, cut)});
+  run_text += run_lines(csv.back().name, split_name(r.run.use));
+  if (cut == time_s.size()) return;
+  csv.push_back({stem + "_holdout.csv", csv_text(r.run.table, r.rows, cut, time_s.size())});
+  run_text += run_lines(csv.back().name, split_name(kValidation));
+}
+
 }  // namespace
 
 LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOptions& o) {
   LogDataset made;
   Channels channels(o, made);
-  std::vector<DatasetFile> csv;
-  std::map<std::string, int> used;
-  std::string run_text, picture;
-  std::vector<LogRun> runs = given;
-  for (LogRun& run : runs) {
+  std::deque<ReadRun> read;  // rows point at the meanings beside them
+  for (const LogRun& one : given) {
+    LogRun run = one;
     std::vector<ColumnMap> asked = asked_here(run, given, o.asked);
     if (!run.pose_path.empty()) {
       JoinedPose joined =
@@ -259,41 +316,32 @@ LogDataset make_log_dataset(const std::vector<LogRun>& given, const LogDatasetOp
         channels.add_sigma(seen.signal, "clock_sigma_s", joined.clock_sigma_s);
       }
     }
-    const LogMeaning meaning = recognise(run.table, o.context, asked);
-    if (&run == &runs.front()) made.table = table_of(run, meaning, o);
+    LogMeaning meaning = recognise(run.table, o.context, asked);
+    if (&one == &given.front()) made.table = table_of(run, meaning, o);
     for (const std::string& note : run.table.notes) made.notes.push_back(note);
     add_doubts(run.path, meaning.doubts, made);
     if (!meaning.doubts.empty()) continue;
-    const LogRows rows = log_rows(run.table, meaning, o.context, run.path);
-    if (rows.time_s.size() < 2)
-      throw BadLog(fmt::format("{}: {} rows are left; allowed: at least two", run.path, rows.time_s.size()));
-    for (const std::string& note : rows.notes) made.notes.push_back(note);
-    channels.add(run, rows);
-    const std::string stem = stem_of(run.path, used);
-    if (picture.empty()) picture = picture_of(rows, o, run.file.name);
-    std::size_t cut = rows.time_s.size();
-    if (run.use == kTraining && o.fit_share < 1.0) {
-      const double end = rows.time_s.back() * o.fit_share;
-      cut = static_cast<std::size_t>(std::upper_bound(rows.time_s.begin(), rows.time_s.end(), end) -
-                                     rows.time_s.begin());
-      if (cut < 2 || rows.time_s.size() - cut < 2)
-        throw BadLog(
-            fmt::format("{}: --split {:g} leaves a part with less than two rows", run.path, o.fit_share));
-    }
-    csv.push_back({stem + ".csv", csv_text(run.table, rows, 0, cut)});
-    run_text += run_lines(csv.back().name, split_name(run.use));
-    if (cut == rows.time_s.size()) continue;
-    csv.push_back({stem + "_holdout.csv", csv_text(run.table, rows, cut, rows.time_s.size())});
-    run_text += run_lines(csv.back().name, split_name(kValidation));
+    ReadRun& r = read.emplace_back(std::move(run), std::move(meaning));
+    r.rows = log_rows(r.run.table, r.meaning, o.context, r.run.path);
+    if (r.rows.time_s.size() < 2)
+      throw BadLog(
+          fmt::format("{}: {} rows are left; allowed: at least two", r.run.path, r.rows.time_s.size()));
+    for (const std::string& note : r.rows.notes) made.notes.push_back(note);
+    channels.add(r.run, r.rows);
   }
+  empty_held(read, o.context, made);
+  std::vector<DatasetFile> csv;
+  std::map<std::string, int> used;
+  std::string run_text;
+  for (const ReadRun& r : read) write_run(r, stem_of(r.run.path, used), o, csv, run_text);
   made.notes = merged(made.notes);
   if (!made.doubts.empty()) return made;
   std::string toml = dataset_head(o.title, std::string(o.context.rig->name)) + channels.text() + run_text;
   if (!made.doubts.empty()) return made;
   made.files = {{"dataset.toml", std::move(toml)},
                 {"model.toml", o.model_text},
-                {"README.md", readme_of(runs, made)},
-                {"import.svg", std::move(picture)}};
+                {"README.md", readme_of(given, made)},
+                {"import.svg", picture_of(read.front().rows, o, read.front().run.file.name)}};
   for (DatasetFile& f : csv) made.files.push_back(std::move(f));
   return made;
 }

@@ -9,10 +9,23 @@ namespace omnihil {
 namespace {
 
 constexpr CheckFunction kChecks[] = {
-    &check_clock,       &check_length,          &check_constant,  &check_glitches,
-    &check_counter,     &check_standing_counts, &check_direction, &check_position_against_speed,
-    &check_electrics,   &check_supply,          &check_command,   &check_stall,
-    &check_closed_loop, &check_duplicates,      &check_flags,     &check_silent,
+    &check_clock,
+    &check_length,
+    &check_constant,
+    &check_held,
+    &check_glitches,
+    &check_counter,
+    &check_standing_counts,
+    &check_direction,
+    &check_position_against_speed,
+    &check_electrics,
+    &check_supply,
+    &check_command,
+    &check_stall,
+    &check_closed_loop,
+    &check_duplicates,
+    &check_flags,
+    &check_silent,
     &check_splits,
 };
 

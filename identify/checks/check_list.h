@@ -51,6 +51,7 @@ using CheckFunction = void (*)(const CheckContext&, std::vector<DataFinding>&);
 void check_clock(const CheckContext&, std::vector<DataFinding>&);
 void check_length(const CheckContext&, std::vector<DataFinding>&);
 void check_constant(const CheckContext&, std::vector<DataFinding>&);
+void check_held(const CheckContext&, std::vector<DataFinding>&);
 void check_glitches(const CheckContext&, std::vector<DataFinding>&);
 void check_counter(const CheckContext&, std::vector<DataFinding>&);
 void check_standing_counts(const CheckContext&, std::vector<DataFinding>&);
@@ -65,6 +66,9 @@ void check_duplicates(const CheckContext&, std::vector<DataFinding>&);
 void check_flags(const CheckContext&, std::vector<DataFinding>&);
 void check_silent(const CheckContext&, std::vector<DataFinding>&);
 void check_splits(const CheckContext&, std::vector<DataFinding>&);
+
+// Rows that each reading of a signal stands in (held_readings.h), of all runs that are series; 0: one.
+double rows_held_of(const CheckContext& data, const std::string& signal);
 
 // Helpers of the checks. Order statistics as in identify/record/statistics.h (QuantileRank::kNearest).
 double median_of(std::vector<double> values);                  // NaN left out; 0 of none

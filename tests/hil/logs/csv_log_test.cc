@@ -1,6 +1,7 @@
 // Tables as text, units, and what columns mean: on lines as the tools write them.
 #include "hil/logs/csv_log.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -250,6 +251,24 @@ TEST(Meaning, ANameOfTwoSignalsIsInDoubt) {
   const char* text = "time_s,voltage_V,speed_rpm\n0,1,60\n0.01,2,120\n";
   ASSERT_GE(meaning(text).doubts.size(), 1u);
   EXPECT_NE(meaning(text).doubts[0].find("may be motor_voltage or bus_voltage"), std::string::npos)
+// A sensor at 50 Hz, logged at 500: what was asked of the drive stays as it is, a reading stands once.
+TEST(LogDataset, ReadingsThatRowsRepeatAreLeftOnce) {
+  std::string text = "t_s,duty,angle_rad,current_A\n";
+  for (int k = 0; k < 1000; ++k) {
+    const double at_s = 0.02 * (k / 10);
+    text += fmt::format("{:.3f},{},{:.6f},{:.3f}\n", 0.002 * k, k / 10 % 2, std::sin(3.0 * at_s),
+                        0.1 * std::sin(0.01 * k) + 0.001 * (k % 7));
+  }
+  const LogDataset made = make_log_dataset({run_of(text, "slow.csv", Split::kTraining)}, {});
+  ASSERT_TRUE(made.doubts.empty()) << made.doubts.front();
+  ASSERT_EQ(made.notes.size(), 1u);
+  EXPECT_NE(made.notes[0].find("position is new in one row of 10 only, about every 20 ms"), std::string::npos)
+      << made.notes[0];
+  const std::string& csv = made.files.back().text;
+  EXPECT_NE(csv.find("\n0.04,0,0.119712,"), std::string::npos) << csv.substr(0, 800);
+  EXPECT_NE(csv.find("\n0.042,0,,"), std::string::npos) << csv.substr(0, 800);
+}
+
       << meaning(text).doubts[0];
   EXPECT_TRUE(meaning(text, {{"voltage_V", "motor_voltage", "V"}}).doubts.empty());
   EXPECT_EQ(usual_signal("battery_status.voltage", rig_axis()), "bus_voltage");

@@ -94,6 +94,23 @@ TEST_F(SpoiltData, GlitchesOfTheCounterAreCounted) {
 }
 
 TEST_F(SpoiltData, AnEncoderThatCountsBackwards) {
+// A telemetry of a tenth of the rate, repeated in the rows between: no counts were dropped and none jump.
+TEST_F(SpoiltData, ASlowSensorsReadingsThatAreRepeated) {
+  for (std::size_t r = 0; r < 3; ++r) {
+    std::vector<double>& ticks = signal(r, "encoder");
+    for (std::size_t k = 0; k < ticks.size(); ++k) ticks[k] = ticks[k - k % 10];
+  }
+  expect("held_readings", "encoder is new in one row of 10 only", Grade::kDoubt);
+  const auto findings = check(bench);
+  EXPECT_EQ(find(findings, "glitch"), nullptr) << text_of(findings);
+  EXPECT_EQ(find(findings, "dropped_counts"), nullptr) << text_of(findings);
+  for (std::size_t r = 0; r < 3; ++r) {  // left empty they are sound
+    std::vector<double>& ticks = signal(r, "encoder");
+    for (std::size_t k = 0; k < ticks.size(); ++k) ticks[k] = k % 10 == 0 ? ticks[k] : kMissing;
+  }
+  EXPECT_EQ(find(check(bench), "held_readings"), nullptr);
+}
+
   for (std::size_t r = 0; r < 3; ++r) {
     for (double& v : signal(r, "encoder")) v = -v;
   }
