@@ -204,14 +204,7 @@ class Recogniser {
       m.because += "; unit by --si";
     }
     if (m.unit.empty()) {
-      std::vector<std::string> words;
-      for (const std::string& unit : units_for(to)) {
-        if (words.size() < 3) words.push_back(fmt::format("--map \"{}={}:{}\"", name(m), m.signal, unit));
-      }
-      out_.doubts.push_back(
-          fmt::format("column \"{}\" is {}, but nothing says in which unit (largest value {:.4g}); give one "
-                      "of: {}; or --si",
-                      name(m), m.signal, largest_of(log_.series[m.series].value), fmt::join(words, ", or ")));
+      doubt_unit(m, to);
       return;
     }
     std::string fault;
@@ -220,6 +213,29 @@ class Recogniser {
     } else {
       out_.doubts.push_back(fmt::format("column \"{}\" as {}: {}", name(m), m.signal, fault));
     }
+  }
+
+  // Which units it may be in, each as a flag. A duty that goes beyond one is in none by which it still does, and in parts
+  // of whatever its timer counts to.
+  void doubt_unit(const ColumnMeaning& m, const std::string& to) {
+    constexpr std::size_t kMost = 3;  // flags in one message; a choice
+    const double largest = largest_of(log_.series[m.series].value);
+    const bool is_duty = m.signal.starts_with("duty");
+    std::vector<std::string> words;
+    for (const std::string& unit : units_for(to)) {
+      std::string fault;
+      const auto scale = unit_scale(unit, to, {context_.pole_pairs}, fault);
+      if (is_duty && scale && largest * scale->scale > kDutyWithin) continue;
+      if (words.size() < kMost) words.push_back(fmt::format("--map \"{}={}:{}\"", name(m), m.signal, unit));
+    }
+    if (is_duty)
+      words.push_back(
+          fmt::format("--map \"{}={}:{:.3g}*1\" with 1 over its value at full duty in place of {:.3g}",
+                      name(m), m.signal, 1.0 / largest, 1.0 / largest));
+    out_.doubts.push_back(
+        fmt::format("column \"{}\" is {}, but nothing says in which unit (largest value {:.4g}); give one "
+                    "of: {}{}",
+                    name(m), m.signal, largest, fmt::join(words, ", or "), is_duty ? "" : "; or --si"));
   }
 
   // The motion, else the drive input, of an axis that a unit fits; null: neither.

@@ -140,6 +140,9 @@ TEST(Meaning, WithoutAUnitTheFlagsToGiveAreSaid) {
   const LogMeaning m = meaning("time_s,duty,speed\n0,0.1,60\n0.01,0.2,120\n");
   ASSERT_EQ(m.doubts.size(), 1u);
   EXPECT_NE(m.doubts[0].find("--map \"speed=velocity:rad/s\""), std::string::npos) << m.doubts[0];
+  const LogMeaning angle = meaning("time_s,duty,theta\n0,0.1,60\n0.01,0.2,120\n");
+  ASSERT_EQ(angle.doubts.size(), 1u);
+  EXPECT_NE(angle.doubts[0].find("theta=position:turn"), std::string::npos) << angle.doubts[0];
   EXPECT_TRUE(
       meaning("time_s,duty,speed\n0,0.1,60\n0.01,0.2,120\n", {{"speed", "velocity", "rpm"}}).doubts.empty());
 }
@@ -169,6 +172,19 @@ TEST(Meaning, ATimersCompareValueIsAShareOfItsRange) {
   const LogMeaning m = meaning(text, {{"MotorPWM", "duty", "/255"}});
   EXPECT_TRUE(m.doubts.empty()) << m.doubts.front();
   EXPECT_DOUBLE_EQ(51.0 * m.of("duty")->scale.scale, 0.2);
+}
+
+// Of a timer that counts to 5319 no unit of the list is right, and those by which the duty would go beyond one are wrong.
+TEST(Meaning, UnitsThatTheValuesForbidAreNotNamed) {
+  const LogMeaning m = meaning("time_ms,PWM,speed_rpm\n0,0,0\n10,1299,100\n20,-5199,-400\n");
+  ASSERT_EQ(m.doubts.size(), 1u);
+  for (const char* wrong : {"duty:1\"", "duty:%", "duty:/255", "duty:/1023", "duty:/4095"})
+    EXPECT_EQ(m.doubts[0].find(wrong), std::string::npos) << wrong << ": " << m.doubts[0];
+  EXPECT_NE(m.doubts[0].find("PWM=duty:0.000192*1"), std::string::npos) << m.doubts[0];
+  EXPECT_DOUBLE_EQ(meaning("t_s,PWM,speed_rpm\n0,0,0\n0.01,5319,9\n", {{"PWM", "duty", "0.000188*1"}})
+                       .of("duty")
+                       ->scale.scale,
+                   0.000188);
 }
 
 TEST(Meaning, AUnitDecidesBetweenTwoSignalsOfOneName) {
@@ -235,22 +251,6 @@ TEST(LogDataset, AMapOfAColumnThatOnlySomeLogsHaveIsNoFault) {
   EXPECT_FALSE(make_log_dataset(runs, options).doubts.empty());
 }
 
-TEST(Meaning, MisspeltMapsAreNamed) {
-  const LogMeaning m = meaning("time_s,duty,speed_rpm\n0,0.1,60\n0.01,0.2,120\n",
-                               {{"sped_rpm", "velocity", "rpm"}, {"duty", "dutty", "1"}});
-  ASSERT_GE(m.doubts.size(), 2u);
-  EXPECT_NE(m.doubts[0].find("did you mean \"speed_rpm\""), std::string::npos) << m.doubts[0];
-  EXPECT_NE(m.doubts[1].find("did you mean \"duty\""), std::string::npos) << m.doubts[1];
-  std::vector<std::string> faults;
-  parse_map("speed", faults);
-  parse_map("speed=velocity:furlong", faults);
-  EXPECT_EQ(faults.size(), 2u);
-}
-
-TEST(Meaning, ANameOfTwoSignalsIsInDoubt) {
-  const char* text = "time_s,voltage_V,speed_rpm\n0,1,60\n0.01,2,120\n";
-  ASSERT_GE(meaning(text).doubts.size(), 1u);
-  EXPECT_NE(meaning(text).doubts[0].find("may be motor_voltage or bus_voltage"), std::string::npos)
 // A sensor at 50 Hz, logged at 500: what was asked of the drive stays as it is, a reading stands once.
 TEST(LogDataset, ReadingsThatRowsRepeatAreLeftOnce) {
   std::string text = "t_s,duty,angle_rad,current_A\n";
@@ -269,6 +269,22 @@ TEST(LogDataset, ReadingsThatRowsRepeatAreLeftOnce) {
   EXPECT_NE(csv.find("\n0.042,0,,"), std::string::npos) << csv.substr(0, 800);
 }
 
+TEST(Meaning, MisspeltMapsAreNamed) {
+  const LogMeaning m = meaning("time_s,duty,speed_rpm\n0,0.1,60\n0.01,0.2,120\n",
+                               {{"sped_rpm", "velocity", "rpm"}, {"duty", "dutty", "1"}});
+  ASSERT_GE(m.doubts.size(), 2u);
+  EXPECT_NE(m.doubts[0].find("did you mean \"speed_rpm\""), std::string::npos) << m.doubts[0];
+  EXPECT_NE(m.doubts[1].find("did you mean \"duty\""), std::string::npos) << m.doubts[1];
+  std::vector<std::string> faults;
+  parse_map("speed", faults);
+  parse_map("speed=velocity:furlong", faults);
+  EXPECT_EQ(faults.size(), 2u);
+}
+
+TEST(Meaning, ANameOfTwoSignalsIsInDoubt) {
+  const char* text = "time_s,voltage_V,speed_rpm\n0,1,60\n0.01,2,120\n";
+  ASSERT_GE(meaning(text).doubts.size(), 1u);
+  EXPECT_NE(meaning(text).doubts[0].find("may be motor_voltage or bus_voltage"), std::string::npos)
       << meaning(text).doubts[0];
   EXPECT_TRUE(meaning(text, {{"voltage_V", "motor_voltage", "V"}}).doubts.empty());
   EXPECT_EQ(usual_signal("battery_status.voltage", rig_axis()), "bus_voltage");
