@@ -1,6 +1,7 @@
 // Signs: does the drive turn the way it is asked to, do two sensors of one motion agree on its direction.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "identify/checks/check_list.h"
@@ -106,20 +107,33 @@ void target_against_position(const RunView& view, const DriveView& drive,
                       "position moves opposite to position_target: the sign of one is swapped"});
 }
 
-// tau = J a + b w + c sgn w: the inertia of a sound record is positive. Reported beyond 5 standard errors
-// (one-sided p = 3e-7 of a normal), where the line explains half of the torque's squares (tuned).
+// tau = J a + b w + l + c sgn w + g sin theta + h cos theta: the inertia of a sound record is positive. The load goes with
+// the angle (an arm's weight, an imbalance): where a position loop moves it, its torque rises while the motion slows.
+// Reported beyond 5 standard errors (one-sided p = 3e-7 of a normal), where the line explains half of the torque's
+// squares (tuned).
 void torque_against_acceleration(const RunView& view, const DriveView& drive,
                                  std::vector<DataFinding>& findings) {
+  // rad, from which on the load's sine and cosine differ from its level and from one another: a choice
+  constexpr double kLeastAngle = 0.05;
   if (drive.drive_name != "motor_torque" || (drive.position == nullptr && drive.velocity == nullptr)) return;
   const WindowMeans w = window_means(view, drive, *drive.drive, 0.02);
-  std::vector<double> torque, acceleration, speed, side;
+  std::vector<double> torque, acceleration, speed, side, along_sine, along_cosine;
+  double angle = 0.0, least = 0.0, most = 0.0;
   for (std::size_t i = 1; i + 1 < w.speed.size(); ++i) {
+    angle += w.speed[i] * (w.time_s[i] - w.time_s[i - 1]);
+    least = std::min(least, angle), most = std::max(most, angle);
     torque.push_back(w.drive[i]);
     acceleration.push_back((w.speed[i + 1] - w.speed[i - 1]) / (w.time_s[i + 1] - w.time_s[i - 1]));
     speed.push_back(w.speed[i]);
     side.push_back(w.speed[i] > 0.0 ? 1.0 : -1.0);
+    along_sine.push_back(std::sin(angle));
+    along_cosine.push_back(std::cos(angle));
   }
-  const LineFit line = fit_line({acceleration, speed, side}, torque);
+  std::vector<std::vector<double>> x = {acceleration, speed, std::vector<double>(torque.size(), 1.0)};
+  if (std::ranges::find(side, 1.0) != side.end() && std::ranges::find(side, -1.0) != side.end())
+    x.push_back(side);
+  if (most - least > kLeastAngle) x.insert(x.end(), {along_sine, along_cosine});
+  const LineFit line = fit_line(x, torque);
   if (line.coefficient.empty() || line.explained < 0.5) return;
   if (line.coefficient[0] > -5.0 * line.sigma[0]) return;
   findings.push_back({Grade::kFault, "swapped_sign", view.run->file, "motor_torque", line.coefficient[0],
