@@ -368,6 +368,38 @@ TEST(AxisPredictor, SaysWhichEffectsCannotAct) {
   EXPECT_NE(p->applies(*find_effect("winding_inductance")), "");
 }
 
+// Asked for the input that each settled speed takes, a bridge that loses more than it is given lets no current pass: the motor
+// then lacks nothing at any speed, however absurd the points are.
+TEST(AxisPredictor, ALossBeforeTheWindingIsNotAskedOfSettledPoints) {
+  const Candidate base = model("[effects.dead_time]\nvoltage_V = 10\n");
+  Dataset d;
+  d.rig = &rig_axis();
+  d.channels = {{.signal = "duty", .column = "", .unit = "1"},
+                {.signal = "velocity", .column = "", .unit = "rad/s"}};
+  omnihil::Run run = run_of("curve.csv", true);
+  for (int k = 0; k < 40; ++k) {
+    run.time_s.push_back(k);
+    run.signals["duty"].push_back(0.01 * k);
+    run.signals["velocity"].push_back(50.0 + 7.0 * (k % 3));
+  }
+  d.runs = {run};
+  const auto settled = make_predictor(d, base, {});
+  const auto apart = [&](const Candidate& c) {
+    const Prediction p = settled->predict(c, 0);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 40; ++k) sum += std::abs(p.values[0][k] - 0.01 * double(k)) / 40.0;
+    return sum;
+  };
+  EXPECT_GT(apart(model()), 0.1);  // u - k omega of 24 V
+  EXPECT_LT(apart(base), 0.01) << "else there is another cause to refuse it";
+  for (const char* id : {"dead_time", "coast_mode", "duty_limit", "pwm_dead_band", "battery_sag"}) {
+    EXPECT_NE(settled->applies(*find_effect(id)).find("settled points"), std::string::npos) << id;
+  }
+  EXPECT_EQ(settled->applies(*find_effect("stribeck_friction")), "");
+  d.runs.front().steady = false;
+  EXPECT_EQ(make_predictor(d, model(), {})->applies(*find_effect("dead_time")), "");
+}
+
 // Full duty from the first sample on: within five samples the speed has gained a hundred times its noise.
 TEST(AxisPredictor, ARecordThatStartsInAStepStartsAtRest) {
   constexpr double dt = 1e-3, sigma = 0.1;
