@@ -18,6 +18,37 @@ constexpr double kNoNoise = 1e-12;  // as above
 
 bool finite(double v) { return std::isfinite(v); }
 
+// White noise by second differences where the reading does not stand still: at rest a sensor that counts has none, which
+// says nothing of its noise in motion. 0: it stands nowhere, or nearly everywhere.
+double noise_in_motion(const std::vector<double>& x) {
+  constexpr std::size_t kStands = 50;  // rows of one reading; a choice
+  constexpr double kLeastMoving =
+      0.1;  // of the rows: a count that changes every 50th has 3 in 50 beside a change; derived
+  constexpr double kTrimmed = 0.95;  // of the squares: steps of the motion are beyond; a choice
+  std::vector<double> squares;
+  std::size_t stood = 0, rows = 0;
+  for (std::size_t k = 2, same = 0; k < x.size(); ++k) {
+    same = x[k] == x[k - 1] ? same + 1 : 0;
+    std::size_t ahead = 0;
+    while (ahead < kStands && k + ahead + 1 < x.size() && x[k + ahead + 1] == x[k]) ++ahead;
+    const double d = x[k] - 2.0 * x[k - 1] + x[k - 2];
+    if (!finite(d)) continue;
+    ++rows;
+    if (d == 0.0 && same + ahead >= kStands) {
+      ++stood;
+    } else {
+      squares.push_back(d * d);
+    }
+  }
+  if (stood == 0 || static_cast<double>(squares.size()) < kLeastMoving * static_cast<double>(rows))
+    return 0.0;
+  std::ranges::sort(squares);
+  squares.resize(static_cast<std::size_t>(kTrimmed * static_cast<double>(squares.size())));
+  double sum = 0.0;
+  for (const double s : squares) sum += s;
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(squares.size(), 1)) / 6.0);
+}
+
 }  // namespace
 
 NoiseEstimate estimate_noise(const std::vector<double>& values) {
@@ -41,6 +72,7 @@ NoiseEstimate estimate_noise(const std::vector<double>& values) {
   double robust = sigma_by_mad(std::move(second)) / std::sqrt(6.0);
   const double unbent = sigma_by_mad(std::move(third)) / std::sqrt(20.0);
   if (has_third && unbent < robust * (1.0 - chance)) robust = unbent;
+  if (robust == 0.0) robust = noise_in_motion(values);
   out.sigma = std::max({robust, out.quantum / std::sqrt(12.0), kLeastNoiseShare * rms_about_mean(known)});
   return out;
 }

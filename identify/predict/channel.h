@@ -20,7 +20,8 @@ inline constexpr double kLeastNoiseShare = 1e-4;  // a guess
 
 // Sensor noise of a record whose channel states none: robust sigma of its second differences; where the signal itself bends
 // from row to row (a camera's, telemetry's: tens of rows a second) those of its third, which then are smaller by more than
-// chance. At least its quantum / sqrt(12) and kLeastNoiseShare. In the signal's unit.
+// chance. Where most of the differences are exactly zero, those of the rows that do not stand still. At least its quantum /
+// sqrt(12) and kLeastNoiseShare. In the signal's unit.
 struct NoiseEstimate {
   double sigma = 0.0;
   double quantum = 0.0;

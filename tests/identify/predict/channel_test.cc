@@ -46,6 +46,24 @@ TEST(Channel, NoiseIsFoundUnderAMotionThatBends) {
   EXPECT_GT(estimate_noise(x).sigma, 0.9 * kSigma);
 }
 
+// A speed of counts in a row, 9.77 of them, two thirds of the time at rest. A reading is 9 or 10: its standard deviation is
+// sqrt(0.77 x 0.23). Rows of 10 and 11 ms make its smallest step a tenth of a count.
+TEST(Channel, ASpeedThatIsCountedIsAsNoisyAsItIsInMotion) {
+  std::vector<double> speed;
+  double angle = 0.0, before = 0.0;
+  for (int k = 0; k < 1800; ++k) {
+    const bool moves = k >= 600 && k < 1200;
+    const double row_ms = moves && k % 13 == 0 ? 11.0 : 10.0;
+    angle += moves ? 0.977 * row_ms : 0.0;
+    speed.push_back(10.0 * (std::floor(angle) - before) / row_ms);
+    before = std::floor(angle);
+  }
+  const NoiseEstimate e = estimate_noise(speed);
+  EXPECT_LT(e.quantum, 0.2);
+  EXPECT_GT(e.sigma, 0.8 * std::sqrt(0.77 * 0.23));
+  EXPECT_LT(e.sigma, 1.5 * std::sqrt(0.77 * 0.23));
+}
+
 TEST(Channel, NoChannelIsFinerThanItsRounding) {
   std::vector<double> x;
   for (int k = 0; k < 600; ++k) x.push_back(0.5 * std::floor(k / 60.0));
