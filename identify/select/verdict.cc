@@ -58,9 +58,11 @@ Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& n
   const Eigen::VectorXd floor = null.floor(residuals.split()), square = residuals.mean_square(residual);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(square.size());
   for (Eigen::Index k = 0; k < out.size(); ++k) {
-    // A measured bus voltage is an input of the model: its residual is no structure of the drive.
-    if (channels.name[static_cast<std::size_t>(k)] == "bus_voltage") continue;
-    if (floor[k] > 0.0) out[k] = square[k] / floor[k] - 1.0;
+    if (channels.name[static_cast<std::size_t>(k)] == "bus_voltage") {
+      out[k] = -1.0;
+    } else if (floor[k] > 0.0) {
+      out[k] = square[k] / floor[k] - 1.0;
+    }
   }
   return out;
 }

@@ -18,7 +18,8 @@
 
 namespace omnihil {
 
-// Excess of each channel's mean square over the null's, as a share of that: [channel]; 0 for a measured bus, which is an input.
+// Excess of each channel's mean square over the null's, as a share of that: [channel]; 0 as chance leaves it, -1 nothing. A
+// measured bus is an input of the model, whose residual is no structure of the drive: of it nothing is left.
 Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& null,
                           const ComparedChannels& channels, const Eigen::VectorXd& residual);
 

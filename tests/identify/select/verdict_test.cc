@@ -80,7 +80,10 @@ TEST(Verdict, AMeasuredBusVoltageIsGivenToTheModelAndNoStructureOfTheDrive) {
     fake.add(split, std::vector<double>(1000, 0.0), std::vector<double>(1000, 0.0), 1.0, "bus_voltage");
   const FakeResiduals scene(fake);
   const WhitenedResiduals& training = (*scene.splits)[kTraining];
-  EXPECT_FALSE(structure_in(training, scene.null, scene.channels, Eigen::VectorXd::Ones(training.size())));
+  const Eigen::VectorXd residual = Eigen::VectorXd::Ones(training.size());
+  EXPECT_FALSE(structure_in(training, scene.null, scene.channels, residual));
+  // Nor is it what a verdict tells of where every other channel is below what chance leaves.
+  EXPECT_EQ(excess_of(training, scene.null, scene.channels, residual)[0], -1.0);
 }
 
 }  // namespace
