@@ -179,14 +179,21 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
   iteration.stopped = stopped;
 }
 
+// Is this screened gain above the null's, as the acceptance test asks? A refit does not change the answer.
+bool passes_null(const Screened& s, double largest_null_gain) {
+  return signal_to_null(s, largest_null_gain) >= kLeastSignalToNull;
+}
+
 bool was_refitted(const Iteration& iteration, const Screened& s) {
   return std::any_of(iteration.candidates.begin(), iteration.candidates.end(),
                      [&](const CandidateEffect& c) { return c.screened.name == s.name; });
 }
 
 // Effects listed as confusable with the best candidate that were not refitted: the screening is linear, and
-// may have underrated them (DECISIONS 53).
-std::vector<std::size_t> confounded_with_best(const Iteration& iteration, bool has_holdout) {
+// may have underrated them (DECISIONS 53). Not those that would be refused whatever the refit gains: they do not pass the
+// null, and no base parameter is off its prior that they could restore.
+std::vector<std::size_t> confounded_with_best(const Iteration& iteration, const Fitted& parent,
+                                              bool has_holdout) {
   const CandidateEffect* best = nullptr;
   for (const CandidateEffect& c : iteration.candidates) {
     if (!c.acceptance.accepted() || c.screened.extends) continue;
@@ -195,7 +202,9 @@ std::vector<std::size_t> confounded_with_best(const Iteration& iteration, bool h
   std::vector<std::size_t> out;
   for (std::size_t i = 0; best != nullptr && i < iteration.screened.size(); ++i) {
     const Screened& s = iteration.screened[i];
-    if (s.tried && s.is_resolved() && !s.extends && !was_refitted(iteration, s) &&
+    const bool may_pass = passes_null(s, iteration.largest_null_gain) || is_implausible(parent.fit) ||
+                          is_prior_rejected(parent.fit, s.aliased_parameter());
+    if (may_pass && s.tried && s.is_resolved() && !s.extends && !was_refitted(iteration, s) &&
         listed_as_confounded(*best->screened.entry->info, *s.entry->info))
       out.push_back(i);
   }
@@ -364,8 +373,8 @@ Iteration selection_iteration(const SelectionTask& task, const Fitted& parent) {
     if (more) refit_shortlist(task, parent, next, iteration);
   }
   if (!iteration.stopped)
-    refit_shortlist(task, parent, confounded_with_best(iteration, !(*task.splits)[kValidation].empty()),
-                    iteration);
+    refit_shortlist(task, parent,
+                    confounded_with_best(iteration, parent, !(*task.splits)[kValidation].empty()), iteration);
   select_best(task, parent, iteration);
   make_ranking(task, parent, iteration);
   return iteration;
