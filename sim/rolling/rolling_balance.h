@@ -45,36 +45,45 @@ struct RollingBalance {
     for (Eigen::Index i = 0; i < Size; ++i) force(i) = mean_force(i, slip(i));
     return force;
   }
-  Vector residual(const Vector& slip) const {
+  // What is left of the equations; `turning`: of each rotor, 1 or, held by its friction, 0.
+  Vector residual(const Vector& slip, Vector& turning) const {
     const Vector force = forces(slip);
     Vector r = slip - hub - mobility * force;
-    for (Eigen::Index i = 0; i < Size; ++i) r(i) += lever(i) * omega(i, force(i));
+    for (Eigen::Index i = 0; i < Size; ++i) {
+      const double turns = omega(i, force(i));
+      turning(i) = turns != 0.0 ? 1.0 : 0.0;
+      r(i) += lever(i) * turns;
+    }
     return r;
   }
   Square slopes(const Vector& slip) const {
+    Vector turning;
+    residual(slip, turning);
+    return slopes(slip, turning);
+  }
+  Square slopes(const Vector& slip, const Vector& turning) const {
     Square out;
     for (Eigen::Index i = 0; i < Size; ++i) {
       const double slope = end_share(i) * grip(i).slope(slip(i));
-      const double turns = omega(i, mean_force(i, slip(i))) != 0.0 ? 1.0 : 0.0;
       out.col(i) = mobility.col(i) * slope;
-      out(i, i) += 1.0 + turns * lever(i) * lever(i) * speed_per_torque(i) * slope;
+      out(i, i) += 1.0 + turning(i) * lever(i) * lever(i) * speed_per_torque(i) * slope;
     }
     return out;
   }
   // Newton, no further than what is left shrinks. `inverse`: of the slopes where the last step began.
   bool newton(Vector& slip, Square& inverse) const {
-    Vector left = residual(slip);
+    Vector turning, left = residual(slip, turning);
     for (int round = 0; round < kIterations; ++round) {
-      inverse = slopes(slip).inverse();
+      inverse = slopes(slip, turning).inverse();
       Vector change = inverse * left;
       if (change.cwiseAbs().maxCoeff() <= kSolved_m_s) {
         slip -= change;
         return true;
       }
-      Vector next = residual(slip - change);
+      Vector next = residual(slip - change, turning);
       for (int part = 0; part < kHalvings && next.squaredNorm() > left.squaredNorm(); ++part) {
         change *= 0.5;
-        next = residual(slip - change);
+        next = residual(slip - change, turning);
       }
       slip -= change;
       left = next;

@@ -8,7 +8,6 @@
 #include "sim/rolling/rolling_step.h"
 
 namespace omnihil {
-
 // What the plant takes out of a drive's chain of torques: its friction, to be solved with the floor's force.
 template <typename T>
 struct RollingRobot<T>::Link {
@@ -94,6 +93,18 @@ void RollingRobot<T>::make_body() {
     rim_[i] = Vector3(-g.sin_angle[i], g.cos_angle[i], p_.wheel_center_radius_m);
     rim_mobility_[i] = inverse_mass_ * rim_[i];
   }
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    for (std::size_t j = 0; j < wheels_; ++j) {
+      const Vector3 &r = rim_[i], &m = rim_mobility_[j];
+      const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
+      mobility_cos_(row, column) = r(0) * m(0) + r(1) * m(1);
+      mobility_sin_(row, column) = r(0) * m(1) - r(1) * m(0);
+      mobility_yaw_(row, column) = r(2) * m(2);
+    }
+  }
+  tyre_.peak = p_.longitudinal.extremum_value;
+  tyre_.last = p_.longitudinal.asymptote_value;
+  tyre_.last_part = p_.longitudinal.asymptote_slip / p_.longitudinal.extremum_slip;
 }
 
 template <typename T>
@@ -114,11 +125,23 @@ RollingState<T> RollingRobot<T>::start(const BodyVelocity<double>& v,
 }
 
 template <typename T>
+void RollingRobot<T>::set_step(double step_s) {
+  for (DriveSim<T>& d : drives_) d.set_step(step_s);
+  step_s_ = step_s;
+  // wheel_drive.h
+  const T settled = p_.drive.torque_constant_Nm_per_A / p_.drive.resistance_ohm;
+  mean_sensitivity_ = end_sensitivity_ = settled;
+  if (!(value_of(p_.drive.inductance_H) > 0.0)) return;
+  using std::exp;
+  const T time = step_s * p_.drive.resistance_ohm / p_.drive.inductance_H;
+  const T rest = 1.0 - (1.0 - exp(-time)) / time;
+  end_sensitivity_ = settled * rest;
+  mean_sensitivity_ = settled * (1.0 - 2.0 * rest / time);
+}
+
+template <typename T>
 void RollingRobot<T>::advance(RollingState<T>& x, const RollingInput<T>& in, double step_s) {
-  if (step_s != step_s_) {
-    for (DriveSim<T>& d : drives_) d.set_step(step_s);
-    step_s_ = step_s;
-  }
+  if (step_s != step_s_) set_step(step_s);
   Step& s = *step_;
   s.h = step_s;
   ask_floor(x, in, s);
@@ -182,9 +205,7 @@ void RollingRobot<T>::set_grip(const RollingState<T>& x, std::size_t i, const T&
   g.rolls = !p_.has_tyre && value_of(port.slip_speed_m_s) == 0.0;
   g.load_N = port.load_N;
   g.full_grip_m_s = port.slip_speed_m_s;
-  g.shape.peak = p_.longitudinal.extremum_value;
-  g.shape.last = p_.longitudinal.asymptote_value;
-  g.shape.last_part = p_.longitudinal.asymptote_slip / p_.longitudinal.extremum_slip;
+  g.shape = tyre_;
   if (p_.has_tyre) {
     const T rim_m_s = absolute(T(w.lever_m * x.omega_rotor_rad_s(i)));
     T scale = absolute(hub_m_s);
@@ -228,20 +249,13 @@ void RollingRobot<T>::ask_body(const RollingState<T>& x, const RollingInput<T>& 
 // Sensitivity of the winding's current to a departure from the predicted speed, if a voltage is held: wheel_drive.h.
 template <typename T>
 void RollingRobot<T>::winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state,
-                                                double h, Wheel& w) const {
+                                                Wheel& w) const {
   w.slope = p_.drive.viscous_friction_Nm_s_per_rad;
   w.mean_sensitivity = w.end_sensitivity = T(0);
   const double used = std::abs(value_of(state.current_A)) * value_of(link.inverse_limit_per_A);
   if (!enabled || used >= 1.0 - 1e-9) return;
-  const T settled = p_.drive.torque_constant_Nm_per_A / p_.drive.resistance_ohm;
-  w.mean_sensitivity = w.end_sensitivity = settled;
-  if (value_of(p_.drive.inductance_H) > 0.0) {
-    using std::exp;
-    const T time = h * p_.drive.resistance_ohm / p_.drive.inductance_H;
-    const T rest = 1.0 - (1.0 - exp(-time)) / time;
-    w.end_sensitivity = settled * rest;
-    w.mean_sensitivity = settled * (1.0 - 2.0 * rest / time);
-  }
+  w.end_sensitivity = end_sensitivity_;
+  w.mean_sensitivity = mean_sensitivity_;
   w.slope += p_.drive.torque_constant_Nm_per_A * w.mean_sensitivity;
 }
 
@@ -280,8 +294,11 @@ void RollingRobot<T>::drives(RollingState<T>& x, const RollingInput<T>& in, Step
     w.friction_up_Nm += link.friction_positive_Nm;
     w.friction_down_Nm += link.friction_negative_Nm;
     w.omega_predicted = state.omega_rotor_rad_s;
-    winding_speed_sensitivity(in.enabled[i], link, state, s.h, w);
+    winding_speed_sensitivity(in.enabled[i], link, state, w);
     w.effective_inertia = inertia_at_rotor(p_.drive) + 0.5 * s.h * w.slope;
+    w.speed_per_torque = s.h / w.effective_inertia;
+    w.friction_up_rad_s = w.speed_per_torque * w.friction_up_Nm;
+    w.friction_down_rad_s = w.speed_per_torque * w.friction_down_Nm;
   }
 }
 

@@ -124,8 +124,8 @@ class RollingRobot {
                 Wheel& w) const;
   void ask_body(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
   void predict(const RollingState<T>& x, const RollingInput<T>& in, Step& s) const;
-  void winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state, double h,
-                                 Wheel& w) const;
+  void set_step(double step_s);
+  void winding_speed_sensitivity(bool enabled, const Link& link, const DriveState<T>& state, Wheel& w) const;
   bool transfer_load(Step& s) const;
   T load_N(std::size_t wheel, const T& floor_x_N, const T& floor_y_N) const;
   void add_floor_force(const Step& s, std::size_t wheel, T& x_N, T& y_N) const;
@@ -152,8 +152,12 @@ class RollingRobot {
   PerWheel<Vector3> rim_;           // rows of G
   PerWheel<Vector3> rim_mobility_;  // M^-1 G'
   Eigen::Matrix<T, 3, 3> inverse_mass_;
+  // G R M^-1 G', R the turn of half a step, is cos times the first, sin times the second, and the third.
+  Eigen::Matrix<T, kMaxWheels, kMaxWheels> mobility_cos_, mobility_sin_, mobility_yaw_;
+  TyreShape<T> tyre_;
   std::unique_ptr<Step> step_;  // of the last call: every step sets all of it
   double step_s_ = 0.0;
+  T end_sensitivity_ = T(0), mean_sensitivity_ = T(0);  // of a winding, in steps of this length
   double unsolved_ = 0.0;
 };
 

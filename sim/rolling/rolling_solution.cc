@@ -27,10 +27,12 @@ void RollingRobot<T>::predict(const RollingState<T>& x, const RollingInput<T>& i
     const auto& v = *in.imposed_velocity;
     s.free = Vector3(T(v[0]), T(v[1]), T(v[2]));
   }
-  for (std::size_t j = 0; j < wheels_; ++j) {
-    const Vector3 moved = s.half_turned(rim_mobility_[j]) * T(in.imposed_velocity != nullptr ? 0.0 : s.h);
-    for (std::size_t i = 0; i < wheels_; ++i) {
-      s.mobility(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rim_[i].dot(moved);
+  const double moves_s = in.imposed_velocity != nullptr ? 0.0 : s.h;
+  const T cos_s = moves_s * s.cos_half, sin_s = moves_s * s.sin_half;
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(wheels_); ++i) {
+    for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(wheels_); ++j) {
+      s.mobility(i, j) =
+          cos_s * mobility_cos_(i, j) + sin_s * mobility_sin_(i, j) + moves_s * mobility_yaw_(i, j);
     }
   }
   for (std::size_t i = 0; i < wheels_; ++i) {
@@ -39,7 +41,7 @@ void RollingRobot<T>::predict(const RollingState<T>& x, const RollingInput<T>& i
     w.end_share = T(1);
     if (w.grip.rolls) continue;
     const auto n = static_cast<Eigen::Index>(i);
-    const T mobility = s.mobility(n, n) + w.lever_m * w.lever_m * s.h / w.effective_inertia;
+    const T mobility = s.mobility(n, n) + w.lever_m * w.lever_m * w.speed_per_torque;
     const T z = mobility * w.grip.slope_at_rest();  // the step over the time in which a slip dies out
     w.end_share = (3.0 + z) / (6.0 + z);
   }
@@ -85,11 +87,10 @@ template <typename T>
 T RollingRobot<T>::rotor_end(const RollingState<T>& x, const Step& s, std::size_t i, const T& force_N,
                              T* friction_Nm) const {
   const Wheel& w = s.wheel[i];
-  const T speed_per_torque = s.h / w.effective_inertia;
   const T y =
-      w.omega_predicted - speed_per_torque * (w.lever_m * (force_N - x.force_N[i]) - x.friction_Nm[i]);
-  const T omega = shrunk(y, T(speed_per_torque * w.friction_up_Nm), T(speed_per_torque * w.friction_down_Nm));
-  if (friction_Nm != nullptr) *friction_Nm = (y - omega) / speed_per_torque;
+      w.omega_predicted - w.speed_per_torque * (w.lever_m * (force_N - x.force_N[i]) - x.friction_Nm[i]);
+  const T omega = shrunk(y, w.friction_up_rad_s, w.friction_down_rad_s);
+  if (friction_Nm != nullptr) *friction_Nm = (y - omega) / w.speed_per_torque;
   return omega;
 }
 
@@ -116,9 +117,9 @@ Eigen::Matrix<double, Size, 1> RollingRobot<T>::solve_values(const RollingState<
     balance.end_share(i) = value_of(w.end_share);
     balance.begun(i) = w.grip.rolls ? 0.0 : (1.0 - balance.end_share(i)) * value_of(x.force_N[n]);
     balance.lever(i) = value_of(w.lever_m);
-    balance.speed_per_torque(i) = s.h / value_of(w.effective_inertia);
-    balance.up(i) = balance.speed_per_torque(i) * value_of(w.friction_up_Nm);
-    balance.down(i) = balance.speed_per_torque(i) * value_of(w.friction_down_Nm);
+    balance.speed_per_torque(i) = value_of(w.speed_per_torque);
+    balance.up(i) = value_of(w.friction_up_rad_s);
+    balance.down(i) = value_of(w.friction_down_rad_s);
     balance.hub(i) = value_of(w.hub_free_m_s);
     const double held_Nm = balance.lever(i) * value_of(x.force_N[n]) + value_of(x.friction_Nm[n]);
     balance.rotor(i) = value_of(w.omega_predicted) + balance.speed_per_torque(i) * held_Nm;
@@ -166,8 +167,6 @@ void RollingRobot<T>::solve_in(RollingState<T>& x, Step& s) {
       exact -= inverse(row, static_cast<Eigen::Index>(j)) * residual[j];
     x.slip_m_s[i] = value_of(exact);
     s.end_force_N[i] = -s.wheel[i].grip.force_of(exact);
-    s.force_N[i] = mean_force(x, s, i, s.end_force_N[i]);
-    s.omega_end[i] = rotor_end(x, s, i, s.force_N[i], &s.friction_Nm[i]);
   }
 }
 
@@ -178,18 +177,21 @@ void RollingRobot<T>::finish(RollingState<T>& x, const RollingInput<T>& in, Step
   for (std::size_t i = 0; i < wheels_; ++i) {
     const Wheel& w = s.wheel[i];
     DriveState<T>& state = x.drive[i];
-    pushed += rim_mobility_[i] * s.force_N[i];
+    const T force_N = mean_force(x, s, i, s.end_force_N[i]);
+    T friction_Nm;
+    const T omega_end = rotor_end(x, s, i, force_N, &friction_Nm);
+    pushed += rim_mobility_[i] * force_N;
     add_floor_force(s, i, floor_x, floor_y);
-    const T departed = s.omega_end[i] - w.omega_predicted;
+    const T departed = omega_end - w.omega_predicted;
     state.current_A -= w.end_sensitivity * departed;
     x.charge_C[i] += s.h * (w.drive.mean_current_A - 0.5 * w.mean_sensitivity * departed);
-    x.theta_rotor_rad[i] += 0.5 * s.h * (w.omega_start + s.omega_end[i]);
-    state.omega_rotor_rad_s = s.omega_end[i];
-    state.omega_change_rad_s = s.omega_end[i] - w.omega_start;
+    x.theta_rotor_rad[i] += 0.5 * s.h * (w.omega_start + omega_end);
+    state.omega_rotor_rad_s = omega_end;
+    state.omega_change_rad_s = omega_end - w.omega_start;
     state.theta_rotor_rad = x.theta_rotor_rad[i];
     state.corrected_rad = T(0);
     x.force_N[i] = s.end_force_N[i];
-    x.friction_Nm[i] = s.friction_Nm[i];
+    x.friction_Nm[i] = friction_Nm;
   }
   const Vector3 end = s.free + s.half_turned(pushed) * T(in.imposed_velocity != nullptr ? 0.0 : s.h);
   x.accel_x_m_s2 = (end(0) - s.turned(0)) / s.h;

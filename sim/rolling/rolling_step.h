@@ -9,7 +9,9 @@ struct RollingRobot<T>::Wheel {
   DriveResult<T> drive;
   T omega_start = T(0), omega_predicted = T(0);
   T effective_inertia = T(0), slope = T(0), end_sensitivity = T(0), mean_sensitivity = T(0);
-  T lever_m = T(0);  // radius over gear
+  T speed_per_torque = T(0);                               // h / J_e
+  T friction_up_rad_s = T(0), friction_down_rad_s = T(0);  // that friction may take off the rotor's speed
+  T lever_m = T(0);                                        // radius over gear
   T friction_up_Nm = T(0), friction_down_Nm = T(0);
   T added_torque_Nm = T(0);  // at the rotor, by forces of effects along the drive direction
   T added_N = T(0);          // the same forces on the body: none on wheels that roll
@@ -27,8 +29,7 @@ struct RollingRobot<T>::Step {
   T cos_half = T(1), sin_half = T(0);
   Vector3 turned, free;  // velocity carried into the end's frame; the same with `force`
   Eigen::Matrix<T, kMaxWheels, kMaxWheels> mobility;  // h G M^-1 G': rim speeds per floor force
-  PerWheel<T> force_N, end_force_N;                   // of the floor: mean over the step, at its end
-  PerWheel<T> omega_end, friction_Nm;
+  PerWheel<T> end_force_N;                            // of the floor, at the step's end
 
   // By half a step's turn, into the frame of the step's end.
   Vector3 half_turned(const Vector3& v) const {
