@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "identify/estimate/fit.h"
+#include "identify/record/parallel.h"
 #include "identify/record/rig.h"
 
 namespace omnihil {
@@ -36,13 +37,13 @@ FitResult fit_base(const Dataset& dataset, const Candidate& nominal, const Candi
 
 std::vector<LostPackets> decide(const Dataset& dataset, const std::vector<RobotRun>& runs,
                                 const Candidate& model) {
-  std::vector<LostPackets> out;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
+  std::vector<LostPackets> out(runs.size());
+  parallel_for(static_cast<int>(runs.size()), [&](int n) {
+    const auto r = static_cast<std::size_t>(n);
     const Candidate own = with_known(model, dataset.runs[r].known);
-    LostPackets lost = lost_packets(rolling_values<double>({own}), runs[r]);
-    if (lost.share() > kMostLost) lost.rows.clear();
-    out.push_back(std::move(lost));
-  }
+    out[r] = lost_packets(rolling_values<double>({own}), runs[r]);
+    if (out[r].share() > kMostLost) out[r].rows.clear();
+  });
   return out;
 }
 

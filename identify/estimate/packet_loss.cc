@@ -18,6 +18,7 @@ constexpr double kMostCorrelated = 0.95;  // r at most; a choice
 RobotMotionOptions own_path() {
   RobotMotionOptions options;
   options.follow_camera = false;
+  options.rough = true;  // what steps of 1 ms are off by is the same with a command and without
   return options;
 }
 
