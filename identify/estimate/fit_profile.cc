@@ -3,12 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/record/parallel.h"
+
 namespace omnihil {
 namespace {
 
 constexpr int kMost = 4;        // unknowns profiled: two refits each; bounds the cost, a choice
 constexpr int kIterations = 4;  // of each refit; a choice, convergence not checked
 constexpr double kFlat = 0.1;   // squared sigmas where 1 is expected: three times the sigma or more; a choice
+
+// One side of one unknown: where it is held.
+struct Held {
+  std::size_t unknown = 0;
+  double value = 0.0, displacement = 0.0;
+};
 
 // Twice the rise of the cost with unknown i held at `value`; infinite where the model is not finite there.
 double rise(const FitProblem& problem, const Eigen::VectorXd& x, double cost, Eigen::Index i, double value,
@@ -31,20 +39,33 @@ void profile(const FitProblem& problem, const Eigen::VectorXd& x, const FitOptio
     if (p.at_bound || known > 0.3) doubtful.emplace_back(-known, n);
   }
   std::sort(doubtful.begin(), doubtful.end());
-  const double cost = problem.at(x, false).cost();
-  for (std::size_t d = 0; d < doubtful.size() && d < kMost; ++d) {
-    if (options.stop && options.stop()) return;
-    ParameterEstimate& p = result.parameters[doubtful[d].second];
-    const Unknown& u = problem.unknowns()[doubtful[d].second];
-    const auto i = static_cast<Eigen::Index>(doubtful[d].second);
-    double sum = 0.0, sides = 0.0;
+  if (doubtful.size() > kMost) doubtful.resize(kMost);
+  std::vector<Held> held;
+  for (const auto& [known, n] : doubtful) {
+    const double sigma = result.parameters[n].sigma;
+    const Unknown& u = problem.unknowns()[n];
+    const double from = x[static_cast<Eigen::Index>(n)];
     for (const double side : {-1.0, 1.0}) {
-      const double value = std::clamp(x[i] + side * p.sigma, u.lower, u.upper);
-      const double displacement = std::abs(value - x[i]);
-      if (!(displacement > 0.1 * p.sigma)) continue;  // at the bound: no room on this side
-      const double squared = rise(problem, x, cost, i, value, options);
-      if (!std::isfinite(squared)) continue;
-      sum += squared / (displacement * displacement), sides += 1.0;
+      const double value = std::clamp(from + side * sigma, u.lower, u.upper);
+      const double displacement = std::abs(value - from);
+      if (displacement > 0.1 * sigma) held.push_back({n, value, displacement});  // else at the bound: no room
+    }
+  }
+  const double cost = problem.at(x, false).cost();
+  std::vector<double> rises(held.size());
+  parallel_for(options.jobs, static_cast<int>(held.size()), [&](int k) {
+    const Held& h = held[static_cast<std::size_t>(k)];
+    const std::unique_ptr<FitProblem> own = problem.with_derivatives_kept();
+    rises[static_cast<std::size_t>(k)] =
+        rise(*own, x, cost, static_cast<Eigen::Index>(h.unknown), h.value, options);
+  });
+  if (options.stop && options.stop()) return;
+  for (const auto& [known, n] : doubtful) {
+    ParameterEstimate& p = result.parameters[n];
+    double sum = 0.0, sides = 0.0;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      if (held[k].unknown != n || !std::isfinite(rises[k])) continue;
+      sum += rises[k] / (held[k].displacement * held[k].displacement), sides += 1.0;
     }
     if (sides == 0.0) continue;
     const double curvature = sum / sides;
