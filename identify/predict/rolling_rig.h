@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "identify/predict/camera_path.h"
 #include "identify/predict/predictor_rig.h"
 #include "identify/predict/robot_motion.h"
 #include "identify/predict/robot_signals.h"
@@ -66,6 +67,9 @@ class RollingRig : public RigRuns<RobotRun> {
 
   template <typename T>
   RigOutputs<T> outputs(const RigModel& model, std::size_t n, double) const {
+    if constexpr (std::is_same_v<T, double>) {
+      if (is_deaf(model.candidate, n)) return seen_outputs(model.candidate, n);
+    }
     RobotMotionOptions how = motion_;
     how.rough = Kind::kRough && std::is_same_v<T, Jet>;
     const RobotMotion<T> motion = run_robot(values_of<T>(model), runs_[n].record, how);
@@ -92,6 +96,38 @@ class RollingRig : public RigRuns<RobotRun> {
   }
 
  private:
+  // Driven by commands alone, and no law looks at a sensor, its clock or the measured heading: it moves the same whatever the
+  // sensors' noise, so that all replicates of a null (null_model.h) are readings of one motion.
+  bool is_deaf(const Candidate& own, std::size_t n) const {
+    const RobotRecord& r = runs_[n].record;
+    if (!r.radio || motion_.firmware != nullptr || r.has_all_encoders || !r.bus.input_V.empty() ||
+        !r.imposed_velocity.empty() || !r.settled.empty() || r.duty_quantum != 0.0)
+      return false;
+    return std::ranges::none_of(own.effects, [](const EffectUse& use) {
+      const ApplyFunctions<double>& acts = use.entry->simulate;
+      return acts.body != nullptr || acts.sensor != nullptr || acts.timing != nullptr;
+    });
+  }
+  // Of a deaf robot: its motion, on its own path.
+  std::shared_ptr<const RobotMotion<double>> own_motion(const Candidate& own, std::size_t n) const {
+    const BodyVelocity<double>& start = runs_[n].record.start_velocity;
+    SimulatedNumbers key = simulated_numbers(own, n);
+    key.numbers.insert(key.numbers.end(), {start.v_forward_m_s, start.v_left_m_s, start.omega_body_rad_s});
+    return motions_->of(std::move(key), [&] {
+      RobotMotionOptions how = motion_;
+      how.follow_camera = false;
+      return run_robot(values_of<double>({own}), runs_[n].record, how);
+    });
+  }
+  RigOutputs<double> seen_outputs(const Candidate& own, std::size_t n) const {
+    RobotMotion<double> motion = *own_motion(own, n);
+    const double age_s = 0.0;  // no law of timing acts
+    for (RollingSample<double>& s : motion.samples) s.pose = {};
+    const std::vector<double> heading = headings(runs_[n].record, age_s);
+    see_path(runs_[n].record, {true, age_s, heading}, motion.samples);
+    return {.values = robot_outputs(runs_[n], motion), .finite = motion.finite};
+  }
+
   template <typename T>
   static RobotModelValues<T> values_of(const RigModel& model) {
     auto values = rolling_values<T>(model);
@@ -110,6 +146,9 @@ class RollingRig : public RigRuns<RobotRun> {
   static constexpr std::uint64_t kNoiseSeed = 1;  // as above
 
   RobotMotionOptions motion_;
+  using Motions = Remembered<SimulatedNumbers, RobotMotion<double>>;
+  static constexpr std::size_t kMotions = 2;  // of each run: of the two fits that go on at a time; a choice
+  std::shared_ptr<Motions> motions_ = std::make_shared<Motions>(kMotions * dataset_->runs.size());
   double tick_s_ = 0.0;  // of the firmware
 };
 
@@ -127,10 +166,13 @@ void RollingRig<Kind>::measure(const Candidate& truth, std::uint64_t seed) {
     // the true inputs: duties before rounding, bus voltage without its sensor's noise
     RobotRecord true_input = with_input_noise(runs_[n].record, own_seed(n));
     true_input.bus = runs_[n].record.bus;
-    motions.push_back(run_robot(values_of<double>({own}), true_input, free));
+    motions.push_back(is_deaf(own, n) ? *own_motion(own, n)
+                                      : run_robot(values_of<double>({own}), true_input, free));
     measure_robot(runs_[n], motions.back(), own_seed(n), made->runs[n]);
   }
+  const std::shared_ptr<Motions> shared = motions_;
   *this = RollingRig(std::move(made), nominal_, options_, &runs_);
+  motions_ = shared;
   for (std::size_t n = 0; n < runs_.size(); ++n) measure_compared_bus(motions[n], own_seed(n), runs_[n]);
 }
 

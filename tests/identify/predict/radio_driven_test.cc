@@ -7,6 +7,7 @@
 #include "identify/estimate/fit.h"
 #include "identify/predict/predictor.h"
 #include "identify/predict/robot_motion.h"
+#include "sim/law/effect_registry.h"
 #include "sim/law/random.h"
 #include "sim/model/rolling_model.h"
 #include "tests/identify/simulated_radio.h"
@@ -47,6 +48,28 @@ TEST(RadioDriven, TheModelThatMadeTheDataLeavesTheNoise) {
         if (std::isfinite(r)) square += r * r, count += 1.0;
       }
       EXPECT_NEAR(std::sqrt(square / count) / c.noise_sigma, 1.0, 0.15) << c.name << wheels;
+    }
+  }
+}
+
+// A motion that hears nothing of the sensors is made once and read by each draw of them. A law of the heading that does nothing
+// has it made with the camera followed: the same numbers.
+TEST(RadioDriven, AMotionThatTheCameraReadsIsTheOneThatFollowsIt) {
+  const Candidate truth = radio_candidate();
+  Candidate looks = truth;
+  looks.effects.push_back(neutral_use(*find_effect("floor_tilt"), nullptr, kWheels));
+  const auto p = make_predictor(blank_radio(3.0), truth, {});
+  for (const std::uint64_t seed : {3u, 4u}) {
+    const auto made = p->simulated(truth, seed), by_one_that_looks = p->simulated(looks, seed);
+    const Prediction one = made->predict(truth, 0), other = by_one_that_looks->predict(looks, 0);
+    ASSERT_EQ(one.values.size(), other.values.size());
+    for (std::size_t s = 0; s < one.values.size(); ++s) {
+      for (std::size_t k = 0; k < one.values[s].size(); ++k) {
+        const double a = made->compared(0)[s].measured[k], b = by_one_that_looks->compared(0)[s].measured[k];
+        const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+        ASSERT_TRUE(same(one.values[s][k], other.values[s][k])) << made->compared(0)[s].name << " " << k;
+        ASSERT_TRUE(same(a, b)) << made->compared(0)[s].name << " " << k;
+      }
     }
   }
 }
