@@ -106,14 +106,17 @@ double rise_above_null(const WhitenedResiduals& residuals, const NullModel& null
 
 // Relative increase of the energy of the extrapolation runs. Zero if the bootstrap's interval includes no
 // rise, or if the unweighted rise is below kLeastUnweighted: whitening weighs the slowest part of a residual
-// most, where the last digit of a base parameter shows (DECISIONS 51).
+// most, where the last digit of a base parameter shows (DECISIONS 51). But a gain that whitening alone shows on the runs that
+// decide is held against what whitening shows on the others.
 double extrapolation_rise(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
-                          const SplitGain& gain) {
+                          const SplitGain& gain, std::size_t decides) {
   const WhitenedResiduals& residuals = (*context.splits)[kExtrapolation];
   if (residuals.empty() || gain.best <= 1.0) return 0.0;
   const bool has_unweighted =
       child.unweighted[kExtrapolation].size() > 0 && parent.unweighted[kExtrapolation].size() > 0;
-  if (has_unweighted &&
+  const bool gains_unweighted =
+      unweighted_gain(parent.unweighted[decides], child.unweighted[decides]) >= kLeastUnweighted;
+  if (has_unweighted && gains_unweighted &&
       unweighted_gain(child.unweighted[kExtrapolation], parent.unweighted[kExtrapolation]) < kLeastUnweighted)
     return 0.0;
   return std::min(gain.ratio - 1.0, rise_above_null(residuals, *context.null, parent.residual[kExtrapolation],
@@ -264,7 +267,8 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
   const Split decides = (*context.splits)[kValidation].empty() ? Split::kTraining : Split::kValidation;
   const SplitGain& held = decides == Split::kValidation ? out.holdout : out.fit;
   out.decisive = 1.0 - held.ratio > kDecisiveGain && held.worst < 1.0;
-  const double rise = extrapolation_rise(context, parent, child, out.extrapolation);
+  const double rise =
+      extrapolation_rise(context, parent, child, out.extrapolation, static_cast<std::size_t>(decides));
   std::string implausible = implausibility(parent.fit, child.fit, name, out.decisive);
   if (implausible.empty())
     implausible = below_time_resolution(child.fit, name, context.rate_Hz, context.loop_period_s);

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "identify/estimate/gain.h"
 #include "identify/record/parallel.h"
 #include "identify/select/effect_variants.h"
+#include "identify/select/plausibility.h"
 #include "sim/law/effect_registry.h"
 #include "sim/law/random.h"
 #include "sim/model/effect_reader.h"
@@ -238,6 +240,11 @@ class Trial {
     NoiseEffect out{
         .use = at(strength), .strength = {}, .explained = before > 0.0 ? 1.0 - after / before : 0.0};
     if (all < kExcess * floor || out.explained < kExplained) return std::nullopt;
+    // What else the law does (a counted speed is late by half its window) has to be there as well.
+    const Eigen::VectorXd moved =
+        tested.residual(tested.predicted_runs(with_use(*search_.model, at(strength)), 1));
+    if (moved.size() != residual.size() || energy_ratio(tested, residual, moved) > 1.0 + kMostEnergyRise)
+      return std::nullopt;
     const Eigen::VectorXd drawn =
         simulated_residual(*simulated(strength, kReplicates), tested, *search_.model, bins.predicted());
     if (drawn.size() == 0) return std::nullopt;

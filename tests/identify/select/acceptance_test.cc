@@ -152,6 +152,19 @@ TEST(AcceptanceTest, AllowsARiseOnAnotherKindOfMotionThatIsAFallUnweighted) {
   EXPECT_TRUE(test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "x", 100).accepted());
 }
 
+// A gain that whitening alone shows is held against the rise that whitening shows.
+TEST(AcceptanceTest, RefusesARiseOnAnotherKindOfMotionBesideAGainOfTheWhitenedAlone) {
+  const AcceptanceFixture fixture;
+  const Fitted parent = fixture.leaving(1, 1, 1);
+  Fitted child = fixture.leaving(0.75, 0.75, 1.25);
+  child.unweighted[kExtrapolation] = parent.unweighted[kExtrapolation];
+  EXPECT_TRUE(test_acceptance(fixture.context, parent, child, "x", 100).accepted());
+  child.unweighted[kValidation] = parent.unweighted[kValidation];
+  const AcceptanceResult j = test_acceptance(fixture.context, parent, child, "x", 100);
+  EXPECT_FALSE(j.accepted());
+  EXPECT_NE(j.why.find("extrapolation"), std::string::npos) << j.why;
+}
+
 TEST(AcceptanceTest, AllowsARiseOnAnotherKindOfMotionThatIsSmallUnweighted) {
   const AcceptanceFixture fixture;
   const Fitted parent = fixture.leaving(1, 1, 1);

@@ -1,6 +1,9 @@
 // An effect that is noise: found by where a record is loud, on both rigs; and not where it is not.
 #include "identify/select/noise_effect.h"
 
+#include <cmath>
+#include <utility>
+
 #include "identify/select/selection_context.h"
 #include "tests/identify/simulated_bench.h"
 #include "tests/identify/simulated_robot.h"
@@ -47,6 +50,30 @@ TEST(NoiseEffect, NothingIsFoundWhereNothingIsHidden) {
   const Bench bench = with({});
   EXPECT_FALSE(found_in(bench.dataset, bench.nominal));
   EXPECT_FALSE(found_in(robot_record({}, 8.0), robot_candidate()));
+}
+
+std::vector<double> every_fourth(const std::vector<double>& x) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k < x.size(); k += 4) out.push_back(x[k]);
+  return out;
+}
+
+// Counts that lag by 1 % of the way, whichever way it goes: as large as the speed, as missed counts are, and no noise.
+TEST(NoiseEffect, AnErrorThatGrowsWithTheSpeedIsNoNoise) {
+  BenchRecipe recipe;
+  recipe.excitations.assign(3, Excitation::kChirp);
+  Bench bench = simulated_bench(recipe);
+  for (omnihil::Run& run : bench.dataset.runs) {
+    std::vector<double>& counts = run.signals["encoder"];
+    double way = 0.0, before = counts.front();
+    for (double& c : counts) {
+      way += std::abs(c - std::exchange(before, c));
+      c = std::floor(c - 0.01 * way);
+    }
+    run.time_s = every_fourth(run.time_s);
+    for (auto& [name, values] : run.signals) values = every_fourth(values);
+  }
+  EXPECT_FALSE(found_in(bench.dataset, bench.nominal));
 }
 
 TEST(NoiseEffect, AWrongLawIsNoNoise) {
