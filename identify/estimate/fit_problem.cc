@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 
 #include "identify/record/parallel.h"
@@ -17,9 +16,6 @@ namespace {
 // Gaussian and must keep its weight in a search, a glitch is farther out. A choice; sensitivity not measured.
 constexpr double kHuber = 6.0;          // a choice
 constexpr double kRobustHuber = 1.345;  // Holland, Welsch 1977; a choice
-// Of an unknown's scale: its derivatives change by about as much. At 0.5 a shortlist's refits took 0.6 of the derivatives and 1.7
-// times the values.
-constexpr double kNear = 0.1;  // a choice
 
 // Residual of one signal, whitened, zero where it was not measured.
 Eigen::VectorXd residual_of(const ComparedSignal& signal, const std::vector<double>& model) {
@@ -59,7 +55,7 @@ FitProblem::FitProblem(const Predictor& predictor, const Candidate& candidate,
       unknowns_(unknowns),
       jobs_(jobs),
       robust_(robust),
-      near_(near_enough && predictor.is_costly() ? kNear : 0.0) {
+      near_enough_(near_enough && predictor.is_costly()) {
   for (int run = 0; run < predictor.run_count(); ++run) {
     if (predictor.run(run).split == Split::kTraining && !predictor.compared(run).empty())
       runs_.push_back(run);
@@ -70,12 +66,9 @@ FitProblem::FitProblem(const Predictor& predictor, const Candidate& candidate,
                            [&](std::size_t n) { return predictor.run(runs_[n]).time_s.size(); });
 }
 
-std::unique_ptr<FitProblem> FitProblem::with_derivatives_kept() const {
+std::unique_ptr<FitProblem> FitProblem::beside() const {
   auto out = std::make_unique<FitProblem>(predictor_, candidate_, unknowns_, jobs_, robust_);
   out->weights_ = weights_;
-  if (!predictor_.is_costly()) return out;
-  out->derived_ = derived_;
-  out->near_ = std::numeric_limits<double>::infinity();
   return out;
 }
 
@@ -209,48 +202,13 @@ FitPoint FitProblem::along(const Eigen::VectorXd& x, Eigen::Index unknown) const
 }
 
 bool FitProblem::near_derived(const Eigen::VectorXd& x) const {
-  if (near_ == 0.0 || derived_.x.size() != x.size()) return false;
+  constexpr double kNear = 0.1;  // of an unknown's scale: its derivatives change by about as much; a choice
+  if (!near_enough_ || derived_.x.size() != x.size()) return false;
   if (!std::ranges::all_of(derived_.runs, [](const Prediction& p) { return p.finite; })) return false;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    if (std::abs(x[i] - derived_.x[i]) > near_ * unknowns_[static_cast<std::size_t>(i)].scale) return false;
+    if (std::abs(x[i] - derived_.x[i]) > kNear * unknowns_[static_cast<std::size_t>(i)].scale) return false;
   }
   return true;
-}
-
-// By the least change that gives the step from the last point what it did (Broyden 1965), unknowns in units of their scale.
-void FitProblem::follow(const Eigen::VectorXd& x) const {
-  const Eigen::VectorXd step = x - derived_.agrees;
-  Eigen::VectorXd share = step;  // of what is missing, by each unknown
-  for (Eigen::Index i = 0; i < share.size(); ++i)
-    share[i] /= std::pow(unknowns_[static_cast<std::size_t>(i)].scale, 2);
-  const double length = share.dot(step);
-  if (!(length > 0.0)) return;
-  share /= length;
-  const auto before = predicted(derived_.agrees), now = predicted(x);
-  const std::size_t strides = passes_of(unknowns_.size());
-  parallel_for(jobs_, static_cast<int>(runs_.size()), [&](int n) {
-    const auto r = static_cast<std::size_t>(n);
-    if (!(*before)[r].finite || !(*now)[r].finite) return;
-    for (std::size_t s = 0; s < (*now)[r].values.size(); ++s) {
-      const std::vector<double>&from = (*before)[r].values[s], &to = (*now)[r].values[s];
-      Eigen::VectorXd missing(static_cast<Eigen::Index>(to.size()));
-      for (std::size_t k = 0; k < to.size(); ++k) missing[static_cast<Eigen::Index>(k)] = to[k] - from[k];
-      Eigen::Index first = 0;
-      for (std::size_t p = 0; p < strides; ++p) {
-        const Eigen::MatrixXd& d = derived_.runs[r * strides + p].derivatives[s];
-        missing -= d * step.segment(first, d.cols());
-        first += d.cols();
-      }
-      missing = missing.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
-      first = 0;
-      for (std::size_t p = 0; p < strides; ++p) {
-        Eigen::MatrixXd& d = derived_.runs[r * strides + p].derivatives[s];
-        d += missing * share.segment(first, d.cols()).transpose();
-        first += d.cols();
-      }
-    }
-  });
-  derived_.agrees = x;
 }
 
 // All passes of a run one after another.
@@ -276,8 +234,7 @@ FitPoint FitProblem::evaluated(const Eigen::VectorXd& x, std::span<const Unknown
   const bool same = derived_.x.size() == x.size() && derived_.x == x;
   const bool nearby = all && !same && near_derived(x);
   std::vector<Prediction> some;
-  if (all && !nearby && !same) derived_ = {.x = x, .agrees = x, .runs = derived(x, by)};
-  if (nearby) follow(x);
+  if (all && !nearby && !same) derived_ = {.x = x, .runs = derived(x, by)};
   if (!all) some = derived(x, by);
   const std::vector<Prediction>& derived = all ? derived_.runs : some;
   const auto plain = strides == 0 || nearby ? predicted(x) : nullptr;

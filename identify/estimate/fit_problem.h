@@ -14,9 +14,9 @@
 // wrongly does not bias the estimates; 95 % as efficient as least squares where the residual is Gaussian. p
 // unknowns: x, gradient of size p, information of p x p, in the unknowns' own units and their inverses.
 // Derivatives are made once for a point, however often it is weighed. `near_enough`: and taken for those of points nearby, a
-// tenth of each unknown's scale off at most, where a record is costly (of wheels on a floor), changed as little as makes them
-// agree with what the step there did: Gauss-Newton with them ends where it would, in more steps that cost a simulation each.
-// Sources: Huber 1964; Holland, Welsch 1977 (1.345); Sokal 1997 (autocorrelation time); Broyden 1965, Math. Comp. 19 (92).
+// tenth of each unknown's scale off at most, where a record is costly (of wheels on a floor): Gauss-Newton with them ends where
+// it would, in more steps that cost a simulation each.
+// Sources: Huber 1964; Holland, Welsch 1977 (1.345); Sokal 1997 (autocorrelation time).
 #pragma once
 #include <Eigen/Core>
 #include <map>
@@ -50,8 +50,8 @@ class FitProblem {
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   bool empty() const { return runs_.empty(); }
-  // The same problem by itself, for another thread. Where a record is costly the derivatives that there are serve every point.
-  std::unique_ptr<FitProblem> with_derivatives_kept() const;
+  // The same problem with the same weights, for another thread; every point has derivatives of its own.
+  std::unique_ptr<FitProblem> beside() const;
   Candidate candidate_at(const Eigen::VectorXd& x) const;
 
   // Sets s_c and t_c from the residuals at x; false where the model is not finite there.
@@ -76,7 +76,6 @@ class FitProblem {
   FitPoint evaluated(const Eigen::VectorXd& x, std::span<const Unknown> by, Eigen::Index first) const;
   std::vector<Prediction> derived(const Eigen::VectorXd& x, std::span<const Unknown> by) const;
   bool near_derived(const Eigen::VectorXd& x) const;
-  void follow(const Eigen::VectorXd& x) const;
   RunPart part(int run, const Prediction& values, const std::vector<const Prediction*>& strides,
                Eigen::Index n) const;
 
@@ -84,8 +83,7 @@ class FitProblem {
   Candidate candidate_;
   std::vector<Unknown> unknowns_;
   int jobs_ = 1;
-  bool robust_ = false;
-  double near_ = 0.0;  // of an unknown's scale: as far as derivatives are taken for those of a point
+  bool robust_ = false, near_enough_ = false;
   std::vector<int> runs_;
   std::vector<std::size_t> longest_first_;  // indices into runs_: what is begun last is not what all wait for
   std::map<std::string, SignalWeight> weights_;
@@ -95,8 +93,7 @@ class FitProblem {
   mutable Remembered<Eigen::VectorXd, std::vector<Prediction>> predicted_{kKept};
   // The last ones by all unknowns, a run's passes one after another. One thread at a time may ask.
   struct Derived {
-    Eigen::VectorXd x;       // of which they are
-    Eigen::VectorXd agrees;  // the last point that they were made to agree with
+    Eigen::VectorXd x;
     std::vector<Prediction> runs;
   };
   mutable Derived derived_;

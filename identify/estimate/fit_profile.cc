@@ -55,7 +55,7 @@ void profile(const FitProblem& problem, const Eigen::VectorXd& x, const FitOptio
   std::vector<double> rises(held.size());
   parallel_for(options.jobs, static_cast<int>(held.size()), [&](int k) {
     const Held& h = held[static_cast<std::size_t>(k)];
-    const std::unique_ptr<FitProblem> own = problem.with_derivatives_kept();
+    const std::unique_ptr<FitProblem> own = problem.beside();
     rises[static_cast<std::size_t>(k)] =
         rise(*own, x, cost, static_cast<Eigen::Index>(h.unknown), h.value, options);
   });
