@@ -30,8 +30,6 @@ class AxisRun {
         looks_back_(!effects.timing.empty()),
         swings_(input.imposed_at_rotor && sim_.two_masses()) {
     state_.now_s = input.time_s.front();
-    if (input.command_before && !effects.command.empty())
-      state_.commands.push(state_.now_s - kRecordSpan_s, *input.command_before);
     state_.theta_rotor_rad = input.initial_position_rad * params.gear_ratio;
     const double speed = input.imposed_velocity_rad_s.empty() ? input.initial_velocity_rad_s
                                                               : input.imposed_velocity_rad_s.front();
