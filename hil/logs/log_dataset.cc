@@ -14,7 +14,6 @@
 #include "hil/text/line_chart.h"
 #include "identify/record/held_readings.h"
 #include "identify/record/rig.h"
-#include "identify/record/signal_list.h"
 #include "sim/bench/dataset_text.h"
 
 namespace omnihil {
@@ -247,23 +246,15 @@ struct ReadRun {
   LogRows rows;
 };
 
-// What a fit takes a reading of, one by one. A motor's speed by Hall pulses is not: its held window is known by its
-// repeats (counted_speed.h).
-bool is_reading(const ColumnMeaning& m, const MeaningContext& context) {
-  const SignalRow& row = *find_signal(*context.rig, m.signal);
-  if (m.imposed || (m.signal == "velocity" && context.pole_pairs > 0.0)) return false;
-  return row.role == SignalRole::kMotion || row.role == SignalRole::kCounts ||
-         m.signal.starts_with("motor_current");
-}
-
 // Of a sensor that is slower than its rows one row a reading is left, and that is said.
 void empty_held(std::deque<ReadRun>& read, const MeaningContext& context, LogDataset& made) {
   std::map<std::string, std::vector<std::vector<double>*>> by_signal;
   for (ReadRun& r : read) {
     if (!r.run.table.by_rows()) continue;
     for (std::size_t k = 0; k < r.rows.meaning.size(); ++k) {
-      if (is_reading(*r.rows.meaning[k], context))
-        by_signal[r.rows.meaning[k]->signal].push_back(&r.rows.columns[k]);
+      const ColumnMeaning& m = *r.rows.meaning[k];
+      if (may_be_held(*find_signal(*context.rig, m.signal), m.imposed, context.pole_pairs > 0.0))
+        by_signal[m.signal].push_back(&r.rows.columns[k]);
     }
   }
   for (const auto& [signal, runs] : by_signal) {

@@ -113,8 +113,8 @@ void target_against_position(const RunView& view, const DriveView& drive,
 // squares (tuned).
 void torque_against_acceleration(const RunView& view, const DriveView& drive,
                                  std::vector<DataFinding>& findings) {
-  // rad, from which on the load's sine and cosine differ from its level and from one another: a choice
-  constexpr double kLeastAngle = 0.05;
+  // From which on the load's sine and cosine differ from its level and from one another.
+  constexpr double kLeastAngle = 0.05;  // rad; a choice
   if (drive.drive_name != "motor_torque" || (drive.position == nullptr && drive.velocity == nullptr)) return;
   const WindowMeans w = window_means(view, drive, *drive.drive, 0.02);
   std::vector<double> torque, acceleration, speed, side, along_sine, along_cosine;

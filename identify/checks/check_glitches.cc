@@ -151,7 +151,7 @@ void check_glitches(const CheckContext& data, std::vector<DataFinding>& findings
   for (const RunView& view : data.runs) {
     if (view.run->steady) continue;
     for (const DriveView& drive : view.drives) {
-      if (drive.position != nullptr && rows_held_of(data, drive.position_name) == 0.0)
+      if (drive.position != nullptr && !data.rows_held.contains(drive.position_name))
         check_signal(view, drive.position_name, *drive.position, drive.quantum, findings);
       if (drive.velocity != nullptr) check_speed(view, *drive.velocity, highest, findings);
     }

@@ -1,8 +1,7 @@
 // Sensors that are slower than the rows they were logged in.
 //
 // A reading that stands in the rows until the next one is taken for as many measurements: of a motion that stops and
-// jumps. Sound data have it empty there. The speed of a motor with Hall sensors is not looked at: a window of theirs
-// that is held is known by its repeats (counted_speed.h).
+// jumps. Sound data have it empty there.
 #include <fmt/format.h>
 
 #include "identify/checks/check_list.h"
@@ -12,30 +11,29 @@
 
 namespace omnihil {
 
-double rows_held_of(const CheckContext& data, const std::string& signal) {
-  std::vector<const std::vector<double>*> runs;
-  for (const RunView& view : data.runs) {
-    const std::vector<double>* values = view.run->signal(signal);
-    if (values != nullptr && !view.run->steady) runs.push_back(values);
+std::map<std::string, double> rows_held_in(const Dataset& dataset, const Candidate& nominal) {
+  const bool has_halls = nominal_value(nominal, "motor.pole_pairs").value_or(0.0) > 0.0;
+  std::map<std::string, double> out;
+  for (const Channel& channel : dataset.channels) {
+    const SignalRow* row = find_signal(*dataset.rig, channel.signal);
+    if (row == nullptr || !may_be_held(*row, channel.imposed, has_halls)) continue;
+    std::vector<const std::vector<double>*> runs;
+    for (const Run& run : dataset.runs) {
+      const std::vector<double>* values = run.signal(channel.signal);
+      if (values != nullptr && !run.steady) runs.push_back(values);
+    }
+    if (const double rows = rows_held(runs); rows > 0.0) out[channel.signal] = rows;
   }
-  return rows_held(runs);
+  return out;
 }
 
 void check_held(const CheckContext& data, std::vector<DataFinding>& findings) {
-  const bool has_halls = nominal_value(data.nominal, "motor.pole_pairs").value_or(0.0) > 0.0;
-  for (const Channel& channel : data.dataset.channels) {
-    const SignalRow* row = find_signal(*data.dataset.rig, channel.signal);
-    if (row == nullptr || channel.imposed || (channel.signal == "velocity" && has_halls)) continue;
-    if (row->role != SignalRole::kMotion && row->role != SignalRole::kCounts &&
-        !channel.signal.starts_with("motor_current"))
-      continue;
-    const double rows = rows_held_of(data, channel.signal);
-    if (!(rows > 0.0)) continue;
+  for (const auto& [signal, rows] : data.rows_held) {
     findings.push_back(
-        {DataFinding::Grade::kDoubt, "held_readings", "", channel.signal, rows,
+        {DataFinding::Grade::kDoubt, "held_readings", "", signal, rows,
          fmt::format("{} is new in one row of {:g} only and repeats its reading in the others: the repeats "
                      "are no measurements; leave their cells empty (omnihil import does)",
-                     channel.signal, rows)});
+                     signal, rows)});
   }
 }
 

@@ -60,7 +60,8 @@ std::vector<DriveView> drives_of(const Dataset& dataset, const Candidate& nomina
 }  // namespace
 
 CheckContext check_context(const Dataset& dataset, const Candidate& nominal) {
-  CheckContext context{.dataset = dataset, .nominal = nominal, .runs = {}};
+  CheckContext context{
+      .dataset = dataset, .nominal = nominal, .runs = {}, .rows_held = rows_held_in(dataset, nominal)};
   for (const Run& run : dataset.runs) {
     context.runs.push_back(
         {.run = &run, .period_s = median_period_s(run.time_s), .drives = drives_of(dataset, nominal, run)});

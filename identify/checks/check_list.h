@@ -11,6 +11,7 @@
 // docs/measurements.md bring no fault, and that each spoilt record of the same test is named. How far one may
 // move before that fails was measured for none of them, nor was a rate of false alarms beyond those records.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,7 @@ struct CheckContext {
   const Dataset& dataset;
   const Candidate& nominal;
   std::vector<RunView> runs;
+  std::map<std::string, double> rows_held;  // of signals that repeat their readings: rows that each stands in
 };
 
 CheckContext check_context(const Dataset& dataset, const Candidate& nominal);
@@ -67,8 +69,8 @@ void check_flags(const CheckContext&, std::vector<DataFinding>&);
 void check_silent(const CheckContext&, std::vector<DataFinding>&);
 void check_splits(const CheckContext&, std::vector<DataFinding>&);
 
-// Rows that each reading of a signal stands in (held_readings.h), of all runs that are series; 0: one.
-double rows_held_of(const CheckContext& data, const std::string& signal);
+// Of all runs that are series (held_readings.h).
+std::map<std::string, double> rows_held_in(const Dataset& dataset, const Candidate& nominal);
 
 // Helpers of the checks. Order statistics as in identify/record/statistics.h (QuantileRank::kNearest).
 double median_of(std::vector<double> values);                  // NaN left out; 0 of none

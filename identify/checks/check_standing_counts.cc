@@ -73,7 +73,7 @@ void check_standing_counts(const CheckContext& data, std::vector<DataFinding>& f
   for (const RunView& view : data.runs) {
     if (view.run->steady || view.run->time_s.size() < 50) continue;
     for (const DriveView& drive : view.drives) {
-      if (drive.position != nullptr && rows_held_of(data, drive.position_name) == 0.0)
+      if (drive.position != nullptr && !data.rows_held.contains(drive.position_name))
         check_drive(view, drive, findings);
     }
   }

@@ -61,7 +61,7 @@ std::vector<double> interval_means(const std::vector<double>& x) {
 // its noise, up to a drive's mechanics, and only what the laws make of it is brought into the compared band. Short records
 // have no spectrum: that band. No sections: no filter.
 LowPass motion_filter(const LowPass& compared, std::size_t samples, double rate_Hz) {
-  if (samples < kLeastSmoothed) return compared;
+  if (samples < kLeastOfSpectrum) return compared;
   if (kHighestCutoff_Hz >= kMotionShareOfNyquist * 0.5 * rate_Hz) return {};
   return butterworth(kOrder, kHighestCutoff_Hz, rate_Hz);
 }

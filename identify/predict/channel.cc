@@ -22,9 +22,9 @@ bool finite(double v) { return std::isfinite(v); }
 // says nothing of its noise in motion. 0: it stands nowhere, or nearly everywhere.
 double noise_in_motion(const std::vector<double>& x) {
   constexpr std::size_t kStands = 50;  // rows of one reading; a choice
-  constexpr double kLeastMoving =
-      0.1;  // of the rows: a count that changes every 50th has 3 in 50 beside a change; derived
-  constexpr double kTrimmed = 0.95;  // of the squares: steps of the motion are beyond; a choice
+  // Of the rows: a count that changes every 50th has 3 in 50 beside a change.
+  constexpr double kLeastMoving = 0.1;  // derived
+  constexpr double kTrimmed = 0.95;     // of the squares: steps of the motion are beyond; a choice
   std::vector<double> squares;
   std::size_t stood = 0, rows = 0;
   for (std::size_t k = 2, same = 0; k < x.size(); ++k) {

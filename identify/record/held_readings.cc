@@ -14,8 +14,8 @@ constexpr double kOffStep = 1e-3;      // of the smallest change: decimals of a 
 constexpr double kMostSteps = 2.0;     // of the smallest change, in those of a coarse sensor; a choice
 constexpr double kStands = 3.0;        // medians; longer, nothing moves: a choice
 constexpr double kRegularShare = 0.8;  // of the intervals; geometric ones reach 0.25 beyond one row: a choice
-constexpr double kExact =
-    4.0;  // rows; from here on an interval may be off by one, for two clocks side by side
+// Rows; from here on an interval may be off by one, for two clocks side by side.
+constexpr double kExact = 4.0;   // a choice
 constexpr double kWithin = 0.2;  // of the median: a slow sensor's jitter; a choice
 
 struct Changes {
@@ -49,6 +49,12 @@ bool is_coarse(const std::vector<double>& changes) {
 }
 
 }  // namespace
+
+bool may_be_held(const SignalRow& row, bool imposed, bool has_halls) {
+  if (imposed || (row.name == "velocity" && has_halls)) return false;
+  return row.role == SignalRole::kMotion || row.role == SignalRole::kCounts ||
+         row.name.starts_with("motor_current");
+}
 
 double rows_held(const std::vector<const std::vector<double>*>& runs) {
   Changes all;

@@ -11,7 +11,13 @@
 #pragma once
 #include <vector>
 
+#include "identify/record/signal_list.h"
+
 namespace omnihil {
+
+// Is a signal of this row looked at: a fit takes a reading of it, one by one. Not what is imposed, nor the speed of a motor
+// with Hall sensors: their held window is known by its repeats (counted_speed.h).
+bool may_be_held(const SignalRow& row, bool imposed, bool has_halls);
 
 // Rows from reading to reading, the median; 0: every row has its own, or that cannot be told. NaN: not measured.
 double rows_held(const std::vector<const std::vector<double>*>& runs);

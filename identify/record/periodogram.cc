@@ -8,14 +8,11 @@
 #include <unsupported/Eigen/FFT>
 
 #include "identify/record/statistics.h"
-#include "identify/record/wiener.h"
 
 namespace omnihil {
 namespace {
 
 constexpr std::size_t kShortest = 32, kLongest = 1024;  // by cost
-constexpr double kNoiseTo =
-    0.9;  // of half the rate: as wiener.cc, above it anti-aliasing filters act; a choice
 
 using Spectrum = std::vector<std::complex<double>>;
 
@@ -65,7 +62,7 @@ double median_over_mean(double segments) {
 }
 
 double incoherent_sigma(std::span<const double> x, std::span<const double> y, double band) {
-  if (x.size() < kLeastSmoothed || y.size() != x.size()) return std::numeric_limits<double>::quiet_NaN();
+  if (x.size() < kLeastOfSpectrum || y.size() != x.size()) return std::numeric_limits<double>::quiet_NaN();
   const std::size_t length = segment_length(x.size());
   std::vector<Spectrum> of_x;
   const double window_square = for_each_segment(x, length, [&](const Spectrum& s) { of_x.push_back(s); });

@@ -14,6 +14,11 @@
 
 namespace omnihil {
 
+inline constexpr std::size_t kLeastOfSpectrum = 256;  // derived: eight segments of the shortest length
+// Of half the rate, up to which noise is looked for: above it anti-aliasing filters act, and differences of a position have
+// no noise left.
+inline constexpr double kNoiseTo = 0.9;  // a choice
+
 // power: length / 2 + 1 values, summed over the segments; relative standard deviation kWelchDeviation / sqrt(segments).
 // window_square: sum of the window's squares, of all segments: the power of white noise of variance 1.
 inline constexpr double kWelchDeviation = 1.03;  // source: Welch 1967, Hann, half overlapped
@@ -30,7 +35,7 @@ Periodogram periodogram_of(std::span<const double> x, std::size_t length);
 double median_over_mean(double segments);
 
 // 1-sigma of x's white part, by what y ([n] as x) does not explain from `band` to 0.9 of half the rate (median over
-// frequencies); in x's unit. NaN of fewer than kLeastSmoothed samples (wiener.h) or where nothing varies.
+// frequencies); in x's unit. NaN of fewer than kLeastOfSpectrum samples or where nothing varies.
 double incoherent_sigma(std::span<const double> x, std::span<const double> y, double band);
 
 }  // namespace omnihil

@@ -10,9 +10,8 @@
 namespace omnihil {
 namespace {
 
-// Where the noise is looked for, in shares of the Nyquist frequency: above the motion, and below where differences of
-// a position have no noise left. Choices.
-constexpr double kNoiseFrom = 0.5, kNoiseTo = 0.9;  // choices
+// From where on the noise is looked for, of the Nyquist frequency: above the motion.
+constexpr double kNoiseFrom = 0.5;  // a choice
 // Standard deviations of the periodogram's mean that a frequency has to stand above the noise: a slope multiplies what
 // is let through by chance with its frequency. One in 3e4 by chance (normal, one-sided).
 constexpr double kAbove_sigmas = 4.0;  // a choice
@@ -72,7 +71,7 @@ std::vector<double> kernel_of(const std::vector<double>& gain) {
 WienerEstimate wiener_smoothed(std::span<const double> x, NoiseSpectrum noise) {
   const std::size_t n = x.size();
   WienerEstimate out;
-  if (n < kLeastSmoothed) {
+  if (n < kLeastOfSpectrum) {
     out.value.assign(x.begin(), x.end());
     return out;
   }

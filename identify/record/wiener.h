@@ -26,12 +26,11 @@ enum class NoiseSpectrum : std::uint8_t {
   kDifferenced,  // of central_differences (filter.h) of white noise: ((8 sin wT - sin 2wT) / 6)^2
 };
 
-// value: n samples, of x's unit; of fewer than kLeastSmoothed those of x, and no spectrum.
+// value: n samples, of x's unit; of fewer than kLeastOfSpectrum (periodogram.h) those of x, and no spectrum.
 // error_spectrum: what that is still off by, S_e(f) = H(f) S_n(f), the error of the least-squares estimate. At K frequencies evenly
 // from 0 to half the rate, x's unit squared; their mean is the error's variance. Cannot: the part of the motion that is lost where
 // nothing is let through, which does not stand out of the noise.
 // resolved: share of half the rate up to which motion stands out of the noise, the last with H >= 0.5 (S_n = S_x / 2).
-inline constexpr std::size_t kLeastSmoothed = 256;  // derived: eight segments of the shortest length
 struct WienerEstimate {
   std::vector<double> value;
   std::vector<double> error_spectrum;

@@ -25,6 +25,18 @@ constexpr SignalRow kSignals[] = {
     {"load_torque", "N m", "N", kMeasured},
 };
 
+// Of settled points the input that each speed takes is compared: the torque that the motor lacks, over what its input is
+// worth. A bridge or winding that lets no current pass lacks nothing at any speed and would explain them all.
+void hide_losses_before_winding(Capabilities& rig) {
+  for (Capability& c : rig.list) {
+    if ((c.bits & (kNeedsSupply | kNeedsWinding | kNeedsDuty | kNeedsVoltage)) == 0) continue;
+    c.there = false;
+    c.refusal =
+        "settled points by duty or voltage do not show it: without a measured current any loss before the "
+        "winding explains every speed";
+  }
+}
+
 }  // namespace
 
 Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal) {
@@ -36,26 +48,18 @@ Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal)
   const bool simulated = axis_method(dataset) == Method::kForward;
   const bool two_inertias = drive.load_inertia_kg_m2 > 0.0 && drive.rotor_inertia_kg_m2 > 0.0;
   const bool encoder = measured("encoder");
-  // Of settled points the input that each speed takes is compared: the torque that the motor lacks, over what its input is
-  // worth. A bridge or winding that lets no current pass lacks nothing at any speed and would explain them all.
-  const bool settled = by_voltage && !dataset.runs.empty() &&
-                       std::ranges::all_of(dataset.runs, [](const Run& r) { return r.steady; });
-  constexpr std::string_view kOfSettled =
-      "settled points by duty or voltage do not show it: without a measured current any loss before the "
-      "winding explains every speed";
   Capabilities out{
       .rig = kOnAxis,
       .other_rig = "acts on a robot on the floor",
       .list = {{kNeedsFloor, false, "acts on a robot on the floor"},
                {kNeedsCamera, false, "needs a camera"},
                {kNeedsSeveralMotors, false, "needs more than one motor"},
-               {kNeedsSupply, by_voltage && !settled,
-                settled ? kOfSettled : "the drive has no supply in these data"},
-               {kNeedsWinding, (by_voltage || kind == CommandKind::kMotorCurrent) && !settled,
-                settled ? kOfSettled : "needs a drive by duty, voltage or current"},
+               {kNeedsSupply, by_voltage, "the drive has no supply in these data"},
+               {kNeedsWinding, by_voltage || kind == CommandKind::kMotorCurrent,
+                "needs a drive by duty, voltage or current"},
                {kNeedsPositionServo, kind == CommandKind::kPositionTarget, "needs a position target"},
-               {kNeedsDuty, by_duty && !settled, settled ? kOfSettled : "needs a drive by duty"},
-               {kNeedsVoltage, by_voltage && !settled, settled ? kOfSettled : "needs a winding"},
+               {kNeedsDuty, by_duty, "needs a drive by duty"},
+               {kNeedsVoltage, by_voltage, "needs a winding"},
                {kNeedsTwoInertias, two_inertias, "needs an inertia on either side of the shaft"},
                {kNeedsSimulation, simulated,
                 "the motion is taken as measured; actuator_delay shows the same lag"},
@@ -65,6 +69,8 @@ Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal)
                {kNeedsAngle, encoder || measured("position"), "needs an encoder"}},
       .free_base = {},
       .present_base = {}};
+  const bool settled = std::ranges::all_of(dataset.runs, [](const Run& r) { return r.steady; });
+  if (by_voltage && settled && !dataset.runs.empty()) hide_losses_before_winding(out);
   for (const Parameter& p : nominal.file.parameters.parameters) {
     if (p.tolerance.value_or(0.0) > 0.0) out.free_base.push_back(parameter_path(*p.row));
   }

@@ -55,9 +55,8 @@ struct AcceptanceContext {
   std::array<const BlockBootstrap*, kSplits> bootstrap{};
   double rate_Hz = 0.0;        // of the samples; 0: unknown
   double loop_period_s = 0.0;  // Capabilities::loop_period_s
-  bool structure_remains =
-      false;  // beside the parent, by its unweighted energy (verdict.h): the sizes of gains are waived for
-              // what explains nearly all of it
+  // Beside the parent (verdict.h): the least sizes of gains are waived for what explains nearly all of it.
+  bool structure_remains = false;
   // Whitened residuals of the base model, before any effect was found; null: the parent is that.
   const Residuals* base = nullptr;
 };

@@ -64,11 +64,10 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
   if (!acceptance.accepted()) {
     task.acceptance_context.structure_remains = true;
     const AcceptanceResult small = test();
-    const auto remains = [&, model = context.base().fit.model] {
-      return structure_remains(ResidualExcesses(context, model, model, options.seed, options.jobs).alike(),
-                               false);
-    };
-    if (small.accepted() && remains()) acceptance = small;
+    const Candidate& base = context.base().fit.model;
+    if (small.accepted() &&
+        structure_remains(ResidualExcesses(context, base, base, options.seed, options.jobs).alike(), false))
+      acceptance = small;
   }
   out.useful = acceptance.accepted() && start.is_resolved();
   out.why = start.is_resolved() ? acceptance.why : std::string(kPhaseUnresolved);

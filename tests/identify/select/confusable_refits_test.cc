@@ -3,8 +3,8 @@
 
 #include "identify/select/plausibility.h"
 #include "identify/select/selection.h"
-#include "identify/select/selection_context.h"
 #include "sim/law/effect_registry.h"
+#include "tests/identify/select/prepared_selection.h"
 #include "tests/identify/simulated_bench.h"
 
 namespace omnihil {
@@ -18,12 +18,9 @@ TEST(ConfusableRefits, WhatTheNullRefusesWhateverItGainsIsNotFitted) {
   recipe.excitations = {Excitation::kSteps, Excitation::kSteps};
   recipe.duration_s = 1.5;
   const Bench bench = simulated_bench(recipe);
-  SelectionContext context(bench.dataset, bench.nominal, {.seed = 1, .jobs = 1});
-  ASSERT_TRUE(context.fit_base([] { return false; }));
-  ASSERT_FALSE(is_implausible(context.base().fit));  // else a prior might be restored
-  context.simulate();
-  std::vector<std::string> not_applicable;
-  const Iteration iteration = selection_iteration(context.task(not_applicable), context.base());
+  const PreparedSelection first(bench.dataset, bench.nominal, {.seed = 1, .jobs = 1});
+  ASSERT_FALSE(is_implausible(first.context.base().fit));  // else a prior might be restored
+  const Iteration iteration = selection_iteration(first.task, first.context.base());
   ASSERT_GE(iteration.chosen, 0);
   const EffectInfo& best = *iteration.candidates.front().screened.entry->info;
   ASSERT_EQ(best.id, "current_limit");

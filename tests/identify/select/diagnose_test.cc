@@ -8,8 +8,8 @@
 #include "hil/report/diagnosis_json.h"
 #include "identify/select/add_effect.h"
 #include "identify/select/diagnosis.h"
-#include "identify/select/selection_context.h"
 #include "sim/law/effect_registry.h"
+#include "tests/identify/select/prepared_selection.h"
 #include "tests/identify/simulated_bench.h"
 
 namespace omnihil {
@@ -156,18 +156,15 @@ TEST(SlowDiagnoseTest, WhatTheDataDoNotDetermineStaysWhereItWas) {
   recipe.excitations = {Excitation::kRamp, Excitation::kRamp};
   recipe.duration_s = 6.0;
   const Bench bench = simulated_bench(recipe);
-  SelectionContext work(bench.dataset, bench.nominal, {});
-  ASSERT_TRUE(work.fit_base([] { return false; }));
-  work.simulate();
-  std::vector<std::string> not_applicable;
-  const Iteration iteration = selection_iteration(work.task(not_applicable), work.base());
+  const PreparedSelection work(bench.dataset, bench.nominal, {});
+  const Iteration iteration = selection_iteration(work.task, work.context.base());
   const std::string inductance = "motor.inductance_H";
   int undetermined = 0;
   for (const CandidateEffect& c : iteration.candidates) {
     for (const ParameterEstimate& p : c.fitted.fit.parameters) {
       if (p.path != inductance || p.identifiable || !p.correlated_with.empty()) continue;
       ++undetermined;
-      EXPECT_EQ(value_at(c.fitted.fit.model, inductance), value_at(work.base().fit.model, inductance))
+      EXPECT_EQ(value_at(c.fitted.fit.model, inductance), value_at(work.context.base().fit.model, inductance))
           << c.screened.name;
     }
   }

@@ -6,9 +6,9 @@
 #include "identify/select/effect_variants.h"
 #include "identify/select/elimination.h"
 #include "identify/select/nested_law.h"
-#include "identify/select/selection_context.h"
 #include "identify/select/selection_pair.h"
 #include "sim/law/effect_registry.h"
+#include "tests/identify/select/prepared_selection.h"
 #include "tests/identify/torque_map.h"
 
 namespace omnihil {
@@ -26,17 +26,13 @@ TEST(NestedLaws, TheSimplestThatExplainsIsTheAnswer) {
 
 // Grease's drag, fitted to the map, and the law that could stand in its place.
 std::optional<NestedLaw> law_within_grease(const TorqueMap& map) {
-  SelectionContext context(map.dataset, map.nominal, {.seed = 1, .jobs = 1});
-  EXPECT_TRUE(context.fit_base([] { return false; }));
-  context.simulate();
-  std::vector<std::string> not_applicable;
-  const SelectionTask task = context.task(not_applicable);
-  const RefitSetup setup = context.setup(true, [] { return false; });
-  const Candidate& base = context.base().fit.model;
+  const PreparedSelection bench(map.dataset, map.nominal, {.seed = 1, .jobs = 1});
+  const RefitSetup setup = bench.context.setup(true, [] { return false; });
+  const Candidate& base = bench.context.base().fit.model;
   const EffectUse grease = at_typical_size(neutral_use(*find_effect("grease_drag")), base);
   const Fitted current = refit_as_it_is(setup, with_use(base, grease), 1);
   EXPECT_TRUE(current.finite);
-  return nested_law(task, setup, current, "grease_drag");
+  return nested_law(bench.task, setup, current, "grease_drag");
 }
 
 TEST(NestedLaws, AShapeThatEarnsNothingGivesWay) {
@@ -51,19 +47,14 @@ TEST(NestedLaws, AShapeThatTheDataShowStays) {
 }
 
 // The base fit, one iteration and its refusal: as if each effect alone raised the error of another motion.
-struct Refused {
-  explicit Refused(const TorqueMap& map) : context(map.dataset, map.nominal, {.seed = 1, .jobs = 1}) {
-    EXPECT_TRUE(context.fit_base([] { return false; }));
-    context.simulate();
-    task = context.task(not_applicable);
+struct Refused : PreparedSelection {
+  explicit Refused(const TorqueMap& map)
+      : PreparedSelection(map.dataset, map.nominal, {.seed = 1, .jobs = 1}) {
     singles = selection_iteration(task, context.base());
     for (CandidateEffect& c : singles.candidates) c.acceptance.accepted_by = AcceptedBy::kNone;
     singles.chosen = -1;
   }
 
-  SelectionContext context;
-  std::vector<std::string> not_applicable;
-  SelectionTask task;
   Iteration singles;
 };
 
@@ -110,18 +101,15 @@ TEST(RefusedChoice, TheNextAcceptedOneIsChosenAndTheReasonStands) {
 
 // What is taken, in this order, out of a model with these effects that was fitted to the map.
 std::vector<std::string> eliminated(const TorqueMap& map, EffectsFound found) {
-  SelectionContext context(map.dataset, map.nominal, {.seed = 1, .jobs = 1});
-  EXPECT_TRUE(context.fit_base([] { return false; }));
-  context.simulate();
-  std::vector<std::string> not_applicable, out;
-  const SelectionTask task = context.task(not_applicable);
-  const RefitSetup setup = context.setup(true, [] { return false; });
-  Candidate with = context.base().fit.model;
+  const PreparedSelection bench(map.dataset, map.nominal, {.seed = 1, .jobs = 1});
+  const RefitSetup setup = bench.context.setup(true, [] { return false; });
+  Candidate with = bench.context.base().fit.model;
+  std::vector<std::string> out;
   for (const std::string& name : found.names)
     with = with_use(with, at_typical_size(neutral_use(*find_effect(name)), with));
   Fitted current = refit_as_it_is(setup, with, 1);
   EXPECT_TRUE(current.finite);
-  while (auto less = unneeded_effect(task, setup, current, found, !out.empty())) {
+  while (auto less = unneeded_effect(bench.task, setup, current, found, !out.empty())) {
     out.push_back(less->name);
     std::erase(found.names, less->name);
     current = std::move(less->fitted);

@@ -1,6 +1,6 @@
 // One iteration of the selection on a robot's record.
-#include "identify/select/selection_context.h"
 #include "identify/select/selection_iteration.h"
+#include "tests/identify/select/prepared_selection.h"
 #include "tests/identify/simulated_robot.h"
 
 namespace omnihil::test {
@@ -10,11 +10,8 @@ namespace {
 Iteration iteration_with_payload(double payload_kg) {
   const Dataset data = robot_record({{"payload.mass_kg", payload_kg}}, 6.0);
   const Candidate nominal = robot_candidate();
-  SelectionContext bench(data, nominal, {.seed = 1, .jobs = 2});
-  EXPECT_TRUE(bench.fit_base([] { return false; }));
-  bench.simulate();
-  std::vector<std::string> not_applicable;
-  return selection_iteration(bench.task(not_applicable), bench.base());
+  const PreparedSelection bench(data, nominal, {.seed = 1, .jobs = 2});
+  return selection_iteration(bench.task, bench.context.base());
 }
 
 TEST(RobotIteration, APayloadIsAcceptedByThePriorOfTheMass) {
@@ -36,13 +33,9 @@ TEST(RobotIteration, WithoutEncodersNoLawOfTheAngleIsTried) {
   Dataset data = robot_record({}, 1.0);
   std::erase_if(data.channels, [](const Channel& c) { return c.signal.starts_with("encoder"); });
   const Candidate nominal = robot_candidate();
-  SelectionContext bench(data, nominal, {.seed = 1, .jobs = 2});
-  ASSERT_TRUE(bench.fit_base([] { return false; }));
-  bench.simulate();
-  std::vector<std::string> not_applicable;
-  SelectionTask task = bench.task(not_applicable);
-  task.applicable = {find_effect("cogging"), find_effect("roller_ripple")};
-  const Iteration iteration = selection_iteration(task, bench.base());
+  PreparedSelection bench(data, nominal, {.seed = 1, .jobs = 2});
+  bench.task.applicable = {find_effect("cogging"), find_effect("roller_ripple")};
+  const Iteration iteration = selection_iteration(bench.task, bench.context.base());
   ASSERT_EQ(iteration.ranking.size(), 2u);
   for (const RankedEffect& r : iteration.ranking) {
     EXPECT_EQ(r.visibility, Visibility::kUnresolved) << r.effect;

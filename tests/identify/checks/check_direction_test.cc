@@ -1,0 +1,47 @@
+// Signs of a drive by torque.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/identify/checks/data_findings.h"
+#include "tests/identify/simulated_bench.h"
+
+namespace omnihil {
+namespace {
+
+// An arm that a position loop lifts: its weight makes the torque rise while the start's acceleration is over.
+TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
+  constexpr double kInertia = 2.0, kFriction = 12.0, kWeight = 38.0, kRow_s = 0.002;
+  Bench bench = simulated_bench({.drive = CommandKind::kMotorTorque,
+                                 .drive_name = "motor_torque",
+                                 .amplitude = 0.02,
+                                 .with = {},
+                                 .model = ""});
+  bench.dataset.channels.clear();
+  for (const char* name : {"motor_torque", "position"}) {
+    bench.dataset.channels.push_back({});
+    bench.dataset.channels.back().signal = bench.dataset.channels.back().column = name;
+  }
+  bench.dataset.runs.resize(1);
+  omnihil::Run& run = bench.dataset.runs[0];
+  for (const double sign : {1.0, -1.0}) {
+    run.signals.clear();
+    run.time_s.clear();
+    std::vector<double>&torque = run.signals["motor_torque"], &angle = run.signals["position"];
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise(0.0, 0.5);
+    for (int k = 0; k < 2500; ++k) {  // w = w0 (1 - (1 + t / T) exp(-t / T))
+      const double t = kRow_s * k, w0 = 0.5, rise_s = 0.2, left = std::exp(-t / rise_s);
+      run.time_s.push_back(t);
+      angle.push_back(w0 * (t - 2.0 * rise_s + (t + 2.0 * rise_s) * left));
+      torque.push_back(sign * (kInertia * w0 * t / rise_s / rise_s * left + kFriction +
+                               kWeight * std::sin(angle.back()) + noise(random)));
+    }
+    EXPECT_EQ(find(check_data(bench.dataset, bench.nominal), "swapped_sign") != nullptr, sign < 0.0)
+        << text_of(check_data(bench.dataset, bench.nominal));
+  }
+}
+
+}  // namespace
+}  // namespace omnihil
