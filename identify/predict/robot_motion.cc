@@ -270,8 +270,9 @@ class Runner {
         const T omega = seen(&Truth<T>::omega_rotor_rad_s, i);
         const T charge = seen(&Truth<T>::charge_C, i);
         s.wheel_rad_s[i] = seen(&Truth<T>::reported_rad_s, i) * inverse_gear;
-        s.encoder_rad[i] = encoder(k, i, theta, omega, T(theta - last_theta[i]), states[i]);
         if (value_of(span_s) > 0.0) s.current_A[i] = (charge - last_charge[i]) / span_s;
+        s.encoder_rad[i] = theta;
+        sense(k, i, omega, T(theta - last_theta[i]), states[i], s);
         last_theta[i] = theta;
         last_charge[i] = charge;
       }
@@ -284,12 +285,14 @@ class Runner {
     }
   }
 
-  T encoder(std::size_t k, std::size_t i, const T& theta, const T& omega, const T& turned_rad,
-            EffectStates& states) const {
+  // What a wheel's sensors make of its true angle and current, in the sample.
+  void sense(std::size_t k, std::size_t i, const T& omega, const T& turned_rad, EffectStates& states,
+             RollingSample<T>& sample) const {
     const EffectSet<T>& effects = robot_.effects();
-    if (effects.sensor.empty()) return theta;
+    if (effects.sensor.empty()) return;
     SensorPort<T> port;
-    port.theta_rotor_rad = port.encoder_angle_rad = theta;
+    port.theta_rotor_rad = port.encoder_angle_rad = sample.encoder_rad[i];
+    port.measured_current_A = sample.current_A[i];
     if (record_.has_all_encoders && options_.slave_angle) {
       // an encoder's error depends on the angle: the law takes the angle at the sampled (earlier) instant
       port.theta_rotor_rad = T(record_.theta_rotor_rad[k][i]);
@@ -298,7 +301,8 @@ class Runner {
     port.omega_rotor_rad_s = port.measured_speed_rad_s = omega;
     port.counts_per_turn = T(record_.counts_per_rotor_turn[i]);
     read_encoder(effects, states.data(), stamp(k, stream_of("sensor") + i), turned_rad, port);
-    return theta + (port.encoder_angle_rad - port.theta_rotor_rad);
+    sample.encoder_rad[i] += port.encoder_angle_rad - port.theta_rotor_rad;
+    sample.current_A[i] = port.measured_current_A;
   }
 
   const RobotModelValues<T>& model_;

@@ -64,6 +64,8 @@ Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal)
                {kNeedsSimulation, simulated,
                 "the motion is taken as measured; actuator_delay shows the same lag"},
                {kNeedsReportedSpeed, measured("velocity"), "needs a speed that the drive reports"},
+               {kNeedsMeasuredCurrent, measured("motor_current") && kind != CommandKind::kMotorCurrent,
+                "needs a current that is measured, not imposed"},
                {kNeedsShaftSensor, true, ""},
                {kNeedsEncoder, encoder, "needs an encoder"},
                {kNeedsAngle, encoder || measured("position"), "needs an encoder"}},

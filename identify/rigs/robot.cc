@@ -73,6 +73,7 @@ Capabilities WholeRobot::capabilities(const Dataset& dataset) {
       {{kNeedsCamera, camera, "needs a camera"},
        {kNeedsDribbler, has_channel(dataset, "dribbler"), "needs the dribbler's speed (channel dribbler)"},
        {kNeedsBodySpeed, body, "needs a body's speed: camera, gyro or accelerometer"},
+       {kNeedsMeasuredCurrent, has_channel(dataset, "motor_current"), "needs measured currents"},
        {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle, encoders, "needs encoders"}});
   // Where radio commands drive, the model's controller has the delay.
   if (std::any_of(dataset.runs.begin(), dataset.runs.end(),

@@ -58,6 +58,8 @@ struct OneWheel {
     out.list.insert(out.list.end(), {{kNeedsSeveralMotors, false, "needs more than one motor"},
                                      {kNeedsCamera, false, "needs a camera"},
                                      {kNeedsDribbler, false, "needs the dribbler"},
+                                     {kNeedsMeasuredCurrent, has_channel(dataset, "motor_current"),
+                                      "needs a measured current"},
                                      {kNeedsShaftSensor | kNeedsEncoder | kNeedsAngle,
                                       has_channel(dataset, "encoder"), "needs an encoder"}});
     return out;

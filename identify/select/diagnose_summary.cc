@@ -47,7 +47,8 @@ void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
   }
   if (chosen.screened.residual_fraction < kNearlyAliased && !chosen.screened.closest_parameter.empty()) {
     add_set({chosen.screened.name, chosen.screened.closest_parameter},
-            fmt::format("{:.1f} % of the signal of {} is its own; {} produces all else as well.",
+            fmt::format("{:.1f} % of the signal of {} is its own; the base parameters together, {} before "
+                        "all, produce the rest.",
                         100.0 * chosen.screened.residual_fraction, chosen.screened.name,
                         chosen.screened.closest_parameter),
             diagnosis);

@@ -14,7 +14,7 @@ std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup&
                         [&](const EffectUse& u) { return u.entry->info->id == id; });
   };
   const auto rich = uses_id(name);
-  if (rich == uses.end()) return std::nullopt;
+  if (rich == uses.end() || task.predictor->shows_signature_of(*rich->entry)) return std::nullopt;
   for (const std::string_view simpler : rich->entry->info->nests) {
     const auto entry = std::find_if(task.applicable.begin(), task.applicable.end(),
                                     [&](const EffectEntry* e) { return e->info->id == simpler; });

@@ -6,6 +6,7 @@
 // Method: the simpler law is fitted in its place, beside all others; the richer one stays if it is accepted as an
 // addition to that (the test of nested models: the richer one bears the burden of proof). While other effects are
 // still missing a rich law may win for what its shapes imitate of those.
+// A law whose signature the readings show is needed for that.
 // Limits: the laws that EffectInfo::nests names, and no others.
 #pragma once
 #include <optional>
@@ -22,7 +23,7 @@ struct NestedLaw {
   Fitted fitted;
 };
 
-// Empty: `name` nests none of the applicable laws, or is better than each.
+// Empty: `name` nests none of the applicable laws, is better than each, or the readings show its signature.
 std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
                                     const std::string& name);
 

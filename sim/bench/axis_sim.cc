@@ -30,6 +30,8 @@ class AxisRun {
         looks_back_(!effects.timing.empty()),
         swings_(input.imposed_at_rotor && sim_.two_masses()) {
     state_.now_s = input.time_s.front();
+    if (input.command_before && !effects.command.empty())
+      state_.commands.push(state_.now_s - kRecordSpan_s, *input.command_before);
     state_.theta_rotor_rad = input.initial_position_rad * params.gear_ratio;
     const double speed = input.imposed_velocity_rad_s.empty() ? input.initial_velocity_rad_s
                                                               : input.imposed_velocity_rad_s.front();
@@ -78,17 +80,18 @@ class AxisRun {
     const MotionPoint<T> seen = instant(seen_s);
     AxisSample<T> s;
     s.time_s = input_.time_s[k];
-    const SensorPort<T> port = sense(k, seen);
+    // mean since the last reading was taken, whatever the stamps say
+    const T since_s = seen_s - previous_s_;
+    const bool moved_on = k > 0 && std::abs(value_of(since_s)) > kShortest_s;
+    const T current_A = moved_on ? (seen.charge_C - previous_.charge_C) / since_s : state_.current_A;
+    const SensorPort<T> port = sense(k, seen, current_A);
     // A sensor of angle or speed beside the encoder is another one, and sits at the output.
     s.position_rad = (has_encoder() ? seen.theta_rad : port.encoder_angle_rad) / p.gear_ratio + seen.lead_rad;
     s.velocity_rad_s = port.measured_speed_rad_s / p.gear_ratio + seen.lead_rad_s;
     // counts = angle of the encoder's shaft * counts per turn / 2 pi
     s.encoder_counts = port.encoder_angle_rad * port.encoder_turns_per_rotor_turn *
                        (input_.encoder_counts_per_turn / (2.0 * std::numbers::pi));
-    // mean since the last reading was taken, whatever the stamps say
-    const T since_s = seen_s - previous_s_;
-    const bool moved_on = k > 0 && std::abs(value_of(since_s)) > kShortest_s;
-    s.motor_current_A = moved_on ? (seen.charge_C - previous_.charge_C) / since_s : state_.current_A;
+    s.motor_current_A = port.measured_current_A;
     s.bus_voltage_V = last_.bus_voltage_V;
     s.supply_voltage_V = last_supply_V_;
     s.bus_current_A = last_.mean_bus_current_A;
@@ -207,8 +210,9 @@ class AxisRun {
     return reading_age(sim_.effects(), state_.effects.data(), Stamped::kDriveSensors, stamp(k, "timing"));
   }
 
-  SensorPort<T> sense(std::size_t k, const MotionPoint<T>& seen) {
+  SensorPort<T> sense(std::size_t k, const MotionPoint<T>& seen, const T& current_A) {
     SensorPort<T> port;
+    port.measured_current_A = current_A;
     port.theta_rotor_rad = seen.theta_rad - travel_ahead_rad_;
     port.encoder_angle_rad = seen.theta_rad;
     port.omega_rotor_rad_s = port.measured_speed_rad_s = seen.omega_rad_s;

@@ -19,10 +19,11 @@ namespace omnihil {
 
 struct AxisInput {
   CommandKind kind = CommandKind::kDuty;
-  std::vector<double> time_s;                  // increasing
-  std::vector<double> command;                 // of `kind`, one per sample
-  std::vector<std::uint8_t> enable;            // empty: always on
-  std::vector<double> bus_voltage_V;           // measured at the bridge; empty: the model's supply
+  std::vector<double> time_s;            // increasing
+  std::vector<double> command;           // of `kind`, one per sample
+  std::optional<double> command_before;  // what was asked before the first sample; none: the same as there
+  std::vector<std::uint8_t> enable;      // empty: always on
+  std::vector<double> bus_voltage_V;     // measured at the bridge; empty: the model's supply
   std::vector<double> imposed_velocity_rad_s;  // of the output; empty: free
   bool imposed_at_rotor = false;       // times the gear of the rotor, which a shaft parts from the output
   bool command_is_compared = false;    // inverse dynamics: torque effects see the needed motor torque instead

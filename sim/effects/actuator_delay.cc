@@ -25,7 +25,7 @@ struct ActuatorDelay {
       .source = "Ljung, System Identification, 2nd ed. 1999 (time delay of the input)",
       .cannot = "vary from packet to packet, drop or reorder commands; delays beyond the last 2048 changes",
       .place = Place::kCommand,
-      .twins = {"motor.inductance_H", "winding_inductance", "sampling_delay"},
+      .twins = {"motor.inductance_H", "winding_inductance", "sampling_delay", "command_low_pass"},
       .reveals = "chirp, PRBS or steps of the duty: speed later by the same time at every frequency",
       .visible = "a tenth of a sample with steps of full duty; a fiftieth with a good chirp",
       .min_visible = [](const SensorSet& s) { return 0.1 / s.rate_Hz; },

@@ -56,7 +56,8 @@ struct HallSpeedEstimator {
           "unequal spacing of the sensors, estimators by time between pulses, ripple of the window's "
           "length; the lag's shape where a fit asks for expected values (its mean delay is right)",
       .place = Place::kSensor,
-      .twins = {"sampling_delay"},
+      .twins = {"sampling_delay", "speed_low_pass"},
+      .nests = {"speed_low_pass"},  // without a sign of the pulses it is no more than that
       .reveals =
           "slow speeds and steps: a staircase of the measured speed of height 2 pi / (n w); late "
           "against the slope of the measured position by w; with no seed of noise the lag alone",

@@ -52,7 +52,7 @@ struct HallSpeedPeriod {
           "where a fit asks for expected values (its mean delay is right: half the angle to measure, half "
           "held)",
       .place = Place::kSensor,
-      .twins = {"hall_speed_estimator", "sampling_delay"},
+      .twins = {"speed_low_pass", "hall_speed_estimator", "sampling_delay"},
       .reveals =
           "slow speeds and coasting to rest: late by A / omega, so the slower the later, and frozen at "
           "standstill",

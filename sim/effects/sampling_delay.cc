@@ -24,7 +24,7 @@ struct SamplingDelay {
       .source = "Ljung, System Identification, 2nd ed. 1999 (time delay of the output)",
       .cannot = "differ between channels, vary from sample to sample (sample_jitter)",
       .place = Place::kTiming,
-      .twins = {"actuator_delay"},
+      .twins = {"actuator_delay", "speed_low_pass"},
       .reveals =
           "imposed motion, or steps of an external load: position and speed late by the same time at "
           "every frequency; with the command as the only reference it is the same as actuator_delay",

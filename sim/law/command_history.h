@@ -37,6 +37,8 @@ struct CommandHistory {
   const Change& newest() const { return changes[(count - 1) % kCommandChanges]; }
   const Change& at(std::uint64_t number) const { return changes[number % kCommandChanges]; }
   std::uint64_t oldest() const { return count > kCommandChanges ? count - kCommandChanges : 0; }
+  // What was asked before everything that is remembered; the one value where there is no other.
+  double first_value() const { return count > 0 ? at(oldest()).value : 0.0; }
   // The number of the first change at or after a time; `count` if there is none.
   std::uint64_t first_from(double time_s) const {
     std::uint64_t low = oldest(), high = count;

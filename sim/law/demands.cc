@@ -59,7 +59,8 @@ std::string_view demand_name(DemandBit bit) {
                                                         "a sensor of the shaft",
                                                         "an encoder",
                                                         "an angle of the shaft",
-                                                        "a body that moves freely"};
+                                                        "a body that moves freely",
+                                                        "a current that is measured"};
   return bit == kNeedsNothing ? "" : kNames[std::countr_zero(static_cast<std::uint32_t>(bit))];
 }
 

@@ -26,15 +26,16 @@ enum DemandBit : std::uint32_t {
   kNeedsVoltage = 1u << 7,        // a winding at a voltage: not a loop that makes the current what it is told
   kNeedsTwoInertias = 1u << 8,    // one on either side of the shaft
   kNeedsSimulation = 1u << 9,     // the motion is the model's, not taken as measured (the forward method)
-  kNeedsReportedSpeed = 1u << 10,  // that the drive's electronics make
-  kNeedsDribbler = 1u << 11,       // its speed
-  kNeedsBodySpeed = 1u << 12,      // camera, gyro or accelerometer
-  kNeedsShaftSensor = 1u << 13,    // angle or speed of the shaft
-  kNeedsEncoder = 1u << 14,        // that counts
-  kNeedsAngle = 1u << 15,          // of the shaft: an encoder, or a position that the drive reports
-  kNeedsFreeBody = 1u << 16,       // that forces move: not one that a bench moves
+  kNeedsReportedSpeed = 1u << 10,    // that the drive's electronics make
+  kNeedsDribbler = 1u << 11,         // its speed
+  kNeedsBodySpeed = 1u << 12,        // camera, gyro or accelerometer
+  kNeedsShaftSensor = 1u << 13,      // angle or speed of the shaft
+  kNeedsEncoder = 1u << 14,          // that counts
+  kNeedsAngle = 1u << 15,            // of the shaft: an encoder, or a position that the drive reports
+  kNeedsFreeBody = 1u << 16,         // that forces move: not one that a bench moves
+  kNeedsMeasuredCurrent = 1u << 17,  // of the winding
 };
-inline constexpr int kDemands = 17;
+inline constexpr int kDemands = 18;
 
 // A base parameter beside which an effect has no place: it would do the same.
 struct BaseExclusion {

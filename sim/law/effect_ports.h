@@ -184,9 +184,10 @@ struct SensorPort {
   const NoiseKey* noise = nullptr;  // null: the expected value is asked for
   // Whether the speed is worked out from the encoder; else a sensor of its own tells it.
   bool speed_is_the_encoders = true;
-  // changes, all at the rotor
+  // changes, at the rotor
   T encoder_angle_rad = T(0);
   T measured_speed_rad_s = T(0);
+  T measured_current_A = T(0);  // of the winding, mean since the sample before
 };
 
 enum class Stamped : std::uint8_t { kDriveSensors, kVision };

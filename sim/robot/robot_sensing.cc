@@ -27,16 +27,18 @@ double age_s(const RobotEffects& effects, RobotEffectMemory& memory, Stamped wha
   return reading_age(effects.set(), memory.timing.data(), what, stamp("timing", at.robot, at, memory));
 }
 
-double encoder_angle_rad(const RobotEffects& effects, RobotEffectMemory& memory, const RobotModel& model,
-                         std::size_t i, const RobotInstant& seen, const Sensing& at) {
+// What a wheel's sensors make of its angle and of the mean current since the last read.
+SensorPort<double> sense(const RobotEffects& effects, RobotEffectMemory& memory, const RobotModel& model,
+                         std::size_t i, const RobotInstant& seen, double current_A, const Sensing& at) {
   SensorPort<double> port;
   port.theta_rotor_rad = port.encoder_angle_rad = seen.theta_rotor_rad[i];
   port.omega_rotor_rad_s = port.measured_speed_rad_s = seen.omega_rotor_rad_s[i];
+  port.measured_current_A = current_A;
   port.counts_per_turn = model.encoder.counts_per_turn;
   read_encoder(effects.set(), memory.drive[i].effects.data(),
                stamp("sensor", wheel_stream(at.robot, i), at, memory),
                seen.theta_rotor_rad[i] - memory.seen_theta_rotor_rad[i], port);
-  return port.encoder_angle_rad;
+  return port;
 }
 
 }  // namespace
@@ -51,11 +53,13 @@ PlantSensors read_sensors(const RobotEffects& effects, RobotEffectMemory& memory
   s.board.now_us = static_cast<std::uint64_t>(at.now_ns / 1000);
   const double span_s = seen.time_s - memory.seen_s;
   for (std::size_t i = 0; i < model.wheels; ++i) {
-    const double theta_rad = encoder_angle_rad(effects, memory, model, i, seen, at);
-    if (std::isfinite(theta_rad)) s.encoder_counts[i] = encoder_counts(model.encoder, theta_rad);
     // mean since what the last read showed
-    s.motor_current_A[i] =
+    const double current_A =
         span_s > 0.0 ? (seen.charge_C[i] - memory.seen_charge_C[i]) / span_s : at.current_A[i];
+    const SensorPort<double> port = sense(effects, memory, model, i, seen, current_A, at);
+    const double theta_rad = port.encoder_angle_rad;
+    if (std::isfinite(theta_rad)) s.encoder_counts[i] = encoder_counts(model.encoder, theta_rad);
+    s.motor_current_A[i] = port.measured_current_A;
     memory.seen_theta_rotor_rad[i] = seen.theta_rotor_rad[i];
     memory.seen_charge_C[i] = seen.charge_C[i];
   }

@@ -450,7 +450,45 @@ def _pair_kgm2(rig):
     return rotor * load / (rotor + load)
 
 
-BY_ID = {e.id: e for e in EFFECTS}
+# What electronics and firmware smooth: a class of its own, so that the cases of the other classes stay what they are.
+FILTERS = [
+    Effect(
+        "command_low_pass",
+        (2e-4, 0.05),
+        shows=("chirp", "prbs", "steps"),
+        hide=lambda m, s, r: {"smooth_s": m},
+        oracle=lambda m, s, r: {"time_constant_s": m},
+        equal_law=("time_constant_s",),
+    ),
+    Effect(
+        "command_rate_limit",
+        (0.005, 2.0),
+        shows=("prbs", "steps", "hard"),
+        hide=lambda m, s, r: {"most_duty_per_s": 1 / m},
+        oracle=lambda m, s, r: {"inverse_rate_s": m},
+        equal_law=("inverse_rate_s",),
+    ),
+    Effect(
+        "speed_low_pass",
+        (2e-4, 0.05),
+        shows=("chirp", "prbs", "steps"),
+        needs=("hall", "current"),  # a speed that is reported, and no encoder beside it
+        hide=lambda m, s, r: {"speed_filter_s": m},
+        oracle=lambda m, s, r: {"time_constant_s": m},
+        equal_law=("time_constant_s",),
+    ),
+    Effect(
+        "current_low_pass",
+        (2e-4, 0.05),
+        shows=("chirp", "prbs", "steps"),
+        needs=("current",),
+        hide=lambda m, s, r: {"current_filter_s": m},
+        oracle=lambda m, s, r: {"time_constant_s": m},
+        equal_law=("time_constant_s",),
+    ),
+]
+
+BY_ID = {e.id: e for e in EFFECTS + FILTERS}
 
 
 def size_range(effect, rig):

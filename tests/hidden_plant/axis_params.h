@@ -31,12 +31,13 @@
   X(knee_A, 0) X(back_emf_lost, 0) X(advance_rad, 0) X(edge_V, 0) X(edge_A, 0.2) X(coast_band, 0)          \
   X(battery_ohm, 0) X(battery_rc_ohm, 0) X(battery_rc_s, 0.5) X(battery_fall_V_per_As, 0)                  \
   X(current_cap_A, 0) X(current_cap_ohm, 12) X(duty_cap, 1) X(duty_steps, 0)                               \
-  X(target_rate_rad_s, 0) X(late_command_s, 0)                                                           \
+  X(target_rate_rad_s, 0) X(late_command_s, 0) X(smooth_s, 0) X(most_duty_per_s, 0)                       \
   /* between rotor and output */                                                                         \
   X(play_rad, 0) X(shaft_Nm_per_rad, 0) X(shaft_damping_Nms, 0)                                           \
   /* sensors */                                                                                          \
   X(encoder_cpr, 4096) X(encoder_on_output, 0) X(encoder_swing_rad, 0) X(encoder_swing_phase, 0)           \
   X(lost_per_count, 0) X(late_sample_s, 0) X(sample_jitter_s, 0) X(hall_pulses, 0) X(hall_window_s, 0)     \
+  X(speed_filter_s, 0) X(current_filter_s, 0)                                                              \
   X(current_noise_A, 0.03) X(bus_noise_V, 0.02) X(speed_noise_rad_s, 0.3) X(angle_noise_rad, 1e-3)         \
   /* what no list of effects has */                                                                      \
   X(seam_Nm, 0) X(seam_turns, 3.37) X(bump_Nm, 0) X(bump_angle, 1) X(run_in_ratio, 0) X(run_in_rad, 800)    \

@@ -278,8 +278,18 @@ static double late_mean(const AxisParams *p, const double *rows, int n, int upto
 }
 
 typedef struct {  // a speed loop or a position servo, as firmware runs it
-  double target, integral, angle[6], notch_x[2], notch_y[2];
+  double target, integral, angle[6], notch_x[2], notch_y[2], smooth, ramp;
 } Firmware;
+
+enum { TURNS_PER_ROW = 4 };  // of the firmware's loop
+
+// What firmware does to a duty in a turn of its loop: exponential smoothing, then steps of a largest size. Both begin at zero.
+static double soften(Firmware *f, const AxisParams *p, double duty) {
+  const double turn_s = p->sample_s / TURNS_PER_ROW;
+  if (p->smooth_s > 0) duty = f->smooth += (1 - exp(-turn_s / p->smooth_s)) * (duty - f->smooth);
+  if (p->most_duty_per_s > 0) duty = f->ramp += clamp(duty - f->ramp, p->most_duty_per_s * turn_s);
+  return duty;
+}
 
 static double speed_loop(Firmware *f, const AxisParams *p, double target, double angle) {
   const double count = 2 * M_PI / p->encoder_cpr;
@@ -331,6 +341,8 @@ int axis_run(const AxisParams *p, const double *asked, int n, double *raw, doubl
     stamp[k] = k * p->sample_s - p->late_sample_s +
                clamp(p->sample_jitter_s > 0 ? p->sample_jitter_s * gauss(&a.noise) : 0, 0.49 * p->sample_s);
   const int substeps = (int)lround(p->sample_s / p->step_s);
+  const int softens = p->smooth_s > 0 || p->most_duty_per_s > 0;
+  double softened = 0;
   int next = 0;
   hold_for_step(&a, 0);
   for (; next < n && stamp[next] <= 0; next++) fill_row(&a, y, y, 0, raw + next * RAW_COLUMNS, &last_q, 0);
@@ -351,7 +363,8 @@ int axis_run(const AxisParams *p, const double *asked, int n, double *raw, doubl
       if (p->command_kind == 1)
         ask = clamp(p->servo_duty_per_rad * (ask - (two_masses(p) ? y[TO] : y[TR] / p->gear)),
                     p->servo_duty_limit);
-      a.duty = firmware_duty(p, ask);
+      if (softens && j % (substeps / TURNS_PER_ROW) == 0) softened = soften(&f, p, ask);
+      a.duty = firmware_duty(p, softens ? softened : ask);
       memcpy(before, y, sizeof y);
       if (p->bristles > 0) {
         a.stuck = 0;

@@ -20,11 +20,16 @@ static double hall_speed(const AxisParams *p, const double *raw, int k) {
   return passed * pulse / p->hall_window_s;
 }
 
+// Exponential smoothing of a reading, a row at a time, from zero: a drive begins at rest.
+static double smoothed(double slow, double now, double time_constant_s, double sample_s) {
+  return time_constant_s > 0 ? slow + (1 - exp(-sample_s / time_constant_s)) * (now - slow) : now;
+}
+
 // `raw` n x RAW_COLUMNS, `seen` n x SEEN_COLUMNS. Noise is drawn from `seed`.
 void axis_sense(const AxisParams *p, const double *raw, int n, double seed, double *seen) {
   NoiseSource noise = {.state = (unsigned long long)seed * 2654435761ULL + 99};
   const double count = 2 * M_PI / p->encoder_cpr;
-  double lost = 0, last = 0;
+  double lost = 0, last = 0, slow_A = 0, slow_rad_s = 0;
   for (int k = 0; k < n; k++, raw += RAW_COLUMNS, seen += SEEN_COLUMNS) {
     const double angle = p->encoder_on_output > 0 ? raw[RAW_OUT_ANGLE] : raw[RAW_ANGLE];
     const double shown = angle + p->encoder_swing_rad * sin(angle + p->encoder_swing_phase);
@@ -36,11 +41,12 @@ void axis_sense(const AxisParams *p, const double *raw, int n, double seed, doub
     }
     seen[SEEN_COUNTS] = counts - lost;
     seen[SEEN_BUS] = to_step(raw[RAW_BUS] + p->bus_noise_V * gauss(&noise), 0.005);
-    seen[SEEN_CURRENT] = to_step(raw[RAW_CURRENT] + p->current_noise_A * gauss(&noise), 0.01);
+    slow_A = smoothed(slow_A, raw[RAW_CURRENT], p->current_filter_s, p->sample_s);
+    slow_rad_s = smoothed(slow_rad_s, raw[RAW_OUT_SPEED], p->speed_filter_s, p->sample_s);
+    seen[SEEN_CURRENT] = to_step(slow_A + p->current_noise_A * gauss(&noise), 0.01);
     // Speed and position are told at the output; Hall sensors sit at the rotor.
     const double hall = p->hall_window_s > 0 ? hall_speed(p, raw - k * RAW_COLUMNS, k) / p->gear : 0;
-    seen[SEEN_SPEED] =
-        p->hall_window_s > 0 ? hall : raw[RAW_OUT_SPEED] + p->speed_noise_rad_s * gauss(&noise);
+    seen[SEEN_SPEED] = p->hall_window_s > 0 ? hall : slow_rad_s + p->speed_noise_rad_s * gauss(&noise);
     seen[SEEN_ANGLE] = raw[RAW_OUT_ANGLE] + p->angle_noise_rad * gauss(&noise);
   }
 }

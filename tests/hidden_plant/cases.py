@@ -8,7 +8,7 @@ import dataclasses
 import hashlib
 
 import robot_effects
-from axis_effects import BY_ID, EFFECTS
+from axis_effects import BY_ID, EFFECTS, FILTERS
 from share import spread_share
 
 SETS = ("dev", "release", "sealed")
@@ -126,6 +126,11 @@ def classes():
             "one effect below what can be seen",
             _around(1, 0)[::2] + _around(1, 0)[1:16:2],
             lambda c, f: _single(c, f, 5e-5),
+        ),
+        "filter": Class(
+            "one low pass or ramp of electronics or firmware",
+            [(FILTERS[k % len(FILTERS)].id,) for k in range(8 * len(FILTERS))],
+            lambda c, f: _single(c, f, _shares(c)),
         ),
         "loop": Class(
             "closed-loop record, one hidden effect",

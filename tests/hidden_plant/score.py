@@ -236,6 +236,7 @@ def summary(rows):
         "torque-driven extra names": statistics.fmean([r["extra"] for r in get("torque")])
         if get("torque")
         else math.nan,
+        "filter first": rate(large(get("filter")), lambda r: r["first"]),
         "pair both": rate(large(get("pair")), lambda r: r["all"]),
         "pair one": rate(large(get("pair")), lambda r: r["first"] or r["extra"] < len(r["named"])),
         "outside unknown": rate(get("outside"), lambda r: r["verdict"] == "unknown"),

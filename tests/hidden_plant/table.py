@@ -69,7 +69,7 @@ def confusion(rows):
     for r in rows:
         if (
             len(r["true"]) == 1
-            and r["class"] in ("single", "generic", "loop", "torque", "robot", "radio")
+            and r["class"] in ("single", "generic", "filter", "loop", "torque", "robot", "radio")
             and r["shares"][0] >= 0.15
         ):
             said = r["named"][0] if r["named"] else f"({r['verdict'] or 'no answer'})"

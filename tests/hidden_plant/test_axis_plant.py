@@ -117,6 +117,29 @@ class AxisPlantTest(unittest.TestCase):
         mirrored, _ = speeds(dict(params, advance_rad=-0.3), [-0.8] * 3000)
         self.assertAlmostEqual(mirrored["current"][-1], -forwards["current"][-1], delta=1e-6)
 
+    def test_filters_settle_exponentially_and_ramps_at_their_rate(self):
+        asked = [0.0] * 20 + [0.5] * 400
+        steady = dict(BARE, load_kgm2=1.0, inductance_H=5e-5, step_s=25e-6)  # rotor as good as held: i = D U / R
+
+        def current(k, **hidden):
+            params = dict(steady, **hidden)
+            raw, _ = plant.run_axis(params, asked)
+            seen = plant.sense_axis(dict(params, current_noise_A=0.0), raw, 1)
+            return plant.raw_columns(raw)["current"][k], seen["current"][k]
+
+        for k in (30, 60, 200):
+            turns_ms = [k - 21 + turn / 4 for turn in (1, 2, 3, 4)]  # of the firmware within the row
+            smooth = [10.0 * (1 - math.exp(-t / 30)) for t in turns_ms]
+            self.assertAlmostEqual(current(k, smooth_s=0.03)[0], sum(smooth) / 4, delta=0.02)
+            ramp = [min(10.0, 20.0 * t / 200) for t in turns_ms]
+            self.assertAlmostEqual(current(k, most_duty_per_s=5.0)[0], sum(ramp) / 4, delta=0.02)
+            slow = 10.0 * (1 - math.exp(-(k - 20) / 30))
+            self.assertAlmostEqual(current(k, current_filter_s=0.03)[1], slow, delta=0.02)
+        raw, _ = plant.run_axis(dict(BARE, load_kgm2=1e-2), [0.5] * 1000)
+        seen = plant.sense_axis(dict(BARE, speed_filter_s=0.02, speed_noise_rad_s=0.0), raw, 1)
+        speed = plant.raw_columns(raw)["out_speed"]  # as good as a ramp: late by the filter's time less half a row
+        self.assertAlmostEqual(seen["speed"][-1], 0.5 * (speed[-20] + speed[-21]), delta=0.01 * (speed[-1] - speed[-41]))
+
     def test_a_derating_drive_has_no_limit_while_it_is_cold(self):
         rig = types.SimpleNamespace(stall_A=20 / BARE["resistance_ohm"], believed=BARE)
         hidden = axis_effects.BY_ID["thermal_derating"].hide(1e-9, {"from_K": 15, "full": 1}, rig)

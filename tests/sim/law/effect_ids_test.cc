@@ -57,6 +57,10 @@ constexpr std::string_view kIds[] = {"back_emf_missing",
                                      "dribbler_drag",
                                      "vision_delay",
                                      "hall_speed_period",
+                                     "command_low_pass",
+                                     "command_rate_limit",
+                                     "speed_low_pass",
+                                     "current_low_pass",
                                      "expression"};
 
 TEST(EffectIds, EveryIdThatFilesMayNameIsThere) {

@@ -1,0 +1,75 @@
+// Limit of the command's rate: firmware that ramps the duty instead of letting it jump.
+#include "sim/law/effect_entry.h"
+
+namespace omnihil {
+namespace {
+
+struct CommandRateLimit {
+  enum Param { kInverseRate };
+  enum State { kRamped, kStarted };
+  static constexpr EffectParam kParams[] = {
+      {.name = "inverse_rate_s",
+       .unit = "s",
+       .typical = 0.1,  // ramps of speed controllers: 0.05 to 0.5 s from none to full (data sheets)
+       .lower = 0,
+       .upper = 10,
+       .prior_scale = 0.2,
+       .what = "time that a change by full duty takes; 0: it jumps",
+       .how = "large steps of the duty: slope of current and speed, the same for every size of step"},
+  };
+  static constexpr EffectState kStates[] = {
+      {.name = "duty_ratio", .unit = "1"},
+      {.name = "started", .unit = "1"},  // 0 until the first call, which starts from what was asked before
+  };
+  static constexpr EffectInfo kInfo{
+      .id = "command_rate_limit",
+      .title = "Limit of the duty's rate",
+      .equation = "|dD'/dt| <= 1 / q, q = inverse_rate_s",
+      .source =
+          "Biagiotti, Melchiorri, Trajectory Planning for Automatic Machines and Robots, 2008 "
+          "(constant-velocity profile)",
+      .cannot =
+          "other rates up than down, S-curves, a ramp in steps of the firmware's loop; acts on duties only",
+      .place = Place::kCommand,
+      .twins = {"command_low_pass", "actuator_delay", "current_limit"},
+      .reveals =
+          "large and small steps of the duty: the lag grows with the step's size; slow ramps and small "
+          "steps are not affected",
+      .visible = "a limit that a step by full duty outlasts by a sample",
+      .min_visible = [](const SensorSet& s) { return 1.0 / s.rate_Hz; },
+      .claims = kOdd,
+      .numerics = kHidesDelays,
+      .demands = kNeedsDuty | kNeedsSimulation,
+      .excludes = {"controller.latency_s", BaseExclusion::kWherePresent},
+      .params = kParams,
+      .states = kStates,
+      .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.35, .to_s = 0.8},
+  };
+
+  template <typename T>
+  static void apply(const T* p, T* x, CommandPort<T>& port) {
+    if (port.kind != CommandKind::kDuty) return;
+    if (value_of(x[kStarted]) == 0.0) {
+      x[kStarted] = T(1);
+      x[kRamped] = port.history != nullptr ? T(port.history->first_value()) : port.setpoint;
+    }
+    const T before = x[kRamped];
+    const T way = port.setpoint - before;
+    const T needed_s = way * sign_of(way) * p[kInverseRate];  // to get there at the limit
+    if (value_of(needed_s) > port.dt_s) {
+      // D' += sgn(way) h / q
+      x[kRamped] = before + sign_of(way) * port.dt_s / p[kInverseRate];
+      port.setpoint = 0.5 * (before + x[kRamped]);  // mean over the sub-step
+      return;
+    }
+    x[kRamped] = port.setpoint;
+    // The ramp ends within the sub-step: mean = D - way (time needed / 2 h)
+    port.setpoint -= way * (0.5 * needed_s / port.dt_s);
+  }
+};
+
+}  // namespace
+
+OMNIHIL_EFFECT(command_rate_limit, CommandRateLimit)
+
+}  // namespace omnihil

@@ -1,0 +1,67 @@
+// Low pass of the measured current: an RC at the amplifier, or a firmware's smoothing of its ADC.
+#include "sim/law/effect_entry.h"
+#include "sim/law/first_order_lag.h"
+
+namespace omnihil {
+namespace {
+
+struct CurrentLowPass {
+  enum Param { kTimeConstant };
+  enum State { kFiltered, kInput, kStarted };
+  static constexpr EffectParam kParams[] = {
+      {.name = "time_constant_s",
+       .unit = "s",
+       .typical = 0.005,  // RC of a shunt amplifier 0.02 ms, smoothing in firmware 1 to 50 ms (estimate)
+       .lower = 0,
+       .upper = 1.0,
+       .prior_scale = 0.01,
+       .what = "time constant of the low pass between the winding's current and the measured one",
+       .how = "steps of the duty with the rotor held: rise of the current against L / R",
+       .trait = ParamTrait::kTime},
+  };
+  static constexpr EffectState kStates[] = {
+      {.name = "filtered_A", .unit = "A"},
+      {.name = "input_A", .unit = "A"},  // at the sample before
+      {.name = "started", .unit = "1"},
+  };
+  static constexpr EffectInfo kInfo{
+      .id = "current_low_pass",
+      .title = "Low pass of the measured current",
+      .equation = "tau dy/dt = i - y, i the mean over each sample's period",
+      .source =
+          "Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed. 1998 (first order hold)",
+      .cannot = "filters of a higher order, what the filter makes of ripple within a PWM period",
+      .place = Place::kSensor,
+      .twins = {"winding_inductance", "motor.inductance_H"},
+      .reveals =
+          "steps of the duty beside a speed: the current late and rounded, its peak cut, while the shaft "
+          "speeds up as if it had been there",
+      .visible = "a lag of a fifth of a sample with steps of full duty",
+      .min_visible = [](const SensorSet& s) { return 0.2 / s.rate_Hz; },
+      .claims = kOdd,
+      .demands = kNeedsMeasuredCurrent,
+      .params = kParams,
+      .states = kStates,
+      .plot = {.excitation = "steps", .x = "time", .y = "motor_current", .from_s = 0.3, .to_s = 0.7},
+  };
+
+  template <typename T>
+  static void apply(const T* p, T* x, SensorPort<T>& port) {
+    const T current_A = port.measured_current_A;
+    if (value_of(x[kStarted]) == 0.0 || port.dt_s <= 0.0) {
+      x[kStarted] = T(1);
+      x[kFiltered] = current_A;
+    } else {
+      // tau dy/dt = i - y, i on a line from sample to sample
+      x[kFiltered] = lag_behind_line(x[kFiltered], x[kInput], current_A, port.dt_s, p[kTimeConstant]);
+    }
+    x[kInput] = current_A;
+    port.measured_current_A = x[kFiltered];
+  }
+};
+
+}  // namespace
+
+OMNIHIL_EFFECT(current_low_pass, CurrentLowPass)
+
+}  // namespace omnihil

@@ -1,0 +1,67 @@
+// Low pass of the reported speed: a tachometer's filter, a firmware's smoothing, an observer's bandwidth.
+#include "sim/law/effect_entry.h"
+#include "sim/law/first_order_lag.h"
+
+namespace omnihil {
+namespace {
+
+struct SpeedLowPass {
+  enum Param { kTimeConstant };
+  enum State { kFiltered, kInput, kStarted };
+  static constexpr EffectParam kParams[] = {
+      {.name = "time_constant_s",
+       .unit = "s",
+       .typical = 0.01,  // smoothing of counted speeds in hobby and league firmware: 2 to 50 ms (estimate)
+       .lower = 0,
+       .upper = 1.0,
+       .prior_scale = 0.02,
+       .what = "time constant of the low pass between the shaft's speed and the reported one",
+       .how = "steps: the reported speed against the slope of a position",
+       .trait = ParamTrait::kTime},
+  };
+  static constexpr EffectState kStates[] = {
+      {.name = "filtered_rad_s", .unit = "rad/s"},
+      {.name = "input_rad_s", .unit = "rad/s"},  // at the sample before
+      {.name = "started", .unit = "1"},
+  };
+  static constexpr EffectInfo kInfo{
+      .id = "speed_low_pass",
+      .title = "Low pass of the reported speed",
+      .equation = "tau dy/dt = omega - y",
+      .source =
+          "Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed. 1998 (first order hold)",
+      .cannot = "filters of a higher order, observers that know the torque; the angle is left as it is",
+      .place = Place::kSensor,
+      .twins = {"sampling_delay", "hall_speed_estimator", "hall_speed_period", "load.inertia_kg_m2"},
+      .reveals =
+          "steps of the duty beside a position or a current: the reported speed late, and rounded, against "
+          "both",
+      .visible = "a lag of a fifth of a sample with steps of full duty",
+      .min_visible = [](const SensorSet& s) { return 0.2 / s.rate_Hz; },
+      .claims = kOdd,
+      .demands = kNeedsReportedSpeed,
+      .params = kParams,
+      .states = kStates,
+      .plot = {.excitation = "steps", .x = "time", .y = "velocity", .from_s = 0.3, .to_s = 0.7},
+  };
+
+  template <typename T>
+  static void apply(const T* p, T* x, SensorPort<T>& port) {
+    const T speed = port.measured_speed_rad_s;
+    if (value_of(x[kStarted]) == 0.0 || port.dt_s <= 0.0) {
+      x[kStarted] = T(1);
+      x[kFiltered] = speed;
+    } else {
+      // tau dy/dt = omega - y, omega on a line from sample to sample
+      x[kFiltered] = lag_behind_line(x[kFiltered], x[kInput], speed, port.dt_s, p[kTimeConstant]);
+    }
+    x[kInput] = speed;
+    port.measured_speed_rad_s = x[kFiltered];
+  }
+};
+
+}  // namespace
+
+OMNIHIL_EFFECT(speed_low_pass, SpeedLowPass)
+
+}  // namespace omnihil

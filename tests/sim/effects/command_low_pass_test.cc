@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/sim/effects/bench.h"
+
+namespace omnihil::test {
+namespace {
+
+AxisInput current_step(double at_s, double value) {
+  AxisInput in = held(CommandKind::kMotorCurrent, 0.0, 0.2);
+  for (std::size_t n = 0; n < in.time_s.size(); ++n)
+    in.command[n] = in.time_s[n] >= at_s - 1e-9 ? value : 0.0;
+  return in;
+}
+
+// The mean current of each period after a step of an imposed current: that of 1 - exp(-t / tau).
+TEST(CommandLowPass, MakesAnExponentialOfAStep) {
+  const double tau = 0.01, step = 1e-3;
+  const auto out =
+      run_axis(small_drive(), with({use_of("command_low_pass", {tau})}), current_step(0.05, 2.0));
+  for (std::size_t n = 51; n < out.size(); ++n) {
+    const double from = (static_cast<double>(n) - 51.0) * step;
+    const double mean = 1.0 - tau / step * (std::exp(-from / tau) - std::exp(-(from + step) / tau));
+    EXPECT_NEAR(out[n].motor_current_A, 2.0 * mean, 1e-9) << n;
+  }
+}
+
+// What differs from a delay by the same time: the gain at high frequencies.
+TEST(CommandLowPass, LowersTheGainWhereADelayDoesNot) {
+  AxisInput in = held(CommandKind::kMotorCurrent, 0.0, 1.0);
+  const double omega = 2.0 * 3.14159265358979 * 20.0, tau = 0.01;
+  for (std::size_t n = 0; n < in.time_s.size(); ++n) in.command[n] = std::sin(omega * in.time_s[n]);
+  const auto rms = [](const std::vector<AxisSample<double>>& out) {
+    double sum = 0.0;
+    for (std::size_t n = 500; n < 1000; ++n) sum += out[n].motor_current_A * out[n].motor_current_A;
+    return std::sqrt(sum / 500.0);
+  };
+  const double before = rms(run_axis(small_drive(), nothing(), in));
+  const double after = rms(run_axis(small_drive(), with({use_of("command_low_pass", {tau})}), in));
+  EXPECT_NEAR(after / before, 1.0 / std::sqrt(1.0 + omega * omega * tau * tau), 2e-3);
+}
+
+TEST(CommandLowPass, BeginsWithTheFirstCommandAsIfItHadAlwaysBeen) {
+  const AxisInput in = held(CommandKind::kMotorCurrent, 1.5, 0.1);
+  const auto out = run_axis(small_drive(), with({use_of("command_low_pass", {0.05})}), in);
+  for (const auto& s : out) EXPECT_NEAR(s.motor_current_A, s.time_s > 0.0 ? 1.5 : 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace omnihil::test
