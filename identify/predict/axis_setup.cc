@@ -29,6 +29,22 @@ void set_motion(const Dataset& dataset, const AxisRecord& r, AxisInput& in) {
   }
 }
 
+// Does a record begin at rest and without current, whatever it asks for? Then nothing was asked before it: a drive that is late by
+// a delay has not heard its first row yet.
+bool begins_at_rest(const AxisRecord& r) {
+  constexpr double kWithin_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
+  const auto nearly_zero = [](const std::vector<double>& x) {
+    const NoiseEstimate noise = estimate_noise(x);
+    return std::abs(first_known(x, 0.0)) <= kWithin_sigmas * std::max(noise.sigma, noise.quantum);
+  };
+  if (!r.current.empty() && !nearly_zero(r.current)) return false;
+  if (!r.velocity.empty()) return nearly_zero(r.velocity);
+  const std::vector<double>& x = r.position_or_counts();
+  if (x.size() < 2) return false;
+  const double quantum = r.position.empty() ? 1.0 : estimate_noise(x).quantum;
+  return std::abs(x[1] - x[0]) <= 1.5 * quantum;  // one count, or rounding
+}
+
 // What a forward run is compared with. A servo holds an angle: that is compared, from its own sensor or from the encoder,
 // and not its speed.
 void compare_forward(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
@@ -116,6 +132,8 @@ AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, cons
     make_inverse_setup(dataset, drive_of(nominal), record, setup);
   } else {
     set_motion(dataset, record, in);
+    const bool of_winding = in.kind == CommandKind::kDuty || in.kind == CommandKind::kMotorVoltage;
+    if (of_winding && begins_at_rest(record)) in.command_before = 0.0;
     compare_forward(dataset, record, setup);
     setup.velocity = smoothed_velocity(record);
     setup.position = record.angle();

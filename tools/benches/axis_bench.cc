@@ -90,6 +90,7 @@ std::optional<VirtualBench> make_axis_bench(const BenchOptions& options, std::ve
     }
     run.seed = mix_bits(seed++);
     run.input.kind = *kind;
+    if (*kind != CommandKind::kPositionTarget) run.input.command_before = 0.0;  // it begins at rest
     run.input.encoder_counts_per_turn = model.encoder_counts_per_turn;
     run.input.noise_seed = run.seed;
     run.samples = run_axis(model.drive, set, run.input, {.step_s = options.step_s});
