@@ -470,7 +470,7 @@ FILTERS = [
     ),
     Effect(
         "speed_low_pass",
-        (2e-4, 0.05),
+        (2e-3, 0.05),  # from two rows on: smoothing row by row is no low pass of a shorter time
         shows=("chirp", "prbs", "steps"),
         needs=("hall", "current"),  # a speed that is reported, and no encoder beside it
         hide=lambda m, s, r: {"speed_filter_s": m},
@@ -479,7 +479,7 @@ FILTERS = [
     ),
     Effect(
         "current_low_pass",
-        (2e-4, 0.05),
+        (2e-3, 0.05),  # as above
         shows=("chirp", "prbs", "steps"),
         needs=("current",),
         hide=lambda m, s, r: {"current_filter_s": m},
