@@ -118,6 +118,8 @@ LinearBase::LinearBase(const WhitenedResiduals& residuals, const Candidate& mode
   normal_ = Cholesky(normal);
   gradient_ = jacobian_.transpose() * residual_ - prior_.cwiseProduct(off);
   usable_ = normal_.positive_definite();
+  moved_ = residual_;
+  if (usable_ && gradient_.size() > 0) moved_ -= jacobian_ * normal_.solve(gradient_);
 }
 
 ProjectedColumns LinearBase::project(Eigen::MatrixXd weighted_columns) const {
@@ -146,16 +148,23 @@ Eigen::VectorXd LinearBase::base_shift(const ProjectedColumns& p, const Eigen::V
   return shift;
 }
 
+// d = A^-1 g - coupling a, so r - J d - D a = (r - J A^-1 g) - columns a
+LinearGain LinearBase::gain_at(double gain, const ProjectedColumns& p, const Eigen::VectorXd& a) const {
+  return {.gain = gain,
+          .data_gain = energy() - (moved_ - p.columns * a).squaredNorm(),
+          .coefficients = {a.data(), a.data() + a.size()},
+          .base_shift = base_shift(p, a)};
+}
+
 LinearGain LinearBase::gain(const ProjectedColumns& p, const std::vector<bool>& two_sided) const {
   const auto [gain, a] = bounded_gain(p.gram, correlation(p), two_sided);
-  return {.gain = gain, .coefficients = {a.data(), a.data() + a.size()}, .base_shift = base_shift(p, a)};
+  return gain_at(gain, p, a);
 }
 
 LinearGain LinearBase::gain_as_tried(const ProjectedColumns& p) const {
   const Eigen::VectorXd a = Eigen::VectorXd::Ones(p.gram.cols());
   // |r|^2 - |r - D a|^2 = 2 a'b - a'G a
-  const double gain = 2.0 * a.dot(correlation(p)) - a.dot(p.gram * a);
-  return {.gain = gain, .coefficients = {a.data(), a.data() + a.size()}, .base_shift = base_shift(p, a)};
+  return gain_at(2.0 * a.dot(correlation(p)) - a.dot(p.gram * a), p, a);
 }
 
 double LinearBase::gain_in_noise(const ProjectedColumns& p, const std::vector<bool>& two_sided,

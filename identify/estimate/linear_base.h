@@ -3,7 +3,8 @@
 //
 //   LinearBase base(residuals, model, unknowns, scale_of_channel, jobs);
 //   LinearGain g = base.gain(base.project(weighted_columns), two_sided);
-//   g.gain;   // by how much the weighted sum of squares (with priors) falls
+//   g.gain;        // by how much the weighted sum of squares (with priors) falls
+//   g.data_gain;   // by how much without them: all that a refit can show in the residual
 //
 // Law: minimise |r - J d - D a|^2 + priors(x + d) over d and a; a from the Schur complement
 //   (D'D - D'J A^-1 J'D) a = D'r - D'J A^-1 g,   A = J'J + L,   g = J'r - L (x - m)
@@ -24,6 +25,7 @@ namespace omnihil {
 
 struct LinearGain {
   double gain = 0.0;
+  double data_gain = 0.0;            // without the priors' part: fall of |r - J d - D a|^2 alone
   std::vector<double> coefficients;  // a: size c
   Eigen::VectorXd base_shift;        // d: size p, in the unknowns' own units
 };
@@ -62,6 +64,7 @@ class LinearBase {
  private:
   Eigen::VectorXd correlation(const ProjectedColumns& columns) const;
   Eigen::VectorXd base_shift(const ProjectedColumns& columns, const Eigen::VectorXd& coefficients) const;
+  LinearGain gain_at(double gain, const ProjectedColumns& columns, const Eigen::VectorXd& coefficients) const;
 
   bool usable_ = false;
   std::vector<Unknown> unknowns_;
@@ -71,6 +74,7 @@ class LinearBase {
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd prior_;     // L
   Eigen::VectorXd gradient_;  // g
+  Eigen::VectorXd moved_;     // r - J A^-1 g
   Cholesky normal_;
   double autocorrelation_ = 1.0;
 };

@@ -163,7 +163,9 @@ Fitted refit(const RefitSetup& of_iteration, const Fitted& parent, const Screene
   std::vector<Unknown> unknowns = unknowns_with_priors(with, *setup.nominal);
   start_at(unknowns, effect.base_unknowns, effect.base_start);
   Fitted best = fit_from(setup, with, unknowns, 1);
-  const double expected = 1.0 - kOfPredicted * effect.share;
+  // In the residual alone: what base parameters nearer their priors gain does not show there.
+  const double promised = effect.data_share();
+  const double expected = 1.0 - kOfPredicted * promised, with_priors = 1.0 - kOfPredicted * effect.share;
   double ratio = fit_ratio(setup, parent, best);
   const auto stopped = [&] { return setup.stop && setup.stop(); };
   const auto restores = [&](const Fitted& f, double r) {
@@ -181,12 +183,12 @@ Fitted refit(const RefitSetup& of_iteration, const Fitted& parent, const Screene
   };
   const EffectUse typical = at_typical_size(effect.start, with);
   if (ratio > expected && !stopped()) also_from(with_use(parent.fit.model, near_neutral(effect.start)));
-  if (ratio > expected && effect.share >= kWorthTypicalStart && !stopped())
+  if (ratio > expected && promised >= kWorthTypicalStart && !stopped())
     also_from(with_use(parent.fit.model, typical));
   // If the base parameters have absorbed the effect, the optimiser stays near zero strength, or leaves them
   // absorbed beside the effect: also start from the nominal base, the effect at its typical size or as
   // estimated.
-  if (ratio > expected && effect.share >= kWorthPriorStart && base_implausible && !stopped())
+  if (ratio > with_priors && effect.share >= kWorthPriorStart && base_implausible && !stopped())
     also_from(with_use(at_priors(parent.fit.model, *setup.nominal), typical));
   if (base_implausible && best.finite && is_implausible(best.fit) && !stopped())
     also_from(at_priors(best.fit.model, *setup.nominal));
@@ -196,7 +198,7 @@ Fitted refit(const RefitSetup& of_iteration, const Fitted& parent, const Screene
   for (const double factor : {0.5, 2.0}) {
     if (many_optima && !stopped()) also_from(with_strength_times(best.fit.model, effect.name, factor));
   }
-  if (effect.share >= kWorthTypicalStart && leaves_structure(setup, parent, best) && !stopped()) {
+  if (promised >= kWorthTypicalStart && leaves_structure(setup, parent, best) && !stopped()) {
     const std::optional<Candidate> lower = below_on_strength_grid(
         setup, at_priors(best.fit.model, *setup.nominal), effect.name, best.residual[kTraining]);
     if (lower) also_from(*lower);

@@ -194,6 +194,8 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
     out.null_gain = std::max(out.null_gain, base.gain_in_noise(best.columns, best.two_sided, n));
   }
   out.share = std::max(0.0, out.gain - out.null_gain) / std::max(base.energy(), 1e-300);
+  const double in_data = best.fit.data_gain / std::max(base.energy(), 1e-300);
+  out.prior_share = out.share - std::clamp(in_data, 0.0, out.share);
   for (const RegimeMask& regime : task.regimes) {
     const double share = share_in(regime, best.columns, best.two_sided, base.residual(), task.noise);
     if (share > out.best_regime_share) {

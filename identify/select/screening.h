@@ -48,11 +48,12 @@ struct ScreeningTask {
 
 struct Screened {
   const EffectEntry* entry = nullptr;
-  std::string name;                // of the effect
-  bool extends = false;            // further strengths of an effect that is there already
-  double gain = 0.0;               // fall of the weighted sum of squares
-  double null_gain = 0.0;          // largest of the null's replicates
-  double share = 0.0;              // (gain - null_gain) over the residual's energy, at least 0
+  std::string name;          // of the effect
+  bool extends = false;      // further strengths of an effect that is there already
+  double gain = 0.0;         // fall of the weighted sum of squares
+  double null_gain = 0.0;    // largest of the null's replicates
+  double share = 0.0;        // (gain - null_gain) over the residual's energy, at least 0
+  double prior_share = 0.0;  // part of it that base parameters nearer their priors make: no residual shows it
   double best_regime_share = 0.0;  // the same within the regime where it is largest
   std::string best_regime;
   double typical_gain = 0.0;  // at its typical size: below the null's, it is not visible
@@ -66,6 +67,9 @@ struct Screened {
   double unresolved = 0.0;  // share of that in rows too far apart to know a law's angle (angle_resolution.h)
   // false: interrupted, every size of it made the model diverge, or no row knows its angle
   bool tried = false;
+
+  // Of the residual's energy, what of `share` a refit can show.
+  double data_share() const { return share - prior_share; }
 
   // Is a law of the angle told from one of the mean? True of others.
   bool is_resolved() const { return unresolved <= kMostUnresolved; }

@@ -217,7 +217,7 @@ std::vector<std::size_t> next_in_order(const Iteration& iteration, const Predict
   std::vector<std::size_t> out;
   for (const std::size_t i : above_null(iteration.screened, predictor)) {
     const Screened& s = iteration.screened[i];
-    if (out.size() < kMostRefits && s.share >= kWorthSecondBatch && !was_refitted(iteration, s))
+    if (out.size() < kMostRefits && s.data_share() >= kWorthSecondBatch && !was_refitted(iteration, s))
       out.push_back(i);
   }
   return out;

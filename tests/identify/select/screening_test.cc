@@ -120,6 +120,35 @@ TEST(Screening, AnEffectThatTheBaseImitatesWhollyKeepsNothing) {
   EXPECT_EQ(load.aliased_parameter(), "");  // its page does not name friction as what it is confused with
 }
 
+TEST(Screening, WhatAPriorPromisesIsNoFallOfTheResidual) {
+  Scene scene(0.0);
+  LinearPredictor twin({{kFriction, scene.b}, {kLoad, scene.b}});
+  twin.add_measured(Split::kTraining, with_load(scene.model, 0.0, 1e-5), 0.01, 1);
+  const ComparedChannels channels = compared_channels(twin);
+  const WhitenedResiduals residuals(twin, channels, Split::kTraining);
+  std::vector<Unknown> unknowns = unknowns_of(scene.model);
+  ASSERT_EQ(unknowns.size(), 1u);
+  // The data have the friction at 1e-5 to a part in 1e6, four standard deviations from its prior: a load could take over.
+  unknowns[0].prior_form = PriorForm::kNormal;
+  unknowns[0].prior_sigma = 1e-6;
+  unknowns[0].prior_mean = 0.6e-5;
+  const LinearBase base(residuals, scene.model, unknowns, Eigen::VectorXd::Ones(1), 1);
+  ASSERT_TRUE(base.usable());
+  scene.task.residuals = &residuals;
+  scene.task.base = &base;
+  const Screened load = scene.load();
+  ASSERT_TRUE(load.tried);
+  EXPECT_GT(load.share, 1.0);  // 4^2 over the noise's energy of 0.2
+  // by chance 1 / 2000 of the noise
+  EXPECT_LT(load.data_share(), 0.01);
+}
+
+TEST(Screening, WhatTheDataPromiseIsTheirs) {
+  const Screened load = Scene(0.02).load();
+  ASSERT_TRUE(load.tried);
+  EXPECT_NEAR(load.data_share(), load.share, 1e-9);
+}
+
 TEST(Screening, StopsWhenItIsTold) {
   Scene scene(0.02);
   scene.task.progress = [](double) { return false; };
