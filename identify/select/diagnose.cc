@@ -38,6 +38,7 @@ constexpr int kMostRestarts = 2;        // by cost
 // the open cases; sensitivity not measured.
 constexpr double kRobustLoss = 1.2;  // tuned
 
+constexpr const char* kBaseStep = "base parameters refitted";
 constexpr const char* kInterrupted = "interrupted before any effect was tried";
 
 class Diagnosing {
@@ -102,7 +103,7 @@ class Diagnosing {
     }
     out_.baseline = context().base().fit;
     out_.baseline_comparison = compare(context().predictor(), context().base().fit.model);
-    add_step("base parameters refitted", context().base(), out_.baseline_comparison);
+    add_step(kBaseStep, context().base(), out_.baseline_comparison);
     current_ = context().base();
     return say("base parameters refitted", kAfterBaseline) && usable;
   }
@@ -143,22 +144,30 @@ class Diagnosing {
   void iterate() {
     double from = kAfterNull;
     int restarts = 0;
+    std::optional<Iteration> again;  // of this round, beside a better parent
     for (int n = 0; n < options_.max_effects && !stopped_; ++n) {
       const double to = from + 0.5 * (kAfterRounds - from);
       task_.progress = [&](const std::string& doing, double share) {
         return say(fmt::format("round {}: {}", n + 1, doing), from + share * (to - from));
       };
-      Iteration iteration = selection_iteration(task_, current_);
+      const bool is_again = again.has_value();
+      Iteration iteration = is_again ? std::move(*again) : selection_iteration(task_, current_);
+      again.reset();
       const bool first = out_.effects.empty() && n == 0;
       if (first) first_ranking(iteration);
       if (n == 0 || !iteration.orders.empty())
         order_ = iteration.orders.empty() ? 0.0 : iteration.orders.front();
-      // The refit may find better base parameters for the parent itself: rank again from there.
+      // The refit may find better base parameters for the parent itself: what came near the best is ranked again from there.
       if (iteration.chosen >= 0 && parent_not_converged(iteration) && ++restarts <= kMostRestarts) {
+        again = near_best_again(task_, current_, iteration);
         --n;
         continue;
       }
       std::optional<Fitted> converged = converged_choice(iteration);
+      if (!converged && is_again && !iteration.stopped) {  // none of those: all of them
+        --n;
+        continue;
+      }
       const bool unexplained = !converged && !iteration.stopped && pairs_asked() && worth_another_iteration();
       if (unexplained) converged = converged_choice(with_small_gains(iteration));
       if (first) out_.ranking = iteration.ranking;
@@ -296,7 +305,7 @@ class Diagnosing {
     HeardCommands anew = heard_by(recorded_, nominal_, current_.fit.model);
     if (anew.same_lost(heard())) return;
     std::unique_ptr<Data> data = data_of(std::move(anew));
-    if (!data->context.fit_base(stop()) || stopped_) return;
+    if (!data->context.fit_base(stop(), context().base().fit.model) || stopped_) return;
     data->context.simulate();
     data_ = std::move(data);
     std::vector<std::string> known;
@@ -306,12 +315,26 @@ class Diagnosing {
     out_.nominal_comparison = compare(context().predictor(), nominal_);
     out_.baseline = context().base().fit;
     out_.baseline_comparison = compare(context().predictor(), out_.baseline.model);
-    const RefitSetup setup = context().setup(false, stop());
+    const RefitSetup setup = context().setup(true, stop());  // as each choice was; the last fit is thorough
     current_ = refit_to_convergence(setup, refit_as_it_is(setup, current_.fit.model, 1));
+    heard_anew_ = true;
     add_step("lost commands decided anew", current_, compare(context().predictor(), current_.fit.model));
   }
 
+  // Of the base parameters that the answer has: until then better ones may come.
+  void give_intervals() {
+    say("intervals of the base parameters", 0.87);
+    if (stopped_) return;
+    const bool is_base = out_.effects.empty() && current_.fit.cost == context().base().fit.cost;
+    context().profile_base(stop());
+    out_.baseline = context().base().fit;
+    if (is_base) current_ = context().base();
+    for (LadderStep& step : out_.ladder)
+      if (step.added == kBaseStep && !heard_anew_) step.parameters = out_.baseline.parameters;
+  }
+
   void conclude() {
+    give_intervals();
     say("last fit", 0.88);
     bool added = !out_.effects.empty();
     if (added && !stopped_) {
@@ -455,7 +478,8 @@ class Diagnosing {
   Diagnosis out_;
   std::map<std::string, std::string> aliased_parameter_;  // of the effects added
   std::vector<std::string> pair_;                         // accepted only together
-  double order_ = 0.0;                                    // strongest of the residual's, per rotor turn
+  bool heard_anew_ = false;  // the ladder's first steps are of what was heard before
+  double order_ = 0.0;       // strongest of the residual's, per rotor turn
   double furthest_ = 0.0;
   std::mutex mutex_;  // progress comes from several threads
   std::atomic<bool> stopped_{false};

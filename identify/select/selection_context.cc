@@ -53,13 +53,22 @@ RefitSetup SelectionContext::setup(bool coarse, const std::function<bool()>& sto
   return s;
 }
 
-bool SelectionContext::fit_base(const std::function<bool()>& stop) {
+bool SelectionContext::fit_base(const std::function<bool()>& stop, const Candidate& start) {
   RefitSetup thorough = setup(false, stop);
   thorough.profile = false;
-  base_ = refit_to_convergence(thorough, refit_as_it_is(thorough, nominal_, 1));
-  thorough.profile = true;  // once, where it ends
+  base_ = refit_to_convergence(thorough, refit_as_it_is(thorough, start, 1));
   if (base_.finite && !stop()) base_ = refit_as_it_is(thorough, base_.fit.model, 1);
   return base_.finite && !splits_[kTraining].empty();
+}
+
+void SelectionContext::profile_base(const std::function<bool()>& stop) {
+  RefitSetup at_rest = setup(false, stop);
+  at_rest.max_iterations = 0;
+  Fitted profiled = refit_as_it_is(at_rest, base_.fit.model, 1);
+  if (!profiled.finite || profiled.fit.stopped) return;
+  profiled.fit.iterations = base_.fit.iterations;
+  profiled.fit.converged = base_.fit.converged;
+  base_ = std::move(profiled);
 }
 
 void SelectionContext::simulate() {

@@ -34,8 +34,11 @@ class SelectionContext {
 
   // Options of a refit; coarse: for rankings, few iterations and a rough covariance.
   RefitSetup setup(bool coarse, const std::function<bool()>& stop) const;
-  // False: no fit runs, or the model does not stay finite.
-  bool fit_base(const std::function<bool()>& stop);
+  // False: no fit runs, or the model does not stay finite. `start`: where the base parameters ended elsewhere.
+  bool fit_base(const std::function<bool()>& stop) { return fit_base(stop, nominal_); }
+  bool fit_base(const std::function<bool()>& stop, const Candidate& start);
+  // The base parameters' intervals, by their profiles. The search asks for none.
+  void profile_base(const std::function<bool()>& stop);
   // A better fit of the same model.
   void take_base(Fitted base) { base_ = std::move(base); }
   // After fit_base.

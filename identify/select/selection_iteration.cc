@@ -31,6 +31,10 @@ constexpr double kLeastSignalToNull = 2.0;  // tuned, as the acceptance test's
 // derived, at 1 it cannot be told from chance.
 constexpr double kVisibleSignalToNull = 1.0;  // derived
 
+// Of the best gain: a candidate that came to less is not looked at again beside a better parent. Four times the loss of gain
+// up to which an effect may be meant in place of the best (selection.cc). A choice.
+constexpr double kNearBest = 0.5;  // a choice
+
 DataScale scale_of(const SelectionTask& task, const Fitted& parent, const LinearBase& base) {
   DataScale scale;
   const WhitenedResiduals& fit = (*task.splits)[kTraining];
@@ -290,6 +294,10 @@ void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& it
     iteration.ranking.push_back(std::move(r));
   }
   std::vector<RankedEffect> others;
+  for (const RankedEffect& r : iteration.earlier) {
+    iteration.ranking.push_back(r);
+    refitted.push_back(r.effect);
+  }
   for (const Screened& s : iteration.screened) {
     if (std::find(refitted.begin(), refitted.end(), s.name) == refitted.end()) {
       others.push_back(ranked(s, iteration.largest_null_gain));
@@ -298,6 +306,32 @@ void make_ranking(const SelectionTask& task, const Fitted& parent, Iteration& it
   std::stable_sort(others.begin(), others.end(),
                    [](const RankedEffect& a, const RankedEffect& b) { return a.score > b.score; });
   iteration.ranking.insert(iteration.ranking.end(), others.begin(), others.end());
+}
+
+// Candidates whose gain is near that of the chosen one, and the laws that it becomes at a limit of its shapes.
+std::vector<const CandidateEffect*> near_best(const Iteration& iteration, bool has_holdout) {
+  const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
+  const double least = kNearBest * penalised_gain(best, has_holdout);
+  std::vector<const CandidateEffect*> out;
+  for (const CandidateEffect& c : iteration.candidates) {
+    const bool near = &c == &best || penalised_gain(c, has_holdout) >= least ||
+                      nests(*best.screened.entry->info, c.screened.name);
+    if (c.fitted.finite && near) out.push_back(&c);
+  }
+  return out;
+}
+
+// What the screening says of it now, with its own fit for a start.
+Screened from_own_fit(Screened screened, const CandidateEffect& c) {
+  const Candidate& model = c.fitted.fit.model;
+  const auto use = std::ranges::find(model.effects, screened.entry, &EffectUse::entry);
+  if (use == model.effects.end()) return screened;
+  screened.start = *use;
+  screened.base_unknowns = c.fitted.fit.unknowns;
+  screened.base_start.clear();
+  for (const Unknown& u : screened.base_unknowns)
+    screened.base_start.push_back(value_at(model, u.path).value_or(u.start));
+  return screened;
 }
 
 void choose_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
@@ -360,6 +394,37 @@ void refuse_chosen(const SelectionTask& task, const Fitted& parent, const std::s
 void judge_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
   for (CandidateEffect& c : iteration.candidates) judge(task, parent, iteration.largest_null_gain, c);
   choose_anew(task, parent, iteration);
+}
+
+std::optional<Iteration> near_best_again(const SelectionTask& task, const Fitted& parent,
+                                         const Iteration& before) {
+  const std::vector<const CandidateEffect*> near = near_best(before, !(*task.splits)[kValidation].empty());
+  if (std::ranges::any_of(near, [](const CandidateEffect* c) { return c->screened.extends; }))
+    return std::nullopt;
+  std::vector<const EffectEntry*> effects;
+  for (const CandidateEffect* c : near) effects.push_back(c->screened.entry);
+  Iteration iteration = screening_iteration(task, parent, effects);
+  if (iteration.screened.size() < near.size()) return std::nullopt;
+  iteration.largest_null_gain = std::max(iteration.largest_null_gain, before.largest_null_gain);
+  iteration.stopped = task.progress && !task.progress("screening", 0.5);
+  std::vector<std::size_t> chosen;
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    iteration.screened[k] = from_own_fit(std::move(iteration.screened[k]), *near[k]);
+    chosen.push_back(k);
+  }
+  if (!iteration.stopped) refit_shortlist(task, parent, chosen, iteration);
+  const auto is_near = [&](const RankedEffect& r) {
+    return std::ranges::any_of(near, [&](const CandidateEffect* c) { return c->screened.name == r.effect; });
+  };
+  std::ranges::remove_copy_if(before.ranking, std::back_inserter(iteration.earlier), is_near);
+  for (RankedEffect& r : iteration.earlier) {
+    constexpr std::string_view kThen = "far from the best, beside a model that fitted worse: ";
+    if (!r.refitted || r.why.starts_with(kThen)) continue;
+    r.accepted_by = AcceptedBy::kNone;  // not tested beside this parent
+    r.why.insert(0, kThen);
+  }
+  choose_anew(task, parent, iteration);
+  return iteration;
 }
 
 Iteration selection_iteration(const SelectionTask& task, const Fitted& parent) {

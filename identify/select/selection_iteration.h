@@ -10,6 +10,7 @@
 // once that one is in the model.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,13 +49,19 @@ struct Iteration {
   std::vector<CandidateEffect> candidates;  // best first
   std::vector<RankedEffect> ranking;
   int chosen = -1;
-  std::vector<int> confounded;     // with the chosen one, in `candidates`
-  double largest_null_gain = 0.0;  // of any effect in any replicate of the null
-  std::vector<double> orders;      // dominant in the residual along the rotor's angle
+  std::vector<int> confounded;        // with the chosen one, in `candidates`
+  std::vector<RankedEffect> earlier;  // of those that were not looked at again (near_best_again)
+  double largest_null_gain = 0.0;     // of any effect in any replicate of the null
+  std::vector<double> orders;         // dominant in the residual along the rotor's angle
   bool stopped = false;
 };
 
 Iteration selection_iteration(const SelectionTask& task, const Fitted& parent);
+
+// Once more, beside a parent of the same structure that fits better: those that came near the best, each from where it ended.
+// None, if what came near the best is a detail of an effect that is there already.
+std::optional<Iteration> near_best_again(const SelectionTask& task, const Fitted& parent,
+                                         const Iteration& before);
 
 // Refuses the candidate that was chosen, for a reason that showed only when it was fitted to convergence, and
 // chooses among the others.

@@ -26,6 +26,24 @@ TEST(SelectionContextTest, TheBaseFitIsTheRegression) {
   EXPECT_NEAR(value_at(context.base().fit.model, kFriction).value(), expected, 1e-4 * expected);
 }
 
+TEST(SelectionContextTest, BegunElsewhereItEndsThereTooAndItsIntervalsMoveNothing) {
+  const TorqueMap map({});
+  SelectionContext context(map.dataset, map.nominal, {}), further(map.dataset, map.nominal, {});
+  ASSERT_TRUE(context.fit_base(kNeverStop));
+  Candidate start = map.nominal;
+  ASSERT_EQ(set_value(start, kFriction, 2.0 * value_at(map.nominal, kFriction).value()), "");
+  ASSERT_TRUE(further.fit_base(kNeverStop, start));
+  const double fitted = value_at(context.base().fit.model, kFriction).value();
+  EXPECT_NEAR(value_at(further.base().fit.model, kFriction).value(), fitted, 1e-4 * fitted);
+  // the prior is the nominal model's, not that of where it began
+  EXPECT_EQ(further.base().fit.parameters[0].prior_mean, context.base().fit.parameters[0].prior_mean);
+  const bool converged = context.base().fit.converged;
+  context.profile_base(kNeverStop);
+  EXPECT_NEAR(value_at(context.base().fit.model, kFriction).value(), fitted, 1e-12 * fitted);
+  EXPECT_EQ(context.base().fit.converged, converged);
+  EXPECT_GT(context.base().fit.parameters[0].sigma, 0.0);
+}
+
 TEST(SelectionContextTest, ALoadThatTheModelLacksIsLeftInEveryResidual) {
   const double load_Nm = 0.004;
   const TorqueMap map({.load_Nm = load_Nm});
