@@ -95,6 +95,8 @@ bool accepted_by_prior_only(const Iteration& iteration) {
                       [](const CandidateEffect& c) { return c.acceptance.accepted_by == AcceptedBy::kGain; });
 }
 
+bool is_late_reading(const CandidateEffect& c) { return c.screened.entry->info->place == Place::kTiming; }
+
 // Parsimony among nested laws: the first one stays only if it would be accepted as an addition to each of the
 // accepted laws that it becomes at a limit of its shapes (likelihood-ratio tests of nested models are taken
 // the same way: the richer one bears the burden of proof).
@@ -181,7 +183,11 @@ void select_best(const SelectionTask& task, const Fitted& parent, Iteration& ite
     const CandidateEffect& first = iteration.candidates[preferred];
     const bool simpler = remaining < kSameRemaining && parameter_count(other) < parameter_count(first) &&
                          set.size() <= kMostConfounded;
-    if ((same || confounded) && (has_signature(other) || (simpler && !has_signature(first)))) preferred = c;
+    // As good without late readings: by those the measured angle is a late one, and laws of the angle are lost beside it.
+    const bool in_time = remaining < kSameRemaining && is_late_reading(first) && !is_late_reading(other) &&
+                         set.size() <= kMostConfounded;
+    if ((same || confounded) && (has_signature(other) || ((simpler || in_time) && !has_signature(first))))
+      preferred = c;
   }
   while (set.size() > kMostConfounded) set.erase(set.back() == preferred ? set.end() - 2 : set.end() - 1);
   std::rotate(iteration.candidates.begin(),

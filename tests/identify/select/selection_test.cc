@@ -117,6 +117,17 @@ TEST(SelectionTest, OfEqualGainsTheOneWhoseQuantisationTheReadingsShowIsChosen) 
 }
 
 // Each explains another half of the record: which is the better one depends on the draw.
+TEST(SelectionTest, OfEqualGainsOneWithoutLateReadingsIsChosen) {
+  SelectionFixture fixture;
+  fixture.add_candidate("sampling_delay", SelectionFixture::leaving(0.5, 0.5));
+  fixture.add_candidate("actuator_delay", SelectionFixture::leaving(0.501, 0.501));
+  EXPECT_EQ(fixture.best(), "actuator_delay");
+  SelectionFixture better;
+  better.add_candidate("sampling_delay", SelectionFixture::leaving(0.5, 0.5));
+  better.add_candidate("actuator_delay", SelectionFixture::leaving(0.7, 0.7));
+  EXPECT_EQ(better.best(), "sampling_delay");
+}
+
 TEST(SelectionTest, ACandidateThatSomeDrawsSelectIsConfoundedWithTheBest) {
   SelectionFixture fixture;
   fixture.add_candidate("constant_load", SelectionFixture::leaving(0.50, 0.62));
