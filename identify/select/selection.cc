@@ -96,6 +96,7 @@ bool accepted_by_prior_only(const Iteration& iteration) {
 }
 
 bool is_late_reading(const CandidateEffect& c) { return c.screened.entry->info->place == Place::kTiming; }
+bool is_of_the_drive(const CandidateEffect& c) { return c.screened.entry->info->place < Place::kSensor; }
 
 // Parsimony among nested laws: the first one stays only if it would be accepted as an addition to each of the
 // accepted laws that it becomes at a limit of its shapes (likelihood-ratio tests of nested models are taken
@@ -184,7 +185,7 @@ void select_best(const SelectionTask& task, const Fitted& parent, Iteration& ite
     const bool simpler = remaining < kSameRemaining && parameter_count(other) < parameter_count(first) &&
                          set.size() <= kMostConfounded;
     // As good without late readings: by those the measured angle is a late one, and laws of the angle are lost beside it.
-    const bool in_time = remaining < kSameRemaining && is_late_reading(first) && !is_late_reading(other) &&
+    const bool in_time = remaining < kSameRemaining && is_late_reading(first) && is_of_the_drive(other) &&
                          set.size() <= kMostConfounded;
     if ((same || confounded) && (has_signature(other) || ((simpler || in_time) && !has_signature(first))))
       preferred = c;
