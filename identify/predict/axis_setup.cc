@@ -31,13 +31,14 @@ void set_motion(const Dataset& dataset, const AxisRecord& r, AxisInput& in) {
 
 // Does a record begin at rest and without current, whatever it asks for? Then nothing was asked before it: a drive that is late by
 // a delay has not heard its first row yet.
-bool begins_at_rest(const AxisRecord& r) {
+bool begins_at_rest(const AxisRecord& r, CommandKind kind) {
   constexpr double kWithin_sigmas = 4.0;  // one in 16,000 leaves it by chance (normal); a choice
   const auto nearly_zero = [](const std::vector<double>& x) {
     const NoiseEstimate noise = estimate_noise(x);
     return std::abs(first_known(x, 0.0)) <= kWithin_sigmas * std::max(noise.sigma, noise.quantum);
   };
-  if (!r.current.empty() && !nearly_zero(r.current)) return false;
+  const bool current_is_asked = kind == CommandKind::kMotorCurrent;
+  if (!current_is_asked && !r.current.empty() && !nearly_zero(r.current)) return false;
   if (!r.velocity.empty()) return nearly_zero(r.velocity);
   const std::vector<double>& x = r.position_or_counts();
   if (x.size() < 2) return false;
@@ -132,8 +133,7 @@ AxisSetup make_axis_setup(const Dataset& dataset, const Candidate& nominal, cons
     make_inverse_setup(dataset, drive_of(nominal), record, setup);
   } else {
     set_motion(dataset, record, in);
-    const bool of_winding = in.kind == CommandKind::kDuty || in.kind == CommandKind::kMotorVoltage;
-    if (of_winding && begins_at_rest(record)) in.command_before = 0.0;
+    if (in.kind != CommandKind::kPositionTarget && begins_at_rest(record, in.kind)) in.command_before = 0.0;
     compare_forward(dataset, record, setup);
     setup.velocity = smoothed_velocity(record);
     setup.position = record.angle();

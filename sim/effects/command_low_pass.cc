@@ -50,7 +50,7 @@ struct CommandLowPass {
   static void apply(const T* p, T* x, CommandPort<T>& port) {
     if (value_of(x[kStarted]) == 0.0) {
       x[kStarted] = T(1);
-      x[kSmoothed] = port.history != nullptr ? T(port.history->first_value()) : port.setpoint;
+      x[kSmoothed] = port.asked_before();
     }
     // tau du'/dt = u - u', its mean over the sub-step
     port.setpoint = lag_behind_held(x[kSmoothed], port.setpoint, port.dt_s, p[kTimeConstant]);

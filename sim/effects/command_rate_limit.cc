@@ -1,5 +1,6 @@
 // Limit of the command's rate: firmware that ramps the duty instead of letting it jump.
 #include "sim/law/effect_entry.h"
+#include "sim/law/rate_limit.h"
 
 namespace omnihil {
 namespace {
@@ -51,20 +52,11 @@ struct CommandRateLimit {
     if (port.kind != CommandKind::kDuty) return;
     if (value_of(x[kStarted]) == 0.0) {
       x[kStarted] = T(1);
-      x[kRamped] = port.history != nullptr ? T(port.history->first_value()) : port.setpoint;
+      x[kRamped] = port.asked_before();
     }
-    const T before = x[kRamped];
-    const T way = port.setpoint - before;
-    const T needed_s = way * sign_of(way) * p[kInverseRate];  // to get there at the limit
-    if (value_of(needed_s) > port.dt_s) {
-      // D' += sgn(way) h / q
-      x[kRamped] = before + sign_of(way) * port.dt_s / p[kInverseRate];
-      port.setpoint = 0.5 * (before + x[kRamped]);  // mean over the sub-step
-      return;
-    }
-    x[kRamped] = port.setpoint;
-    // The ramp ends within the sub-step: mean = D - way (time needed / 2 h)
-    port.setpoint -= way * (0.5 * needed_s / port.dt_s);
+    // |dD'/dt| <= 1 / q, its mean over the sub-step
+    const Walked<T> ramp = walk_towards(x[kRamped], port.setpoint, port.dt_s, p[kInverseRate]);
+    port.setpoint = ramp.mean - ramp.lost;
   }
 };
 

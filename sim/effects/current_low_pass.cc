@@ -47,16 +47,9 @@ struct CurrentLowPass {
 
   template <typename T>
   static void apply(const T* p, T* x, SensorPort<T>& port) {
-    const T current_A = port.measured_current_A;
-    if (value_of(x[kStarted]) == 0.0 || port.dt_s <= 0.0) {
-      x[kStarted] = T(1);
-      x[kFiltered] = current_A;
-    } else {
-      // tau dy/dt = i - y, i on a line from sample to sample
-      x[kFiltered] = lag_behind_line(x[kFiltered], x[kInput], current_A, port.dt_s, p[kTimeConstant]);
-    }
-    x[kInput] = current_A;
-    port.measured_current_A = x[kFiltered];
+    // tau dy/dt = i - y
+    SampledLag<T> lag{x[kFiltered], x[kInput], x[kStarted]};
+    port.measured_current_A = lag.reading(port.measured_current_A, port.dt_s, p[kTimeConstant]);
   }
 };
 

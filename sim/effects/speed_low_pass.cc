@@ -47,16 +47,9 @@ struct SpeedLowPass {
 
   template <typename T>
   static void apply(const T* p, T* x, SensorPort<T>& port) {
-    const T speed = port.measured_speed_rad_s;
-    if (value_of(x[kStarted]) == 0.0 || port.dt_s <= 0.0) {
-      x[kStarted] = T(1);
-      x[kFiltered] = speed;
-    } else {
-      // tau dy/dt = omega - y, omega on a line from sample to sample
-      x[kFiltered] = lag_behind_line(x[kFiltered], x[kInput], speed, port.dt_s, p[kTimeConstant]);
-    }
-    x[kInput] = speed;
-    port.measured_speed_rad_s = x[kFiltered];
+    // tau dy/dt = omega - y
+    SampledLag<T> lag{x[kFiltered], x[kInput], x[kStarted]};
+    port.measured_speed_rad_s = lag.reading(port.measured_speed_rad_s, port.dt_s, p[kTimeConstant]);
   }
 };
 

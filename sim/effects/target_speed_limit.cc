@@ -1,5 +1,6 @@
 // Limit of the target's speed: a servo that walks to a new target instead of jumping there.
 #include "sim/law/effect_entry.h"
+#include "sim/law/rate_limit.h"
 
 namespace omnihil {
 namespace {
@@ -57,16 +58,8 @@ struct TargetSpeedLimit {
       x[kStarted] = T(1);
       x[kWalking] = port.position_rad;
     }
-    const T before = x[kWalking];
-    const T way = port.setpoint - before;
-    const T needed_s = way * sign_of(way) * p[kInverseRate];  // to get there at the limit
-    if (value_of(needed_s) > port.dt_s) {
-      // target' += sgn(way) h / q
-      x[kWalking] = before + sign_of(way) * port.dt_s / p[kInverseRate];
-      port.setpoint = 0.5 * (before + x[kWalking]);  // mean over the sub-step
-    } else {
-      x[kWalking] = port.setpoint;
-    }
+    // |d target'/dt| <= 1 / q, its mean over the sub-step
+    port.setpoint = walk_towards(x[kWalking], port.setpoint, port.dt_s, p[kInverseRate]).mean;
   }
 };
 

@@ -35,6 +35,9 @@ struct CommandPort {
   // changes
   T setpoint = T(0);          // of `kind`, mean over the sub-step
   T duty_limit_ratio = T(1);  // duty is held within it afterwards
+
+  // What a law with a memory begins with at its first call: what was asked before; the same as now where nobody knows.
+  T asked_before() const { return history != nullptr ? T(history->first_value()) : setpoint; }
 };
 
 template <typename T>

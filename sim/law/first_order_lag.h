@@ -39,4 +39,17 @@ T lag_behind_line(const T& y0, const T& u0, const T& u1, double step_s, const T&
   return u1 - (u1 - u0) * (tau_s / step_s) * (1.0 - decay) + (y0 - u0) * decay;
 }
 
+// Of a sensor that is read from time to time; between two readings u is on a line.
+template <typename T>
+struct SampledLag {
+  T &y, &last_input, &started;  // states; started: 0 until the first reading, which is taken for settled
+
+  T reading(const T& u, double since_s, const T& tau_s) {
+    y = value_of(started) == 0.0 || since_s <= 0.0 ? u : lag_behind_line(y, last_input, u, since_s, tau_s);
+    last_input = u;
+    started = T(1);
+    return y;
+  }
+};
+
 }  // namespace omnihil

@@ -2,27 +2,12 @@
 
 Ids and parameter names are those of the catalogue; the laws in the plant are our own and mostly of another form.
 """
-import dataclasses
 import math
-from typing import Callable
+
+from axis_effect import Effect
+from axis_filters import FILTERS
 
 TURN = 2 * math.pi
-
-
-@dataclasses.dataclass(frozen=True)
-class Effect:
-    id: str
-    size: tuple  # least and largest size
-    hide: Callable  # (size, shape, rig) -> plant parameters
-    oracle: Callable  # (size, shape, rig) -> parameters of the catalogue's law
-    shows: tuple  # excitations that reveal it
-    shape: Callable = lambda rng, rig: {}
-    equal_law: tuple = ()  # oracle parameters that mean the same in both laws
-    needs: tuple = ()  # of the rig
-    gears: tuple = ()
-    rigs: tuple = ("drive",)
-    scale: str = ""  # "torque": sizes are times the rig's friction scale; "stall": per stall current
-    same: tuple = ()  # ids whose law is this one's, to first order, in every record of an axis
 
 
 def _phase(rng, rig):
@@ -449,44 +434,6 @@ def _pair_kgm2(rig):
     rotor, load = rig.true["rotor_kgm2"] * rig.true["gear"] ** 2, rig.true["load_kgm2"]
     return rotor * load / (rotor + load)
 
-
-# What electronics and firmware smooth: a class of its own, so that the cases of the other classes stay what they are.
-FILTERS = [
-    Effect(
-        "command_low_pass",
-        (2e-4, 0.05),
-        shows=("chirp", "prbs", "steps"),
-        hide=lambda m, s, r: {"smooth_s": m},
-        oracle=lambda m, s, r: {"time_constant_s": m},
-        equal_law=("time_constant_s",),
-    ),
-    Effect(
-        "command_rate_limit",
-        (0.005, 2.0),
-        shows=("prbs", "steps", "hard"),
-        hide=lambda m, s, r: {"most_duty_per_s": 1 / m},
-        oracle=lambda m, s, r: {"inverse_rate_s": m},
-        equal_law=("inverse_rate_s",),
-    ),
-    Effect(
-        "speed_low_pass",
-        (2e-3, 0.05),  # from two rows on: smoothing row by row is no low pass of a shorter time
-        shows=("chirp", "prbs", "steps"),
-        needs=("hall", "current"),  # a speed that is reported, and no encoder beside it
-        hide=lambda m, s, r: {"speed_filter_s": m},
-        oracle=lambda m, s, r: {"time_constant_s": m},
-        equal_law=("time_constant_s",),
-    ),
-    Effect(
-        "current_low_pass",
-        (2e-3, 0.05),  # as above
-        shows=("chirp", "prbs", "steps"),
-        needs=("current",),
-        hide=lambda m, s, r: {"current_filter_s": m},
-        oracle=lambda m, s, r: {"time_constant_s": m},
-        equal_law=("time_constant_s",),
-    ),
-]
 
 BY_ID = {e.id: e for e in EFFECTS + FILTERS}
 

@@ -8,7 +8,8 @@ import dataclasses
 import hashlib
 
 import robot_effects
-from axis_effects import BY_ID, EFFECTS, FILTERS
+from axis_effects import BY_ID, EFFECTS
+from axis_filters import FILTERS
 from share import spread_share
 
 SETS = ("dev", "release", "sealed")

@@ -116,7 +116,7 @@ TEST(SelectionTest, OfEqualGainsTheOneWhoseQuantisationTheReadingsShowIsChosen) 
   EXPECT_EQ(far.best(), "sampling_delay");
 }
 
-// Each explains another half of the record: which is the better one depends on the draw.
+// Late readings gain as much; a law of the angle would be lost beside them.
 TEST(SelectionTest, OfEqualGainsOneWithoutLateReadingsIsChosen) {
   SelectionFixture fixture;
   fixture.add_candidate("sampling_delay", SelectionFixture::leaving(0.5, 0.5));
@@ -128,6 +128,7 @@ TEST(SelectionTest, OfEqualGainsOneWithoutLateReadingsIsChosen) {
   EXPECT_EQ(better.best(), "sampling_delay");
 }
 
+// Each explains another half of the record: which is the better one depends on the draw.
 TEST(SelectionTest, ACandidateThatSomeDrawsSelectIsConfoundedWithTheBest) {
   SelectionFixture fixture;
   fixture.add_candidate("constant_load", SelectionFixture::leaving(0.50, 0.62));

@@ -47,5 +47,13 @@ TEST(CommandLowPass, BeginsWithTheFirstCommandAsIfItHadAlwaysBeen) {
   for (const auto& s : out) EXPECT_NEAR(s.motor_current_A, s.time_s > 0.0 ? 1.5 : 0.0, 1e-12);
 }
 
+TEST(CommandLowPass, BeginsWithWhatWasAskedBeforeWhereThatIsKnown) {
+  AxisInput in = held(CommandKind::kMotorCurrent, 1.5, 0.3);
+  in.command_before = 0.0;
+  const auto out = run_axis(small_drive(), with({use_of("command_low_pass", {0.05})}), in);
+  EXPECT_LT(out[1].motor_current_A, 0.02 * 1.5);
+  EXPECT_NEAR(out.back().motor_current_A, 1.5 * (1.0 - std::exp(-0.3 / 0.05)), 1e-3);
+}
+
 }  // namespace
 }  // namespace omnihil::test
