@@ -65,7 +65,7 @@ class AxisRig : public RigRuns<AxisSetup> {
 
   Secant secant(const Candidate& own, const Unknown& unknown, Eigen::Index u, std::size_t n,
                 const Prediction& p) const {
-    constexpr double kStep_s = 4e-3;  // four of the longest sub-steps; a choice
+    constexpr double kStep_s = 4e-3;  // two of the longest sub-steps; a choice
     constexpr double kWidth = 0.1;    // of Unknown::scale (DECISIONS 29): a choice; sensitivity not measured
     if (runs_[n].input.time_s.empty()) return {};
     if (is_hidden_delay(own, unknown)) return {.width = kStep_s};

@@ -1,4 +1,5 @@
 // Low pass of the command: firmware that smooths what it is asked for.
+#include "sim/effects/loop_period.h"
 #include "sim/law/effect_entry.h"
 #include "sim/law/first_order_lag.h"
 
@@ -6,7 +7,7 @@ namespace omnihil {
 namespace {
 
 struct CommandLowPass {
-  enum Param { kTimeConstant };
+  enum Param { kTimeConstant, kLoopPeriod };
   enum State { kSmoothed, kStarted };
   static constexpr EffectParam kParams[] = {
       {.name = "time_constant_s",
@@ -18,6 +19,7 @@ struct CommandLowPass {
        .what = "time constant of the low pass between asking and doing",
        .how = "steps of the command: time to 63 % of the current or voltage, with the rotor held",
        .trait = ParamTrait::kTime},
+      kLoopPeriodRow,
   };
   static constexpr EffectState kStates[] = {
       {.name = "smoothed", .unit = "1"},  // in the command's unit
@@ -26,7 +28,7 @@ struct CommandLowPass {
   static constexpr EffectInfo kInfo{
       .id = "command_low_pass",
       .title = "Low pass of the command",
-      .equation = "tau du'/dt = u - u'",
+      .equation = "tau dx/dt = u - x, u' = u - (u - x) exp(-P / 2 tau), P the loop's period",
       .source =
           "Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed. 1998 (zero order hold)",
       .cannot = "filters of a higher order, moving averages, limits of the rate (command_rate_limit)",
@@ -39,6 +41,7 @@ struct CommandLowPass {
       .visible = "a fifth of a sample with steps of full duty",
       .min_visible = [](const SensorSet& s) { return 0.2 / s.rate_Hz; },
       .claims = kOdd,
+      .numerics = kFine,
       .demands = kNeedsSimulation,
       .excludes = {"controller.latency_s", BaseExclusion::kWherePresent},
       .params = kParams,
@@ -52,8 +55,9 @@ struct CommandLowPass {
       x[kStarted] = T(1);
       x[kSmoothed] = port.asked_before();
     }
-    // tau du'/dt = u - u', its mean over the sub-step
-    port.setpoint = lag_behind_held(x[kSmoothed], port.setpoint, port.dt_s, p[kTimeConstant]);
+    // tau dx/dt = u - x, its mean over the sub-step; a loop holds x(t + P) for P, which is x(t + P / 2) in the mean
+    const T smoothed = lag_behind_held(x[kSmoothed], port.setpoint, port.dt_s, p[kTimeConstant]);
+    port.setpoint -= (port.setpoint - smoothed) * lag_decay(T(0.5 * p[kLoopPeriod]), p[kTimeConstant]);
   }
 };
 

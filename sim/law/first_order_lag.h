@@ -14,11 +14,12 @@
 namespace omnihil {
 
 // exp(-h / tau); below double's precision none, so that it and its derivative are defined at tau = 0.
-template <typename T>
-T lag_decay(double step_s, const T& tau_s) {
+template <typename H, typename T>
+T lag_decay(const H& step_s, const T& tau_s) {
   using std::exp;
   constexpr double kGone = 40.0;  // exp(-40) = 4e-18
-  return value_of(tau_s) * kGone < step_s ? T(0) : T(exp(-step_s / tau_s));
+  if (value_of(tau_s) * kGone < value_of(step_s)) return T(0);
+  return value_of(tau_s) > 0.0 ? T(exp(-step_s / tau_s)) : T(1);
 }
 
 // u held for a step. Returns the mean of y over it; `y` becomes the value at its end.
