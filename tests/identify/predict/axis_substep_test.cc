@@ -86,7 +86,14 @@ TEST(AxisSubstep, IsLongerWhereRowsAreFarApart) {
   const auto fine = [](const Candidate&, int, double) { return 0.0; };
   const AxisSubstep substep(nominal(), {rows_every(1.0), rows_every(1e-3)}, kShortest_s, fine);
   EXPECT_NEAR(substep.of(nominal(), 0), 1e-3 / 0.128, 1e-12);
-  EXPECT_DOUBLE_EQ(substep.of(nominal(), 1), 1e-3);
+  EXPECT_DOUBLE_EQ(substep.of(nominal(), 1), 2e-3);  // a bound: its rows part it
+}
+
+// No longer than the rows are apart, and at most 2 ms.
+TEST(AxisSubstep, IsBoundByTheRows) {
+  const auto fine = [](const Candidate&, int, double) { return 0.0; };
+  for (const auto& [row_s, step_s] : {std::pair{1e-3, 1e-3}, std::pair{2e-3, 2e-3}, std::pair{10e-3, 2e-3}})
+    EXPECT_DOUBLE_EQ(AxisSubstep(nominal(), {rows_every(row_s)}, kShortest_s, fine).of(nominal(), 0), step_s);
 }
 
 TEST(AxisSubstep, WithNoTrialRunIsTheShortest) {
