@@ -84,14 +84,13 @@ ProjectedColumns joined(const Library& library, const std::vector<std::size_t>& 
 
 struct Selection {
   std::vector<std::size_t> chosen;
-  std::vector<double> coefficients;  // multiples of the terms' sizes
-  double gain = 0.0;
+  LinearGain fit;  // coefficients: multiples of the terms' sizes
 };
 
 // Adds the term of largest gain; false: none gains enough.
 bool add_best(const Library& library, const LinearBase& base, const std::vector<Eigen::VectorXd>& noise,
               Selection& selection) {
-  double best = selection.gain, null_gain = 0.0;
+  double best = selection.fit.gain, null_gain = 0.0;
   std::size_t which = library.terms.size();
   LinearGain found;
   for (std::size_t t = 0; t < library.terms.size(); ++t) {
@@ -112,13 +111,12 @@ bool add_best(const Library& library, const LinearBase& base, const std::vector<
     which = t;
     found = std::move(gain);
   }
-  const double added = best - selection.gain;
+  const double added = best - selection.fit.gain;
   if (which == library.terms.size() || added < kLeastGain * base.energy() ||
       added < kLeastSignalToNull * null_gain)
     return false;
   selection.chosen.push_back(which);
-  selection.coefficients = found.coefficients;
-  selection.gain = best;
+  selection.fit = std::move(found);
   return true;
 }
 
@@ -169,14 +167,15 @@ Found formula_of(const SelectionTask& task, const Fitted& last, const LinearBase
   std::vector<double> coefficients;
   for (std::size_t c = 0; c < selection.chosen.size(); ++c) {
     terms.push_back(library.terms[selection.chosen[c]]);
-    coefficients.push_back(terms.back().size * selection.coefficients[c]);
+    coefficients.push_back(terms.back().size * selection.fit.coefficients[c]);
   }
   Screened start;
   start.start = formula_use("residual", library.adds_to, terms, coefficients, last.fit.model.file.linear);
   if (start.start.entry == nullptr) return {};
   start.entry = start.start.entry;
   start.name = effect_name(start.start);
-  start.share = selection.gain / base.energy();
+  start.share = selection.fit.gain / base.energy();
+  start.prior_share = (selection.fit.gain - selection.fit.data_gain) / base.energy();
   RefitSetup setup;
   setup.predictor = task.predictor;
   setup.splits = task.splits;
