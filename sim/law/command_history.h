@@ -20,13 +20,11 @@ inline constexpr int kCommandChanges = 2048;  // a power of two
 
 struct CommandHistory {
   struct Change {
-    double start_s, value;
+    double start_s = 0.0;
+    double value = 0.0;
   };
-  std::array<Change, kCommandChanges> changes;  // those that were pushed
-  std::uint64_t count = 0;                      // ever pushed; the newest is number count - 1
-
-  // Changes are not set to zero: a settled point is simulated in less time than that takes (32 kB).
-  CommandHistory() {}  // NOLINT(modernize-use-equals-default): the default one would be asked to by {}
+  std::array<Change, kCommandChanges> changes{};
+  std::uint64_t count = 0;  // ever pushed; the newest is number count - 1
 
   void push(double start_s, double value) {
     if (count > 0 && newest().value == value) return;
