@@ -55,9 +55,9 @@ struct CommandLowPass {
       x[kStarted] = T(1);
       x[kSmoothed] = port.asked_before();
     }
-    // tau dx/dt = u - x, its mean over the sub-step; a loop holds x(t + P) for P, which is x(t + P / 2) in the mean
+    // tau dx/dt = u - x, its mean over the sub-step
     const T smoothed = lag_behind_held(x[kSmoothed], port.setpoint, port.dt_s, p[kTimeConstant]);
-    port.setpoint -= (port.setpoint - smoothed) * lag_decay(T(0.5 * p[kLoopPeriod]), p[kTimeConstant]);
+    port.setpoint = of_a_loop(smoothed, port.setpoint, p[kLoopPeriod], p[kTimeConstant]);
   }
 };
 

@@ -1,4 +1,5 @@
 // Low pass of the measured current: an RC at the amplifier, or a firmware's smoothing of its ADC.
+#include "sim/effects/loop_period.h"
 #include "sim/law/effect_entry.h"
 #include "sim/law/first_order_lag.h"
 
@@ -6,7 +7,7 @@ namespace omnihil {
 namespace {
 
 struct CurrentLowPass {
-  enum Param { kTimeConstant };
+  enum Param { kTimeConstant, kLoopPeriod };
   enum State { kFiltered, kInput, kStarted };
   static constexpr EffectParam kParams[] = {
       {.name = "time_constant_s",
@@ -18,6 +19,7 @@ struct CurrentLowPass {
        .what = "time constant of the low pass between the winding's current and the measured one",
        .how = "steps of the duty with the rotor held: rise of the current against L / R",
        .trait = ParamTrait::kTime},
+      kLoopPeriodRow,
   };
   static constexpr EffectState kStates[] = {
       {.name = "filtered_A", .unit = "A"},
@@ -27,7 +29,9 @@ struct CurrentLowPass {
   static constexpr EffectInfo kInfo{
       .id = "current_low_pass",
       .title = "Low pass of the measured current",
-      .equation = "tau dy/dt = i - y, i the mean over each sample's period",
+      .equation =
+          "tau dx/dt = i - x, y = i - (i - x) exp(-P / 2 tau), i the mean over each sample's period, P the "
+          "loop's period",
       .source =
           "Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed. 1998 (first order hold)",
       .cannot = "filters of a higher order, what the filter makes of ripple within a PWM period",
@@ -47,9 +51,10 @@ struct CurrentLowPass {
 
   template <typename T>
   static void apply(const T* p, T* x, SensorPort<T>& port) {
-    // tau dy/dt = i - y
+    // tau dx/dt = i - x
     SampledLag<T> lag{x[kFiltered], x[kInput], x[kStarted]};
-    port.measured_current_A = lag.reading(port.measured_current_A, port.dt_s, p[kTimeConstant]);
+    port.measured_current_A =
+        lag.reading(port.measured_current_A, port.dt_s, p[kTimeConstant], p[kLoopPeriod]);
   }
 };
 

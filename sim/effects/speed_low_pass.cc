@@ -1,4 +1,5 @@
 // Low pass of the reported speed: a tachometer's filter, a firmware's smoothing, an observer's bandwidth.
+#include "sim/effects/loop_period.h"
 #include "sim/law/effect_entry.h"
 #include "sim/law/first_order_lag.h"
 
@@ -6,7 +7,7 @@ namespace omnihil {
 namespace {
 
 struct SpeedLowPass {
-  enum Param { kTimeConstant };
+  enum Param { kTimeConstant, kLoopPeriod };
   enum State { kFiltered, kInput, kStarted };
   static constexpr EffectParam kParams[] = {
       {.name = "time_constant_s",
@@ -18,6 +19,7 @@ struct SpeedLowPass {
        .what = "time constant of the low pass between the shaft's speed and the reported one",
        .how = "steps: the reported speed against the slope of a position",
        .trait = ParamTrait::kTime},
+      kLoopPeriodRow,
   };
   static constexpr EffectState kStates[] = {
       {.name = "filtered_rad_s", .unit = "rad/s"},
@@ -27,7 +29,7 @@ struct SpeedLowPass {
   static constexpr EffectInfo kInfo{
       .id = "speed_low_pass",
       .title = "Low pass of the reported speed",
-      .equation = "tau dy/dt = omega - y",
+      .equation = "tau dx/dt = omega - x, y = omega - (omega - x) exp(-P / 2 tau), P the loop's period",
       .source =
           "Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed. 1998 (first order hold)",
       .cannot = "filters of a higher order, observers that know the torque; the angle is left as it is",
@@ -47,9 +49,10 @@ struct SpeedLowPass {
 
   template <typename T>
   static void apply(const T* p, T* x, SensorPort<T>& port) {
-    // tau dy/dt = omega - y
+    // tau dx/dt = omega - x
     SampledLag<T> lag{x[kFiltered], x[kInput], x[kStarted]};
-    port.measured_speed_rad_s = lag.reading(port.measured_speed_rad_s, port.dt_s, p[kTimeConstant]);
+    port.measured_speed_rad_s =
+        lag.reading(port.measured_speed_rad_s, port.dt_s, p[kTimeConstant], p[kLoopPeriod]);
   }
 };
 

@@ -3,6 +3,7 @@
 //   double y = 0.0;
 //   const double mean = lag_behind_held(y, 1.0, 0.01, 0.02);        // u = 1 for 10 ms: y = 1 - exp(-0.5)
 //   y = lag_behind_line(y, 1.0, 1.5, 0.01, 0.02);                   // u from 1 to 1.5 in the next 10 ms
+//   const double stepped = of_a_loop(y, 1.5, 0.005, 0.02);          // a firmware's, that turns every 5 ms
 //
 // At tau = 0 both are u, and the derivatives there are those of a delay by tau. Source: solution of the linear equation by
 // variation of constants; Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed. 1998 (zero and first order hold).
@@ -40,16 +41,23 @@ T lag_behind_line(const T& y0, const T& u0, const T& u1, double step_s, const T&
   return u1 - (u1 - u0) * (tau_s / step_s) * (1.0 - decay) + (y0 - u0) * decay;
 }
 
+// What a firmware's loop of period P gives for `y`, the solution for the same u: it takes the newest u at once and holds
+// y(t + P) for P, which is y(t + P / 2) in the mean, to (P / tau)^2 / 24 of u - y. P = 0: y.
+template <typename T>
+T of_a_loop(const T& y, const T& u, const T& period_s, const T& tau_s) {
+  return u - (u - y) * lag_decay(T(0.5 * period_s), tau_s);
+}
+
 // Of a sensor that is read from time to time; between two readings u is on a line.
 template <typename T>
 struct SampledLag {
   T &y, &last_input, &started;  // states; started: 0 until the first reading, which is taken for settled
 
-  T reading(const T& u, double since_s, const T& tau_s) {
+  T reading(const T& u, double since_s, const T& tau_s, const T& loop_period_s) {
     y = value_of(started) == 0.0 || since_s <= 0.0 ? u : lag_behind_line(y, last_input, u, since_s, tau_s);
     last_input = u;
     started = T(1);
-    return y;
+    return of_a_loop(y, u, loop_period_s, tau_s);
   }
 };
 

@@ -20,6 +20,22 @@ TEST(CurrentLowPass, SettlesExponentiallyOnACurrentThatIsImposed) {
   }
 }
 
+// Firmware that smooths once a row, with a time constant of two rows: y += (1 - exp(-P / tau)) (i - y). Of the law (P / tau)^2 / 24
+// of the way is lacking, 2 %.
+TEST(CurrentLowPass, OfALoopIsItsRecursion) {
+  AxisInput in = held(CommandKind::kMotorCurrent, 0.0, 0.3);
+  for (std::size_t n = 100; n < in.command.size(); ++n) in.command[n] = 2.0;
+  const double tau = 2e-3, period = 1e-3;
+  const auto out = run_axis(small_drive(), with({use_of("current_low_pass", {tau, period})}), in);
+  const auto continuous = run_axis(small_drive(), with({use_of("current_low_pass", {tau})}), in);
+  double y = 0.0;
+  for (std::size_t n = 101; n < out.size(); ++n) {
+    y += (1.0 - std::exp(-period / tau)) * (2.0 - y);
+    EXPECT_NEAR(out[n].motor_current_A, y, 2.0 * period * period / (24.0 * tau * tau)) << n;
+  }
+  EXPECT_GT(std::abs(continuous[101].motor_current_A - 2.0 * (1.0 - std::exp(-period / tau))), 0.3);
+}
+
 TEST(CurrentLowPass, LeavesTheMotionAlone) {
   const AxisInput in = excite(Excitation::kSteps, 0.6, 1.0);
   const auto filtered = run_axis(small_drive(), with({use_of("current_low_pass", {0.01})}), in);
