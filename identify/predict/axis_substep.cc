@@ -7,7 +7,8 @@ namespace omnihil {
 namespace {
 
 constexpr double kLongestStep_s = 2e-3;  // a choice (DECISIONS 213); taken where it is fine enough
-constexpr int kTrialRuns = 4;            // bounds the cost; a choice
+constexpr double kPlain_s = 1e-3;  // to which a law that is not marked (NumericsBit) is taken for fine enough
+constexpr int kTrialRuns = 4;      // bounds the cost; a choice
 
 // Of a run whose rows are far apart (one per step of a staircase): the motion between them is not seen, and
 // longest_step() holds these steps to its bound too.
@@ -99,7 +100,8 @@ double AxisSubstep::step_of(const EffectEntry& entry, int n) const {
 double AxisSubstep::of(const Candidate& c, int n) const {
   double h = base_s_ * coarser_[static_cast<std::size_t>(n)];
   for (const EffectUse& use : c.effects) {
-    if ((use.entry->info->numerics & (kStiff | kFine)) == 0 || is_neutral(use)) continue;
+    const bool is_plain = (use.entry->info->numerics & (kStiff | kFine)) == 0;
+    if (is_neutral(use) || (is_plain && base_s_ <= kPlain_s)) continue;
     h = std::min(h, step_of(*use.entry, n));
   }
   return h;

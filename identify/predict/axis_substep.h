@@ -6,8 +6,8 @@
 // Law: of the longest step, its half, its quarter …, the first whose error against a quarter of it stays below 7 %
 // of the noise sigma in the trial runs (0.5 % of the error energy, a sixth of what an effect has to take to be
 // named: DECISIONS 42). The base model is tried at its nominal values; a law that is faster than a millisecond
-// (kStiff) or changes within a sample (kFine) at its typical size, and with all strengths, then each shape, at a
-// quarter and at four times that, when a model first has it.
+// (kStiff) or changes within a sample (kFine), and in steps of more than a millisecond every law, at its typical size, and with
+// all strengths, then each shape, at a quarter and at four times that, when a model first has it.
 // Cannot: see an error that only sizes far from these have, or that only comes after the trial's seconds; vary
 // the step within a run. A law with impacts has no order of convergence: it takes the shortest step.
 #pragma once

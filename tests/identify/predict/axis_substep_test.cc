@@ -70,6 +70,18 @@ TEST(AxisSubstep, OfAStiffLawFollowsFromThatLawsError) {
   EXPECT_DOUBLE_EQ(substep.of(with_typical("saturation"), 0), 1e-3);
 }
 
+// In steps of more than a millisecond also a law that no numerics mark.
+TEST(AxisSubstep, OfAnyLawFollowsFromItsErrorInLongSteps) {
+  const auto error = [](const Candidate& c, int, double h) {
+    return c.effects.empty() ? 0.0 : 0.0699 * std::pow(h / 0.5e-3, 2);
+  };
+  const AxisSubstep longer(nominal(), {rows_every(2e-3)}, kShortest_s, error);
+  EXPECT_DOUBLE_EQ(longer.of(nominal(), 0), 2e-3);
+  EXPECT_DOUBLE_EQ(longer.of(with_typical("saturation"), 0), 0.5e-3);
+  EXPECT_DOUBLE_EQ(
+      AxisSubstep(nominal(), {rows_every(1e-3)}, kShortest_s, error).of(with_typical("saturation"), 0), 1e-3);
+}
+
 // One size of a law that needs short steps is enough.
 TEST(AxisSubstep, HoldsForEverySizeThatIsTried) {
   const EffectUse typical = typical_use(*find_effect("lugre_friction"));
