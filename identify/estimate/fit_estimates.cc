@@ -72,19 +72,21 @@ bool at(double x, double bound, double scale) {
 
 // Sentence for an estimate at its bound; a physical bound (no friction below zero) that the gradient presses
 // on is told from a bound of the search.
-std::string bound_sentence(const Unknown& u, double x, double gradient) {
+std::string bound_sentence(const Unknown& u, double x, double data_gradient) {
   const bool lower = at(x, u.lower, u.scale);
-  if (lower && gradient > 0.0 && u.lower == 0.0) {
+  if (lower && data_gradient > 0.0 && u.lower == 0.0) {
     return fmt::format(
         "at its bound 0: these data would take a negative value, which no drive has; something else is "
         "missing or the record is a closed loop");
   }
+  if (lower && data_gradient == 0.0)
+    return "not determined by these data: they are the same down to its bound";
   return fmt::format("at its bound {:g} {}: read this as a symptom, not as a measurement",
                      lower ? u.lower : u.upper, u.unit);
 }
 
-std::string sentence_of(const Unknown& u, const ParameterEstimate& p, double gradient) {
-  if (p.at_bound) return bound_sentence(u, p.value, gradient);
+std::string sentence_of(const Unknown& u, const ParameterEstimate& p, double data_gradient) {
+  if (p.at_bound) return bound_sentence(u, p.value, data_gradient);
   if (!p.identifiable && !p.correlated_with.empty()) {
     return fmt::format("not determined by these data: trades against {}", fmt::join(p.correlated_with, ", "));
   }
@@ -167,14 +169,16 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
     p.prior_deviation_sigmas = prior_z(u, x[i]);
     p.at_bound =
         u.trait != ParamTrait::kPeriodic && (at(x[i], u.lower, u.scale) || at(x[i], u.upper, u.scale));
-    // a strength that stays at neutral is at a bound too, but not pressed against it
-    const bool pressed = point.gradient[i] * (at(x[i], u.lower, u.scale) ? 1.0 : -1.0) > 0.0;
+    // A strength that stays at neutral is at a bound too, but not pressed against it; nor is one that the prior alone takes
+    // there, through a valley in which the data do not change (a dead band narrower than the least duty but zero).
+    const double data_gradient = point.gradient[i] - prior_z(u, x[i]) * prior_dz(u, x[i]);
+    const bool pressed = data_gradient * (at(x[i], u.lower, u.scale) ? 1.0 : -1.0) > 0.0;
     p.unphysical = p.at_bound && u.lower == 0.0 && at(x[i], 0.0, u.scale) && pressed;
     const double prior_width =
         u.prior_sigma > 0.0 ? 1.0 / prior_dz(u, x[i]) : std::max(std::abs(x[i]), u.scale);
     p.identifiable = p.data_sigma < prior_width;
     if (!p.identifiable) p.correlated_with = partners(point.information, scale, i, unknowns);
-    p.sentence = sentence_of(u, p, point.gradient[i]);
+    p.sentence = sentence_of(u, p, data_gradient);
     if (!p.sentence.empty()) result.findings.push_back(p.path + ": " + p.sentence);
     result.parameters.push_back(std::move(p));
   }

@@ -237,6 +237,17 @@ Eigen::VectorXd WhitenedResiduals::mean_square(const Eigen::VectorXd& residual) 
   return out;
 }
 
+Eigen::VectorXd WhitenedResiduals::measured_variance() const {
+  Eigen::VectorXd centred = measured_;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(channels_);
+  for (const Part& part : parts_)
+    sum[part.channel] += measured_.segment(part.first, static_cast<Eigen::Index>(part.rows.size())).sum();
+  for (const Part& part : parts_)
+    centred.segment(part.first, static_cast<Eigen::Index>(part.rows.size())).array() -=
+        sum[part.channel] / samples_[part.channel];
+  return mean_square(centred);
+}
+
 Eigen::MatrixXd WhitenedResiduals::block_sums(const Eigen::VectorXd& residual) const {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(blocks_, channels_);
   for (const Part& part : parts_) {

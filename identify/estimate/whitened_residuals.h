@@ -79,6 +79,7 @@ class WhitenedResiduals {
 
   // Size m: mean square per channel, in its unit squared; 0 where there are no samples.
   Eigen::VectorXd mean_square(const Eigen::VectorXd& residual) const;
+  Eigen::VectorXd measured_variance() const;                   // the same of the measurement about its mean
   const Eigen::VectorXd& samples() const { return samples_; }  // size m: count per channel
   // B x m: sums of squares, and counts of samples.
   Eigen::MatrixXd block_sums(const Eigen::VectorXd& residual) const;

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "identify/select/plausibility.h"
 #include "identify/select/verdict.h"
+#include "sim/law/effect_registry.h"
 
 namespace omnihil {
 namespace {
@@ -31,6 +32,9 @@ constexpr double kLeastUnweighted = 0.015;  // tuned
 // … or of all whitened energy: a coarse encoder's quantisation hides in the former what its counts show in
 // the latter.
 constexpr double kLeastWhitened = 0.1;  // tuned
+// Then it has to move a signal by this share of its standard deviation: scales of sensors, duties and clocks are no better
+// known (a choice: 0.1 %, the step of a ten-bit duty or the error of a good shunt; a quartz's is a tenth of it).
+constexpr double kLeastChange = 1e-3;
 // Largest rise of the energy of the extrapolation runs: as large as the smallest gain of interest.
 constexpr double kMostRise = 0.03;  // tuned
 // … unless the remaining held-out energy times the rise is below this: of two effects that compensated each
@@ -42,7 +46,8 @@ constexpr double kMostRiseTimesRemaining = 0.5;  // tuned
 // tenth of its signal's amplitude, so a hundredth of the energy that it explains is left for others to imitate.
 // Tuned: on the open cases false seconds removed up to 0.6 % of the base model's energy, true ones 1.4 % and more …
 constexpr double kFormDiscrepancy = 0.01;  // tuned
-// … or nearly all that was left, which no effect of another kind does.
+// … or nearly all that was left, which no effect of another kind does; one of the same kind may: a second friction law makes
+// up for the form of the first.
 constexpr double kNearlyAll = 0.7;  // tuned
 // Excess over the null's energy from which a channel's share is formed. Tuned; sensitivity not measured.
 constexpr double kLeastExcess = 0.05;  // tuned
@@ -86,6 +91,40 @@ double unweighted_gain(const Eigen::VectorXd& parent, const Eigen::VectorXd& chi
     if (parent[k] > 0.0) most = std::max(most, 1.0 - child[k] / parent[k]);
   }
   return most;
+}
+
+// The root mean square by which the child moves a signal towards the measurement, over the signal's standard deviation; the largest
+// of all channels. Infinite where the context has no variances.
+double change_over_deviation(const AcceptanceContext& context, std::size_t split, const Fitted& parent,
+                             const Fitted& child) {
+  const Eigen::VectorXd &variance = context.signal_variance[split], &before = parent.unweighted[split],
+                        &after = child.unweighted[split];
+  if (variance.size() == 0) return std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (Eigen::Index k = 0; k < std::min({variance.size(), before.size(), after.size()}); ++k) {
+    if (variance[k] > 0.0) most = std::max(most, std::max(0.0, before[k] - after[k]) / variance[k]);
+  }
+  return std::sqrt(most);
+}
+
+// Where two effects change the same quantity: supply and bridge both make the mean voltage at the winding.
+bool is_same_quantity(Place a, Place b) {
+  const auto is_voltage = [](Place p) { return p == Place::kSupply || p == Place::kBridge; };
+  return a == b || (is_voltage(a) && is_voltage(b));
+}
+
+// Has an effect been found that changes the same quantity as this one? What the model file declares was not found.
+bool has_found_kin(const AcceptanceContext& context, const Fitted& parent, std::string_view name) {
+  const EffectEntry* entry = find_effect(name);
+  if (entry == nullptr || context.base_model == nullptr) return false;
+  const auto& declared = context.base_model->effects;
+  return std::any_of(
+      parent.fit.model.effects.begin(), parent.fit.model.effects.end(), [&](const EffectUse& use) {
+        const auto is_same_entry = [&](const EffectUse& other) { return other.entry == use.entry; };
+        return use.entry != entry && !is_neutral(use) &&
+               is_same_quantity(use.entry->info->place, entry->info->place) &&
+               std::none_of(declared.begin(), declared.end(), is_same_entry);
+      });
 }
 
 // Relative increase of the residual energy above the null's level (mean plus standard deviation of its
@@ -173,14 +212,38 @@ const SplitGain& gain_on(const AcceptanceResult& gains, Split split) {
   return split == Split::kValidation ? gains.holdout : gains.extrapolation;
 }
 
+// What the gates below compare on the split that decides.
+struct DecidingGain {
+  Split split = Split::kTraining;
+  bool explains = false;       // nearly all structure: no least gain
+  double share_of_base = 1.0;  // AcceptanceResult
+  bool has_kin = false;        // an effect that changes the same quantity has been found
+  double rise = 0.0;           // of the extrapolation runs' energy
+  // Of the signals, over their standard deviations; negligible: less than their scales are known, and no plain error falls.
+  double change = std::numeric_limits<double>::infinity();
+  bool negligible = false;
+};
+
+DecidingGain deciding_gain(const AcceptanceContext& context, Split split, const Fitted& parent,
+                           const Fitted& child, const std::string& name) {
+  const std::size_t d = static_cast<std::size_t>(split);
+  DecidingGain out{.split = split,
+                   .share_of_base = share_of_base(context, d, parent, child),
+                   .has_kin = has_found_kin(context, parent, name),
+                   .change = change_over_deviation(context, d, parent, child)};
+  out.negligible = unweighted_gain(parent.unweighted[d], child.unweighted[d]) < kLeastUnweighted &&
+                   out.change < kLeastChange;
+  return out;
+}
+
 // Those that do, in order. Empty: passed.
 std::string reason_against_gain(const Fitted& parent, const Fitted& child, const AcceptanceResult& gains,
-                                Split decides, bool explains, double rise) {
-  const bool held_out = decides == Split::kValidation;
-  const std::size_t d = static_cast<std::size_t>(decides);
-  const SplitGain& held = gain_on(gains, decides);
-  const double gain = 1.0 - held.ratio, share_of_base = gains.share_of_base;
-  const double needed = explains ? 0.0 : kLeastGain + kLeastGainInNoise * held.floor;
+                                const DecidingGain& by) {
+  const bool held_out = by.split == Split::kValidation;
+  const std::size_t d = static_cast<std::size_t>(by.split);
+  const SplitGain& held = gain_on(gains, by.split);
+  const double gain = 1.0 - held.ratio;
+  const double needed = by.explains ? 0.0 : kLeastGain + kLeastGainInNoise * held.floor;
   if (gain < needed && held.ratio > 1.0) {
     return fmt::format("it lowers the error that it was fitted to, and raises the {} error energy by {}",
                        held_out ? "held-out" : "fit", percent(-gain));
@@ -189,19 +252,24 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
     return fmt::format("it removes {} of the held-out error energy; {} is required", percent(gain),
                        percent(needed));
   }
-  if (share_of_base < kFormDiscrepancy && gain < kNearlyAll) {
+  if (by.share_of_base < kFormDiscrepancy && (gain < kNearlyAll || by.has_kin)) {
     return fmt::format(
         "it removes {:.2g} % of what the base model left: the form of an effect already found may "
         "leave as much ({:.0f} %)",
-        100.0 * std::max(share_of_base, 0.0), 100.0 * kFormDiscrepancy);
+        100.0 * std::max(by.share_of_base, 0.0), 100.0 * kFormDiscrepancy);
   }
   const double unweighted = unweighted_gain(parent.unweighted[d], child.unweighted[d]);
   if (unweighted < kLeastUnweighted && gain < kLeastWhitened) {
     return fmt::format("no signal's unweighted error energy falls by more than {}", percent(unweighted));
   }
+  if (by.negligible) {
+    return fmt::format(
+        "it moves no signal by more than {:.2g} % of its standard deviation; {:.2g} % is required",
+        100.0 * by.change, 100.0 * kLeastChange);
+  }
   if (held.worst > 1.0) return "its gain comes from a few moments of the held-out runs alone";
-  if (rise > kMostRise && held.ratio * (1.0 + rise) > kMostRiseTimesRemaining) {
-    return fmt::format("it raises the error energy of the extrapolation runs by {:.0f} %", 100.0 * rise);
+  if (by.rise > kMostRise && held.ratio * (1.0 + by.rise) > kMostRiseTimesRemaining) {
+    return fmt::format("it raises the error energy of the extrapolation runs by {:.0f} %", 100.0 * by.rise);
   }
   return "";
 }
@@ -211,14 +279,14 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
 // decisive gain, of the unweighted energy too (whitening weighs the slowest part of a residual most: DECISIONS 51), and
 // no loss on the held-out runs.
 bool extrapolation_decides(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
-                           const AcceptanceResult& gains) {
+                           const AcceptanceResult& gains, const std::string& name) {
   constexpr Split kDecides = Split::kExtrapolation;
   const bool has_both = !(*context.splits)[kValidation].empty() && !(*context.splits)[kExtrapolation].empty();
   if (!has_both || gains.holdout.ratio > 1.0 || 1.0 - gains.extrapolation.ratio < kDecisiveGain) return false;
   if (unweighted_gain(parent.unweighted[kExtrapolation], child.unweighted[kExtrapolation]) < kLeastUnweighted)
     return false;
-  const double share = share_of_base(context, kExtrapolation, parent, child);
-  return reason_against_gain(parent, child, gains, kDecides, share, 0.0).empty();
+  return reason_against_gain(parent, child, gains, deciding_gain(context, kDecides, parent, child, name))
+      .empty();
 }
 
 Evidence evidence_of(const AcceptanceContext& context, const Fitted& parent, const Fitted& child) {
@@ -270,16 +338,18 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
   const double rise =
       extrapolation_rise(context, parent, child, out.extrapolation, static_cast<std::size_t>(decides));
   std::string implausible = implausibility(parent.fit, child.fit, name, out.decisive);
-  if (implausible.empty())
-    implausible = below_time_resolution(child.fit, name, context.rate_Hz, context.loop_period_s);
+  if (implausible.empty()) implausible = below_resolution(child.fit, name, context.resolution);
   out.plausible = implausible.empty();
-  out.share_of_base = share_of_base(context, static_cast<std::size_t>(decides), parent, child);
-  const bool explains = explains_structure(context, static_cast<std::size_t>(decides), parent, child);
-  out.why = reason_against_fit(out, signal_to_null, explains);
+  DecidingGain gain = deciding_gain(context, decides, parent, child, name);
+  gain.explains = explains_structure(context, static_cast<std::size_t>(decides), parent, child);
+  gain.rise = rise;
+  out.share_of_base = gain.share_of_base;
+  out.negligible = gain.negligible;
+  out.why = reason_against_fit(out, signal_to_null, gain.explains);
   const SplitGain* by = &held;
   if (out.why.empty()) {
-    out.why = reason_against_gain(parent, child, out, decides, explains, rise);
-    if (!out.why.empty() && extrapolation_decides(context, parent, child, out)) {
+    out.why = reason_against_gain(parent, child, out, gain);
+    if (!out.why.empty() && extrapolation_decides(context, parent, child, out, name)) {
       out.why.clear();
       by = &out.extrapolation;
     }

@@ -20,6 +20,7 @@
 #include "identify/estimate/fit.h"
 #include "identify/estimate/gain.h"
 #include "identify/estimate/null_model.h"
+#include "identify/select/plausibility.h"
 #include "identify/select/ranked_effect.h"
 
 namespace omnihil {
@@ -43,6 +44,7 @@ struct AcceptanceResult {
   SplitGain fit, holdout, extrapolation;
   bool plausible = true;       // its numbers and those of the base (plausibility.h)
   double share_of_base = 1.0;  // of the base model's energy above the noise: what the addition removes
+  bool negligible = false;     // it moves every signal by less than their scales are known
   Evidence evidence;           // what standard rules of selection say of it
 
   bool accepted() const { return accepted_by != AcceptedBy::kNone; }
@@ -53,12 +55,14 @@ struct AcceptanceContext {
   const NullModel* null = nullptr;
   const ComparedChannels* channels = nullptr;
   std::array<const BlockBootstrap*, kSplits> bootstrap{};
-  double rate_Hz = 0.0;        // of the samples; 0: unknown
-  double loop_period_s = 0.0;  // Capabilities::loop_period_s
+  Resolution resolution{};
   // Beside the parent (verdict.h): the least sizes of gains are waived for what explains nearly all of it.
   bool structure_remains = false;
   // Whitened residuals of the base model, before any effect was found; null: the parent is that.
   const Residuals* base = nullptr;
+  const Candidate* base_model = nullptr;  // that model: its effects are declared, not found; null: none is
+  // Of the measured signals, per channel in its unit squared; empty: not known.
+  std::array<Eigen::VectorXd, kSplits> signal_variance{};
 };
 
 // As `signal_to_null`: that gain was tested before, or there is no screening to test it by. A marker, above any threshold.

@@ -187,28 +187,32 @@ std::string restores_prior(const FitResult& parent, const FitResult& child,
              : "";
 }
 
-std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz,
-                                  double loop_period_s) {
+std::string below_resolution(const FitResult& child, const std::string& name, const Resolution& of) {
   // Of the visible size: below, a model's own sub-steps amount to as much. Tuned: every false alarm left was
-  // 4 us of delay at 1 kHz (DECISIONS 55); sensitivity not measured.
+  // 4 us of delay at 1 kHz (DECISIONS 55); sensitivity not measured. Of an angle, a twentieth of two counts.
   constexpr double kOfVisible = 0.05;  // tuned
   const EffectEntry* entry = find_effect(name);
-  if (entry == nullptr || entry->info->min_visible == nullptr || rate_Hz <= 0.0) return "";
+  if (entry == nullptr || entry->info->min_visible == nullptr || of.rate_Hz <= 0.0) return "";
   const EffectParam& row = entry->info->params[first_strength(*entry->info)];
-  if (row.trait != ParamTrait::kTime) return "";
-  const double visible = entry->info->min_visible({.rate_Hz = rate_Hz});
+  const bool is_time = row.trait == ParamTrait::kTime,
+             is_angle = row.unit == "rad" && of.counts_per_rotor_turn > 0.0;
+  if (!is_time && !is_angle) return "";
+  SensorSet sensors{.rate_Hz = of.rate_Hz};
+  if (is_angle) sensors.counts_per_turn = of.counts_per_rotor_turn;
+  const double visible = entry->info->min_visible(sensors);
   for (const ParameterEstimate& p : child.parameters) {
     if (p.path != name + "." + std::string(row.name)) continue;
-    if (std::abs(p.value - row.neutral) < loop_period_s) {
+    if (is_time && std::abs(p.value - row.neutral) < of.loop_period_s) {
       return fmt::format(
           "{} = {:.2g} {} is less than a period of the speed loop ({:.2g} s), whose description knows no "
           "instant within it",
-          p.path, p.value, p.unit, loop_period_s);
+          p.path, p.value, p.unit, of.loop_period_s);
     }
     if (std::abs(p.value - row.neutral) >= kOfVisible * visible) continue;
     return fmt::format(
-        "{} = {:.2g} {} is below the time resolution: at {:g} Hz such an effect is visible from {:.2g} {}",
-        p.path, p.value, p.unit, rate_Hz, visible, p.unit);
+        "{} = {:.2g} {} is below the {} resolution: at {:g} {} such an effect is visible from {:.2g} {}",
+        p.path, p.value, p.unit, is_time ? "time" : "angle", is_time ? of.rate_Hz : of.counts_per_rotor_turn,
+        is_time ? "Hz" : "counts a turn", visible, p.unit);
   }
   return "";
 }

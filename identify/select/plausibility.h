@@ -51,11 +51,17 @@ bool is_prior_rejected(const FitResult& fit, std::string_view path);
 std::string restores_prior(const FitResult& parent, const FitResult& child,
                            std::string_view aliased_parameter = {});
 
-// Is an effect's time (a delay, an inductance over a resistance) so far below what its page calls visible at
-// this sampling rate that the model's sub-steps and the time stamps' resolution amount to as much? Or below a period of
-// the described speed loop (Capabilities::loop_period_s; 0: none)? Empty: no.
-std::string below_time_resolution(const FitResult& child, const std::string& name, double rate_Hz,
-                                  double loop_period_s = 0.0);
+// What these data can tell apart in time and angle.
+struct Resolution {
+  double rate_Hz = 0.0;                // of the samples; 0: unknown
+  double loop_period_s = 0.0;          // Capabilities::loop_period_s; 0: none
+  double counts_per_rotor_turn = 0.0;  // of the encoder, seen on the rotor; 0: none
+};
+
+// Is an effect's time (a delay, an inductance over a resistance) or angle (a play) so far below what its page calls visible at
+// this sampling rate and encoder that the model's sub-steps and the time stamps' resolution amount to as much? Or a time
+// below a period of the described speed loop? Empty: no.
+std::string below_resolution(const FitResult& child, const std::string& name, const Resolution& of);
 
 // A parameter of the effect that ends at a bound as no result does (a strength away from neutral, a shape that is
 // neither periodic nor a choice of form). Empty: none.

@@ -67,7 +67,7 @@ void set_selection_frequencies(const SelectionTask& task, const Fitted& parent, 
   std::vector<Eigen::VectorXd> ratios;  // one per candidate: energy ratio in each draw; empty: not finite
   for (const CandidateEffect& c : iteration.candidates) {
     ratios.emplace_back();
-    if (!c.fitted.finite) continue;
+    if (!c.fitted.finite || (c.acceptance.negligible && !c.acceptance.accepted())) continue;
     const Eigen::VectorXd &before = parent.residual[split], &after = c.fitted.residual[split];
     ratios.back() =
         bootstrap->ratios(before, after, weights_for((*task.splits)[split], *task.null, before, after));

@@ -23,6 +23,15 @@ double rate_Hz(const Predictor& predictor) {
   return 0.0;
 }
 
+// Of an axis, or of a robot's first wheel; 0: no encoder.
+double counts_per_rotor_turn(const Dataset& dataset, double gear_ratio) {
+  for (const std::string_view name : {"encoder", "encoder_1"}) {
+    const Channel* encoder = dataset.channel(name);
+    if (encoder != nullptr) return encoder->counts_per_rev / (encoder->on_output ? gear_ratio : 1.0);
+  }
+  return 0.0;
+}
+
 }  // namespace
 
 SelectionContext::SelectionContext(const Dataset& dataset, const Candidate& nominal,
@@ -91,9 +100,13 @@ SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) c
       .null = &null_,
       .channels = &channels_,
       .bootstrap = {&bootstrap_[kTraining], &bootstrap_[kValidation], &bootstrap_[kExtrapolation]},
-      .rate_Hz = rate_Hz(*predictor_),
-      .loop_period_s = predictor_->capabilities().loop_period_s,
-      .base = &base_.residual};
+      .resolution = {.rate_Hz = rate_Hz(*predictor_),
+                     .loop_period_s = predictor_->capabilities().loop_period_s,
+                     .counts_per_rotor_turn = counts_per_rotor_turn(dataset_, drive_of(nominal_).gear_ratio)},
+      .base = &base_.residual,
+      .base_model = &base_.fit.model};
+  for (std::size_t u = 0; u < kSplits; ++u)
+    task.acceptance_context.signal_variance[u] = unweighted_[u].measured_variance();
   task.seed = options_.seed;
   task.jobs = options_.jobs;
   for (const EffectEntry* e : all_effects()) {

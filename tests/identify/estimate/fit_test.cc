@@ -207,6 +207,21 @@ TEST(Fit, AFrictionThatWouldBeNegativeIsASymptom) {
   EXPECT_LT(c->value, 2e-4);
 }
 
+// Duties of 0 and from 0.13 on: any band between does the same, so the prior takes it down to zero, past which there is another
+// error (a drive that brakes at zero).
+TEST(Fit, AStrengthThatThePriorAloneTakesToItsBoundIsNotUnphysical) {
+  const Candidate truth = changed(with_effect(model(), *find_effect("pwm_dead_band")),
+                                  {{"pwm_dead_band.duty", 0.05}}),
+                  start = changed(truth, {{"pwm_dead_band.duty", 1e-8}});
+  const FitResult r = fitted(bench(truth, {.size = 0.4}), start);
+  const ParameterEstimate* p = find(r, "pwm_dead_band.duty");
+  ASSERT_NE(p, nullptr);
+  EXPECT_GT(p->value, 0.0);
+  ASSERT_TRUE(p->at_bound) << "not the case that this test is about";
+  EXPECT_FALSE(p->unphysical);
+  EXPECT_NE(p->sentence.find("the same down to its bound"), std::string::npos) << p->value << p->sentence;
+}
+
 TEST(Fit, StopsWhenAsked) {
   int asked = 0;
   FitOptions options;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "identify/estimate/linear_base.h"
+#include "sim/law/effect_registry.h"
 #include "sim/law/random.h"
 #include "tests/identify/fake_residuals.h"
 
@@ -89,6 +90,54 @@ TEST(AcceptanceTest, TakesASecondEffectThatIsMoreThanTheFormOfTheFirst) {
   EXPECT_TRUE(
       test_acceptance(fixture.context, fixture.leaving(1, 1, 1), fixture.leaving(0.2, 0.2, 0.2), "x", 100)
           .accepted());
+}
+
+Candidate with_effect(std::string_view id, double strength) {
+  Candidate model;
+  model.effects.push_back(neutral_use(*find_effect(id)));
+  model.effects.back().values[0] = strength;
+  return model;
+}
+
+// Of 1, a hundredth of what the base model left: a drag with another power of the speed than the square leaves as much, and a second
+// drag takes nearly all of it. An effect elsewhere, or beside one that the user declared, is no correction of that form.
+TEST(AcceptanceTest, RefusesASecondLawOfTheSameQuantityThatTakesWhatTheFormOfTheFirstLeft) {
+  AcceptanceFixture fixture;
+  for (auto& level : fixture.null.mean_square) level = Eigen::MatrixXd::Constant(2, 1, 0.01);
+  const Fitted base = fixture.leaving(10, 10, 10);
+  const Candidate without, declared = with_effect("quadratic_drag", 1e-8);
+  fixture.context.base = &base.residual;
+  fixture.context.base_model = &without;
+  Fitted found = fixture.leaving(0.9, 0.9, 0.9);
+  found.fit.model = declared;
+  const auto second = [&](const std::string& name) {
+    return test_acceptance(fixture.context, found, fixture.leaving(0.2, 0.2, 0.2), name, 100);
+  };
+  const AcceptanceResult kin = second("grease_drag");
+  EXPECT_FALSE(kin.accepted());
+  EXPECT_NE(kin.why.find("the form of an effect already found"), std::string::npos) << kin.why;
+  EXPECT_TRUE(second("encoder_eccentricity").accepted());
+  fixture.context.base_model = &declared;
+  EXPECT_TRUE(second("grease_drag").accepted());
+}
+
+// Half of the whitened energy, which is that of a position, and next to nothing of a speed.
+TEST(AcceptanceTest, RefusesWhatMovesASignalByLessThanItsScaleIsKnown) {
+  AcceptanceFixture fixture;
+  const auto with = [&](double fall) {  // of the unweighted energy
+    Fitted child = fixture.leaving(0.7, 0.7, 0.7);
+    for (std::size_t u = 0; u < kSplits; ++u)
+      child.unweighted[u] = fixture.leaving(1, 1, 1).unweighted[u] * (1.0 - fall);
+    return test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "x", 100);
+  };
+  EXPECT_TRUE(with(0.01).accepted()) << "a deviation that is not known";
+  fixture.context.signal_variance.fill(Eigen::VectorXd::Constant(1, 1e5));  // 0.03 % of the deviation
+  const AcceptanceResult little = with(0.01);
+  EXPECT_FALSE(little.accepted());
+  EXPECT_NE(little.why.find("of its standard deviation"), std::string::npos) << little.why;
+  EXPECT_TRUE(with(0.02).accepted()) << "the plain error falls";
+  fixture.context.signal_variance.fill(Eigen::VectorXd::Constant(1, 1e3));  // 0.3 %
+  EXPECT_TRUE(with(0.01).accepted());
 }
 
 TEST(AcceptanceTest, RefusesALossOnAnotherKindOfMotion) {
@@ -234,7 +283,7 @@ TEST(AcceptanceTest, AcceptsAnAliasedEffectWhereThePriorRejectsTheBaseParameter)
 // Four microseconds at 1 kHz: the model's own sub-steps make as much.
 TEST(AcceptanceTest, RefusesATimeBelowTheResolution) {
   AcceptanceFixture fixture;
-  fixture.context.rate_Hz = 1000.0;
+  fixture.context.resolution.rate_Hz = 1000.0;
   Fitted child = fixture.leaving(0.7, 0.7, 0.7);
   ParameterEstimate delay;
   delay.path = "actuator_delay.delay_s";
@@ -250,11 +299,33 @@ TEST(AcceptanceTest, RefusesATimeBelowTheResolution) {
   EXPECT_TRUE(
       test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "actuator_delay", 100).accepted());
   // nor within a period of a loop that is described in place of its firmware
-  fixture.context.loop_period_s = 1e-3;
+  fixture.context.resolution.loop_period_s = 1e-3;
   const AcceptanceResult within =
       test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "actuator_delay", 100);
   EXPECT_FALSE(within.accepted());
   EXPECT_NE(within.why.find("a period of the speed loop"), std::string::npos) << within.why;
+}
+
+// A hundredth of a count of play: what a contact's compliance made up for.
+TEST(AcceptanceTest, RefusesAPlayFarBelowTheEncodersResolution) {
+  AcceptanceFixture fixture;
+  fixture.context.resolution.rate_Hz = 1000.0;
+  Fitted child = fixture.leaving(0.7, 0.7, 0.7);
+  ParameterEstimate gap;
+  gap.path = "backlash.gap_rad";
+  gap.unit = "rad";
+  gap.value = 2.7e-5;
+  gap.sigma = 5e-6;
+  child.fit.parameters = {gap};
+  const auto with = [&](double counts, double gap_rad) {
+    fixture.context.resolution.counts_per_rotor_turn = counts;
+    child.fit.parameters[0].value = gap_rad;
+    return test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "backlash", 100);
+  };
+  EXPECT_FALSE(with(4096, 2.7e-5).accepted());
+  EXPECT_NE(with(4096, 2.7e-5).why.find("below the angle resolution"), std::string::npos);
+  EXPECT_TRUE(with(4096, 2e-4).accepted()) << "many reversals tell less than a count";
+  EXPECT_TRUE(with(0, 2.7e-5).accepted()) << "no encoder, no counts";
 }
 
 TEST(AcceptanceTest, RefusesAGainThatTheSimulatedNullHasAsWell) {

@@ -97,7 +97,7 @@ TEST(SelectionContextTest, EveryLawIsATaskOrSaysWhyNot) {
     if (!is_formula(*e->info)) laws.emplace(e->info->id);
   }
   EXPECT_EQ(named, laws);
-  EXPECT_EQ(task.acceptance_context.rate_Hz, 1.0 / TorqueMap::kPeriod_s);
+  EXPECT_EQ(task.acceptance_context.resolution.rate_Hz, 1.0 / TorqueMap::kPeriod_s);
 }
 
 TEST(SelectionContextTest, AStopIsHeardInTheBaseFit) {
