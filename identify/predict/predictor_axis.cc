@@ -78,6 +78,19 @@ class AxisRig : public RigRuns<AxisSetup> {
     return {.width = 0.5 * width, .forward = true};
   }
 
+  // Rotor and load turn as one: J = J_rotor + J_load / N^2, unless something gives between them.
+  std::optional<MultipleOf> multiple_of(const Candidate& own, std::span<const Unknown> unknowns,
+                                        std::size_t u) const {
+    if (unknowns[u].path != "load.inertia_kg_m2") return std::nullopt;
+    const bool is_rigid = std::ranges::none_of(
+        own.effects, [](const EffectUse& use) { return use.entry->info->place == Place::kShaft; });
+    const auto rotor = std::ranges::find(unknowns, "motor.rotor_inertia_kg_m2", &Unknown::path);
+    const double ratio = drive_of(own).gear_ratio;
+    if (!is_rigid || rotor == unknowns.end()) return std::nullopt;
+    return MultipleOf{.unknown = static_cast<std::size_t>(rotor - unknowns.begin()),
+                      .factor = 1.0 / (ratio * ratio)};
+  }
+
   void measure(const Candidate& truth, std::uint64_t seed) {
     for (std::size_t n = 0; n < runs_.size(); ++n) {
       AxisSetup& s = runs_[n];

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <concepts>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "identify/predict/observation.h"
 #include "identify/predict/rig_values.h"
@@ -27,6 +30,13 @@ struct Secant {
   bool forward = false;
 };
 
+// The derivative by an unknown is that by another one (an index among the unknowns), times a factor, whatever the motion: what has
+// no derivative of its own to simulate.
+struct MultipleOf {
+  std::size_t unknown = 0;
+  double factor = 1.0;
+};
+
 // kCostly: a simulation takes a large part of a second, and what was made last is kept. step_s(): of the simulation, at most.
 // is_exact(): dual numbers pass through it. is_rough(): with them it takes longer steps; values are of a run without them.
 // secant(): where the exact derivative is not to be used. measure(): puts what `truth` shows these sensors, with their noise, in
@@ -44,6 +54,7 @@ concept PredictedRig = requires(R& made, const R& rig, const Candidate& own, con
   { rig.is_exact(own, run) } -> std::same_as<bool>;
   { rig.is_rough(own, run) } -> std::same_as<bool>;
   { rig.secant(own, unknown, u, run, p) } -> std::same_as<Secant>;
+  { rig.multiple_of(own, std::span<const Unknown>(), run) } -> std::same_as<std::optional<MultipleOf>>;
   { rig.regimes(own, run) } -> std::same_as<std::vector<RegimeTrack>>;
   { rig.capabilities() } -> std::same_as<Capabilities>;
   { rig.shows_signature_of(std::declval<const EffectEntry&>()) } -> std::same_as<bool>;
@@ -67,6 +78,9 @@ class RigRuns {
   bool is_rough(const Candidate&, std::size_t) const { return false; }
   Secant secant(const Candidate&, const Unknown&, Eigen::Index, std::size_t, const Prediction&) const {
     return {};
+  }
+  std::optional<MultipleOf> multiple_of(const Candidate&, std::span<const Unknown>, std::size_t) const {
+    return std::nullopt;
   }
   bool shows_signature_of(const EffectEntry&) const { return false; }
 
@@ -238,25 +252,58 @@ class RigPredictor final : public Predictor {
     return p;
   }
 
+  // Which unknowns are simulated with a derivative of their own: not those that the run knows, nor those whose derivative is a
+  // multiple of another's.
+  struct Lanes {
+    std::vector<Unknown> unknowns;
+    std::vector<Eigen::Index> columns;  // of each of them
+    struct Multiple {
+      Eigen::Index column = 0, of = 0;
+      double factor = 1.0;
+    };
+    std::vector<Multiple> multiples;
+  };
+  Lanes lanes_of(const Candidate& own, std::span<const Unknown> open) const {
+    Lanes out;
+    for (std::size_t u = 0; u < open.size(); ++u) {
+      if (open[u].path.empty()) continue;
+      if (const std::optional<MultipleOf> m = rig_.multiple_of(own, open, u)) {
+        out.multiples.push_back(
+            {static_cast<Eigen::Index>(u), static_cast<Eigen::Index>(m->unknown), m->factor});
+        continue;
+      }
+      out.unknowns.push_back(open[u]);
+      out.columns.push_back(static_cast<Eigen::Index>(u));
+    }
+    return out;
+  }
+
   Prediction by_passes(const Candidate& own, std::span<const Unknown> open, std::size_t n,
                        double step_s) const {
+    const Lanes lanes = lanes_of(own, open);
+    if (lanes.unknowns.empty()) return by_values(own, open, n);
     Prediction p;
-    for (std::size_t first = 0; first < open.size(); first += kJetWidth) {
-      const RigOutputs<Jet> y = rig_.template outputs<Jet>({own, open, first}, n, step_s);
+    for (std::size_t first = 0; first < lanes.unknowns.size(); first += kJetWidth) {
+      const RigOutputs<Jet> y = rig_.template outputs<Jet>({own, lanes.unknowns, first}, n, step_s);
       p.finite = p.finite && y.finite;
-      const auto count = static_cast<Eigen::Index>(std::min<std::size_t>(kJetWidth, open.size() - first));
+      const std::size_t count = std::min<std::size_t>(kJetWidth, lanes.unknowns.size() - first);
       for (std::size_t s = 0; s < y.values.size(); ++s) {
+        const auto rows = static_cast<Eigen::Index>(y.values[s].size());
         if (first == 0) {
-          p.derivatives.emplace_back(y.values[s].size(), open.size());
+          p.derivatives.emplace_back(Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(open.size())));
           p.values.emplace_back();
           for (const Jet& v : y.values[s]) p.values[s].push_back(v.a);
         }
-        for (std::size_t k = 0; k < y.values[s].size(); ++k) {
-          p.derivatives[s]
-              .row(static_cast<Eigen::Index>(k))
-              .segment(static_cast<Eigen::Index>(first), count) = y.values[s][k].v.head(count).transpose();
+        for (std::size_t lane = 0; lane < count; ++lane) {
+          const Eigen::Index column = lanes.columns[first + lane];
+          for (Eigen::Index k = 0; k < rows; ++k)
+            p.derivatives[s](k, column) =
+                y.values[s][static_cast<std::size_t>(k)].v[static_cast<Eigen::Index>(lane)];
         }
       }
+    }
+    for (const auto& m : lanes.multiples) {
+      for (Eigen::MatrixXd& d : p.derivatives) d.col(m.column) = m.factor * d.col(m.of);
     }
     return p;
   }

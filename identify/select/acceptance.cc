@@ -262,6 +262,7 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
   if (unweighted < kLeastUnweighted && gain < kLeastWhitened) {
     return fmt::format("no signal's unweighted error energy falls by more than {}", percent(unweighted));
   }
+  if (by.negligible && by.change <= 0.0) return "no signal's plain error falls";
   if (by.negligible) {
     return fmt::format(
         "it moves no signal by more than {:.2g} % of its standard deviation; {:.2g} % is required",

@@ -203,6 +203,29 @@ TEST(AxisPredictor, DerivativesAreThoseOfTheValues) {
   }
 }
 
+// Two masses that turn as one have one derivative; behind a shaft that gives each has its own.
+TEST(AxisPredictor, RotorAndLoadHaveOneDerivativeUnlessTheShaftGives) {
+  const auto share_of_rotors = [](const std::string& more) {
+    const Candidate c = model(more);
+    const auto p = make_predictor(bench(model(), 600), c, {.step_s = 100e-6});
+    std::vector<Unknown> unknowns = unknowns_of(c);
+    const auto at = [&](std::string_view path) {
+      return std::ranges::find(unknowns, path, &Unknown::path) - unknowns.begin();
+    };
+    unknowns.push_back(unknowns[static_cast<std::size_t>(at("motor.rotor_inertia_kg_m2"))]);
+    unknowns.back().path = "load.inertia_kg_m2";  // the model file states it without a tolerance
+    const Eigen::MatrixXd d = p->predict_with_derivatives(c, unknowns, 0).derivatives[0];
+    const auto rotor = d.col(at("motor.rotor_inertia_kg_m2")), load = d.col(at("load.inertia_kg_m2"));
+    return std::pair(load.dot(rotor) / rotor.squaredNorm(), (load - rotor).norm() / load.norm());
+  };
+  const auto [rigid, rigid_apart] = share_of_rotors("");
+  EXPECT_NEAR(rigid, 1.0, 1e-12);
+  EXPECT_LT(rigid_apart, 1e-12);
+  const auto [soft, soft_apart] =
+      share_of_rotors("[effects.shaft_compliance]\ncompliance_rad_per_Nm = { value = 0.5, tolerance = 1 }\n");
+  EXPECT_GT(soft_apart, 0.01);
+}
+
 // Otherwise an effect that asks for finer sub-steps and does nothing else lowers the error, and is named.
 TEST(AxisPredictor, FinerStepsMoveNoSignalByMoreThanItsNoiseHidesOnceItIsWhitened) {
   const Candidate plain = model();
