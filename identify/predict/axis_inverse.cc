@@ -11,6 +11,7 @@
 #include "identify/record/band_noise.h"
 #include "identify/record/periodogram.h"
 #include "identify/record/statistics.h"
+#include "identify/record/surface_noise.h"
 #include "identify/record/wiener.h"
 #include "sim/bench/axis_signal.h"
 
@@ -266,8 +267,14 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
     }
     for (std::size_t k = 0; k < first && first < r.size(); ++k) s.approach[k] = s.approach[first];
   }
-  add(dataset, s, command_name(needed_kind(in.kind)), Quantity::kNeededInput, r.command,
-      estimate_noise(r.command).sigma, false);
+  const std::string_view name = command_name(needed_kind(in.kind));
+  const Channel* channel = dataset.channel(name);
+  const bool stated = is_torque(in.kind) && channel != nullptr && channel->sigma > 0.0;
+  std::vector<std::vector<double>> of = {in.imposed_velocity_rad_s};
+  if (!in.load_torque_Nm.empty()) of.push_back(in.load_torque_Nm);
+  // By the points before and after, which a map by the angle needs, or about a surface: either is an upper bound.
+  const double estimated = std::fmin(estimate_noise(r.command).sigma, surface_noise(r.command, of));
+  add(dataset, s, name, Quantity::kNeededInput, r.command, stated ? channel->sigma : estimated, stated);
 }
 
 }  // namespace omnihil

@@ -1,0 +1,53 @@
+#include "identify/record/surface_noise.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identify/record/statistics.h"
+
+namespace omnihil {
+
+double surface_noise(const std::vector<double>& y, const std::vector<std::vector<double>>& of) {
+  constexpr std::size_t kRowsPerNumber = 5;  // the factor for those fitted is then 1.12 at most; a choice
+  constexpr double kRankThreshold = 1e-9;    // of the columns, scaled to one: what doubles resolve; a choice
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    const auto known = [&](const std::vector<double>& x) { return std::isfinite(x[k]); };
+    if (known(y) && std::all_of(of.begin(), of.end(), known)) rows.push_back(k);
+  }
+  const std::size_t columns = 1 + 3 * of.size() + of.size() * (of.size() - 1) / 2;
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  if (rows.size() < columns) return std::numeric_limits<double>::infinity();
+  Eigen::MatrixXd a(n, static_cast<Eigen::Index>(columns));
+  Eigen::VectorXd b(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t k = rows[static_cast<std::size_t>(i)];
+    Eigen::Index c = 0;
+    b[i] = y[k];
+    a(i, c++) = 1.0;
+    for (std::size_t j = 0; j < of.size(); ++j) {
+      const double x = of[j][k];
+      a(i, c++) = x;
+      a(i, c++) = std::abs(x) * x;
+      a(i, c++) = x == 0.0 ? 0.0 : std::copysign(1.0, x);
+      for (std::size_t l = 0; l < j; ++l) a(i, c++) = x * of[l][k];
+    }
+  }
+  for (Eigen::Index c = 0; c < a.cols(); ++c) {
+    if (const double size = a.col(c).norm(); size > 0.0) a.col(c) /= size;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(kRankThreshold);
+  qr.compute(a);
+  const auto numbers = static_cast<std::size_t>(qr.rank());
+  if (rows.size() < kRowsPerNumber * numbers) return std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd rest = b - a * qr.solve(b);
+  std::vector<double> sizes;
+  for (const double r : rest) sizes.push_back(std::abs(r));
+  const double count = static_cast<double>(rows.size());
+  return sigma_by_mad(std::move(sizes)) * std::sqrt(count / (count - static_cast<double>(numbers)));
+}
+
+}  // namespace omnihil
