@@ -69,5 +69,29 @@ TEST(SettledAxis, AStatedNoiseOfTheCurrentIsTaken) {
   EXPECT_TRUE(make_predictor(d, motor(), {})->compared(0).front().noise_is_stated);
 }
 
+// d V_k = k w_k: the supply of one point is not that of the points before and after it.
+TEST(SettledAxis, ABusVoltageIsItsOwnRows) {
+  Dataset d;
+  d.rig = &rig_axis();
+  d.channels = {{.signal = "duty", .column = "d", .unit = "1"},
+                {.signal = "velocity", .column = "w", .unit = "rad/s"},
+                {.signal = "bus_voltage", .column = "u", .unit = "V"}};
+  omnihil::Run run;
+  run.file = "table.csv";
+  run.steady = true;
+  std::vector<double> expected;
+  for (int k = 0; k < 60; ++k) {
+    const double bus_V = 20.0 + 0.5 * (k * 7 % 9), speed_rad_s = 50.0 + 5.0 * k;
+    run.time_s.push_back(k);
+    expected.push_back(kK_Nm_per_A * speed_rad_s / bus_V);
+    run.signals["duty"].push_back(expected.back());
+    run.signals["velocity"].push_back(speed_rad_s);
+    run.signals["bus_voltage"].push_back(bus_V);
+  }
+  d.runs = {run};
+  const Prediction y = make_predictor(d, motor(), {})->predict(motor(), 0);
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(y.values[0][k], expected[k], 1e-6) << k;
+}
+
 }  // namespace
 }  // namespace omnihil
