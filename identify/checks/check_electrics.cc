@@ -168,6 +168,9 @@ double acceleration_ratio(const CheckContext& data, std::size_t wheel) {
   return inertia_at_rotor(nominal) / line.coefficient[0];
 }
 
+// A coefficient that is this many of its sigmas stands for itself: the windows are not independent. A choice.
+constexpr double kKnown_sigmas = 10.0;  // a choice
+
 // True: the current told the scales.
 bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
                 std::vector<DataFinding>& findings) {
@@ -180,12 +183,12 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
   if (line.coefficient.empty() || line.explained < 0.7) return false;
   const double a = line.coefficient[0], b = line.coefficient[1];
   const std::string name = "motor_current" + data.runs.front().drives[wheel].suffix;
-  if (a < -10.0 * line.sigma[0] && b > 10.0 * line.sigma[1]) {
+  if (a < -kKnown_sigmas * line.sigma[0] && b > kKnown_sigmas * line.sigma[1]) {
     findings.push_back({Grade::kFault, "swapped_sign", "", name, a,
                         fmt::format("{} falls where the voltage rises: its sign is swapped", name)});
     return true;
   }
-  if (a < 10.0 * line.sigma[0] || -b < 10.0 * line.sigma[1]) return false;
+  if (a < kKnown_sigmas * line.sigma[0] || -b < kKnown_sigmas * line.sigma[1]) return false;
   const double current_ratio = a * resistance;
   if (std::abs(std::log(current_ratio)) > kWrongCurrent) {
     const bool thousand = current_ratio > 400.0 && current_ratio < 2500.0;
@@ -222,6 +225,8 @@ void by_speed_per_volt(const CheckContext& data, std::size_t wheel, const Window
   if (all.u.size() < kLeastWindows || constant <= 0.0) return;
   const LineFit line = fit_line({all.u, all.side}, all.w);
   if (line.coefficient.empty() || line.explained < 0.8) return;
+  // At one working point the voltage differs by the supply's drift alone, and the sign takes the place of a scale.
+  if (line.coefficient[0] < kKnown_sigmas * line.sigma[0]) return;
   const double drag = resistance * viscous / (constant * constant);
   const double ratio = line.coefficient[0] * constant * (1.0 + drag);
   if (ratio <= 0.0) return;  // said by check_direction

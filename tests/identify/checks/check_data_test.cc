@@ -436,6 +436,30 @@ TEST(CheckDataElectrics, ADriveThatADeadBandEatsHasNoWrongScale) {
   EXPECT_NE(find(check(bench_with_fastest(0.2)), "wrong_scale"), nullptr);
 }
 
+// One duty throughout, at the speed that it gives. The battery recovers by a thousandth while the drive runs warm and gains 4 % of
+// its speed: a line over that thousandth rises forty times as steeply as a motor's, and says nothing of a scale.
+TEST(CheckDataElectrics, AtOneWorkingPointNoScaleIsTold) {
+  constexpr double kIdeal_rad_s_per_V = 1.0 / 0.0335, kBus_V = 24.0, kDuty = 0.3, kGear = 3.0;
+  Bench bench = simulated_bench({.with = {}, .counts_per_turn = 0.0, .model = ""});
+  bench.dataset.channels.push_back({.signal = "bus_voltage", .column = "bus", .unit = "V"});
+  std::uint64_t stream = 0;
+  for (omnihil::Run& run : bench.dataset.runs) {
+    std::vector<double>& x = run.signals.find("position")->second;
+    std::vector<double>& bus_V = run.signals["bus_voltage"];
+    run.signals.find("duty")->second.assign(x.size(), kDuty);
+    ++stream;
+    double angle = 0.0, wander = 0.0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const double warm = static_cast<double>(k) / static_cast<double>(x.size());
+      bus_V.push_back(kBus_V * (1.0 + 1e-3 * warm));
+      wander += 1e-2 * (gaussian(1, stream, k) - 0.5 * wander);  // 2 Hz, of 10 %
+      angle += 1e-3 * kDuty * kBus_V * kIdeal_rad_s_per_V * 0.8 * (1.0 + 0.04 * warm + 0.3 * wander) / kGear;
+      x[k] = angle;
+    }
+  }
+  EXPECT_EQ(find(check(bench), "wrong_scale"), nullptr) << text_of(check(bench));
+}
+
 TEST(CheckDataClosedLoop, TheControllersGainIsNamed) {
   Bench bench = simulated_bench({.drive = CommandKind::kMotorTorque,
                                  .drive_name = "motor_torque",
