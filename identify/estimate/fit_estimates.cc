@@ -70,10 +70,17 @@ bool at(double x, double bound, double scale) {
   return std::abs(x - bound) <= 1e-6 * scale + 1e-12 * std::abs(bound);
 }
 
+bool is_shape(const Candidate& model, const Unknown& u) {
+  if (u.effect < 0) return false;
+  const EffectInfo& info = *model.effects[static_cast<std::size_t>(u.effect)].entry->info;
+  return info.params[static_cast<std::size_t>(u.row)].role == ParamRole::kShape;
+}
+
 // Sentence for an estimate at its bound; a physical bound (no friction below zero) that the gradient presses
-// on is told from a bound of the search.
-std::string bound_sentence(const Unknown& u, double x, double data_gradient) {
+// on is told from a bound of the search, and from a shape's simplest form (a filter without steps).
+std::string bound_sentence(const Unknown& u, double x, double data_gradient, bool is_shape) {
   const bool lower = at(x, u.lower, u.scale);
+  if (lower && u.lower == 0.0 && is_shape) return "at its bound 0, the law's simplest form";
   if (lower && data_gradient > 0.0 && u.lower == 0.0) {
     return fmt::format(
         "at its bound 0: these data would take a negative value, which no drive has; something else is "
@@ -85,8 +92,8 @@ std::string bound_sentence(const Unknown& u, double x, double data_gradient) {
                      lower ? u.lower : u.upper, u.unit);
 }
 
-std::string sentence_of(const Unknown& u, const ParameterEstimate& p, double data_gradient) {
-  if (p.at_bound) return bound_sentence(u, p.value, data_gradient);
+std::string sentence_of(const Unknown& u, const ParameterEstimate& p, double data_gradient, bool is_shape) {
+  if (p.at_bound) return bound_sentence(u, p.value, data_gradient, is_shape);
   if (!p.identifiable && !p.correlated_with.empty()) {
     return fmt::format("not determined by these data: trades against {}", fmt::join(p.correlated_with, ", "));
   }
@@ -178,7 +185,7 @@ void describe(const FitProblem& problem, const Predictor& predictor, const FitPo
         u.prior_sigma > 0.0 ? 1.0 / prior_dz(u, x[i]) : std::max(std::abs(x[i]), u.scale);
     p.identifiable = p.data_sigma < prior_width;
     if (!p.identifiable) p.correlated_with = partners(point.information, scale, i, unknowns);
-    p.sentence = sentence_of(u, p, data_gradient);
+    p.sentence = sentence_of(u, p, data_gradient, is_shape(result.model, u));
     if (!p.sentence.empty()) result.findings.push_back(p.path + ": " + p.sentence);
     result.parameters.push_back(std::move(p));
   }

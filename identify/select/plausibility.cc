@@ -107,11 +107,34 @@ std::string not_locked_to_angle(const FitResult& child, const std::string& name)
                      vague->path, vague->sigma);
 }
 
+// A spring and its damper in one law, damped so far beyond the critical c = 2 sqrt(k J) that it creeps to its place: a lag, which is
+// another law's. Bristles are near it: half of it where they were published (Canudas de Wit, Olsson, Astrom, Lischinsky 1995: 316 N s/m on
+// 1e5 N/m and 1 kg). Empty: no.
+std::string overdamped(const FitResult& child, const std::string& name) {
+  constexpr double kMostDamping = 5.0;  // times the critical; a choice
+  const auto estimate = [&](std::string_view of) {
+    const auto at = std::ranges::find_if(child.parameters, [&](const ParameterEstimate& p) {
+      return p.path.starts_with(name + "." + std::string(of));
+    });
+    return at == child.parameters.end() ? 0.0 : at->value;
+  };
+  const double stiffness = estimate("stiffness_"), damping = estimate("damping_"),
+               inertia = inertia_at_rotor(drive_of(child.model));
+  if (!(stiffness > 0.0 && inertia > 0.0)) return "";
+  const double ratio = damping / (2.0 * std::sqrt(stiffness * inertia));
+  if (ratio < kMostDamping) return "";
+  return fmt::format(
+      "it is damped {:.2g} times as much as it takes not to swing and settles in {:.2g} s: a lag, not a "
+      "spring",
+      ratio, damping / stiffness);
+}
+
 // A parameter of the effect that no drive can have, or a strength that is not significant; empty: none.
 std::string implausible_estimate(const FitResult& child, const std::string& name, bool decisive) {
   const std::string at_bound = ends_at_bound(child, name);
   if (!at_bound.empty()) return at_bound;
   std::string loose = not_locked_to_angle(child, name);
+  if (loose.empty()) loose = overdamped(child, name);
   if (!loose.empty()) return loose;
   const EffectEntry* entry = find_effect(name);
   bool strong = entry == nullptr;

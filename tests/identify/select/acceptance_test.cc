@@ -328,6 +328,26 @@ TEST(AcceptanceTest, RefusesAPlayFarBelowTheEncodersResolution) {
   EXPECT_TRUE(with(0, 2.7e-5).accepted()) << "no encoder, no counts";
 }
 
+// Critical: 2 sqrt(3 N m/rad x 3e-5 kg m2) = 0.019 N m s/rad.
+TEST(AcceptanceTest, RefusesBristlesThatAreALag) {
+  const AcceptanceFixture fixture;
+  const auto with = [&](double damping_Nm_s_per_rad) {
+    Fitted child = fixture.leaving(0.7, 0.7, 0.7);
+    EXPECT_EQ(set_value(child.fit.model, "motor.rotor_inertia_kg_m2", 3e-5), "");
+    EXPECT_EQ(set_value(child.fit.model, "load.inertia_kg_m2", 0.0), "");
+    ParameterEstimate stiffness, damping;
+    stiffness.path = "lugre_friction.stiffness_Nm_per_rad";
+    stiffness.value = 3.0;
+    damping.path = "lugre_friction.damping_Nm_s_per_rad";
+    damping.value = damping_Nm_s_per_rad;
+    child.fit.parameters = {stiffness, damping};
+    return test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "lugre_friction", 100);
+  };
+  EXPECT_TRUE(with(0.04).accepted()) << with(0.04).why;
+  EXPECT_FALSE(with(0.2).accepted());
+  EXPECT_NE(with(0.2).why.find("a lag, not a spring"), std::string::npos) << with(0.2).why;
+}
+
 TEST(AcceptanceTest, RefusesAGainThatTheSimulatedNullHasAsWell) {
   const AcceptanceFixture fixture;
   const AcceptanceResult j =
