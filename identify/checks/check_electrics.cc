@@ -192,11 +192,20 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
   const double current_ratio = a * resistance;
   if (std::abs(std::log(current_ratio)) > kWrongCurrent) {
     const bool thousand = current_ratio > 400.0 && current_ratio < 2500.0;
+    // What a bridge may lose in dead times and switches: two body diodes of 0.75 V. Below the current at which it loses all of
+    // that, the loss grows with the current as a resistance does.
+    constexpr double kBridgeLoss_V = 1.5;  // a choice
+    constexpr double kLeastRatio = 0.1;  // a choice: most of what drives a winding is not lost in front of it
+    const double lost_V = resistance * (1.0 / current_ratio - 1.0) * largest_size(w.i);
+    const bool may_be_bridge = current_ratio > kLeastRatio && current_ratio < 1.0 && lost_V < kBridgeLoss_V;
     findings.push_back(
-        {Grade::kFault, "wrong_scale", "", name, current_ratio,
+        {may_be_bridge ? Grade::kDoubt : Grade::kFault, "wrong_scale", "", name, current_ratio,
          fmt::format("{} is {:.3g} times what the voltage and the model's resistance allow: a wrong "
-                     "scale or unit{}",
-                     name, current_ratio, thousand ? " (milliamperes, mA, in place of A)" : "")});
+                     "scale or unit{}{}",
+                     name, current_ratio, thousand ? " (milliamperes, mA, in place of A)" : "",
+                     may_be_bridge
+                         ? fmt::format(", or a bridge that loses up to {:.2g} V (dead_time)", lost_V)
+                         : "")});
   }
   const double confirmed = data.dataset.rig->of_robot ? constant / (-b / a) : acceleration_ratio(data, wheel);
   say_speed(data, wheel, constant / (-b / a), confirmed, "voltage, current", all, findings);

@@ -200,6 +200,8 @@ std::string reason_against_fit(const AcceptanceResult& gains, double signal_to_n
                ? "linearised, it gains nothing"
                : fmt::format("its gain is {:.1f} times that of the simulated null", signal_to_null);
   }
+  if (gains.fit.ratio == 1.0)
+    return "no fit with it leaves less than the one without";  // refit(): the parent's
   if (1.0 - gains.fit.ratio < (explains ? 0.0 : kLeastFitGain)) {
     return fmt::format("it lowers the error energy of the fit runs by {} only",
                        percent(1.0 - gains.fit.ratio));

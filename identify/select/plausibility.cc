@@ -107,9 +107,9 @@ std::string not_locked_to_angle(const FitResult& child, const std::string& name)
                      vague->path, vague->sigma);
 }
 
-// A spring and its damper in one law, damped so far beyond the critical c = 2 sqrt(k J) that it creeps to its place: a lag, which is
-// another law's. Bristles are near it: half of it where they were published (Canudas de Wit, Olsson, Astrom, Lischinsky 1995: 316 N s/m on
-// 1e5 N/m and 1 kg). Empty: no.
+// A spring and its damper in one law, damped so far beyond the critical c = 2 sqrt(k J) that it creeps to its place: a lag, which
+// is another law's. Bristles are near it: half of it where they were published (Canudas de Wit, Olsson, Astrom, Lischinsky
+// 1995: 316 N s/m on 1e5 N/m and 1 kg). Empty: no.
 std::string overdamped(const FitResult& child, const std::string& name) {
   constexpr double kMostDamping = 5.0;  // times the critical; a choice
   const auto estimate = [&](std::string_view of) {

@@ -203,6 +203,24 @@ TEST_F(SpoiltData, CurrentInMilliamperes) {
   expect("wrong_scale", "milliamperes");
 }
 
+// Three times the resistance, 0.7 V at the largest current: a bridge may take as much. Not nearly all there is.
+TEST(CheckDataElectrics, ACurrentThatIsTooSmallByWhatABridgeLosesIsADoubt) {
+  const auto with_current_over = [](double divisor) {
+    Bench bench = simulated_bench({.with = {}, .model = ""});
+    for (omnihil::Run& run : bench.dataset.runs) {
+      for (double& v : run.signals.find("motor_current")->second) v /= divisor;
+    }
+    return check(bench);
+  };
+  const auto few = with_current_over(3.0), many = with_current_over(30.0);
+  const DataFinding *doubt = find(few, "wrong_scale"), *fault = find(many, "wrong_scale");
+  ASSERT_NE(doubt, nullptr) << text_of(few);
+  EXPECT_EQ(doubt->grade, Grade::kDoubt) << doubt->sentence;
+  EXPECT_NE(doubt->sentence.find("a bridge that loses up to"), std::string::npos) << doubt->sentence;
+  ASSERT_NE(fault, nullptr) << text_of(many);
+  EXPECT_EQ(fault->grade, Grade::kFault) << fault->sentence;
+}
+
 TEST_F(SpoiltData, DutyInPerCent) {
   for (std::size_t r = 0; r < 3; ++r) {
     for (double& v : signal(r, "duty")) v *= 100.0;
