@@ -18,6 +18,9 @@ void check_stall(const CheckContext& data, std::vector<DataFinding>& findings) {
       if (drive.drive == nullptr || !moves || drive.drive_name == "position_target") continue;
       const WindowMeans w = window_means(view, drive, *drive.drive, kWindow_s);
       const double largest = largest_size(w.drive), highest = largest_size(w.speed);
+      // A position that never changes beside a speed that does is a sensor that is not connected, not a drive that stands.
+      const bool frozen = highest == 0.0 && drive.velocity != nullptr && largest_size(*drive.velocity) > 0.0;
+      if (frozen) continue;
       double driven = 0.0, standing = 0.0;
       for (std::size_t k = 0; k < w.drive.size(); ++k) {
         if (std::abs(w.drive[k]) <= kDriven * largest) continue;

@@ -221,6 +221,22 @@ TEST(CheckDataElectrics, ACurrentThatIsTooSmallByWhatABridgeLosesIsADoubt) {
   EXPECT_EQ(fault->grade, Grade::kFault) << fault->sentence;
 }
 
+TEST(CheckDataElectrics, AFrozenPositionBesideASpeedThatMovesIsNoStall) {
+  Bench bench = simulated_bench({.with = {}, .counts_per_turn = 0.0, .model = ""});
+  bench.dataset.channels.push_back({.signal = "velocity", .column = "w", .unit = "rad/s"});
+  for (omnihil::Run& run : bench.dataset.runs) {
+    std::vector<double>& x = run.signals.find("position")->second;
+    std::vector<double>& speed = run.signals["velocity"];
+    for (std::size_t k = 0; k < x.size(); ++k) speed.push_back(k == 0 ? 0.0 : (x[k] - x[k - 1]) / 1e-3);
+  }
+  for (omnihil::Run& run : bench.dataset.runs) {
+    std::vector<double>& x = run.signals.find("position")->second;
+    x.assign(x.size(), 1.0);
+  }
+  const auto findings = check(bench);
+  EXPECT_EQ(find(findings, "near_stall"), nullptr) << text_of(findings);
+}
+
 TEST_F(SpoiltData, DutyInPerCent) {
   for (std::size_t r = 0; r < 3; ++r) {
     for (double& v : signal(r, "duty")) v *= 100.0;
