@@ -93,8 +93,9 @@ double unweighted_gain(const Eigen::VectorXd& parent, const Eigen::VectorXd& chi
   return most;
 }
 
-// The root mean square by which the child moves a signal towards the measurement, over the signal's standard deviation; the largest
-// of all channels. Infinite where the context has no variances.
+// How far the child moves a signal, over the signal's standard deviation: the root of what its plain error energy changes by, up or
+// down; the largest of all channels. Infinite where the context has no variances. Less than the whole change, by what does not
+// correlate with the error.
 double change_over_deviation(const AcceptanceContext& context, std::size_t split, const Fitted& parent,
                              const Fitted& child) {
   const Eigen::VectorXd &variance = context.signal_variance[split], &before = parent.unweighted[split],
@@ -102,7 +103,7 @@ double change_over_deviation(const AcceptanceContext& context, std::size_t split
   if (variance.size() == 0) return std::numeric_limits<double>::infinity();
   double most = 0.0;
   for (Eigen::Index k = 0; k < std::min({variance.size(), before.size(), after.size()}); ++k) {
-    if (variance[k] > 0.0) most = std::max(most, std::max(0.0, before[k] - after[k]) / variance[k]);
+    if (variance[k] > 0.0) most = std::max(most, std::abs(before[k] - after[k]) / variance[k]);
   }
   return std::sqrt(most);
 }
@@ -264,7 +265,6 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
   if (unweighted < kLeastUnweighted && gain < kLeastWhitened) {
     return fmt::format("no signal's unweighted error energy falls by more than {}", percent(unweighted));
   }
-  if (by.negligible && by.change <= 0.0) return "no signal's plain error falls";
   if (by.negligible) {
     return fmt::format(
         "it moves no signal by more than {:.2g} % of its standard deviation; {:.2g} % is required",

@@ -138,6 +138,9 @@ TEST(AcceptanceTest, RefusesWhatMovesASignalByLessThanItsScaleIsKnown) {
   EXPECT_TRUE(with(0.02).accepted()) << "the plain error falls";
   fixture.context.signal_variance.fill(Eigen::VectorXd::Constant(1, 1e3));  // 0.3 %
   EXPECT_TRUE(with(0.01).accepted());
+  // A drive that friction nearly holds: its position is right at last, and its speed starts and stops at other instants.
+  fixture.context.signal_variance.fill(Eigen::VectorXd::Constant(1, 2.0));
+  EXPECT_TRUE(with(-0.06).accepted()) << with(-0.06).why;
 }
 
 TEST(AcceptanceTest, RefusesALossOnAnotherKindOfMotion) {
