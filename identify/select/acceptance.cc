@@ -108,10 +108,12 @@ double change_over_deviation(const AcceptanceContext& context, std::size_t split
   return std::sqrt(most);
 }
 
-// Where two effects change the same quantity: supply and bridge both make the mean voltage at the winding.
-bool is_same_quantity(Place a, Place b) {
+// Do two laws change the same quantity by the same kind of argument? Supply and bridge both make the mean voltage at the winding. What
+// repeats itself with an angle is no form of what does not.
+bool is_kin(const EffectInfo& a, const EffectInfo& b) {
   const auto is_voltage = [](Place p) { return p == Place::kSupply || p == Place::kBridge; };
-  return a == b || (is_voltage(a) && is_voltage(b));
+  const bool same_quantity = a.place == b.place || (is_voltage(a.place) && is_voltage(b.place));
+  return same_quantity && a.of_angle == b.of_angle;
 }
 
 // Has an effect been found that changes the same quantity as this one? What the model file declares was not found.
@@ -122,8 +124,7 @@ bool has_found_kin(const AcceptanceContext& context, const Fitted& parent, std::
   return std::any_of(
       parent.fit.model.effects.begin(), parent.fit.model.effects.end(), [&](const EffectUse& use) {
         const auto is_same_entry = [&](const EffectUse& other) { return other.entry == use.entry; };
-        return use.entry != entry && !is_neutral(use) &&
-               is_same_quantity(use.entry->info->place, entry->info->place) &&
+        return use.entry != entry && !is_neutral(use) && is_kin(*use.entry->info, *entry->info) &&
                std::none_of(declared.begin(), declared.end(), is_same_entry);
       });
 }

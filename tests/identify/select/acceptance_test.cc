@@ -117,6 +117,7 @@ TEST(AcceptanceTest, RefusesASecondLawOfTheSameQuantityThatTakesWhatTheFormOfThe
   EXPECT_FALSE(kin.accepted());
   EXPECT_NE(kin.why.find("the form of an effect already found"), std::string::npos) << kin.why;
   EXPECT_TRUE(second("encoder_eccentricity").accepted());
+  EXPECT_TRUE(second("cogging").accepted()) << "a torque of the angle is no form of one of the speed";
   fixture.context.base_model = &declared;
   EXPECT_TRUE(second("grease_drag").accepted());
 }
