@@ -80,7 +80,6 @@ double AxisRecord::speed_near(std::size_t k) const {
 
 AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, const Run& run) {
   constexpr std::size_t kHalfBusWindow[] = {kBusWindow / 2};  // to either side: derived
-  constexpr std::size_t kRowAlone[] = {0};                    // of settled points (settled_points.h)
   AxisRecord r;
   r.gear_ratio = drive_of(nominal).gear_ratio;
   const std::vector<double>* command = run.signal(command_name(axis_command_kind(dataset)));
@@ -93,8 +92,7 @@ AxisRecord make_axis_record(const Dataset& dataset, const Candidate& nominal, co
   r.period_s = median_period_s(r.time_s);
   r.command = held(command, first_row);
   r.enable = held(run.signal("enable"), first_row);
-  r.bus = read_bus(dataset, run, first_row,
-                   run.steady ? NoiseWindows{.half = kRowAlone} : NoiseWindows{.half = kHalfBusWindow});
+  r.bus = read_bus(dataset, run, first_row, {.half = kHalfBusWindow});
   r.load_torque_Nm = held(run.signal("load_torque"), first_row);
   r.velocity = from_row(run.signal("velocity"), first_row);
   r.velocity_sigma_rad_s = noise_sigma_of(dataset, "velocity", r.velocity);

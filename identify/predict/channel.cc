@@ -145,7 +145,8 @@ BusReading read_bus(const Dataset& dataset, const Run& run, std::size_t first, c
   }
   const std::vector<double> given_V = held(&bus_V, first);
   out.sigma_V = noise_sigma_of(dataset, "bus_voltage", given_V);
-  out.input_V = without_noise(given_V, out.sigma_V, windows);
+  // Settled points have no order: their neighbours' voltages are those of other points.
+  out.input_V = run.steady ? given_V : without_noise(given_V, out.sigma_V, windows);
   out.measured_V = from_row(&bus_V, first);
   return out;
 }

@@ -256,20 +256,15 @@ class RigPredictor final : public Predictor {
   // multiple of another's.
   struct Lanes {
     std::vector<Unknown> unknowns;
-    std::vector<Eigen::Index> columns;  // of each of them
-    struct Multiple {
-      Eigen::Index column = 0, of = 0;
-      double factor = 1.0;
-    };
-    std::vector<Multiple> multiples;
+    std::vector<Eigen::Index> columns;                           // of each of them
+    std::vector<std::pair<Eigen::Index, MultipleOf>> multiples;  // column, and what it is a multiple of
   };
   Lanes lanes_of(const Candidate& own, std::span<const Unknown> open) const {
     Lanes out;
     for (std::size_t u = 0; u < open.size(); ++u) {
       if (open[u].path.empty()) continue;
       if (const std::optional<MultipleOf> m = rig_.multiple_of(own, open, u)) {
-        out.multiples.push_back(
-            {static_cast<Eigen::Index>(u), static_cast<Eigen::Index>(m->unknown), m->factor});
+        out.multiples.emplace_back(static_cast<Eigen::Index>(u), *m);
         continue;
       }
       out.unknowns.push_back(open[u]);
@@ -302,8 +297,9 @@ class RigPredictor final : public Predictor {
         }
       }
     }
-    for (const auto& m : lanes.multiples) {
-      for (Eigen::MatrixXd& d : p.derivatives) d.col(m.column) = m.factor * d.col(m.of);
+    for (const auto& [column, of] : lanes.multiples) {
+      for (Eigen::MatrixXd& d : p.derivatives)
+        d.col(column) = of.factor * d.col(static_cast<Eigen::Index>(of.unknown));
     }
     return p;
   }

@@ -24,7 +24,6 @@ constexpr double kStartSpan_s = 0.02;  // a choice
 constexpr std::size_t kHalfWindows[] = {250, 50, 10};  // as above
 constexpr NoiseWindows kBusWindows = {.half = kHalfWindows,
                                       .tolerated = 1.2};  // a choice; sensitivity not measured
-constexpr std::size_t kRowAlone[] = {0};                  // of settled points (settled_points.h)
 
 void read_drive(const Run& run, RobotRecord& r) {
   const std::vector<double>* enable = run.signal("enable");
@@ -219,7 +218,7 @@ RobotRecord robot_record(const Dataset& dataset, const Run& run, const RollingPa
   read_encoders(dataset, run, nominal.drive.gear_ratio, r);
   r.dribbler_rad_s = held(run.signal("dribbler"));
   r.dribbler_rad_s.resize(r.size());
-  r.bus = read_bus(dataset, run, 0, run.steady ? NoiseWindows{.half = kRowAlone} : kBusWindows);
+  r.bus = read_bus(dataset, run, 0, kBusWindows);
   r.turned_rad = integrated(r.time_s, held(run.signal("gyro_z")), std::numeric_limits<double>::infinity());
   read_frames(run, r);
   drop_silent_frames(run, nominal, r);

@@ -33,8 +33,8 @@ constexpr double kLeastUnweighted = 0.015;  // tuned
 // the latter.
 constexpr double kLeastWhitened = 0.1;  // tuned
 // Then it has to move a signal by this share of its standard deviation: scales of sensors, duties and clocks are no better
-// known (a choice: 0.1 %, the step of a ten-bit duty or the error of a good shunt; a quartz's is a tenth of it).
-constexpr double kLeastChange = 1e-3;
+// known (the step of a ten-bit duty or the error of a good shunt; a quartz's is a tenth of it).
+constexpr double kLeastChange = 1e-3;  // a choice
 // Largest rise of the energy of the extrapolation runs: as large as the smallest gain of interest.
 constexpr double kMostRise = 0.03;  // tuned
 // … unless the remaining held-out energy times the rise is below this: of two effects that compensated each

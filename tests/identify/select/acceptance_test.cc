@@ -7,48 +7,10 @@
 
 #include "identify/estimate/linear_base.h"
 #include "sim/law/effect_registry.h"
-#include "sim/law/random.h"
-#include "tests/identify/fake_residuals.h"
+#include "tests/identify/select/acceptance_fixture.h"
 
 namespace omnihil {
 namespace {
-
-constexpr int kSamples = 4000;
-
-std::vector<double> noise_of(double sigma, std::uint64_t stream) {
-  std::vector<double> out;
-  for (int i = 0; i < kSamples; ++i)
-    out.push_back(sigma * gaussian(1, stream, static_cast<std::uint64_t>(i)));
-  return out;
-}
-
-// Runs of noise, one per use; residuals are made by the tests.
-const FakePredictor& three_runs() {
-  static const FakePredictor kRuns = [] {
-    FakePredictor fake;
-    for (const Split split : {Split::kTraining, Split::kValidation, Split::kExtrapolation})
-      fake.add(split, noise_of(1.0, 5), std::vector<double>(kSamples, 0.0));
-    return fake;
-  }();
-  return kRuns;
-}
-
-struct AcceptanceFixture : FakeResiduals {
-  AcceptanceFixture() : FakeResiduals(three_runs()) {}
-
-  // A model that leaves noise of these sizes.
-  Fitted leaving(double fit, double holdout, double extrapolation) const {
-    Fitted out;
-    out.finite = true;
-    const std::array<double, kSplits> sizes{fit, holdout, extrapolation};
-    for (std::size_t u = 0; u < kSplits; ++u) {
-      const std::vector<double> r = noise_of(sizes[u], 7);
-      out.residual[u] = Eigen::Map<const Eigen::VectorXd>(r.data(), kSamples);
-      out.unweighted[u] = (*splits)[u].mean_square(out.residual[u]);
-    }
-    return out;
-  }
-};
 
 TEST(AcceptanceTest, TakesWhatGainsEverywhere) {
   const AcceptanceFixture fixture;
@@ -284,74 +246,6 @@ TEST(AcceptanceTest, AcceptsAnAliasedEffectWhereThePriorRejectsTheBaseParameter)
   EXPECT_FALSE(of_mass(2.6, 0.1, "motor.resistance_ohm").accepted());
 }
 
-// Four microseconds at 1 kHz: the model's own sub-steps make as much.
-TEST(AcceptanceTest, RefusesATimeBelowTheResolution) {
-  AcceptanceFixture fixture;
-  fixture.context.resolution.rate_Hz = 1000.0;
-  Fitted child = fixture.leaving(0.7, 0.7, 0.7);
-  ParameterEstimate delay;
-  delay.path = "actuator_delay.delay_s";
-  delay.unit = "s";
-  delay.value = 4e-6;
-  delay.sigma = 1e-7;
-  child.fit.parameters = {delay};
-  const AcceptanceResult lost =
-      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "actuator_delay", 100);
-  EXPECT_FALSE(lost.accepted());
-  EXPECT_NE(lost.why.find("below the time resolution"), std::string::npos) << lost.why;
-  child.fit.parameters[0].value = 4e-5;
-  EXPECT_TRUE(
-      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "actuator_delay", 100).accepted());
-  // nor within a period of a loop that is described in place of its firmware
-  fixture.context.resolution.loop_period_s = 1e-3;
-  const AcceptanceResult within =
-      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "actuator_delay", 100);
-  EXPECT_FALSE(within.accepted());
-  EXPECT_NE(within.why.find("a period of the speed loop"), std::string::npos) << within.why;
-}
-
-// A hundredth of a count of play: what a contact's compliance made up for.
-TEST(AcceptanceTest, RefusesAPlayFarBelowTheEncodersResolution) {
-  AcceptanceFixture fixture;
-  fixture.context.resolution.rate_Hz = 1000.0;
-  Fitted child = fixture.leaving(0.7, 0.7, 0.7);
-  ParameterEstimate gap;
-  gap.path = "backlash.gap_rad";
-  gap.unit = "rad";
-  gap.value = 2.7e-5;
-  gap.sigma = 5e-6;
-  child.fit.parameters = {gap};
-  const auto with = [&](double counts, double gap_rad) {
-    fixture.context.resolution.counts_per_rotor_turn = counts;
-    child.fit.parameters[0].value = gap_rad;
-    return test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "backlash", 100);
-  };
-  EXPECT_FALSE(with(4096, 2.7e-5).accepted());
-  EXPECT_NE(with(4096, 2.7e-5).why.find("below the angle resolution"), std::string::npos);
-  EXPECT_TRUE(with(4096, 2e-4).accepted()) << "many reversals tell less than a count";
-  EXPECT_TRUE(with(0, 2.7e-5).accepted()) << "no encoder, no counts";
-}
-
-// Critical: 2 sqrt(3 N m/rad x 3e-5 kg m2) = 0.019 N m s/rad.
-TEST(AcceptanceTest, RefusesBristlesThatAreALag) {
-  const AcceptanceFixture fixture;
-  const auto with = [&](double damping_Nm_s_per_rad) {
-    Fitted child = fixture.leaving(0.7, 0.7, 0.7);
-    EXPECT_EQ(set_value(child.fit.model, "motor.rotor_inertia_kg_m2", 3e-5), "");
-    EXPECT_EQ(set_value(child.fit.model, "load.inertia_kg_m2", 0.0), "");
-    ParameterEstimate stiffness, damping;
-    stiffness.path = "lugre_friction.stiffness_Nm_per_rad";
-    stiffness.value = 3.0;
-    damping.path = "lugre_friction.damping_Nm_s_per_rad";
-    damping.value = damping_Nm_s_per_rad;
-    child.fit.parameters = {stiffness, damping};
-    return test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "lugre_friction", 100);
-  };
-  EXPECT_TRUE(with(0.04).accepted()) << with(0.04).why;
-  EXPECT_FALSE(with(0.2).accepted());
-  EXPECT_NE(with(0.2).why.find("a lag, not a spring"), std::string::npos) << with(0.2).why;
-}
-
 TEST(AcceptanceTest, RefusesAGainThatTheSimulatedNullHasAsWell) {
   const AcceptanceFixture fixture;
   const AcceptanceResult j =
@@ -394,113 +288,6 @@ TEST(AcceptanceTest, ASignalThatTheAdditionLeavesAsItWasDoesNotWaterItDown) {
   EXPECT_NEAR(j.holdout.floor, 0.01, 1e-3);
   // one that moves both is judged by both
   EXPECT_GT(test_acceptance(context, leaving(1, 3), leaving(0.95, 3.1), "x", 100).holdout.ratio, 0.95);
-}
-
-TEST(AcceptanceTest, RefusesABaseParameterThatIsPushedOutOfItsTolerance) {
-  const AcceptanceFixture fixture;
-  Fitted parent = fixture.leaving(1, 1, 1), child = fixture.leaving(0.7, 0.7, 0.7);
-  ParameterEstimate r;
-  r.path = "motor.resistance_ohm";
-  r.prior_sigma = 0.1;
-  r.prior_deviation_sigmas = 1.0;
-  parent.fit.parameters = {r};
-  r.prior_deviation_sigmas = -5.0;
-  child.fit.parameters = {r};
-  const AcceptanceResult j = test_acceptance(fixture.context, parent, child, "x", 100);
-  EXPECT_FALSE(j.accepted());
-  EXPECT_NE(j.why.find("motor.resistance_ohm"), std::string::npos) << j.why;
-}
-
-// A tolerance of 30 % puts a bound of zero at 3.3 standard deviations: no limit beyond that would ever refuse it.
-TEST(AcceptanceTest, RefusesWhatTakesABaseParametersPlace) {
-  const AcceptanceFixture fixture;
-  const auto accepted = [&](double before_sigmas, double after_sigmas, bool bound_before) {
-    Fitted parent = fixture.leaving(1, 1, 1), child = fixture.leaving(0.7, 0.7, 0.7);
-    ParameterEstimate friction;
-    friction.path = "coulomb_friction.torque_Nm";
-    friction.prior_sigma = 0.3;
-    friction.prior_deviation_sigmas = before_sigmas;
-    friction.at_bound = bound_before;
-    parent.fit.parameters = {friction};
-    friction.prior_deviation_sigmas = after_sigmas;
-    friction.at_bound = true;
-    child.fit.parameters = {friction};
-    return test_acceptance(fixture.context, parent, child, "grease_drag", 100).accepted();
-  };
-  EXPECT_FALSE(accepted(0.5, -3.33, false));
-  EXPECT_TRUE(accepted(-3.33, -3.33, true));  // it was there before
-  EXPECT_TRUE(accepted(0.0, -1.0, false));    // a belief so vague that zero is within it
-}
-
-// What its prior rejects without the addition too (p < 1 %) absorbs something else: no reason against a decisive gain.
-TEST(AcceptanceTest, ABaseParameterThatWasBentBeforeIsNoReasonAgainstADecisiveGain) {
-  const AcceptanceFixture fixture;
-  const Fitted parent = fixture.leaving(1, 1, 1);
-  const auto accepted = [&](double before_sigmas, double left) {
-    ParameterEstimate inductance;
-    inductance.path = "motor.inductance_H";
-    inductance.prior_sigma = 1e-4;
-    inductance.prior_deviation_sigmas = before_sigmas;
-    Fitted bent = parent, child = fixture.leaving(left, left, left);
-    bent.fit.parameters = {inductance};
-    inductance.prior_deviation_sigmas = 5.9;
-    child.fit.parameters = {inductance};
-    return test_acceptance(fixture.context, bent, child, "x", 100).accepted();
-  };
-  EXPECT_TRUE(accepted(3.1, 0.7));   // 51 % of the energy
-  EXPECT_FALSE(accepted(3.1, 0.9));  // 19 %: not decisive
-  EXPECT_FALSE(accepted(1.9, 0.7));  // not rejected before
-}
-
-TEST(AcceptanceTest, ReadsAParameterAtItsBoundAsASymptom) {
-  const AcceptanceFixture fixture;
-  Fitted child = fixture.leaving(0.7, 0.7, 0.7);
-  ParameterEstimate p;
-  p.path = "quadratic_drag.coefficient_Nm_s2_per_rad2";
-  p.value = 1.0;
-  p.sigma = 1e-3;
-  p.at_bound = true;
-  child.fit.parameters = {p};
-  const AcceptanceResult j =
-      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "quadratic_drag", 100);
-  EXPECT_FALSE(j.accepted());
-  EXPECT_NE(j.why.find("symptom"), std::string::npos) << j.why;
-}
-
-TEST(AcceptanceTest, RefusesAStrengthThatIsNotSignificant) {
-  const AcceptanceFixture fixture;
-  Fitted child = fixture.leaving(0.9, 0.9, 0.9);
-  ParameterEstimate p;
-  p.path = "lugre_friction.static_torque_Nm";
-  p.value = 5e-5;
-  p.sigma = 8e-5;
-  child.fit.parameters = {p};
-  EXPECT_FALSE(
-      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "lugre_friction", 100).accepted());
-}
-
-// Four wheels' ratios share their scale with the wheels' radius: each is known to 4 parts in a thousand, what
-// parts them to one in ten thousand.
-TEST(AcceptanceTest, CorrelatedStrengthsAreTestedJointly) {
-  const AcceptanceFixture fixture;
-  Fitted child = fixture.leaving(0.9, 0.9, 0.9);
-  const std::vector<double> ratios = {0.999, 1.002, 1.0, 0.999};
-  constexpr double kShared = 4e-3, kOwn = 1e-4;
-  for (std::size_t i = 0; i < 4; ++i) {
-    ParameterEstimate p;
-    p.path = "wheel_radius_mismatch.ratio_" + std::to_string(i + 1);
-    p.value = ratios[i];
-    p.sigma = kShared;
-    child.fit.parameters.push_back(p);
-  }
-  child.fit.covariance = Eigen::MatrixXd::Constant(4, 4, kShared * kShared);
-  child.fit.covariance.diagonal().array() += kOwn * kOwn;
-  EXPECT_TRUE(test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100)
-                  .accepted());
-  // a common scale alone is the wheels' radius
-  for (ParameterEstimate& p : child.fit.parameters) p.value = 1.002;
-  EXPECT_FALSE(test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "wheel_radius_mismatch", 100)
-                   .accepted());
 }
 
 // A residual that swings once in 2000 of 4000 samples holds a handful of independent ones: six numbers for 36 % of
