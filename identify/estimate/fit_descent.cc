@@ -44,6 +44,18 @@ void hold(Eigen::MatrixXd& h, Eigen::VectorXd& g, Eigen::Index unknown) {
   h(unknown, unknown) = 1.0;
 }
 
+// Holds what is pressed against its bound, gradient g outwards: a Gauss-Newton step of all unknowns, clipped there, does not
+// descend, one of the others does (Bertsekas, SIAM J. Control Optim. 20(2), 1982: two-metric projection).
+void hold_at_bounds(const FitProblem& problem, const Eigen::VectorXd& x, Eigen::MatrixXd& h,
+                    Eigen::VectorXd& g) {
+  constexpr double kRounding = 1e-12;  // of an unknown's scale: x has been divided and multiplied by it; a choice
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    const Unknown& u = problem.unknowns()[static_cast<std::size_t>(i)];
+    const double rounding = kRounding * u.scale;
+    if ((x[i] <= u.lower + rounding && g[i] > 0.0) || (x[i] >= u.upper - rounding && g[i] < 0.0)) hold(h, g, i);
+  }
+}
+
 // The problem as Ceres sees it: as many residuals as unknowns and one more. With J'J + P = R'R and gradient
 // g, the residuals R'^-1 g and sqrt(2 cost - |R'^-1 g|^2) have Jacobian [R; 0]: the same cost, gradient and
 // Gauss-Newton matrix as a hundred thousand samples, which Ceres then need not hold. Unknowns are in units of
@@ -68,9 +80,8 @@ class Condensed : public ceres::CostFunction {
     if (!derivatives) return true;
     Eigen::VectorXd g = scale_.cwiseProduct(p.gradient);
     Eigen::MatrixXd h = curvature(problem_, p, scale_, x);
-    if (held_ >= 0) {
-      hold(h, g, held_);
-    }
+    hold_at_bounds(problem_, x, h, g);
+    if (held_ >= 0) hold(h, g, held_);
     // ridge, so that a direction with neither data nor prior leaves the matrix positive definite
     h.diagonal().array() += 1e-12 * std::max(h.diagonal().maxCoeff(), 1e-300);
     const Cholesky factor(h);
@@ -98,10 +109,7 @@ Eigen::VectorXd full_step(const FitProblem& problem, const FitPoint& p, const Ei
                           const Eigen::VectorXd& scale) {
   Eigen::VectorXd g = scale.cwiseProduct(p.gradient);
   Eigen::MatrixXd h = curvature(problem, p, scale, x);
-  for (Eigen::Index i = 0; i < g.size(); ++i) {
-    const Unknown& u = problem.unknowns()[static_cast<std::size_t>(i)];
-    if ((x[i] <= u.lower && g[i] > 0.0) || (x[i] >= u.upper && g[i] < 0.0)) hold(h, g, i);
-  }
+  hold_at_bounds(problem, x, h, g);
   h.diagonal().array() += 1e-12 * std::max(h.diagonal().maxCoeff(), 1e-300);
   return ldlt_solve(h, g).cwiseProduct(scale);
 }

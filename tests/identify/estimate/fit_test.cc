@@ -222,6 +222,26 @@ TEST(Fit, AStrengthThatThePriorAloneTakesToItsBoundIsNotUnphysical) {
   EXPECT_NE(p->sentence.find("the same down to its bound"), std::string::npos) << p->value << p->sentence;
 }
 
+// A friction that falls with speed asks for less viscous friction than none: the others then find their least as if it were not
+// an unknown, in as many steps.
+TEST(Fit, AnUnknownPressedAgainstItsBoundDoesNotHoldUpTheOthers) {
+  const Candidate truth = changed(with_effect(model(), *find_effect("stribeck_friction")),
+                                  {{"stribeck_friction.extra_torque_Nm", 0.02},
+                                   {"stribeck_friction.speed_rad_s", 150.0},
+                                   {"motor.viscous_friction_Nm_s_per_rad", 0.0}});
+  const Candidate start = changed(
+      model(), {{"motor.viscous_friction_Nm_s_per_rad", 0.0}, {"coulomb_friction.torque_Nm", 0.006}});
+  std::vector<Unknown> unknowns = unknowns_of(start);
+  const auto predictor = make_predictor(bench(truth), start, {});
+  const FitResult all = fit(*predictor, start, unknowns, {});
+  ASSERT_TRUE(find(all, "motor.viscous_friction_Nm_s_per_rad")->at_bound);
+  std::erase_if(unknowns, [](const Unknown& u) { return u.path == "motor.viscous_friction_Nm_s_per_rad"; });
+  const FitResult others = fit(*predictor, start, unknowns, {});
+  EXPECT_TRUE(all.converged);
+  EXPECT_LE(all.iterations, others.iterations + 1);
+  EXPECT_NEAR(all.cost, others.cost, 1e-3 * others.cost);
+}
+
 TEST(Fit, StopsWhenAsked) {
   int asked = 0;
   FitOptions options;
