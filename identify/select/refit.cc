@@ -64,6 +64,23 @@ EffectUse near_neutral(const EffectUse& use) {
   return out;
 }
 
+// The effect of a fit as a search would start it, if one of its forms ended at a bound: at its limit (no inductance, a sharp edge)
+// a law is another one, and the base parameters have settled to that. Empty: none ended there.
+std::optional<EffectUse> off_its_limits(const FitResult& fit, const std::string& effect) {
+  const auto use =
+      std::ranges::find_if(fit.model.effects, [&](const EffectUse& u) { return u.entry->info->id == effect; });
+  if (use == fit.model.effects.end()) return std::nullopt;
+  for (const EffectParam& row : use->entry->info->params) {
+    const std::string path = effect + "." + param_key(row, fit.model.file.linear);
+    const bool at_bound = std::ranges::any_of(
+        fit.parameters, [&](const ParameterEstimate& p) { return p.path == path && p.at_bound; });
+    if (!at_bound || row.role != ParamRole::kShape || row.trait != ParamTrait::kForm) continue;
+    const DriveParams<double> drive = drive_of(fit.model);
+    return typical_use(*use->entry, &drive);
+  }
+  return std::nullopt;
+}
+
 // The same model, one effect's strength changed by a factor.
 Candidate with_strength_times(const Candidate& model, const std::string& effect, double factor) {
   Candidate out = model;
@@ -185,6 +202,10 @@ Fitted refit(const RefitSetup& of_iteration, const Fitted& parent, const Screene
   if (ratio > expected && !stopped()) also_from(with_use(parent.fit.model, near_neutral(effect.start)));
   if (ratio > expected && promised >= kWorthTypicalStart && !stopped())
     also_from(with_use(parent.fit.model, typical));
+  if (promised >= kWorthPriorStart && leaves_structure(setup, parent, best) && !stopped()) {
+    const std::optional<EffectUse> inside = off_its_limits(best.fit, effect.name);
+    if (inside) also_from(with_use(parent.fit.model, *inside));
+  }
   // If the base parameters have absorbed the effect, the optimiser stays near zero strength, or leaves them
   // absorbed beside the effect: also start from the nominal base, the effect at its typical size or as
   // estimated.

@@ -39,6 +39,16 @@ TEST_F(RealDiagnosis, SlowLinearAxisEndsAtHalfThePublishedForceError) {
   EXPECT_LE(share_of_force(emps, d.final_fit.model, Split::kValidation), 0.028);
 }
 
+// A speed that is concave in the duty, reported by a sensor that counts in another's time. Coast mode's time constant ends at its
+// bound in one valley, where it leaves 1.3 times as much as in the other.
+TEST_F(RealDiagnosis, SlowBenchThatCountsHasACoastingBridge) {
+  const RealSet bench("utcn_bldc");
+  const Diagnosis d = diagnosed(bench);
+  ASSERT_FALSE(d.effects.empty());
+  EXPECT_EQ(d.effects.front(), "coast_mode");
+  EXPECT_TRUE(found(d, "hall_speed_period"));
+}
+
 // Servo with a pendulum, eight loads, six gains: mean of |error| per run, averaged over the runs. Best known
 // before, found by hand: 16 and 11 mrad.
 TEST_F(RealDiagnosis, SlowServoHasASpeedLimitADelayAndLoadDependentFriction) {
