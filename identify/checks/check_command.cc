@@ -74,6 +74,7 @@ void check_between_rows(const RunView& view, const DriveView& drive, std::vector
   constexpr double kLively = 0.05;    // of the liveliest block's variance: quieter ones do not count; tuned
   constexpr double kShare = 0.25;     // of the variance; tuned
   constexpr double kLeastBlocks = 4;  // one step alone is in one; a choice
+  constexpr double kLeastChanging = 0.25;    // of a block's rows: one step at its end is as unlike; a choice
   constexpr std::size_t kLeastInBlock = 10;  // a correlation of fewer rows is chance; a choice
   const std::vector<double>&t = view.run->time_s, &u = *drive.drive;
   std::vector<double> off;
@@ -82,30 +83,31 @@ void check_between_rows(const RunView& view, const DriveView& drive, std::vector
   const double jitter = view.period_s > 0.0 ? kSigmaOverMad * median_of(off) / view.period_s : 0.0;
   if (jitter < kOddTimes) return;
   struct Block {
-    double variance, unlike;
+    double variance, unlike, changing;
   };
   std::vector<Block> blocks;
   double liveliest = 0.0;
   for (std::size_t from = 0, to = 0; from < t.size(); from = to) {
-    double sum = 0.0, squares = 0.0, changes = 0.0;
+    double sum = 0.0, squares = 0.0, changes = 0.0, changing = 0.0;
     for (to = from; to < t.size() && t[to] - t[from] < kBlock_s; ++to) {
       sum += u[to];
       squares += u[to] * u[to];
       if (to > from) changes += (u[to] - u[to - 1]) * (u[to] - u[to - 1]);
+      if (to > from && u[to] != u[to - 1]) changing += 1.0;
     }
     const auto n = static_cast<double>(to - from);
     if (to - from < kLeastInBlock || !std::isfinite(squares)) continue;
     const double variance = squares / n - sum / n * (sum / n);
     liveliest = std::max(liveliest, variance);
-    blocks.push_back(
-        {variance, changes / n / 2.0});  // half the mean squared change: variance less covariance
+    blocks.push_back({variance, changes / n / 2.0,
+                      changing / n});  // half the mean squared change: variance less covariance
   }
   double lively = 0.0, fast = 0.0, count = 0.0;
   for (const Block& b : blocks) {
     if (!(b.variance > kLively * liveliest)) continue;
     count += 1.0;
     lively += b.variance;
-    if (b.unlike > 0.5 * b.variance) fast += b.variance;
+    if (b.unlike > 0.5 * b.variance && b.changing >= kLeastChanging) fast += b.variance;
   }
   if (count < kLeastBlocks || fast < kShare * lively) return;
   findings.push_back({Grade::kDoubt, "fast_command", view.run->file, drive.drive_name, fast / lively,

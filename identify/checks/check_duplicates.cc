@@ -2,6 +2,7 @@
 // under two names.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "identify/checks/check_list.h"
@@ -37,19 +38,35 @@ void load_in_torque(const RunView& view, std::vector<DataFinding>& findings) {
        "it already and would be counted twice"});
 }
 
+bool drives_a_wheel(const CheckContext& data, const std::string& signal) {
+  return !data.runs.empty() && std::ranges::any_of(data.runs.front().drives, [&](const DriveView& drive) {
+    return drive.drive_name == signal;
+  });
+}
+
 }  // namespace
 
 void check_duplicates(const CheckContext& data, std::vector<DataFinding>& findings) {
   for (const RunView& view : data.runs) load_in_torque(view, findings);
   const std::vector<Channel>& channels = data.dataset.channels;
+  std::string alike;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     for (std::size_t j = i + 1; j < channels.size(); ++j) {
       if (channels[i].column != channels[j].column) continue;
+      if (drives_a_wheel(data, channels[i].signal) && drives_a_wheel(data, channels[j].signal)) {
+        if (alike.empty()) alike = channels[i].column;
+        continue;
+      }
       findings.push_back({Grade::kDoubt, "same_column", "", channels[j].signal, 0.0,
                           fmt::format("{} and {} are the same column \"{}\": it counts twice",
                                       channels[i].signal, channels[j].signal, channels[i].column)});
     }
   }
+  if (alike.empty()) return;
+  findings.push_back({Grade::kNote, "driven_alike", "", alike, 0.0,
+                      fmt::format("several wheels are driven by one column \"{}\": what only their "
+                                  "differences show is not excited",
+                                  alike)});
 }
 
 }  // namespace omnihil

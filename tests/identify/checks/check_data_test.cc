@@ -194,6 +194,9 @@ TEST(CheckData, ABridgeThatCoastsIsADoubt) {
   const DataFinding* f = find(findings, "wrong_scale");
   ASSERT_NE(f, nullptr) << text_of(findings);
   EXPECT_NE(f->sentence.find("falls with the duty"), std::string::npos) << f->sentence;
+  bench.nominal = with_effect(bench.nominal, *find_effect("coast_mode"));
+  ASSERT_EQ(set_value(bench.nominal, "coast_mode.coast_share", 1.0), "");
+  EXPECT_EQ(find(check(bench), "wrong_scale"), nullptr) << "the model has it";
 }
 
 TEST_F(SpoiltData, CurrentInMilliamperes) {
@@ -319,6 +322,20 @@ TEST_F(SpoiltData, AnInputFasterThanItsRows) {
   EXPECT_EQ(find(check(bench), "fast_command"), nullptr);
   for (std::size_t k = 0; k < run.time_s.size(); ++k) run.time_s[k] += 4e-4 * (uniform(5, 3, k) - 0.5);
   expect("fast_command", "what the drive was asked between them is not known", Grade::kDoubt);
+}
+
+// Holds of three of the blocks that are looked at, each step in the last row of one.
+TEST_F(SpoiltData, HoldsAtOddTimesAreNoInputFasterThanTheirRows) {
+  constexpr std::size_t kRows = 600, kBlock = 20;  // of 0.5 s
+  omnihil::Run& run = bench.dataset.runs[1];
+  run.time_s.resize(kRows);
+  for (auto& [name, values] : run.signals) values.resize(kRows);
+  for (std::size_t k = 0; k < kRows; ++k) {
+    const double odd = k % kBlock == 0 ? 0.0 : 0.4 * (uniform(5, 3, k) - 0.5);
+    run.time_s[k] = 0.02501 * (static_cast<double>(k) + odd);
+    signal(1, "duty")[k] = uniform(5, 4, (k + 1) / (3 * kBlock)) - 0.5;
+  }
+  EXPECT_EQ(find(check(bench), "fast_command"), nullptr);
 }
 
 // One step in a run changes from one row to the next as far as it ever does.

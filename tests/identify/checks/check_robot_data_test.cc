@@ -45,6 +45,22 @@ TEST_P(SpoiltRobot, OneEncoderThatCountsBackwards) {
   expect("swapped_sign", "encoder_3");
 }
 
+// A turn on the spot: all wheels have one duty, and its column is there once.
+TEST_P(SpoiltRobot, WheelsThatAreDrivenAlike) {
+  int wheels = 0;
+  for (Channel& c : dataset.channels) {
+    if (c.signal.starts_with("duty_")) c.column = "u", ++wheels;
+  }
+  ASSERT_GE(wheels, 3);
+  const auto findings = check_data(dataset, nominal);
+  const auto says = [&](const std::string& kind, const std::string& signal) {
+    return std::ranges::any_of(
+        findings, [&](const DataFinding& f) { return f.kind == kind && f.signal.starts_with(signal); });
+  };
+  EXPECT_FALSE(says("same_column", "duty_")) << text_of(findings);
+  EXPECT_TRUE(says("driven_alike", "u")) << text_of(findings);
+}
+
 TEST_P(SpoiltRobot, AGyroUpsideDown) {
   for (omnihil::Run& run : dataset.runs) {
     for (double& v : run.signals.find("gyro_z")->second) v = -v;
