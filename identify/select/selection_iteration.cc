@@ -253,9 +253,9 @@ std::string reason_of_screening(const Screened& s, Visibility visibility) {
     case Visibility::kVisible:
       break;
   }
-  return s.share > kLeastShare
-             ? fmt::format("could remove {:.1f} % of the error energy; others remove more", 100.0 * s.share)
-             : "would remove less of the error energy than is worth a refit";
+  return s.share > kLeastShare ? fmt::format("could remove {:.1f} % of the error energy; others remove more",
+                                             100.0 * std::clamp(s.data_share(), 0.0, 1.0))
+                               : "would remove less of the error energy than is worth a refit";
 }
 
 RankedEffect ranked(const Screened& s, double largest_null_gain) {
