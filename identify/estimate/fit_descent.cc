@@ -48,11 +48,13 @@ void hold(Eigen::MatrixXd& h, Eigen::VectorXd& g, Eigen::Index unknown) {
 // descend, one of the others does (Bertsekas, SIAM J. Control Optim. 20(2), 1982: two-metric projection).
 void hold_at_bounds(const FitProblem& problem, const Eigen::VectorXd& x, Eigen::MatrixXd& h,
                     Eigen::VectorXd& g) {
-  constexpr double kRounding = 1e-12;  // of an unknown's scale: x has been divided and multiplied by it; a choice
+  constexpr double kRounding =
+      1e-12;  // of an unknown's scale: x has been divided and multiplied by it; a choice
   for (Eigen::Index i = 0; i < g.size(); ++i) {
     const Unknown& u = problem.unknowns()[static_cast<std::size_t>(i)];
     const double rounding = kRounding * u.scale;
-    if ((x[i] <= u.lower + rounding && g[i] > 0.0) || (x[i] >= u.upper - rounding && g[i] < 0.0)) hold(h, g, i);
+    if ((x[i] <= u.lower + rounding && g[i] > 0.0) || (x[i] >= u.upper - rounding && g[i] < 0.0))
+      hold(h, g, i);
   }
 }
 

@@ -235,6 +235,25 @@ void make_inverse_setup(const Dataset& dataset, const DriveParams<double>& drive
   }
 }
 
+// Of the input that a settled point takes: the input's own and that of the speed, where either is stated. 0: neither.
+double stated_noise(const Dataset& dataset, const Channel* input, const AxisRecord& r, bool by_torque) {
+  const Channel* speed = by_torque ? nullptr : dataset.channel("velocity");
+  const double of_speed = speed != nullptr ? speed->sigma * command_slope(r.command, r.velocity) : 0.0;
+  return std::hypot(input != nullptr ? input->sigma : 0.0, of_speed);
+}
+
+// A measured input's: by the points before and after, which a map by the angle needs, or about a surface, either is an upper
+// bound. A command's (duty, voltage): that of the speeds of one command, else about the surface.
+double estimated_noise(const AxisRecord& r, const AxisInput& in) {
+  std::vector<std::vector<double>> of = {in.imposed_velocity_rad_s};
+  if (!in.load_torque_Nm.empty()) of.push_back(in.load_torque_Nm);
+  const double about_surface = surface_noise(r.command, of);
+  if (is_torque(in.kind)) return std::fmin(estimate_noise(r.command).sigma, about_surface);
+  const double of_repeats = command_noise(r.command, r.velocity);
+  if (std::isfinite(of_repeats)) return of_repeats;
+  return std::isfinite(about_surface) ? about_surface : estimate_noise(r.command).sigma;
+}
+
 void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s) {
   constexpr double kShareOfRange = 1e-3;  // hysteresis of the approach's direction; a choice (axis_setup.h)
   AxisInput& in = s.input;
@@ -269,12 +288,12 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
   }
   const std::string_view name = command_name(needed_kind(in.kind));
   const Channel* channel = dataset.channel(name);
-  const bool stated = is_torque(in.kind) && channel != nullptr && channel->sigma > 0.0;
-  std::vector<std::vector<double>> of = {in.imposed_velocity_rad_s};
-  if (!in.load_torque_Nm.empty()) of.push_back(in.load_torque_Nm);
-  // By the points before and after, which a map by the angle needs, or about a surface: either is an upper bound.
-  const double estimated = std::fmin(estimate_noise(r.command).sigma, surface_noise(r.command, of));
-  add(dataset, s, name, Quantity::kNeededInput, r.command, stated ? channel->sigma : estimated, stated);
+  add(dataset, s, name, Quantity::kNeededInput, r.command, 0.0, false);
+  ComparedSignal& c = s.compared.back();
+  const double stated = stated_noise(dataset, channel, r, is_torque(in.kind));
+  c.noise_is_stated = stated > 0.0;
+  c.noise_sigma = std::max(c.noise_is_stated ? stated : estimated_noise(r, in), c.noise_sigma);
+  c.whitened_sigma = c.noise_sigma;
 }
 
 }  // namespace omnihil

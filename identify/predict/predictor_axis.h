@@ -19,6 +19,8 @@ std::unique_ptr<Predictor> make_axis_predictor(const Dataset& dataset, const Can
 
 // By what drives it and what is measured.
 Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal);
+// Settled points of a drive by duty or voltage: what is lost before the winding is not searched, any of it would explain each speed.
+bool hides_losses_before_winding(const Dataset& dataset);
 
 // Tracks of a run for sorting errors; `model`: the run as the model has it, for what was not measured.
 std::vector<RegimeTrack> axis_regimes(const AxisSetup& setup, const Candidate& model, double step_s);

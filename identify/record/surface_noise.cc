@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "identify/record/statistics.h"
 
@@ -48,6 +49,31 @@ double surface_noise(const std::vector<double>& y, const std::vector<std::vector
   for (const double r : rest) sizes.push_back(std::abs(r));
   const double count = static_cast<double>(rows.size());
   return sigma_by_mad(std::move(sizes)) * std::sqrt(count / (count - static_cast<double>(numbers)));
+}
+
+double command_slope(const std::vector<double>& command, const std::vector<double>& velocity) {
+  double n = 0.0, u = 0.0, w = 0.0, uw = 0.0, ww = 0.0;
+  for (std::size_t k = 0; k < command.size() && k < velocity.size(); ++k) {
+    if (!std::isfinite(command[k]) || !std::isfinite(velocity[k]) || velocity[k] == 0.0) continue;
+    n += 1.0, u += command[k], w += velocity[k], uw += command[k] * velocity[k],
+        ww += velocity[k] * velocity[k];
+  }
+  const double spread = ww - w * w / std::max(n, 1.0);
+  return spread > 0.0 ? (uw - u * w / n) / spread : 0.0;
+}
+
+double command_noise(const std::vector<double>& command, const std::vector<double>& velocity) {
+  constexpr std::size_t kLeastPairs = 20;  // the sigma is then known to a quarter: 1.17 / sqrt(20); a choice
+  std::map<double, double> last;           // command: speed of its last row
+  std::vector<double> differences;
+  for (std::size_t k = 0; k < command.size() && k < velocity.size(); ++k) {
+    if (!std::isfinite(command[k]) || !std::isfinite(velocity[k]) || velocity[k] == 0.0) continue;
+    const auto [at, is_first] = last.try_emplace(command[k], velocity[k]);
+    if (!is_first) differences.push_back(std::abs(velocity[k] - at->second));
+    at->second = velocity[k];
+  }
+  if (differences.size() < kLeastPairs) return std::numeric_limits<double>::infinity();
+  return sigma_by_mad(std::move(differences)) / std::sqrt(2.0) * std::abs(command_slope(command, velocity));
 }
 
 }  // namespace omnihil

@@ -39,6 +39,14 @@ void hide_losses_before_winding(Capabilities& rig) {
 
 }  // namespace
 
+bool hides_losses_before_winding(const Dataset& dataset) {
+  if (dataset.rig != &rig_axis() || dataset.runs.empty()) return false;
+  const CommandKind kind = axis_command_kind(dataset);
+  const bool by_voltage = kind == CommandKind::kDuty || kind == CommandKind::kPositionTarget ||
+                          kind == CommandKind::kMotorVoltage;
+  return by_voltage && std::ranges::all_of(dataset.runs, [](const Run& r) { return r.steady; });
+}
+
 Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal) {
   const CommandKind kind = axis_command_kind(dataset);
   const DriveParams<double> drive = drive_of(nominal);
@@ -71,8 +79,7 @@ Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal)
                {kNeedsAngle, encoder || measured("position"), "needs an encoder"}},
       .free_base = {},
       .present_base = {}};
-  const bool settled = std::ranges::all_of(dataset.runs, [](const Run& r) { return r.steady; });
-  if (by_voltage && settled && !dataset.runs.empty()) hide_losses_before_winding(out);
+  if (hides_losses_before_winding(dataset)) hide_losses_before_winding(out);
   for (const Parameter& p : nominal.file.parameters.parameters) {
     if (p.tolerance.value_or(0.0) > 0.0) out.free_base.push_back(parameter_path(*p.row));
   }

@@ -392,7 +392,7 @@ class Diagnosing {
       out_.unknown.sentence = residual_sentence(excess, added);
       if (by_parameters) out_.unknown.sentence += parameters_sentence(another);
     }
-    settle_confounded(out_);
+    settle_confounded(heard().dataset, out_);
     out_.confidence = confidences(out_);
     out_.next_experiment = next_experiment(heard().dataset, out_);
     out_.complete = !stopped_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "identify/predict/predictor_axis.h"
 #include "sim/law/effect_registry.h"
 
 namespace omnihil {
@@ -32,6 +33,18 @@ std::string confounded_sentence(const std::vector<std::string>& members) {
       "These data cannot tell apart: {}. The first is the simplest; any of them explains the recording as "
       "well.",
       fmt::join(members, ", "));
+}
+
+// Both make a settled speed fall short of the duty's: by a constant voltage, or in a bend.
+void add_hidden_losses(const std::string& effect, Diagnosis& diagnosis) {
+  std::erase_if(diagnosis.confounded,
+                [&](const ConfoundedSet& set) { return set.members.front() == effect; });
+  add_set(
+      {effect, "dead_time", "coast_mode"},
+      fmt::format("These points cannot tell {} from a loss before the winding (dead_time, coast_mode and the "
+                  "like), which was not searched: measure the current as well, or record the motion.",
+                  effect),
+      diagnosis);
 }
 
 }  // namespace
@@ -71,7 +84,7 @@ void replace_in_answer(const std::string& richer, const std::string& simpler, Di
   add_set(std::move(members), std::move(sentence), diagnosis);
 }
 
-void settle_confounded(Diagnosis& diagnosis) {
+void settle_confounded(Diagnosis& diagnosis, bool losses_are_hidden) {
   const auto found = [&](const std::string& name) {
     return std::find(diagnosis.effects.begin(), diagnosis.effects.end(), name) != diagnosis.effects.end();
   };
@@ -83,6 +96,12 @@ void settle_confounded(Diagnosis& diagnosis) {
     set.sentence = confounded_sentence(set.members);
     return set.members.size() < 2;
   });
+  for (std::size_t i = 0; losses_are_hidden && i < diagnosis.effects.size(); ++i)
+    add_hidden_losses(diagnosis.effects[i], diagnosis);
+}
+
+void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis) {
+  settle_confounded(diagnosis, hides_losses_before_winding(dataset));
 }
 
 std::vector<Where> where_of(const Comparison& comparison, double order) {

@@ -229,8 +229,8 @@ TEST(Fit, AnUnknownPressedAgainstItsBoundDoesNotHoldUpTheOthers) {
                                   {{"stribeck_friction.extra_torque_Nm", 0.02},
                                    {"stribeck_friction.speed_rad_s", 150.0},
                                    {"motor.viscous_friction_Nm_s_per_rad", 0.0}});
-  const Candidate start = changed(
-      model(), {{"motor.viscous_friction_Nm_s_per_rad", 0.0}, {"coulomb_friction.torque_Nm", 0.006}});
+  const Candidate start =
+      changed(model(), {{"motor.viscous_friction_Nm_s_per_rad", 0.0}, {"coulomb_friction.torque_Nm", 0.006}});
   std::vector<Unknown> unknowns = unknowns_of(start);
   const auto predictor = make_predictor(bench(truth), start, {});
   const FitResult all = fit(*predictor, start, unknowns, {});

@@ -69,6 +69,44 @@ TEST(SettledAxis, AStatedNoiseOfTheCurrentIsTaken) {
   EXPECT_TRUE(make_predictor(d, motor(), {})->compared(0).front().noise_is_stated);
 }
 
+// A sweep of the duty in hundredths, ten times over: w = (d V - u_0) / k + noise.
+Dataset sweeps(double sigma_rad_s) {
+  constexpr int kSweeps = 10, kDuties = 60;
+  omnihil::Run run;
+  run.file = "sweeps.csv";
+  run.steady = true;
+  for (int row = 0; row < kSweeps * kDuties; ++row) {
+    const double duty = 0.01 * (1 + row % kDuties), lost = 0.1;
+    const double noise = sigma_rad_s * gaussian(5, 0, static_cast<std::uint64_t>(row));
+    run.time_s.push_back(row);
+    run.signals["duty"].push_back(duty);
+    run.signals["velocity"].push_back(duty <= lost ? 0.0 : (duty - lost) * 24.0 / kK_Nm_per_A + noise);
+  }
+  Dataset d;
+  d.rig = &rig_axis();
+  d.channels = {{.signal = "duty", .column = "d", .unit = "1"},
+                {.signal = "velocity", .column = "w", .unit = "rad/s"}};
+  d.runs = {run};
+  return d;
+}
+
+// 800 rad/s at full duty: 1 rad/s of noise is 0.00125 of it. Hundredths as a rounding would be 0.0029.
+TEST(SettledAxis, ACommandHasTheNoiseOfTheSpeedAndNoneOfItsGrid) {
+  const double noise = noise_of(sweeps(1.0));
+  // by the median of 450 differences: 1.17 / sqrt(450) = 6 %; three of them
+  EXPECT_NEAR(noise, 0.00125, 0.18 * 0.00125);
+}
+
+TEST(SettledAxis, AStatedNoiseOfTheDutyOrOfTheSpeedIsTaken) {
+  Dataset d = sweeps(1.0);
+  d.channels[0].sigma = 0.004;
+  EXPECT_NEAR(noise_of(d), 0.004, 1e-9);
+  d.channels[0].sigma = 0.0;
+  d.channels[1].sigma = 3.0;
+  EXPECT_NEAR(noise_of(d), 3.0 / 800.0, 0.01 * 3.0 / 800.0);
+  EXPECT_TRUE(make_predictor(d, motor(), {})->compared(0).front().noise_is_stated);
+}
+
 // d V_k = k w_k: the supply of one point is not that of the points before and after it.
 TEST(SettledAxis, ABusVoltageIsItsOwnRows) {
   Dataset d;

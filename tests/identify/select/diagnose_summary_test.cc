@@ -36,6 +36,16 @@ TEST(SettleConfounded, OfAnEffectThatWasRemovedNothingIsSaid) {
   EXPECT_TRUE(answer({"dead_time"}, {{{"backlash", "gear_efficiency"}, "of two"}}).confounded.empty());
 }
 
+TEST(SettleConfounded, AShaftsLawMayBeALossThatWasNotSearched) {
+  Diagnosis d;
+  d.effects = {"quadratic_drag"};
+  d.confounded = {{{"quadratic_drag", "motor.torque_constant_Nm_per_A"}, "2 % is its own"}};
+  settle_confounded(d, true);
+  ASSERT_EQ(d.confounded.size(), 1u);
+  EXPECT_EQ(d.confounded[0].members, (Names{"quadratic_drag", "dead_time", "coast_mode"}));
+  EXPECT_NE(d.confounded[0].sentence.find("measure the current"), std::string::npos);
+}
+
 TEST(SettleConfounded, OthersStayAsTheyAre) {
   const Diagnosis d =
       answer({"gravity_load"}, {{{"gravity_load", "imbalance"}, "as it was"},
