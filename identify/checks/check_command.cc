@@ -99,8 +99,8 @@ void check_between_rows(const RunView& view, const DriveView& drive, std::vector
     if (to - from < kLeastInBlock || !std::isfinite(squares)) continue;
     const double variance = squares / n - sum / n * (sum / n);
     liveliest = std::max(liveliest, variance);
-    blocks.push_back({variance, changes / n / 2.0,
-                      changing / n});  // half the mean squared change: variance less covariance
+    // half the mean squared change: variance less covariance
+    blocks.push_back({variance, changes / n / 2.0, changing / n});
   }
   double lively = 0.0, fast = 0.0, count = 0.0;
   for (const Block& b : blocks) {

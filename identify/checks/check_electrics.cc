@@ -133,10 +133,8 @@ void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double
   const bool same = std::log(confirmed) * std::log(ratio) > 0.0 && std::abs(std::log(confirmed)) > 0.5 * off;
   const double wrong = std::max(same ? kWrong : kWrongAlone, tolerance);
   const Coasting coasts = ratio > 1.0 ? coasting(data, wheel, all) : Coasting::kNo;
-  const bool declared = std::ranges::any_of(data.nominal.effects, [](const EffectUse& use) {
-    return use.entry->info->id == std::string_view("coast_mode") && !is_neutral(use);
-  });
-  if (declared && coasts != Coasting::kNo) return;  // the model has what lets it turn faster
+  const EffectUse* declared = use_of(data.nominal, "coast_mode");
+  if (declared != nullptr && !is_neutral(*declared) && coasts != Coasting::kNo) return;
   const bool fault = off > wrong && coasts != Coasting::kShown;
   findings.push_back(
       {fault ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,

@@ -18,10 +18,8 @@ constexpr std::string_view kEffects = "effects.";
 constexpr std::string_view kCoulomb = "coulomb_friction";
 
 double coulomb_of(const Candidate& candidate) {
-  for (const EffectUse& use : candidate.effects) {
-    if (use.entry->info->id == kCoulomb) return use.values.front();
-  }
-  return 0.0;
+  const EffectUse* use = use_of(candidate, kCoulomb);
+  return use != nullptr ? use->values.front() : 0.0;
 }
 
 // Updates the file's derived fields (models built from table and effects) after a change of either.
@@ -303,6 +301,12 @@ Candidate with_effect(const Candidate& candidate, EffectUse use) {
   Candidate out = candidate;
   out.effects.push_back(std::move(use));
   return out;
+}
+
+const EffectUse* use_of(const Candidate& candidate, std::string_view id) {
+  const auto at = std::ranges::find_if(candidate.effects,
+                                       [&](const EffectUse& use) { return use.entry->info->id == id; });
+  return at == candidate.effects.end() ? nullptr : &*at;
 }
 
 Candidate without_effect(const Candidate& candidate, std::string_view name) {

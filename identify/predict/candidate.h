@@ -82,6 +82,8 @@ EffectUse neutral_use(const EffectEntry& entry, const Candidate& of);
 Candidate with_effect(const Candidate& candidate, const EffectEntry& entry);
 Candidate with_effect(const Candidate& candidate, EffectUse use);  // a user's formula
 Candidate without_effect(const Candidate& candidate, std::string_view name);
+// The effect of that id, as the model has it; null: it has none.
+const EffectUse* use_of(const Candidate& candidate, std::string_view id);
 
 // Parameters of the drive: a rig "axis", or one wheel of a robot, lifted. Without coulomb_friction, which is
 // among the effects.

@@ -41,10 +41,8 @@ void hide_losses_before_winding(Capabilities& rig) {
 
 bool hides_losses_before_winding(const Dataset& dataset) {
   if (dataset.rig != &rig_axis() || dataset.runs.empty()) return false;
-  const CommandKind kind = axis_command_kind(dataset);
-  const bool by_voltage = kind == CommandKind::kDuty || kind == CommandKind::kPositionTarget ||
-                          kind == CommandKind::kMotorVoltage;
-  return by_voltage && std::ranges::all_of(dataset.runs, [](const Run& r) { return r.steady; });
+  return !is_torque(axis_command_kind(dataset)) &&
+         std::ranges::all_of(dataset.runs, [](const Run& r) { return r.steady; });
 }
 
 Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal) {
@@ -52,7 +50,7 @@ Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal)
   const DriveParams<double> drive = drive_of(nominal);
   const auto measured = [&](std::string_view name) { return dataset.channel(name) != nullptr; };
   const bool by_duty = kind == CommandKind::kDuty || kind == CommandKind::kPositionTarget;
-  const bool by_voltage = by_duty || kind == CommandKind::kMotorVoltage;
+  const bool by_voltage = !is_torque(kind);
   const bool simulated = axis_method(dataset) == Method::kForward;
   const bool two_inertias = drive.load_inertia_kg_m2 > 0.0 && drive.rotor_inertia_kg_m2 > 0.0;
   const bool encoder = measured("encoder");

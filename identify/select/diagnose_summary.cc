@@ -84,7 +84,7 @@ void replace_in_answer(const std::string& richer, const std::string& simpler, Di
   add_set(std::move(members), std::move(sentence), diagnosis);
 }
 
-void settle_confounded(Diagnosis& diagnosis, bool losses_are_hidden) {
+void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis) {
   const auto found = [&](const std::string& name) {
     return std::find(diagnosis.effects.begin(), diagnosis.effects.end(), name) != diagnosis.effects.end();
   };
@@ -96,12 +96,8 @@ void settle_confounded(Diagnosis& diagnosis, bool losses_are_hidden) {
     set.sentence = confounded_sentence(set.members);
     return set.members.size() < 2;
   });
-  for (std::size_t i = 0; losses_are_hidden && i < diagnosis.effects.size(); ++i)
-    add_hidden_losses(diagnosis.effects[i], diagnosis);
-}
-
-void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis) {
-  settle_confounded(diagnosis, hides_losses_before_winding(dataset));
+  if (!hides_losses_before_winding(dataset)) return;
+  for (const std::string& effect : diagnosis.effects) add_hidden_losses(effect, diagnosis);
 }
 
 std::vector<Where> where_of(const Comparison& comparison, double order) {

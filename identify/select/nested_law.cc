@@ -8,17 +8,12 @@ namespace omnihil {
 
 std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
                                     const std::string& name) {
-  const std::vector<EffectUse>& uses = current.fit.model.effects;
-  const auto uses_id = [&](std::string_view id) {
-    return std::find_if(uses.begin(), uses.end(),
-                        [&](const EffectUse& u) { return u.entry->info->id == id; });
-  };
-  const auto rich = uses_id(name);
-  if (rich == uses.end() || task.predictor->shows_signature_of(*rich->entry)) return std::nullopt;
+  const EffectUse* rich = use_of(current.fit.model, name);
+  if (rich == nullptr || task.predictor->shows_signature_of(*rich->entry)) return std::nullopt;
   for (const std::string_view simpler : rich->entry->info->nests) {
     const auto entry = std::find_if(task.applicable.begin(), task.applicable.end(),
                                     [&](const EffectEntry* e) { return e->info->id == simpler; });
-    if (entry == task.applicable.end() || uses_id(simpler) != uses.end()) continue;
+    if (entry == task.applicable.end() || use_of(current.fit.model, simpler) != nullptr) continue;
     const Candidate without = without_effect(current.fit.model, name);
     const Candidate with = with_use(without, at_typical_size(neutral_use(**entry), without));
     Fitted fitted = refit_to_convergence(setup, refit_as_it_is(setup, with, 1));

@@ -67,9 +67,8 @@ EffectUse near_neutral(const EffectUse& use) {
 // The effect of a fit as a search would start it, if one of its forms ended at a bound: at its limit (no inductance, a sharp edge)
 // a law is another one, and the base parameters have settled to that. Empty: none ended there.
 std::optional<EffectUse> off_its_limits(const FitResult& fit, const std::string& effect) {
-  const auto use = std::ranges::find_if(fit.model.effects,
-                                        [&](const EffectUse& u) { return u.entry->info->id == effect; });
-  if (use == fit.model.effects.end()) return std::nullopt;
+  const EffectUse* use = use_of(fit.model, effect);
+  if (use == nullptr) return std::nullopt;
   for (const EffectParam& row : use->entry->info->params) {
     const std::string path = effect + "." + param_key(row, fit.model.file.linear);
     const bool at_bound = std::ranges::any_of(

@@ -82,9 +82,7 @@ double speed_error(const SelectionTask& task, const Fitted& parent) {
 std::vector<const EffectEntry*> not_yet(const SelectionTask& task, const Candidate& model) {
   std::vector<const EffectEntry*> out;
   for (const EffectEntry* e : task.applicable) {
-    const bool has = std::any_of(model.effects.begin(), model.effects.end(),
-                                 [&](const EffectUse& u) { return u.entry->info->id == e->info->id; });
-    if (!has) out.push_back(e);
+    if (use_of(model, e->info->id) == nullptr) out.push_back(e);
   }
   return out;
 }

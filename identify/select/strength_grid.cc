@@ -38,9 +38,8 @@ Candidate with_strength(const Candidate& model, const EffectUse& use, double str
 
 std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const Candidate& model,
                                                 const std::string& effect, const Eigen::VectorXd& residual) {
-  const auto use =
-      std::ranges::find_if(model.effects, [&](const EffectUse& u) { return u.entry->info->id == effect; });
-  if (use == model.effects.end()) return std::nullopt;
+  const EffectUse* use = use_of(model, effect);
+  if (use == nullptr) return std::nullopt;
   const WhitenedResiduals& fit = (*setup.splits)[kTraining];
   std::optional<Candidate> lowest;
   double least = 1.0;  // of `residual`'s energy

@@ -12,7 +12,7 @@ Diagnosis answer(Names effects, std::vector<ConfoundedSet> sets) {
   Diagnosis d;
   d.effects = std::move(effects);
   d.confounded = std::move(sets);
-  settle_confounded(d);
+  settle_confounded({}, d);
   return d;
 }
 
@@ -40,7 +40,16 @@ TEST(SettleConfounded, AShaftsLawMayBeALossThatWasNotSearched) {
   Diagnosis d;
   d.effects = {"quadratic_drag"};
   d.confounded = {{{"quadratic_drag", "motor.torque_constant_Nm_per_A"}, "2 % is its own"}};
-  settle_confounded(d, true);
+  Dataset points;
+  points.rig = &rig_axis();
+  points.channels = {{.signal = "duty", .column = "d", .unit = "1"},
+                     {.signal = "velocity", .column = "w", .unit = "rad/s"}};
+  points.runs.resize(1);
+  Diagnosis motion = d;
+  settle_confounded(points, motion);
+  EXPECT_EQ(motion.confounded[0].members.size(), 2u) << "a motion shows them";
+  points.runs[0].steady = true;
+  settle_confounded(points, d);
   ASSERT_EQ(d.confounded.size(), 1u);
   EXPECT_EQ(d.confounded[0].members, (Names{"quadratic_drag", "dead_time", "coast_mode"}));
   EXPECT_NE(d.confounded[0].sentence.find("measure the current"), std::string::npos);
@@ -61,7 +70,7 @@ TEST(ReplaceInAnswer, KeepsWhatCannotBeToldApart) {
   d.effects = {"coast_mode", "lugre_friction"};
   d.confounded = {{{"lugre_friction", "stribeck_friction", "coulomb_friction"}, "of three"}};
   replace_in_answer("lugre_friction", "coulomb_friction", d);
-  settle_confounded(d);
+  settle_confounded({}, d);
   EXPECT_EQ(d.effects, (Names{"coast_mode", "coulomb_friction"}));
   ASSERT_EQ(d.confounded.size(), 1u);
   EXPECT_EQ(d.confounded[0].members, (Names{"coulomb_friction", "lugre_friction", "stribeck_friction"}));
@@ -74,7 +83,7 @@ TEST(ReplaceInAnswer, NamesTheLawThatGaveWay) {
   d.effects = {"grease_drag"};
   d.confounded = {{{"grease_drag", "motor.viscous_friction_Nm_s_per_rad"}, "2 % is its own"}};
   replace_in_answer("grease_drag", "coulomb_friction", d);
-  settle_confounded(d);
+  settle_confounded({}, d);
   ASSERT_EQ(d.confounded.size(), 1u);  // the base parameter was aliased with the law that is gone
   EXPECT_EQ(d.confounded[0].members, (Names{"coulomb_friction", "grease_drag"}));
 }
