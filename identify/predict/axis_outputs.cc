@@ -6,9 +6,8 @@ namespace omnihil {
 namespace {
 
 template <typename T>
-T quantity_of(const AxisSetup& s, const DriveParams<T>& p, Quantity what,
-              const std::vector<AxisSample<T>>& samples, std::size_t k) {
-  const AxisSample<T>& now = samples[k];
+T quantity_of(const AxisSetup& s, const DriveParams<T>& p, Quantity what, const AxisSample<T>& now,
+              std::size_t k) {
   switch (what) {
     case Quantity::kSpeed:
       return now.velocity_rad_s;
@@ -39,24 +38,22 @@ T quantity_of(const AxisSetup& s, const DriveParams<T>& p, Quantity what,
 
 // A settled point as an input in time: held until the winding has settled, and once more, by a step each. The middle of a step
 // is at the measured angle.
-AxisInput settled_point(const AxisSetup& s, std::size_t k) {
+void set_settled_point(const AxisSetup& s, std::size_t k, AxisInput& point) {
   constexpr double kCreep_rad_s = 1e-6;  // slow enough that nothing but dry friction notices; a choice
   const AxisInput& in = s.input;
   const double measured = in.imposed_velocity_rad_s[k];
   const double speed = measured != 0.0 ? measured : s.approach[k] * kCreep_rad_s;
-  const auto held = [&](const std::vector<double>& of, double less = 0.0) {
-    return of.empty() ? of : std::vector<double>(3, of[k] - less);
+  const auto hold = [&](const std::vector<double>& of, std::vector<double>& held, double less = 0.0) {
+    if (!of.empty()) held.assign(3, of[k] - less);
   };
-  AxisInput point;
   point.kind = in.kind;
   point.time_s = {0.0, kSettled_s, 2.0 * kSettled_s};
-  point.command = held(in.command);
-  point.bus_voltage_V = held(in.bus_voltage_V);
+  hold(in.command, point.command);
+  hold(in.bus_voltage_V, point.bus_voltage_V);
   point.imposed_velocity_rad_s.assign(3, speed);
   point.command_is_compared = in.command_is_compared;
-  point.load_torque_Nm = held(in.load_torque_Nm);
-  point.measured_position_rad = held(s.position, 0.5 * kSettled_s * speed);
-  return point;
+  hold(in.load_torque_Nm, point.load_torque_Nm);
+  hold(s.position, point.measured_position_rad, 0.5 * kSettled_s * speed);
 }
 
 }  // namespace
@@ -64,13 +61,29 @@ AxisInput settled_point(const AxisSetup& s, std::size_t k) {
 template <typename T>
 std::vector<std::vector<T>> axis_outputs(const AxisSetup& setup, const DriveParams<T>& params,
                                          const EffectSet<T>& effects, double step_s) {
-  std::vector<AxisSample<T>> samples;
-  if (!setup.steady) samples = run_axis(params, effects, setup.input, {.step_s = step_s});
-  for (std::size_t k = 0; setup.steady && k < setup.input.time_s.size(); ++k)
-    samples.push_back(run_axis(params, effects, settled_point(setup, k), {.step_s = kSettled_s}).back());
-  return observed<T>(setup, setup.input.time_s, [&](const Observation& how, std::size_t k) {
-    return quantity_of(setup, params, how.quantity, samples, k);
-  });
+  const std::vector<double>& time_s = setup.input.time_s;
+  std::vector<std::vector<T>> out(setup.seen.size());
+  for (std::vector<T>& signal : out) signal.reserve(time_s.size());
+  const auto see = [&](std::size_t k, const AxisSample<T>& now) {
+    for (std::size_t s = 0; s < out.size(); ++s)
+      out[s].push_back(quantity_of(setup, params, setup.seen[s].quantity, now, k));
+  };
+  if (setup.steady) {
+    AxisInput point;
+    const auto settled = [&](std::size_t k) -> const AxisInput& {
+      set_settled_point(setup, k, point);
+      return point;
+    };
+    visit_axis_ends<T>(params, effects, time_s.size(), settled, {.step_s = kSettled_s}, see);
+  } else {
+    visit_axis<T>(params, effects, setup.input, {.step_s = step_s}, see);
+  }
+  for (std::size_t s = 0; s < out.size(); ++s) {
+    const Observation& how = setup.seen[s];
+    if (how.view == View::kDifference)
+      out[s] = observed<T>(how, time_s, [&](std::size_t k) { return out[s][k]; });
+  }
+  return out;
 }
 
 template std::vector<std::vector<double>> axis_outputs(const AxisSetup&, const DriveParams<double>&,

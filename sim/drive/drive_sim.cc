@@ -81,8 +81,15 @@ void DriveSim<T>::set_step(double step_s) {
 template <typename T>
 DriveState<T> DriveSim<T>::initial_state() const {
   DriveState<T> state;
-  std::copy(effects_.initial_states().begin(), effects_.initial_states().end(), state.effects.begin());
+  restart(state);
   return state;
+}
+
+template <typename T>
+void DriveSim<T>::restart(DriveState<T>& state) const {
+  static_cast<DriveMotion<T>&>(state) = {};
+  if (state.commands.count > 0) state.commands = {};
+  std::copy(effects_.initial_states().begin(), effects_.initial_states().end(), state.effects.begin());
 }
 
 // ------------------------------------------------------------------------------------ the places, in order

@@ -30,7 +30,7 @@
 namespace omnihil {
 
 template <typename T>
-struct DriveState {
+struct DriveMotion {
   double now_s = 0.0;
   T current_A = T(0);
   T omega_rotor_rad_s = T(0);
@@ -44,6 +44,10 @@ struct DriveState {
   T heat_W = T(0);              // R i^2 of the sub-step before
   T temperature_rise_K = T(0);  // of the winding over ambient; stays zero unless an effect models it
   std::array<T, kMaxEffectStates> effects{};
+};
+
+template <typename T>
+struct DriveState : DriveMotion<T> {
   CommandHistory commands;
 };
 
@@ -87,7 +91,9 @@ class DriveSim {
   DriveSim(const DriveParams<T>& params, EffectSet<T> effects, double step_s);
 
   DriveState<T> initial_state() const;
-  void set_step(double step_s);  // for records whose samples are not evenly spaced
+  void restart(
+      DriveState<T>& state) const;  // becomes the initial state; 32 kB of commands only if there were any
+  void set_step(double step_s);     // for records whose samples are not evenly spaced
   DriveResult<T> advance(DriveState<T>& state, const DriveInput<T>& input, int substeps) const;
 
   const DriveParams<T>& params() const { return params_; }

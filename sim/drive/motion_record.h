@@ -39,6 +39,8 @@ class MotionRecord {
       points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(half - 1));
   }
 
+  void clear() { points_.clear(); }
+
   MotionPoint<T> at(const T& time_s) const {
     const double t = value_of(time_s);
     const MotionPoint<T>& first = points_.front();

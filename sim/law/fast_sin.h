@@ -49,4 +49,9 @@ T turning_mean(const T& angle_rad) {
   return 1.0 - s * (1.0 / 6) * (1.0 - s * (1.0 / 20) * (1.0 - s * (1.0 / 42) * (1.0 - s * (1.0 / 72))));
 }
 
+// Where no unknown is behind the angle (an imposed speed) the same bits without eight derivatives of zero.
+inline Jet turning_mean(const Jet& angle_rad) {
+  return angle_rad.v.isZero(0.0) ? Jet(turning_mean(angle_rad.a)) : turning_mean<Jet>(angle_rad);
+}
+
 }  // namespace omnihil

@@ -32,5 +32,16 @@ TEST(FastSin, HasTheCosineForDerivative) {
   EXPECT_NEAR(y.v[0], 3.0 * std::cos(2.1), 1e-14);
 }
 
+// An imposed speed has no unknown behind it.
+TEST(TurningMean, OfAConstantAngleHasTheSameBits) {
+  for (const double angle : {1e-9, 0.3, 2.0, 40.0}) {
+    const Jet by_parts = turning_mean<Jet>(Jet(angle)), quick = turning_mean(Jet(angle));
+    EXPECT_EQ(quick.a, by_parts.a);
+    EXPECT_EQ(quick.a, turning_mean(angle));
+    EXPECT_TRUE(quick.v == by_parts.v) << angle;
+    EXPECT_NE(turning_mean(Jet(angle, 0)).v[0], 0.0) << angle;
+  }
+}
+
 }  // namespace
 }  // namespace omnihil::test
