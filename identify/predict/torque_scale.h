@@ -4,8 +4,8 @@
 //
 // The usual sizes and priors of effects (coulomb_friction 3 mN m, within 10 mN m) are those of a robot's wheel
 // motors. Friction, gravity and ripple grow with the drive they are of, so on a bench that says what torque it
-// asked for they are taken in proportion to it; never smaller than in the catalogue. Where only a voltage or a
-// duty is known the scale is 1, and a linear axis has its own (linear_scale.h).
+// asked for they are taken in proportion to it, on one that is asked for a voltage or a duty in proportion to what the
+// drive could do at standstill, k U / R; never smaller than in the catalogue. A linear axis has its own (linear_scale.h).
 #pragma once
 #include "identify/predict/candidate.h"
 #include "identify/record/dataset.h"
