@@ -118,13 +118,16 @@ std::vector<std::size_t> rows_of_role(const EffectUse& use, ParamRole role) {
 }
 
 // A strength's further sizes, where no line leads from one size to another.
-void add_sizes(const SearchGrid& grid, std::vector<EffectVariant>& variants) {
+void add_sizes(const EffectInfo& info, std::vector<EffectVariant>& variants) {
   const std::size_t count = variants.size();
-  for (const double size : grid.at) {
+  for (const double size : info.params[first_strength(info)].grid.at) {
     if (size == 0.0 || size == 1.0) continue;
     for (std::size_t i = 0; i < count; ++i) {
-      variants.push_back(variants[i]);
-      for (VariantColumn& c : variants.back().columns) c.size *= size;
+      EffectVariant sized = variants[i];
+      for (VariantColumn& c : sized.columns) c.size *= size;
+      for (std::size_t row = 0; row < sized.shape.values.size(); ++row)
+        sized.shape.values[row] *= std::pow(size, info.params[row].power_of_size);
+      variants.push_back(std::move(sized));
     }
   }
 }
@@ -166,7 +169,7 @@ std::vector<EffectVariant> variants_of(const EffectEntry& entry, const Candidate
       add_columns(info, row, candidate, v);
     }
   }
-  add_sizes(info.params[first_strength(info)].grid, variants);
+  add_sizes(info, variants);
   return variants;
 }
 

@@ -25,8 +25,9 @@ struct ShaftCompliance {
        .what = "twist per torque, at the output",
        .how = "hold the rotor, load the output with a known torque, read the twist; or the resonance",
        .start_for = compliance_of,
-       // a ringing at one frequency is nothing like one at twice it: no line leads from one size to another
-       .grid = {GridOf::kStart, {1.0, 0.2}}},
+       // a ringing at one frequency is nothing like one at twice it: no line leads from one size to another;
+       // 140, 313, 63, 28, 15 and 7 Hz: a gear's, a belt's, a long arm's
+       .grid = {GridOf::kStart, {1.0, 0.2, 5.0, 25.0, 90.0, 400.0}}},
       {.name = "damping_Nm_s_per_rad",
        .unit = "N m s/rad",
        .role = ParamRole::kShape,
@@ -36,7 +37,8 @@ struct ShaftCompliance {
        .upper = 100,
        .what = "torque per rate of twist, at the output",
        .how = "decay of the ringing after a step",
-       .start_for = damping_of},
+       .start_for = damping_of,
+       .power_of_size = -0.5},  // the same loss: d = 2 zeta sqrt(J / c)
   };
   static constexpr EffectInfo kInfo{
       .id = "shaft_compliance",

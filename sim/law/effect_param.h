@@ -49,7 +49,7 @@ enum class GridOf : std::uint8_t {
 
 struct SearchGrid {
   GridOf of = GridOf::kStart;
-  std::array<double, 5> at{};  // as many as are not 0; none: the start value alone
+  std::array<double, 6> at{};  // as many as are not 0; none: the start value alone
 };
 
 // Of an order: the rows that hold strength (and phase, if its row follows) at 2, 3, … times it.
@@ -80,6 +80,8 @@ struct EffectParam {
   double (*start_for)(const DriveParams<double>&) = nullptr;
   ParamTrait trait = ParamTrait::kPlain;
   SearchGrid grid{};
+  // Of a shape: it goes with this power of the further sizes that the strength is tried at.
+  double power_of_size = 0.0;
   HarmonicSeries series{};  // kOrder
   int wheel = 0;  // of a row that is a wheel's: 1, 2 … as many as a robot may have; they stand last
 };

@@ -52,6 +52,21 @@ TEST(EffectVariants, OrdersOfCoggingAreThoseThatStandOutWhereTheyDo) {
   EXPECT_EQ(tried.count(12.0), 0u);
 }
 
+// A spring is tried from a gear's 313 Hz down to a long arm's 7 Hz, each with the same loss: c d^2 is the same.
+TEST(EffectVariants, ASoftSpringIsTriedWithTheSameLoss) {
+  const EffectEntry& spring = *find_effect("shaft_compliance");
+  std::vector<double> compliances, losses;
+  for (const EffectVariant& v : variants_of(spring, axis_with_unknown_friction(), {})) {
+    compliances.push_back(v.columns.front().size);
+    losses.push_back(v.columns.front().size *
+                     std::pow(v.shape.values[row_of(spring, "damping_Nm_s_per_rad")], 2));
+  }
+  ASSERT_GE(compliances.size(), 6u);
+  const auto [stiffest, softest] = std::minmax_element(compliances.begin(), compliances.end());
+  EXPECT_GT(*softest / *stiffest, std::pow(313.0 / 8.0, 2));
+  for (const double loss : losses) EXPECT_NEAR(loss / losses.front(), 1.0, 1e-9);
+}
+
 // 12 and 84 have the common divisor 12: harmonics 1 and 7 of it.
 TEST(EffectVariants, SeveralOrdersAtOnceAreHarmonicsOfTheirCommonDivisor) {
   const std::vector<EffectVariant> series =
