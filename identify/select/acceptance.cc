@@ -119,8 +119,8 @@ bool is_kin(const EffectInfo& a, const EffectInfo& b) {
 // Has an effect been found that changes the same quantity as this one? What the model file declares was not found.
 bool has_found_kin(const AcceptanceContext& context, const Fitted& parent, std::string_view name) {
   const EffectEntry* entry = find_effect(name);
-  if (entry == nullptr || context.base_model == nullptr) return false;
-  const auto& declared = context.base_model->effects;
+  if (entry == nullptr || context.base_fit == nullptr) return false;
+  const auto& declared = context.base_fit->model.effects;
   return std::any_of(
       parent.fit.model.effects.begin(), parent.fit.model.effects.end(), [&](const EffectUse& use) {
         const auto is_same_entry = [&](const EffectUse& other) { return other.entry == use.entry; };
@@ -341,7 +341,7 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
   out.decisive = 1.0 - held.ratio > kDecisiveGain && held.worst < 1.0;
   const double rise =
       extrapolation_rise(context, parent, child, out.extrapolation, static_cast<std::size_t>(decides));
-  std::string implausible = implausibility(parent.fit, child.fit, name, out.decisive);
+  std::string implausible = implausibility(parent.fit, child.fit, name, out.decisive, context.base_fit);
   if (implausible.empty()) implausible = below_resolution(child.fit, name, context.resolution);
   out.plausible = implausible.empty();
   DecidingGain gain = deciding_gain(context, decides, parent, child, name);

@@ -60,7 +60,7 @@ struct AcceptanceContext {
   bool structure_remains = false;
   // Whitened residuals of the base model, before any effect was found; null: the parent is that.
   const Residuals* base = nullptr;
-  const Candidate* base_model = nullptr;  // that model: its effects are declared, not found; null: none is
+  const FitResult* base_fit = nullptr;  // that model's: its effects are declared, not found; null: none is
   // Of the measured signals, per channel in its unit squared; empty: not known.
   std::array<Eigen::VectorXd, kSplits> signal_variance{};
 };

@@ -24,24 +24,37 @@ constexpr double kDeviationRise_sigmas = 0.7;   // tuned
 // Standard deviation of an angle of which nothing is known, 2 pi / sqrt(12).
 constexpr double kUniformAngle_rad = 1.8138;  // derived
 
+// By its value, too: numbers that only their sum determines are no less far from what is known of them.
+double deviation_of(const ParameterEstimate& p) {
+  return std::max(std::abs(p.prior_deviation_sigmas), std::abs(prior_z(p, p.value)));
+}
+
 // A base parameter that the addition moves out of its tolerance or to a bound. Empty: none. What its prior rejects without
-// the addition too absorbs something else that is missing (an inductance a delay): beside a decisive gain it says nothing
-// against this addition.
-std::string moved_out_of_tolerance(const FitResult& parent, const FitResult& child, bool decisive) {
+// any addition absorbs something that is missing (an inductance a delay): beside a decisive gain it says nothing against this
+// one. What an earlier addition moved that far is no such number: two laws would walk twice as far as one may.
+std::string moved_out_of_tolerance(const FitResult& base, const FitResult& parent, const FitResult& child,
+                                   bool decisive) {
   for (const ParameterEstimate& p : child.parameters) {
-    const double sigmas = std::abs(p.prior_deviation_sigmas);
+    const double sigmas = deviation_of(p);
     if (p.prior_sigma <= 0.0 || (sigmas < kOutOfTolerance_sigmas && !p.at_bound)) continue;
     const auto before = std::find_if(parent.parameters.begin(), parent.parameters.end(),
                                      [&](const ParameterEstimate& q) { return q.path == p.path; });
     if (before == parent.parameters.end()) continue;  // of the effect itself
-    if (decisive && std::abs(before->prior_deviation_sigmas) >= kPriorRejected_sigmas) continue;
-    const double rise = sigmas - std::abs(before->prior_deviation_sigmas);
+    const auto at_first =
+        std::ranges::find_if(base.parameters, [&](const ParameterEstimate& q) { return q.path == p.path; });
+    const bool absorbs =
+        at_first != base.parameters.end() && deviation_of(*at_first) >= kPriorRejected_sigmas;
+    if (decisive && absorbs && deviation_of(*before) >= kPriorRejected_sigmas) continue;
+    const double rise = sigmas - deviation_of(*before);
     // A bound at zero lies nearer than the limit where the tolerance is wide: the addition stands in for the parameter.
     const bool replaced = p.at_bound && !before->at_bound && sigmas >= kRestored_sigmas;
     if (rise > kDeviationRise_sigmas && (replaced || sigmas >= kOutOfTolerance_sigmas)) {
+      const auto signed_sigmas = [](const ParameterEstimate& of) {
+        return of.prior_deviation_sigmas != 0.0 ? of.prior_deviation_sigmas : prior_z(of, of.value);
+      };
       return fmt::format("it moves {} {} ({:+.1f} sigma, before {:+.1f})", p.path,
-                         replaced ? "to its bound" : "out of its tolerance", p.prior_deviation_sigmas,
-                         before->prior_deviation_sigmas);
+                         replaced ? "to its bound" : "out of its tolerance", signed_sigmas(p),
+                         signed_sigmas(*before));
     }
   }
   return "";
@@ -252,9 +265,10 @@ std::string ends_at_bound(const FitResult& child, const std::string& name) {
 }
 
 std::string implausibility(const FitResult& parent, const FitResult& child, const std::string& name,
-                           bool decisive) {
+                           bool decisive, const FitResult* base) {
   const std::string why = implausible_estimate(child, name, decisive);
-  return why.empty() ? moved_out_of_tolerance(parent, child, decisive) : why;
+  return why.empty() ? moved_out_of_tolerance(base != nullptr ? *base : parent, parent, child, decisive)
+                     : why;
 }
 
 }  // namespace omnihil

@@ -68,8 +68,8 @@ std::string below_resolution(const FitResult& child, const std::string& name, co
 std::string ends_at_bound(const FitResult& child, const std::string& name);
 
 // `decisive`: skip the significance test of the strength; the gain alone proves it, even if strength and
-// shape are correlated.
+// shape are correlated. `base`: before any effect was found; null: the parent is that.
 std::string implausibility(const FitResult& parent, const FitResult& child, const std::string& name,
-                           bool decisive);
+                           bool decisive, const FitResult* base = nullptr);
 
 }  // namespace omnihil

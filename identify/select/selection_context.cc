@@ -104,7 +104,7 @@ SelectionTask SelectionContext::task(std::vector<std::string>& not_applicable) c
                      .loop_period_s = predictor_->capabilities().loop_period_s,
                      .counts_per_rotor_turn = counts_per_rotor_turn(dataset_, drive_of(nominal_).gear_ratio)},
       .base = &base_.residual,
-      .base_model = &base_.fit.model};
+      .base_fit = &base_.fit};
   for (std::size_t u = 0; u < kSplits; ++u)
     task.acceptance_context.signal_variance[u] = unweighted_[u].measured_variance();
   task.seed = options_.seed;

@@ -67,9 +67,11 @@ TEST(AcceptanceTest, RefusesASecondLawOfTheSameQuantityThatTakesWhatTheFormOfThe
   AcceptanceFixture fixture;
   for (auto& level : fixture.null.mean_square) level = Eigen::MatrixXd::Constant(2, 1, 0.01);
   const Fitted base = fixture.leaving(10, 10, 10);
-  const Candidate without, declared = with_effect("quadratic_drag", 1e-8);
+  const Candidate declared = with_effect("quadratic_drag", 1e-8);
+  FitResult without, with;
+  with.model = declared;
   fixture.context.base = &base.residual;
-  fixture.context.base_model = &without;
+  fixture.context.base_fit = &without;
   Fitted found = fixture.leaving(0.9, 0.9, 0.9);
   found.fit.model = declared;
   const auto second = [&](const std::string& name) {
@@ -80,7 +82,7 @@ TEST(AcceptanceTest, RefusesASecondLawOfTheSameQuantityThatTakesWhatTheFormOfThe
   EXPECT_NE(kin.why.find("the form of an effect already found"), std::string::npos) << kin.why;
   EXPECT_TRUE(second("encoder_eccentricity").accepted());
   EXPECT_TRUE(second("cogging").accepted()) << "a torque of the angle is no form of one of the speed";
-  fixture.context.base_model = &declared;
+  fixture.context.base_fit = &with;
   EXPECT_TRUE(second("grease_drag").accepted());
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "tests/identify/select/acceptance_fixture.h"
 
@@ -116,12 +117,16 @@ TEST(PlausibilityTest, RefusesWhatTakesABaseParametersPlace) {
 
 // What its prior rejects without the addition too (p < 1 %) absorbs something else: no reason against a decisive gain.
 TEST(PlausibilityTest, ABaseParameterThatWasBentBeforeIsNoReasonAgainstADecisiveGain) {
-  const AcceptanceFixture fixture;
+  AcceptanceFixture fixture;
   const Fitted parent = fixture.leaving(1, 1, 1);
-  const auto accepted = [&](double before_sigmas, double left) {
+  FitResult base;
+  const auto accepted = [&](double before_sigmas, double left, std::optional<double> at_first_sigmas = {}) {
     ParameterEstimate inductance;
     inductance.path = "motor.inductance_H";
     inductance.prior_sigma = 1e-4;
+    inductance.prior_deviation_sigmas = at_first_sigmas.value_or(0.0);
+    base.parameters = {inductance};
+    fixture.context.base_fit = at_first_sigmas ? &base : nullptr;
     inductance.prior_deviation_sigmas = before_sigmas;
     Fitted bent = parent, child = fixture.leaving(left, left, left);
     bent.fit.parameters = {inductance};
@@ -132,6 +137,8 @@ TEST(PlausibilityTest, ABaseParameterThatWasBentBeforeIsNoReasonAgainstADecisive
   EXPECT_TRUE(accepted(3.1, 0.7));   // 51 % of the energy
   EXPECT_FALSE(accepted(3.1, 0.9));  // 19 %: not decisive
   EXPECT_FALSE(accepted(1.9, 0.7));  // not rejected before
+  EXPECT_TRUE(accepted(3.1, 0.7, 2.6));
+  EXPECT_FALSE(accepted(3.1, 0.7, 0.5));  // an effect found before this one bent it
 }
 
 TEST(PlausibilityTest, ReadsAParameterAtItsBoundAsASymptom) {
