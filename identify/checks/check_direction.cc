@@ -23,14 +23,35 @@ double alignment(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
-void drive_against_motion(const RunView& view, const DriveView& drive, std::vector<DataFinding>& findings) {
+double top_of(const std::vector<double>& speed) {
+  double top = 0.0;
+  for (const double w : speed) top = std::max(top, std::abs(w));
+  return top;
+}
+
+// Does the drive turn at all in this run, beside what it does in the others? Below its breakaway what is left is an offset of the
+// sensor, or rounding, and has any sign.
+bool turns(const CheckContext& data, const DriveView& drive, const std::vector<double>& speed) {
+  constexpr double kLeastOfTop = 0.01;  // a scale's or an offset's error of a cheap sensor; a choice
+  double top = 0.0;
+  for (const RunView& view : data.runs) {
+    for (const DriveView& other : view.drives) {
+      if (other.drive != nullptr && other.drive_name == drive.drive_name)
+        top = std::max(top, top_of(window_means(view, other, *other.drive, kWindow_s).speed));
+    }
+  }
+  return top_of(speed) > kLeastOfTop * top;
+}
+
+void drive_against_motion(const CheckContext& data, const RunView& view, const DriveView& drive,
+                          std::vector<DataFinding>& findings) {
   const bool by_voltage = drive.drive_name.starts_with("duty") ||
                           drive.drive_name.starts_with("motor_voltage") ||
                           drive.drive_name.starts_with("command_wheel");
   if (!by_voltage || (drive.position == nullptr && drive.velocity == nullptr)) return;
   const WindowMeans w = window_means(view, drive, *drive.drive, kWindow_s);
   const double along = alignment(w.drive, w.speed);
-  if (w.drive.size() < kLeastWindows || along > kOpposite) return;
+  if (w.drive.size() < kLeastWindows || along > kOpposite || !turns(data, drive, w.speed)) return;
   const std::string motion = drive.position != nullptr ? drive.position_name : std::string("velocity");
   findings.push_back(
       {Grade::kFault, "swapped_sign", view.run->file, motion, along,
@@ -175,7 +196,7 @@ void check_direction(const CheckContext& data, std::vector<DataFinding>& finding
     if (view.run->steady) continue;
     for (const DriveView& drive : view.drives) {
       if (drive.drive != nullptr) {
-        drive_against_motion(view, drive, findings);
+        drive_against_motion(data, view, drive, findings);
         drive_without_sign(view, drive, findings);
         target_against_position(view, drive, findings);
         torque_against_acceleration(view, drive, findings);

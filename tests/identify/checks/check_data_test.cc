@@ -276,6 +276,18 @@ TEST_F(SpoiltData, ASensorThatWasNotConnected) {
   expect("constant", "encoder is 17 throughout");
 }
 
+// A sweep's first duties do not move the drive: stiction is what they show. What such a run's speed is, is an offset of any sign.
+TEST_F(SpoiltData, ADriveBelowItsBreakaway) {
+  add_true_speed();
+  for (omnihil::Run& run : bench.dataset.runs) run.signals.erase("encoder");
+  std::erase_if(bench.dataset.channels, [](const Channel& c) { return c.signal == "encoder"; });
+  for (double& u : signal(1, "duty")) u = 0.1 * std::abs(u);
+  for (double& w : signal(1, "velocity")) w = -2.3e-17;
+  expect("constant", "throughout: below the drive's breakaway", Grade::kDoubt);
+  EXPECT_EQ(find(check(bench), "swapped_sign"), nullptr) << text_of(check(bench));
+  EXPECT_EQ(count(check(bench), Grade::kFault), 0) << text_of(check(bench));
+}
+
 TEST_F(SpoiltData, ASupplyThatTheModelDoesNotName) {
   EXPECT_EQ(set_value(bench.nominal, "supply.voltage_V", 15.0), "");
   expect("wrong_supply", "the model's supply.voltage_V says 15", Grade::kDoubt);
