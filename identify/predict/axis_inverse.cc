@@ -242,14 +242,36 @@ double stated_noise(const Dataset& dataset, const Channel* input, const AxisReco
   return std::hypot(input != nullptr ? input->sigma : 0.0, of_speed);
 }
 
+// The settled points of all runs, one after another.
+struct SettledPoints {
+  std::vector<double> command, velocity, load_torque_Nm;
+};
+
+SettledPoints all_settled_points(const Dataset& dataset, CommandKind kind) {
+  SettledPoints out;
+  for (const Run& run : dataset.runs) {
+    const std::vector<double>* command = run.signal(command_name(kind));
+    if (!run.steady || command == nullptr) continue;
+    const auto append = [&](const char* name, std::vector<double>& to) {
+      const std::vector<double>* values = run.signal(name);
+      for (std::size_t k = 0; k < command->size(); ++k) to.push_back(values != nullptr ? (*values)[k] : 0.0);
+    };
+    out.command.insert(out.command.end(), command->begin(), command->end());
+    append("velocity", out.velocity);
+    append("load_torque", out.load_torque_Nm);
+  }
+  return out;
+}
+
 // A measured input's: by the points before and after, which a map by the angle needs, or about a surface, either is an upper
 // bound. A command's (duty, voltage): that of the speeds of one command, else about the surface.
-double estimated_noise(const AxisRecord& r, const AxisInput& in) {
-  std::vector<std::vector<double>> of = {in.imposed_velocity_rad_s};
-  if (!in.load_torque_Nm.empty()) of.push_back(in.load_torque_Nm);
-  const double about_surface = surface_noise(r.command, of);
+double estimated_noise(const Dataset& dataset, const AxisRecord& r, const AxisInput& in) {
+  const SettledPoints all = all_settled_points(dataset, in.kind);
+  std::vector<std::vector<double>> of = {all.velocity};
+  if (!in.load_torque_Nm.empty()) of.push_back(all.load_torque_Nm);
+  const double about_surface = surface_noise(all.command, of);
   if (is_torque(in.kind)) return std::fmin(estimate_noise(r.command).sigma, about_surface);
-  const double of_repeats = command_noise(r.command, r.velocity);
+  const double of_repeats = command_noise(all.command, all.velocity);
   if (std::isfinite(of_repeats)) return of_repeats;
   return std::isfinite(about_surface) ? about_surface : estimate_noise(r.command).sigma;
 }
@@ -292,7 +314,7 @@ void make_steady_setup(const Dataset& dataset, const AxisRecord& r, AxisSetup& s
   ComparedSignal& c = s.compared.back();
   const double stated = stated_noise(dataset, channel, r, is_torque(in.kind));
   c.noise_is_stated = stated > 0.0;
-  c.noise_sigma = std::max(c.noise_is_stated ? stated : estimated_noise(r, in), c.noise_sigma);
+  c.noise_sigma = std::max(c.noise_is_stated ? stated : estimated_noise(dataset, r, in), c.noise_sigma);
   c.whitened_sigma = c.noise_sigma;
 }
 

@@ -10,6 +10,34 @@
 
 namespace omnihil {
 
+namespace {
+
+// Of the rows that are known, a surface's columns scaled to one: 1, and of each variable x, sgn x; if it is curved |x| x and the
+// products as well.
+Eigen::MatrixXd surface(const std::vector<std::vector<double>>& of, const std::vector<std::size_t>& rows,
+                        bool is_curved) {
+  std::vector<Eigen::VectorXd> columns{Eigen::VectorXd::Ones(static_cast<Eigen::Index>(rows.size()))};
+  const auto add = [&](const auto& value) {
+    Eigen::VectorXd column(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) column[static_cast<Eigen::Index>(i)] = value(rows[i]);
+    if (const double size = column.norm(); size > 0.0) column /= size;
+    columns.push_back(std::move(column));
+  };
+  for (std::size_t j = 0; j < of.size(); ++j) {
+    const std::vector<double>& x = of[j];
+    add([&](std::size_t k) { return x[k]; });
+    add([&](std::size_t k) { return x[k] == 0.0 ? 0.0 : std::copysign(1.0, x[k]); });
+    if (!is_curved) continue;
+    add([&](std::size_t k) { return std::abs(x[k]) * x[k]; });
+    for (std::size_t l = 0; l < j; ++l) add([&](std::size_t k) { return x[k] * of[l][k]; });
+  }
+  Eigen::MatrixXd a(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c) a.col(static_cast<Eigen::Index>(c)) = columns[c];
+  return a;
+}
+
+}  // namespace
+
 double surface_noise(const std::vector<double>& y, const std::vector<std::vector<double>>& of) {
   constexpr std::size_t kRowsPerNumber = 5;  // the factor for those fitted is then 1.12 at most; a choice
   constexpr double kRankThreshold = 1e-9;    // of the columns, scaled to one: what doubles resolve; a choice
@@ -18,37 +46,23 @@ double surface_noise(const std::vector<double>& y, const std::vector<std::vector
     const auto known = [&](const std::vector<double>& x) { return std::isfinite(x[k]); };
     if (known(y) && std::all_of(of.begin(), of.end(), known)) rows.push_back(k);
   }
-  const std::size_t columns = 1 + 3 * of.size() + of.size() * (of.size() - 1) / 2;
-  const auto n = static_cast<Eigen::Index>(rows.size());
-  if (rows.size() < columns) return std::numeric_limits<double>::infinity();
-  Eigen::MatrixXd a(n, static_cast<Eigen::Index>(columns));
-  Eigen::VectorXd b(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const std::size_t k = rows[static_cast<std::size_t>(i)];
-    Eigen::Index c = 0;
-    b[i] = y[k];
-    a(i, c++) = 1.0;
-    for (std::size_t j = 0; j < of.size(); ++j) {
-      const double x = of[j][k];
-      a(i, c++) = x;
-      a(i, c++) = std::abs(x) * x;
-      a(i, c++) = x == 0.0 ? 0.0 : std::copysign(1.0, x);
-      for (std::size_t l = 0; l < j; ++l) a(i, c++) = x * of[l][k];
-    }
+  Eigen::VectorXd b(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) b[static_cast<Eigen::Index>(i)] = y[rows[i]];
+  for (const bool is_curved : {true, false}) {  // a published table has a few dozen rows
+    const Eigen::MatrixXd a = surface(of, rows, is_curved);
+    if (a.rows() < a.cols()) continue;
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+    qr.setThreshold(kRankThreshold);
+    qr.compute(a);
+    const auto numbers = static_cast<std::size_t>(qr.rank());
+    if (rows.size() < kRowsPerNumber * numbers) continue;
+    const Eigen::VectorXd rest = b - a * qr.solve(b);
+    std::vector<double> sizes;
+    for (const double r : rest) sizes.push_back(std::abs(r));
+    const double count = static_cast<double>(rows.size());
+    return sigma_by_mad(std::move(sizes)) * std::sqrt(count / (count - static_cast<double>(numbers)));
   }
-  for (Eigen::Index c = 0; c < a.cols(); ++c) {
-    if (const double size = a.col(c).norm(); size > 0.0) a.col(c) /= size;
-  }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(kRankThreshold);
-  qr.compute(a);
-  const auto numbers = static_cast<std::size_t>(qr.rank());
-  if (rows.size() < kRowsPerNumber * numbers) return std::numeric_limits<double>::infinity();
-  const Eigen::VectorXd rest = b - a * qr.solve(b);
-  std::vector<double> sizes;
-  for (const double r : rest) sizes.push_back(std::abs(r));
-  const double count = static_cast<double>(rows.size());
-  return sigma_by_mad(std::move(sizes)) * std::sqrt(count / (count - static_cast<double>(numbers)));
+  return std::numeric_limits<double>::infinity();
 }
 
 double command_slope(const std::vector<double>& command, const std::vector<double>& velocity) {

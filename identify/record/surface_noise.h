@@ -9,8 +9,8 @@
 // command_noise(duty, speed): the speeds' sigma there (of the differences of such rows, in order, by their median, over sqrt(2))
 // times the slope of the command over the speed.
 //
-// Validity: several rows per number, a signal that those variables make. An upper bound: what depends on other things (the
-// angle), or is more bent, counts as noise.
+// Validity: five rows per number (with fewer, planes on either side of zero: a published table has a few dozen rows), a signal that
+// those variables make. An upper bound: what depends on other things (the angle), or is more bent, counts as noise.
 #pragma once
 #include <vector>
 
