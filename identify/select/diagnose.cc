@@ -30,12 +30,11 @@ namespace {
 constexpr double kAfterBaseline = 0.12;  // a guess
 constexpr double kAfterNull = 0.16;      // a guess
 constexpr double kAfterRounds = 0.85;    // a guess
-// Fall of the energy at which the parent's fit counts as not converged: two thirds of the smallest gain of
-// interest. Restarts for that, by cost. Tuned on the open cases; sensitivity not measured.
+// Fall of the energy at which the parent's fit counts as not converged: two thirds of the smallest gain of interest.
+// Restarts for that, by cost. Tuned on the open cases; sensitivity not measured.
 constexpr double kNotConverged = 0.02;  // tuned
 constexpr int kMostRestarts = 2;        // by cost
-// Energy of the robust last fit over that of least squares above which it is discarded as diverged. Tuned on
-// the open cases; sensitivity not measured.
+// Energy of the robust last fit, in that of least squares, from which it counts as diverged; sensitivity not measured.
 constexpr double kRobustLoss = 1.2;  // tuned
 
 constexpr const char* kBaseStep = "base parameters refitted";
@@ -234,7 +233,9 @@ class Diagnosing {
     while (iteration.chosen >= 0) {
       const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
       Fitted fitted = refit_to_convergence(context().setup(true, stop()), best.fitted);
-      const std::string why = ends_at_bound(fitted.fit, best.screened.name);
+      std::string why = ends_at_bound(fitted.fit, best.screened.name);
+      if (why.empty() && (best.screened.entry->info->claims & kRandom) != 0)
+        why = too_noisy(excesses_of(fitted.fit.model).alike());
       if (why.empty() || stopped_) return fitted;
       refuse_chosen(task_, current_, why, iteration);
     }
@@ -338,8 +339,7 @@ class Diagnosing {
     say("last fit", 0.88);
     bool added = !out_.effects.empty();
     if (added && !stopped_) {
-      // The structure is fixed now; a few runs that it cannot explain should not bias its parameters (Huber's
-      // loss).
+      // The structure is fixed now; a few runs that it cannot explain should not bias its parameters (Huber's loss).
       RefitSetup setup = context().setup(false, stop());
       setup.robust = true;
       const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);

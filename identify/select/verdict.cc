@@ -18,6 +18,9 @@ constexpr double kUnexplained = 0.10;  // tuned
 // replicates (8: known to 27 %, 1 / sqrt(2 (n - 1))). Tuned on the open cases; sensitivity not measured.
 constexpr double kSpreads = 5.0;  // tuned
 
+// Of the null's energy: 2.5 standard deviations where a torque's noise is known worst (axis_inverse.cc); derived.
+constexpr double kTooFarBelow = 0.5;  // derived
+
 // The channel as the first run that has it compares it; null: none does.
 const ComparedSignal* signal_of(const Predictor& predictor, const std::string& channel) {
   for (int run = 0; run < predictor.run_count(); ++run) {
@@ -32,8 +35,6 @@ const ComparedSignal* signal_of(const Predictor& predictor, const std::string& c
 std::string remainder(const ResidualExcess& excess) {
   constexpr double kAtNoise =
       1.05;  // of its root mean square: the replicates' own scatter is of that order; a choice
-  // Of the null's energy: 2.5 standard deviations where a torque's noise is known worst (axis_inverse.cc); derived.
-  constexpr double kTooFarBelow = 0.5;  // derived
   const double ratio = std::sqrt(std::max(0.0, 1.0 + excess.excess));
   const std::string_view runs = excess.split == Split::kTraining     ? "fit"
                                 : excess.split == Split::kValidation ? "held-out"
@@ -145,6 +146,12 @@ bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, con
     if (excess[k] >= kStructure && excess[k] * floor[k] > kSpreads * spread[k]) return true;
   }
   return false;
+}
+
+std::string too_noisy(const ResidualExcess& excess) {
+  if (excess.excess >= -kTooFarBelow) return "";
+  return fmt::format("with the noise that it makes {} would be {:.2g} times as noisy as it is", excess.signal,
+                     1.0 / std::sqrt(std::max(1.0 + excess.excess, 1e-6)));
 }
 
 std::string parameters_sentence(const ResidualExcess& excess) {

@@ -64,6 +64,8 @@ bool structure_remains(const ResidualExcess& excess, bool effects_added);
 bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, const ComparedChannels& channels,
                   const Eigen::VectorXd& residual);
 std::string residual_sentence(const ResidualExcess& excess, bool effects_added);
+// Against an effect that draws random numbers, of the model that has it: its noise is not in the record. Empty: it may be.
+std::string too_noisy(const ResidualExcess& excess);
 // Of an excess on the extrapolation runs that a fit to all runs does not leave.
 std::string parameters_sentence(const ResidualExcess& excess);
 

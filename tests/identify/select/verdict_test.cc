@@ -35,6 +35,14 @@ TEST(Verdict, WhatIsLeftBesideAnEffectCountsAsAShareOfWhatWasThere) {
   EXPECT_TRUE(structure_remains(excess(0.5, 10.0, 0.01, 0.09), false));  // nothing was added
 }
 
+// A counted speed's rounding, drawn at random, that the record does not have.
+TEST(Verdict, AnEffectWhoseNoiseIsNotInTheRecordIsRefuted) {
+  EXPECT_EQ(too_noisy(excess(-0.3, 4.0, 0.01, 0.0)), "");
+  EXPECT_EQ(too_noisy(excess(8.0, 24.0, 0.01, 0.35)), "") << "structure hides it";
+  const std::string why = too_noisy(excess(-0.75, 4.0, 0.01, 0.0));
+  EXPECT_NE(why.find("velocity would be 2 times as noisy as it is"), std::string::npos) << why;
+}
+
 TEST(Verdict, TheSentenceSaysSizeSignalAndShare) {
   const std::string remains = residual_sentence(excess(0.25, 0.25, 0.01, 1.0), false);
   // sqrt(1.25) = 1.118 times the noise
