@@ -18,33 +18,47 @@ constexpr double kNearlyAliased = 0.03;   // a choice
 constexpr double kLeastExplained = 0.03;  // a choice
 constexpr std::size_t kMostWhere = 6;     // a choice
 
-void add_set(std::vector<std::string> members, std::string sentence, Diagnosis& diagnosis) {
+// Ratio of remaining energies up to which two laws leave the same (selection.cc).
+constexpr double kSameRemaining = 1.15;  // tuned, as there
+
+std::string confounded_sentence(const ConfoundedSet& set) {
+  std::vector<std::string> each;
+  bool same = true;
+  for (std::size_t m = 0; m < set.members.size(); ++m) {
+    const double remaining = m < set.remaining.size() ? set.remaining[m] : 1.0;
+    const bool more = remaining > kSameRemaining;
+    same = same && !more;
+    each.push_back(more ? fmt::format("{} (leaves {:.2g} times the error energy above the noise)",
+                                      set.members[m], remaining)
+                        : set.members[m]);
+  }
+  return fmt::format("These data cannot tell apart: {}. {}", fmt::join(each, ", "),
+                     same ? "The first is the simplest; any of them explains the recording as well."
+                          : "The first fits best; a drive is of neither form exactly, so that what fits less "
+                            "well may yet be meant.");
+}
+
+void add_set(ConfoundedSet added, Diagnosis& diagnosis) {
   for (const ConfoundedSet& set : diagnosis.confounded) {
-    std::vector<std::string> a = set.members, b = members;
+    std::vector<std::string> a = set.members, b = added.members;
     std::sort(a.begin(), a.end());
     std::sort(b.begin(), b.end());
     if (a == b) return;
   }
-  diagnosis.confounded.push_back({.members = std::move(members), .sentence = std::move(sentence)});
-}
-
-std::string confounded_sentence(const std::vector<std::string>& members) {
-  return fmt::format(
-      "These data cannot tell apart: {}. The first is the simplest; any of them explains the recording as "
-      "well.",
-      fmt::join(members, ", "));
+  if (added.sentence.empty()) added.sentence = confounded_sentence(added);
+  diagnosis.confounded.push_back(std::move(added));
 }
 
 // Both make a settled speed fall short of the duty's: by a constant voltage, or in a bend.
 void add_hidden_losses(const std::string& effect, Diagnosis& diagnosis) {
   std::erase_if(diagnosis.confounded,
                 [&](const ConfoundedSet& set) { return set.members.front() == effect; });
-  add_set(
-      {effect, "dead_time", "coast_mode"},
-      fmt::format("These points cannot tell {} from a loss before the winding (dead_time, coast_mode and the "
-                  "like), which was not searched: measure the current as well, or record the motion.",
-                  effect),
-      diagnosis);
+  add_set({.members = {effect, "dead_time", "coast_mode"},
+           .sentence = fmt::format(
+               "These points cannot tell {} from a loss before the winding (dead_time, coast_mode and the "
+               "like), which was not searched: measure the current as well, or record the motion.",
+               effect)},
+          diagnosis);
 }
 
 }  // namespace
@@ -53,17 +67,19 @@ void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
   if (iteration.chosen < 0) return;
   const CandidateEffect& chosen = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
   if (!iteration.confounded.empty()) {
-    std::vector<std::string> members{chosen.screened.name};
-    for (const int t : iteration.confounded)
-      members.push_back(iteration.candidates[static_cast<std::size_t>(t)].screened.name);
-    add_set(members, confounded_sentence(members), diagnosis);
+    ConfoundedSet set{.members = {chosen.screened.name}, .sentence = {}, .remaining = {1.0}};
+    for (const ConfoundedCandidate& c : iteration.confounded) {
+      set.members.push_back(iteration.candidates[static_cast<std::size_t>(c.index)].screened.name);
+      set.remaining.push_back(c.remaining);
+    }
+    add_set(std::move(set), diagnosis);
   }
   if (chosen.screened.residual_fraction < kNearlyAliased && !chosen.screened.closest_parameter.empty()) {
-    add_set({chosen.screened.name, chosen.screened.closest_parameter},
-            fmt::format("{:.1f} % of the signal of {} is its own; the base parameters together, {} before "
-                        "all, produce the rest.",
-                        100.0 * chosen.screened.residual_fraction, chosen.screened.name,
-                        chosen.screened.closest_parameter),
+    add_set({.members = {chosen.screened.name, chosen.screened.closest_parameter},
+             .sentence = fmt::format("{:.1f} % of the signal of {} is its own; the base parameters together, "
+                                     "{} before all, produce the rest.",
+                                     100.0 * chosen.screened.residual_fraction, chosen.screened.name,
+                                     chosen.screened.closest_parameter)},
             diagnosis);
   }
 }
@@ -80,8 +96,7 @@ void replace_in_answer(const std::string& richer, const std::string& simpler, Di
     }
     return true;
   });
-  std::string sentence = confounded_sentence(members);
-  add_set(std::move(members), std::move(sentence), diagnosis);
+  add_set({.members = std::move(members), .sentence = {}}, diagnosis);
 }
 
 void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis) {
@@ -90,10 +105,15 @@ void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis) {
   };
   std::erase_if(diagnosis.confounded, [&](ConfoundedSet& set) {
     if (!found(set.members.front())) return true;
-    const auto decided = std::remove_if(set.members.begin() + 1, set.members.end(), found);
-    if (decided == set.members.end()) return false;
-    set.members.erase(decided, set.members.end());
-    set.sentence = confounded_sentence(set.members);
+    if (std::none_of(set.members.begin() + 1, set.members.end(), found)) return false;
+    ConfoundedSet left;
+    for (std::size_t m = 0; m < set.members.size(); ++m) {
+      if (m > 0 && found(set.members[m])) continue;
+      left.members.push_back(set.members[m]);
+      if (m < set.remaining.size()) left.remaining.push_back(set.remaining[m]);
+    }
+    left.sentence = confounded_sentence(left);
+    set = std::move(left);
     return set.members.size() < 2;
   });
   if (!hides_losses_before_winding(dataset)) return;

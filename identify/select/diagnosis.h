@@ -44,6 +44,8 @@ struct LadderStep {
 struct ConfoundedSet {
   std::vector<std::string> members;  // effect ids and base-parameter paths
   std::string sentence;
+  // Of each member: error energy above the sensors' noise that it leaves, in multiples of the first's; empty: not compared.
+  std::vector<double> remaining = {};
 };
 
 struct Where {

@@ -156,6 +156,11 @@ void select_best(const SelectionTask& task, const Fitted& parent, Iteration& ite
   const auto has_signature = [&](const CandidateEffect& c) {
     return task.predictor->shows_signature_of(*c.screened.entry);
   };
+  // Smallest energy above the sensors' noise that is told from none.
+  const double least = std::max(kLeastRemaining * (1.0 - noise), kNullError * noise);
+  const auto remaining_of = [&](const CandidateEffect& c) {
+    return std::max(1.0 - gain_of(c, has_holdout) - noise_fraction(c, has_holdout), least);
+  };
   std::vector<std::size_t> set{0};
   std::size_t preferred = 0;
   for (std::size_t c = 1; c < iteration.candidates.size(); ++c) {
@@ -168,10 +173,7 @@ void select_best(const SelectionTask& task, const Fitted& parent, Iteration& ite
     const double lost = (most - gain_of(other, has_holdout)) / std::max(most, kLeastGainToCompare);
     // Ratio of the energies that remain above the sensors' noise: both may gain nearly all there is, and yet
     // one leave several times what the other leaves.
-    const double least = std::max(kLeastRemaining * (1.0 - noise), kNullError * noise);
-    const double remaining =
-        std::max(1.0 - gain_of(other, has_holdout) - noise_fraction(other, has_holdout), least) /
-        std::max(1.0 - most - noise, least);
+    const double remaining = remaining_of(other) / remaining_of(best);
     const bool listed = listed_as_confounded(*best.screened.entry->info, *other.screened.entry->info);
     const bool alike = cosine_similarity(best.screened, other.screened) > kConfoundedCosine;
     const bool same = lost < kSameGain && remaining < kSameRemaining;
@@ -191,13 +193,16 @@ void select_best(const SelectionTask& task, const Fitted& parent, Iteration& ite
       preferred = c;
   }
   while (set.size() > kMostConfounded) set.erase(set.back() == preferred ? set.end() - 2 : set.end() - 1);
+  const double by_preferred = remaining_of(iteration.candidates[preferred]);
+  for (const std::size_t c : set) {
+    if (c == preferred) continue;
+    iteration.confounded.push_back({.index = static_cast<int>(c < preferred ? c + 1 : c),
+                                    .remaining = remaining_of(iteration.candidates[c]) / by_preferred});
+  }
   std::rotate(iteration.candidates.begin(),
               iteration.candidates.begin() + static_cast<std::ptrdiff_t>(preferred),
               iteration.candidates.begin() + static_cast<std::ptrdiff_t>(preferred) + 1);
   iteration.chosen = 0;
-  for (const std::size_t c : set) {
-    if (c != preferred) iteration.confounded.push_back(static_cast<int>(c < preferred ? c + 1 : c));
-  }
 }
 
 }  // namespace omnihil

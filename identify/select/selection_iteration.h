@@ -44,12 +44,19 @@ struct CandidateEffect {
   double selection_frequency = 0.0;  // share of the bootstrap's draws (selection.h)
 };
 
+// A candidate that may be meant instead of the chosen one.
+struct ConfoundedCandidate {
+  int index = -1;  // in Iteration::candidates
+  double remaining =
+      1.0;  // error energy above the sensors' noise that it leaves, in multiples of the chosen one's
+};
+
 struct Iteration {
   std::vector<Screened> screened;
   std::vector<CandidateEffect> candidates;  // best first
   std::vector<RankedEffect> ranking;
   int chosen = -1;
-  std::vector<int> confounded;        // with the chosen one, in `candidates`
+  std::vector<ConfoundedCandidate> confounded;
   std::vector<RankedEffect> earlier;  // of those that were not looked at again (near_best_again)
   double largest_null_gain = 0.0;     // of any effect in any replicate of the null
   std::vector<double> orders;         // dominant in the residual along the rotor's angle

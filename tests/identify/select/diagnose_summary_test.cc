@@ -27,6 +27,19 @@ TEST(SettleConfounded, WhatALaterIterationTookIsNoAlternative) {
       "them explains the recording as well.");
 }
 
+// Two laws known to be taken for each other may be a set though one fits worse: the sentence says by how much.
+TEST(SettleConfounded, TheSentenceSaysWhatAWorseFitLeaves) {
+  const Diagnosis d = answer({"sampling_delay", "cogging"},
+                             {{{"sampling_delay", "cogging", "hall_speed_estimator", "actuator_delay"},
+                               "of four",
+                               {1.0, 1.0, 3.2, 1.1}}});
+  ASSERT_EQ(d.confounded.size(), 1u);
+  EXPECT_TRUE(d.confounded[0].sentence.starts_with(
+      "These data cannot tell apart: sampling_delay, hall_speed_estimator (leaves 3.2 times the error energy "
+      "above the noise), actuator_delay. The first fits best;"))
+      << d.confounded[0].sentence;
+}
+
 TEST(SettleConfounded, ASetOfOneIsNone) {
   EXPECT_TRUE(answer({"grease_drag", "coulomb_friction"}, {{{"grease_drag", "coulomb_friction"}, "of two"}})
                   .confounded.empty());

@@ -83,8 +83,8 @@ struct SelectionFixture {
 
   std::vector<std::string> confounded() const {
     std::vector<std::string> names;
-    for (const int t : iteration.confounded)
-      names.push_back(iteration.candidates[static_cast<std::size_t>(t)].screened.name);
+    for (const ConfoundedCandidate& c : iteration.confounded)
+      names.push_back(iteration.candidates[static_cast<std::size_t>(c.index)].screened.name);
     return names;
   }
 };
@@ -109,6 +109,7 @@ TEST(SelectionTest, OfEqualGainsTheOneWhoseQuantisationTheReadingsShowIsChosen) 
   marked.add_candidate("hall_speed_estimator", SelectionFixture::leaving(0.502, 0.502));
   EXPECT_EQ(marked.best(), "hall_speed_estimator");
   EXPECT_EQ(marked.confounded(), std::vector<std::string>{"sampling_delay"});
+  EXPECT_NEAR(marked.iteration.confounded.front().remaining, 0.500 / 0.502, 0.02);
   SelectionFixture far;
   far.fake.mark = "hall_speed_estimator";
   far.add_candidate("sampling_delay", SelectionFixture::leaving(0.5, 0.5));
