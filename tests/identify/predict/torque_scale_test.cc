@@ -41,14 +41,14 @@ TEST(TorqueScale, IsTheRmsTorqueOverARobotsWheelsAndNeverLess) {
                    1.0);  // an answer, not asked for
 }
 
-// A hub wheel of 24 V, 0.3 ohm and 1 N m/A: 80 N m at standstill, fifty times a robot's wheel motor.
+// A hub wheel of 24 V, 0.3 ohm and 1 N m/A: 80 N m at standstill, forty times a robot's wheel motor.
 TEST(TorqueScale, OfADriveThatIsAskedForAVoltageIsItsTorqueAtStandstill) {
   Candidate hub = wheel_model();
   EXPECT_EQ(set_value(hub, "motor.resistance_ohm", 0.3), "");
   EXPECT_EQ(set_value(hub, "motor.torque_constant_Nm_per_A", 1.0), "");
   EXPECT_EQ(set_value(hub, "supply.voltage_V", 24.0), "");
-  EXPECT_NEAR(torque_scale_of(asked_for("duty", 0.2), hub), 80.0 / 1.6, 1e-9);
-  EXPECT_NEAR(torque_scale_of(asked_for("motor_voltage", -12.0), hub), 40.0 / 1.6, 1e-9);
+  EXPECT_NEAR(torque_scale_of(asked_for("duty", 0.2), hub), 80.0 / 2.0, 1e-9);
+  EXPECT_NEAR(torque_scale_of(asked_for("motor_voltage", -12.0), hub), 40.0 / 2.0, 1e-9);
 }
 
 TEST(TorqueScale, HeldOutRunsDoNotCount) {
