@@ -213,9 +213,11 @@ class Bench(unittest.TestCase):
         self.assertIsNotNone(first["first_wall_s"])
 
     def test_targets_are_those_of_the_rig_and_waiting_for_a_core_is_no_fault(self):
-        entry = {"rig": "axis", "timed_out": False, "first_wall_s": 20.0, "first_cpu_s": 14.0, "cpu_s": 59.0, "limit_s": 300.0}
+        entry = {"rig": "axis", "timed_out": False, "first_wall_s": 20.0, "first_cpu_s": 14.0, "cpu_s": 59.0, "wall_s": 70.0,
+                 "limit_s": 300.0}
         self.assertEqual(bench_diagnose.missed(entry), "")
         self.assertEqual(bench_diagnose.missed(entry | {"cpu_s": 61.0}), "missed: whole")
+        self.assertEqual(bench_diagnose.missed(entry | {"cpu_s": 110.0, "wall_s": 59.0}), "")
         self.assertEqual(bench_diagnose.missed(entry | {"cpu_s": 61.0, "rig": "robot"}), "")
         self.assertEqual(bench_diagnose.missed(entry | {"first_cpu_s": 16.0}), "missed: first ranking")
 
