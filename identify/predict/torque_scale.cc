@@ -12,8 +12,8 @@ namespace {
 constexpr double kRobotTorque_Nm =
     0.1;  // source: data sheet of an EC 45 flat, 50 W: 84 mN m for ever, rounded up
 
-// At standstill; source: the same motor on 24 V, 0.0335 N m/A and 0.464 ohm, 1.73 N m, rounded up.
-constexpr double kRobotStall_Nm = 2.0;  // source: as above
+// At standstill; source: the same motor on 24 V, 0.0335 N m/A and 0.464 ohm, less a tenth.
+constexpr double kRobotStall_Nm = 1.6;  // source: as above
 
 // The column that says the torque, and what makes N m of it; null: none does.
 struct TorqueColumn {

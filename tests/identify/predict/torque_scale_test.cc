@@ -34,21 +34,21 @@ TEST(TorqueScale, IsTheRmsTorqueOverARobotsWheelsAndNeverLess) {
   EXPECT_DOUBLE_EQ(torque_scale_of(asked_for("motor_torque", -30.0), model), 300.0);
   EXPECT_DOUBLE_EQ(torque_scale_of(asked_for("motor_torque", 0.02), model), 1.0);
   EXPECT_DOUBLE_EQ(torque_scale_of(asked_for("motor_torque", 1e6), model), kStrongestDrive);
-  EXPECT_DOUBLE_EQ(torque_scale_of(asked_for("duty", 0.5), model), 1.0);
+  EXPECT_NEAR(torque_scale_of(asked_for("duty", 0.5), model), 0.0335 * 24.0 / 0.464 / 1.6, 1e-9);
   // 0.0335 N m/A of the model
   EXPECT_NEAR(torque_scale_of(asked_for("motor_current", 20.0, true), model), 0.0335 * 20.0 / 0.1, 1e-9);
-  EXPECT_DOUBLE_EQ(torque_scale_of(asked_for("motor_current", 20.0, false), model),
-                   1.0);  // an answer, not asked for
+  EXPECT_NEAR(torque_scale_of(asked_for("motor_current", 20.0, false), model), 1.083,
+              1e-3);  // an answer, not asked for
 }
 
-// A hub wheel of 24 V, 0.3 ohm and 1 N m/A: 80 N m at standstill, forty times a robot's wheel motor.
+// A hub wheel of 24 V, 0.3 ohm and 1 N m/A: 80 N m at standstill, fifty times a robot's wheel motor.
 TEST(TorqueScale, OfADriveThatIsAskedForAVoltageIsItsTorqueAtStandstill) {
   Candidate hub = wheel_model();
   EXPECT_EQ(set_value(hub, "motor.resistance_ohm", 0.3), "");
   EXPECT_EQ(set_value(hub, "motor.torque_constant_Nm_per_A", 1.0), "");
   EXPECT_EQ(set_value(hub, "supply.voltage_V", 24.0), "");
-  EXPECT_NEAR(torque_scale_of(asked_for("duty", 0.2), hub), 80.0 / 2.0, 1e-9);
-  EXPECT_NEAR(torque_scale_of(asked_for("motor_voltage", -12.0), hub), 40.0 / 2.0, 1e-9);
+  EXPECT_NEAR(torque_scale_of(asked_for("duty", 0.2), hub), 80.0 / 1.6, 1e-9);
+  EXPECT_NEAR(torque_scale_of(asked_for("motor_voltage", -12.0), hub), 40.0 / 1.6, 1e-9);
 }
 
 TEST(TorqueScale, HeldOutRunsDoNotCount) {
@@ -68,6 +68,7 @@ TEST(TorqueScale, PriorAndBoundsOfATorqueGrowWithIt) {
     return *it;
   };
   Candidate model = wheel_model();
+  model.torque_scale = 1.0;
   const Unknown before = prior_of(model, "gravity_load", "gravity_load.torque_Nm");
   const Unknown delay = prior_of(model, "actuator_delay", "actuator_delay.delay_s");
   model.torque_scale = 300.0;
