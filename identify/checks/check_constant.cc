@@ -33,7 +33,7 @@ bool may_stand(const CheckContext& data, const RunView& view) {
     double most = 0.0;
     for (const DriveView& drive : of.drives) {
       if (drive.drive == nullptr) return std::numeric_limits<double>::infinity();
-      for (const double u : *drive.drive) most = std::isfinite(u) ? std::max(most, std::abs(u)) : most;
+      most = std::max(most, largest_size(*drive.drive));
     }
     return most;
   };

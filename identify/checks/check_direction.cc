@@ -23,12 +23,6 @@ double alignment(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
-double top_of(const std::vector<double>& speed) {
-  double top = 0.0;
-  for (const double w : speed) top = std::max(top, std::abs(w));
-  return top;
-}
-
 // Does the drive turn at all in this run, beside what it does in the others? Below its breakaway what is left is an offset of the
 // sensor, or rounding, and has any sign.
 bool turns(const CheckContext& data, const DriveView& drive, const std::vector<double>& speed) {
@@ -37,10 +31,10 @@ bool turns(const CheckContext& data, const DriveView& drive, const std::vector<d
   for (const RunView& view : data.runs) {
     for (const DriveView& other : view.drives) {
       if (other.drive != nullptr && other.drive_name == drive.drive_name)
-        top = std::max(top, top_of(window_means(view, other, *other.drive, kWindow_s).speed));
+        top = std::max(top, largest_size(window_means(view, other, *other.drive, kWindow_s).speed));
     }
   }
-  return top_of(speed) > kLeastOfTop * top;
+  return largest_size(speed) > kLeastOfTop * top;
 }
 
 void drive_against_motion(const CheckContext& data, const RunView& view, const DriveView& drive,

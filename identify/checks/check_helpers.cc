@@ -75,14 +75,6 @@ double quantile_of(std::vector<double> values, double share) {
 
 double median_of(std::vector<double> values) { return quantile_of(std::move(values), 0.5); }
 
-double largest_size(const std::vector<double>& values) {
-  double largest = 0.0;
-  for (const double v : values) {
-    if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
-  }
-  return largest;
-}
-
 std::optional<double> nominal_value(const Candidate& nominal, std::string_view path) {
   const Parameter* p = nominal.file.parameters.find(path);
   return p == nullptr || p->values.empty() ? std::nullopt : std::optional(p->value());

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "identify/checks/check_data.h"
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 
@@ -75,7 +76,6 @@ std::map<std::string, double> rows_held_in(const Dataset& dataset, const Candida
 // Helpers of the checks. Order statistics as in identify/record/statistics.h (QuantileRank::kNearest).
 double median_of(std::vector<double> values);                  // NaN left out; 0 of none
 double quantile_of(std::vector<double> values, double share);  // likewise
-double largest_size(const std::vector<double>& values);        // largest |v|
 std::optional<double> nominal_value(const Candidate& nominal, std::string_view path);
 double tolerance_of(const Candidate& nominal, std::string_view path);  // relative; 0: known exactly
 

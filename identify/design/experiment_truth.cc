@@ -25,10 +25,7 @@ double largest_of(const Dataset& given, const std::string& signal) {
   double largest = 0.0;
   for (const Run& run : given.runs) {
     const std::vector<double>* values = run.signal(signal);
-    if (values == nullptr) continue;
-    for (const double v : *values) {
-      if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
-    }
+    if (values != nullptr) largest = std::max(largest, largest_size(*values));
   }
   return largest;
 }

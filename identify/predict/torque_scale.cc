@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/record/rig.h"
+#include "identify/record/statistics.h"
 #include "sim/law/param_range.h"
 
 namespace omnihil {
@@ -12,8 +13,8 @@ namespace {
 constexpr double kRobotTorque_Nm =
     0.1;  // source: data sheet of an EC 45 flat, 50 W: 84 mN m for ever, rounded up
 
-// At standstill; source: the same motor on 24 V, 0.0335 N m/A and 0.464 ohm, less a tenth.
-constexpr double kRobotStall_Nm = 1.6;  // source: as above
+// At standstill: 0.0335 N m/A x 22.2 V / 0.464 ohm of the example robot's wheel motor.
+constexpr double kRobotStall_Nm = 1.6;  // derived
 
 // The column that says the torque, and what makes N m of it; null: none does.
 struct TorqueColumn {
@@ -39,8 +40,8 @@ double stall_torque_Nm(const Dataset& dataset, const Candidate& nominal) {
   for (const Run& run : dataset.runs) {
     for (const char* name : {"motor_voltage", "bus_voltage"}) {
       const std::vector<double>* values = run.signal(name);
-      if (values == nullptr || run.split != Split::kTraining) continue;
-      for (const double v : *values) voltage = std::isfinite(v) ? std::max(voltage, std::abs(v)) : voltage;
+      if (values != nullptr && run.split == Split::kTraining)
+        voltage = std::max(voltage, largest_size(*values));
     }
   }
   return number("motor.torque_constant_Nm_per_A") * voltage / resistance;

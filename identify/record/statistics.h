@@ -69,6 +69,15 @@ inline double rms_about_mean(std::span<const double> values) {
   return std::sqrt(square);
 }
 
+// The largest |v|, of those that are finite; 0 of none.
+inline double largest_size(std::span<const double> values) {
+  double largest = 0.0;
+  for (const double v : values) {
+    if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
+  }
+  return largest;
+}
+
 inline std::vector<double> finite_values(std::span<const double> values) {
   std::vector<double> out;
   for (const double v : values) {

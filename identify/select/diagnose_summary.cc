@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "identify/predict/predictor_axis.h"
+#include "identify/select/selection.h"
 #include "sim/law/effect_registry.h"
 
 namespace omnihil {
@@ -17,9 +18,6 @@ namespace {
 constexpr double kNearlyAliased = 0.03;   // a choice
 constexpr double kLeastExplained = 0.03;  // a choice
 constexpr std::size_t kMostWhere = 6;     // a choice
-
-// Ratio of remaining energies up to which two laws leave the same (selection.cc).
-constexpr double kSameRemaining = 1.15;  // tuned, as there
 
 std::string confounded_sentence(const ConfoundedSet& set) {
   std::vector<std::string> each;

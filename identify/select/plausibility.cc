@@ -24,9 +24,16 @@ constexpr double kDeviationRise_sigmas = 0.7;   // tuned
 // Standard deviation of an angle of which nothing is known, 2 pi / sqrt(12).
 constexpr double kUniformAngle_rad = 1.8138;  // derived
 
-// By its value, too: numbers that only their sum determines are no less far from what is known of them.
+// Null: the fit has no such parameter.
+const ParameterEstimate* estimate_of(const FitResult& fit, std::string_view path) {
+  const auto at = std::ranges::find(fit.parameters, path, &ParameterEstimate::path);
+  return at == fit.parameters.end() ? nullptr : &*at;
+}
+
+// In sigmas, signed; by its value where it is not reported: numbers that only their sum determines are no less far from what is
+// known of them.
 double deviation_of(const ParameterEstimate& p) {
-  return std::max(std::abs(p.prior_deviation_sigmas), std::abs(prior_z(p, p.value)));
+  return p.prior_deviation_sigmas != 0.0 ? p.prior_deviation_sigmas : prior_z(p, p.value);
 }
 
 // A base parameter that the addition moves out of its tolerance or to a bound. Empty: none. What its prior rejects without
@@ -35,26 +42,19 @@ double deviation_of(const ParameterEstimate& p) {
 std::string moved_out_of_tolerance(const FitResult& base, const FitResult& parent, const FitResult& child,
                                    bool decisive) {
   for (const ParameterEstimate& p : child.parameters) {
-    const double sigmas = deviation_of(p);
+    const double sigmas = std::abs(deviation_of(p));
     if (p.prior_sigma <= 0.0 || (sigmas < kOutOfTolerance_sigmas && !p.at_bound)) continue;
-    const auto before = std::find_if(parent.parameters.begin(), parent.parameters.end(),
-                                     [&](const ParameterEstimate& q) { return q.path == p.path; });
-    if (before == parent.parameters.end()) continue;  // of the effect itself
-    const auto at_first =
-        std::ranges::find_if(base.parameters, [&](const ParameterEstimate& q) { return q.path == p.path; });
-    const bool absorbs =
-        at_first != base.parameters.end() && deviation_of(*at_first) >= kPriorRejected_sigmas;
-    if (decisive && absorbs && deviation_of(*before) >= kPriorRejected_sigmas) continue;
-    const double rise = sigmas - deviation_of(*before);
+    const ParameterEstimate *before = estimate_of(parent, p.path), *at_first = estimate_of(base, p.path);
+    if (before == nullptr) continue;  // of the effect itself
+    const double was = std::abs(deviation_of(*before)),
+                 was_at_first = at_first == nullptr ? 0.0 : std::abs(deviation_of(*at_first));
+    if (decisive && std::min(was, was_at_first) >= kPriorRejected_sigmas) continue;
     // A bound at zero lies nearer than the limit where the tolerance is wide: the addition stands in for the parameter.
     const bool replaced = p.at_bound && !before->at_bound && sigmas >= kRestored_sigmas;
-    if (rise > kDeviationRise_sigmas && (replaced || sigmas >= kOutOfTolerance_sigmas)) {
-      const auto signed_sigmas = [](const ParameterEstimate& of) {
-        return of.prior_deviation_sigmas != 0.0 ? of.prior_deviation_sigmas : prior_z(of, of.value);
-      };
+    if (sigmas - was > kDeviationRise_sigmas && (replaced || sigmas >= kOutOfTolerance_sigmas)) {
       return fmt::format("it moves {} {} ({:+.1f} sigma, before {:+.1f})", p.path,
-                         replaced ? "to its bound" : "out of its tolerance", signed_sigmas(p),
-                         signed_sigmas(*before));
+                         replaced ? "to its bound" : "out of its tolerance", deviation_of(p),
+                         deviation_of(*before));
     }
   }
   return "";
@@ -194,9 +194,8 @@ PriorDeviation largest_prior_deviation(const FitResult& fit) {
 }
 
 double prior_deviation(const FitResult& fit, std::string_view path) {
-  const auto p = std::find_if(fit.parameters.begin(), fit.parameters.end(),
-                              [&](const ParameterEstimate& q) { return q.path == path; });
-  return p == fit.parameters.end() ? 0.0 : std::abs(prior_z(*p, p->value));
+  const ParameterEstimate* p = estimate_of(fit, path);
+  return p == nullptr ? 0.0 : std::abs(prior_z(*p, p->value));
 }
 
 bool is_implausible(const FitResult& fit) {

@@ -21,9 +21,7 @@ constexpr double kPenaltyPerParameter = 0.01;  // tuned
 // estimate.
 constexpr double kLeastRemaining = 0.002;  // tuned
 constexpr double kNullError = 0.05;        // tuned
-// Ratio of remaining energies up to which two candidates leave the same, and up to which they may be
-// confounded.
-constexpr double kSameRemaining = 1.15;       // tuned
+// Ratio of remaining energies up to which two candidates may be confounded.
 constexpr double kConfoundedRemaining = 1.5;  // tuned
 // The latter for two effects listed as confusable. Loose on purpose: neither form is exact (DECISIONS 45,
 // 53).

@@ -17,6 +17,9 @@
 
 namespace omnihil {
 
+// Ratio of remaining energies above the sensors' noise up to which two candidates leave the same.
+inline constexpr double kSameRemaining = 1.15;  // tuned, as the shares of selection.cc
+
 void select_best(const SelectionTask& task, const Fitted& parent, Iteration& iteration);
 
 // Gain (mean of held-out and fit runs; without held-out runs the latter) less a penalty per further

@@ -9,6 +9,7 @@
 
 #include "identify/compare/order_spectrum.h"
 #include "identify/record/parallel.h"
+#include "identify/record/statistics.h"
 #include "identify/select/plausibility.h"
 #include "identify/select/selection.h"
 
@@ -39,11 +40,8 @@ DataScale scale_of(const SelectionTask& task, const Fitted& parent, const Linear
   DataScale scale;
   const WhitenedResiduals& fit = (*task.splits)[kTraining];
   const auto top = [&](const char* name) {
-    double most = 0.0;
-    for (const double v : fit.track(parent.fit.model, name)) {
-      if (std::isfinite(v)) most = std::max(most, std::abs(v));
-    }
-    return most;
+    const Eigen::VectorXd track = fit.track(parent.fit.model, name);
+    return largest_size({track.data(), static_cast<std::size_t>(track.size())});
   };
   scale.top_speed_rad_s = top("speed");
   scale.top_current_A = top("abs_current");

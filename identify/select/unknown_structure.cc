@@ -9,6 +9,7 @@
 #include "identify/estimate/linear_base.h"
 #include "identify/record/parallel.h"
 #include "identify/record/rig.h"
+#include "identify/record/statistics.h"
 #include "identify/select/diagnose_summary.h"
 #include "identify/select/unknown_terms.h"
 #include "sim/law/effect_registry.h"
@@ -131,8 +132,7 @@ double torque_scale(const SelectionTask& task, const Candidate& model) {
   for (const Run& run : task.dataset->runs) {
     for (const char* name : {"motor_torque", "load_torque"}) {
       const std::vector<double>* torque = run.signal(name);
-      if (torque == nullptr) continue;
-      for (const double v : *torque) most = std::isfinite(v) ? std::max(most, std::abs(v)) : most;
+      if (torque != nullptr) most = std::max(most, largest_size(*torque));
     }
   }
   return most > 0.0 ? 0.02 * most : 0.01;
@@ -206,9 +206,8 @@ UnknownStructure unknown_structure(const SelectionTask& task, const Fitted& last
   out.curves = telling_curves(comparison);
   if (!base.usable()) return out;
   DataScale data;
-  for (const double v : fit.track(last.fit.model, "speed")) {
-    if (std::isfinite(v)) data.top_speed_rad_s = std::max(data.top_speed_rad_s, std::abs(v));
-  }
+  const Eigen::VectorXd speed = fit.track(last.fit.model, "speed");
+  data.top_speed_rad_s = largest_size({speed.data(), static_cast<std::size_t>(speed.size())});
   for (const OrderPeak& p : strong_orders(*task.predictor, fit, last.fit.model, base.residual(), 3)) {
     data.orders.push_back(p.order);
   }
