@@ -122,13 +122,7 @@ void add_sizes(const EffectInfo& info, std::vector<EffectVariant>& variants) {
   const std::size_t count = variants.size();
   for (const double size : info.params[first_strength(info)].grid.at) {
     if (size == 0.0 || size == 1.0) continue;
-    for (std::size_t i = 0; i < count; ++i) {
-      EffectVariant sized = variants[i];
-      for (VariantColumn& c : sized.columns) c.size *= size;
-      for (std::size_t row = 0; row < sized.shape.values.size(); ++row)
-        sized.shape.values[row] *= std::pow(size, info.params[row].power_of_size);
-      variants.push_back(std::move(sized));
-    }
+    for (std::size_t i = 0; i < count; ++i) variants.push_back(with_size(variants[i], size));
   }
 }
 
@@ -139,6 +133,13 @@ bool belongs_to_detail(const EffectInfo& info, std::size_t row) {
 }
 
 }  // namespace
+
+EffectVariant with_size(EffectVariant variant, double factor) {
+  for (VariantColumn& c : variant.columns) c.size *= factor;
+  for (std::size_t row = 0; row < variant.shape.values.size(); ++row)
+    variant.shape.values[row] *= std::pow(factor, variant.shape.entry->info->params[row].power_of_size);
+  return variant;
+}
 
 double visible_size(const EffectParam& row, const Candidate& candidate) {
   if (row.start_for == nullptr) return (row.typical - row.neutral) * param_range(row, candidate).scale;

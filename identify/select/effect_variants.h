@@ -56,6 +56,9 @@ std::vector<EffectVariant> extensions_of(const EffectUse& use, const Candidate& 
 std::vector<EffectVariant> series_variants(const EffectEntry& entry, const Candidate& candidate,
                                            const DataScale& scale);
 
+// Its strengths `factor` times as large, the shapes that follow them (EffectParam::power_of_size) moved along.
+EffectVariant with_size(EffectVariant variant, double factor);
+
 EffectUse setting(const EffectVariant& variant, const VariantColumn& column);
 // `coefficients`: multiples of the columns' sizes that fit best. Kept within the rows' bounds.
 EffectUse start_of(const EffectVariant& variant, const std::vector<double>& coefficients,

@@ -17,6 +17,7 @@ struct Scored {
   std::vector<bool> two_sided;
   ProjectedColumns columns;
   LinearGain fit;
+  bool from_priors = false;  // the base parameters at their priors, not where the fit's linear estimates are
   bool finite = false;
 };
 
@@ -155,6 +156,46 @@ class SizeSearch {
   Scored best_;
 };
 
+// Sizes of a strength from the smallest of its grid to beyond the largest, a factor of two apart: a resonance's frequency changes
+// by the root of that, less than the width of the valley that a fit descends into.
+std::vector<double> dense_sizes(const EffectParam& strength) {
+  constexpr double kBeyond = 16.0;  // a quarter of the frequency of a resonance; a choice
+  const auto at = strength.grid.at;
+  double least = 1.0, most = 1.0;
+  for (const double size : at) {
+    if (size > 0.0) least = std::min(least, size), most = std::max(most, size);
+  }
+  std::vector<double> out;
+  for (double size = least; most > least && size <= kBeyond * most; size *= 2.0) out.push_back(size);
+  return out;
+}
+
+// The model with the base parameters at their priors and the effect at one of its sizes, as it is: where no line leads from one
+// size to another, the base parameters have been fitted to what the effect does, and nothing linear about them leads back.
+// Not finite: the effect's sizes have no grid, or none leaves less than the parent.
+Scored best_from_priors(const ScreeningTask& task, const EffectEntry& entry) {
+  Scored best;
+  if (task.at_priors == nullptr) return best;
+  const EffectVariant typical = variants_of(entry, *task.at_priors, task.scale).front();
+  if (typical.columns.size() != 1) return best;
+  const LinearBase& base = *task.base;
+  for (const double size : dense_sizes(entry.info->params[first_strength(*entry.info)])) {
+    EffectVariant variant = with_size(typical, size);
+    const Eigen::VectorXd with =
+        task.residuals->predicted(with_use(*task.at_priors, setting(variant, variant.columns.front())));
+    if (with.size() != task.residuals->size()) continue;
+    Eigen::MatrixXd change = (with - base.prediction()).cwiseProduct(base.weights());
+    const double gain = base.energy() - (base.residual() - change.col(0)).squaredNorm();
+    if (!(gain > best.fit.gain)) continue;
+    best.two_sided = sides(variant);
+    best.columns = base.project(std::move(change));
+    best.fit = {.gain = gain, .data_gain = gain, .coefficients = {1.0}, .base_shift = {}};
+    best.variant = std::move(variant);
+    best.from_priors = best.finite = true;
+  }
+  return best;
+}
+
 double share_in(const RegimeMask& regime, const ProjectedColumns& p, const std::vector<bool>& two_sided,
                 const Eigen::VectorXd& residual, const std::vector<Eigen::VectorXd>& noise) {
   const Eigen::MatrixXd inside = regime.inside.asDiagonal() * p.columns;
@@ -206,11 +247,11 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
   out.residual_fraction = best.columns.kept;
   out.closest_parameter = nearest_base(base, best);
   out.start = start_of(best.variant, best.fit.coefficients, *task.model);
-  out.base_unknowns = base.unknowns();
-  for (std::size_t u = 0; u < base.unknowns().size(); ++u) {
-    const Unknown& unknown = base.unknowns()[u];
-    out.base_start.push_back(std::clamp(unknown.start + best.fit.base_shift[static_cast<Eigen::Index>(u)],
-                                        unknown.lower, unknown.upper));
+  out.base_unknowns = best.from_priors ? unknowns_of(*task.at_priors) : base.unknowns();
+  for (std::size_t u = 0; u < out.base_unknowns.size(); ++u) {
+    const Unknown& unknown = out.base_unknowns[u];
+    const double shift = best.from_priors ? 0.0 : best.fit.base_shift[static_cast<Eigen::Index>(u)];
+    out.base_start.push_back(std::clamp(unknown.start + shift, unknown.lower, unknown.upper));
   }
   const Eigen::Map<const Eigen::VectorXd> a(best.fit.coefficients.data(),
                                             static_cast<Eigen::Index>(best.fit.coefficients.size()));
@@ -241,6 +282,9 @@ Screened screen_one(const ScreeningTask& task, const EffectEntry* entry) {
       if (series.finite && series.fit.gain > kSeriesGain * best.fit.gain) best = std::move(series);
     }
   }
+  if (Scored whole = best_from_priors(task, *entry);
+      whole.finite && (!best.finite || whole.fit.gain > best.fit.gain))
+    best = std::move(whole);
   Screened out = finished(task, entry, std::move(best));
   out.name = std::string(entry->info->id);
   if (typical.finite) out.typical_gain = typical.columns.gram.trace();

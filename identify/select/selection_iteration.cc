@@ -362,6 +362,8 @@ Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
   screening.residuals = &fit;
   screening.model = &parent.fit.model;
   screening.base = &base;
+  const Candidate from_priors = at_priors(parent.fit.model, *task.nominal);
+  screening.at_priors = &from_priors;
   for (const Eigen::VectorXd& n : task.null->fit_noise)
     screening.noise.push_back(n.cwiseProduct(base.weights()));
   screening.regimes = regime_masks(fit, parent.fit.model);

@@ -20,8 +20,8 @@ struct ShaftCompliance {
        .unit = "rad/(N m)",
        .typical = kMode.compliance_rad_per_Nm,
        .lower = 0,
-       .upper = 100,
-       .prior_scale = 0.5,
+       .upper = 2000,
+       .prior_scale = 400,  // of 3 Hz: a long arm's
        .what = "twist per torque, at the output",
        .how = "hold the rotor, load the output with a known torque, read the twist; or the resonance",
        .start_for = compliance_of,
@@ -38,6 +38,7 @@ struct ShaftCompliance {
        .what = "torque per rate of twist, at the output",
        .how = "decay of the ringing after a step",
        .start_for = damping_of,
+       .trait = ParamTrait::kSmoothing,  // none: what the bearings lose is all
        .power_of_size = -0.5},  // the same loss: d = 2 zeta sqrt(J / c)
   };
   static constexpr EffectInfo kInfo{

@@ -66,6 +66,19 @@ TEST(SlowDiagnoseTest, NamesAStiffShaftBeforeAHeavyLoad) {
   EXPECT_EQ(d.effects, std::vector<std::string>{"shaft_compliance"}) << reasons(d);
 }
 
+// A long arm: 8 Hz, within what the drive does. Base parameters fitted without the spring hold the load for nothing, and no
+// line leads back from there.
+TEST(SlowDiagnoseTest, NamesASoftSpring) {
+  BenchRecipe recipe = steps_with(
+      {"shaft_compliance.compliance_rad_per_Nm=5.2", "shaft_compliance.damping_Nm_s_per_rad=3.8e-4"});
+  recipe.excitations = {Excitation::kChirp, Excitation::kSteps, Excitation::kChirp};
+  recipe.model = kWheelModel;
+  const std::string light = "inertia_kg_m2 = { value = 4.6e-5";
+  recipe.model.replace(recipe.model.find(light), light.size(), "inertia_kg_m2 = { value = 2e-4");
+  const Diagnosis d = diagnosed(simulated_bench(recipe));
+  EXPECT_EQ(d.effects, std::vector<std::string>{"shaft_compliance"}) << reasons(d);
+}
+
 // The duty reaches 0.6, the limit stands at 0.585: no smaller cut changes anything.
 TEST(SlowDiagnoseTest, NamesALimitThatIsHardlyReached) {
   const Diagnosis d = diagnosed(simulated_bench(steps_with({"duty_limit.cut=0.415"})));
