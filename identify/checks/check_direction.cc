@@ -101,6 +101,17 @@ void position_against_velocity(const RunView& view, const DriveView& drive,
                                   drive.position_name)});
 }
 
+// How far a position moves towards its target: the alignment of its speed with what is left of the way. Positive of a servo that
+// comes late by half a period, too; where the sign is swapped it is negative after steps and about zero on ramps.
+double towards(const std::vector<double>& target, const std::vector<double>& position) {
+  std::vector<double> left, step;
+  for (std::size_t k = 0; k + 1 < position.size(); ++k) {
+    left.push_back(target[k] - position[k]);
+    step.push_back(position[k + 1] - position[k]);
+  }
+  return alignment(left, step);
+}
+
 void target_against_position(const RunView& view, const DriveView& drive,
                              std::vector<DataFinding>& findings) {
   const std::vector<double>* position = view.run->signal("position");
@@ -116,8 +127,9 @@ void target_against_position(const RunView& view, const DriveView& drive,
   }
   for (double& v : a) v -= mean_a / static_cast<double>(a.size());
   for (double& v : b) v -= mean_b / static_cast<double>(b.size());
+  constexpr double kFollows = 0.2;  // of `towards`: between a late servo's and a swapped sign's; a choice
   const double along = alignment(a, b);
-  if (a.size() < 50 || along > kOpposite) return;
+  if (a.size() < 50 || along > kOpposite || towards(a, b) > kFollows) return;
   findings.push_back({Grade::kFault, "swapped_sign", view.run->file, "position", along,
                       "position moves opposite to position_target: the sign of one is swapped"});
 }

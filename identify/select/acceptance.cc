@@ -46,6 +46,9 @@ constexpr double kMostRiseTimesRemaining = 0.5;  // tuned
 // tenth of its signal's amplitude, so a hundredth of the energy that it explains is left for others to imitate.
 // Tuned: on the open cases false seconds removed up to 0.6 % of the base model's energy, true ones 1.4 % and more …
 constexpr double kFormDiscrepancy = 0.01;  // tuned
+// … of another kind of motion than was fitted ten times that (a third of the amplitude), where it adds to one of the same
+// quantity: there a form is wrong by more …
+constexpr double kFormDiscrepancyElsewhere = 10.0 * kFormDiscrepancy;  // a choice
 // … or nearly all that was left, which no effect of another kind does; one of the same kind may: a second friction law makes
 // up for the form of the first.
 constexpr double kNearlyAll = 0.7;  // tuned
@@ -106,14 +109,6 @@ double change_over_deviation(const AcceptanceContext& context, std::size_t split
     if (variance[k] > 0.0) most = std::max(most, std::abs(before[k] - after[k]) / variance[k]);
   }
   return std::sqrt(most);
-}
-
-// Do two laws change the same quantity by the same kind of argument? Supply and bridge both make the mean voltage at the winding. What
-// repeats itself with an angle is no form of what does not.
-bool is_kin(const EffectInfo& a, const EffectInfo& b) {
-  const auto is_voltage = [](Place p) { return p == Place::kSupply || p == Place::kBridge; };
-  const bool same_quantity = a.place == b.place || (is_voltage(a.place) && is_voltage(b.place));
-  return same_quantity && a.of_angle == b.of_angle;
 }
 
 // Has an effect been found that changes the same quantity as this one? What the model file declares was not found.
@@ -256,11 +251,13 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
     return fmt::format("it removes {} of the held-out error energy; {} is required", percent(gain),
                        percent(needed));
   }
-  if (by.share_of_base < kFormDiscrepancy && (gain < kNearlyAll || by.has_kin)) {
+  const bool elsewhere = by.has_kin && by.split == Split::kExtrapolation;
+  const double form = elsewhere ? kFormDiscrepancyElsewhere : kFormDiscrepancy;
+  if (by.share_of_base < form && (gain < kNearlyAll || by.has_kin)) {
     return fmt::format(
         "it removes {:.2g} % of what the base model left: the form of an effect already found may "
         "leave as much ({:.0f} %)",
-        100.0 * std::max(by.share_of_base, 0.0), 100.0 * kFormDiscrepancy);
+        100.0 * std::max(by.share_of_base, 0.0), 100.0 * form);
   }
   const double unweighted = unweighted_gain(parent.unweighted[d], child.unweighted[d]);
   if (unweighted < kLeastUnweighted && gain < kLeastWhitened) {
@@ -283,14 +280,16 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
 // decisive gain, of the unweighted energy too (whitening weighs the slowest part of a residual most: DECISIONS 51), and
 // no loss on the held-out runs.
 bool extrapolation_decides(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
-                           const AcceptanceResult& gains, const std::string& name) {
+                           const AcceptanceResult& gains, const std::string& name, double& share_of_base) {
   constexpr Split kDecides = Split::kExtrapolation;
   const bool has_both = !(*context.splits)[kValidation].empty() && !(*context.splits)[kExtrapolation].empty();
   if (!has_both || gains.holdout.ratio > 1.0 || 1.0 - gains.extrapolation.ratio < kDecisiveGain) return false;
   if (unweighted_gain(parent.unweighted[kExtrapolation], child.unweighted[kExtrapolation]) < kLeastUnweighted)
     return false;
-  return reason_against_gain(parent, child, gains, deciding_gain(context, kDecides, parent, child, name))
-      .empty();
+  const DecidingGain by = deciding_gain(context, kDecides, parent, child, name);
+  if (!reason_against_gain(parent, child, gains, by).empty()) return false;
+  share_of_base = by.share_of_base;
+  return true;
 }
 
 Evidence evidence_of(const AcceptanceContext& context, const Fitted& parent, const Fitted& child) {
@@ -310,6 +309,12 @@ std::string reason_against_numbers(const Evidence& evidence) {
 }
 
 }  // namespace
+
+bool is_kin(const EffectInfo& a, const EffectInfo& b) {
+  const auto is_voltage = [](Place p) { return p == Place::kSupply || p == Place::kBridge; };
+  const bool same_quantity = a.place == b.place || (is_voltage(a.place) && is_voltage(b.place));
+  return same_quantity && a.of_angle == b.of_angle;
+}
 
 Fitted fitted(const Splits& splits, const Splits& unweighted, FitResult fit, int jobs) {
   Fitted out{.fit = std::move(fit), .residual = {}, .finite = true};
@@ -353,7 +358,7 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
   const SplitGain* by = &held;
   if (out.why.empty()) {
     out.why = reason_against_gain(parent, child, out, gain);
-    if (!out.why.empty() && extrapolation_decides(context, parent, child, out, name)) {
+    if (!out.why.empty() && extrapolation_decides(context, parent, child, out, name, out.share_of_base)) {
       out.why.clear();
       by = &out.extrapolation;
     }

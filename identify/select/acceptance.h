@@ -42,10 +42,11 @@ struct AcceptanceResult {
   bool decisive = false;  // its gain alone proves the strength: no significance test of that
   std::string why;        // for people
   SplitGain fit, holdout, extrapolation;
-  bool plausible = true;       // its numbers and those of the base (plausibility.h)
-  double share_of_base = 1.0;  // of the base model's energy above the noise: what the addition removes
-  bool negligible = false;     // it moves every signal by less than their scales are known
-  Evidence evidence;           // what standard rules of selection say of it
+  bool plausible = true;  // its numbers and those of the base (plausibility.h)
+  double share_of_base =
+      1.0;  // of the base model's energy above the noise: what the addition removes, of the runs that decide
+  bool negligible = false;  // it moves every signal by less than their scales are known
+  Evidence evidence;        // what standard rules of selection say of it
 
   bool accepted() const { return accepted_by != AcceptedBy::kNone; }
 };
@@ -64,6 +65,10 @@ struct AcceptanceContext {
   // Of the measured signals, per channel in its unit squared; empty: not known.
   std::array<Eigen::VectorXd, kSplits> signal_variance{};
 };
+
+// Do two laws change the same quantity by the same kind of argument? Supply and bridge both make the mean voltage at the winding. What
+// repeats itself with an angle is no form of what does not.
+bool is_kin(const EffectInfo& a, const EffectInfo& b);
 
 // As `signal_to_null`: that gain was tested before, or there is no screening to test it by. A marker, above any threshold.
 inline constexpr double kScreenedBefore = 1e9;  // a choice

@@ -8,6 +8,9 @@
 #include <map>
 #include <ranges>
 
+#include "identify/select/acceptance.h"
+#include "sim/law/effect_registry.h"
+
 namespace omnihil {
 namespace {
 
@@ -26,6 +29,24 @@ constexpr double kSurest = 0.99;  // a choice
 constexpr double kLeastShareOfBase = 1e-3;  // a choice
 // The noise's level is not known so well that less could be told from nothing.
 constexpr double kLeastRemaining = 1e-3;  // a choice
+
+// Share of the base model's energy that the form of a law may leave to a second law of the same quantity, beside which either
+// is as likely: what a drag as the power 1.4 of the speed left to a Stribeck friction, beside a quadratic one.
+constexpr double kFormShare = 0.02;  // measured, on a generator's records
+// How likely is a second law of a quantity that takes this share of the base model's energy, and not the form of the first? Forms
+// that leave a multiple of kFormShare are rarer by its square.
+double of_another_law(double share_of_base) {
+  const double ratio = share_of_base / kFormShare;
+  return ratio * ratio / (1.0 + ratio * ratio);
+}
+
+bool has_kin_before(const std::vector<NameConfidence>& before, std::string_view name) {
+  const EffectEntry* entry = find_effect(name);
+  return entry != nullptr && std::ranges::any_of(before, [&](const NameConfidence& c) {
+           const EffectEntry* other = find_effect(c.effect);
+           return other != nullptr && is_kin(*other->info, *entry->info);
+         });
+}
 
 // The row of the ranking that each name was taken from; a law in place of another has the other's.
 std::map<std::string, const RankedEffect*> rows_taken(const Diagnosis& d) {
@@ -102,7 +123,8 @@ std::vector<NameConfidence> confidences(const Diagnosis& d) {
     e.undecided = std::ranges::any_of(d.confounded, [&](const ConfoundedSet& set) {
       return set.members.size() > 1 && std::ranges::find(set.members, name) != set.members.end();
     });
-    out.push_back({.effect = name, .probability = probability_right(e)});
+    const double another = has_kin_before(out, name) ? of_another_law(e.share_of_base) : 1.0;
+    out.push_back({.effect = name, .probability = probability_right(e) * another});
   }
   return out;
 }

@@ -48,14 +48,14 @@ void add_set(ConfoundedSet added, Diagnosis& diagnosis) {
 }
 
 // Both make a settled speed fall short of the duty's: by a constant voltage, or in a bend.
-void add_hidden_losses(const std::string& effect, Diagnosis& diagnosis) {
+void add_hidden_losses(const std::string& effect, bool has_current, Diagnosis& diagnosis) {
   std::erase_if(diagnosis.confounded,
                 [&](const ConfoundedSet& set) { return set.members.front() == effect; });
   add_set({.members = {effect, "dead_time", "coast_mode"},
            .sentence = fmt::format(
                "These points cannot tell {} from a loss before the winding (dead_time, coast_mode and the "
-               "like), which was not searched: measure the current as well, or record the motion.",
-               effect)},
+               "like), which was not searched: {}record the motion.",
+               effect, has_current ? "" : "measure the current as well, or ")},
           diagnosis);
 }
 
@@ -115,7 +115,8 @@ void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis) {
     return set.members.size() < 2;
   });
   if (!hides_losses_before_winding(dataset)) return;
-  for (const std::string& effect : diagnosis.effects) add_hidden_losses(effect, diagnosis);
+  const bool has_current = dataset.channel("motor_current") != nullptr;
+  for (const std::string& effect : diagnosis.effects) add_hidden_losses(effect, has_current, diagnosis);
 }
 
 std::vector<Where> where_of(const Comparison& comparison, double order) {

@@ -38,7 +38,8 @@ double deviation_of(const ParameterEstimate& p) {
 
 // A base parameter that the addition moves out of its tolerance or to a bound. Empty: none. What its prior rejects without
 // any addition absorbs something that is missing (an inductance a delay): beside a decisive gain it says nothing against this
-// one. What an earlier addition moved that far is no such number: two laws would walk twice as far as one may.
+// one. What an earlier addition moved that far is no such number: two laws would walk twice as far as one may. An earlier
+// effect's own numbers, which no base fit has, are believed to be of a usual size and no more: the parent's deviation counts.
 std::string moved_out_of_tolerance(const FitResult& base, const FitResult& parent, const FitResult& child,
                                    bool decisive) {
   for (const ParameterEstimate& p : child.parameters) {
@@ -47,7 +48,7 @@ std::string moved_out_of_tolerance(const FitResult& base, const FitResult& paren
     const ParameterEstimate *before = estimate_of(parent, p.path), *at_first = estimate_of(base, p.path);
     if (before == nullptr) continue;  // of the effect itself
     const double was = std::abs(deviation_of(*before)),
-                 was_at_first = at_first == nullptr ? 0.0 : std::abs(deviation_of(*at_first));
+                 was_at_first = at_first == nullptr ? was : std::abs(deviation_of(*at_first));
     if (decisive && std::min(was, was_at_first) >= kPriorRejected_sigmas) continue;
     // A bound at zero lies nearer than the limit where the tolerance is wide: the addition stands in for the parameter.
     const bool replaced = p.at_bound && !before->at_bound && sigmas >= kRestored_sigmas;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/estimate/evidence.h"
+#include "identify/select/verdict.h"
 
 namespace omnihil {
 namespace {
@@ -120,21 +121,26 @@ void prefer_nested(const SelectionTask& task, std::vector<CandidateEffect>& cand
   }
 }
 
-// Of laws that gain the same, the penalty prefers the one of fewer numbers, however many samples speak against it. Not where the
-// Bayesian information criterion, with the effective sample size, speaks very strongly for a richer one, and the held-out runs
-// do not contradict.
+// Of laws that gain the same, the penalty prefers the one of fewer numbers, however many samples speak against it. Not where
+// another leaves no more than the sensors' noise (beside a discrepancy of the model no likelihood is right), the Bayesian
+// information criterion, with the effective sample size, speaks very strongly for it, and the held-out runs do not contradict.
 void prefer_evident(const SelectionTask& task, bool has_holdout, std::vector<CandidateEffect>& candidates) {
   const auto by_gain = [](const CandidateEffect& c) {
     return c.acceptance.accepted_by == AcceptedBy::kGain && !c.screened.extends;
   };
+  const std::size_t decides = has_holdout ? kValidation : kTraining;
+  const auto explains_all = [&](const CandidateEffect& c) {
+    return c.fitted.finite &&
+           !structure_in((*task.splits)[decides], *task.null, *task.channels, c.fitted.residual[decides]);
+  };
   const CandidateEffect& first = candidates.front();
   if (!by_gain(first)) return;
-  const double most = std::max(gain_of(first, has_holdout), kLeastGainToCompare);
+  const double gain = gain_of(first, has_holdout);
   double least = -kVeryStrong;
   std::size_t evident = 0;
   for (std::size_t c = 1; c < candidates.size(); ++c) {
     const CandidateEffect& other = candidates[c];
-    if (!by_gain(other) || gain_of(first, has_holdout) - gain_of(other, has_holdout) > kSameGain * most)
+    if (!by_gain(other) || !explains_all(other) || gain - gain_of(other, has_holdout) > kSameGain * gain)
       continue;
     const auto pair = [&](Split split) -> ResidualPair {
       return {first.fitted.residual[split], other.fitted.residual[split]};
@@ -146,8 +152,8 @@ void prefer_evident(const SelectionTask& task, bool has_holdout, std::vector<Can
     least = evidence.delta_bic;
     evident = c;
   }
-  std::rotate(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(evident),
-              candidates.begin() + static_cast<std::ptrdiff_t>(evident) + (evident > 0 ? 1 : 0));
+  const auto moved = candidates.begin() + static_cast<std::ptrdiff_t>(evident);
+  if (evident > 0) std::rotate(candidates.begin(), moved, moved + 1);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ struct BackEmfMissing {
           "was made with a wrong equation, or that viscous friction is wrong",
       .place = Place::kWinding,
       .twins = {"motor.viscous_friction_Nm_s_per_rad"},
+      .nests = {"constant_load"},  // all of it that the base parameters do not take, and no part of a motor
       .reveals =
           "duty staircase: settled speed at a fixed duty is too high; the slope of current over speed is not "
           "k / R of the data sheet; coasting with open terminals is unchanged",

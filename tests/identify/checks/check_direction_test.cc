@@ -1,6 +1,7 @@
 // Signs of a drive by torque.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -37,6 +38,39 @@ TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
       angle.push_back(w0 * (t - 2.0 * rise_s + (t + 2.0 * rise_s) * left));
       torque.push_back(sign * (kInertia * w0 * t / rise_s / rise_s * left + kFriction +
                                kWeight * std::sin(angle.back()) + noise(random)));
+    }
+    EXPECT_EQ(find(check_data(bench.dataset, bench.nominal), "swapped_sign") != nullptr, sign < 0.0)
+        << text_of(check_data(bench.dataset, bench.nominal));
+  }
+}
+
+// A servo at its speed limit under a square of 0.38 s half a period: it comes late by half of that and more, but it goes where it is
+// asked to. One whose sensor counts backwards does not.
+TEST(CheckDirection, AServoThatComesLateHasNoSwappedSign) {
+  constexpr double kRow_s = 0.02, kHalf_s = 0.38, kTop_rad_s = 4.5, kAmplitude_rad = 0.6, kDelay_s = 0.16;
+  Bench bench = simulated_bench(BenchRecipe{});
+  bench.dataset.channels.clear();
+  for (const char* name : {"position_target", "position"}) {
+    bench.dataset.channels.push_back({});
+    bench.dataset.channels.back().signal = bench.dataset.channels.back().column = name;
+  }
+  bench.dataset.runs.resize(1);
+  omnihil::Run& run = bench.dataset.runs[0];
+  const auto target_at = [&](double t) {
+    return t < 0.0 ? 0.0 : (static_cast<int>(t / kHalf_s) % 2 == 0 ? kAmplitude_rad : -kAmplitude_rad);
+  };
+  for (const double sign : {1.0, -1.0}) {
+    run.signals.clear();
+    run.time_s.clear();
+    std::vector<double>&target = run.signals["position_target"], &position = run.signals["position"];
+    double at = 0.0;
+    for (int k = 0; k < 300; ++k) {
+      const double t = kRow_s * k;
+      const double late_s = sign > 0.0 ? kDelay_s : 0.0, top = sign > 0.0 ? kTop_rad_s : 4.0 * kTop_rad_s;
+      run.time_s.push_back(t);
+      target.push_back(target_at(t));
+      position.push_back(sign * at);
+      at += std::clamp(target_at(t - late_s) - at, -top * kRow_s, top * kRow_s);
     }
     EXPECT_EQ(find(check_data(bench.dataset, bench.nominal), "swapped_sign") != nullptr, sign < 0.0)
         << text_of(check_data(bench.dataset, bench.nominal));

@@ -92,6 +92,24 @@ TEST(ConfidenceTest, IsLowerWhereStructureRemainsAndForLaterNames) {
   EXPECT_LT(probability_right(remains), probability_right(first));
 }
 
+// What a law's form leaves to a second one of the same quantity: a fiftieth of the base model's energy makes both as likely, a
+// third none. Of another quantity there is no such doubt.
+TEST(ConfidenceTest, ASecondLawOfTheSameQuantityMayBeTheFormOfTheFirst) {
+  const auto of_second = [](const std::string& name, double share) {
+    Diagnosis d;
+    d.outcome = Outcome::kFound;
+    d.effects = {"quadratic_drag", name};
+    d.ladder.resize(3);
+    d.ladder[0].ranking = {row("quadratic_drag", 1.0, 0.98)};
+    d.ladder[1].added = "quadratic_drag";
+    d.ladder[1].ranking = {row(name, 1.0, share)};
+    d.ladder[2].added = name;
+    return confidences(d)[1].probability;
+  };
+  EXPECT_NEAR(of_second("stribeck_friction", 0.02), 0.5 * of_second("saturation", 0.02), 0.01);
+  EXPECT_GT(of_second("stribeck_friction", 0.33), 0.98 * of_second("saturation", 0.33));
+}
+
 TEST(ConfidenceTest, ANameThatExplainsMuchMoreThanWhatRemainsIsLikelier) {
   const auto beside = [](double remaining) {
     return probability_right({.more_remains = true,

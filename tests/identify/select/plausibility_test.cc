@@ -139,6 +139,18 @@ TEST(PlausibilityTest, ABaseParameterThatWasBentBeforeIsNoReasonAgainstADecisive
   EXPECT_FALSE(accepted(1.9, 0.7));  // not rejected before
   EXPECT_TRUE(accepted(3.1, 0.7, 2.6));
   EXPECT_FALSE(accepted(3.1, 0.7, 0.5));  // an effect found before this one bent it
+  base.parameters.clear();                // a number of such an effect, which the base fit does not have
+  const FitResult without = base;
+  fixture.context.base_fit = &without;
+  ParameterEstimate strength;
+  strength.path = "stribeck_friction.extra_torque_Nm";
+  strength.prior_sigma = 1e-3;
+  strength.prior_deviation_sigmas = 6.8;
+  Fitted larger = parent, child = fixture.leaving(0.3, 0.3, 0.3);
+  larger.fit.parameters = {strength};
+  strength.prior_deviation_sigmas = 8.2;
+  child.fit.parameters = {strength};
+  EXPECT_TRUE(test_acceptance(fixture.context, larger, child, "x", 100).accepted());
 }
 
 TEST(PlausibilityTest, ReadsAParameterAtItsBoundAsASymptom) {
