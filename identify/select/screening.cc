@@ -156,17 +156,18 @@ class SizeSearch {
   Scored best_;
 };
 
-// Sizes of a strength from the smallest of its grid to beyond the largest, a factor of two apart: a resonance's frequency changes
+// Sizes of a strength from the smallest of its grid to beyond the largest, a factor of three apart: a resonance's frequency changes
 // by the root of that, less than the width of the valley that a fit descends into.
 std::vector<double> dense_sizes(const EffectParam& strength) {
   constexpr double kBeyond = 16.0;  // a quarter of the frequency of a resonance; a choice
+  constexpr double kStep = 3.0;  // a choice: of a spring of 8 Hz fits descended from half to twice its size
   const auto at = strength.grid.at;
   double least = 1.0, most = 1.0;
   for (const double size : at) {
     if (size > 0.0) least = std::min(least, size), most = std::max(most, size);
   }
   std::vector<double> out;
-  for (double size = least; most > least && size <= kBeyond * most; size *= 2.0) out.push_back(size);
+  for (double size = least; most > least && size <= kBeyond * most; size *= kStep) out.push_back(size);
   return out;
 }
 
@@ -175,7 +176,8 @@ std::vector<double> dense_sizes(const EffectParam& strength) {
 // Not finite: the effect's sizes have no grid, or none leaves less than the parent.
 Scored best_from_priors(const ScreeningTask& task, const EffectEntry& entry) {
   Scored best;
-  if (task.at_priors == nullptr) return best;
+  // A play's simulations are dear, at the shortest step throughout, and its fit begins from half and twice the size anyway.
+  if (task.at_priors == nullptr || (entry.info->numerics & kImpacts) != 0) return best;
   const EffectVariant typical = variants_of(entry, *task.at_priors, task.scale).front();
   if (typical.columns.size() != 1) return best;
   const LinearBase& base = *task.base;
