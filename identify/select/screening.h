@@ -38,7 +38,8 @@ struct ScreeningTask {
   const WhitenedResiduals* residuals = nullptr;  // of the fit runs
   const Candidate* model = nullptr;
   const LinearBase* base = nullptr;
-  const Candidate* at_priors = nullptr;  // `model`, the base parameters at their priors; null: not tried from there
+  const Candidate* at_priors =
+      nullptr;  // `model`, the base parameters at their priors; null: not tried from there
   std::vector<Eigen::VectorXd> noise;  // weighted residuals of the null: [replicate], one value per sample
   std::vector<RegimeMask> regimes;
   DataScale scale;

@@ -39,7 +39,7 @@ struct ShaftCompliance {
        .how = "decay of the ringing after a step",
        .start_for = damping_of,
        .trait = ParamTrait::kSmoothing,  // none: what the bearings lose is all
-       .power_of_size = -0.5},  // the same loss: d = 2 zeta sqrt(J / c)
+       .power_of_size = -0.5},           // the same loss: d = 2 zeta sqrt(J / c)
   };
   static constexpr EffectInfo kInfo{
       .id = "shaft_compliance",
