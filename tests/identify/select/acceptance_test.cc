@@ -353,5 +353,29 @@ TEST(AcceptanceTest, AnotherKindOfMotionDecidesWhereTheHeldOutRunsHardlyShowTheE
       << "what only the slowest part of the residual shows is the base parameters' last digits";
 }
 
+// A law's form is wrong by more where nothing was fitted: what a second law of the same quantity takes there alone has to be a tenth
+// of what the base model left there. An effect elsewhere takes what it takes.
+TEST(AcceptanceTest, AnotherKindOfMotionAloneProvesNoSecondLawOfTheSameQuantity) {
+  AcceptanceFixture fixture;
+  for (auto& level : fixture.null.mean_square) level = Eigen::MatrixXd::Constant(2, 1, 0.01);
+  FitResult without;
+  fixture.context.base_fit = &without;
+  const auto accepted = [&](const std::string& name, const std::string& strength, double base_extrapolation) {
+    const Fitted base = fixture.leaving(10, 10, base_extrapolation);
+    fixture.context.base = &base.residual;
+    Fitted found = fixture.leaving(2, 2, 2), child = fixture.leaving(1.8, 2 * 0.995, 2 * 0.6);
+    found.fit.model = with_effect("stribeck_friction", 0.01);
+    ParameterEstimate significant;
+    significant.path = name + "." + strength;
+    significant.value = 0.01;
+    significant.sigma = 1e-3;
+    child.fit.parameters = {significant};
+    return test_acceptance(fixture.context, found, child, name, 100).accepted();
+  };
+  EXPECT_FALSE(accepted("lugre_friction", "coulomb_torque_Nm", 10)) << "2.6 % of the base model's energy";
+  EXPECT_TRUE(accepted("lugre_friction", "coulomb_torque_Nm", 4)) << "16 %";
+  EXPECT_TRUE(accepted("encoder_eccentricity", "amplitude_rad", 10));
+}
+
 }  // namespace
 }  // namespace omnihil
