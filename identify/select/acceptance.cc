@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "identify/select/verdict.h"
 #include "sim/law/effect_registry.h"
@@ -278,26 +279,18 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
 // An effect that the held-out runs hardly move (a dead band under full steps) and another kind of motion does: the
 // extrapolation runs were not fitted to either. A little comes from the base parameters' last digits there, hence a
 // decisive gain, of the unweighted energy too (whitening weighs the slowest part of a residual most: DECISIONS 51), and
-// no loss on the held-out runs.
-bool extrapolation_decides(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
-                           const AcceptanceResult& gains, const std::string& name, double& share_of_base) {
+// no loss on the held-out runs. Empty: they do not decide.
+std::optional<DecidingGain> extrapolation_decides(const AcceptanceContext& context, const Fitted& parent,
+                                                  const Fitted& child, const AcceptanceResult& gains,
+                                                  const std::string& name) {
   constexpr Split kDecides = Split::kExtrapolation;
   const bool has_both = !(*context.splits)[kValidation].empty() && !(*context.splits)[kExtrapolation].empty();
-  if (!has_both || gains.holdout.ratio > 1.0 || 1.0 - gains.extrapolation.ratio < kDecisiveGain) return false;
+  if (!has_both || gains.holdout.ratio > 1.0 || 1.0 - gains.extrapolation.ratio < kDecisiveGain)
+    return std::nullopt;
   if (unweighted_gain(parent.unweighted[kExtrapolation], child.unweighted[kExtrapolation]) < kLeastUnweighted)
-    return false;
+    return std::nullopt;
   const DecidingGain by = deciding_gain(context, kDecides, parent, child, name);
-  if (!reason_against_gain(parent, child, gains, by).empty()) return false;
-  share_of_base = by.share_of_base;
-  return true;
-}
-
-Evidence evidence_of(const AcceptanceContext& context, const Fitted& parent, const Fitted& child) {
-  const int extra =
-      static_cast<int>(child.fit.unknowns.size()) - static_cast<int>(parent.fit.unknowns.size());
-  return evidence_of((*context.splits)[kTraining], {parent.residual[kTraining], child.residual[kTraining]},
-                     (*context.splits)[kValidation],
-                     {parent.residual[kValidation], child.residual[kValidation]}, std::max(extra, 1));
+  return reason_against_gain(parent, child, gains, by).empty() ? std::optional(by) : std::nullopt;
 }
 
 // Whatever the gain, the criterion's price of the numbers is the least that it has to be worth (DECISIONS 194).
@@ -309,6 +302,15 @@ std::string reason_against_numbers(const Evidence& evidence) {
 }
 
 }  // namespace
+
+Evidence evidence_of(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
+                     int extra_parameters) {
+  const auto pair = [&](Split split) -> ResidualPair {
+    return {parent.residual[split], child.residual[split]};
+  };
+  return evidence_of((*context.splits)[kTraining], pair(kTraining), (*context.splits)[kValidation],
+                     pair(kValidation), extra_parameters);
+}
 
 bool is_kin(const EffectInfo& a, const EffectInfo& b) {
   const auto is_voltage = [](Place p) { return p == Place::kSupply || p == Place::kBridge; };
@@ -358,13 +360,18 @@ AcceptanceResult test_acceptance(const AcceptanceContext& context, const Fitted&
   const SplitGain* by = &held;
   if (out.why.empty()) {
     out.why = reason_against_gain(parent, child, out, gain);
-    if (!out.why.empty() && extrapolation_decides(context, parent, child, out, name, out.share_of_base)) {
+    const std::optional<DecidingGain> elsewhere =
+        out.why.empty() ? std::nullopt : extrapolation_decides(context, parent, child, out, name);
+    if (elsewhere) {
       out.why.clear();
+      out.share_of_base = elsewhere->share_of_base;
       by = &out.extrapolation;
     }
   }
   if (out.why.empty()) out.why = implausible;
-  out.evidence = evidence_of(context, parent, child);
+  const int extra =
+      static_cast<int>(child.fit.unknowns.size()) - static_cast<int>(parent.fit.unknowns.size());
+  out.evidence = evidence_of(context, parent, child, std::max(extra, 1));
   if (out.why.empty()) out.why = reason_against_numbers(out.evidence);
   if (out.why.empty()) {
     out.accepted_by = AcceptedBy::kGain;

@@ -43,8 +43,8 @@ struct AcceptanceResult {
   std::string why;        // for people
   SplitGain fit, holdout, extrapolation;
   bool plausible = true;  // its numbers and those of the base (plausibility.h)
-  double share_of_base =
-      1.0;  // of the base model's energy above the noise: what the addition removes, of the runs that decide
+  // Of the base model's energy above the noise, on the runs that decide: what the addition removes.
+  double share_of_base = 1.0;
   bool negligible = false;  // it moves every signal by less than their scales are known
   Evidence evidence;        // what standard rules of selection say of it
 
@@ -65,6 +65,10 @@ struct AcceptanceContext {
   // Of the measured signals, per channel in its unit squared; empty: not known.
   std::array<Eigen::VectorXd, kSplits> signal_variance{};
 };
+
+// Of one model against another of `extra_parameters` fewer numbers (negative: more), on the context's runs.
+Evidence evidence_of(const AcceptanceContext& context, const Fitted& parent, const Fitted& child,
+                     int extra_parameters);
 
 // Do two laws change the same quantity by the same kind of argument? Supply and bridge both make the mean voltage at the winding. What
 // repeats itself with an angle is no form of what does not.

@@ -7,6 +7,7 @@
 
 #include "identify/record/parallel.h"
 #include "identify/record/statistics.h"
+#include "identify/select/strength_grid.h"
 #include "sim/model/effect_reader.h"
 
 namespace omnihil {
@@ -156,21 +157,6 @@ class SizeSearch {
   Scored best_;
 };
 
-// Sizes of a strength from the smallest of its grid to beyond the largest, a factor of three apart: a resonance's frequency changes
-// by the root of that, less than the width of the valley that a fit descends into.
-std::vector<double> dense_sizes(const EffectParam& strength) {
-  constexpr double kBeyond = 16.0;  // a quarter of the frequency of a resonance; a choice
-  constexpr double kStep = 3.0;  // a choice: of a spring of 8 Hz fits descended from half to twice its size
-  const auto at = strength.grid.at;
-  double least = 1.0, most = 1.0;
-  for (const double size : at) {
-    if (size > 0.0) least = std::min(least, size), most = std::max(most, size);
-  }
-  std::vector<double> out;
-  for (double size = least; most > least && size <= kBeyond * most; size *= kStep) out.push_back(size);
-  return out;
-}
-
 // The model with the base parameters at their priors and the effect at one of its sizes, as it is: where no line leads from one
 // size to another, the base parameters have been fitted to what the effect does, and nothing linear about them leads back.
 // Not finite: the effect's sizes have no grid, or none leaves less than the parent.
@@ -181,7 +167,7 @@ Scored best_from_priors(const ScreeningTask& task, const EffectEntry& entry) {
   const EffectVariant typical = variants_of(entry, *task.at_priors, task.scale).front();
   if (typical.columns.size() != 1) return best;
   const LinearBase& base = *task.base;
-  for (const double size : dense_sizes(entry.info->params[first_strength(*entry.info)])) {
+  for (const double size : sizes_across_grid(entry.info->params[first_strength(*entry.info)])) {
     EffectVariant variant = with_size(typical, size);
     const Eigen::VectorXd with =
         task.residuals->predicted(with_use(*task.at_priors, setting(variant, variant.columns.front())));

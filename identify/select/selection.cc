@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/estimate/evidence.h"
 #include "identify/select/verdict.h"
 
 namespace omnihil {
@@ -142,12 +141,8 @@ void prefer_evident(const SelectionTask& task, bool has_holdout, std::vector<Can
     const CandidateEffect& other = candidates[c];
     if (!by_gain(other) || !explains_all(other) || gain - gain_of(other, has_holdout) > kSameGain * gain)
       continue;
-    const auto pair = [&](Split split) -> ResidualPair {
-      return {first.fitted.residual[split], other.fitted.residual[split]};
-    };
-    const Evidence evidence =
-        evidence_of((*task.splits)[kTraining], pair(kTraining), (*task.splits)[kValidation],
-                    pair(kValidation), parameter_count(other) - parameter_count(first));
+    const Evidence evidence = evidence_of(task.acceptance_context, first.fitted, other.fitted,
+                                          parameter_count(other) - parameter_count(first));
     if (evidence.delta_bic >= least || evidence.delta_elpd < 0.0) continue;
     least = evidence.delta_bic;
     evident = c;

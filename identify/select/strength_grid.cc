@@ -36,6 +36,18 @@ Candidate with_strength(const Candidate& model, const EffectUse& use, double str
 
 }  // namespace
 
+std::vector<double> sizes_across_grid(const EffectParam& strength) {
+  constexpr double kBeyond = 16.0;  // a quarter of the frequency of a resonance; a choice
+  constexpr double kStep = 3.0;  // a choice: of a spring of 8 Hz fits descended from half to twice its size
+  double least = 1.0, most = 1.0;
+  for (const double size : strength.grid.at) {
+    if (size > 0.0) least = std::min(least, size), most = std::max(most, size);
+  }
+  std::vector<double> out;
+  for (double size = least; most > least && size <= kBeyond * most; size *= kStep) out.push_back(size);
+  return out;
+}
+
 std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const Candidate& model,
                                                 const std::string& effect, const Eigen::VectorXd& residual) {
   const EffectUse* use = use_of(model, effect);

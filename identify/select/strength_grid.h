@@ -11,10 +11,15 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "identify/select/refit.h"
 
 namespace omnihil {
+
+// Multiples of its visible size from the smallest of a strength's grid to beyond the largest, a factor of three apart: a resonance's
+// frequency changes by the root of that, less than the width of the valley that a fit descends into. Empty: it has no grid.
+std::vector<double> sizes_across_grid(const EffectParam& strength);
 
 // The point of least whitened energy of the fit runs, with the model's other values; empty: none is below `residual`'s.
 std::optional<Candidate> below_on_strength_grid(const RefitSetup& setup, const Candidate& model,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <random>
 
 #include "tests/identify/checks/data_findings.h"
@@ -10,6 +11,16 @@
 
 namespace omnihil {
 namespace {
+
+// One run of these channels alone, whose signals the test makes.
+void keep_one_run_of(std::initializer_list<const char*> channels, Bench& bench) {
+  bench.dataset.channels.clear();
+  for (const char* name : channels) {
+    bench.dataset.channels.push_back({});
+    bench.dataset.channels.back().signal = bench.dataset.channels.back().column = name;
+  }
+  bench.dataset.runs.resize(1);
+}
 
 // An arm that a position loop lifts: its weight makes the torque rise while the start's acceleration is over.
 TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
@@ -19,12 +30,7 @@ TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
                                  .amplitude = 0.02,
                                  .with = {},
                                  .model = ""});
-  bench.dataset.channels.clear();
-  for (const char* name : {"motor_torque", "position"}) {
-    bench.dataset.channels.push_back({});
-    bench.dataset.channels.back().signal = bench.dataset.channels.back().column = name;
-  }
-  bench.dataset.runs.resize(1);
+  keep_one_run_of({"motor_torque", "position"}, bench);
   omnihil::Run& run = bench.dataset.runs[0];
   for (const double sign : {1.0, -1.0}) {
     run.signals.clear();
@@ -49,12 +55,7 @@ TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
 TEST(CheckDirection, AServoThatComesLateHasNoSwappedSign) {
   constexpr double kRow_s = 0.02, kHalf_s = 0.38, kTop_rad_s = 4.5, kAmplitude_rad = 0.6, kDelay_s = 0.16;
   Bench bench = simulated_bench(BenchRecipe{});
-  bench.dataset.channels.clear();
-  for (const char* name : {"position_target", "position"}) {
-    bench.dataset.channels.push_back({});
-    bench.dataset.channels.back().signal = bench.dataset.channels.back().column = name;
-  }
-  bench.dataset.runs.resize(1);
+  keep_one_run_of({"position_target", "position"}, bench);
   omnihil::Run& run = bench.dataset.runs[0];
   const auto target_at = [&](double t) {
     return t < 0.0 ? 0.0 : (static_cast<int>(t / kHalf_s) % 2 == 0 ? kAmplitude_rad : -kAmplitude_rad);
