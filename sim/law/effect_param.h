@@ -32,7 +32,8 @@ enum class ParamTrait : std::uint8_t {
   kOrder,     // periods in a turn: whole by the make of the thing, found in the residual's own order spectrum
   kCount,     // another number that is whole by the make of the thing (pulses in a turn): never fitted
   kForm,      // a form of the law (an exponent): at a bound it is the neighbouring form, not a symptom
-  // A width within which a sign turns over: its lower bound is the sharp law, narrower than the data resolve.
+  // What may be next to none: a width within which a sign turns over, a loss beside the bearings' own. Its lower bound is the law
+  // without it, below what the data resolve, and no symptom.
   kSmoothing,
   kTime,     // a time, or in proportion to one: below a share of the sampling period it is lost in the clock
   kDamping,  // friction in proportion to speed: what the gain of a closed speed loop looks like
