@@ -285,7 +285,7 @@ std::optional<DecidingGain> extrapolation_decides(const AcceptanceContext& conte
                                                   const std::string& name) {
   constexpr Split kDecides = Split::kExtrapolation;
   const bool has_both = !(*context.splits)[kValidation].empty() && !(*context.splits)[kExtrapolation].empty();
-  if (!has_both || gains.holdout.ratio > 1.0 || 1.0 - gains.extrapolation.ratio < kDecisiveGain)
+  if (!has_both || gains.holdout.ratio > 1.0 + kMostRise || 1.0 - gains.extrapolation.ratio < kDecisiveGain)
     return std::nullopt;
   if (unweighted_gain(parent.unweighted[kExtrapolation], child.unweighted[kExtrapolation]) < kLeastUnweighted)
     return std::nullopt;

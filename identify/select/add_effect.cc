@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/estimate/heard_commands.h"
+#include "identify/select/innovations.h"
 #include "identify/select/verdict.h"
 
 namespace omnihil {
@@ -61,6 +62,10 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
                            start.aliased_parameter());
   };
   AcceptanceResult acceptance = test();
+  if (!acceptance.accepted()) {
+    AcceptanceResult fast = test_by_innovations(task, context.base(), with, start.name);
+    if (fast.accepted()) acceptance = std::move(fast);
+  }
   if (!acceptance.accepted()) {
     task.acceptance_context.structure_remains = true;
     const AcceptanceResult small = test();

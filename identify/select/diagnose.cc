@@ -14,6 +14,7 @@
 #include "identify/select/diagnosis.h"
 #include "identify/select/effect_variants.h"
 #include "identify/select/elimination.h"
+#include "identify/select/innovations.h"
 #include "identify/select/nested_law.h"
 #include "identify/select/next_experiment.h"
 #include "identify/select/noise_effect.h"
@@ -38,7 +39,6 @@ constexpr int kMostRestarts = 2;        // by cost
 constexpr double kRobustLoss = 1.2;  // tuned
 
 constexpr const char* kBaseStep = "base parameters refitted";
-constexpr const char* kInterrupted = "interrupted before any effect was tried";
 
 class Diagnosing {
  public:
@@ -124,22 +124,6 @@ class Diagnosing {
   // A fault of the data that would be taken for physics.
   bool misleading() const { return !options_.despite_faults && first_fault(out_.findings) != nullptr; }
 
-  // Why no effect was tried; "": one was.
-  std::string not_searched() const {
-    if (misleading()) {
-      return fmt::format("a fault of the data would be taken for an effect: {}",
-                         first_fault(out_.findings)->sentence);
-    }
-    const bool tried = !out_.effects.empty() ||
-                       std::any_of(out_.ranking.begin(), out_.ranking.end(), [&](const RankedEffect& r) {
-                         return r.refitted || (!stopped_ && r.visibility != Visibility::kNotTried);
-                       });
-    if (tried) return "";
-    if (stopped_) return kInterrupted;
-    return out_.ranking.empty() ? "none of the known effects can act on this bench"
-                                : "with every effect that was tried the model diverges";
-  }
-
   void iterate() {
     double from = kAfterNull;
     int restarts = 0;
@@ -167,6 +151,7 @@ class Diagnosing {
         --n;
         continue;
       }
+      if (!converged && !iteration.stopped) converged = by_innovations(iteration);
       const bool unexplained = !converged && !iteration.stopped && pairs_asked() && worth_another_iteration();
       if (unexplained) converged = converged_choice(with_small_gains(iteration));
       if (first) out_.ranking = iteration.ranking;
@@ -180,6 +165,16 @@ class Diagnosing {
       if (!worth_another_iteration()) return;
       from = to;
     }
+  }
+
+  // Nothing was accepted by the plain residual.
+  std::optional<Fitted> by_innovations(Iteration& iteration) {
+    std::optional<InnovationChoice> choice =
+        choice_by_innovations(task_, context().setup(true, stop()), current_, iteration);
+    if (!choice) return std::nullopt;
+    iteration = std::move(choice->iteration);
+    by_innovations_.push_back(iteration.candidates[static_cast<std::size_t>(iteration.chosen)].screened.name);
+    return std::move(choice->fitted);
   }
 
   // Structure remains, and nothing was accepted.
@@ -282,13 +277,17 @@ class Diagnosing {
     }
   }
   EffectsFound found() const {
-    return {.names = out_.effects, .aliased_parameters = aliased_parameter_, .pair = pair_};
+    return {.names = out_.effects,
+            .aliased_parameters = aliased_parameter_,
+            .pair = pair_,
+            .by_innovations = by_innovations_};
   }
 
   // Laws whose shapes imitated what later effects explain give way to the laws that they become at a limit.
   void simplify() {
     for (std::size_t n = 0; n < out_.effects.size() && !stopped_; ++n) {
       const std::string name = out_.effects[n];
+      if (std::ranges::find(by_innovations_, name) != by_innovations_.end()) continue;
       std::optional<NestedLaw> simpler = nested_law(task_, context().setup(true, stop()), current_, name);
       if (!simpler) continue;
       current_ = std::move(simpler->fitted);
@@ -363,7 +362,7 @@ class Diagnosing {
     out_.final_fit = current_.fit;
     out_.final_comparison =
         added ? compare(context().predictor(), current_.fit.model) : out_.baseline_comparison;
-    out_.not_searched = not_searched();
+    out_.not_searched = reason_not_searched(out_, misleading(), stopped_);
     const bool searched = out_.not_searched.empty();
     if (const DataFinding* fault = first_fault(out_.findings); fault != nullptr && searched)
       out_.searched_despite = fault->sentence;
@@ -478,6 +477,7 @@ class Diagnosing {
   Diagnosis out_;
   std::map<std::string, std::string> aliased_parameter_;  // of the effects added
   std::vector<std::string> pair_;                         // accepted only together
+  std::vector<std::string> by_innovations_;               // accepted only by those
   bool heard_anew_ = false;  // the ladder's first steps are of what was heard before
   double order_ = 0.0;       // strongest of the residual's, per rotor turn
   double furthest_ = 0.0;

@@ -145,6 +145,21 @@ std::vector<Where> where_of(const Comparison& comparison, double order) {
   return all;
 }
 
+std::string reason_not_searched(const Diagnosis& diagnosis, bool misleading, bool stopped) {
+  if (misleading) {
+    return fmt::format("a fault of the data would be taken for an effect: {}",
+                       first_fault(diagnosis.findings)->sentence);
+  }
+  const bool tried =
+      !diagnosis.effects.empty() || std::ranges::any_of(diagnosis.ranking, [&](const RankedEffect& r) {
+        return r.refitted || (!stopped && r.visibility != Visibility::kNotTried);
+      });
+  if (tried) return "";
+  if (stopped) return kInterrupted;
+  return diagnosis.ranking.empty() ? "none of the known effects can act on this bench"
+                                   : "with every effect that was tried the model diverges";
+}
+
 std::vector<DataFinding> lost_commands(const HeardCommands& heard) {
   std::vector<DataFinding> out;
   for (std::size_t r = 0; r < heard.lost.size(); ++r) {

@@ -22,6 +22,10 @@ void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis);
 // in the residual along the rotor's angle, 0: none.
 std::vector<Where> where_of(const Comparison& comparison, double order);
 
+inline constexpr const char* kInterrupted = "interrupted before any effect was tried";
+// Why no effect was tried; "": one was. misleading: a fault of the data kept the search from beginning.
+std::string reason_not_searched(const Diagnosis& diagnosis, bool misleading, bool stopped);
+
 // A note per run that lost some.
 std::vector<DataFinding> lost_commands(const HeardCommands& heard);
 

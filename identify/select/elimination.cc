@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "identify/select/innovations.h"
 #include "identify/select/plausibility.h"
 
 namespace omnihil {
@@ -16,6 +17,15 @@ bool lost_its_partner(const EffectsFound& found, const std::string& name) {
                                               [&](const std::string& n) { return !has(found.names, n); });
 }
 
+// Is `current` accepted as an addition to the model without the effect?
+AcceptanceResult need_of(const SelectionTask& task, const Fitted& less, const Fitted& current,
+                         const EffectsFound& found, const std::string& name) {
+  if (has(found.by_innovations, name)) return test_by_innovations(task, less, current, name);
+  const auto aliased = found.aliased_parameters.find(name);
+  return test_acceptance(task.acceptance_context, less, current, name, kScreenedBefore,
+                         aliased == found.aliased_parameters.end() ? "" : aliased->second);
+}
+
 }  // namespace
 
 std::optional<UnneededEffect> unneeded_effect(const SelectionTask& task, const RefitSetup& setup,
@@ -27,10 +37,7 @@ std::optional<UnneededEffect> unneeded_effect(const SelectionTask& task, const R
     if (setup.stop && setup.stop()) return std::nullopt;
     Fitted less = refit_as_it_is(setup, without_effect(current.fit.model, name), 1);
     if (!less.finite) continue;
-    const auto aliased = found.aliased_parameters.find(name);
-    const AcceptanceResult needed =
-        test_acceptance(task.acceptance_context, less, current, name, kScreenedBefore,
-                        aliased == found.aliased_parameters.end() ? "" : aliased->second);
+    const AcceptanceResult needed = need_of(task, less, current, found, name);
     const bool by_size = needed.decisive && !lost_its_partner(found, name);
     if (!symptom && (needed.accepted() || by_size)) continue;
     return UnneededEffect{.name = name, .fitted = std::move(less)};

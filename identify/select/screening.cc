@@ -244,6 +244,9 @@ Screened finished(const ScreeningTask& task, const EffectEntry* entry, Scored be
   const Eigen::Map<const Eigen::VectorXd> a(best.fit.coefficients.data(),
                                             static_cast<Eigen::Index>(best.fit.coefficients.size()));
   out.signal = best.columns.columns * a;
+  const Eigen::VectorXd scale = base.weights().unaryExpr([](double w) { return w > 0.0 ? 1.0 / w : 0.0; });
+  out.columns = scale.asDiagonal() * best.columns.columns;
+  out.two_sided = std::move(best.two_sided);
   out.unresolved = unresolved_share(out.start, task.drift, out.signal);
   return out;
 }

@@ -66,6 +66,8 @@ struct Screened {
   std::vector<Unknown> base_unknowns;  // and their linear estimates beside the effect:
   std::vector<double> base_start;
   Eigen::VectorXd signal;   // at its best size, base parameters projected out: one value per sample
+  Eigen::MatrixXd columns;  // of which that is the sum: one per strength, in their channels' whitened units
+  std::vector<bool> two_sided;
   double unresolved = 0.0;  // share of that in rows too far apart to know a law's angle (angle_resolution.h)
   // false: interrupted, every size of it made the model diverge, or no row knows its angle
   bool tried = false;

@@ -389,6 +389,15 @@ void refuse_chosen(const SelectionTask& task, const Fitted& parent, const std::s
   choose_anew(task, parent, iteration);
 }
 
+Iteration refitted_as_well(const SelectionTask& task, const Fitted& parent,
+                           const std::vector<std::size_t>& screened, Iteration iteration) {
+  std::vector<std::size_t> further;
+  std::ranges::copy_if(screened, std::back_inserter(further),
+                       [&](std::size_t i) { return !was_refitted(iteration, iteration.screened[i]); });
+  if (!further.empty()) refit_shortlist(task, parent, further, iteration);
+  return iteration;
+}
+
 void judge_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
   for (CandidateEffect& c : iteration.candidates) judge(task, parent, iteration.largest_null_gain, c);
   choose_anew(task, parent, iteration);

@@ -78,6 +78,10 @@ void refuse_chosen(const SelectionTask& task, const Fitted& parent, const std::s
 // Tests the candidates again, by what the task's acceptance context is now, and chooses among those that pass.
 void judge_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration);
 
+// The iteration with further ones of its screened effects refitted, those that were not yet.
+Iteration refitted_as_well(const SelectionTask& task, const Fitted& parent,
+                           const std::vector<std::size_t>& screened, Iteration iteration);
+
 // The screening alone: what these effects would gain, in the data and in the null.
 Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
                               const std::vector<const EffectEntry*>& effects);
