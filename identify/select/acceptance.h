@@ -49,6 +49,13 @@ struct AcceptanceResult {
   Evidence evidence;        // what standard rules of selection say of it
 
   bool accepted() const { return accepted_by != AcceptedBy::kNone; }
+  // For a reason that no gate has; empty: none.
+  void refuse(std::string reason) {
+    if (reason.empty()) return;
+    accepted_by = AcceptedBy::kNone;
+    plausible = false;
+    why = std::move(reason);
+  }
 };
 
 struct AcceptanceContext {

@@ -62,9 +62,18 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
                            start.aliased_parameter());
   };
   AcceptanceResult acceptance = test();
+  if (acceptance.accepted_by == AcceptedBy::kGain && use.owner == nullptr) {
+    const WhitenedResiduals& training = context.splits()[kTraining];
+    acceptance.refuse(
+        gain_not_its_own(training, with.residual[kTraining],
+                         training.residual(with_idle_effect(with.fit.model, start.name), options.jobs)));
+  }
   if (!acceptance.accepted()) {
     AcceptanceResult fast = test_by_innovations(task, context.base(), with, start.name);
-    if (fast.accepted()) acceptance = std::move(fast);
+    if (fast.accepted()) {
+      acceptance = std::move(fast);
+      with = numbers_by_innovations(task, std::move(with), {start.name});
+    }
   }
   if (!acceptance.accepted()) {
     task.acceptance_context.structure_remains = true;

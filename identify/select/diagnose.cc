@@ -276,12 +276,7 @@ class Diagnosing {
       removed = true;
     }
   }
-  EffectsFound found() const {
-    return {.names = out_.effects,
-            .aliased_parameters = aliased_parameter_,
-            .pair = pair_,
-            .by_innovations = by_innovations_};
-  }
+  EffectsFound found() const { return {out_.effects, aliased_parameter_, pair_, by_innovations_}; }
 
   // Laws whose shapes imitated what later effects explain give way to the laws that they become at a limit.
   void simplify() {
@@ -341,7 +336,8 @@ class Diagnosing {
       // The structure is fixed now; a few runs that it cannot explain should not bias its parameters (Huber's loss).
       RefitSetup setup = context().setup(false, stop());
       setup.robust = true;
-      const Fitted last = refit_as_it_is(setup, current_.fit.model, 1);
+      const Fitted last =
+          numbers_by_innovations(task_, refit_as_it_is(setup, current_.fit.model, 1), by_innovations_);
       const auto to_bound = [&](const std::string& name) { return !ends_at_bound(last.fit, name).empty(); };
       const bool imitates = std::any_of(out_.effects.begin(), out_.effects.end(), to_bound);
       if (last.finite && !imitates &&
@@ -416,8 +412,9 @@ class Diagnosing {
            structure_in_excess(excesses_of(current_.fit.model).alike());
   }
 
-  // Without the allowance for the form of an effect that was added.
-  bool structure_in_excess(const ResidualExcess& excess) const { return structure_remains(excess, false); }
+  bool structure_in_excess(const ResidualExcess& excess) const {
+    return structure_remains(excess, false);
+  }  // no allowance for a found effect's form
 
   // The remaining variance may be noise that an effect makes. Its strength is estimated from variances, not
   // by the fit, which sees the mean.

@@ -23,7 +23,7 @@ struct EffectsFound {
   std::vector<std::string> names;                         // in the order in which they were added
   std::map<std::string, std::string> aliased_parameters;  // Screened::aliased_parameter, by effect
   std::vector<std::string> pair;                          // that were accepted only together; empty: none
-  std::vector<std::string> by_innovations;                // that only those accept (innovations.h)
+  std::vector<std::string> by_innovations{};              // that only those accept (innovations.h)
 };
 
 struct UnneededEffect {

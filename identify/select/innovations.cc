@@ -10,6 +10,8 @@
 namespace omnihil {
 namespace {
 
+// Of the largest information: far above rounding, below any real one. Numerical.
+constexpr double kRidge = 1e-12;  // numerical: a choice
 constexpr const char* kPrefix = "by the innovations: ";
 constexpr std::size_t kMostRefits = 6;  // by cost: a refit takes seconds
 // Share of the innovations' energy from which a refit is worth it: the least gain on the fit runs that is accepted (acceptance.cc).
@@ -62,40 +64,93 @@ Fitted Innovations::of(const Fitted& model) const {
   return out;
 }
 
+std::string Innovations::not_its_own(const Candidate& model, const std::string& name) const {
+  const WhitenedResiduals& training = (*task_.splits)[kTraining];
+  const auto residual = [&](const Candidate& of) {
+    return spectrum_.flattened(training, training.residual(of, task_.jobs));
+  };
+  return gain_not_its_own(training, residual(model), residual(with_idle_effect(model, name)));
+}
+
 bool Innovations::is_worth(const Fitted& model) const {
   if (!model.finite) return false;
   const Eigen::VectorXd left = spectrum_.flattened((*task_.splits)[kTraining], model.residual[kTraining]);
   return left.squaredNorm() < (1.0 - kLeastShare) * parent_.residual[kTraining].squaredNorm();
 }
 
+// Derivatives by the unknowns in units of their scale, flattened, and the information with the priors'.
+Innovations::Linearised Innovations::linearised(const FitResult& fit) const {
+  const WhitenedResiduals& training = (*task_.splits)[kTraining];
+  Linearised out{.jacobian = training.derivatives(fit.model, fit.unknowns, task_.jobs), .information = {}};
+  spectrum_.flatten(training, out.jacobian);
+  for (Eigen::Index i = 0; i < out.jacobian.cols(); ++i)
+    out.jacobian.col(i) *= fit.unknowns[static_cast<std::size_t>(i)].scale;
+  out.information = out.jacobian.transpose() * out.jacobian;
+  for (Eigen::Index i = 0; i < out.jacobian.cols(); ++i) {
+    const Unknown& u = fit.unknowns[static_cast<std::size_t>(i)];
+    const double value = fit.parameters[static_cast<std::size_t>(i)].value;
+    if (u.prior_sigma > 0.0) out.information(i, i) += std::pow(u.scale * prior_dz(u, value), 2);
+  }
+  out.information.diagonal().array() += kRidge * std::max(1.0, out.information.diagonal().maxCoeff());
+  return out;
+}
+
 Fitted Innovations::with_sigmas(const Fitted& model) const {
   Fitted out = of(model);
   if (!model.finite) return out;
-  const WhitenedResiduals& training = (*task_.splits)[kTraining];
   const std::vector<Unknown>& unknowns = model.fit.unknowns;
-  Eigen::MatrixXd jacobian = training.derivatives(model.fit.model, unknowns, task_.jobs);
-  spectrum_.flatten(training, jacobian);
-  for (Eigen::Index i = 0; i < jacobian.cols(); ++i)
-    jacobian.col(i) *= unknowns[static_cast<std::size_t>(i)].scale;
-  Eigen::MatrixXd information = jacobian.transpose() * jacobian;
-  for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
-    const Unknown& u = unknowns[static_cast<std::size_t>(i)];
-    if (u.prior_sigma > 0.0)
-      information(i, i) +=
-          std::pow(u.scale * prior_dz(u, model.fit.parameters[static_cast<std::size_t>(i)].value), 2);
-  }
-  information.diagonal().array() += 1e-12 * std::max(1.0, information.diagonal().maxCoeff());
-  Eigen::MatrixXd covariance =
-      ldlt_solve_columns(information, Eigen::MatrixXd::Identity(information.rows(), information.cols()));
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
-    const double scale = unknowns[static_cast<std::size_t>(i)].scale;
-    covariance.row(i) *= scale;
-    covariance.col(i) *= scale;
-  }
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
-    out.fit.parameters[static_cast<std::size_t>(i)].sigma = std::sqrt(std::max(0.0, covariance(i, i)));
-  out.fit.covariance = std::move(covariance);
+  const Eigen::MatrixXd information = linearised(model.fit).information;
+  const Eigen::Index n = information.rows();
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) scale[i] = unknowns[static_cast<std::size_t>(i)].scale;
+  out.fit.covariance = scale.asDiagonal() * ldlt_solve_columns(information, Eigen::MatrixXd::Identity(n, n)) *
+                       scale.asDiagonal();
+  for (Eigen::Index i = 0; i < n; ++i)
+    out.fit.parameters[static_cast<std::size_t>(i)].sigma =
+        std::sqrt(std::max(0.0, out.fit.covariance(i, i)));
   return out;
+}
+
+Fitted Innovations::refitted(Fitted model, const std::vector<Eigen::Index>& own) const {
+  constexpr int kSteps = 4;            // by cost: derivatives of all runs each
+  constexpr double kConverged = 1e-4;  // of an unknown's scale, or of the energy: a choice
+  const WhitenedResiduals& training = (*task_.splits)[kTraining];
+  const auto energy = [&](const Fitted& f) { return of(f).residual[kTraining].squaredNorm(); };
+  double least = energy(model);
+  for (int k = 0; k < kSteps; ++k) {
+    const Linearised at = linearised(model.fit);
+    const Eigen::VectorXd residual = spectrum_.flattened(training, model.residual[kTraining]);
+    Eigen::MatrixXd information(own.size(), own.size());
+    Eigen::VectorXd gradient(own.size());
+    for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+      const Eigen::Index u = own[static_cast<std::size_t>(i)];
+      gradient[i] = at.jacobian.col(u).dot(residual);
+      for (Eigen::Index j = 0; j < gradient.size(); ++j)
+        information(i, j) = at.information(u, own[static_cast<std::size_t>(j)]);
+    }
+    const Eigen::VectorXd step = ldlt_solve(information, gradient);
+    FitResult fit = model.fit;
+    std::vector<Unknown> unknowns;
+    std::vector<double> values;
+    for (Eigen::Index i = 0; i < step.size(); ++i) {
+      const auto u = static_cast<std::size_t>(own[static_cast<std::size_t>(i)]);
+      const Unknown& unknown = fit.unknowns[u];
+      ParameterEstimate& p = fit.parameters[u];
+      p.value = std::clamp(p.value + unknown.scale * step[i], unknown.lower, unknown.upper);
+      p.prior_deviation_sigmas = prior_z(p, p.value);
+      unknowns.push_back(unknown);
+      values.push_back(p.value);
+    }
+    fit.model = with_values(fit.model, unknowns, values);
+    Fitted next = fitted(*task_.splits, *task_.unweighted, std::move(fit), task_.jobs);
+    const double left = next.finite ? energy(next) : least;
+    if (!(left < least)) break;
+    const bool converged = step.cwiseAbs().maxCoeff() < kConverged || left > (1.0 - kConverged) * least;
+    model = std::move(next);
+    least = left;
+    if (converged) break;
+  }
+  return model;
 }
 
 std::vector<Screened> Innovations::screened(const std::vector<Screened>& plain) const {
@@ -131,8 +186,31 @@ AcceptanceResult test_by_innovations(const SelectionTask& task, const Fitted& pa
   const Innovations view(task, parent);
   AcceptanceResult out =
       test_acceptance(view.context(), view.parent(), view.with_sigmas(child), name, kScreenedBefore);
+  if (out.accepted()) out.refuse(view.not_its_own(child.fit.model, name));
   out.why.insert(0, kPrefix);
   return out;
+}
+
+Fitted numbers_by_innovations(const SelectionTask& task, Fitted model,
+                              const std::vector<std::string>& effects) {
+  std::vector<Eigen::Index> own;
+  for (std::size_t i = 0; i < model.fit.unknowns.size(); ++i) {
+    const std::string& path = model.fit.unknowns[i].path;
+    if (std::ranges::any_of(effects, [&](const std::string& e) { return path.starts_with(e + "."); }))
+      own.push_back(static_cast<Eigen::Index>(i));
+  }
+  if (own.empty() || !model.finite) return model;
+  const Innovations view(task, model);
+  model = view.refitted(std::move(model), own);
+  const Fitted with_sigmas = view.with_sigmas(model);
+  for (const Eigen::Index i : own) {
+    ParameterEstimate& p = model.fit.parameters[static_cast<std::size_t>(i)];
+    p.sigma = with_sigmas.fit.parameters[static_cast<std::size_t>(i)].sigma;
+    p.identifiable = true;
+    p.correlated_with.clear();
+    if (!p.at_bound) p.sentence.clear();
+  }
+  return model;
 }
 
 std::optional<InnovationChoice> choice_by_innovations(const SelectionTask& task, const RefitSetup& thorough,
@@ -149,14 +227,18 @@ std::optional<InnovationChoice> choice_by_innovations(const SelectionTask& task,
     iteration.largest_null_gain = std::max(iteration.largest_null_gain, s.null_gain);
   for (CandidateEffect& c : iteration.candidates) {
     c.fitted = view.is_worth(c.fitted) ? view.with_sigmas(c.fitted) : view.of(c.fitted);
+    c.not_its_own.clear();  // of the plain residual; here of what is chosen
     const auto now = std::ranges::find(screened, c.screened.name, &Screened::name);
     if (now != screened.end()) c.screened = *now;
   }
   judge_anew(view.task(), view.parent(), iteration);
   while (iteration.chosen >= 0 && !iteration.stopped) {
     const CandidateEffect& best = iteration.candidates[static_cast<std::size_t>(iteration.chosen)];
-    out.fitted = refit_to_convergence(thorough, refit_as_it_is(thorough, best.fitted.fit.model, 1));
-    const std::string why = ends_at_bound(out.fitted.fit, best.screened.name);
+    out.fitted = numbers_by_innovations(
+        task, refit_to_convergence(thorough, refit_as_it_is(thorough, best.fitted.fit.model, 1)),
+        {best.screened.name});
+    std::string why = ends_at_bound(out.fitted.fit, best.screened.name);
+    if (why.empty()) why = view.not_its_own(out.fitted.fit.model, best.screened.name);
     if (why.empty()) {
       for (RankedEffect& r : iteration.ranking)
         if (r.refitted) r.why.insert(0, kPrefix);

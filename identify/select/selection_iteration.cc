@@ -152,6 +152,14 @@ void judge(const SelectionTask& task, const Fitted& parent, double largest_null_
   c.acceptance =
       test_acceptance(task.acceptance_context, parent, c.fitted, c.screened.name,
                       signal_to_null(c.screened, largest_null_gain), c.screened.aliased_parameter());
+  if (c.acceptance.accepted_by == AcceptedBy::kGain) c.acceptance.refuse(c.not_its_own);
+}
+
+std::string gain_not_its_own(const SelectionTask& task, const CandidateEffect& c) {
+  if (!c.fitted.finite || c.screened.extends) return "";
+  const WhitenedResiduals& training = (*task.splits)[kTraining];
+  return gain_not_its_own(training, c.fitted.residual[kTraining],
+                          training.residual(with_idle_effect(c.fitted.fit.model, c.screened.name)));
 }
 
 void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std::vector<std::size_t>& chosen,
@@ -172,6 +180,7 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
                      .seed = task.seed,
                      .stop = [&] { return stopped.load(); }};
     c.fitted = refit(setup, parent, c.screened);
+    c.not_its_own = gain_not_its_own(task, c);
     judge(task, parent, iteration.largest_null_gain, c);
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (task.progress && !task.progress("refitting " + c.screened.name, share)) stopped = true;
@@ -382,10 +391,7 @@ Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,
 
 void refuse_chosen(const SelectionTask& task, const Fitted& parent, const std::string& why,
                    Iteration& iteration) {
-  AcceptanceResult& refused = iteration.candidates[static_cast<std::size_t>(iteration.chosen)].acceptance;
-  refused.accepted_by = AcceptedBy::kNone;
-  refused.plausible = false;
-  refused.why = why;
+  iteration.candidates[static_cast<std::size_t>(iteration.chosen)].acceptance.refuse(why);
   choose_anew(task, parent, iteration);
 }
 
@@ -401,6 +407,33 @@ Iteration refitted_as_well(const SelectionTask& task, const Fitted& parent,
 void judge_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
   for (CandidateEffect& c : iteration.candidates) judge(task, parent, iteration.largest_null_gain, c);
   choose_anew(task, parent, iteration);
+}
+
+Candidate with_idle_effect(const Candidate& model, const std::string& name) {
+  constexpr double kIdle = 1e-6;  // of the strength: not neutral, and below any resolution; a choice
+  Candidate out = model;
+  for (EffectUse& use : out.effects) {
+    if (use.entry->info->id != name) continue;
+    for (std::size_t i = 0; i < use.values.size(); ++i) {
+      const EffectParam& row = use.entry->info->params[i];
+      if (row.role == ParamRole::kStrength)
+        use.values[i] = row.neutral + kIdle * (use.values[i] - row.neutral);
+    }
+  }
+  return out;
+}
+
+std::string gain_not_its_own(const WhitenedResiduals& training, const Eigen::VectorXd& with,
+                             const Eigen::VectorXd& idle) {
+  // Of the error energy: the least gain on the fit runs that is accepted (acceptance.cc).
+  constexpr double kLeastPart = 0.015;        // tuned, as the acceptance test's
+  if (idle.size() != with.size()) return "";  // without it the model does not stay finite
+  const double rise = energy_ratio(training, with, idle) - 1.0;
+  if (rise >= kLeastPart) return "";
+  return fmt::format(
+      "its gain is that of the base parameters and steps beside it: at a millionth of its strength the error "
+      "energy rises by {:.2g} %",
+      100.0 * std::max(rise, 0.0));
 }
 
 std::optional<Iteration> near_best_again(const SelectionTask& task, const Fitted& parent,
