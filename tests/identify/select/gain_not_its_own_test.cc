@@ -1,0 +1,51 @@
+// An addition whose gain comes from what stands beside it.
+#include <gtest/gtest.h>
+
+#include "identify/select/selection_iteration.h"
+#include "sim/law/effect_registry.h"
+#include "sim/model/effect_reader.h"
+#include "tests/identify/fake_predictor.h"
+#include "tests/identify/simulated_bench.h"
+
+namespace omnihil {
+namespace {
+
+struct OneRun {
+  FakePredictor fake;
+  std::unique_ptr<WhitenedResiduals> training;
+  OneRun() {
+    fake.add(Split::kTraining, std::vector<double>(1000, 0.0), std::vector<double>(1000, 0.0));
+    training = std::make_unique<WhitenedResiduals>(fake, compared_channels(fake), Split::kTraining);
+  }
+};
+
+TEST(GainNotItsOwn, IsThatOfAnEffectWhichMayBeIdle) {
+  const OneRun run;
+  const Eigen::VectorXd with = Eigen::VectorXd::Ones(1000);
+  EXPECT_NE(gain_not_its_own(*run.training, with, with), "");
+  EXPECT_NE(gain_not_its_own(*run.training, with, 1.005 * with), "");  // 1 % of the energy
+  EXPECT_EQ(gain_not_its_own(*run.training, with, 1.01 * with), "");   // 2 %
+  EXPECT_EQ(gain_not_its_own(*run.training, with, Eigen::VectorXd()), "");
+}
+
+// Not neutral: a neutral law is left out, and what is simulated beside it takes longer steps.
+TEST(GainNotItsOwn, AnIdleEffectHasAMillionthOfItsStrengthAndItsShapes) {
+  const Bench bench = simulated_bench({.duration_s = 0.5});
+  EffectUse cogging = typical_use(*find_effect("cogging"), nullptr);
+  const Candidate model = with_use(bench.nominal, cogging);
+  const Candidate idle = with_idle_effect(model, "cogging");
+  for (const EffectUse& use : idle.effects) {
+    const EffectUse* was = use_of(model, use.entry->info->id);
+    ASSERT_NE(was, nullptr);
+    EXPECT_FALSE(is_neutral(use)) << use.entry->info->id;
+    for (std::size_t i = 0; i < use.values.size(); ++i) {
+      const EffectParam& row = use.entry->info->params[i];
+      const bool scaled = use.entry->info->id == "cogging" && row.role != ParamRole::kShape;
+      const double by = scaled ? 1e-6 : 1.0;
+      EXPECT_DOUBLE_EQ(use.values[i] - row.neutral, by * (was->values[i] - row.neutral)) << row.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace omnihil
