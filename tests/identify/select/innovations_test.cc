@@ -51,8 +51,7 @@ TEST(SlowInnovationsTest, NameNothingWhereNothingButTheSwayIsThere) {
   EXPECT_EQ(d.effects, std::vector<std::string>{});
 }
 
-// The same gates: what the plain residual does not show is accepted, and what is not there is not.
-TEST(SlowInnovationsTest, KnowWhatIsThereByItsOwnSigmas) {
+TEST(SlowInnovationsTest, ShowWhatThePlainResidualHides) {
   const Bench bench =
       swaying_bench({"encoder_eccentricity.amplitude_rad=0.004", "encoder_eccentricity.phase_rad=1"});
   const PreparedSelection selection(bench.dataset, bench.nominal, {.seed = 1, .jobs = 2});
@@ -62,8 +61,7 @@ TEST(SlowInnovationsTest, KnowWhatIsThereByItsOwnSigmas) {
   const auto share = [&](const std::vector<Screened>& of, const char* name) {
     return std::ranges::find(of, name, &Screened::name)->share;
   };
-  EXPECT_LT(share(plain.screened, "encoder_eccentricity"), 0.01);
-  EXPECT_GT(share(screened, "encoder_eccentricity"), 0.1);
+  EXPECT_GT(share(screened, "encoder_eccentricity"), 10.0 * share(plain.screened, "encoder_eccentricity"));
   for (const Screened& s : screened) EXPECT_LE(s.share, share(screened, "encoder_eccentricity")) << s.name;
 }
 
