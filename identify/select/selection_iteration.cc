@@ -416,8 +416,7 @@ Candidate with_idle_effect(const Candidate& model, const std::string& name) {
     if (use.entry->info->id != name) continue;
     for (std::size_t i = 0; i < use.values.size(); ++i) {
       const EffectParam& row = use.entry->info->params[i];
-      if (row.role != ParamRole::kShape)
-        use.values[i] = row.neutral + kIdle * (use.values[i] - row.neutral);
+      if (row.role != ParamRole::kShape) use.values[i] = row.neutral + kIdle * (use.values[i] - row.neutral);
     }
   }
   return out;

@@ -84,8 +84,8 @@ Iteration refitted_as_well(const SelectionTask& task, const Fitted& parent,
                            const std::vector<std::size_t>& screened, Iteration iteration);
 
 // An addition's gain may be that of the base parameters fitted beside it, or of the shorter steps that its law is simulated in. The
-// model with the effect at a millionth of its strength, in the same steps and all else as it is: if its residual of the fit runs is as good
-// as the model's, the effect itself does nothing. gain_not_its_own(): why it is refused then; empty: it has a part in it.
+// model with the effect at a millionth of its strength, in the same steps and all else as it is: if its residual of the fit runs is
+// as good as the model's, the effect itself does nothing. gain_not_its_own(): why it is refused then; empty: it has a part in it.
 Candidate with_idle_effect(const Candidate& model, const std::string& name);
 std::string gain_not_its_own(const WhitenedResiduals& training, const Eigen::VectorXd& with,
                              const Eigen::VectorXd& idle);

@@ -51,7 +51,8 @@ struct Runs {
   }
 };
 
-// What it was made of, and another record of the same process, have the mean square of white noise and no memory: the process' own is 99 samples.
+// What it was made of, and another record of the same process, have the mean square of white noise and no memory: the process'
+// own is 99 samples.
 TEST(ResidualSpectrumTest, WhitensTheProcessThatItWasMadeOf) {
   const Runs runs;
   const Eigen::VectorXd made_of = first_order(3), another = first_order(4);
