@@ -344,8 +344,9 @@ TEST(AcceptanceTest, AnotherKindOfMotionDecidesWhereTheHeldOutRunsHardlyShowTheE
   };
   EXPECT_TRUE(with(0.995, 0.6).accepted());
   EXPECT_NE(with(0.995, 0.6).why.find("extrapolation error energy falls by 64"), std::string::npos);
-  EXPECT_FALSE(with(1.005, 0.6).accepted())
-      << "a loss on the held-out runs is none of another motion's business";
+  EXPECT_TRUE(with(1.005, 0.6).accepted())
+      << "1 %: as another motion's error may rise where the held-out runs decide";
+  EXPECT_FALSE(with(1.02, 0.6).accepted()) << "4 % is a loss";
   EXPECT_FALSE(with(0.995, 0.9).accepted()) << "19 % of the energy may be the base parameters' last digits";
   Fitted whitened_only = fixture.leaving(1.8, 2 * 0.995, 2 * 0.6);
   whitened_only.unweighted[kExtrapolation] = fixture.leaving(2, 2, 2).unweighted[kExtrapolation] * 0.99;
