@@ -48,5 +48,15 @@ TEST(GainNotItsOwn, AnIdleEffectHasAMillionthOfItsStrengthAndItsShapes) {
   }
 }
 
+// Next to no play is not none: what is left is the compliance of its contact.
+TEST(GainNotItsOwn, AnIdlePlayIsNone) {
+  BenchRecipe recipe;
+  recipe.duration_s = 0.5;
+  const Bench bench = simulated_bench(recipe);
+  const Candidate idle =
+      with_idle_effect(with_use(bench.nominal, typical_use(*find_effect("backlash"), nullptr)), "backlash");
+  EXPECT_TRUE(is_neutral(*use_of(idle, "backlash")));
+}
+
 }  // namespace
 }  // namespace omnihil
