@@ -55,7 +55,7 @@ TEST(GainNotItsOwn, AnIdlePlayIsNone) {
   const Bench bench = simulated_bench(recipe);
   const Candidate idle =
       with_idle_effect(with_use(bench.nominal, typical_use(*find_effect("backlash"), nullptr)), "backlash");
-  EXPECT_TRUE(is_neutral(*use_of(idle, "backlash")));
+  EXPECT_EQ(use_of(idle, "backlash"), nullptr);
 }
 
 }  // namespace
