@@ -414,7 +414,8 @@ Candidate with_idle_effect(const Candidate& model, const std::string& name) {
   Candidate out = model;
   for (EffectUse& use : out.effects) {
     if (use.entry->info->id != name) continue;
-    if ((use.entry->info->numerics & kImpacts) != 0) return without_effect(model, name);
+    const std::uint32_t numerics = use.entry->info->numerics;
+    if ((numerics & kImpacts) != 0 || (numerics & (kStiff | kFine)) == 0) return without_effect(model, name);
     for (std::size_t i = 0; i < use.values.size(); ++i) {
       const EffectParam& row = use.entry->info->params[i];
       if (row.role != ParamRole::kShape) use.values[i] = row.neutral + kIdle * (use.values[i] - row.neutral);

@@ -86,7 +86,8 @@ Iteration refitted_as_well(const SelectionTask& task, const Fitted& parent,
 // An addition's gain may be that of the base parameters fitted beside it, or of the shorter steps that its law is simulated in. The
 // model with the effect at a millionth of its strength, in the same steps and all else as it is: if its residual of the fit runs is
 // as good as the model's, the effect itself does nothing. gain_not_its_own(): why it is refused then; empty: it has a part in it.
-// A law with impacts is taken out, whatever its steps: at next to no play it is its contact's compliance, another law.
+// A law without steps of its own is taken out: a dead band of next to nothing still lets a bridge at zero duty coast. One with impacts
+// too: at next to no play it is its contact's compliance, another law.
 Candidate with_idle_effect(const Candidate& model, const std::string& name);
 std::string gain_not_its_own(const WhitenedResiduals& training, const Eigen::VectorXd& with,
                              const Eigen::VectorXd& idle);

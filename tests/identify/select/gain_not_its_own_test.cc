@@ -48,14 +48,15 @@ TEST(GainNotItsOwn, AnIdleEffectHasAMillionthOfItsStrengthAndItsShapes) {
   }
 }
 
-// Next to no play is not none: what is left is the compliance of its contact.
-TEST(GainNotItsOwn, AnIdlePlayIsNone) {
+// Next to no play is the compliance of its contact, next to no dead band a bridge that coasts at zero duty: they are taken out.
+TEST(GainNotItsOwn, AnIdlePlayOrDeadBandIsNone) {
   BenchRecipe recipe;
   recipe.duration_s = 0.5;
   const Bench bench = simulated_bench(recipe);
-  const Candidate idle =
-      with_idle_effect(with_use(bench.nominal, typical_use(*find_effect("backlash"), nullptr)), "backlash");
-  EXPECT_EQ(use_of(idle, "backlash"), nullptr);
+  for (const char* name : {"backlash", "pwm_dead_band"}) {
+    const Candidate model = with_use(bench.nominal, typical_use(*find_effect(name), nullptr));
+    EXPECT_EQ(use_of(with_idle_effect(model, name), name), nullptr) << name;
+  }
 }
 
 }  // namespace
