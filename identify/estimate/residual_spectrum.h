@@ -1,8 +1,8 @@
 // The power of a residual by octave of frequency, and the filter that makes such a residual white: what it leaves are the
 // innovations, the part that the residual's own past does not foretell.
 //
-// Use: const ResidualSpectrum spectrum(training, parent);     // whitened_residuals.h
-// Use: spectrum.flatten(training, columns);                   // residuals, or signals that an effect would add, [n x c], in place
+//   const ResidualSpectrum spectrum(training, parent);     // whitened_residuals.h
+//   spectrum.flatten(training, columns);                   // residuals, or signals that an effect would add, [n x c], in place
 //
 // A residual that is mostly slow (a friction that no law has) is so correlated that a thousand of its samples say as much as one:
 // in its plain sum of squares a fast effect beside it does not show, however far above the sensors' noise. Weighed by the inverse

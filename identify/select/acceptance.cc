@@ -18,14 +18,12 @@ namespace {
 
 // Smallest gain of interest: this share of the held-out energy above the sensors' noise. Recordings of real
 // drives never come down to the noise: without it every effect would be accepted (DECISIONS 22, 42).
-constexpr double kLeastGain = 0.03;  // tuned
+constexpr double kLeastGain = 2.0 * kLeastFitGain;  // tuned
 // More where the sensors' noise is most of the residual: times the noise's share (DECISIONS 22).
 constexpr double kLeastGainInNoise = 0.05;  // tuned
 // The gain over the largest one in the null's replicates (DECISIONS 52; signal_to_null in
 // selection_iteration.cc).
 constexpr double kLeastSignalToNull = 2.0;  // tuned
-// Half of kLeastGain: the least gain on the runs that it was fitted to.
-constexpr double kLeastFitGain = 0.5 * kLeastGain;  // tuned
 // A gain that proves an effect's strength by itself: ten times kLeastGain.
 constexpr double kDecisiveGain = 0.3;  // tuned
 // Smallest change of one channel's unweighted energy that counts: half of kLeastGain (DECISIONS 22, 51) …
@@ -279,7 +277,7 @@ std::string reason_against_gain(const Fitted& parent, const Fitted& child, const
 // An effect that the held-out runs hardly move (a dead band under full steps) and another kind of motion does: the
 // extrapolation runs were not fitted to either. A little comes from the base parameters' last digits there, hence a
 // decisive gain, of the unweighted energy too (whitening weighs the slowest part of a residual most: DECISIONS 51), and
-// no loss on the held-out runs. Empty: they do not decide.
+// no larger loss on the held-out runs than extrapolation runs may have where those decide. Empty: they do not decide.
 std::optional<DecidingGain> extrapolation_decides(const AcceptanceContext& context, const Fitted& parent,
                                                   const Fitted& child, const AcceptanceResult& gains,
                                                   const std::string& name) {

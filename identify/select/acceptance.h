@@ -37,6 +37,9 @@ struct Fitted {
 };
 Fitted fitted(const Splits& splits, const Splits& unweighted, FitResult fit, int jobs);
 
+// The least gain on the runs that an addition was fitted to, of their error energy: half of the smallest gain of interest.
+inline constexpr double kLeastFitGain = 0.015;  // tuned (acceptance.cc)
+
 struct AcceptanceResult {
   AcceptedBy accepted_by = AcceptedBy::kNone;
   bool decisive = false;  // its gain alone proves the strength: no significance test of that

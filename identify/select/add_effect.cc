@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/estimate/heard_commands.h"
+#include "identify/select/idle_effect.h"
 #include "identify/select/innovations.h"
 #include "identify/select/verdict.h"
 
@@ -57,17 +58,16 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
                          1.0);
   const double signal_to_null =
       start.tried ? start.gain / std::max(null_gain, 1e-300) : (gained > 0.0 ? kScreenedBefore : 0.0);
+  const WhitenedResiduals& training = context.splits()[kTraining];
+  const std::string not_its_own =
+      use.owner == nullptr ? gain_not_its_own(training, with, start.name, options.jobs) : "";
   const auto test = [&] {
-    return test_acceptance(task.acceptance_context, context.base(), with, start.name, signal_to_null,
-                           start.aliased_parameter());
+    AcceptanceResult result = test_acceptance(task.acceptance_context, context.base(), with, start.name,
+                                              signal_to_null, start.aliased_parameter());
+    if (result.accepted_by == AcceptedBy::kGain) result.refuse(not_its_own);
+    return result;
   };
   AcceptanceResult acceptance = test();
-  if (acceptance.accepted_by == AcceptedBy::kGain && use.owner == nullptr) {
-    const WhitenedResiduals& training = context.splits()[kTraining];
-    acceptance.refuse(
-        gain_not_its_own(training, with.residual[kTraining],
-                         training.residual(with_idle_effect(with.fit.model, start.name), options.jobs)));
-  }
   if (!acceptance.accepted()) {
     AcceptanceResult fast = test_by_innovations(task, context.base(), with, start.name);
     if (fast.accepted()) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/select/idle_effect.h"
 #include "identify/select/plausibility.h"
 #include "sim/law/symmetric.h"
 
@@ -14,15 +15,13 @@ namespace {
 constexpr double kRidge = 1e-12;  // numerical: a choice
 constexpr const char* kPrefix = "by the innovations: ";
 constexpr std::size_t kMostRefits = 6;  // by cost: a refit takes seconds
-// Share of the innovations' energy from which a refit is worth it: the least gain on the fit runs that is accepted (acceptance.cc).
-constexpr double kLeastShare = 0.015;  // tuned, as the acceptance test's
 
 // The largest first.
 std::vector<std::size_t> shortlist(const std::vector<Screened>& screened) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < screened.size(); ++i) {
     const bool random = (screened[i].entry->info->claims & kRandom) != 0;
-    if (screened[i].share >= kLeastShare && screened[i].is_resolved() && !random) out.push_back(i);
+    if (screened[i].share >= kLeastFitGain && screened[i].is_resolved() && !random) out.push_back(i);
   }
   std::ranges::stable_sort(
       out, [&](std::size_t a, std::size_t b) { return screened[a].share > screened[b].share; });
@@ -75,7 +74,7 @@ std::string Innovations::not_its_own(const Candidate& model, const std::string& 
 bool Innovations::is_worth(const Fitted& model) const {
   if (!model.finite) return false;
   const Eigen::VectorXd left = spectrum_.flattened((*task_.splits)[kTraining], model.residual[kTraining]);
-  return left.squaredNorm() < (1.0 - kLeastShare) * parent_.residual[kTraining].squaredNorm();
+  return left.squaredNorm() < (1.0 - kLeastFitGain) * parent_.residual[kTraining].squaredNorm();
 }
 
 // Derivatives by the unknowns in units of their scale, flattened, and the information with the priors'.
@@ -113,10 +112,19 @@ Fitted Innovations::with_sigmas(const Fitted& model) const {
 
 Fitted Innovations::refitted(Fitted model, const std::vector<Eigen::Index>& own) const {
   constexpr int kSteps = 4;            // by cost: derivatives of all runs each
-  constexpr double kConverged = 1e-4;  // of an unknown's scale, or of the energy: a choice
+  constexpr double kConverged = 1e-4;  // of an unknown's scale, or of the cost: a choice
   const WhitenedResiduals& training = (*task_.splits)[kTraining];
-  const auto energy = [&](const Fitted& f) { return of(f).residual[kTraining].squaredNorm(); };
-  double least = energy(model);
+  // Minus two log of the posterior, but for a constant.
+  const auto cost = [&](const Fitted& f) {
+    double sum = of(f).residual[kTraining].squaredNorm();
+    for (const Eigen::Index u : own) {
+      const auto i = static_cast<std::size_t>(u);
+      if (f.fit.unknowns[i].prior_sigma > 0.0)
+        sum += std::pow(prior_z(f.fit.unknowns[i], f.fit.parameters[i].value), 2);
+    }
+    return sum;
+  };
+  double least = cost(model);
   for (int k = 0; k < kSteps; ++k) {
     const Linearised at = linearised(model.fit);
     const Eigen::VectorXd residual = spectrum_.flattened(training, model.residual[kTraining]);
@@ -124,7 +132,11 @@ Fitted Innovations::refitted(Fitted model, const std::vector<Eigen::Index>& own)
     Eigen::VectorXd gradient(own.size());
     for (Eigen::Index i = 0; i < gradient.size(); ++i) {
       const Eigen::Index u = own[static_cast<std::size_t>(i)];
+      const Unknown& unknown = model.fit.unknowns[static_cast<std::size_t>(u)];
+      const double value = model.fit.parameters[static_cast<std::size_t>(u)].value;
       gradient[i] = at.jacobian.col(u).dot(residual);
+      if (unknown.prior_sigma > 0.0)
+        gradient[i] -= unknown.scale * prior_z(unknown, value) * prior_dz(unknown, value);
       for (Eigen::Index j = 0; j < gradient.size(); ++j)
         information(i, j) = at.information(u, own[static_cast<std::size_t>(j)]);
     }
@@ -138,12 +150,13 @@ Fitted Innovations::refitted(Fitted model, const std::vector<Eigen::Index>& own)
       ParameterEstimate& p = fit.parameters[u];
       p.value = std::clamp(p.value + unknown.scale * step[i], unknown.lower, unknown.upper);
       p.prior_deviation_sigmas = prior_z(p, p.value);
+      p.at_bound = p.value <= unknown.lower || p.value >= unknown.upper;
       unknowns.push_back(unknown);
       values.push_back(p.value);
     }
     fit.model = with_values(fit.model, unknowns, values);
     Fitted next = fitted(*task_.splits, *task_.unweighted, std::move(fit), task_.jobs);
-    const double left = next.finite ? energy(next) : least;
+    const double left = next.finite ? cost(next) : least;
     if (!(left < least)) break;
     const bool converged = step.cwiseAbs().maxCoeff() < kConverged || left > (1.0 - kConverged) * least;
     model = std::move(next);
@@ -216,20 +229,20 @@ Fitted numbers_by_innovations(const SelectionTask& task, Fitted model,
 std::optional<InnovationChoice> choice_by_innovations(const SelectionTask& task, const RefitSetup& thorough,
                                                       const Fitted& parent, const Iteration& plain) {
   const Innovations view(task, parent);
-  const std::vector<Screened> screened = view.screened(plain.screened);
+  std::vector<Screened> screened = view.screened(plain.screened);
   const std::vector<std::size_t> chosen = shortlist(screened);
   if (chosen.empty()) return std::nullopt;
   InnovationChoice out{.iteration = refitted_as_well(task, parent, chosen, plain), .fitted = {}};
   Iteration& iteration = out.iteration;
-  iteration.screened = screened;
+  iteration.screened = std::move(screened);
   iteration.largest_null_gain = 0.0;
-  for (const Screened& s : screened)
+  for (const Screened& s : iteration.screened)
     iteration.largest_null_gain = std::max(iteration.largest_null_gain, s.null_gain);
   for (CandidateEffect& c : iteration.candidates) {
     c.fitted = view.is_worth(c.fitted) ? view.with_sigmas(c.fitted) : view.of(c.fitted);
     c.not_its_own.clear();  // of the plain residual; here of what is chosen
-    const auto now = std::ranges::find(screened, c.screened.name, &Screened::name);
-    if (now != screened.end()) c.screened = *now;
+    const auto now = std::ranges::find(iteration.screened, c.screened.name, &Screened::name);
+    if (now != iteration.screened.end()) c.screened = *now;
   }
   judge_anew(view.task(), view.parent(), iteration);
   while (iteration.chosen >= 0 && !iteration.stopped) {

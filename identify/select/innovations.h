@@ -1,9 +1,8 @@
 // The selection once more by the innovations: where nothing more is accepted by the plain residual, whose slow part that no law
 // explains hides what is fast.
 //
-// Use: const Innovations view(task, parent);
-// Use: test_by_innovations(task, parent, child, "cogging").why;    // the same gates: "by the innovations: held-out error …"
-// Use: choice_by_innovations(task, refit_setup, parent, iteration);    // an effect that is accepted so, in the iteration's candidates
+//   test_by_innovations(task, parent, child, "cogging").why;    // the same gates: "by the innovations: held-out error …"
+//   choice_by_innovations(task, setup, parent, iteration);      // the effect that is accepted so, fitted; none: none is
 //
 // Method: all residuals are flattened by the spectrum that the parent's has on the fit runs (residual_spectrum.h), the null's as
 // well; screening and acceptance test are those of selection_iteration.h on what comes out. The fits are those of the plain

@@ -10,6 +10,7 @@
 #include "identify/compare/order_spectrum.h"
 #include "identify/record/parallel.h"
 #include "identify/record/statistics.h"
+#include "identify/select/idle_effect.h"
 #include "identify/select/plausibility.h"
 #include "identify/select/selection.h"
 
@@ -155,13 +156,6 @@ void judge(const SelectionTask& task, const Fitted& parent, double largest_null_
   if (c.acceptance.accepted_by == AcceptedBy::kGain) c.acceptance.refuse(c.not_its_own);
 }
 
-std::string gain_not_its_own(const SelectionTask& task, const CandidateEffect& c) {
-  if (!c.fitted.finite || c.screened.extends) return "";
-  const WhitenedResiduals& training = (*task.splits)[kTraining];
-  return gain_not_its_own(training, c.fitted.residual[kTraining],
-                          training.residual(with_idle_effect(c.fitted.fit.model, c.screened.name)));
-}
-
 void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std::vector<std::size_t>& chosen,
                      Iteration& iteration) {
   const std::size_t before = iteration.candidates.size();
@@ -180,7 +174,8 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
                      .seed = task.seed,
                      .stop = [&] { return stopped.load(); }};
     c.fitted = refit(setup, parent, c.screened);
-    c.not_its_own = gain_not_its_own(task, c);
+    if (c.fitted.finite && !c.screened.extends)
+      c.not_its_own = gain_not_its_own((*task.splits)[kTraining], c.fitted, c.screened.name, 1);
     judge(task, parent, iteration.largest_null_gain, c);
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (task.progress && !task.progress("refitting " + c.screened.name, share)) stopped = true;
@@ -407,34 +402,6 @@ Iteration refitted_as_well(const SelectionTask& task, const Fitted& parent,
 void judge_anew(const SelectionTask& task, const Fitted& parent, Iteration& iteration) {
   for (CandidateEffect& c : iteration.candidates) judge(task, parent, iteration.largest_null_gain, c);
   choose_anew(task, parent, iteration);
-}
-
-Candidate with_idle_effect(const Candidate& model, const std::string& name) {
-  constexpr double kIdle = 1e-6;  // of the strength: not neutral, and below any resolution; a choice
-  Candidate out = model;
-  for (EffectUse& use : out.effects) {
-    if (use.entry->info->id != name) continue;
-    const std::uint32_t numerics = use.entry->info->numerics;
-    if ((numerics & kImpacts) != 0 || (numerics & (kStiff | kFine)) == 0) return without_effect(model, name);
-    for (std::size_t i = 0; i < use.values.size(); ++i) {
-      const EffectParam& row = use.entry->info->params[i];
-      if (row.role != ParamRole::kShape) use.values[i] = row.neutral + kIdle * (use.values[i] - row.neutral);
-    }
-  }
-  return out;
-}
-
-std::string gain_not_its_own(const WhitenedResiduals& training, const Eigen::VectorXd& with,
-                             const Eigen::VectorXd& idle) {
-  // Of the error energy: the least gain on the fit runs that is accepted (acceptance.cc).
-  constexpr double kLeastPart = 0.015;        // tuned, as the acceptance test's
-  if (idle.size() != with.size()) return "";  // without it the model does not stay finite
-  const double rise = energy_ratio(training, with, idle) - 1.0;
-  if (rise >= kLeastPart) return "";
-  return fmt::format(
-      "its gain is that of the base parameters and steps beside it: at a millionth of its strength the error "
-      "energy rises by {:.2g} %",
-      100.0 * std::max(rise, 0.0));
 }
 
 std::optional<Iteration> near_best_again(const SelectionTask& task, const Fitted& parent,

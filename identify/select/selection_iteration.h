@@ -41,7 +41,7 @@ struct CandidateEffect {
   Screened screened;
   Fitted fitted;
   AcceptanceResult acceptance;
-  std::string not_its_own{};         // gain_not_its_own(): it has no gain then; empty: it has
+  std::string not_its_own{};         // idle_effect.h: why its gain does not count; empty: it does
   double selection_frequency = 0.0;  // share of the bootstrap's draws (selection.h)
 };
 
@@ -82,15 +82,6 @@ void judge_anew(const SelectionTask& task, const Fitted& parent, Iteration& iter
 // The iteration with further ones of its screened effects refitted, those that were not yet.
 Iteration refitted_as_well(const SelectionTask& task, const Fitted& parent,
                            const std::vector<std::size_t>& screened, Iteration iteration);
-
-// An addition's gain may be that of the base parameters fitted beside it, or of the shorter steps that its law is simulated in. The
-// model with the effect at a millionth of its strength, in the same steps and all else as it is: if its residual of the fit runs is
-// as good as the model's, the effect itself does nothing. gain_not_its_own(): why it is refused then; empty: it has a part in it.
-// A law without steps of its own is taken out: a dead band of next to nothing still lets a bridge at zero duty coast. One with impacts
-// too: at next to no play it is its contact's compliance, another law.
-Candidate with_idle_effect(const Candidate& model, const std::string& name);
-std::string gain_not_its_own(const WhitenedResiduals& training, const Eigen::VectorXd& with,
-                             const Eigen::VectorXd& idle);
 
 // The screening alone: what these effects would gain, in the data and in the null.
 Iteration screening_iteration(const SelectionTask& task, const Fitted& parent,

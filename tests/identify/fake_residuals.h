@@ -4,6 +4,7 @@
 //   fake.add(Split::kTraining, …);
 //   FakeResiduals residuals(fake);     // residuals.context, residuals.splits, residuals.channels
 #pragma once
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -34,6 +35,25 @@ struct FakeResiduals {
   }
   FakeResiduals(const FakeResiduals&) = delete;  // the context points into it
   FakeResiduals& operator=(const FakeResiduals&) = delete;
+};
+
+// Runs of zeros, one for each of `splits`: for tests that bring residuals of their own.
+struct ZeroRuns {
+  FakePredictor fake;
+  FakeResiduals of;
+  const WhitenedResiduals& training = (*of.splits)[kTraining];
+  const WhitenedResiduals& validation = (*of.splits)[kValidation];
+
+  ZeroRuns(std::initializer_list<Split> splits, std::size_t samples)
+      : fake(zeros(splits, samples)), of(fake) {}
+
+ private:
+  static FakePredictor zeros(std::initializer_list<Split> splits, std::size_t samples) {
+    FakePredictor out;
+    for (const Split split : splits)
+      out.add(split, std::vector<double>(samples, 0.0), std::vector<double>(samples, 0.0));
+    return out;
+  }
 };
 
 }  // namespace omnihil

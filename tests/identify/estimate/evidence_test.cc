@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sim/law/random.h"
-#include "tests/identify/fake_predictor.h"
+#include "tests/identify/fake_residuals.h"
 
 namespace omnihil {
 namespace {
@@ -18,16 +18,8 @@ Eigen::VectorXd white(double sigma, std::uint64_t stream) {
   return out;
 }
 
-struct Runs {
-  FakePredictor fake;
-  std::unique_ptr<WhitenedResiduals> training, validation;
-  Runs() {
-    for (const Split split : {Split::kTraining, Split::kValidation})
-      fake.add(split, std::vector<double>(kSamples, 0.0), std::vector<double>(kSamples, 0.0));
-    const ComparedChannels channels = compared_channels(fake);
-    training = std::make_unique<WhitenedResiduals>(fake, channels, Split::kTraining);
-    validation = std::make_unique<WhitenedResiduals>(fake, channels, Split::kValidation);
-  }
+struct Runs : ZeroRuns {
+  Runs() : ZeroRuns({Split::kTraining, Split::kValidation}, kSamples) {}
 };
 
 // AR(1), x' = phi x + e: rho(k) = phi^k, tau = (1 + phi) / (1 - phi). The estimate's standard error is about
@@ -35,12 +27,12 @@ struct Runs {
 TEST(EvidenceTest, AutocorrelationTimeOfAFirstOrderProcess) {
   const Runs runs;
   Eigen::VectorXd x = white(1.0, 3);
-  EXPECT_NEAR(autocorrelation_time(*runs.training, x, 0), 1.0, 0.1);
+  EXPECT_NEAR(autocorrelation_time(runs.training, x, 0), 1.0, 0.1);
   for (const double phi : {0.5, 0.8, 0.98}) {
     x = white(1.0, 4);
     for (int i = 1; i < kSamples; ++i) x[i] += phi * x[i - 1];
     const double tau = (1.0 + phi) / (1.0 - phi);
-    EXPECT_NEAR(autocorrelation_time(*runs.training, x, 0), tau, 3.0 * tau * std::sqrt(20.0 * tau / kSamples))
+    EXPECT_NEAR(autocorrelation_time(runs.training, x, 0), tau, 3.0 * tau * std::sqrt(20.0 * tau / kSamples))
         << phi;
   }
 }
@@ -49,12 +41,12 @@ TEST(EvidenceTest, AutocorrelationTimeOfAFirstOrderProcess) {
 TEST(EvidenceTest, BicOfWhiteResidualsIsSchwarzs) {
   const Runs runs;
   const Eigen::VectorXd parent = white(1.0, 5), child = std::sqrt(0.9) * parent;
-  const double n = kSamples / autocorrelation_time(*runs.training, child, 0);
-  const Evidence e = evidence_of(*runs.training, {parent, child}, *runs.validation, {parent, child}, 2);
+  const double n = kSamples / autocorrelation_time(runs.training, child, 0);
+  const Evidence e = evidence_of(runs.training, {parent, child}, runs.validation, {parent, child}, 2);
   EXPECT_NEAR(e.delta_bic, n * std::log(0.9) + 2.0 * std::log(n), 1e-6 * n);
-  EXPECT_LT(evidence_of(*runs.training, {parent, parent}, *runs.validation, {parent, parent}, 2).delta_elpd,
+  EXPECT_LT(evidence_of(runs.training, {parent, parent}, runs.validation, {parent, parent}, 2).delta_elpd,
             1e-9);
-  EXPECT_GT(evidence_of(*runs.training, {parent, parent}, *runs.validation, {parent, parent}, 2).delta_bic,
+  EXPECT_GT(evidence_of(runs.training, {parent, parent}, runs.validation, {parent, parent}, 2).delta_bic,
             0.0);
 }
 
@@ -63,8 +55,8 @@ TEST(EvidenceTest, BicOfWhiteResidualsIsSchwarzs) {
 TEST(EvidenceTest, ElpdPunishesAnOverfittedVariance) {
   const Runs runs;
   const Eigen::VectorXd parent = white(1.0, 6), child = std::sqrt(0.5) * parent, held = white(1.0, 7);
-  const Evidence e = evidence_of(*runs.training, {parent, child}, *runs.validation, {held, held}, 1);
-  const double n = kSamples / autocorrelation_time(*runs.validation, held, 0);
+  const Evidence e = evidence_of(runs.training, {parent, child}, runs.validation, {held, held}, 1);
+  const double n = kSamples / autocorrelation_time(runs.validation, held, 0);
   EXPECT_NEAR(e.delta_elpd, 0.5 * n * (1.0 - 2.0 + std::log(2.0)), 0.02 * n);
   EXPECT_LT(e.delta_elpd, -2.0 * e.delta_elpd_se);
 }
@@ -72,7 +64,7 @@ TEST(EvidenceTest, ElpdPunishesAnOverfittedVariance) {
 TEST(EvidenceTest, ADivergedRunGivesNone) {
   const Runs runs;
   const Eigen::VectorXd parent = white(1.0, 8), none;
-  EXPECT_EQ(evidence_of(*runs.training, {parent, none}, *runs.validation, {parent, none}, 1).delta_bic, 0.0);
+  EXPECT_EQ(evidence_of(runs.training, {parent, none}, runs.validation, {parent, none}, 1).delta_bic, 0.0);
 }
 
 }  // namespace

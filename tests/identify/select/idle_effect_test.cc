@@ -1,31 +1,24 @@
 // An addition whose gain comes from what stands beside it.
+#include "identify/select/idle_effect.h"
+
 #include <gtest/gtest.h>
 
-#include "identify/select/selection_iteration.h"
+#include "identify/select/effect_variants.h"
 #include "sim/law/effect_registry.h"
 #include "sim/model/effect_reader.h"
-#include "tests/identify/fake_predictor.h"
+#include "tests/identify/fake_residuals.h"
 #include "tests/identify/simulated_bench.h"
 
 namespace omnihil {
 namespace {
 
-struct OneRun {
-  FakePredictor fake;
-  std::unique_ptr<WhitenedResiduals> training;
-  OneRun() {
-    fake.add(Split::kTraining, std::vector<double>(1000, 0.0), std::vector<double>(1000, 0.0));
-    training = std::make_unique<WhitenedResiduals>(fake, compared_channels(fake), Split::kTraining);
-  }
-};
-
 TEST(GainNotItsOwn, IsThatOfAnEffectWhichMayBeIdle) {
-  const OneRun run;
+  const ZeroRuns runs({Split::kTraining}, 1000);
   const Eigen::VectorXd with = Eigen::VectorXd::Ones(1000);
-  EXPECT_NE(gain_not_its_own(*run.training, with, with), "");
-  EXPECT_NE(gain_not_its_own(*run.training, with, 1.005 * with), "");  // 1 % of the energy
-  EXPECT_EQ(gain_not_its_own(*run.training, with, 1.01 * with), "");   // 2 %
-  EXPECT_EQ(gain_not_its_own(*run.training, with, Eigen::VectorXd()), "");
+  EXPECT_NE(gain_not_its_own(runs.training, with, with), "");
+  EXPECT_NE(gain_not_its_own(runs.training, with, 1.005 * with), "");  // 1 % of the energy
+  EXPECT_EQ(gain_not_its_own(runs.training, with, 1.01 * with), "");   // 2 %
+  EXPECT_EQ(gain_not_its_own(runs.training, with, Eigen::VectorXd()), "");
 }
 
 // Not neutral: a neutral law is left out, and what is simulated beside it takes longer steps.
