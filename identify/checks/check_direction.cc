@@ -137,7 +137,7 @@ void target_against_position(const RunView& view, const DriveView& drive,
 // tau = J a + b w + l + c sgn w + g sin theta + h cos theta: the inertia of a sound record is positive. The load goes with
 // the angle (an arm's weight, an imbalance): where a position loop moves it, its torque rises while the motion slows.
 // Reported beyond 5 standard errors (one-sided p = 3e-7 of a normal), where the line explains half of the torque's
-// squares (tuned).
+// variance (tuned): a torque that is held constant says nothing of an acceleration.
 void torque_against_acceleration(const RunView& view, const DriveView& drive,
                                  std::vector<DataFinding>& findings) {
   // From which on the load's sine and cosine differ from its level and from one another.
@@ -160,8 +160,11 @@ void torque_against_acceleration(const RunView& view, const DriveView& drive,
   if (std::ranges::find(side, 1.0) != side.end() && std::ranges::find(side, -1.0) != side.end())
     x.push_back(side);
   if (most - least > kLeastAngle) x.insert(x.end(), {along_sine, along_cosine});
-  const LineFit line = fit_line(x, torque);
-  if (line.coefficient.empty() || line.explained < 0.5) return;
+  constexpr double kHeld =
+      1e-6;  // variance over mean square, a thousandth of the level: rounding of a set point; a choice
+  const LineFit level = fit_line({x[2]}, torque), line = fit_line(x, torque);
+  const double varies = 1.0 - level.explained;
+  if (line.coefficient.empty() || varies < kHeld || 1.0 - line.explained > 0.5 * varies) return;
   if (line.coefficient[0] > -5.0 * line.sigma[0]) return;
   findings.push_back({Grade::kFault, "swapped_sign", view.run->file, "motor_torque", line.coefficient[0],
                       "the axis accelerates against motor_torque: the sign of the torque or of the motion is "

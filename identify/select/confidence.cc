@@ -67,20 +67,23 @@ std::map<std::string, const RankedEffect*> rows_taken(const Diagnosis& d) {
   return out;
 }
 
-// Root mean square over the signals, held-out runs if there are any; at least 1. A measured bus voltage is an input.
-double error_over_noise(const Comparison& comparison) {
-  const auto pooled = [&](Split split) {
-    double square = 0.0, signals = 0.0;
-    for (const SignalError& e : comparison.errors) {
-      const bool counts = e.split == split && e.signal != "bus_voltage" && e.noise_sigma > 0.0;
-      if (!counts || !std::isfinite(e.rmse)) continue;
-      square += e.rmse * e.rmse / (e.noise_sigma * e.noise_sigma);
-      signals += 1.0;
-    }
-    return signals > 0.0 ? std::sqrt(square / signals) : 0.0;
-  };
-  const double held_out = pooled(Split::kValidation);
-  return std::max(held_out > 0.0 ? held_out : pooled(Split::kTraining), 1.0);
+// Root mean square over the signals; at least 1. A measured bus voltage is an input.
+double error_over_noise(const Comparison& comparison, Split split) {
+  double square = 0.0, signals = 0.0;
+  for (const SignalError& e : comparison.errors) {
+    const bool counts = e.split == split && e.signal != "bus_voltage" && e.noise_sigma > 0.0;
+    if (!counts || !std::isfinite(e.rmse)) continue;
+    square += e.rmse * e.rmse / (e.noise_sigma * e.noise_sigma);
+    signals += 1.0;
+  }
+  return std::max(signals > 0.0 ? std::sqrt(square / signals) : 0.0, 1.0);
+}
+
+// The runs of which the last model leaves more: held-out ones may lack the motion that a wrong law cannot follow.
+Split worse_split(const Comparison& last) {
+  return error_over_noise(last, Split::kTraining) > error_over_noise(last, Split::kValidation)
+             ? Split::kTraining
+             : Split::kValidation;
 }
 
 double logit(const Map& map, const NameEvidence& e, double share) {
@@ -101,8 +104,9 @@ double probability_right(const NameEvidence& e) {
 
 std::vector<NameConfidence> confidences(const Diagnosis& d) {
   const auto rows = rows_taken(d);
-  const double over_noise = error_over_noise(d.final_comparison),
-               before = error_over_noise(d.baseline_comparison);
+  const Split split = worse_split(d.final_comparison);
+  const double over_noise = error_over_noise(d.final_comparison, split),
+               before = error_over_noise(d.baseline_comparison, split);
   const double remaining = (over_noise * over_noise - 1.0) / std::max(before * before - 1.0, 1e-9);
   std::vector<NameConfidence> out;
   for (const std::string& name : d.effects) {

@@ -25,7 +25,7 @@ struct NameEvidence {
   double share_of_base = 1.0;
   double selection_frequency = 1.0;
   bool undecided = false;         // a set of several
-  double error_over_noise = 1.0;  // of the last model, held out, pooled over the signals
+  double error_over_noise = 1.0;  // of the last model, held-out or fit runs, whichever is more, pooled over the signals
   double remaining_share = 0.0;   // energy above the noise of the last model over the base model's, likewise
 };
 double probability_right(const NameEvidence& evidence);

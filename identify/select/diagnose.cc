@@ -62,6 +62,7 @@ class Diagnosing {
     if (!misleading()) {
       iterate();
       eliminate();
+      search_anew();
       simplify();
       hear_anew();
     }
@@ -276,6 +277,21 @@ class Diagnosing {
       removed = true;
     }
   }
+  // Nothing is left of what was found, but on that way the base parameters came to a better fit: the search began beside a local
+  // optimum, and what it refused was measured against that.
+  void search_anew() {
+    if (!out_.effects.empty() || stopped_) return;
+    const double ratio = energy_ratio(context().splits()[kTraining], context().base().residual[kTraining],
+                                      current_.residual[kTraining]);
+    if (ratio > 1.0 - kNotConverged) return;
+    out_.ladder.erase(out_.ladder.begin() + 2, out_.ladder.end());  // nominal, base parameters refitted
+    rebase();
+    context().simulate();
+    task_ = context().task(not_applicable_);
+    pair_.clear(), by_innovations_.clear(), aliased_parameter_.clear();
+    iterate();
+    eliminate();
+  }
   EffectsFound found() const { return {out_.effects, aliased_parameter_, pair_, by_innovations_}; }
 
   // Laws whose shapes imitated what later effects explain give way to the laws that they become at a limit.
@@ -362,12 +378,11 @@ class Diagnosing {
     const bool searched = out_.not_searched.empty();
     if (const DataFinding* fault = first_fault(out_.findings); fault != nullptr && searched)
       out_.searched_despite = fault->sentence;
-    const bool look_further = !structure_remains(alike, added) && !misleading() && !stopped_;
-    const ResidualExcess another = look_further ? excesses->another() : ResidualExcess();
-    const bool in_another = structure_remains(another, added);
-    const bool by_parameters = in_another && !structure_remains(fitted_to_all().another(), added);
-    const ResidualExcess& excess = in_another && !by_parameters ? another : alike;
-    const bool remains = !searched || structure_remains(excess, added);
+    const bool look_further = !misleading() && !stopped_;
+    const Remaining left = look_further
+                               ? remaining(*excesses, added, [&] { return fitted_to_all().another(); })
+                               : Remaining{.excess = alike, .of_parameters = ""};
+    const bool remains = !searched || structure_remains(left.excess, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
     out_.outcome = !searched ? Outcome::kNotSearched
@@ -384,8 +399,8 @@ class Diagnosing {
       out_.unknown.sentence =
           "Structure remains, and the search was interrupted: not every effect was tried.";
     } else {
-      out_.unknown.sentence = residual_sentence(excess, added);
-      if (by_parameters) out_.unknown.sentence += parameters_sentence(another);
+      out_.unknown.sentence = residual_sentence(left.excess, added);
+      out_.unknown.sentence += left.of_parameters;
     }
     settle_confounded(heard().dataset, out_);
     out_.confidence = confidences(out_);
@@ -436,19 +451,7 @@ class Diagnosing {
     current_.fit.parameters.push_back(found->strength);
     out_.effects.push_back(name);
     add_step(name, current_, compare(context().predictor(), current_.fit.model));
-    for (std::size_t r = 0; r < out_.ranking.size(); ++r) {
-      RankedEffect& ranked = out_.ranking[r];
-      if (ranked.effect != name) continue;
-      ranked.accepted_by = AcceptedBy::kNoise;
-      ranked.noise_share = found->explained;
-      ranked.visibility = Visibility::kVisible;
-      ranked.why = fmt::format("explains {:.0f} % of the held-out runs' variance above the sensors' noise",
-                               100.0 * found->explained);
-      ranked.parameters = parameters_of(current_.fit, name);
-      if (out_.effects.size() > 1) continue;
-      std::rotate(out_.ranking.begin(), out_.ranking.begin() + static_cast<std::ptrdiff_t>(r),
-                  out_.ranking.begin() + static_cast<std::ptrdiff_t>(r) + 1);
-    }
+    note_noise_effect(name, found->explained, parameters_of(current_.fit, name), out_);
     return true;
   }
 

@@ -82,6 +82,19 @@ void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
   }
 }
 
+void note_noise_effect(const std::string& name, double explained, std::vector<ParameterEstimate> parameters,
+                       Diagnosis& diagnosis) {
+  const auto ranked = std::ranges::find(diagnosis.ranking, name, &RankedEffect::effect);
+  if (ranked == diagnosis.ranking.end()) return;
+  ranked->accepted_by = AcceptedBy::kNoise;
+  ranked->noise_share = explained;
+  ranked->visibility = Visibility::kVisible;
+  ranked->why = fmt::format("explains {:.0f} % of the held-out runs' variance above the sensors' noise",
+                            100.0 * explained);
+  ranked->parameters = std::move(parameters);
+  if (diagnosis.effects.size() == 1) std::rotate(diagnosis.ranking.begin(), ranked, ranked + 1);
+}
+
 void replace_in_answer(const std::string& richer, const std::string& simpler, Diagnosis& diagnosis) {
   std::replace(diagnosis.effects.begin(), diagnosis.effects.end(), richer, simpler);
   std::vector<std::string> members{simpler, richer};

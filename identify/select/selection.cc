@@ -223,7 +223,11 @@ void select_best(const SelectionTask& task, const Fitted& parent, Iteration& ite
     // As good without late readings: by those the measured angle is a late one, and laws of the angle are lost beside it.
     const bool in_time = remaining < kSameRemaining && is_late_reading(first) && is_of_the_drive(other) &&
                          set.size() <= kMostConfounded;
-    if ((same || confounded) && (has_signature(other) || ((simpler || in_time) && !has_signature(first))))
+    // As good: a friction that every drive has before a load that few have (turning one way they are one torque).
+    const bool usual = remaining < kSameRemaining && other.screened.entry->info->in_every_drive &&
+                       parameter_count(other) <= parameter_count(first) && set.size() <= kMostConfounded;
+    if ((same || confounded) &&
+        (has_signature(other) || ((simpler || in_time || usual) && !has_signature(first))))
       preferred = c;
   }
   while (set.size() > kMostConfounded) set.erase(set.back() == preferred ? set.end() - 2 : set.end() - 1);

@@ -27,6 +27,13 @@ constexpr double kLeastRegimeShare = 0.05;  // tuned
 // Screened share from which a candidate beyond the shortlist is refitted if no candidate of the shortlist is accepted. A
 // choice: the share that counts as structure (verdict.cc); smaller ones would be many tests for little.
 constexpr double kWorthSecondBatch = 0.1;  // a choice
+// The same as long as nothing has been found at all: nothing is masked then, and less than the smallest gain of interest (3 %)
+// could not be accepted.
+constexpr double kWorthFirstAnswer = 0.03;  // derived
+// Cosine of two signals, base parameters projected out, that no refit separates (4 % of either's energy is its own), and the
+// part of the best one's share from which such an effect is refitted as well: as selection.cc asks of a set's members.
+constexpr double kCollinear = 0.98;       // tuned
+constexpr double kCollinearShare = 0.88;  // 1 - kConfoundedGain of selection.cc; tuned
 // Gain over the null's from which a candidate is refitted: that of the acceptance test (DECISIONS 52).
 constexpr double kLeastSignalToNull = 2.0;  // tuned, as the acceptance test's
 // An effect whose typical size would gain less than this many times the null's largest gain is not visible:
@@ -193,8 +200,8 @@ bool was_refitted(const Iteration& iteration, const Screened& s) {
                      [&](const CandidateEffect& c) { return c.screened.name == s.name; });
 }
 
-// Effects listed as confusable with the best candidate that were not refitted: the screening is linear, and
-// may have underrated them (DECISIONS 53). Not those that would be refused whatever the refit gains: they do not pass the
+// Effects that were not refitted, listed as confusable with the best candidate, since the screening is linear and may have
+// underrated them (DECISIONS 53), or whose signal in these data is its signal and whose share is as large. Not those that would be refused whatever the refit gains: they do not pass the
 // null, and no base parameter is off its prior that they could restore.
 std::vector<std::size_t> confounded_with_best(const Iteration& iteration, const Fitted& parent,
                                               bool has_holdout) {
@@ -208,8 +215,10 @@ std::vector<std::size_t> confounded_with_best(const Iteration& iteration, const 
     const Screened& s = iteration.screened[i];
     const bool may_pass = passes_null(s, iteration.largest_null_gain) || is_implausible(parent.fit) ||
                           is_prior_rejected(parent.fit, s.aliased_parameter());
+    const bool collinear =
+        s.share > kCollinearShare * best->screened.share && cosine_similarity(best->screened, s) > kCollinear;
     if (may_pass && s.tried && s.is_resolved() && !s.extends && !was_refitted(iteration, s) &&
-        listed_as_confounded(*best->screened.entry->info, *s.entry->info))
+        (collinear || listed_as_confounded(*best->screened.entry->info, *s.entry->info)))
       out.push_back(i);
   }
   return out;
@@ -217,12 +226,11 @@ std::vector<std::size_t> confounded_with_best(const Iteration& iteration, const 
 
 // The next ones beyond the shortlist by their screened share: what could remove a tenth of the error must not be
 // passed over for what was fitted before it and failed.
-std::vector<std::size_t> next_in_order(const Iteration& iteration, const Predictor& predictor) {
+std::vector<std::size_t> next_in_order(const Iteration& iteration, const Predictor& predictor, double worth) {
   std::vector<std::size_t> out;
   for (const std::size_t i : above_null(iteration.screened, predictor)) {
     const Screened& s = iteration.screened[i];
-    if (out.size() < kMostRefits && s.data_share() >= kWorthSecondBatch && !was_refitted(iteration, s))
-      out.push_back(i);
+    if (out.size() < kMostRefits && s.data_share() >= worth && !was_refitted(iteration, s)) out.push_back(i);
   }
   return out;
 }
@@ -440,8 +448,10 @@ Iteration selection_iteration(const SelectionTask& task, const Fitted& parent) {
   iteration.stopped = task.progress && !task.progress("screening", 0.5);
   if (!iteration.stopped)
     refit_shortlist(task, parent, shortlist(iteration.screened, parent, *task.predictor), iteration);
+  const bool nothing_yet = parent.fit.model.effects.size() == task.nominal->effects.size();
+  const double worth = nothing_yet ? kWorthFirstAnswer : kWorthSecondBatch;
   for (bool more = true; more && !iteration.stopped && !has_accepted(iteration);) {
-    const std::vector<std::size_t> next = next_in_order(iteration, *task.predictor);
+    const std::vector<std::size_t> next = next_in_order(iteration, *task.predictor, worth);
     more = !next.empty();
     if (more) refit_shortlist(task, parent, next, iteration);
   }

@@ -52,6 +52,14 @@ std::string remainder(const ResidualExcess& excess) {
           : fmt::format("{:.3g} times the sensors' noise", ratio));
 }
 
+// Of an excess on the extrapolation runs that a fit to all runs does not leave.
+std::string parameters_sentence(const ResidualExcess& excess) {
+  return fmt::format(
+      " Other numbers of this model explain what these do not, {}: the fit runs do not tell them; let a run "
+      "of that kind be one.",
+      remainder(excess));
+}
+
 }  // namespace
 
 Eigen::VectorXd excess_of(const WhitenedResiduals& residuals, const NullModel& null,
@@ -78,6 +86,8 @@ ResidualExcesses::ResidualExcesses(const SelectionContext& context, const Candid
 ResidualExcess ResidualExcesses::alike() const {
   return on(context_.unweighted()[kValidation].empty() ? kTraining : kValidation);
 }
+
+ResidualExcess ResidualExcesses::fitted() const { return on(kTraining); }
 
 ResidualExcess ResidualExcesses::another() const { return on(kExtrapolation); }
 
@@ -154,13 +164,6 @@ std::string too_noisy(const ResidualExcess& excess) {
                      1.0 / std::sqrt(std::max(1.0 + excess.excess, 1e-6)));
 }
 
-std::string parameters_sentence(const ResidualExcess& excess) {
-  return fmt::format(
-      " Other numbers of this model explain what these do not, {}: the fit runs do not tell them; let a run "
-      "of that kind be one.",
-      remainder(excess));
-}
-
 std::string residual_sentence(const ResidualExcess& excess, bool effects_added) {
   const std::string left = remainder(excess);
   if (structure_remains(excess, effects_added)) {
@@ -182,6 +185,23 @@ std::string residual_sentence(const ResidualExcess& excess, bool effects_added) 
                                     : fmt::format("; {:.0f} % of what the base model left is explained",
                                                   100.0 * (1.0 - excess.unexplained));
   return fmt::format("What is left: {}{}.", left, explained);
+}
+
+Remaining remaining(const ResidualExcesses& excesses, bool effects_added,
+                    const std::function<ResidualExcess()>& another_of_all) {
+  const auto remains = [&](const ResidualExcess& e) { return structure_remains(e, effects_added); };
+  Remaining out{.excess = excesses.alike(), .of_parameters = ""};
+  if (remains(out.excess)) return out;
+  if (const ResidualExcess fitted = excesses.fitted(); remains(fitted)) {
+    out.excess = fitted;
+  } else if (const ResidualExcess another = excesses.another(); remains(another)) {
+    if (remains(another_of_all())) {
+      out.excess = another;
+    } else {
+      out.of_parameters = parameters_sentence(another);
+    }
+  }
+  return out;
 }
 
 }  // namespace omnihil

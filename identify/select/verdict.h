@@ -9,6 +9,7 @@
 // runs of another kind (extrapolation) may be parameters that the fit runs do not tell: it is structure when a fit to all runs
 // leaves it, too.
 #pragma once
+#include <functional>
 #include <string>
 
 #include "identify/select/acceptance.h"
@@ -43,6 +44,7 @@ class ResidualExcesses {
   ResidualExcesses(const SelectionContext& context, const Candidate& baseline, Candidate model,
                    std::uint64_t seed, int jobs);
   ResidualExcess alike() const;    // on held-out runs, of the fit runs' kind; without any on the fit runs
+  ResidualExcess fitted() const;   // on fit runs
   ResidualExcess another() const;  // on extrapolation runs; without any no excess
 
  private:
@@ -66,7 +68,16 @@ bool structure_in(const WhitenedResiduals& residuals, const NullModel& null, con
 std::string residual_sentence(const ResidualExcess& excess, bool effects_added);
 // Against an effect that draws random numbers, of the model that has it: its noise is not in the record. Empty: it may be.
 std::string too_noisy(const ResidualExcess& excess);
-// Of an excess on the extrapolation runs that a fit to all runs does not leave.
-std::string parameters_sentence(const ResidualExcess& excess);
+
+// Where structure shows: on held-out runs; on fit runs, since those may lack the motion that shows it; on runs of another kind,
+// unless a fit to all runs does not leave it there. Nowhere: the held-out runs' excess.
+struct Remaining {
+  ResidualExcess excess;
+  std::string
+      of_parameters;  // for people: of an excess that other numbers of this model explain; empty: none
+};
+// another_of_all: on extrapolation runs, of the model fitted to all runs.
+Remaining remaining(const ResidualExcesses& excesses, bool effects_added,
+                    const std::function<ResidualExcess()>& another_of_all);
 
 }  // namespace omnihil

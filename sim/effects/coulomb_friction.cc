@@ -37,6 +37,7 @@ struct CoulombFriction {
             return 0.03 * 3.0 * s.current_sigma_A / (samples > 1 ? std::sqrt(samples) : 1.0);
           },
       .claims = kDissipative | kOdd,
+      .in_every_drive = true,
       .params = kParams,
       .plot = {.excitation = "creep", .x = "duty", .y = "velocity", .from_s = 0.0, .to_s = 8.0},
   };

@@ -4,13 +4,17 @@
 
 #include "sim/law/drive_params.h"
 #include "sim/law/effect_entry.h"
+#include "sim/law/first_order_lag.h"
 
 namespace omnihil {
 namespace {
 
 struct HallSpeedEstimator {
   enum Param { kPulses, kWindow };
-  enum State { kSpeed, kElapsed, kFirstPulse, kStarted };
+  enum State { kSpeed, kElapsed, kFirstPulse, kStarted, kInput, kStages };
+  // The mean of a window w, held for w, at any phase: impulse response a triangle, mean delay w and variance w^2 / 6. As many
+  // equal lags in a row have both.
+  static constexpr int kLags = 6;  // derived
   static double pulses_of(const DriveParams<double>& drive) {
     return drive.pole_pairs > 0 ? 6.0 * drive.pole_pairs : 48.0;
   }
@@ -37,24 +41,26 @@ struct HallSpeedEstimator {
        .trait = ParamTrait::kTime},
   };
   static constexpr EffectState kStates[] = {
-      {.name = "speed_rad_s", .unit = "rad/s"},
-      {.name = "elapsed_s", .unit = "s"},
-      {.name = "first_pulse", .unit = "1"},
-      {.name = "started", .unit = "1"},
+      {.name = "speed_rad_s", .unit = "rad/s"},   {.name = "elapsed_s", .unit = "s"},
+      {.name = "first_pulse", .unit = "1"},       {.name = "started", .unit = "1"},
+      {.name = "input_rad_s", .unit = "rad/s"},  // at the sample before
+      {.name = "stage_1_rad_s", .unit = "rad/s"}, {.name = "stage_2_rad_s", .unit = "rad/s"},
+      {.name = "stage_3_rad_s", .unit = "rad/s"}, {.name = "stage_4_rad_s", .unit = "rad/s"},
+      {.name = "stage_5_rad_s", .unit = "rad/s"},
   };
   static constexpr EffectInfo kInfo{
       .id = "hall_speed_estimator",
       .title = "Speed estimate from Hall pulses",
       .equation =
-          "measured = (2 pi / n) (pulses within the window) / window, held for a window; expected: w "
-          "x' = omega - x",
+          "measured = (2 pi / n) (pulses within the window) / window, held for a window; expected: six lags "
+          "in a row, (w / 6) x_k' = x_(k-1) - x_k, x_0 = omega",
       .source =
           "Ohmae, Matsuda, Kamiyama, Tachikawa, IEEE Trans. Ind. Electron. 29(3), 1982 (M method: pulses in "
           "a "
-          "fixed time); expected value: first-order lag of the same delay of a ramp (ours)",
+          "fixed time); expected value: lags of the same mean delay and variance (ours)",
       .cannot =
           "unequal spacing of the sensors, estimators by time between pulses, ripple of the window's "
-          "length; the lag's shape where a fit asks for expected values (its mean delay is right)",
+          "length; the phase of the windows where a fit asks for expected values",
       .place = Place::kSensor,
       .twins = {"sampling_delay", "speed_low_pass"},
       .nests = {"speed_low_pass"},  // without a sign of the pulses it is no more than that
@@ -88,17 +94,31 @@ struct HallSpeedEstimator {
     }
   }
 
+  // (w / 6) x_k' = x_(k-1) - x_k, each input on a line within the step
+  template <typename T>
+  static void expect(const T* p, T* x, const SensorPort<T>& port) {
+    const T lag_s = p[kWindow] / double(kLags);
+    T from = x[kInput], to = port.measured_speed_rad_s;
+    for (int k = 0; k < kLags; ++k) {
+      T& stage = k + 1 < kLags ? x[kStages + k] : x[kSpeed];
+      const T before = stage;
+      stage = lag_behind_line(before, from, to, port.dt_s, lag_s);
+      from = before, to = stage;
+    }
+  }
+
   template <typename T>
   static void apply(const T* p, T* x, SensorPort<T>& port) {
     if (value_of(x[kStarted]) == 0.0 && port.dt_s <= 0.0) {
       x[kSpeed] = port.measured_speed_rad_s;
+      for (int k = 0; k < kLags - 1; ++k) x[kStages + k] = port.measured_speed_rad_s;
       x[kFirstPulse] = pulse_number(port.theta_rotor_rad, p[kPulses]);
     } else if (port.noise != nullptr) {
       count_pulses(p, x, port);
-    } else {
-      // w x' = omega - x, implicit: its delay of a ramp is w exactly
-      x[kSpeed] += (port.measured_speed_rad_s - x[kSpeed]) * (port.dt_s / (port.dt_s + p[kWindow]));
+    } else if (port.dt_s > 0.0) {
+      expect(p, x, port);
     }
+    x[kInput] = port.measured_speed_rad_s;
     x[kStarted] = T(1);
     port.measured_speed_rad_s = x[kSpeed];
   }

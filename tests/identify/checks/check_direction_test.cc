@@ -50,6 +50,29 @@ TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
   }
 }
 
+// One current per run, and a friction that falls in warming grease: the axis goes on accelerating while nothing of the torque does.
+TEST(CheckDirection, ATorqueThatIsHeldHasNoSwappedSign) {
+  Bench bench = simulated_bench({.drive = CommandKind::kMotorTorque,
+                                 .drive_name = "motor_torque",
+                                 .amplitude = 0.02,
+                                 .with = {},
+                                 .model = ""});
+  keep_one_run_of({"motor_torque", "position"}, bench);
+  omnihil::Run& run = bench.dataset.runs[0];
+  run.signals.clear();
+  run.time_s.clear();
+  double angle = 0.0;
+  for (int k = 0; k < 5000; ++k) {
+    const double t = 0.002 * k, omega = 20.0 * (1.0 - std::exp(-t / 3.0)) + 2.0 * std::sin(7.0 * angle);
+    angle += 0.002 * omega;
+    run.time_s.push_back(t);
+    run.signals["position"].push_back(angle);
+    run.signals["motor_torque"].push_back(0.036);
+  }
+  EXPECT_EQ(find(check_data(bench.dataset, bench.nominal), "swapped_sign"), nullptr)
+      << text_of(check_data(bench.dataset, bench.nominal));
+}
+
 // A servo at its speed limit under a square of 0.38 s half a period: it comes late by half of that and more, but it goes where it is
 // asked to. One whose sensor counts backwards does not.
 TEST(CheckDirection, AServoThatComesLateHasNoSwappedSign) {

@@ -15,11 +15,25 @@ AxisInput ramp(double rate_rad_s2, double duration_s) {
   return in;
 }
 
-// Expected value: an implicit lag of w follows a ramp exactly w late, whatever the sampling.
+// Expected value: lags of w in sum follow a ramp exactly w late, whatever the sampling.
 TEST(HallSpeedEstimator, IsLateByItsWindowOnARamp) {
   const auto out =
       run_axis(small_drive(), with({use_of("hall_speed_estimator", {48, 0.02})}), ramp(50.0, 1.0));
   EXPECT_NEAR(out.back().velocity_rad_s, 50.0 * (1.0 - 0.02), 1e-6);
+}
+
+// Of a sine of period 4 w a mean over w, held for w, leaves (sin(pi / 4) / (pi / 4))^2 = 0.811; a single lag of w 0.537.
+TEST(HallSpeedEstimator, ExpectsOfASineWhatAHeldMeanLeaves) {
+  constexpr double kWindow_s = 0.02, kPeriod_s = 4.0 * kWindow_s;
+  AxisInput in = held(CommandKind::kMotorCurrent, 0.0, 2.0);
+  for (const double t : in.time_s)
+    in.imposed_velocity_rad_s.push_back(10.0 * std::sin(2.0 * std::numbers::pi * t / kPeriod_s));
+  const auto out = run_axis(small_drive(), with({use_of("hall_speed_estimator", {48, kWindow_s})}), in);
+  double largest = 0.0;
+  for (const auto& s : out)
+    if (s.time_s > 1.0) largest = std::max(largest, std::abs(s.velocity_rad_s));
+  const double sinc = std::sin(std::numbers::pi / 4.0) / (std::numbers::pi / 4.0);
+  EXPECT_NEAR(largest, 10.0 * sinc * sinc, 0.2);  // six lags: 8.2
 }
 
 TEST(HallSpeedEstimator, ShowsTheSpeedInTheLimitOfNoWindow) {
