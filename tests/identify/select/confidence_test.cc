@@ -46,7 +46,7 @@ TEST(ConfidenceTest, APairHasTheEvidenceOfBoth) {
                    probability_right({.later = true, .share_of_base = 0.3, .selection_frequency = 0.1}));
 }
 
-TEST(ConfidenceTest, TakesTheHeldOutErrorOfTheLastModelWithoutTheBus) {
+TEST(ConfidenceTest, TakesTheWorseOfFitAndHeldOutErrorOfTheLastModelWithoutTheBus) {
   Diagnosis d = two_names();
   const auto error = [](const std::string& signal, Split split, double over_noise) {
     SignalError e;
@@ -56,13 +56,15 @@ TEST(ConfidenceTest, TakesTheHeldOutErrorOfTheLastModelWithoutTheBus) {
     e.rmse = 0.02 * over_noise;
     return e;
   };
-  d.final_comparison.errors = {error("velocity", Split::kTraining, 1.9),
-                               error("velocity", Split::kValidation, 1.3),
-                               error("bus_voltage", Split::kValidation, 40.0)};
-  EXPECT_DOUBLE_EQ(
-      confidences(d)[1].probability,
-      probability_right(
-          {.later = true, .share_of_base = 0.02, .selection_frequency = 0.7, .error_over_noise = 1.3}));
+  for (const bool fit_is_worse : {false, true}) {
+    d.final_comparison.errors = {error("velocity", Split::kTraining, fit_is_worse ? 1.3 : 1.1),
+                                 error("velocity", Split::kValidation, fit_is_worse ? 1.1 : 1.3),
+                                 error("bus_voltage", Split::kValidation, 40.0)};
+    EXPECT_DOUBLE_EQ(
+        confidences(d)[1].probability,
+        probability_right(
+            {.later = true, .share_of_base = 0.02, .selection_frequency = 0.7, .error_over_noise = 1.3}));
+  }
 }
 
 TEST(ConfidenceTest, WhatRemainsIsTheEnergyAboveTheNoiseOverTheBaseModels) {
