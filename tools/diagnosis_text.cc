@@ -49,9 +49,13 @@ std::string with_confounded(const Diagnosis& d, const std::string& effect) {
 
 std::string verdict_text(const Diagnosis& d) {
   std::string out = fmt::format("Verdict: {}", outcome_name(d.outcome));
-  std::vector<std::string> effects;
-  for (const std::string& e : d.effects) effects.push_back(with_confounded(d, e));
-  if (!effects.empty()) out += fmt::format(": {}", fmt::join(effects, ", "));
+  std::vector<std::string> likely, unlikely;
+  for (const std::string& e : d.effects)
+    (is_unlikely(d, e) ? unlikely : likely).push_back(with_confounded(d, e));
+  if (!d.effects.empty()) out += ": ";
+  out += fmt::format("{}", fmt::join(likely, ", "));
+  if (!unlikely.empty())
+    out += fmt::format("{}perhaps {}", likely.empty() ? "" : "; ", fmt::join(unlikely, ", perhaps "));
   const bool faulty = d.outcome == Outcome::kNotSearched && first_fault(d.findings) != nullptr;
   if (!d.not_searched.empty()) out += fmt::format(" ({})", d.not_searched);
   out += "\n";

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/select/confidence.h"
+
 namespace omnihil {
 namespace {
 
@@ -25,6 +27,14 @@ std::string error_change(const Comparison& before, const Comparison& after) {
   return fmt::format("the {} error {} from {} to {} times the noise ({})",
                      split == Split::kValidation ? "held-out" : "fitted", to <= from ? "falls" : "rises",
                      figure(from), figure(to), change_percent(from, to));
+}
+
+// "cogging and perhaps grease_drag"
+std::string names_of(const Diagnosis& d) {
+  std::vector<std::string> likely, unlikely;
+  for (const std::string& e : d.effects) (is_unlikely(d, e) ? unlikely : likely).push_back(e);
+  if (unlikely.empty()) return joined(likely);
+  return fmt::format("{}perhaps {}", likely.empty() ? "" : joined(likely) + " and ", joined(unlikely));
 }
 
 }  // namespace
@@ -68,8 +78,7 @@ std::string verdict_sentence(const Diagnosis& d) {
     text = d.not_searched.empty() ? "No effect was searched for."
                                   : fmt::format("Not searched: {}", d.not_searched);
   } else if (d.verdict == Verdict::kEffect) {
-    text = fmt::format("The model lacks {}: with {} {}.", joined(d.effects),
-                       d.effects.size() > 1 ? "them" : "it",
+    text = fmt::format("The model lacks {}: with {} {}.", names_of(d), d.effects.size() > 1 ? "them" : "it",
                        error_change(d.baseline_comparison, d.final_comparison));
   } else if (d.verdict == Verdict::kAdequate) {
     text = "The model is adequate: no known effect lowers the error by more than chance.";
@@ -77,7 +86,7 @@ std::string verdict_sentence(const Diagnosis& d) {
     text = d.unknown.sentence.empty() ? "The model lacks something that no known effect explains."
                                       : d.unknown.sentence;
     if (!d.effects.empty()) {
-      text += fmt::format(" Of the known effects {} did help: {}.", joined(d.effects),
+      text += fmt::format(" Of the known effects {} did help: {}.", names_of(d),
                           error_change(d.baseline_comparison, d.final_comparison));
     }
   }

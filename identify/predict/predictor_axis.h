@@ -21,6 +21,8 @@ std::unique_ptr<Predictor> make_axis_predictor(const Dataset& dataset, const Can
 Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal);
 // Settled points of a drive by duty or voltage: what is lost before the winding is not searched, any of it would explain each speed.
 bool hides_losses_before_winding(const Dataset& dataset);
+// A drive by torque whose motion is told by a reported speed alone: that is the model's input, with what its electronics do to it.
+bool takes_speed_as_reported(const Dataset& dataset);
 
 // Tracks of a run for sorting errors; `model`: the run as the model has it, for what was not measured.
 std::vector<RegimeTrack> axis_regimes(const AxisSetup& setup, const Candidate& model, double step_s);

@@ -45,6 +45,14 @@ bool hides_losses_before_winding(const Dataset& dataset) {
          std::ranges::all_of(dataset.runs, [](const Run& r) { return r.steady; });
 }
 
+bool takes_speed_as_reported(const Dataset& dataset) {
+  if (dataset.rig != &rig_axis() || axis_method(dataset) == Method::kForward) return false;
+  const Channel* const speed = dataset.channel("velocity");
+  const bool position = dataset.channel("position") != nullptr || dataset.channel("encoder") != nullptr;
+  return speed != nullptr && !speed->imposed && !position &&
+         std::ranges::any_of(dataset.runs, [](const Run& r) { return !r.steady; });
+}
+
 Capabilities axis_capabilities(const Dataset& dataset, const Candidate& nominal) {
   const CommandKind kind = axis_command_kind(dataset);
   const DriveParams<double> drive = drive_of(nominal);

@@ -134,12 +134,21 @@ std::vector<NameConfidence> confidences(const Diagnosis& d) {
 }
 
 std::string confidence_sentence(const Diagnosis& d) {
+  const bool in_a_set = std::ranges::any_of(d.confounded, [](const ConfoundedSet& set) {
+    return std::ranges::all_of(set.members, [](const std::string& m) { return find_effect(m) != nullptr; });
+  });
   std::vector<std::string> each;
   for (const NameConfidence& c : d.confidence)
     each.push_back(fmt::format("{} in {:.0f} %", c.effect, 100.0 * c.probability));
-  return each.empty() ? ""
-                      : fmt::format("Of made records with such evidence, the name was right: {}.",
-                                    fmt::join(each, ", "));
+  return each.empty()
+             ? ""
+             : fmt::format("Of made records with such evidence, the name{} was right: {}.",
+                           in_a_set ? ", or one that it cannot be told from," : "", fmt::join(each, ", "));
+}
+
+bool is_unlikely(const Diagnosis& d, std::string_view effect) {
+  const auto it = std::ranges::find(d.confidence, effect, &NameConfidence::effect);
+  return it != d.confidence.end() && it->probability < 0.5;
 }
 
 }  // namespace omnihil

@@ -13,6 +13,7 @@
 // proportions. On measured records it is an extrapolation.
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "identify/select/diagnosis.h"
@@ -24,9 +25,10 @@ struct NameEvidence {
   bool more_remains = false;  // Outcome::kMoreRemains
   double share_of_base = 1.0;
   double selection_frequency = 1.0;
-  bool undecided = false;         // a set of several
-  double error_over_noise = 1.0;  // of the last model, held-out or fit runs, whichever is more, pooled over the signals
-  double remaining_share = 0.0;   // energy above the noise of the last model over the base model's, likewise
+  bool undecided = false;  // a set of several
+  double error_over_noise =
+      1.0;  // of the last model, held-out or fit runs, whichever is more, pooled over the signals
+  double remaining_share = 0.0;  // energy above the noise of the last model over the base model's, likewise
 };
 double probability_right(const NameEvidence& evidence);
 
@@ -35,5 +37,8 @@ std::vector<NameConfidence> confidences(const Diagnosis& diagnosis);
 
 // For people; empty: no name.
 std::string confidence_sentence(const Diagnosis& diagnosis);
+
+// Is a name of the answer more often wrong than right?
+bool is_unlikely(const Diagnosis& diagnosis, std::string_view effect);
 
 }  // namespace omnihil

@@ -59,6 +59,29 @@ void add_hidden_losses(const std::string& effect, bool has_current, Diagnosis& d
           diagnosis);
 }
 
+// A motion that is taken as reported, and laws that are late between torque and motion.
+void add_hidden_low_pass(const std::string& effect, Diagnosis& diagnosis) {
+  const EffectEntry* const entry = find_effect(effect);
+  if (entry == nullptr || (entry->info->place != Place::kShaft && entry->info->place != Place::kCommand))
+    return;
+  ConfoundedSet set{
+      .members = {effect},
+      .sentence = fmt::format(
+          "The motion is taken as it is reported: a low pass of the speed (speed_low_pass), which "
+          "looks like {}, was not searched: record a position, or drive by duty.",
+          effect)};
+  const auto known = std::ranges::find_if(diagnosis.confounded, [&](const ConfoundedSet& other) {
+    return other.members.front() == effect && find_effect(other.members.back()) != nullptr;
+  });
+  if (known != diagnosis.confounded.end()) {
+    set.members = known->members;
+    set.sentence = known->sentence + " " + set.sentence;
+    diagnosis.confounded.erase(known);
+  }
+  set.members.emplace_back("speed_low_pass");
+  add_set(std::move(set), diagnosis);
+}
+
 }  // namespace
 
 void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
@@ -127,6 +150,9 @@ void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis) {
     set = std::move(left);
     return set.members.size() < 2;
   });
+  if (takes_speed_as_reported(dataset)) {
+    for (const std::string& effect : diagnosis.effects) add_hidden_low_pass(effect, diagnosis);
+  }
   if (!hides_losses_before_winding(dataset)) return;
   const bool has_current = dataset.channel("motor_current") != nullptr;
   for (const std::string& effect : diagnosis.effects) add_hidden_losses(effect, has_current, diagnosis);

@@ -19,7 +19,8 @@ void replace_in_answer(const std::string& richer, const std::string& simpler, Di
 
 // At the end: sets of an effect that was removed again go, and from the others the members that are in the answer
 // themselves, since a later iteration decided for both. Where losses before the winding were not searched
-// (hides_losses_before_winding) each law of the shaft may be one.
+// (hides_losses_before_winding) each law of the shaft may be one; where the motion is a reported speed (takes_speed_as_reported)
+// a lag of command or shaft may be that of its low pass.
 void settle_confounded(const Dataset& dataset, Diagnosis& diagnosis);
 
 // The variables that explain most of a comparison's residual, the largest fraction first; `order`: dominant

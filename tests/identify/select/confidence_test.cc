@@ -127,7 +127,20 @@ TEST(ConfidenceTest, SaysItInPerCent) {
   Diagnosis d;
   EXPECT_EQ(confidence_sentence(d), "");
   d.confidence = {{.effect = "cogging", .probability = 0.954}};
-  EXPECT_NE(confidence_sentence(d).find("cogging in 95 %"), std::string::npos);
+  EXPECT_NE(confidence_sentence(d).find("the name was right: cogging in 95 %"), std::string::npos);
+  d.confounded = {{.members = {"cogging", "motor.resistance_ohm"}, .sentence = {}}};
+  EXPECT_NE(confidence_sentence(d).find("the name was right"), std::string::npos)
+      << "a base parameter is no name";
+  d.confounded.push_back({.members = {"cogging", "torque_ripple"}, .sentence = {}});
+  EXPECT_NE(confidence_sentence(d).find("or one that it cannot be told from, was right"), std::string::npos);
+}
+
+TEST(ConfidenceTest, ANameIsUnlikelyBelowOneHalf) {
+  Diagnosis d;
+  d.confidence = {{.effect = "cogging", .probability = 0.51}, {.effect = "grease_drag", .probability = 0.49}};
+  EXPECT_FALSE(is_unlikely(d, "cogging"));
+  EXPECT_TRUE(is_unlikely(d, "grease_drag"));
+  EXPECT_FALSE(is_unlikely(d, "backlash")) << "nothing is said of it";
 }
 
 }  // namespace

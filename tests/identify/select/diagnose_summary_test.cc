@@ -68,6 +68,24 @@ TEST(SettleConfounded, AShaftsLawMayBeALossThatWasNotSearched) {
   EXPECT_NE(d.confounded[0].sentence.find("measure the current"), std::string::npos);
 }
 
+// A bench by torque takes the reported speed for the motion: what a low pass does to it was not searched.
+TEST(SettleConfounded, OfAReportedSpeedALowPassMayBeMeant) {
+  Dataset bench;
+  bench.rig = &rig_axis();
+  bench.channels = {{.signal = "motor_torque", .column = "t", .unit = "N m"},
+                    {.signal = "velocity", .column = "w", .unit = "rad/s"}};
+  bench.runs.resize(1);
+  const Diagnosis before = answer({"shaft_compliance", "cogging"}, {});
+  Diagnosis by_speed = before, by_position = before;
+  settle_confounded(bench, by_speed);
+  ASSERT_EQ(by_speed.confounded.size(), 1u);
+  EXPECT_EQ(by_speed.confounded[0].members, (Names{"shaft_compliance", "speed_low_pass"}));
+  EXPECT_NE(by_speed.confounded[0].sentence.find("was not searched"), std::string::npos);
+  bench.channels.push_back({.signal = "position", .column = "p", .unit = "rad"});
+  settle_confounded(bench, by_position);
+  EXPECT_TRUE(by_position.confounded.empty());
+}
+
 TEST(SettleConfounded, OthersStayAsTheyAre) {
   const Diagnosis d =
       answer({"gravity_load"}, {{{"gravity_load", "imbalance"}, "as it was"},
