@@ -143,6 +143,13 @@ std::string overdamped(const FitResult& child, const std::string& name) {
       ratio, damping / stiffness);
 }
 
+// A form whose plain value is zero and which does away from there what the strength does (a loop's period lags as its time
+// constant does): the data may know the sum where they do not know the parts.
+bool acts_as_strength(const EffectParam& row) {
+  return row.role == ParamRole::kShape && row.trait == ParamTrait::kForm && row.typical == 0.0 &&
+         row.lower == 0.0;
+}
+
 // A parameter of the effect that no drive can have, or a strength that is not significant; empty: none.
 std::string implausible_estimate(const FitResult& child, const std::string& name, bool decisive) {
   const std::string at_bound = ends_at_bound(child, name);
@@ -158,7 +165,12 @@ std::string implausible_estimate(const FitResult& child, const std::string& name
     const ParameterEstimate& p = child.parameters[n];
     if (!p.path.starts_with(name + ".")) continue;
     const EffectParam* row = row_of(entry, child, p.path.substr(name.size() + 1));
-    if (row == nullptr || row->role == ParamRole::kShape) continue;
+    if (row == nullptr) continue;
+    if (acts_as_strength(*row)) {
+      strengths.push_back(static_cast<Eigen::Index>(n));
+      away.push_back(p.value);
+    }
+    if (row->role == ParamRole::kShape) continue;
     const double size = std::abs(p.value - row->neutral);
     if (p.unphysical && size > 1e-9)
       return fmt::format("{} = {:.4g} {} is not physical", p.path, p.value, p.unit);

@@ -204,5 +204,28 @@ TEST(PlausibilityTest, CorrelatedStrengthsAreTestedJointly) {
                    .accepted());
 }
 
+// A low pass by a firmware's loop: 12 ms in all are known to 1 ms, what of them is the loop's half period is not.
+TEST(PlausibilityTest, ALoopsPeriodIsTestedWithItsTimeConstant) {
+  const AcceptanceFixture fixture;
+  Fitted child = fixture.leaving(0.9, 0.9, 0.9);
+  constexpr double kSum = 1e-3, kParts = 20e-3;
+  for (const auto& [name, value] : {std::pair{"time_constant_s", 7e-3}, {"loop_period_s", 10e-3}}) {
+    ParameterEstimate p;
+    p.path = std::string("speed_low_pass.") + name;
+    p.value = value;
+    p.sigma = kParts;
+    child.fit.parameters.push_back(p);
+  }
+  // of tau and P: tau + P / 2 has kSum, what is across has kParts
+  const Eigen::Vector2d along(1.0, 0.5), across(-0.5, 1.0);
+  child.fit.covariance =
+      kSum * kSum * along * along.transpose() + kParts * kParts * across * across.transpose();
+  EXPECT_TRUE(
+      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "speed_low_pass", 100).accepted());
+  child.fit.covariance *= 400.0;
+  EXPECT_FALSE(
+      test_acceptance(fixture.context, fixture.leaving(1, 1, 1), child, "speed_low_pass", 100).accepted());
+}
+
 }  // namespace
 }  // namespace omnihil
