@@ -28,12 +28,28 @@ FEATURES = {
 }
 
 
+def over_noise(diagnosis, errors):
+    """Pooled error of a model's runs over the sensors' noise, at least 1; errors: {signal: {"rmse": …}}, may be empty."""
+    sigma = {k: v.get("noise_sigma") for k, v in (diagnosis.get("signals") or {}).items()}
+    value = score.pooled(errors, sigma) if errors else 1.0
+    return max(value, 1.0) if math.isfinite(value) else 1.0
+
+
+def share_of_step(diagnosis, before, after):
+    """What a step removes of the base model's energy above the noise, on held-out runs."""
+    square = [over_noise(diagnosis, m.get("holdout")) ** 2 for m in (diagnosis.get("baseline") or {}, before, after)]
+    return min(max((square[1] - square[2]) / (square[0] - 1.0), 0.0), 1.0) if square[0] > 1.0 else 0.0
+
+
 def rounds(diagnosis):
-    """{effect: its row of the ranking that it was taken from}"""
+    """{effect: its row of the ranking that it was taken from}; of two taken together the share is what both remove."""
     ladder, out = diagnosis.get("ladder") or [], {}
     for step, taken in zip(ladder, ladder[1:]):
-        for name in taken["added"].split(" and "):
-            out.update({name: r for r in step.get("ranking") or [] if r["effect"] == name})
+        names = taken["added"].split(" and ")
+        least = share_of_step(diagnosis, step, taken) if len(names) > 1 else 0.0
+        for r in step.get("ranking") or []:
+            if r["effect"] in names:
+                out[r["effect"]] = {**r, "share_of_base": max(r.get("share_of_base") or 0.0, least)}
     for step in ladder:
         if " in place of " in step["added"]:
             new, old = step["added"].split(" in place of ")
@@ -44,14 +60,13 @@ def rounds(diagnosis):
 def evidence(diagnosis):
     """One table per name of the answer: [(name, {feature: value})]."""
     taken, out = rounds(diagnosis), []
-    sigma = {k: v.get("noise_sigma") for k, v in (diagnosis.get("signals") or {}).items()}
-
-    def over_noise(model):
-        model = diagnosis.get(model) or {}
-        value = score.pooled(model.get("holdout") or model.get("fit"), sigma)
-        return max(value, 1.0) if math.isfinite(value) else 1.0
-
-    last, base = over_noise("final"), over_noise("baseline")
+    last, base = max(
+        (
+            [over_noise(diagnosis, (diagnosis.get(model) or {}).get(split)) for model in ("final", "baseline")]
+            for split in ("holdout", "fit")
+        ),
+        key=lambda both: both[0],
+    )
     remaining = (last**2 - 1.0) / max(base**2 - 1.0, 1e-9)
     for position, name in enumerate(diagnosis.get("effects") or []):
         r = taken.get(name, {})
