@@ -201,8 +201,9 @@ bool was_refitted(const Iteration& iteration, const Screened& s) {
 }
 
 // Effects that were not refitted, listed as confusable with the best candidate, since the screening is linear and may have
-// underrated them (DECISIONS 53), or whose signal in these data is its signal and whose share is as large. Not those that would be refused whatever the refit gains: they do not pass the
-// null, and no base parameter is off its prior that they could restore.
+// underrated them (DECISIONS 53), or whose signal in these data is its signal and whose share is as large. Not those
+// that would be refused whatever the refit gains: they do not pass the null, and no base parameter is off its prior that they could
+// restore.
 std::vector<std::size_t> confounded_with_best(const Iteration& iteration, const Fitted& parent,
                                               bool has_holdout) {
   const CandidateEffect* best = nullptr;
