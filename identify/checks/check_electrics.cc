@@ -170,6 +170,26 @@ double acceleration_ratio(const CheckContext& data, std::size_t wheel) {
   return inertia_at_rotor(nominal) / line.coefficient[0];
 }
 
+// A wrong scale of the current leaves the speed's as it is, and the other way round. A bridge that coasts is too fast for its duty at
+// too small a current: a doubt, unless the model has it. True: it is that.
+bool coasts_by_both(const CheckContext& data, std::size_t wheel, double current_ratio, double speed_ratio,
+                    const Windows& all, std::vector<DataFinding>& findings) {
+  const double tolerance = kTolerances * tolerance_of(data.nominal, "motor.torque_constant_Nm_per_A");
+  const bool both =
+      std::log(current_ratio) < -kWrong && std::log(speed_ratio) > std::max(kDoubtful, tolerance);
+  if (!both || coasting(data, wheel, all) == Coasting::kNo) return false;
+  const EffectUse* declared = use_of(data.nominal, "coast_mode");
+  if (declared != nullptr && !is_neutral(*declared)) return true;
+  findings.push_back(
+      {Grade::kDoubt, "wrong_scale", "", speed_name(data, wheel), speed_ratio,
+       fmt::format(
+           "the speed from {} is {:.3g} times, and the current {:.2g} times what the voltage and the "
+           "model allow: a bridge that lets the motor coast in its off-time (coast_mode), or two wrong "
+           "scales",
+           speed_name(data, wheel), speed_ratio, current_ratio)});
+  return true;
+}
+
 // A coefficient that is this many of its sigmas stands for itself: the windows are not independent. A choice.
 constexpr double kKnown_sigmas = 10.0;  // a choice
 
@@ -191,7 +211,8 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
     return true;
   }
   if (a < kKnown_sigmas * line.sigma[0] || -b < kKnown_sigmas * line.sigma[1]) return false;
-  const double current_ratio = a * resistance;
+  const double current_ratio = a * resistance, speed_ratio = constant / (-b / a);
+  if (coasts_by_both(data, wheel, current_ratio, speed_ratio, all, findings)) return true;
   if (std::abs(std::log(current_ratio)) > kWrongCurrent) {
     const bool thousand = current_ratio > 400.0 && current_ratio < 2500.0;
     // What a bridge may lose in dead times and switches: two body diodes of 0.75 V. Below the current at which it loses all of
@@ -209,8 +230,8 @@ bool by_current(const CheckContext& data, std::size_t wheel, const Windows& all,
                          ? fmt::format(", or a bridge that loses up to {:.2g} V (dead_time)", lost_V)
                          : "")});
   }
-  const double confirmed = data.dataset.rig->of_robot ? constant / (-b / a) : acceleration_ratio(data, wheel);
-  say_speed(data, wheel, constant / (-b / a), confirmed, "voltage, current", all, findings);
+  const double confirmed = data.dataset.rig->of_robot ? speed_ratio : acceleration_ratio(data, wheel);
+  say_speed(data, wheel, speed_ratio, confirmed, "voltage, current", all, findings);
   return true;
 }
 

@@ -199,6 +199,25 @@ TEST(CheckData, ABridgeThatCoastsIsADoubt) {
   EXPECT_EQ(find(check(bench), "wrong_scale"), nullptr) << "the model has it";
 }
 
+// Too fast at too small a current: no one scale does both.
+TEST(CheckData, ABridgeThatCoastsIsADoubtByItsCurrentToo) {
+  for (const bool coasts : {true, false}) {
+    std::vector<std::string> with;
+    if (coasts)
+      with = {"coast_mode.coast_share=1", "coast_mode.time_constant_s=2e-5", "coast_mode.return_ratio=1"};
+    Bench bench = simulated_bench({.amplitude = 0.5, .with = with, .duration_s = 8.0, .model = ""});
+    if (!coasts) {
+      for (Channel& channel : bench.dataset.channels) channel.counts_per_rev /= 2.0;
+    }
+    const auto findings = check(bench);
+    const DataFinding* f = find(findings, "wrong_scale");
+    ASSERT_NE(f, nullptr) << text_of(findings);
+    EXPECT_EQ(f->grade == Grade::kDoubt, coasts) << text_of(findings);
+    EXPECT_EQ(f->sentence.find("two wrong scales") != std::string::npos, coasts) << f->sentence;
+    EXPECT_EQ(count(findings, Grade::kFault) == 0, coasts) << text_of(findings);
+  }
+}
+
 TEST_F(SpoiltData, CurrentInMilliamperes) {
   for (std::size_t r = 0; r < 3; ++r) {
     for (double& v : signal(r, "motor_current")) v *= 1000.0;
