@@ -38,20 +38,17 @@ std::string findings_text(const Diagnosis& d) {
 // "constant_load or friction_asymmetry": an effect and those that these data cannot tell from it.
 std::string with_confounded(const Diagnosis& d, const std::string& effect) {
   for (const ConfoundedSet& set : d.confounded) {
-    const bool of_effects =
-        set.members.front() == effect && std::ranges::none_of(set.members, [](const std::string& member) {
-          return member.find('.') != std::string::npos;  // a base parameter's path
-        });
-    if (of_effects) return fmt::format("{}", fmt::join(set.members, " or "));
+    if (set.members.front() == effect && is_of_effects(set))
+      return fmt::format("{}", fmt::join(set.members, " or "));
   }
   return effect;
 }
 
 std::string verdict_text(const Diagnosis& d) {
   std::string out = fmt::format("Verdict: {}", outcome_name(d.outcome));
-  std::vector<std::string> likely, unlikely;
-  for (const std::string& e : d.effects)
-    (is_unlikely(d, e) ? unlikely : likely).push_back(with_confounded(d, e));
+  auto [likely, unlikely] = names_by_likelihood(d);
+  for (std::string& e : likely) e = with_confounded(d, e);
+  for (std::string& e : unlikely) e = with_confounded(d, e);
   if (!d.effects.empty()) out += ": ";
   out += fmt::format("{}", fmt::join(likely, ", "));
   if (!unlikely.empty())

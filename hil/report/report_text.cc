@@ -31,8 +31,7 @@ std::string error_change(const Comparison& before, const Comparison& after) {
 
 // "cogging and perhaps grease_drag"
 std::string names_of(const Diagnosis& d) {
-  std::vector<std::string> likely, unlikely;
-  for (const std::string& e : d.effects) (is_unlikely(d, e) ? unlikely : likely).push_back(e);
+  const auto [likely, unlikely] = names_by_likelihood(d);
   if (unlikely.empty()) return joined(likely);
   return fmt::format("{}perhaps {}", likely.empty() ? "" : joined(likely) + " and ", joined(unlikely));
 }

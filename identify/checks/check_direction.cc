@@ -6,6 +6,7 @@
 
 #include "identify/checks/check_list.h"
 #include "identify/record/rig.h"
+#include "identify/record/statistics.h"
 
 namespace omnihil {
 namespace {
@@ -160,10 +161,12 @@ void torque_against_acceleration(const RunView& view, const DriveView& drive,
   if (std::ranges::find(side, 1.0) != side.end() && std::ranges::find(side, -1.0) != side.end())
     x.push_back(side);
   if (most - least > kLeastAngle) x.insert(x.end(), {along_sine, along_cosine});
-  constexpr double kHeld =
-      1e-6;  // variance over mean square, a thousandth of the level: rounding of a set point; a choice
-  const LineFit level = fit_line({x[2]}, torque), line = fit_line(x, torque);
-  const double varies = 1.0 - level.explained;
+  // Of its variance in its mean square: a thousandth of the level is the rounding of a set point. A choice.
+  constexpr double kHeld = 1e-6;  // a choice
+  const LineFit line = fit_line(x, torque);
+  double square = 0.0;
+  for (const double v : torque) square += v * v / static_cast<double>(torque.size());
+  const double varies = std::pow(rms_about_mean(torque), 2) / std::max(square, 1e-300);
   if (line.coefficient.empty() || varies < kHeld || 1.0 - line.explained > 0.5 * varies) return;
   if (line.coefficient[0] > -5.0 * line.sigma[0]) return;
   findings.push_back({Grade::kFault, "swapped_sign", view.run->file, "motor_torque", line.coefficient[0],

@@ -112,6 +112,12 @@ Coasting coasting(const CheckContext& data, std::size_t wheel, const Windows& al
   return ratio(n - n / 4, n) < kFalls * ratio(0, n / 2) ? Coasting::kShown : Coasting::kPossible;
 }
 
+// The model has it already.
+bool declares_coasting(const CheckContext& data) {
+  const EffectUse* declared = use_of(data.nominal, "coast_mode");
+  return declared != nullptr && !is_neutral(*declared);
+}
+
 const char* words_of(Coasting coasts) {
   switch (coasts) {
     case Coasting::kPossible:
@@ -133,8 +139,7 @@ void say_speed(const CheckContext& data, std::size_t wheel, double ratio, double
   const bool same = std::log(confirmed) * std::log(ratio) > 0.0 && std::abs(std::log(confirmed)) > 0.5 * off;
   const double wrong = std::max(same ? kWrong : kWrongAlone, tolerance);
   const Coasting coasts = ratio > 1.0 ? coasting(data, wheel, all) : Coasting::kNo;
-  const EffectUse* declared = use_of(data.nominal, "coast_mode");
-  if (declared != nullptr && !is_neutral(*declared) && coasts != Coasting::kNo) return;
+  if (coasts != Coasting::kNo && declares_coasting(data)) return;
   const bool fault = off > wrong && coasts != Coasting::kShown;
   findings.push_back(
       {fault ? Grade::kFault : Grade::kDoubt, "wrong_scale", "", name, ratio,
@@ -178,8 +183,7 @@ bool coasts_by_both(const CheckContext& data, std::size_t wheel, double current_
   const bool both =
       std::log(current_ratio) < -kWrong && std::log(speed_ratio) > std::max(kDoubtful, tolerance);
   if (!both || coasting(data, wheel, all) == Coasting::kNo) return false;
-  const EffectUse* declared = use_of(data.nominal, "coast_mode");
-  if (declared != nullptr && !is_neutral(*declared)) return true;
+  if (declares_coasting(data)) return true;
   findings.push_back(
       {Grade::kDoubt, "wrong_scale", "", speed_name(data, wheel), speed_ratio,
        fmt::format(

@@ -155,9 +155,7 @@ std::vector<NameConfidence> confidences(const Diagnosis& d) {
 }
 
 std::string confidence_sentence(const Diagnosis& d) {
-  const bool in_a_set = std::ranges::any_of(d.confounded, [](const ConfoundedSet& set) {
-    return std::ranges::all_of(set.members, [](const std::string& m) { return find_effect(m) != nullptr; });
-  });
+  const bool in_a_set = std::ranges::any_of(d.confounded, is_of_effects);
   std::vector<std::string> each;
   for (const NameConfidence& c : d.confidence)
     each.push_back(fmt::format("{} in {:.0f} %", c.effect, 100.0 * c.probability));
@@ -167,9 +165,14 @@ std::string confidence_sentence(const Diagnosis& d) {
                            in_a_set ? ", or one that it cannot be told from," : "", fmt::join(each, ", "));
 }
 
-bool is_unlikely(const Diagnosis& d, std::string_view effect) {
-  const auto it = std::ranges::find(d.confidence, effect, &NameConfidence::effect);
-  return it != d.confidence.end() && it->probability < 0.5;
+NamesByLikelihood names_by_likelihood(const Diagnosis& d) {
+  NamesByLikelihood out;
+  for (const std::string& name : d.effects) {
+    const auto said = std::ranges::find(d.confidence, name, &NameConfidence::effect);
+    const bool unlikely = said != d.confidence.end() && said->probability < 0.5;
+    (unlikely ? out.unlikely : out.likely).push_back(name);
+  }
+  return out;
 }
 
 }  // namespace omnihil

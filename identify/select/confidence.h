@@ -38,7 +38,10 @@ std::vector<NameConfidence> confidences(const Diagnosis& diagnosis);
 // For people; empty: no name.
 std::string confidence_sentence(const Diagnosis& diagnosis);
 
-// Is a name of the answer more often wrong than right?
-bool is_unlikely(const Diagnosis& diagnosis, std::string_view effect);
+// The names of the answer, in its order; unlikely: more often wrong than right.
+struct NamesByLikelihood {
+  std::vector<std::string> likely, unlikely;
+};
+NamesByLikelihood names_by_likelihood(const Diagnosis& diagnosis);
 
 }  // namespace omnihil

@@ -110,6 +110,7 @@ class Diagnosing {
 
   void simulate() {
     context().simulate();
+    not_applicable_.clear();
     task_ = context().task(not_applicable_);
     out_.not_visible = not_applicable_;
     say("simulated null", kAfterNull);
@@ -286,8 +287,7 @@ class Diagnosing {
     if (ratio > 1.0 - kNotConverged) return;
     out_.ladder.erase(out_.ladder.begin() + 2, out_.ladder.end());  // nominal, base parameters refitted
     rebase();
-    context().simulate();
-    task_ = context().task(not_applicable_);
+    simulate();
     pair_.clear(), by_innovations_.clear(), aliased_parameter_.clear();
     iterate();
     eliminate();
@@ -380,7 +380,7 @@ class Diagnosing {
       out_.searched_despite = fault->sentence;
     const bool look_further = !misleading() && !stopped_;
     const Remaining left = look_further
-                               ? remaining(*excesses, added, [&] { return fitted_to_all().another(); })
+                               ? remaining(*excesses, alike, added, [&] { return fitted_to_all().another(); })
                                : Remaining{.excess = alike, .of_parameters = ""};
     const bool remains = !searched || structure_remains(left.excess, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);

@@ -71,7 +71,7 @@ void add_hidden_low_pass(const std::string& effect, Diagnosis& diagnosis) {
           "looks like {}, was not searched: record a position, or drive by duty.",
           effect)};
   const auto known = std::ranges::find_if(diagnosis.confounded, [&](const ConfoundedSet& other) {
-    return other.members.front() == effect && find_effect(other.members.back()) != nullptr;
+    return other.members.front() == effect && is_of_effects(other);
   });
   if (known != diagnosis.confounded.end()) {
     set.members = known->members;
@@ -83,6 +83,11 @@ void add_hidden_low_pass(const std::string& effect, Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+bool is_of_effects(const ConfoundedSet& set) {
+  return std::ranges::none_of(set.members,
+                              [](const std::string& m) { return m.find('.') != std::string::npos; });
+}
 
 void note_confounded(const Iteration& iteration, Diagnosis& diagnosis) {
   if (iteration.chosen < 0) return;

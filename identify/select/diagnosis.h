@@ -47,6 +47,7 @@ struct ConfoundedSet {
   // Of each member: error energy above the sensors' noise that it leaves, in multiples of the first's; empty: not compared.
   std::vector<double> remaining = {};
 };
+bool is_of_effects(const ConfoundedSet& set);  // none of its members is a base parameter
 
 struct Where {
   std::string signal;

@@ -13,9 +13,6 @@ namespace {
 
 // Loss of gain, relative to the best one's, within which two gains are equal: as the smallest gain of interest.
 constexpr double kSameGain = 0.03;  // tuned
-// Loss of gain within which an effect may be meant instead, if listed as confusable or of the same signal
-// (DECISIONS 53).
-constexpr double kConfoundedGain = 0.12;  // tuned
 // Of the gain, per parameter beyond the first: a law of many parameters fits noise.
 constexpr double kPenaltyPerParameter = 0.01;  // tuned
 // Gains are counted from the sensors' noise (DECISIONS 45). Smallest remaining energy that is told from none:
@@ -28,8 +25,6 @@ constexpr double kConfoundedRemaining = 1.5;  // tuned
 // The latter for two effects listed as confusable. Loose on purpose: neither form is exact (DECISIONS 45,
 // 53).
 constexpr double kListedRemaining = 20.0;  // tuned
-// Cosine of two signals that no refit separates: 4 % of either's energy (1 - 0.98^2) is its own.
-constexpr double kConfoundedCosine = 0.98;  // tuned
 // Gain below which a draw of the bootstrap counts for none of the candidates.
 constexpr double kLeastDrawGain = 0.01;  // tuned
 // Gains smaller than the smallest one of interest are compared as if they were this large.

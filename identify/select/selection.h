@@ -19,6 +19,11 @@ namespace omnihil {
 
 // Ratio of remaining energies above the sensors' noise up to which two candidates leave the same.
 inline constexpr double kSameRemaining = 1.15;  // tuned, as the shares of selection.cc
+// Loss of gain within which an effect may be meant instead, if listed as confusable or of the same signal
+// (DECISIONS 53).
+inline constexpr double kConfoundedGain = 0.12;  // tuned
+// Cosine of two signals that no refit separates: 4 % of either's energy (1 - 0.98^2) is its own.
+inline constexpr double kConfoundedCosine = 0.98;  // tuned
 
 void select_best(const SelectionTask& task, const Fitted& parent, Iteration& iteration);
 

@@ -30,10 +30,6 @@ constexpr double kWorthSecondBatch = 0.1;  // a choice
 // The same as long as nothing has been found at all: nothing is masked then, and less than the smallest gain of interest (3 %)
 // could not be accepted.
 constexpr double kWorthFirstAnswer = 0.03;  // derived
-// Cosine of two signals, base parameters projected out, that no refit separates (4 % of either's energy is its own), and the
-// part of the best one's share from which such an effect is refitted as well: as selection.cc asks of a set's members.
-constexpr double kCollinear = 0.98;       // tuned
-constexpr double kCollinearShare = 0.88;  // 1 - kConfoundedGain of selection.cc; tuned
 // Gain over the null's from which a candidate is refitted: that of the acceptance test (DECISIONS 52).
 constexpr double kLeastSignalToNull = 2.0;  // tuned, as the acceptance test's
 // An effect whose typical size would gain less than this many times the null's largest gain is not visible:
@@ -216,8 +212,8 @@ std::vector<std::size_t> confounded_with_best(const Iteration& iteration, const 
     const Screened& s = iteration.screened[i];
     const bool may_pass = passes_null(s, iteration.largest_null_gain) || is_implausible(parent.fit) ||
                           is_prior_rejected(parent.fit, s.aliased_parameter());
-    const bool collinear =
-        s.share > kCollinearShare * best->screened.share && cosine_similarity(best->screened, s) > kCollinear;
+    const bool collinear = s.share > (1.0 - kConfoundedGain) * best->screened.share &&
+                           cosine_similarity(best->screened, s) > kConfoundedCosine;
     if (may_pass && s.tried && s.is_resolved() && !s.extends && !was_refitted(iteration, s) &&
         (collinear || listed_as_confounded(*best->screened.entry->info, *s.entry->info)))
       out.push_back(i);

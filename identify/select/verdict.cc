@@ -187,10 +187,10 @@ std::string residual_sentence(const ResidualExcess& excess, bool effects_added) 
   return fmt::format("What is left: {}{}.", left, explained);
 }
 
-Remaining remaining(const ResidualExcesses& excesses, bool effects_added,
+Remaining remaining(const ResidualExcesses& excesses, const ResidualExcess& alike, bool effects_added,
                     const std::function<ResidualExcess()>& another_of_all) {
   const auto remains = [&](const ResidualExcess& e) { return structure_remains(e, effects_added); };
-  Remaining out{.excess = excesses.alike(), .of_parameters = ""};
+  Remaining out{.excess = alike, .of_parameters = ""};
   if (remains(out.excess)) return out;
   if (const ResidualExcess fitted = excesses.fitted(); remains(fitted)) {
     out.excess = fitted;

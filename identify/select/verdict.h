@@ -73,11 +73,10 @@ std::string too_noisy(const ResidualExcess& excess);
 // unless a fit to all runs does not leave it there. Nowhere: the held-out runs' excess.
 struct Remaining {
   ResidualExcess excess;
-  std::string
-      of_parameters;  // for people: of an excess that other numbers of this model explain; empty: none
+  std::string of_parameters;  // for people: an excess that other numbers of this model explain; empty: none
 };
-// another_of_all: on extrapolation runs, of the model fitted to all runs.
-Remaining remaining(const ResidualExcesses& excesses, bool effects_added,
+// alike: excesses.alike(); another_of_all: on extrapolation runs, of the model fitted to all runs.
+Remaining remaining(const ResidualExcesses& excesses, const ResidualExcess& alike, bool effects_added,
                     const std::function<ResidualExcess()>& another_of_all);
 
 }  // namespace omnihil

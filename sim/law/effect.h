@@ -109,8 +109,8 @@ struct EffectInfo {
   // Of the first strength, by the simple estimator that `visible` names; null: `visible` says why not.
   double (*min_visible)(const SensorSet&) = nullptr;
   std::uint32_t claims = kClaimNone;
-  bool in_every_drive =
-      false;  // of effects that explain data equally well this one is the most probable beforehand
+  // Of effects that explain data equally well this one is the most probable beforehand.
+  bool in_every_drive = false;
   std::uint32_t numerics = kNumericsPlain;
   std::uint32_t rigs = kOnBoth;
   std::uint32_t demands = kNeedsNothing;  // of the rig, beyond what its place needs

@@ -168,57 +168,6 @@ TEST_F(SpoiltData, CountsPerTurnOfAnotherEncoder) {
   expect("wrong_scale", "gear ratio, counts_per_rev");
 }
 
-// Three times too fast for its duty: within the whole bus a bridge that coasts in its off-time does that as well.
-TEST(CheckData, ASpeedWithinTheBusMayBeACoastingBridge) {
-  for (const double amplitude : {0.2, 0.9}) {
-    Bench bench = simulated_bench({.amplitude = amplitude, .with = {}, .model = ""});
-    for (Channel& channel : bench.dataset.channels) channel.counts_per_rev /= 3.0;
-    const auto findings = check(bench);
-    const DataFinding* f = find(findings, "wrong_scale");
-    ASSERT_NE(f, nullptr) << amplitude << text_of(findings);
-    EXPECT_EQ(f->sentence.find("coast_mode") != std::string::npos, amplitude < 0.3) << f->sentence;
-  }
-}
-
-// The same of a bridge that does coast: its ratio falls with the duty, and it is no fault.
-TEST(CheckData, ABridgeThatCoastsIsADoubt) {
-  Bench bench = simulated_bench(
-      {.amplitude = 0.3,
-       .with = {"coast_mode.coast_share=1", "coast_mode.time_constant_s=2e-6", "coast_mode.return_ratio=1"},
-       .excitations = {Excitation::kRamp, Excitation::kRamp, Excitation::kRamp},
-       .duration_s = 20.0,
-       .model = ""});
-  for (omnihil::Run& run : bench.dataset.runs) run.signals.erase("motor_current");
-  const auto findings = check(bench);
-  EXPECT_EQ(count(findings, Grade::kFault), 0) << text_of(findings);
-  const DataFinding* f = find(findings, "wrong_scale");
-  ASSERT_NE(f, nullptr) << text_of(findings);
-  EXPECT_NE(f->sentence.find("falls with the duty"), std::string::npos) << f->sentence;
-  bench.nominal = with_effect(bench.nominal, *find_effect("coast_mode"));
-  ASSERT_EQ(set_value(bench.nominal, "coast_mode.coast_share", 1.0), "");
-  EXPECT_EQ(find(check(bench), "wrong_scale"), nullptr) << "the model has it";
-}
-
-// Three times too fast at a fifth of the current: no one wrong scale does both, a bridge that coasts does. Of a duty that reaches
-// beyond the bus it is none.
-TEST(CheckData, ABridgeThatCoastsIsADoubtByItsCurrentToo) {
-  struct {
-    double amplitude, counts, current;
-    bool doubt;
-  } constexpr kCases[] = {{0.2, 3.0, 0.2, true}, {0.2, 3.0, 1.0, false}, {0.9, 3.0, 0.2, false}};
-  for (const auto& c : kCases) {
-    Bench bench = simulated_bench({.amplitude = c.amplitude, .with = {}, .model = ""});
-    for (Channel& channel : bench.dataset.channels) channel.counts_per_rev /= c.counts;
-    for (omnihil::Run& run : bench.dataset.runs)
-      for (double& v : run.signals["motor_current"]) v *= c.current;
-    const auto findings = check(bench);
-    const DataFinding* f = find(findings, "wrong_scale");
-    ASSERT_NE(f, nullptr) << c.amplitude << text_of(findings);
-    EXPECT_EQ(f->sentence.find("two wrong scales") != std::string::npos, c.doubt) << f->sentence;
-    EXPECT_EQ(count(findings, Grade::kFault) == 0, c.doubt) << text_of(findings);
-  }
-}
-
 TEST_F(SpoiltData, CurrentInMilliamperes) {
   for (std::size_t r = 0; r < 3; ++r) {
     for (double& v : signal(r, "motor_current")) v *= 1000.0;

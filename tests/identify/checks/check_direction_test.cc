@@ -22,15 +22,20 @@ void keep_one_run_of(std::initializer_list<const char*> channels, Bench& bench) 
   bench.dataset.runs.resize(1);
 }
 
-// An arm that a position loop lifts: its weight makes the torque rise while the start's acceleration is over.
-TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
-  constexpr double kInertia = 2.0, kFriction = 12.0, kWeight = 38.0, kRow_s = 0.002;
+Bench bench_by_torque() {
   Bench bench = simulated_bench({.drive = CommandKind::kMotorTorque,
                                  .drive_name = "motor_torque",
                                  .amplitude = 0.02,
                                  .with = {},
                                  .model = ""});
   keep_one_run_of({"motor_torque", "position"}, bench);
+  return bench;
+}
+
+// An arm that a position loop lifts: its weight makes the torque rise while the start's acceleration is over.
+TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
+  constexpr double kInertia = 2.0, kFriction = 12.0, kWeight = 38.0, kRow_s = 0.002;
+  Bench bench = bench_by_torque();
   omnihil::Run& run = bench.dataset.runs[0];
   for (const double sign : {1.0, -1.0}) {
     run.signals.clear();
@@ -52,12 +57,7 @@ TEST(CheckData, AnArmsWeightIsNoSwappedSign) {
 
 // One current per run, and a friction that falls in warming grease: the axis goes on accelerating while nothing of the torque does.
 TEST(CheckDirection, ATorqueThatIsHeldHasNoSwappedSign) {
-  Bench bench = simulated_bench({.drive = CommandKind::kMotorTorque,
-                                 .drive_name = "motor_torque",
-                                 .amplitude = 0.02,
-                                 .with = {},
-                                 .model = ""});
-  keep_one_run_of({"motor_torque", "position"}, bench);
+  Bench bench = bench_by_torque();
   omnihil::Run& run = bench.dataset.runs[0];
   run.signals.clear();
   run.time_s.clear();

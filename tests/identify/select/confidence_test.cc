@@ -13,6 +13,17 @@ RankedEffect row(const std::string& effect, double frequency, double share) {
   return r;
 }
 
+// Of a signal of noise 0.02: its error in multiples of that.
+SignalError error(double over_noise, Split split = Split::kValidation,
+                  const std::string& signal = "velocity") {
+  SignalError e;
+  e.signal = signal;
+  e.split = split;
+  e.noise_sigma = 0.02;
+  e.rmse = 0.02 * over_noise;
+  return e;
+}
+
 // Two found one after the other, the first replaced by a simpler law afterwards.
 Diagnosis two_names() {
   Diagnosis d;
@@ -45,34 +56,18 @@ TEST(ConfidenceTest, APairHasTheEvidenceOfBoth) {
   EXPECT_DOUBLE_EQ(c[1].probability,
                    probability_right({.later = true, .share_of_base = 0.3, .selection_frequency = 0.1}));
   // neither gains alone what both do: energies above the noise of 24, 24 and 0
-  const auto error = [](double over_noise) {
-    SignalError e;
-    e.signal = "velocity";
-    e.split = Split::kValidation;
-    e.noise_sigma = 0.02;
-    e.rmse = 0.02 * over_noise;
-    return std::vector<SignalError>{e};
-  };
-  d.baseline_comparison.errors = d.ladder[0].comparison.errors = error(5.0);
-  d.ladder[1].comparison.errors = d.final_comparison.errors = error(1.0);
+  d.baseline_comparison.errors = d.ladder[0].comparison.errors = {error(5.0)};
+  d.ladder[1].comparison.errors = d.final_comparison.errors = {error(1.0)};
   EXPECT_DOUBLE_EQ(confidences(d)[1].probability,
                    probability_right({.later = true, .share_of_base = 1.0, .selection_frequency = 0.1}));
 }
 
 TEST(ConfidenceTest, TakesTheWorseOfFitAndHeldOutErrorOfTheLastModelWithoutTheBus) {
   Diagnosis d = two_names();
-  const auto error = [](const std::string& signal, Split split, double over_noise) {
-    SignalError e;
-    e.signal = signal;
-    e.split = split;
-    e.noise_sigma = 0.02;
-    e.rmse = 0.02 * over_noise;
-    return e;
-  };
   for (const bool fit_is_worse : {false, true}) {
-    d.final_comparison.errors = {error("velocity", Split::kTraining, fit_is_worse ? 1.3 : 1.1),
-                                 error("velocity", Split::kValidation, fit_is_worse ? 1.1 : 1.3),
-                                 error("bus_voltage", Split::kValidation, 40.0)};
+    d.final_comparison.errors = {error(fit_is_worse ? 1.3 : 1.1, Split::kTraining, "velocity"),
+                                 error(fit_is_worse ? 1.1 : 1.3, Split::kValidation, "velocity"),
+                                 error(40.0, Split::kValidation, "bus_voltage")};
     EXPECT_DOUBLE_EQ(
         confidences(d)[1].probability,
         probability_right(
@@ -83,14 +78,6 @@ TEST(ConfidenceTest, TakesTheWorseOfFitAndHeldOutErrorOfTheLastModelWithoutTheBu
 TEST(ConfidenceTest, WhatRemainsIsTheEnergyAboveTheNoiseOverTheBaseModels) {
   Diagnosis d = two_names();
   d.outcome = Outcome::kMoreRemains;
-  const auto error = [](double over_noise) {
-    SignalError e;
-    e.signal = "velocity";
-    e.split = Split::kValidation;
-    e.noise_sigma = 0.02;
-    e.rmse = 0.02 * over_noise;
-    return e;
-  };
   d.baseline_comparison.errors = {error(3.0)};
   d.final_comparison.errors = {error(2.0)};
   EXPECT_DOUBLE_EQ(confidences(d)[0].probability, probability_right({.more_remains = true,
@@ -151,10 +138,10 @@ TEST(ConfidenceTest, SaysItInPerCent) {
 
 TEST(ConfidenceTest, ANameIsUnlikelyBelowOneHalf) {
   Diagnosis d;
+  d.effects = {"cogging", "grease_drag", "backlash"};  // nothing is said of the last
   d.confidence = {{.effect = "cogging", .probability = 0.51}, {.effect = "grease_drag", .probability = 0.49}};
-  EXPECT_FALSE(is_unlikely(d, "cogging"));
-  EXPECT_TRUE(is_unlikely(d, "grease_drag"));
-  EXPECT_FALSE(is_unlikely(d, "backlash")) << "nothing is said of it";
+  EXPECT_EQ(names_by_likelihood(d).likely, (std::vector<std::string>{"cogging", "backlash"}));
+  EXPECT_EQ(names_by_likelihood(d).unlikely, (std::vector<std::string>{"grease_drag"}));
 }
 
 }  // namespace
