@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/robot/speed_loop.h"
+
 namespace omnihil {
 
 RobotCommand radio_command(std::span<const double> value, CommandFrame frame) {
@@ -46,7 +48,7 @@ void FirmwareLoop::tick(double now_s, const RobotInstant& sees) {
   RobotSensors s{};
   s.now_us = static_cast<std::uint64_t>(clock_ns(now_s) / 1000);
   const double span_s = now_s - last_s_;
-  const double share = ticks_ > 0 ? -std::expm1(-period_s_ / report_filter_s_) : 1.0;
+  const double share = ticks_ > 0 ? low_pass_share(report_filter_s_, period_s_) : 1.0;
   RobotShafts shafts{};
   for (std::size_t i = 0; i < kWheels; ++i) {
     s.encoder_counts[i] = static_cast<std::int64_t>(std::floor(sees.theta_rotor_rad[i] * counts_per_rad_));

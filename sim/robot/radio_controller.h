@@ -63,7 +63,7 @@ class RadioController {
                          ? inverse_without<double>(normal, 0, geometry_.cos_angle[0], geometry_.sin_angle[0])
                          : Eigen::Matrix3d(normal.inverse()));
     });
-    if (params.report_filter_s > 0.0) report_share_ = -std::expm1(-params.period_s / params.report_filter_s);
+    report_share_ = low_pass_share(params.report_filter_s, params.period_s);
   }
 
   // Body: v_forward, v_left, omega. Wheels: a speed each.
@@ -178,7 +178,7 @@ class RadioController {
   PerWheel<double> command_{}, followed_{};
   PerWheel<SpeedLoopState<T>> state_;
   PerWheel<T> reported_{};
-  double report_share_ = 1.0;  // 1 - exp(-period / report_filter)
+  double report_share_ = 1.0;
 };
 
 }  // namespace omnihil

@@ -5,7 +5,7 @@
 //   double duty = u_V / 24;
 //
 // All at the rotor:
-//   w'   = mean speed over the period, through a first-order low pass of speed_filter_s
+//   w'   = mean speed over the period, through a first-order low pass of speed_filter_s as firmware runs it (low_pass_share)
 //   u    = feedforward r + acceleration_feedforward dr/dt + kp (r - w') + I,     |u| <= limit bus
 //   I   += ki (r - w') dt,  |I| <= integral_limit bus; while u is at its limit only what leads away from it (clamping)
 // Source: Astrom and Murray, Feedback Systems, 2008, sect. 10.4 (PI with feed-forward and anti-windup).
@@ -37,6 +37,14 @@ struct SpeedLoopInput {
   double limit_ratio = 1.0;  // of the bus
 };
 
+// Share a of the newest value in a firmware's first-order low pass, y += a (x - y) once per period: dt / (tau + dt), the backward
+// Euler step (Astrom, Wittenmark, Computer-Controlled Systems, 1997, sect. 8.3). Its derivative by tau is -1 / dt at tau = 0;
+// that of the exact solution, 1 - exp(-dt / tau), is zero there, so that data which know of no filter could not say so.
+template <typename T>
+T low_pass_share(const T& time_constant_s, double dt_s) {
+  return T(dt_s / (time_constant_s + dt_s));
+}
+
 template <typename T>
 T speed_loop_voltage(const SpeedLoopParams<T>& p, SpeedLoopState<T>& s, const SpeedLoopInput<T>& in) {
   const auto within = [](const T& x, const T& limit) {
@@ -45,11 +53,7 @@ T speed_loop_voltage(const SpeedLoopParams<T>& p, SpeedLoopState<T>& s, const Sp
   };
   const T change = in.reference_rad_s - s.reference_rad_s;
   s.reference_rad_s = in.reference_rad_s;
-  // exact for a measured speed that is held over the period: 1 - exp(-dt / tau)
-  using std::exp;
-  const bool filtered = value_of(p.speed_filter_s) > 0.0;
-  const T share = filtered ? T(1.0 - exp(T(-in.dt_s / p.speed_filter_s))) : T(1);
-  s.filtered_rad_s += (in.omega_rad_s - s.filtered_rad_s) * share;
+  s.filtered_rad_s += (in.omega_rad_s - s.filtered_rad_s) * low_pass_share(p.speed_filter_s, in.dt_s);
   const T error = s.reference_rad_s - s.filtered_rad_s;
   const T rest = p.feedforward_V_s_per_rad * s.reference_rad_s +
                  p.acceleration_feedforward_V_s2_per_rad * change * (1.0 / in.dt_s) +

@@ -143,6 +143,25 @@ TEST(RadioController, SilenceBringsItToZero) {
   EXPECT_EQ(controller.update(0.101, {}, 24.0, 1.0)[0], 0.0);
 }
 
+// y_n = 1 - (tau / (tau + dt))^n after a step of one, as y += dt / (tau + dt) (1 - y) in the firmware makes it.
+TEST(SpeedLoop, FiltersTheSpeedAsFirmwareDoes) {
+  SpeedLoopParams<double> p{.speed_filter_s = 0.002};
+  SpeedLoopState<double> state;
+  for (int n = 1; n <= 5; ++n) {
+    speed_loop_voltage(p, state, {.omega_rad_s = 1.0, .bus_voltage_V = 24.0, .dt_s = 1e-3});
+    EXPECT_NEAR(state.filtered_rad_s, 1.0 - std::pow(2.0 / 3.0, n), 1e-12);
+  }
+}
+
+// dy/dtau = -1 / dt: data that know of no filter can say so.
+TEST(SpeedLoop, KnowsWhereAFilterBeginsFromNone) {
+  SpeedLoopParams<Jet> p{.speed_filter_s = Jet(0.0, 0)};
+  SpeedLoopState<Jet> state;
+  speed_loop_voltage(p, state, {.omega_rad_s = Jet(1.0), .bus_voltage_V = Jet(24.0), .dt_s = 1e-3});
+  EXPECT_DOUBLE_EQ(state.filtered_rad_s.a, 1.0);
+  EXPECT_DOUBLE_EQ(state.filtered_rad_s.v[0], -1000.0);
+}
+
 TEST(RadioController, DerivativesAreExact) {
   const auto speed_at = [](double kp, double ki, double latency_s, double filter_s) {
     RadioControllerParams<double> p = some_loop();
