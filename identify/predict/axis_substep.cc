@@ -1,6 +1,7 @@
 #include "identify/predict/axis_substep.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace omnihil {
@@ -8,7 +9,8 @@ namespace {
 
 constexpr double kLongestStep_s = 2e-3;  // a choice (DECISIONS 213); taken where it is fine enough
 constexpr double kPlain_s = 1e-3;  // to which a law that is not marked (NumericsBit) is taken for fine enough
-constexpr int kTrialRuns = 4;      // bounds the cost; a choice
+constexpr std::array kSizes = {0.25, 4.0};  // of the typical one, tried beside it; a choice
+constexpr int kTrialRuns = 4;               // bounds the cost; a choice
 
 // Of a run whose rows are far apart (one per step of a staircase): the motion between them is not seen, and
 // longest_step() holds these steps to its bound too.
@@ -33,7 +35,7 @@ std::vector<Candidate> sizes_of(const EffectEntry& entry, const Candidate& nomin
     out.back().effects.push_back(use);
   };
   add_scaled([](std::size_t) { return false; }, 1.0);
-  for (const double by : {0.25, 4.0}) {
+  for (const double by : kSizes) {
     add_scaled([&](std::size_t i) { return entry.info->params[i].role == ParamRole::kStrength; }, by);
     for (std::size_t shape = 0; shape < typical.values.size(); ++shape) {
       const EffectParam& row = entry.info->params[shape];
@@ -42,6 +44,21 @@ std::vector<Candidate> sizes_of(const EffectEntry& entry, const Candidate& nomin
     }
   }
   return out;
+}
+
+// How many times longer than at the stiffest size tried a spring's steps may be: its mode is slower by the square root of its
+// compliance (Meirovitch 2001), what its damping takes away decays as fast as at any compliance. In powers of two, so that a fit
+// seldom crosses from one step to the next.
+double softer(const EffectUse& use, const Candidate& nominal) {
+  const EffectInfo& info = *use.entry->info;
+  if (info.place != Place::kShaft || (info.numerics & (kStiff | kImpacts)) != kStiff) return 1.0;
+  const DriveParams<double> drive = drive_of(nominal);
+  const auto over_typical = [&](std::size_t i) { return use.values[i] / start_of(info.params[i], &drive); };
+  double times = std::sqrt(over_typical(first_strength(info)) / kSizes.front());
+  for (std::size_t i = 0; i < use.values.size(); ++i) {
+    if (info.params[i].power_of_size < 0.0) times = std::min(times, kSizes.back() / over_typical(i));
+  }
+  return times > 1.0 ? std::exp2(std::floor(std::log2(times))) : 1.0;
 }
 
 }  // namespace
@@ -102,7 +119,7 @@ double AxisSubstep::of(const Candidate& c, int n) const {
   for (const EffectUse& use : c.effects) {
     const bool is_plain = (use.entry->info->numerics & (kStiff | kFine)) == 0;
     if (is_neutral(use) || (is_plain && base_s_ <= kPlain_s)) continue;
-    h = std::min(h, step_of(*use.entry, n));
+    h = std::min(h, softer(use, nominal_) * step_of(*use.entry, n));
   }
   return h;
 }

@@ -8,6 +8,7 @@
 // named: DECISIONS 42). The base model is tried at its nominal values; a law that is faster than a millisecond
 // (kStiff) or changes within a sample (kFine), and in steps of more than a millisecond every law, at its typical size, and with
 // all strengths, then each shape, at a quarter and at four times that, when a model first has it.
+// A spring softer than those sizes has a slower mode: its steps grow with the root of its compliance.
 // Cannot: see an error that only sizes far from these have, or that only comes after the trial's seconds; vary
 // the step within a run. A law with impacts has no order of convergence: it takes the shortest step.
 #pragma once

@@ -93,6 +93,29 @@ TEST(AxisSubstep, HoldsForEverySizeThatIsTried) {
   EXPECT_DOUBLE_EQ(substep.of(with_typical("lugre_friction"), 0), 0.125e-3);
 }
 
+// Tried down to a quarter of the typical compliance, whose mode is twice as fast: steps grow with the root of the compliance, as
+// long as the damping alone does not need shorter ones.
+TEST(AxisSubstep, OfASoftSpringIsLonger) {
+  const auto error = [](const Candidate& c, int, double h) {
+    return c.effects.empty() ? 0.0 : 0.0699 * std::pow(h / 0.125e-3, 2);
+  };
+  const DriveParams<double> drive = drive_of(nominal());
+  const AxisSubstep substep(nominal(), {rows_every(2e-3)}, kShortest_s, error);
+  const auto step = [&](double compliance_times, double damping_times) {
+    Candidate c = nominal();
+    c.effects.push_back(typical_use(*find_effect("shaft_compliance"), &drive));
+    c.effects[0].values[0] *= compliance_times;
+    c.effects[0].values[1] *= damping_times;
+    return substep.of(c, 0);
+  };
+  EXPECT_DOUBLE_EQ(step(0.1, 1.0), 0.125e-3);
+  EXPECT_DOUBLE_EQ(step(0.25, 1.0), 0.125e-3);
+  EXPECT_DOUBLE_EQ(step(1.01, 1.0), 0.25e-3);
+  EXPECT_DOUBLE_EQ(step(16.1, 0.25), 1e-3);
+  EXPECT_DOUBLE_EQ(step(1e3, 0.25), 2e-3) << "no longer than the base model's";
+  EXPECT_DOUBLE_EQ(step(16.1, 8.0), 0.125e-3) << "damping";
+}
+
 // A row a second: up to eight times the step, if that is fine enough.
 TEST(AxisSubstep, IsLongerWhereRowsAreFarApart) {
   const auto fine = [](const Candidate&, int, double) { return 0.0; };
