@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kLongest_s = 0.05;   // of a window: slower than any speed loop that uses it; a choice
 constexpr double kFewestPeriods = 2;  // shorter, the reading is the difference of two samples: derived
-constexpr double kOffStep = 0.02;  // of a step: decimals of a file; a choice, below the 0.5 of a wrong step
-constexpr int kFewestSteps = 3;    // different readings; fewer fit any step: derived
+constexpr double kOffStep = 0.02;     // of a step: rounding; a choice, below the 0.5 of a wrong step
+constexpr int kFewestSteps = 3;       // different readings; fewer fit any step: derived
 
 // A window that slides changes its reading by each pulse that comes in and by each that goes out, and by
 // nothing else: 2 |omega| T / pulse changes per sample of T where the motion is slow and even, less those
@@ -67,6 +67,58 @@ bool is_held(const std::vector<double>& values, double step, double window_sampl
   return changes >= kFewest && off <= kOff * changes;
 }
 
+// What all values are whole multiples of: the last decimal of a file, in the channel's unit (Euclid's algorithm). 0: nothing
+// that is not lost beside the quantum.
+double common_unit(const std::vector<double>& values, double quantum) {
+  constexpr double kSame = 1e-6,
+                   kLost = 1e-3;  // of the quantum: doubles of a text; decimals beyond any step; choices
+  double unit = 0.0;
+  for (const double v : values) {
+    double rest = std::isfinite(v) ? std::abs(v) : 0.0;
+    while (rest > kSame * quantum) {
+      const double next = unit > 0.0 ? std::fmod(unit, rest) : 0.0;
+      unit = rest;
+      rest = rest - next < kSame * quantum ? 0.0 : next;
+    }
+    if (unit > 0.0 && unit < kLost * quantum) return 0.0;
+  }
+  return unit;
+}
+
+// The step whose multiples, rounded to `unit`, all the values are; 0: there is none. `about`: the smallest difference between two
+// of them, which two roundings make wrong by a unit. Each value narrows what the step may be, the small ones first.
+double step_behind_rounding(const std::vector<double>& values, double about, double unit) {
+  constexpr double kCoarse = 4.0;  // units in a step, or too many steps fit; a choice
+  if (unit <= 0.0 || about < kCoarse * unit) return 0.0;
+  std::vector<double> sizes;
+  for (const double v : values) {
+    if (std::isfinite(v) && std::abs(v) > 0.5 * about) sizes.push_back(std::abs(v));
+  }
+  std::ranges::sort(sizes);
+  double low = about - unit, high = about + unit;
+  for (const double size : sizes) {
+    const double steps = std::round(size / (0.5 * (low + high)));
+    low = std::max(low, (size - 0.5 * unit) / steps);
+    high = std::min(high, (size + 0.5 * unit) / steps);
+    if (low > high) return 0.0;
+  }
+  return 0.5 * (low + high);
+}
+
+// The step whose multiples all the values are; 0: there is none.
+double step_of(const std::vector<double>& values, double quantum) {
+  double largest = 0.0;
+  for (const double v : values) largest = std::isfinite(v) ? std::max(largest, std::abs(v)) : largest;
+  if (std::round(largest / quantum) < kFewestSteps - 1) return 0.0;
+  const double rounded = step_behind_rounding(values, quantum, common_unit(values, quantum));
+  if (rounded > 0.0) return rounded;
+  const double step = largest / std::round(largest / quantum);
+  const auto is_off = [step](double v) {
+    return std::isfinite(v) && std::abs(v / step - std::round(v / step)) > kOffStep;
+  };
+  return std::ranges::any_of(values, is_off) ? 0.0 : step;
+}
+
 // Rounding error of an angle counted in whole pulses, in rad: -pulse_rad to 0.
 double rounding(double angle_rad, double pulse_rad, double start) {
   const double pulses = angle_rad / pulse_rad + start;
@@ -82,14 +134,8 @@ double CountedSpeed::integrated_sigma_rad() const { return pulse_rad / std::sqrt
 CountedSpeed counted_speed(const std::vector<double>& values, double quantum, double period_s,
                            double pulse_rad) {
   if (quantum <= 0.0 || pulse_rad <= 0.0 || period_s <= 0.0) return {};
-  double largest = 0.0;
-  for (const double v : values) largest = std::isfinite(v) ? std::max(largest, std::abs(v)) : largest;
-  const double steps = std::round(largest / quantum);
-  if (steps < kFewestSteps - 1) return {};
-  const double step = largest / steps;
-  for (const double v : values) {
-    if (std::isfinite(v) && std::abs(v / step - std::round(v / step)) > kOffStep) return {};
-  }
+  const double step = step_of(values, quantum);
+  if (step <= 0.0) return {};
   const double window_s = pulse_rad / step;
   if (window_s < kFewestPeriods * period_s || window_s > kLongest_s) return {};
   const double window_samples = window_s / period_s;

@@ -42,6 +42,16 @@ TEST(CountedSpeed, IsKnownWhereTheWindowIsHeld) {
   EXPECT_NEAR(counted_speed(v, kPulse_rad / kWindow_s, kPeriod_s, kPulse_rad).window_s, kWindow_s, 1e-9);
 }
 
+// A step of 18.7 rad/s, written in whole ones: 19, 37, 56, … differ by 18 and 19; or in whole turns per minute, read in rad/s.
+TEST(CountedSpeed, IsKnownBehindTheDecimalsOfAFile) {
+  for (const double unit : {1.0, 2.0 * M_PI / 60.0}) {
+    std::vector<double> v = counted(20000);
+    for (double& x : v) x = unit * std::round(x / unit);
+    const double quantum = unit * std::floor(kPulse_rad / kWindow_s / unit);
+    EXPECT_NEAR(counted_speed(v, quantum, kPeriod_s, kPulse_rad).window_s, kWindow_s, 1e-5) << unit;
+  }
+}
+
 TEST(CountedSpeed, IsNotSeenWithoutAStepOrPolePairs) {
   const std::vector<double> v = counted(20000);
   EXPECT_EQ(counted_speed(v, 0.0, kPeriod_s, kPulse_rad).window_s, 0.0);
