@@ -81,6 +81,8 @@ bool is_shape(const Candidate& model, const Unknown& u) {
 std::string bound_sentence(const Unknown& u, double x, double data_gradient, bool is_shape) {
   const bool lower = at(x, u.lower, u.scale);
   if (lower && u.lower == 0.0 && is_shape) return "at its bound 0, the law's simplest form";
+  const bool is_time = u.effect < 0 && u.unit == "s";  // a filter's time constant, a latency: zero is none
+  if (lower && u.lower == 0.0 && is_time) return "at its bound 0: these data know of none";
   if (lower && data_gradient > 0.0 && u.lower == 0.0) {
     return fmt::format(
         "at its bound 0: these data would take a negative value, which no drive has; something else is "

@@ -218,6 +218,29 @@ TEST(RadioDriven, AFitFindsLatencyAndGains) {
   EXPECT_NEAR(found("robot.wheel_radius_m"), 0.0274, 5e-5);
 }
 
+// As good a chance to end at the bound as beside it: one of three draws of the noise does.
+TEST(RadioDriven, AFilterThatIsNotThereIsNone) {
+  Candidate nominal = radio_candidate(), truth = nominal;
+  Parameter* filter = nominal.file.parameters.find("controller.speed_filter_s");
+  ASSERT_NE(filter, nullptr);
+  filter->tolerance = 1.0;
+  EXPECT_EQ(set_value(truth, "controller.speed_filter_s", 0.0), "");
+  const auto p = make_predictor(blank_radio(10.0), nominal, {});
+  int at_none = 0;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const auto measured = p->simulated(truth, seed);
+    const FitResult found = fit(*measured, nominal, unknowns_of(nominal), {});
+    for (const ParameterEstimate& e : found.parameters) {
+      if (e.path != "controller.speed_filter_s") continue;
+      EXPECT_LT(e.value, 0.001) << seed;
+      if (!e.at_bound) continue;
+      EXPECT_EQ(e.sentence, "at its bound 0: these data know of none");
+      ++at_none;
+    }
+  }
+  EXPECT_GE(at_none, 1);
+}
+
 // Without a filter the loop sees the mean speed of its last period: what the encoder's counts say between two rows that are
 // a period apart, and not what they said a row before.
 TEST(RadioDriven, ARowTellsTheSpeedsOfTheLoopThatRunsAtIt) {
