@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/estimate/heard_commands.h"
+#include "identify/select/held_numbers.h"
 #include "identify/select/idle_effect.h"
 #include "identify/select/innovations.h"
 #include "identify/select/verdict.h"
@@ -68,6 +69,10 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
     return result;
   };
   AcceptanceResult acceptance = test();
+  if (auto held = accepted_at_belief(task, context.setup(false, stop), context.base(), with, acceptance,
+                                     start.name, signal_to_null);
+      held && not_its_own.empty())
+    acceptance = std::move(*held);
   if (!acceptance.accepted()) {
     AcceptanceResult fast = test_by_innovations(task, context.base(), with, start.name);
     if (fast.accepted()) {

@@ -15,6 +15,7 @@
 #include "identify/select/effect_variants.h"
 #include "identify/select/elimination.h"
 #include "identify/select/innovations.h"
+#include "identify/select/last_fit.h"
 #include "identify/select/nested_law.h"
 #include "identify/select/next_experiment.h"
 #include "identify/select/noise_effect.h"
@@ -35,8 +36,6 @@ constexpr double kAfterRounds = 0.85;    // a guess
 // Restarts for that, by cost. Tuned on the open cases; sensitivity not measured.
 constexpr double kNotConverged = 0.02;  // tuned
 constexpr int kMostRestarts = 2;        // by cost
-// Energy of the robust last fit, in that of least squares, from which it counts as diverged; sensitivity not measured.
-constexpr double kRobustLoss = 1.2;  // tuned
 
 constexpr const char* kBaseStep = "base parameters refitted";
 
@@ -63,6 +62,7 @@ class Diagnosing {
       iterate();
       eliminate();
       search_anew();
+      split_rich_laws();
       simplify();
       hear_anew();
     }
@@ -246,7 +246,7 @@ class Diagnosing {
       out_.effects.push_back(best.screened.name);
       aliased_parameter_[best.screened.name] = best.screened.aliased_parameter();
     }
-    add_step(best.screened.name, current_, compare(context().predictor(), current_.fit.model));
+    add_step(best.screened.name, current_);
     note_confounded(iteration, out_);
   }
 
@@ -260,8 +260,7 @@ class Diagnosing {
       out_.effects.push_back(pair.names[k]);
       aliased_parameter_[pair.names[k]] = pair.aliased_parameters[k];
     }
-    add_step(fmt::format("{}", fmt::join(pair.names, " and ")), current_,
-             compare(context().predictor(), current_.fit.model));
+    add_step(fmt::format("{}", fmt::join(pair.names, " and ")), current_);
     return true;
   }
 
@@ -274,7 +273,7 @@ class Diagnosing {
       if (!unneeded) return;
       current_ = std::move(unneeded->fitted);
       std::erase(out_.effects, unneeded->name);
-      add_step("removed " + unneeded->name, current_, compare(context().predictor(), current_.fit.model));
+      add_step("removed " + unneeded->name, current_);
       removed = true;
     }
   }
@@ -294,6 +293,23 @@ class Diagnosing {
   }
   EffectsFound found() const { return {out_.effects, aliased_parameter_, pair_, by_innovations_}; }
 
+  // A law whose shapes imitate another one leaves that too little to be accepted. Asked where the bootstrap selects what was refused.
+  void split_rich_laws() {
+    const std::vector<RankedEffect>& last = out_.ladder.back().ranking;
+    if (last.empty() || last.front().selection_frequency <= 0.5) return;
+    for (const std::string& name : std::vector<std::string>(out_.effects)) {
+      if (stopped_) return;
+      std::optional<SplitLaw> split = split_law(task_, context().setup(true, stop()), current_, name);
+      if (!split) continue;
+      std::ranges::replace(out_.effects, name, split->simpler);
+      add_replacement(split->simpler, name, split->with_simpler);
+      out_.ladder.back().ranking = split->iteration.ranking;
+      take(split->iteration, std::move(split->fitted));
+      if (worth_another_iteration()) iterate();
+      eliminate();
+    }
+  }
+
   // Laws whose shapes imitated what later effects explain give way to the laws that they become at a limit.
   void simplify() {
     for (std::size_t n = 0; n < out_.effects.size() && !stopped_; ++n) {
@@ -303,8 +319,7 @@ class Diagnosing {
       if (!simpler) continue;
       current_ = std::move(simpler->fitted);
       replace_in_answer(name, simpler->name, out_);
-      add_step(fmt::format("{} in place of {}", simpler->name, name), current_,
-               compare(context().predictor(), current_.fit.model));
+      add_replacement(simpler->name, name, current_);
     }
   }
 
@@ -329,7 +344,7 @@ class Diagnosing {
     const RefitSetup setup = context().setup(true, stop());  // as each choice was; the last fit is thorough
     current_ = refit_to_convergence(setup, refit_as_it_is(setup, current_.fit.model, 1));
     heard_anew_ = true;
-    add_step("lost commands decided anew", current_, compare(context().predictor(), current_.fit.model));
+    add_step("lost commands decided anew", current_);
   }
 
   // Of the base parameters that the answer has: until then better ones may come.
@@ -348,25 +363,17 @@ class Diagnosing {
     give_intervals();
     say("last fit", 0.88);
     bool added = !out_.effects.empty();
-    if (added && !stopped_) {
-      // The structure is fixed now; a few runs that it cannot explain should not bias its parameters (Huber's loss).
-      RefitSetup setup = context().setup(false, stop());
-      setup.robust = true;
-      const Fitted last =
-          numbers_by_innovations(task_, refit_as_it_is(setup, current_.fit.model, 1), by_innovations_);
-      const auto to_bound = [&](const std::string& name) { return !ends_at_bound(last.fit, name).empty(); };
-      const bool imitates = std::any_of(out_.effects.begin(), out_.effects.end(), to_bound);
-      if (last.finite && !imitates &&
-          energy_ratio(context().splits()[kTraining], current_.residual[kTraining],
-                       last.residual[kTraining]) < kRobustLoss) {
-        current_ = last;
-        out_.ladder.back().comparison = compare(context().predictor(), current_.fit.model);
-        out_.ladder.back().parameters = current_.fit.parameters;
-      }
+    std::optional<Fitted> last = added && !stopped_
+                                     ? last_fit(task_, context().setup(false, stop()), current_, found())
+                                     : std::nullopt;
+    if (last) {
+      current_ = std::move(*last);
+      out_.ladder.back().comparison = compare(context().predictor(), current_.fit.model);
+      out_.ladder.back().parameters = current_.fit.parameters;
     }
     std::optional<ResidualExcesses> excesses(excesses_of(current_.fit.model));
     ResidualExcess alike = excesses->alike();
-    if (!misleading() && !stopped_ && structure_in_excess(alike) && take_noise_effect()) {
+    if (!misleading() && !stopped_ && structure_remains(alike, false) && take_noise_effect()) {
       excesses.emplace(excesses_of(current_.fit.model));
       alike = excesses->alike();
     }
@@ -385,23 +392,14 @@ class Diagnosing {
     const bool remains = !searched || structure_remains(left.excess, added);
     out_.verdict = remains ? Verdict::kUnknown : (added ? Verdict::kEffect : Verdict::kAdequate);
     out_.where = where_of(added && !remains ? out_.baseline_comparison : out_.final_comparison, order_);
-    out_.outcome = !searched ? Outcome::kNotSearched
-                   : !added  ? Outcome::kNothingFound
-                   : remains ? Outcome::kMoreRemains
-                             : Outcome::kFound;
+    out_.outcome = outcome_of(searched, added, remains);
     if (remains && searched && !stopped_) {
       say("looking for a formula", 0.92);
       out_.unknown = unknown_structure(task_, current_, out_.final_comparison, stop());
     }
-    if (!searched) {
-      out_.unknown.sentence = "No effect was tried: " + out_.not_searched;
-    } else if (stopped_ && remains) {
-      out_.unknown.sentence =
-          "Structure remains, and the search was interrupted: not every effect was tried.";
-    } else {
-      out_.unknown.sentence = residual_sentence(left.excess, added);
-      out_.unknown.sentence += left.of_parameters;
-    }
+    out_.unknown.sentence = !searched             ? "No effect was tried: " + out_.not_searched
+                            : stopped_ && remains ? kSearchInterrupted
+                                                  : sentence_of(left, added);
     settle_confounded(heard().dataset, out_);
     out_.confidence = confidences(out_);
     out_.next_experiment = next_experiment(heard().dataset, out_);
@@ -424,22 +422,17 @@ class Diagnosing {
     return is_implausible(current_.fit) ||
            structure_in(context().splits()[u], context().null(), context().channels(),
                         current_.residual[u]) ||
-           structure_in_excess(excesses_of(current_.fit.model).alike());
+           structure_remains(excesses_of(current_.fit.model).alike(), false);  // no allowance for a form
   }
-
-  bool structure_in_excess(const ResidualExcess& excess) const {
-    return structure_remains(excess, false);
-  }  // no allowance for a found effect's form
 
   // The remaining variance may be noise that an effect makes. Its strength is estimated from variances, not
   // by the fit, which sees the mean.
   bool take_noise_effect() {
     say("noise effects", 0.9);
-    std::vector<const EffectEntry*> others;
-    for (const EffectEntry* e : task_.applicable) {
-      if (std::find(out_.effects.begin(), out_.effects.end(), e->info->id) == out_.effects.end())
-        others.push_back(e);
-    }
+    std::vector<const EffectEntry*> others = task_.applicable;
+    std::erase_if(others, [&](const EffectEntry* e) {
+      return std::ranges::find(out_.effects, e->info->id) != out_.effects.end();
+    });
     const std::optional<NoiseEffect> found = noise_effect({.predictor = &context().predictor(),
                                                            .unweighted = &context().unweighted(),
                                                            .model = &current_.fit.model,
@@ -450,7 +443,7 @@ class Diagnosing {
     current_.fit.model = with_use(current_.fit.model, found->use);
     current_.fit.parameters.push_back(found->strength);
     out_.effects.push_back(name);
-    add_step(name, current_, compare(context().predictor(), current_.fit.model));
+    add_step(name, current_);
     note_noise_effect(name, found->explained, parameters_of(current_.fit, name), out_);
     return true;
   }
@@ -462,6 +455,12 @@ class Diagnosing {
     return std::move(out_);
   }
 
+  void add_replacement(const std::string& simpler, const std::string& richer, const Fitted& model) {
+    add_step(fmt::format("{} in place of {}", simpler, richer), model);
+  }
+  void add_step(const std::string& added, const Fitted& model) {
+    add_step(added, model, compare(context().predictor(), model.fit.model));
+  }
   void add_step(const std::string& added, const Fitted& model, const Comparison& comparison) {
     out_.ladder.push_back(
         {.added = added, .comparison = comparison, .parameters = model.fit.parameters, .ranking = {}});

@@ -9,12 +9,12 @@ namespace omnihil {
 // with the base parameter that its signal is aliased with.
 void note_confounded(const Iteration& iteration, Diagnosis& diagnosis);
 
-// The simpler of two nested laws takes the richer one's place. They leave the same error, so the richer one is among
-// what cannot be told apart from it.
 // An effect that was accepted for the variance it explains, in the first ranking; the only one found goes first there.
 void note_noise_effect(const std::string& name, double explained, std::vector<ParameterEstimate> parameters,
                        Diagnosis& diagnosis);
 
+// The simpler of two nested laws takes the richer one's place. They leave the same error, so the richer one is among
+// what cannot be told apart from it.
 void replace_in_answer(const std::string& richer, const std::string& simpler, Diagnosis& diagnosis);
 
 // At the end: sets of an effect that was removed again go, and from the others the members that are in the answer

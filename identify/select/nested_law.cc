@@ -3,26 +3,74 @@
 #include <algorithm>
 
 #include "identify/select/effect_variants.h"
+#include "identify/select/plausibility.h"
 
 namespace omnihil {
+namespace {
+
+// `model` with a law that `name` nests in its place, at its typical size; empty: it is not applicable, or there already.
+std::optional<Candidate> with_nested(const SelectionTask& task, const Candidate& model,
+                                     const std::string& name, std::string_view simpler) {
+  const auto entry = std::find_if(task.applicable.begin(), task.applicable.end(),
+                                  [&](const EffectEntry* e) { return e->info->id == simpler; });
+  if (entry == task.applicable.end() || use_of(model, simpler) != nullptr) return std::nullopt;
+  const Candidate without = without_effect(model, name);
+  return with_use(without, at_typical_size(neutral_use(**entry), without));
+}
+
+// What laws it may give way to; none if the readings show its signature.
+std::vector<std::string_view> simpler_than(const SelectionTask& task, const Candidate& model,
+                                           const std::string& name) {
+  const EffectUse* rich = use_of(model, name);
+  if (rich == nullptr || task.predictor->shows_signature_of(*rich->entry)) return {};
+  return {rich->entry->info->nests.begin(), rich->entry->info->nests.end()};
+}
+
+bool leaves_less(const Splits& splits, const Fitted& a, const Fitted& than) {
+  for (std::size_t u = 0; u < kSplits; ++u) {
+    if (!splits[u].empty() && !(energy_ratio(splits[u], than.residual[u], a.residual[u]) < 1.0)) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
                                     const std::string& name) {
-  const EffectUse* rich = use_of(current.fit.model, name);
-  if (rich == nullptr || task.predictor->shows_signature_of(*rich->entry)) return std::nullopt;
-  for (const std::string_view simpler : rich->entry->info->nests) {
-    const auto entry = std::find_if(task.applicable.begin(), task.applicable.end(),
-                                    [&](const EffectEntry* e) { return e->info->id == simpler; });
-    if (entry == task.applicable.end() || use_of(current.fit.model, simpler) != nullptr) continue;
-    const Candidate without = without_effect(current.fit.model, name);
-    const Candidate with = with_use(without, at_typical_size(neutral_use(**entry), without));
-    Fitted fitted = refit_to_convergence(setup, refit_as_it_is(setup, with, 1));
+  for (const std::string_view simpler : simpler_than(task, current.fit.model, name)) {
+    const std::optional<Candidate> with = with_nested(task, current.fit.model, name, simpler);
+    if (!with) continue;
+    Fitted fitted = refit_to_convergence(setup, refit_as_it_is(setup, *with, 1));
     if (!fitted.finite) continue;
     const AcceptanceResult earned =
         test_acceptance(task.acceptance_context, fitted, current, name, kScreenedBefore);
     // A gain that is decisive but refused for the values of its numbers is no reason for the simpler law either.
     if (earned.accepted() || earned.decisive) continue;
     return NestedLaw{.name = std::string(simpler), .fitted = std::move(fitted)};
+  }
+  return std::nullopt;
+}
+
+std::optional<SplitLaw> split_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
+                                  const std::string& name) {
+  SelectionTask others = task;
+  std::erase_if(others.applicable, [&](const EffectEntry* e) { return e->info->id == name; });
+  for (const std::string_view simpler : simpler_than(task, current.fit.model, name)) {
+    const std::optional<Candidate> with = with_nested(task, current.fit.model, name, simpler);
+    if (!with) continue;
+    SplitLaw out{.simpler = std::string(simpler),
+                 .with_simpler = refit_to_convergence(setup, refit_as_it_is(setup, *with, 1)),
+                 .iteration = {},
+                 .fitted = {}};
+    if (!out.with_simpler.finite || !ends_at_bound(out.with_simpler.fit, out.simpler).empty()) continue;
+    out.iteration = selection_iteration(others, out.with_simpler);
+    if (out.iteration.chosen < 0) continue;
+    const CandidateEffect& other = out.iteration.candidates[static_cast<std::size_t>(out.iteration.chosen)];
+    out.fitted = refit_to_convergence(setup, other.fitted);
+    const bool fewer = out.fitted.fit.parameters.size() <= current.fit.parameters.size();
+    if (!other.screened.extends && fewer && ends_at_bound(out.fitted.fit, other.screened.name).empty() &&
+        leaves_less(*task.splits, out.fitted, current))
+      return out;
   }
   return std::nullopt;
 }

@@ -27,4 +27,16 @@ struct NestedLaw {
 std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
                                     const std::string& name);
 
+// A simpler law with another one beside it, in place of a rich law whose shapes imitated the other.
+struct SplitLaw {
+  std::string simpler;
+  Fitted with_simpler;
+  Iteration iteration;  // of the search from there; what it chose is the other one
+  Fitted fitted;        // with both
+};
+// Method: the search goes on from the simpler law for one iteration. Both take the rich law's place if they have no more numbers
+// and leave less in every split of the runs. Empty otherwise, and where nested_law() would be.
+std::optional<SplitLaw> split_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
+                                  const std::string& name);
+
 }  // namespace omnihil

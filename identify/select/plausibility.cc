@@ -36,12 +36,15 @@ double deviation_of(const ParameterEstimate& p) {
   return p.prior_deviation_sigmas != 0.0 ? p.prior_deviation_sigmas : prior_z(p, p.value);
 }
 
-// A base parameter that the addition moves out of its tolerance or to a bound. Empty: none. What its prior rejects without
+}  // namespace
+
+// What its prior rejects without
 // any addition absorbs something that is missing (an inductance a delay): beside a decisive gain it says nothing against this
 // one. What an earlier addition moved that far is no such number: two laws would walk twice as far as one may. An earlier
 // effect's own numbers, which no base fit has, are believed to be of a usual size and no more: the parent's deviation counts.
-std::string moved_out_of_tolerance(const FitResult& base, const FitResult& parent, const FitResult& child,
-                                   bool decisive) {
+std::vector<MovedNumber> moved_numbers(const FitResult& base, const FitResult& parent, const FitResult& child,
+                                       bool decisive) {
+  std::vector<MovedNumber> out;
   for (const ParameterEstimate& p : child.parameters) {
     const double sigmas = std::abs(deviation_of(p));
     if (p.prior_sigma <= 0.0 || (sigmas < kOutOfTolerance_sigmas && !p.at_bound)) continue;
@@ -53,13 +56,15 @@ std::string moved_out_of_tolerance(const FitResult& base, const FitResult& paren
     // A bound at zero lies nearer than the limit where the tolerance is wide: the addition stands in for the parameter.
     const bool replaced = p.at_bound && !before->at_bound && sigmas >= kRestored_sigmas;
     if (sigmas - was > kDeviationRise_sigmas && (replaced || sigmas >= kOutOfTolerance_sigmas)) {
-      return fmt::format("it moves {} {} ({:+.1f} sigma, before {:+.1f})", p.path,
-                         replaced ? "to its bound" : "out of its tolerance", deviation_of(p),
-                         deviation_of(*before));
+      out.push_back({p.path, fmt::format("it moves {} {} ({:+.1f} sigma, before {:+.1f})", p.path,
+                                         replaced ? "to its bound" : "out of its tolerance", deviation_of(p),
+                                         deviation_of(*before))});
     }
   }
-  return "";
+  return out;
 }
+
+namespace {
 
 // A shape estimated at its bound suggests that the law is fitting something else. A strength may stay at its
 // neutral value (one of several; 1e-3 of its typical size is the optimiser's resolution there), a phase is
@@ -279,8 +284,10 @@ std::string ends_at_bound(const FitResult& child, const std::string& name) {
 std::string implausibility(const FitResult& parent, const FitResult& child, const std::string& name,
                            bool decisive, const FitResult* base) {
   const std::string why = implausible_estimate(child, name, decisive);
-  return why.empty() ? moved_out_of_tolerance(base != nullptr ? *base : parent, parent, child, decisive)
-                     : why;
+  if (!why.empty()) return why;
+  const std::vector<MovedNumber> moved =
+      moved_numbers(base != nullptr ? *base : parent, parent, child, decisive);
+  return moved.empty() ? "" : moved.front().why;
 }
 
 }  // namespace omnihil

@@ -204,4 +204,14 @@ Remaining remaining(const ResidualExcesses& excesses, const ResidualExcess& alik
   return out;
 }
 
+std::string sentence_of(const Remaining& left, bool effects_added) {
+  return residual_sentence(left.excess, effects_added) + left.of_parameters;
+}
+
+Outcome outcome_of(bool searched, bool effects_added, bool remains) {
+  if (!searched) return Outcome::kNotSearched;
+  if (!effects_added) return Outcome::kNothingFound;
+  return remains ? Outcome::kMoreRemains : Outcome::kFound;
+}
+
 }  // namespace omnihil

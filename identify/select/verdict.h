@@ -75,6 +75,10 @@ struct Remaining {
   ResidualExcess excess;
   std::string of_parameters;  // for people: an excess that other numbers of this model explain; empty: none
 };
+std::string sentence_of(const Remaining& left, bool effects_added);
+inline constexpr const char* kSearchInterrupted =
+    "Structure remains, and the search was interrupted: not every effect was tried.";
+Outcome outcome_of(bool searched, bool effects_added, bool remains);
 // alike: excesses.alike(); another_of_all: on extrapolation runs, of the model fitted to all runs.
 Remaining remaining(const ResidualExcesses& excesses, const ResidualExcess& alike, bool effects_added,
                     const std::function<ResidualExcess()>& another_of_all);

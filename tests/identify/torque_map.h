@@ -1,8 +1,9 @@
 // The torque that an axis takes at each of many settled speeds, against a brake whose torque is measured. Made up: what
 // is to be found in it is a closed form.
 //
-//   y_i = b w_i + (C + G (1 - exp(-|w_i| / w_G))) sgn w_i - L_i - M + noise
-//   speeds w_i from -w_max to w_max, brake L_i either way; hidden: load M, Coulomb friction C, grease's drag G
+//   y_i = b w_i + (C + G (1 - exp(-|w_i| / w_G)) + D w_i^2) sgn w_i - L_i - M + noise
+//   speeds w_i from -w_max to w_max, brake L_i either way; hidden: load M, Coulomb friction C, grease's drag G,
+//   drag D of the air
 //
 //   TorqueMap map({.load_Nm = 0.004});
 //   map.dataset; map.nominal;         // whose viscous friction is not known exactly, and which has no load
@@ -20,6 +21,7 @@ struct TorqueMapRecipe {
   double coulomb_Nm = 0.0;
   double grease_Nm = 0.0;
   double grease_speed_rad_s = 30.0;
+  double drag_Nm_s2_per_rad2 = 0.0;
   double share_of_speed = 1.0;  // that the fit and held-out runs reach
   bool another = false;         // an extrapolation run, to the fastest
   double swing_Nm =
@@ -73,12 +75,13 @@ class TorqueMap {
           split == kExtrapolation ? recipe.swing_Nm * std::sin(14.0 * M_PI * (i + 0.5) / kPoints) : 0.0;
       const double noise = recipe.sigma_Nm * gaussian(7, split, static_cast<std::uint64_t>(i));
       const double grease = recipe.grease_Nm * -std::expm1(-std::abs(w) / recipe.grease_speed_rad_s);
+      const double drag = recipe.drag_Nm_s2_per_rad2 * w * w;
       out.time_s.push_back(kPeriod_s * i);
       out.signals["velocity"].push_back(w);
       const double brake = recipe.braked ? brake_Nm(i) : 0.0;
       if (recipe.braked) out.signals["load_torque"].push_back(brake_Nm(i));
       out.signals["motor_torque"].push_back(recipe.friction_Nm_s_per_rad * w +
-                                            std::copysign(recipe.coulomb_Nm + grease, w) - brake -
+                                            std::copysign(recipe.coulomb_Nm + grease + drag, w) - brake -
                                             recipe.load_Nm + swing + noise);
     }
     return out;

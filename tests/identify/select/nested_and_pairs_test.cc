@@ -5,6 +5,7 @@
 
 #include "identify/select/effect_variants.h"
 #include "identify/select/elimination.h"
+#include "identify/select/held_numbers.h"
 #include "identify/select/nested_law.h"
 #include "identify/select/selection_pair.h"
 #include "sim/law/effect_registry.h"
@@ -24,15 +25,24 @@ TEST(NestedLaws, TheSimplestThatExplainsIsTheAnswer) {
   EXPECT_NEAR(value_at(d.final_fit.model, "coulomb_friction.torque_Nm").value_or(0.0), 0.003, 3e-5);
 }
 
-// Grease's drag, fitted to the map, and the law that could stand in its place.
+// Grease's drag, fitted to a map.
+struct Greased : PreparedSelection {
+  explicit Greased(const TorqueMap& map)
+      : PreparedSelection(map.dataset, map.nominal, {.seed = 1, .jobs = 1}) {
+    const Candidate& base = context.base().fit.model;
+    const EffectUse grease = at_typical_size(neutral_use(*find_effect("grease_drag")), base);
+    fitted = refit_as_it_is(setup, with_use(base, grease), 1);
+    EXPECT_TRUE(fitted.finite);
+  }
+
+  RefitSetup setup = context.setup(true, [] { return false; });
+  Fitted fitted;
+};
+
+// The law that could stand in its place.
 std::optional<NestedLaw> law_within_grease(const TorqueMap& map) {
-  const PreparedSelection bench(map.dataset, map.nominal, {.seed = 1, .jobs = 1});
-  const RefitSetup setup = bench.context.setup(true, [] { return false; });
-  const Candidate& base = bench.context.base().fit.model;
-  const EffectUse grease = at_typical_size(neutral_use(*find_effect("grease_drag")), base);
-  const Fitted current = refit_as_it_is(setup, with_use(base, grease), 1);
-  EXPECT_TRUE(current.finite);
-  return nested_law(bench.task, setup, current, "grease_drag");
+  const Greased bench(map);
+  return nested_law(bench.task, bench.setup, bench.fitted, "grease_drag");
 }
 
 TEST(NestedLaws, AShapeThatEarnsNothingGivesWay) {
@@ -44,6 +54,67 @@ TEST(NestedLaws, AShapeThatEarnsNothingGivesWay) {
 
 TEST(NestedLaws, AShapeThatTheDataShowStays) {
   EXPECT_FALSE(law_within_grease(TorqueMap({.grease_Nm = 0.003})).has_value());
+}
+
+// Coulomb friction and the air's drag, two numbers, in place of grease, which has two.
+TEST(NestedLaws, ARichLawThatImitatesTwoGivesWayToBoth) {
+  const TorqueMap map({.coulomb_Nm = 0.003, .drag_Nm_s2_per_rad2 = 2e-8});
+  const Greased bench(map);
+  const std::optional<SplitLaw> split = split_law(bench.task, bench.setup, bench.fitted, "grease_drag");
+  ASSERT_TRUE(split.has_value());
+  EXPECT_EQ(split->simpler, "coulomb_friction");
+  ASSERT_GE(split->iteration.chosen, 0);
+  EXPECT_EQ(split->iteration.candidates[static_cast<std::size_t>(split->iteration.chosen)].screened.name,
+            "quadratic_drag");
+  const auto found = [&](const char* path) { return value_at(split->fitted.fit.model, path).value_or(0.0); };
+  EXPECT_NEAR(found("coulomb_friction.torque_Nm"), 0.003, 1e-4);
+  EXPECT_NEAR(found("quadratic_drag.coefficient_Nm_s2_per_rad2"), 2e-8, 1e-9);
+}
+
+TEST(NestedLaws, ARichLawThatIsMeantIsNotSplit) {
+  for (const TorqueMapRecipe& recipe :
+       {TorqueMapRecipe{.grease_Nm = 0.003}, TorqueMapRecipe{.coulomb_Nm = 0.003}}) {
+    const TorqueMap map(recipe);
+    const Greased bench(map);
+    EXPECT_FALSE(split_law(bench.task, bench.setup, bench.fitted, "grease_drag").has_value());
+  }
+}
+
+// An effect beside a nominal model, with a viscous friction that is said to have gone to its bound on the way.
+std::optional<AcceptanceResult> with_friction_held(TorqueMap map, const char* effect) {
+  map.nominal = axis_with_friction("{ value = 1.3e-5, tolerance = 3 }");
+  PreparedSelection bench(map.dataset, map.nominal, {.seed = 1, .jobs = 1});
+  const RefitSetup setup = bench.context.setup(true, [] { return false; });
+  const auto friction_of = [](FitResult& fit) -> ParameterEstimate& {
+    return *std::ranges::find(fit.parameters, kFriction, &ParameterEstimate::path);
+  };
+  FitResult as_believed = bench.context.base().fit;
+  as_believed.model = map.nominal;
+  friction_of(as_believed).prior_deviation_sigmas = 0.5;
+  friction_of(as_believed).at_bound = false;
+  const Fitted parent = fitted(*bench.task.splits, *bench.task.unweighted, as_believed, 1);
+  bench.task.acceptance_context.base_fit = &parent.fit;
+  const EffectUse use = at_typical_size(neutral_use(*find_effect(effect)), map.nominal);
+  Fitted child = refit_as_it_is(setup, with_use(map.nominal, use), 1);
+  friction_of(child.fit).prior_deviation_sigmas = -3.3;
+  friction_of(child.fit).at_bound = true;
+  const AcceptanceResult refused =
+      test_acceptance(bench.task.acceptance_context, parent, child, effect, kScreenedBefore);
+  EXPECT_TRUE(refused.why.starts_with("it moves motor.viscous_friction_Nm_s_per_rad to its bound"))
+      << refused.why;
+  return accepted_at_belief(bench.task, setup, parent, child, refused, effect, kScreenedBefore);
+}
+
+TEST(HeldNumbers, AGainThatDoesNotNeedThemCounts) {
+  const auto drag = with_friction_held(TorqueMap({.drag_Nm_s2_per_rad2 = 2e-8}), "quadratic_drag");
+  ASSERT_TRUE(drag.has_value());
+  EXPECT_TRUE(drag->accepted());
+}
+
+// Viscous friction, of which dry friction explains three quarters: (1/2)^2 / (1/3).
+TEST(HeldNumbers, AGainThatNeedsThemDoesNot) {
+  EXPECT_FALSE(
+      with_friction_held(TorqueMap({.friction_Nm_s_per_rad = 1.3e-4}), "coulomb_friction").has_value());
 }
 
 // The base fit, one iteration and its refusal: as if each effect alone raised the error of another motion.
