@@ -297,9 +297,10 @@ class Diagnosing {
   void split_rich_laws() {
     const std::vector<RankedEffect>& last = out_.ladder.back().ranking;
     if (last.empty() || last.front().selection_frequency <= 0.5) return;
+    const std::string other = last.front().effect;
     for (const std::string& name : std::vector<std::string>(out_.effects)) {
       if (stopped_) return;
-      std::optional<SplitLaw> split = split_law(task_, context().setup(true, stop()), current_, name);
+      std::optional<SplitLaw> split = split_law(task_, context().setup(true, stop()), current_, name, other);
       if (!split) continue;
       std::ranges::replace(out_.effects, name, split->simpler);
       add_replacement(split->simpler, name, split->with_simpler);

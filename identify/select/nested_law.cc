@@ -52,23 +52,23 @@ std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup&
 }
 
 std::optional<SplitLaw> split_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
-                                  const std::string& name) {
-  SelectionTask others = task;
-  std::erase_if(others.applicable, [&](const EffectEntry* e) { return e->info->id == name; });
+                                  const std::string& name, std::string_view other) {
+  const auto entry =
+      std::ranges::find(task.applicable, other, [](const EffectEntry* e) { return e->info->id; });
+  if (entry == task.applicable.end() || use_of(current.fit.model, other) != nullptr) return std::nullopt;
   for (const std::string_view simpler : simpler_than(task, current.fit.model, name)) {
     const std::optional<Candidate> with = with_nested(task, current.fit.model, name, simpler);
-    if (!with) continue;
+    if (!with || simpler == other) continue;
     SplitLaw out{.simpler = std::string(simpler),
                  .with_simpler = refit_to_convergence(setup, refit_as_it_is(setup, *with, 1)),
                  .iteration = {},
                  .fitted = {}};
     if (!out.with_simpler.finite || !ends_at_bound(out.with_simpler.fit, out.simpler).empty()) continue;
-    out.iteration = selection_iteration(others, out.with_simpler);
+    out.iteration = iteration_among(task, out.with_simpler, {*entry});
     if (out.iteration.chosen < 0) continue;
-    const CandidateEffect& other = out.iteration.candidates[static_cast<std::size_t>(out.iteration.chosen)];
-    out.fitted = refit_to_convergence(setup, other.fitted);
+    out.fitted = refit_to_convergence(setup, out.iteration.candidates.front().fitted);
     const bool fewer = out.fitted.fit.parameters.size() <= current.fit.parameters.size();
-    if (!other.screened.extends && fewer && ends_at_bound(out.fitted.fit, other.screened.name).empty() &&
+    if (fewer && ends_at_bound(out.fitted.fit, std::string(other)).empty() &&
         leaves_less(*task.splits, out.fitted, current))
       return out;
   }

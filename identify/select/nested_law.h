@@ -31,12 +31,12 @@ std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup&
 struct SplitLaw {
   std::string simpler;
   Fitted with_simpler;
-  Iteration iteration;  // of the search from there; what it chose is the other one
+  Iteration iteration;  // from there, of the other one alone, which it chose
   Fitted fitted;        // with both
 };
-// Method: the search goes on from the simpler law for one iteration. Both take the rich law's place if they have no more numbers
-// and leave less in every split of the runs. Empty otherwise, and where nested_law() would be.
+// `other`: what was refused beside the rich law. Method: it is tested as an addition to the simpler law. Both take the rich law's
+// place if they have no more numbers and leave less in every split of the runs. Empty otherwise, and where nested_law() would be.
 std::optional<SplitLaw> split_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
-                                  const std::string& name);
+                                  const std::string& name, std::string_view other);
 
 }  // namespace omnihil

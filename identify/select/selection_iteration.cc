@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "identify/compare/order_spectrum.h"
 #include "identify/record/parallel.h"
@@ -407,6 +408,16 @@ Iteration refitted_as_well(const SelectionTask& task, const Fitted& parent,
   std::ranges::copy_if(screened, std::back_inserter(further),
                        [&](std::size_t i) { return !was_refitted(iteration, iteration.screened[i]); });
   if (!further.empty()) refit_shortlist(task, parent, further, iteration);
+  return iteration;
+}
+
+Iteration iteration_among(const SelectionTask& task, const Fitted& parent,
+                          const std::vector<const EffectEntry*>& effects) {
+  Iteration iteration = screening_iteration(task, parent, effects);
+  std::vector<std::size_t> all(iteration.screened.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  refit_shortlist(task, parent, all, iteration);
+  choose_anew(task, parent, iteration);
   return iteration;
 }
 

@@ -66,6 +66,10 @@ struct Iteration {
 
 Iteration selection_iteration(const SelectionTask& task, const Fitted& parent);
 
+// The same among these effects alone, each of them refitted.
+Iteration iteration_among(const SelectionTask& task, const Fitted& parent,
+                          const std::vector<const EffectEntry*>& effects);
+
 // Once more, beside a parent of the same structure that fits better: those that came near the best, each from where it ended.
 // None, if what came near the best is a detail of an effect that is there already.
 std::optional<Iteration> near_best_again(const SelectionTask& task, const Fitted& parent,

@@ -60,7 +60,8 @@ TEST(NestedLaws, AShapeThatTheDataShowStays) {
 TEST(NestedLaws, ARichLawThatImitatesTwoGivesWayToBoth) {
   const TorqueMap map({.coulomb_Nm = 0.003, .drag_Nm_s2_per_rad2 = 2e-8});
   const Greased bench(map);
-  const std::optional<SplitLaw> split = split_law(bench.task, bench.setup, bench.fitted, "grease_drag");
+  const std::optional<SplitLaw> split =
+      split_law(bench.task, bench.setup, bench.fitted, "grease_drag", "quadratic_drag");
   ASSERT_TRUE(split.has_value());
   EXPECT_EQ(split->simpler, "coulomb_friction");
   ASSERT_GE(split->iteration.chosen, 0);
@@ -76,7 +77,8 @@ TEST(NestedLaws, ARichLawThatIsMeantIsNotSplit) {
        {TorqueMapRecipe{.grease_Nm = 0.003}, TorqueMapRecipe{.coulomb_Nm = 0.003}}) {
     const TorqueMap map(recipe);
     const Greased bench(map);
-    EXPECT_FALSE(split_law(bench.task, bench.setup, bench.fitted, "grease_drag").has_value());
+    EXPECT_FALSE(
+        split_law(bench.task, bench.setup, bench.fitted, "grease_drag", "quadratic_drag").has_value());
   }
 }
 
