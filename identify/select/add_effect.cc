@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "identify/estimate/heard_commands.h"
-#include "identify/select/held_numbers.h"
 #include "identify/select/idle_effect.h"
 #include "identify/select/innovations.h"
 #include "identify/select/verdict.h"

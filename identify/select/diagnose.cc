@@ -15,7 +15,6 @@
 #include "identify/select/effect_variants.h"
 #include "identify/select/elimination.h"
 #include "identify/select/innovations.h"
-#include "identify/select/last_fit.h"
 #include "identify/select/nested_law.h"
 #include "identify/select/next_experiment.h"
 #include "identify/select/noise_effect.h"

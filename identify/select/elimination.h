@@ -36,4 +36,10 @@ std::optional<UnneededEffect> unneeded_effect(const SelectionTask& task, const R
                                               const Fitted& current, const EffectsFound& found,
                                               bool since_removal);
 
+// The numbers of the answer, once its effects are known, with Huber's loss (Holland, Welsch, Commun. Stat. A6(9), 1977): a few runs
+// that the model cannot explain do not bias them. Of effects that were accepted by the innovations they are those that fit the
+// innovations best. Empty: it diverged, or takes a number of an effect to a bound. setup: thorough, of the task's context.
+std::optional<Fitted> last_fit(const SelectionTask& task, RefitSetup setup, const Fitted& current,
+                               const EffectsFound& found);
+
 }  // namespace omnihil

@@ -11,7 +11,6 @@
 #include "identify/compare/order_spectrum.h"
 #include "identify/record/parallel.h"
 #include "identify/record/statistics.h"
-#include "identify/select/held_numbers.h"
 #include "identify/select/idle_effect.h"
 #include "identify/select/plausibility.h"
 #include "identify/select/selection.h"

@@ -5,7 +5,7 @@
 
 #include "identify/select/effect_variants.h"
 #include "identify/select/elimination.h"
-#include "identify/select/held_numbers.h"
+#include "identify/select/idle_effect.h"
 #include "identify/select/nested_law.h"
 #include "identify/select/selection_pair.h"
 #include "sim/law/effect_registry.h"
