@@ -68,10 +68,11 @@ Addition add_effect(const Dataset& recorded, const Candidate& nominal, const Eff
     return result;
   };
   AcceptanceResult acceptance = test();
-  if (auto held = accepted_at_belief(task, context.setup(false, stop), context.base(), with, acceptance,
-                                     start.name, signal_to_null);
-      held && not_its_own.empty())
-    acceptance = std::move(*held);
+  if (not_its_own.empty()) {
+    auto held = accepted_at_belief(task, context.setup(false, stop), context.base(), with, acceptance,
+                                   start.name, signal_to_null);
+    if (held) acceptance = std::move(*held);
+  }
   if (!acceptance.accepted()) {
     AcceptanceResult fast = test_by_innovations(task, context.base(), with, start.name);
     if (fast.accepted()) {

@@ -59,8 +59,8 @@ std::optional<AcceptanceResult> accepted_at_belief(const SelectionTask& task, co
                                                    double signal_to_null) {
   const AcceptanceContext& context = task.acceptance_context;
   if (refused.accepted() || !refused.decisive) return std::nullopt;
-  const FitResult& base = context.base_fit != nullptr ? *context.base_fit : parent.fit;
-  const std::vector<MovedNumber> moved = moved_numbers(base, parent.fit, child.fit, refused.decisive);
+  const std::vector<MovedNumber> moved =
+      moved_numbers(parent.fit, child.fit, refused.decisive, context.base_fit);
   if (moved.empty() || refused.why != moved.front().why) return std::nullopt;
   Candidate model = child.fit.model;
   for (const MovedNumber& m : moved) {

@@ -8,14 +8,19 @@
 namespace omnihil {
 namespace {
 
+// Null: it cannot act here.
+const EffectEntry* applicable(const SelectionTask& task, std::string_view id) {
+  const auto at = std::ranges::find(task.applicable, id, [](const EffectEntry* e) { return e->info->id; });
+  return at == task.applicable.end() ? nullptr : *at;
+}
+
 // `model` with a law that `name` nests in its place, at its typical size; empty: it is not applicable, or there already.
 std::optional<Candidate> with_nested(const SelectionTask& task, const Candidate& model,
                                      const std::string& name, std::string_view simpler) {
-  const auto entry = std::find_if(task.applicable.begin(), task.applicable.end(),
-                                  [&](const EffectEntry* e) { return e->info->id == simpler; });
-  if (entry == task.applicable.end() || use_of(model, simpler) != nullptr) return std::nullopt;
+  const EffectEntry* entry = applicable(task, simpler);
+  if (entry == nullptr || use_of(model, simpler) != nullptr) return std::nullopt;
   const Candidate without = without_effect(model, name);
-  return with_use(without, at_typical_size(neutral_use(**entry), without));
+  return with_use(without, at_typical_size(neutral_use(*entry), without));
 }
 
 // What laws it may give way to; none if the readings show its signature.
@@ -53,9 +58,8 @@ std::optional<NestedLaw> nested_law(const SelectionTask& task, const RefitSetup&
 
 std::optional<SplitLaw> split_law(const SelectionTask& task, const RefitSetup& setup, const Fitted& current,
                                   const std::string& name, std::string_view other) {
-  const auto entry =
-      std::ranges::find(task.applicable, other, [](const EffectEntry* e) { return e->info->id; });
-  if (entry == task.applicable.end() || use_of(current.fit.model, other) != nullptr) return std::nullopt;
+  const EffectEntry* entry = applicable(task, other);
+  if (entry == nullptr || use_of(current.fit.model, other) != nullptr) return std::nullopt;
   for (const std::string_view simpler : simpler_than(task, current.fit.model, name)) {
     const std::optional<Candidate> with = with_nested(task, current.fit.model, name, simpler);
     if (!with || simpler == other) continue;
@@ -64,7 +68,7 @@ std::optional<SplitLaw> split_law(const SelectionTask& task, const RefitSetup& s
                  .iteration = {},
                  .fitted = {}};
     if (!out.with_simpler.finite || !ends_at_bound(out.with_simpler.fit, out.simpler).empty()) continue;
-    out.iteration = iteration_among(task, out.with_simpler, {*entry});
+    out.iteration = iteration_among(task, out.with_simpler, {entry});
     if (out.iteration.chosen < 0) continue;
     out.fitted = refit_to_convergence(setup, out.iteration.candidates.front().fitted);
     const bool fewer = out.fitted.fit.parameters.size() <= current.fit.parameters.size();

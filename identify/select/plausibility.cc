@@ -42,13 +42,14 @@ double deviation_of(const ParameterEstimate& p) {
 // any addition absorbs something that is missing (an inductance a delay): beside a decisive gain it says nothing against this
 // one. What an earlier addition moved that far is no such number: two laws would walk twice as far as one may. An earlier
 // effect's own numbers, which no base fit has, are believed to be of a usual size and no more: the parent's deviation counts.
-std::vector<MovedNumber> moved_numbers(const FitResult& base, const FitResult& parent, const FitResult& child,
-                                       bool decisive) {
+std::vector<MovedNumber> moved_numbers(const FitResult& parent, const FitResult& child, bool decisive,
+                                       const FitResult* base) {
   std::vector<MovedNumber> out;
   for (const ParameterEstimate& p : child.parameters) {
     const double sigmas = std::abs(deviation_of(p));
     if (p.prior_sigma <= 0.0 || (sigmas < kOutOfTolerance_sigmas && !p.at_bound)) continue;
-    const ParameterEstimate *before = estimate_of(parent, p.path), *at_first = estimate_of(base, p.path);
+    const ParameterEstimate *before = estimate_of(parent, p.path),
+                            *at_first = estimate_of(base != nullptr ? *base : parent, p.path);
     if (before == nullptr) continue;  // of the effect itself
     const double was = std::abs(deviation_of(*before)),
                  was_at_first = at_first == nullptr ? was : std::abs(deviation_of(*at_first));
@@ -285,8 +286,7 @@ std::string implausibility(const FitResult& parent, const FitResult& child, cons
                            bool decisive, const FitResult* base) {
   const std::string why = implausible_estimate(child, name, decisive);
   if (!why.empty()) return why;
-  const std::vector<MovedNumber> moved =
-      moved_numbers(base != nullptr ? *base : parent, parent, child, decisive);
+  const std::vector<MovedNumber> moved = moved_numbers(parent, child, decisive, base);
   return moved.empty() ? "" : moved.front().why;
 }
 

@@ -67,16 +67,17 @@ std::string below_resolution(const FitResult& child, const std::string& name, co
 // neither periodic nor a choice of form). Empty: none.
 std::string ends_at_bound(const FitResult& child, const std::string& name);
 
-// A number of the parent that the addition moves out of its tolerance or to a bound.
+// A number of the parent that the addition moves out of its tolerance or to a bound. `base`: before any effect was found; null: the
+// parent is that.
 struct MovedNumber {
   std::string path;
   std::string why;  // "it moves motor.viscous_friction_Nm_s_per_rad to its bound (-3.3 sigma, before +0.5)"
 };
-std::vector<MovedNumber> moved_numbers(const FitResult& base, const FitResult& parent, const FitResult& child,
-                                       bool decisive);
+std::vector<MovedNumber> moved_numbers(const FitResult& parent, const FitResult& child, bool decisive,
+                                       const FitResult* base);
 
 // `decisive`: skip the significance test of the strength; the gain alone proves it, even if strength and
-// shape are correlated. `base`: before any effect was found; null: the parent is that.
+// shape are correlated. `base`: as above.
 std::string implausibility(const FitResult& parent, const FitResult& child, const std::string& name,
                            bool decisive, const FitResult* base = nullptr);
 

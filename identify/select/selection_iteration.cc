@@ -181,11 +181,11 @@ void refit_shortlist(const SelectionTask& task, const Fitted& parent, const std:
     if (c.fitted.finite && !c.screened.extends)
       c.not_its_own = gain_not_its_own((*task.splits)[kTraining], c.fitted, c.screened.name, 1);
     judge(task, parent, iteration.largest_null_gain, c);
-    if (std::optional<AcceptanceResult> held =
-            accepted_at_belief(task, setup, parent, c.fitted, c.acceptance, c.screened.name,
-                               signal_to_null(c.screened, iteration.largest_null_gain));
-        held && c.not_its_own.empty())
-      c.acceptance = std::move(*held);
+    if (c.not_its_own.empty()) {
+      auto held = accepted_at_belief(task, setup, parent, c.fitted, c.acceptance, c.screened.name,
+                                     signal_to_null(c.screened, iteration.largest_null_gain));
+      if (held) c.acceptance = std::move(*held);
+    }
     const double share = 0.5 + 0.5 * ++done / static_cast<double>(chosen.size());
     if (task.progress && !task.progress("refitting " + c.screened.name, share)) stopped = true;
   });
